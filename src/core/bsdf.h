@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/random.h"
+#include "core/spectrum.h"
+#include "core/vec.h"
+
+namespace frond {
+
+/// What a BSDF's lobes do, and which lobe a sample came from.
+enum class Lobes : uint8_t {
+  none = 0,
+  reflection = 1,
+  transmission = 2,
+  diffuse = 4,
+  glossy = 8,
+  specular = 16,     ///< delta lobes
+  stochastic = 32,   ///< f and sample are unbiased estimates that use their random stream
+  surface = 64,      ///< light that never entered the body (Rs of a leaf)
+};
+constexpr Lobes operator|(Lobes a, Lobes b) { return Lobes(uint8_t(a) | uint8_t(b)); }
+constexpr Lobes operator&(Lobes a, Lobes b) { return Lobes(uint8_t(a) & uint8_t(b)); }
+constexpr bool any(Lobes a) { return a != Lobes::none; }
+
+struct BsdfSample {
+  SampledSpectrum f;   ///< 1/sr, without cosine; the path's weight is f |cos theta_i| / pdf
+  Vec3 wi;             ///< local frame, unit
+  float pdf = 0;       ///< 1/sr, positive
+  Lobes flags = Lobes::none;
+  /// True where f / pdf is the right weight but `pdf` is not the density of wi: MIS must ask `pdf()` instead.
+  bool pdf_is_approximate = false;
+};
+
+/// Scattering at one point of a surface.
+///
+/// Convention, stated here and nowhere else. Directions are unit vectors in a local frame whose z is the shading normal
+/// (on a leaf: the adaxial side); both point away from the surface: `wo` toward where the path came from, `wi` toward
+/// where light comes from. `f` has no cosine in it and is in 1/sr; densities are per solid angle. Radiance along wo is
+/// the integral of f(wo, wi) L(wi) |cos theta_i| over the sphere. A delta lobe contributes 0 to `f` and `pdf`, and
+/// `sample` returns it with pdf = its probability and f = weight * pdf / |cos theta_i|. Directions with cos theta = 0
+/// scatter nothing. Lanes that are not active hold 0.
+///
+/// A BSDF may be stochastic: then `f` and the weight of `sample` are unbiased estimates that draw from `rng`, a stream
+/// of their own for each call, never derived from directions. `uc` and `u` in [0, 1) are the sampler's low-discrepancy
+/// numbers for the first try of `sample`; redraws use `rng`.
+class Bsdf {
+ public:
+  virtual Lobes flags() const = 0;
+  virtual SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const = 0;
+  virtual std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const = 0;
+  /// Density of `sample`, or an approximation of it that is positive wherever f is; used to weight both strategies.
+  virtual float pdf(const Vec3& wo, const Vec3& wi) const = 0;
+
+ protected:
+  ~Bsdf() = default;  // lives in an arena and is never deleted
+};
+
+inline bool same_side(const Vec3& a, const Vec3& b) { return a.z * b.z > 0; }
+
+}  // namespace frond

@@ -1,0 +1,59 @@
+#include "core/error.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+namespace frond {
+
+std::string Location::text() const { return file ? fmt::format("{}:{}:{}: ", *file, line, column) : std::string(); }
+
+InputError::InputError(const Location& where, const std::string& message)
+    : std::runtime_error(where.text() + message) {}
+
+namespace {
+
+size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t substitution = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitution});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
+  std::string_view best;
+  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
+  for (const std::string_view candidate : candidates) {
+    const size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) best = candidate, best_distance = distance;
+  }
+  return best;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {
+  if (const auto match = nearest(word, candidates); !match.empty()) return fmt::format("; did you mean \"{}\"?", match);
+  if (candidates.empty()) return "; there are none";
+  return fmt::format("; there {} {}", candidates.size() == 1 ? "is" : "are", fmt::join(candidates, ", "));
+}
+
+void Log::info(std::string_view message) const {
+  if (!quiet_) fmt::print(stderr, "{}\n", message);
+}
+
+void Log::warn(const Location& where, std::string_view message) const {
+  if (!quiet_) fmt::print(stderr, "{}warning: {}\n", where.text(), message);
+}
+
+}  // namespace frond

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+
+#include "core/spectrum.h"
+#include "core/vec.h"
+
+namespace frond {
+
+struct LightSample {
+  SampledSpectrum radiance;  ///< W/(m^2 sr nm) before film scaling; for a delta light: irradiance over cosine
+  Vec3 wi;                   ///< from the point toward the light, unit
+  float distance = 0;        ///< infinity for lights outside the scene
+  float pdf = 0;             ///< per solid angle at the point; 1 for a delta light
+};
+
+/// Something that lights points of the scene.
+class Light {
+ public:
+  virtual ~Light() = default;
+  virtual std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const = 0;
+  /// Light through a point or from one direction: no ray meets it by chance.
+  virtual bool is_delta() const = 0;
+  /// Photometric power up to a factor common to all lights of a scene of the given radius: how often to choose it.
+  virtual double power(float scene_radius) const = 0;
+  /// Wavelengths (nm) for which the emission is known.
+  virtual Interval range_nm() const = 0;
+};
+
+/// Light from outside the scene, met by every ray that leaves it.
+class EnvironmentLight : public Light {
+ public:
+  virtual SampledSpectrum radiance(const Vec3& direction, const SampledWavelengths& lambda) const = 0;
+  /// Density of `sample`, per solid angle.
+  virtual float pdf(const Vec3& direction) const = 0;
+};
+
+}  // namespace frond

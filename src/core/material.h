@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/arena.h"
+#include "core/bsdf.h"
+#include "core/parallel.h"
+#include "core/plugin.h"
+#include "core/vec.h"
+#include "core/wavelengths.h"
+
+namespace frond {
+
+/// What a material may know of the surface point that it is asked for.
+struct Hit {
+  Vec3 p;        ///< world space
+  Vec3 ng;       ///< geometric normal, unit, on the surface's front (a leaf's adaxial side) whichever side was hit
+  Frame shading; ///< z: shading normal, in the hemisphere of ng
+  Vec2 uv;
+};
+
+/// What a material gets to make itself ready once the scene is known, before the first path.
+struct Preparation {
+  const WavelengthStrategy& wavelengths;
+  ThreadPool& pool;
+  const Log& log;
+  std::filesystem::path cache_dir;  ///< empty: keep nothing on disk
+};
+
+/// Textures and parameters in, a BSDF for one hit out.
+class Material {
+ public:
+  virtual ~Material() = default;
+  /// Heavy work that depends on the wavelengths (tables) belongs here. Throws InputError.
+  virtual void prepare(const Preparation&) {}
+  /// Thread-safe. The BSDF lives until the arena is reset; nullptr: the surface is not there.
+  virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
+  /// Counts as foliage in the foliar ratio.
+  virtual bool is_leaf() const { return false; }
+};
+
+struct MaterialInfo : PluginInfo {
+  std::unique_ptr<Material> (*make)(const Params&);
+};
+
+template <class T>
+std::unique_ptr<Material> make_material(const Params& p) {
+  return std::make_unique<T>(p);
+}
+
+}  // namespace frond

@@ -1,0 +1,235 @@
+#include "core/params.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/material.h"
+#include "core/plugin.h"
+#include "core/texture.h"
+
+namespace frond {
+namespace {
+
+/// How the scene's types of a kind read, how many numbers make one value.
+struct KindTraits {
+  std::vector<std::string_view> types;
+  size_t arity;
+};
+
+const KindTraits& traits(ParamKind kind) {
+  static const std::array<KindTraits, 14> table{{
+      {{"bool"}, 1},
+      {{"integer"}, 1},
+      {{"float"}, 1},
+      {{"string"}, 1},
+      {{"point2"}, 2},
+      {{"vector2"}, 2},
+      {{"point3", "point"}, 3},
+      {{"vector3", "vector"}, 3},
+      {{"normal", "normal3"}, 3},
+      {{"rgb", "spectrum", "blackbody"}, 0},
+      {{"rgb", "spectrum"}, 0},
+      {{"float", "texture"}, 1},
+      {{"rgb", "spectrum", "texture"}, 0},
+      {{"string"}, 1},
+  }};
+  return table[static_cast<size_t>(kind)];
+}
+
+size_t value_count(const ParsedParam& p) {
+  return std::visit([](const auto& v) { return v.size(); }, p.values);
+}
+
+const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
+const std::vector<std::string>& words(const ParsedParam& p) { return std::get<std::vector<std::string>>(p.values); }
+
+Vec3 vec3_at(const std::vector<double>& v, size_t i) {
+  return {static_cast<float>(v[i]), static_cast<float>(v[i + 1]), static_cast<float>(v[i + 2])};
+}
+
+/// A default of three numbers is "rgb"; of one number, that value at every wavelength ("spectrum" [360 x 2500 x]).
+ParsedParam default_spectrum(const Param& declared, const Location& where) {
+  ParsedParam p{"rgb", std::string(declared.name), where, where, {}};
+  if (const auto* level = std::get_if<double>(&declared.default_value)) {
+    p.type = "spectrum";
+    p.values = std::vector<double>{360, *level, 2500, *level};
+  } else {
+    const auto& rgb = std::get<std::array<double, 3>>(declared.default_value);
+    p.values = std::vector<double>(rgb.begin(), rgb.end());
+  }
+  return p;
+}
+
+}  // namespace
+
+Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver& resolver)
+    : info_(info), parsed_(parsed), resolver_(resolver), read_(info.params.size(), false) {
+  std::vector<std::string_view> names;
+  for (const Param& p : info_.params) names.push_back(p.name);
+  for (size_t i = 0; i < parsed_.params.size(); ++i) {
+    const ParsedParam& p = parsed_.params[i];
+    const auto declared = std::find(names.begin(), names.end(), p.name);
+    if (declared == names.end())
+      fail(p.where, "{} \"{}\" has no parameter \"{}\"{}", info_.kind, info_.name, p.name, suggestion(p.name, names));
+    for (size_t j = 0; j < i; ++j)
+      if (parsed_.params[j].name == p.name) fail(p.where, "parameter \"{}\" is given twice", p.name);
+    check(info_.params[static_cast<size_t>(declared - names.begin())], p);
+  }
+  for (const Param& p : info_.params)
+    if (p.required && !given(p.name))
+      fail(parsed_.where, "{} \"{}\" needs parameter \"{} {}\"", info_.kind, info_.name, traits(p.kind).types[0], p.name);
+}
+
+void Params::check(const Param& declared, const ParsedParam& p) const {
+  const auto& [types, arity] = traits(declared.kind);
+  if (std::find(types.begin(), types.end(), p.type) == types.end())
+    fail(p.where, "\"{}\" is {}, a {} was given", p.name, fmt::join(types, " or "), p.type);
+  const size_t count = value_count(p), unit = p.type == "texture" ? 1 : arity;
+  if (unit > 0) {
+    if (!declared.list && count != unit)
+      fail(p.value_where, "\"{}\" takes {} value{}, {} given", p.name, unit, unit == 1 ? "" : "s", count);
+    if (count % unit != 0) fail(p.value_where, "\"{}\" takes values in groups of {}, {} given", p.name, unit, count);
+  }
+  if (const auto* v = std::get_if<std::vector<double>>(&p.values); v && unit > 0) {
+    for (const double x : *v) {
+      if (!std::isfinite(x)) fail(p.value_where, "\"{}\" has the value {}, finite numbers are needed", p.name, x);
+      if (declared.range.contains(x)) continue;
+      const std::string_view space = declared.unit.empty() ? "" : " ";
+      fail(p.value_where, "\"{}\" is {}, outside its range {} to {}{}{}", p.name, x, declared.range.min,
+           declared.range.max, space, declared.unit);
+    }
+    if (declared.kind == ParamKind::integer)
+      for (const double x : *v)
+        if (x != std::floor(x) || std::abs(x) > std::numeric_limits<int>::max())
+          fail(p.value_where, "\"{}\" is an integer, {} was given", p.name, x);
+  }
+  if (!declared.choices.empty())
+    for (const std::string& word : words(p))
+      if (std::find(declared.choices.begin(), declared.choices.end(), word) == declared.choices.end())
+        fail(p.value_where, "\"{}\" is one of {}, \"{}\" was given", p.name, fmt::join(declared.choices, ", "), word);
+}
+
+Params::Found Params::find(std::string_view name) const {
+  for (size_t i = 0; i < info_.params.size(); ++i) {
+    if (info_.params[i].name != name) continue;
+    read_[i] = true;
+    for (const ParsedParam& p : parsed_.params)
+      if (p.name == name) return {info_.params[i], &p};
+    return {info_.params[i], nullptr};
+  }
+  throw std::logic_error(fmt::format("{} \"{}\" reads undeclared parameter \"{}\"", info_.kind, info_.name, name));
+}
+
+bool Params::given(std::string_view name) const { return find(name).parsed != nullptr; }
+
+Location Params::where(std::string_view name) const {
+  for (const ParsedParam& p : parsed_.params)
+    if (p.name == name) return p.value_where;
+  return parsed_.where;
+}
+
+std::vector<std::string_view> Params::unread() const {
+  std::vector<std::string_view> names;
+  for (size_t i = 0; i < read_.size(); ++i)
+    if (!read_[i]) names.push_back(info_.params[i].name);
+  return names;
+}
+
+bool Params::boolean(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  return parsed ? bool(std::get<std::vector<bool>>(parsed->values)[0]) : std::get<bool>(declared.default_value);
+}
+
+int Params::integer(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  return parsed ? static_cast<int>(numbers(*parsed)[0]) : std::get<int>(declared.default_value);
+}
+
+double Params::real(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  return parsed ? numbers(*parsed)[0] : std::get<double>(declared.default_value);
+}
+
+std::string Params::string(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  return parsed ? words(*parsed)[0] : std::string(std::get<std::string_view>(declared.default_value));
+}
+
+Vec2 Params::vec2(std::string_view name) const {
+  const auto v = reals(name);
+  return {static_cast<float>(v[0]), static_cast<float>(v[1])};
+}
+
+Vec3 Params::vec3(std::string_view name) const { return vec3_at(reals(name), 0); }
+
+std::vector<double> Params::reals(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  if (parsed) return numbers(*parsed);
+  if (const auto* v = std::get_if<std::array<double, 3>>(&declared.default_value)) return {v->begin(), v->end()};
+  return {};
+}
+
+std::vector<int> Params::integers(std::string_view name) const {
+  const auto v = reals(name);
+  std::vector<int> result;
+  result.reserve(v.size());
+  for (const double x : v) result.push_back(static_cast<int>(x));
+  return result;
+}
+
+std::vector<std::string> Params::strings(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  return parsed ? words(*parsed) : std::vector<std::string>();
+}
+
+std::vector<Vec2> Params::vec2s(std::string_view name) const {
+  const auto v = reals(name);
+  std::vector<Vec2> result;
+  result.reserve(v.size() / 2);
+  for (size_t i = 0; i + 1 < v.size(); i += 2)
+    result.push_back({static_cast<float>(v[i]), static_cast<float>(v[i + 1])});
+  return result;
+}
+
+std::vector<Vec3> Params::vec3s(std::string_view name) const {
+  const auto v = reals(name);
+  std::vector<Vec3> result;
+  result.reserve(v.size() / 3);
+  for (size_t i = 0; i + 2 < v.size(); i += 3) result.push_back(vec3_at(v, i));
+  return result;
+}
+
+SpectrumPtr Params::spectrum(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  const bool emission = declared.kind == ParamKind::illuminant;
+  if (parsed) return resolver_.spectrum(*parsed, emission);
+  return resolver_.spectrum(default_spectrum(declared, parsed_.where), emission);
+}
+
+std::shared_ptr<const FloatTexture> Params::float_texture(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  if (parsed && parsed->type == "texture") return resolver_.float_texture(words(*parsed)[0], parsed->value_where);
+  const double value = parsed ? numbers(*parsed)[0] : std::get<double>(declared.default_value);
+  return std::make_shared<ConstantFloatTexture>(static_cast<float>(value));
+}
+
+std::shared_ptr<const SpectrumTexture> Params::spectrum_texture(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  if (parsed && parsed->type == "texture") return resolver_.spectrum_texture(words(*parsed)[0], parsed->value_where);
+  const ParsedParam& value = parsed ? *parsed : default_spectrum(declared, parsed_.where);
+  return std::make_shared<ConstantSpectrumTexture>(resolver_.spectrum(value, false));
+}
+
+std::filesystem::path Params::file(std::string_view name) const { return resolver_.file(string(name), where(name)); }
+
+std::vector<std::shared_ptr<Material>> Params::materials(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  std::vector<std::shared_ptr<Material>> result;
+  if (parsed)
+    for (const std::string& material : words(*parsed)) result.push_back(resolver_.material(material, parsed->value_where));
+  return result;
+}
+
+}  // namespace frond

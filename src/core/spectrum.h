@@ -1,0 +1,86 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+namespace frond {
+
+/// Wavelengths that one path carries at most.
+inline constexpr int kLanes = 4;
+
+/// A quantity at the wavelengths of one path, lane by lane. Unused lanes hold 0.
+struct alignas(16) SampledSpectrum {
+  std::array<float, kLanes> v{};
+
+  constexpr SampledSpectrum() = default;
+  constexpr explicit SampledSpectrum(float s) { v.fill(s); }
+  constexpr float operator[](int i) const { return v[static_cast<size_t>(i)]; }
+  constexpr float& operator[](int i) { return v[static_cast<size_t>(i)]; }
+
+  constexpr SampledSpectrum& operator+=(const SampledSpectrum& b) {
+    for (size_t i = 0; i < kLanes; ++i) v[i] += b.v[i];
+    return *this;
+  }
+  constexpr SampledSpectrum& operator*=(const SampledSpectrum& b) {
+    for (size_t i = 0; i < kLanes; ++i) v[i] *= b.v[i];
+    return *this;
+  }
+  constexpr SampledSpectrum& operator*=(float s) {
+    for (float& x : v) x *= s;
+    return *this;
+  }
+  friend constexpr SampledSpectrum operator+(SampledSpectrum a, const SampledSpectrum& b) { return a += b; }
+  friend constexpr SampledSpectrum operator*(SampledSpectrum a, const SampledSpectrum& b) { return a *= b; }
+  friend constexpr SampledSpectrum operator*(SampledSpectrum a, float s) { return a *= s; }
+  friend constexpr SampledSpectrum operator*(float s, SampledSpectrum a) { return a *= s; }
+  friend constexpr bool operator==(const SampledSpectrum&, const SampledSpectrum&) = default;
+
+  constexpr float max() const { return std::max({v[0], v[1], v[2], v[3]}); }
+  constexpr bool is_black() const { return v == decltype(v){}; }
+};
+
+struct Interval {
+  double min, max;
+  constexpr bool contains(double x) const { return x >= min && x <= max; }  // false for NaN
+};
+
+/// The wavelengths (nm) of one path. A lane takes part while it is active: lanes beyond the strategy's count never are,
+/// and the integrator retires a lane whose throughput has fallen to zero, so that nobody works for it.
+struct SampledWavelengths {
+  std::array<float, kLanes> nm{};
+  std::array<float, kLanes> pdf{};  ///< density per nm; 1 for wavelengths that are fixed
+  std::array<bool, kLanes> active{};
+  int count = 0;  ///< lanes in use
+
+  bool is_active(int lane) const { return active[static_cast<size_t>(lane)]; }
+  void retire_black_lanes(const SampledSpectrum& throughput) {
+    for (size_t i = 0; i < kLanes; ++i) active[i] = active[i] && throughput.v[i] != 0;
+  }
+};
+
+/// Mean over the lanes in use.
+inline float mean(const SampledSpectrum& s, const SampledWavelengths& lambda) {
+  return (s.v[0] + s.v[1] + s.v[2] + s.v[3]) / static_cast<float>(lambda.count);
+}
+
+/// A function of wavelength, in whatever unit its user says. Total: outside `range_nm` the nearest end holds, and
+/// whoever sets up a render refuses wavelengths outside the range before the first path (check_range).
+class Spectrum {
+ public:
+  virtual ~Spectrum() = default;
+  virtual float at(float lambda_nm) const = 0;
+  /// Wavelengths (nm) for which the data stand.
+  virtual Interval range_nm() const = 0;
+  virtual float max_value() const = 0;
+
+  SampledSpectrum sample(const SampledWavelengths& lambda) const {
+    SampledSpectrum s;
+    for (int i = 0; i < lambda.count; ++i) s[i] = at(lambda.nm[static_cast<size_t>(i)]);
+    return s;
+  }
+};
+using SpectrumPtr = std::shared_ptr<const Spectrum>;
+
+}  // namespace frond

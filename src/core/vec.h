@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cmath>
+
+namespace frond {
+
+inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr float kInvPi = 0.31830988618379067154f;
+
+/// Three components; points, vectors and normals alike. `float` carries the render, `double` the leaf's walk.
+template <class T>
+struct Vec3T {
+  T x{}, y{}, z{};
+
+  constexpr T operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
+  constexpr Vec3T operator-() const { return {-x, -y, -z}; }
+  constexpr Vec3T& operator+=(const Vec3T& b) { return *this = *this + b; }
+  constexpr Vec3T& operator*=(T s) { return *this = *this * s; }
+  friend constexpr Vec3T operator+(const Vec3T& a, const Vec3T& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend constexpr Vec3T operator-(const Vec3T& a, const Vec3T& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend constexpr Vec3T operator*(const Vec3T& a, T s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend constexpr Vec3T operator*(T s, const Vec3T& a) { return a * s; }
+  friend constexpr Vec3T operator/(const Vec3T& a, T s) { return a * (T(1) / s); }
+  friend constexpr bool operator==(const Vec3T&, const Vec3T&) = default;
+};
+
+using Vec3 = Vec3T<float>;
+using Vec3d = Vec3T<double>;
+
+struct Vec2 {
+  float x{}, y{};
+  friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
+  friend constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
+  friend constexpr Vec2 operator*(Vec2 a, float s) { return {a.x * s, a.y * s}; }
+  friend constexpr bool operator==(Vec2, Vec2) = default;
+};
+
+template <class T>
+constexpr T dot(const Vec3T<T>& a, const Vec3T<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+constexpr Vec3T<T> cross(const Vec3T<T>& a, const Vec3T<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class T>
+T length(const Vec3T<T>& a) {
+  return std::sqrt(dot(a, a));
+}
+template <class T>
+Vec3T<T> normalize(const Vec3T<T>& a) {
+  return a / length(a);
+}
+
+/// Right-handed orthonormal frame around a unit `z`.
+template <class T>
+struct FrameT {
+  Vec3T<T> x, y, z;
+
+  /// Duff et al. 2017, "Building an Orthonormal Basis, Revisited": no branch, no loss near either pole.
+  static FrameT around(const Vec3T<T>& n) {
+    const T sign = std::copysign(T(1), n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+  }
+  Vec3T<T> to_local(const Vec3T<T>& v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
+  Vec3T<T> to_world(const Vec3T<T>& v) const { return x * v.x + y * v.y + z * v.z; }
+};
+
+using Frame = FrameT<float>;
+using Framed = FrameT<double>;
+
+}  // namespace frond
