@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/params.h"
+#include "core/transform.h"
+
+namespace frond {
+
+/// A scene file as plain data: names are resolved to places in the lists below, nothing is built. In every ParsedPlugin
+/// `where` is the place of the plugin's quoted name; it is empty for plugins that the file leaves to their defaults.
+
+struct MaterialDescription {
+  std::string name;     ///< of MakeNamedMaterial; empty for `Material`
+  ParsedPlugin plugin;  ///< "string type" of MakeNamedMaterial is its name and no parameter
+};
+
+struct TextureDescription {
+  enum class Value : uint8_t { real, spectrum };
+  std::string name;
+  Value value;
+  ParsedPlugin plugin;
+};
+
+struct ShapeDescription {
+  ParsedPlugin plugin;
+  Transform world_from_object;
+  bool reverse_orientation = false;
+  bool transform_swaps_handedness = false;
+  size_t material = 0;               ///< in SceneDescription::materials
+  std::optional<size_t> area_light;  ///< in SceneDescription::area_lights
+};
+
+struct LightDescription {
+  ParsedPlugin plugin;
+  Transform world_from_light;
+};
+
+/// ObjectBegin ... ObjectEnd. A point of a shape lands in the world by its own transform, then by the instance's.
+struct ObjectDescription {
+  std::string name;
+  Location where;
+  std::vector<ShapeDescription> shapes;
+};
+
+struct InstanceDescription {
+  Transform world_from_object;
+  size_t object = 0;  ///< in SceneDescription::objects
+  Location where;
+};
+
+struct SceneDescription {
+  // Options, with what holds where the file says nothing.
+  ParsedPlugin camera{"perspective", {}, {}};
+  ParsedPlugin film{"rgb", {}, {}};
+  ParsedPlugin sampler{"paddedsobol", {}, {}};
+  ParsedPlugin integrator{"path", {}, {}};
+  ParsedPlugin filter{"gaussian", {}, {}};
+  std::string color_space = "srgb";
+  Location color_space_where;
+  /// `Option "type name" value`; without a type it follows from the value: bool, integer, float or string.
+  std::vector<ParsedParam> options;
+  Transform camera_from_world;
+
+  std::map<std::string, Transform> coordinate_systems;  ///< "camera", "world" and the file's own
+  std::vector<TextureDescription> textures;             ///< in the file's order; names are unique for each value type
+  std::vector<MaterialDescription> materials;           ///< the first is what holds before any `Material`: "diffuse"
+  std::vector<ParsedPlugin> area_lights;
+  std::vector<ShapeDescription> shapes;
+  std::vector<LightDescription> lights;
+  std::vector<ObjectDescription> objects;
+  std::vector<InstanceDescription> instances;
+
+  std::vector<std::filesystem::path> files;  ///< the main file and what it includes, in the order of reading
+  uint64_t content_hash = 0;                 ///< over the bytes of `files`, in order
+
+  /// A file name in the scene as a path: relative to the file that names it, or else to the main file.
+  std::filesystem::path resolve(const std::string& name, const Location& where) const;
+};
+
+}  // namespace frond
