@@ -1,0 +1,38 @@
+#include "core/texture.h"
+#include "materials/lobes/lambertian.h"
+#include "materials/wavelength_range.h"
+
+namespace frond {
+namespace {
+
+constexpr Param kDiffuse[] = {
+    {.name = "reflectance",
+     .kind = ParamKind::spectrum_texture,
+     .default_value = 0.5,
+     .range = {0, 1},
+     .doc = "Share of the light that is reflected."},
+};
+
+class Diffuse final : public Material {
+ public:
+  explicit Diffuse(const Params& p) : reflectance_(p.spectrum_texture("reflectance")), where_(p.where("reflectance")) {}
+
+  void prepare(const Preparation& preparation) override {
+    check_range(*reflectance_, preparation.wavelengths, "reflectance", where_);
+  }
+  const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
+    return arena.make<LambertianBsdf>(active_lanes(reflectance_->evaluate(hit.uv, lambda), lambda), SampledSpectrum());
+  }
+
+ private:
+  std::shared_ptr<const SpectrumTexture> reflectance_;
+  Location where_;
+};
+
+}  // namespace
+
+extern const MaterialInfo diffuse_material{
+    {"material", "diffuse", "Reflects light evenly into all directions.", "Lambert 1760", kDiffuse},
+    make_material<Diffuse>};
+
+}  // namespace frond

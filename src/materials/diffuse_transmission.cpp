@@ -1,0 +1,93 @@
+#include "core/texture.h"
+#include "materials/lobes/lambertian.h"
+#include "materials/wavelength_range.h"
+
+namespace frond {
+namespace {
+
+constexpr Param kDiffuseTransmission[] = {
+    {.name = "reflectance",
+     .kind = ParamKind::spectrum_texture,
+     .default_value = 0.25,
+     .range = {0, 1},
+     .doc = "Share of the light that is reflected."},
+    {.name = "transmittance",
+     .kind = ParamKind::spectrum_texture,
+     .default_value = 0.25,
+     .range = {0, 1},
+     .doc = "Share of the light that is transmitted."},
+    {.name = "scale",
+     .kind = ParamKind::real,
+     .default_value = 1.0,
+     .range = kAtLeastZero,
+     .doc = "Factor on reflectance and transmittance."},
+};
+
+class DiffuseTransmission final : public Material {
+ public:
+  explicit DiffuseTransmission(const Params& p)
+      : reflectance_(p.spectrum_texture("reflectance")),
+        transmittance_(p.spectrum_texture("transmittance")),
+        scale_(static_cast<float>(p.real("scale"))),
+        reflectance_where_(p.where("reflectance")),
+        transmittance_where_(p.where("transmittance")) {
+    check_energy();
+  }
+
+  void prepare(const Preparation& preparation) override {
+    check_range(*reflectance_, preparation.wavelengths, "reflectance", reflectance_where_);
+    check_range(*transmittance_, preparation.wavelengths, "transmittance", transmittance_where_);
+  }
+  const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
+    const auto [r, t] = shares(hit.uv, lambda);
+    return arena.make<LambertianBsdf>(r, t);
+  }
+
+ private:
+  struct Shares {
+    SampledSpectrum reflected, transmitted;
+  };
+  Shares shares(Vec2 uv, const SampledWavelengths& lambda) const {
+    return {active_lanes(reflectance_->evaluate(uv, lambda) * scale_, lambda),
+            active_lanes(transmittance_->evaluate(uv, lambda) * scale_, lambda)};
+  }
+
+  /// Constants are looked at every 2 nm, textures also at 16 x 16 places: between these, an excess can hide.
+  void check_energy() const {
+    constexpr float kRounding = 1e-5f;
+    if ((reflectance_->max_value() + transmittance_->max_value()) * scale_ <= 1 + kRounding) return;
+    const Interval r = reflectance_->range_nm(), t = transmittance_->range_nm();
+    const Interval both{std::max({r.min, t.min, 300.0}), std::min({r.max, t.max, 2500.0})};
+    for (double nm = both.min; nm <= both.max; nm += 2)
+      for (int place = 0; place < 256; ++place) {
+        const Vec2 uv{(static_cast<float>(place % 16) + 0.5f) / 16, (static_cast<float>(place / 16) + 0.5f) / 16};
+        const auto [reflected, transmitted] = shares(uv, one_wavelength(static_cast<float>(nm)));
+        const float sum = reflected[0] + transmitted[0];
+        if (sum > 1 + kRounding)
+          fail(reflectance_where_,
+               "reflectance + transmittance is {:.4g} at {} nm: a surface cannot give off more than 1", sum, nm);
+      }
+  }
+
+  static SampledWavelengths one_wavelength(float nm) {
+    SampledWavelengths lambda;
+    lambda.nm[0] = nm;
+    lambda.pdf[0] = 1;
+    lambda.active[0] = true;
+    lambda.count = 1;
+    return lambda;
+  }
+
+  std::shared_ptr<const SpectrumTexture> reflectance_, transmittance_;
+  float scale_;
+  Location reflectance_where_, transmittance_where_;
+};
+
+}  // namespace
+
+extern const MaterialInfo diffuse_transmission_material{
+    {"material", "diffusetransmission", "Reflects and transmits light evenly into all directions.", "pbrt-v4",
+     kDiffuseTransmission},
+    make_material<DiffuseTransmission>};
+
+}  // namespace frond

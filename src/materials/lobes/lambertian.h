@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/bsdf.h"
+#include "core/sampling.h"
+
+namespace frond {
+
+/// Reflects and transmits light evenly into all directions, alike on both sides (Lambert 1760).
+class LambertianBsdf final : public Bsdf {
+ public:
+  /// Both in [0, 1] lane by lane, with a sum of at most 1.
+  LambertianBsdf(const SampledSpectrum& reflectance, const SampledSpectrum& transmittance)
+      : reflectance_(reflectance), transmittance_(transmittance) {
+    const float r = reflectance.max(), t = transmittance.max();
+    reflect_ = r + t > 0 ? r / (r + t) : 1;
+  }
+
+  Lobes flags() const override {
+    Lobes flags = Lobes::diffuse;
+    if (reflect_ > 0) flags = flags | Lobes::reflection;
+    if (reflect_ < 1) flags = flags | Lobes::transmission;
+    return flags;
+  }
+
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
+    const float side = wo.z * wi.z;
+    if (side == 0) return {};
+    return (side > 0 ? reflectance_ : transmittance_) * kInvPi;
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
+    const bool reflects = uc < reflect_;
+    Vec3 wi = sample_cosine_hemisphere(u);
+    if ((wo.z < 0) == reflects) wi.z = -wi.z;
+    const float density = pdf(wo, wi);
+    if (density == 0) return {};
+    return BsdfSample{f(wo, wi, rng), wi, density,
+                      Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission)};
+  }
+
+  float pdf(const Vec3& wo, const Vec3& wi) const override {
+    const float side = wo.z * wi.z;
+    if (side == 0) return 0;
+    return (side > 0 ? reflect_ : 1 - reflect_) * std::abs(wi.z) * kInvPi;
+  }
+
+ private:
+  SampledSpectrum reflectance_, transmittance_;
+  float reflect_;  ///< probability of reflection
+};
+
+}  // namespace frond
