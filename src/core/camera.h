@@ -12,6 +12,7 @@ class Camera {
   virtual ~Camera() = default;
   /// World-space ray, unit direction, through the film at `film` (pixels, y down); `lens` in [0, 1)^2.
   virtual Ray ray(Vec2 film, Vec2 lens) const = 0;
+  virtual bool uses_lens() const = 0;
 };
 
 struct CameraPlacement {

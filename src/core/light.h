@@ -25,6 +25,22 @@ class Light {
   virtual double power(float scene_radius) const = 0;
   /// Wavelengths (nm) for which the emission is known.
   virtual Interval range_nm() const = 0;
+
+  /// Place in the scene's list of lights.
+  int index() const { return index_; }
+  void set_index(int index) { index_ = index; }
+
+ private:
+  int index_ = 0;
+};
+
+/// Light given off by a surface of the scene.
+class AreaLight : public Light {
+ public:
+  /// Radiance that leaves a point of the surface with geometric normal `ng` along `w`.
+  virtual SampledSpectrum radiance(const Vec3& ng, const Vec3& w, const SampledWavelengths& lambda) const = 0;
+  /// Density of `sample` at `from`, per solid angle, for a point of the surface seen along unit `wi`.
+  virtual float pdf(const Vec3& ng, const Vec3& wi, float distance) const = 0;
 };
 
 /// Light from outside the scene, met by every ray that leaves it.

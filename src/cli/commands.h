@@ -1,0 +1,23 @@
+#pragma once
+
+#include "scene/registry.h"
+
+namespace CLI {
+class App;
+}
+
+namespace frond {
+
+/// Every plugin that this build knows.
+Registry builtin_registry();
+
+// One file for each subcommand: adds itself to the command line, and runs when chosen.
+void add_render_command(CLI::App& app);
+void add_difference_command(CLI::App& app);
+void add_list_command(CLI::App& app);
+void add_describe_command(CLI::App& app);
+
+/// Runs the frond command. 0: done; 1: bad use or bad input, with a message on standard error.
+int run(int argc, const char* const* argv);
+
+}  // namespace frond

@@ -1,0 +1,32 @@
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "integrators/registry.h"
+#include "materials/registry.h"
+
+namespace frond {
+
+Registry builtin_registry() { return make_registry(builtin_materials(), builtin_integrators()); }
+
+int run(int argc, const char* const* argv) {
+  CLI::App app{"frond: a spectral path tracer for plant leaves.", "frond"};
+  app.set_version_flag("--version", "frond " FROND_VERSION);
+  app.require_subcommand(1);
+  add_render_command(app);
+  add_difference_command(app);
+  add_list_command(app);
+  add_describe_command(app);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "frond: out of memory\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "frond: {}\n", error.what());
+  }
+  return 1;
+}
+
+}  // namespace frond

@@ -1,0 +1,14 @@
+#include "integrators/registry.h"
+
+#include <array>
+
+namespace frond {
+
+extern const IntegratorInfo path_integrator;
+
+std::span<const IntegratorInfo* const> builtin_integrators() {
+  static constexpr std::array table{&path_integrator};
+  return table;
+}
+
+}  // namespace frond

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <span>
+
+#include "core/integrator.h"
+
+namespace frond {
+
+std::span<const IntegratorInfo* const> builtin_integrators();
+
+}  // namespace frond

@@ -1,0 +1,93 @@
+#include "integrators/render.h"
+
+#include <ctime>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+
+namespace frond {
+namespace {
+
+constexpr int kTile = 16;
+
+double cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
+}
+
+class Clock {
+ public:
+  void stop(RenderStatistics& s) const {
+    s.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+    s.cpu_seconds = cpu_seconds() - cpu_;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+  double cpu_ = cpu_seconds();
+};
+
+/// What one thread works with.
+struct Worker {
+  std::unique_ptr<Sampler> sampler;
+  Arena arena;
+};
+
+/// Renders one sample of one pixel; returns the rays it took.
+uint64_t render_sample(const RenderJob& job, Film& film, Worker& worker, int x, int y, uint64_t index) {
+  Sampler& sampler = *worker.sampler;
+  sampler.start(x, y, index);
+  const SampledWavelengths lambda = job.wavelengths.sample(sampler.get1d());
+  const auto [offset, weight] = job.filter.sample(sampler.get2d());
+  const Vec2 film_point{float(x) + 0.5f + offset.x, float(y) + 0.5f + offset.y};
+  const Ray ray = job.camera.ray(film_point, job.camera.uses_lens() ? sampler.get2d() : Vec2{});
+  PathContext context{sampler, sample_key(job.seed, x, y, index), worker.arena};
+  const PathResult path = job.integrator.trace(job.world, ray, lambda, context);
+  film.add(x, y, job.wavelengths.sensor(path.radiance, lambda), double(weight), path.sees_leaf);
+  return context.rays;
+}
+
+struct Tiles {
+  Crop crop;
+  int64_t columns, rows;
+
+  explicit Tiles(const Crop& c)
+      : crop(c), columns((c.width() + kTile - 1) / kTile), rows((c.height() + kTile - 1) / kTile) {}
+  int64_t count() const { return columns * rows; }
+  Crop at(int64_t i) const {
+    const int x = crop.x0 + int(i % columns) * kTile, y = crop.y0 + int(i / columns) * kTile;
+    return {x, y, std::min(x + kTile, crop.x1), std::min(y + kTile, crop.y1)};
+  }
+};
+
+}  // namespace
+
+RenderStatistics render(const RenderJob& job, Film& film, const ThreadPool& pool, const Progress& progress) {
+  const Clock clock;
+  const Tiles tiles(film.settings().crop);
+  std::vector<Worker> workers(size_t(pool.size()));
+  for (Worker& worker : workers) worker.sampler = job.sampler.clone();
+  RenderStatistics total;
+  std::mutex mutex;
+  int64_t done = 0;
+  pool.for_each(tiles.count(), [&](int64_t i, int thread) {
+    const Crop tile = tiles.at(i);
+    uint64_t rays = 0;
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x)
+        for (uint64_t s = 0; s < job.samples; ++s)
+          rays += render_sample(job, film, workers[size_t(thread)], x, y, job.first_sample + s);
+    const std::lock_guard lock(mutex);
+    total.rays += rays;
+    total.paths += uint64_t(tile.width()) * uint64_t(tile.height()) * job.samples;
+    clock.stop(total);
+    if (progress) progress(double(++done) / double(tiles.count()), total);
+  });
+  clock.stop(total);
+  return total;
+}
+
+}  // namespace frond

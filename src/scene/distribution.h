@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "core/vec.h"
+
+namespace frond {
+
+/// Piecewise constant density over n cells, sampled by inverting its cumulative sum.
+class Distribution1D {
+ public:
+  struct Sample {
+    size_t cell;
+    float fraction;  ///< place within the cell, [0, 1): may be used as a fresh uniform number
+    float pdf;       ///< probability of the cell
+  };
+  /// Weights are finite and not negative; if all are zero the density is uniform.
+  explicit Distribution1D(const std::vector<float>& weights);
+
+  Sample sample(float u) const;
+  float probability(size_t cell) const { return static_cast<float>(cdf_[cell + 1] - cdf_[cell]); }
+  size_t size() const { return cdf_.size() - 1; }
+  double sum() const { return sum_; }  ///< of the weights
+
+ private:
+  std::vector<double> cdf_;
+  double sum_ = 0;
+};
+
+/// Piecewise constant density over the unit square.
+class Distribution2D {
+ public:
+  struct Sample {
+    Vec2 uv;
+    float pdf;  ///< per unit area of the square
+  };
+  /// Row-major weights, `width` to a row.
+  Distribution2D(const std::vector<float>& weights, int width);
+
+  Sample sample(Vec2 u) const;
+  float pdf(Vec2 uv) const;
+
+ private:
+  std::vector<Distribution1D> rows_;
+  Distribution1D marginal_;
+};
+
+}  // namespace frond

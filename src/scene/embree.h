@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+
+// The one place that knows which Embree this is: 3 and 4 differ in includes, in the default ray mask and in how a query's
+// context is passed.
+#if FROND_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace frond::embree {
+
+/// A query's context: Embree's own first, so that a filter function gets ours by a cast.
+struct Query {
+#if FROND_EMBREE_MAJOR >= 4
+  RTCRayQueryContext base;
+  explicit Query(uint64_t random_key) : key(random_key) { rtcInitRayQueryContext(&base); }
+#else
+  RTCIntersectContext base;
+  explicit Query(uint64_t random_key) : key(random_key) { rtcInitIntersectContext(&base); }
+#endif
+  uint64_t key;
+};
+
+inline void intersect(RTCScene scene, RTCRayHit& ray, Query& query) {
+#if FROND_EMBREE_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &query.base;
+  rtcIntersect1(scene, &ray, &arguments);
+#else
+  rtcIntersect1(scene, &query.base, &ray);
+#endif
+}
+
+/// Sets ray.tfar to minus infinity if anything is in the way.
+inline void occluded(RTCScene scene, RTCRay& ray, Query& query) {
+#if FROND_EMBREE_MAJOR >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &query.base;
+  rtcOccluded1(scene, &ray, &arguments);
+#else
+  rtcOccluded1(scene, &query.base, &ray);
+#endif
+}
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, Release>;
+using Scene = std::unique_ptr<RTCSceneTy, Release>;
+
+}  // namespace frond::embree

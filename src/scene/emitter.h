@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+
+#include "scene/distribution.h"
+#include "scene/shape.h"
+
+namespace frond {
+
+/// Uniform points over the area of a shape, triangles included.
+class EmittingSurface {
+ public:
+  /// `geometry` in world space.
+  explicit EmittingSurface(const ShapeGeometry& geometry);
+  ShapePoint sample(Vec2 u) const;
+  double area() const { return area_; }
+
+ private:
+  ShapeGeometry geometry_;
+  std::optional<Distribution1D> triangles_by_area_;
+  double area_;
+};
+
+}  // namespace frond

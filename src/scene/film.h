@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/plugin.h"
+
+namespace frond {
+
+struct Crop {
+  int x0, y0, x1, y1;  ///< pixels; the end is not in it
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+};
+
+/// What the scene says of the image.
+struct FilmSettings {
+  int width, height;  ///< full resolution, pixels
+  Crop crop;
+  std::string filename;
+  bool half = false;          ///< EXR with 16-bit floats
+  double exposure = 1;        ///< factor from radiance to film
+  double max_component = 0;   ///< samples are scaled down to this channel value; infinity: not at all
+};
+
+struct FilmInfo : PluginInfo {
+  FilmSettings (*make)(const Params&);
+};
+
+/// Sums over the samples of each pixel of the crop, in double precision. Pixels are independent: threads may work on
+/// different ones at the same time.
+class Film {
+ public:
+  struct Pixel {
+    std::array<double, 3> sum{};
+    std::array<double, 6> products{};  ///< of the channels: 00 11 22 01 02 12
+    double weight = 0, leaf = 0;
+    int64_t samples = 0;
+  };
+
+  explicit Film(const FilmSettings& settings);
+
+  /// Adds one sample: sensor response, filter weight, and whether the camera ray met a leaf.
+  void add(int x, int y, std::array<double, 3> sensor, double weight, bool leaf);
+
+  const FilmSettings& settings() const { return settings_; }
+  const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
+  /// Mean sensor response.
+  std::array<double, 3> mean(int x, int y) const;
+  /// Estimated covariance of `mean`, as 00 11 22 01 02 12; 0 with less than two samples. With low-discrepancy samples it
+  /// is an upper bound: it does not know that they repel each other.
+  std::array<double, 6> covariance(int x, int y) const;
+  /// Fraction of the samples that saw a leaf first.
+  double leaf_fraction(int x, int y) const;
+  double foliar_ratio() const;
+
+ private:
+  size_t index(int x, int y) const;
+
+  FilmSettings settings_;
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace frond

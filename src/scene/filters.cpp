@@ -1,0 +1,149 @@
+#include <cmath>
+
+#include "core/filter.h"
+#include "scene/distribution.h"
+#include "scene/registry.h"
+
+namespace frond {
+namespace {
+
+constexpr Interval kPositive{1e-6, 1e6};
+
+/// The quantile of a triangle on [-1, 1].
+float sample_tent(float u) {
+  return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(std::max(0.f, 2 - 2 * u));
+}
+
+Vec2 radius_of(const Params& p) {
+  return {static_cast<float>(p.real("xradius")), static_cast<float>(p.real("yradius"))};
+}
+
+class BoxFilter final : public Filter {
+ public:
+  explicit BoxFilter(const Params& p) : radius_(radius_of(p)) {}
+  Sample sample(Vec2 u) const override { return {{(2 * u.x - 1) * radius_.x, (2 * u.y - 1) * radius_.y}, 1}; }
+
+ private:
+  Vec2 radius_;
+};
+
+class TriangleFilter final : public Filter {
+ public:
+  explicit TriangleFilter(const Params& p) : radius_(radius_of(p)) {}
+  Sample sample(Vec2 u) const override { return {{sample_tent(u.x) * radius_.x, sample_tent(u.y) * radius_.y}, 1}; }
+
+ private:
+  Vec2 radius_;
+};
+
+/// A separable filter, tabulated once per axis and sampled by its absolute value.
+class SeparableFilter final : public Filter {
+ public:
+  template <class F>
+  SeparableFilter(Vec2 radius, F value) : x_(radius.x, value), y_(radius.y, value) {}
+  Sample sample(Vec2 u) const override {
+    const auto [x, wx] = x_.sample(u.x);
+    const auto [y, wy] = y_.sample(u.y);
+    return {{x, y}, wx * wy};
+  }
+
+ private:
+  class Axis {
+   public:
+    template <class F>
+    Axis(float radius, F value) : radius_(radius), cells_(tabulate(radius, value)), magnitude_(absolute(cells_)) {
+      double sum = 0, absolute_sum = 0;
+      for (const float c : cells_) sum += c, absolute_sum += std::abs(c);
+      weight_ = static_cast<float>(absolute_sum / sum);
+    }
+    std::pair<float, float> sample(float u) const {
+      const auto [cell, fraction, pdf] = magnitude_.sample(u);
+      const float t = (static_cast<float>(cell) + fraction) / static_cast<float>(cells_.size());
+      return {(2 * t - 1) * radius_, cells_[cell] < 0 ? -weight_ : weight_};
+    }
+
+   private:
+    static constexpr int kCells = 256;
+    template <class F>
+    static std::vector<float> tabulate(float radius, F value) {
+      std::vector<float> cells;
+      for (int i = 0; i < kCells; ++i)
+        cells.push_back(static_cast<float>(value((2 * (i + 0.5) / kCells - 1) * static_cast<double>(radius), static_cast<double>(radius))));
+      return cells;
+    }
+    static std::vector<float> absolute(std::vector<float> cells) {
+      for (float& c : cells) c = std::abs(c);
+      return cells;
+    }
+    float radius_;
+    std::vector<float> cells_;
+    Distribution1D magnitude_;
+    float weight_;
+  };
+  Axis x_, y_;
+};
+
+/// Mitchell and Netravali 1988, "Reconstruction Filters in Computer Graphics"; x in units of half the radius.
+double mitchell(double x, double b, double c) {
+  x = std::abs(x);
+  if (x <= 1) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
+  if (x <= 2) return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + (8 * b + 24 * c)) / 6;
+  return 0;
+}
+
+double sinc(double x) { return std::abs(x) < 1e-5 ? 1 : std::sin(M_PI * x) / (M_PI * x); }
+
+std::unique_ptr<Filter> make_gaussian(const Params& p) {
+  const double sigma = p.real("sigma");
+  return std::make_unique<SeparableFilter>(radius_of(p), [sigma](double x, double radius) {
+    const auto g = [sigma](double v) { return std::exp(-v * v / (2 * sigma * sigma)); };
+    return std::max(0.0, g(x) - g(radius));
+  });
+}
+
+std::unique_ptr<Filter> make_mitchell(const Params& p) {
+  const double b = p.real("B"), c = p.real("C");
+  return std::make_unique<SeparableFilter>(radius_of(p),
+                                           [b, c](double x, double radius) { return mitchell(2 * x / radius, b, c); });
+}
+
+std::unique_ptr<Filter> make_sinc(const Params& p) {
+  const double tau = p.real("tau");
+  return std::make_unique<SeparableFilter>(
+      radius_of(p), [tau](double x, double) { return sinc(x) * sinc(x / tau); });
+}
+
+template <class T>
+std::unique_ptr<Filter> make_filter(const Params& p) {
+  return std::make_unique<T>(p);
+}
+
+constexpr Param radius(std::string_view name, double value) {
+  return {.name = name, .kind = ParamKind::real, .default_value = value, .unit = "pixels", .range = kPositive, .doc = "Half the filter's width."};
+}
+
+constexpr Param kBox[] = {radius("xradius", 0.5), radius("yradius", 0.5)};
+constexpr Param kTriangle[] = {radius("xradius", 2), radius("yradius", 2)};
+constexpr Param kGaussian[] = {
+    radius("xradius", 1.5), radius("yradius", 1.5),
+    {.name = "sigma", .kind = ParamKind::real, .default_value = 0.5, .unit = "pixels", .range = kPositive, .doc = "Standard deviation."}};
+constexpr Param kMitchell[] = {
+    radius("xradius", 2), radius("yradius", 2),
+    {.name = "B", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Blur."},
+    {.name = "C", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Ringing."}};
+constexpr Param kSinc[] = {
+    radius("xradius", 4), radius("yradius", 4),
+    {.name = "tau", .kind = ParamKind::real, .default_value = 3.0, .range = kPositive, .doc = "Cycles of the window."}};
+
+}  // namespace
+
+extern const FilterInfo box_filter{{"pixel filter", "box", "Equal weight over a rectangle.", "", kBox}, make_filter<BoxFilter>};
+extern const FilterInfo triangle_filter{{"pixel filter", "triangle", "Weight that falls linearly.", "", kTriangle},
+                                        make_filter<TriangleFilter>};
+extern const FilterInfo gaussian_filter{{"pixel filter", "gaussian", "Gaussian, lowered to end at zero.", "", kGaussian},
+                                        make_gaussian};
+extern const FilterInfo mitchell_filter{
+    {"pixel filter", "mitchell", "Cubic with negative lobes.", "Mitchell and Netravali 1988", kMitchell}, make_mitchell};
+extern const FilterInfo sinc_filter{{"pixel filter", "sinc", "Windowed sinc.", "Lanczos window", kSinc}, make_sinc};
+
+}  // namespace frond

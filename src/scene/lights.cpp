@@ -1,0 +1,187 @@
+#include "scene/lights.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/sampling.h"
+#include "scene/emitter.h"
+#include "scene/registry.h"
+
+namespace frond {
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+
+/// "scale", times what makes the light's total match where the scene states a total.
+float scale_of(const Params& p, std::string_view total, double unit_total) {
+  const double scale = p.real("scale");
+  return float(p.given(total) ? scale * p.real(total) / unit_total : scale);
+}
+
+/// Transform of a light placed by "from" (and "to"), as pbrt composes it.
+Vec3 direction_of(const Params& p, const Transform& world_from_light) {
+  const Vec3 from = p.vec3("from"), to = p.vec3("to");
+  if (from == to) fail(p.where("to"), "\"from\" and \"to\" are the same point: the light has no direction");
+  return normalize(world_from_light.vector(to - from));
+}
+
+/// Luminance of an emission whose spectrum is normalised: the mean over a coarse grid serves to choose lights by.
+double luminance(const Spectrum& s) {
+  double sum = 0;
+  for (float nm = 450; nm <= 650; nm += 10) sum += double(s.at(nm));
+  return sum;
+}
+
+class DistantLight final : public Light {
+ public:
+  DistantLight(const Params& p, const Transform& world_from_light)
+      : spectrum_(p.spectrum("L")),
+        scale_(scale_of(p, "illuminance", 1)),
+        wi_(-direction_of(p, world_from_light)) {}
+  std::optional<LightSample> sample(const Vec3&, Vec2, const SampledWavelengths& lambda) const override {
+    return LightSample{spectrum_->sample(lambda) * scale_, wi_, INFINITY, 1};
+  }
+  bool is_delta() const override { return true; }
+  double power(float r) const override { return luminance(*spectrum_) * double(scale_) * kPiD * double(r) * double(r); }
+  Interval range_nm() const override { return spectrum_->range_nm(); }
+
+ private:
+  SpectrumPtr spectrum_;
+  float scale_;
+  Vec3 wi_;
+};
+
+class PointLight final : public Light {
+ public:
+  PointLight(const Params& p, const Transform& world_from_light)
+      : spectrum_(p.spectrum("I")),
+        scale_(scale_of(p, "power", 4 * kPiD)),
+        position_(world_from_light.point(p.vec3("from"))) {}
+  std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
+    const Vec3 d = position_ - p;
+    const float distance2 = dot(d, d), distance = std::sqrt(distance2);
+    if (distance == 0) return {};
+    return LightSample{spectrum_->sample(lambda) * (scale_ / distance2), d / distance, distance, 1};
+  }
+  bool is_delta() const override { return true; }
+  double power(float) const override { return luminance(*spectrum_) * double(scale_) * 4 * kPiD; }
+  Interval range_nm() const override { return spectrum_->range_nm(); }
+
+ private:
+  SpectrumPtr spectrum_;
+  float scale_;
+  Vec3 position_;
+};
+
+/// Full intensity within the cone less its rim, none outside; a smoothstep of the cosine between.
+class SpotLight final : public Light {
+ public:
+  SpotLight(const Params& p, const Transform& world_from_light)
+      : spectrum_(p.spectrum("I")),
+        position_(world_from_light.point(p.vec3("from"))),
+        axis_(direction_of(p, world_from_light)) {
+    const double cone = p.real("coneangle"), delta = p.real("conedeltaangle");
+    if (delta > cone) fail(p.where("conedeltaangle"), "\"conedeltaangle\" {} is more than \"coneangle\" {}", delta, cone);
+    cos_outer_ = float(std::cos(cone * kPiD / 180));
+    cos_inner_ = float(std::cos((cone - delta) * kPiD / 180));
+    scale_ = scale_of(p, "power", solid_angle());
+  }
+  std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
+    const Vec3 d = position_ - p;
+    const float distance2 = dot(d, d), distance = std::sqrt(distance2);
+    if (distance == 0) return {};
+    const float falloff = intensity(-dot(d, axis_) / distance);
+    if (falloff == 0) return {};
+    return LightSample{spectrum_->sample(lambda) * (scale_ * falloff / distance2), d / distance, distance, 1};
+  }
+  bool is_delta() const override { return true; }
+  double power(float) const override { return luminance(*spectrum_) * double(scale_) * solid_angle(); }
+  Interval range_nm() const override { return spectrum_->range_nm(); }
+
+ private:
+  double solid_angle() const { return 2 * kPiD * ((1 - double(cos_inner_)) + double(cos_inner_ - cos_outer_) / 2); }
+  float intensity(float cos_theta) const {
+    if (cos_theta <= cos_outer_) return 0;
+    if (cos_theta >= cos_inner_) return 1;
+    const float t = (cos_theta - cos_outer_) / (cos_inner_ - cos_outer_);
+    return t * t * (3 - 2 * t);
+  }
+
+  SpectrumPtr spectrum_;
+  Vec3 position_, axis_;
+  float cos_outer_, cos_inner_, scale_;
+};
+
+class DiffuseAreaLight final : public AreaLight {
+ public:
+  DiffuseAreaLight(const Params& p, const ShapeGeometry& geometry)
+      : spectrum_(p.spectrum("L")), surface_(geometry), two_sided_(p.boolean("twosided")) {
+    if (!(surface_.area() > 0)) fail(p.where(), "an area light needs a surface with an area, this one has {}", surface_.area());
+    scale_ = scale_of(p, "power", sides() * kPiD * surface_.area());
+  }
+  std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
+    const ShapePoint on_light = surface_.sample(u);
+    const Vec3 d = on_light.p - p;
+    const float distance = length(d);
+    if (distance == 0) return {};
+    const Vec3 wi = d / distance;
+    const float density = pdf(on_light.ng, wi, distance);
+    const SampledSpectrum emitted = radiance(on_light.ng, -wi, lambda);
+    if (!std::isfinite(density) || emitted.is_black()) return {};
+    return LightSample{emitted, wi, distance, density};
+  }
+  SampledSpectrum radiance(const Vec3& ng, const Vec3& w, const SampledWavelengths& lambda) const override {
+    return two_sided_ || dot(ng, w) > 0 ? spectrum_->sample(lambda) * scale_ : SampledSpectrum();
+  }
+  float pdf(const Vec3& ng, const Vec3& wi, float distance) const override {
+    return distance * distance / (std::abs(dot(ng, wi)) * float(surface_.area()));
+  }
+  bool is_delta() const override { return false; }
+  double power(float) const override {
+    return luminance(*spectrum_) * double(scale_) * kPiD * surface_.area() * sides();
+  }
+  Interval range_nm() const override { return spectrum_->range_nm(); }
+
+ private:
+  double sides() const { return two_sided_ ? 2 : 1; }
+
+  SpectrumPtr spectrum_;
+  EmittingSurface surface_;
+  bool two_sided_;
+  float scale_ = 0;
+};
+
+constexpr Default kWhite = std::array<double, 3>{1, 1, 1};
+constexpr Param kScale{.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor."};
+constexpr Param kRadiance{.name = "L", .kind = ParamKind::illuminant, .default_value = kWhite, .doc = "Emission; spectra are normalised to luminance 1."};
+constexpr Param kIntensity{.name = "I", .kind = ParamKind::illuminant, .default_value = kWhite, .doc = "Radiant intensity; spectra are normalised to luminance 1."};
+constexpr Param kPower{.name = "power", .kind = ParamKind::real, .unit = "lm", .range = kAtLeastZero, .doc = "Total power, in place of the spectrum's own."};
+constexpr Param kFrom{.name = "from", .kind = ParamKind::point3, .default_value = std::array<double, 3>{0, 0, 0}, .doc = "Position."};
+constexpr Param kTo{.name = "to", .kind = ParamKind::point3, .default_value = std::array<double, 3>{0, 0, 1}, .doc = "What the light points at."};
+constexpr Param kDistant[] = {kRadiance, kScale, kFrom, kTo,
+                              {.name = "illuminance", .kind = ParamKind::real, .unit = "lx", .range = kAtLeastZero, .doc = "Illuminance of a surface that faces the light."}};
+constexpr Param kPoint[] = {kIntensity, kScale, kPower, kFrom};
+constexpr Param kSpot[] = {kIntensity, kScale, kPower, kFrom, kTo,
+                           {.name = "coneangle", .kind = ParamKind::real, .default_value = 30.0, .unit = "degrees", .range = {1e-3, 180}, .doc = "From the axis to the cone's edge."},
+                           {.name = "conedeltaangle", .kind = ParamKind::real, .default_value = 5.0, .unit = "degrees", .range = {0, 180}, .doc = "Width of the soft rim."}};
+constexpr Param kDiffuseArea[] = {kRadiance, kScale, kPower,
+                                  {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Both sides give off light."}};
+
+template <class T>
+std::unique_ptr<Light> make_light(const Params& p, const Transform& world_from_light) {
+  return std::make_unique<T>(p, world_from_light);
+}
+
+std::unique_ptr<AreaLight> make_area_light(const Params& p, const ShapeGeometry& geometry) {
+  return std::make_unique<DiffuseAreaLight>(p, geometry);
+}
+
+}  // namespace
+
+extern const LightInfo distant_light{{"light", "distant", "Parallel light.", "pbrt-v4", kDistant}, make_light<DistantLight>};
+extern const LightInfo point_light{{"light", "point", "The same intensity in every direction.", "pbrt-v4", kPoint}, make_light<PointLight>};
+extern const LightInfo spot_light{{"light", "spot", "A cone with a soft rim.", "pbrt-v4", kSpot}, make_light<SpotLight>};
+extern const AreaLightInfo diffuse_area_light{{"area light", "diffuse", "The same radiance in every direction.", "pbrt-v4", kDiffuseArea}, make_area_light};
+
+}  // namespace frond

@@ -1,0 +1,177 @@
+#include <algorithm>
+
+#include "core/error.h"
+#include "scene/registry.h"
+#include "scene/shape.h"
+
+namespace frond {
+namespace {
+
+constexpr double kTau = 2 * M_PI;
+
+Vec3d to_double(const Vec3& v) { return {double(v.x), double(v.y), double(v.z)}; }
+Vec3 to_float(const Vec3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+/// Shared by shapes given in a space of their own: the transform, the side that is the front, the sweep angle.
+class Quadric : public AnalyticShape {
+ public:
+  Quadric(const Params& p, const ShapePlacement& placement)
+      : to_scene_(placement.to_scene),
+        from_scene_(placement.to_scene.inverse()),
+        flip_(placement.reverse_orientation != placement.to_scene.swaps_handedness()),
+        phi_max_(p.real("phimax") * M_PI / 180) {}
+
+  /// The area is known, and even, under similarities alone.
+  std::string_view cannot_emit() const override {
+    const Vec3 x = to_scene_.vector({1, 0, 0}), y = to_scene_.vector({0, 1, 0}), z = to_scene_.vector({0, 0, 1});
+    const float xx = dot(x, x), slack = 1e-4f * xx;
+    const auto near = [slack](float a, float b) { return std::abs(a - b) <= slack; };
+    const bool similar = near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) &&
+                         near(dot(z, x), 0);
+    return similar ? "" : "its transform stretches it unevenly";
+  }
+
+ protected:
+  ShapePoint to_scene(const Vec3d& p, const Vec3d& n, Vec2 uv, float t) const {
+    const Vec3 ng = normalize(to_scene_.normal(to_float(n)));
+    return {to_scene_.point(to_float(p)), flip_ ? -ng : ng, uv, t};
+  }
+  Vec3d local_point(const Vec3& p) const { return to_double(from_scene_.point(p)); }
+  Vec3d local_vector(const Vec3& v) const { return to_double(from_scene_.vector(v)); }
+  Bounds transformed_box(Vec3 lo, Vec3 hi) const {
+    Bounds bounds;
+    for (int corner = 0; corner < 8; ++corner)
+      bounds.add(to_scene_.point({corner & 1 ? lo.x : hi.x, corner & 2 ? lo.y : hi.y, corner & 4 ? lo.z : hi.z}));
+    return bounds;
+  }
+  /// Azimuth in [0, 2 pi).
+  static double azimuth(const Vec3d& p) {
+    const double phi = std::atan2(p.y, p.x);
+    return phi < 0 ? phi + kTau : phi;
+  }
+  double phi_max() const { return phi_max_; }
+  double area_scale() const { return std::pow(double(length(to_scene_.vector({1, 0, 0}))), 2); }
+
+ private:
+  Transform to_scene_, from_scene_;
+  bool flip_;
+  double phi_max_;
+};
+
+class Sphere final : public Quadric {
+ public:
+  Sphere(const Params& p, const ShapePlacement& placement) : Quadric(p, placement), radius_(p.real("radius")) {
+    const double z0 = p.given("zmin") ? p.real("zmin") : -radius_, z1 = p.given("zmax") ? p.real("zmax") : radius_;
+    z_min_ = std::clamp(std::min(z0, z1), -radius_, radius_);
+    z_max_ = std::clamp(std::max(z0, z1), -radius_, radius_);
+    if (z_min_ == z_max_) fail(p.where("zmin"), "the sphere is empty: zmin {} and zmax {} with radius {}", z0, z1, radius_);
+  }
+
+  Bounds bounds(unsigned) const override {
+    const float r = float(radius_);
+    return transformed_box({-r, -r, float(z_min_)}, {r, r, float(z_max_)});
+  }
+
+  std::optional<ShapePoint> intersect(unsigned, const Ray& ray) const override {
+    const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
+    // Distance of the line from the centre first: the discriminant then does not cancel for far origins.
+    const double dd = dot(d, d), b = -dot(o, d) / dd;
+    const Vec3d closest = o + d * b;
+    const double discriminant = radius_ * radius_ - dot(closest, closest);
+    if (discriminant < 0) return {};
+    const double half = std::sqrt(discriminant / dd);
+    for (const double t : {b - half, b + half}) {
+      if (t <= 0 || t >= double(ray.t_max)) continue;
+      const Vec3d on_ray = o + d * t, p = on_ray * (radius_ / length(on_ray));
+      const double phi = azimuth(p);
+      if (p.z < z_min_ || p.z > z_max_ || phi > phi_max()) continue;
+      return at(p, phi, float(t));
+    }
+    return {};
+  }
+
+  ShapePoint sample(Vec2 u) const override {
+    const double z = z_min_ + double(u.x) * (z_max_ - z_min_), phi = double(u.y) * phi_max();
+    const double r = std::sqrt(std::max(0.0, radius_ * radius_ - z * z));
+    return at({r * std::cos(phi), r * std::sin(phi), z}, phi, 0);
+  }
+  double area() const override { return phi_max() * radius_ * (z_max_ - z_min_) * area_scale(); }
+
+ private:
+  ShapePoint at(const Vec3d& p, double phi, float t) const {
+    const double theta = std::acos(std::clamp(p.z / radius_, -1.0, 1.0));
+    const double bottom = std::acos(z_min_ / radius_), top = std::acos(z_max_ / radius_);
+    return to_scene(p, p, {float(phi / phi_max()), float((theta - bottom) / (top - bottom))}, t);
+  }
+
+  double radius_, z_min_ = 0, z_max_ = 0;
+};
+
+class Disk final : public Quadric {
+ public:
+  Disk(const Params& p, const ShapePlacement& placement)
+      : Quadric(p, placement), radius_(p.real("radius")), inner_(p.real("innerradius")), height_(p.real("height")) {
+    if (inner_ >= radius_) fail(p.where("innerradius"), "\"innerradius\" {} must be less than \"radius\" {}", inner_, radius_);
+  }
+
+  Bounds bounds(unsigned) const override {
+    const float r = float(radius_), h = float(height_);
+    return transformed_box({-r, -r, h}, {r, r, h});
+  }
+
+  std::optional<ShapePoint> intersect(unsigned, const Ray& ray) const override {
+    const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
+    if (d.z == 0) return {};
+    const double t = (height_ - o.z) / d.z;
+    if (t <= 0 || t >= double(ray.t_max)) return {};
+    const Vec3d p{o.x + t * d.x, o.y + t * d.y, height_};
+    const double r = std::hypot(p.x, p.y);
+    if (r > radius_ || r < inner_ || azimuth(p) > phi_max()) return {};
+    return at(p, r, float(t));
+  }
+
+  ShapePoint sample(Vec2 u) const override {
+    const double r = std::sqrt(inner_ * inner_ + double(u.x) * (radius_ * radius_ - inner_ * inner_));
+    const double phi = double(u.y) * phi_max();
+    return at({r * std::cos(phi), r * std::sin(phi), height_}, r, 0);
+  }
+  double area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_) * area_scale(); }
+
+ private:
+  ShapePoint at(const Vec3d& p, double r, float t) const {
+    return to_scene(p, {0, 0, 1}, {float(azimuth(p) / phi_max()), float((radius_ - r) / (radius_ - inner_))}, t);
+  }
+
+  double radius_, inner_, height_;
+};
+
+constexpr Param kPhiMax{.name = "phimax", .kind = ParamKind::real, .default_value = 360.0, .unit = "degrees", .range = {1e-3, 360},
+                        .doc = "Sweep angle."};
+constexpr Interval kLength{1e-30, 1e30};
+constexpr Param kSphere[] = {
+    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Radius."},
+    {.name = "zmin", .kind = ParamKind::real, .doc = "Lower cut; the whole sphere by default."},
+    {.name = "zmax", .kind = ParamKind::real, .doc = "Upper cut; the whole sphere by default."},
+    kPhiMax, kAlphaParam};
+constexpr Param kDisk[] = {
+    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Outer radius."},
+    {.name = "innerradius", .kind = ParamKind::real, .default_value = 0.0, .range = kAtLeastZero, .doc = "Radius of the hole."},
+    {.name = "height", .kind = ParamKind::real, .default_value = 0.0, .doc = "Place along z."},
+    kPhiMax, kAlphaParam};
+
+template <class T>
+ShapeGeometry make_quadric(const Params& p, const ShapePlacement& placement) {
+  return std::make_shared<const T>(p, placement);
+}
+
+}  // namespace
+
+void Bounds::add(const Vec3& p) {
+  min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+  max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+}
+
+extern const ShapeInfo sphere_shape{{"shape", "sphere", "Sphere or part of one.", "pbrt-v4", kSphere}, make_quadric<Sphere>};
+extern const ShapeInfo disk_shape{{"shape", "disk", "Flat disk or ring.", "pbrt-v4", kDisk}, make_quadric<Disk>};
+
+}  // namespace frond

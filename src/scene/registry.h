@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/camera.h"
+#include "core/filter.h"
+#include "core/integrator.h"
+#include "core/material.h"
+#include "core/sampler.h"
+#include "core/texture.h"
+#include "scene/film.h"
+#include "scene/lights.h"
+#include "scene/shape.h"
+
+namespace frond {
+
+/// Every plugin that a scene file can name. One list of what there is: the parser's errors, `frond list`, `frond
+/// describe`, the docs and the tests all read it.
+struct Registry {
+  PluginTable<MaterialInfo> materials;
+  PluginTable<IntegratorInfo> integrators;
+  PluginTable<WavelengthsInfo> wavelengths;
+  PluginTable<CameraInfo> cameras;
+  PluginTable<FilmInfo> films;
+  PluginTable<SamplerInfo> samplers;
+  PluginTable<FilterInfo> filters;
+  PluginTable<ShapeInfo> shapes;
+  PluginTable<LightInfo> lights;
+  PluginTable<AreaLightInfo> area_lights;
+  PluginTable<FloatTextureInfo> float_textures;
+  PluginTable<SpectrumTextureInfo> spectrum_textures;
+};
+
+/// All of them, in the order of the tables.
+std::vector<const PluginInfo*> all_plugins(const Registry& registry);
+
+/// The tables of this layer and of spectra, with the materials and integrators given.
+Registry make_registry(std::span<const MaterialInfo* const> materials, std::span<const IntegratorInfo* const> integrators);
+
+}  // namespace frond

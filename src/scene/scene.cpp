@@ -1,0 +1,230 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "scene/resolver.h"
+
+namespace frond {
+namespace {
+
+constexpr Param kOptionParams[] = {
+    {.name = "seed", .kind = ParamKind::integer, .default_value = 0, .range = {0, 2147483647}, .doc = "Seed of all random numbers."},
+    {.name = "wavelengths", .kind = ParamKind::string, .default_value = std::string_view("hero"), .doc = "Wavelength strategy."},
+};
+constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
+
+/// The value as a scene file would have it, for a parameter of a swap.
+ParsedParam parse_swap_value(const Param& declared, const std::string& text) {
+  ParsedParam p{"", std::string(declared.name), {}, {}, {}};
+  switch (declared.kind) {
+    case ParamKind::boolean:
+      p.type = "bool";
+      if (text != "true" && text != "false") fail({}, "swap: \"{}\" is true or false, {} was given", p.name, text);
+      p.values = std::vector<bool>{text == "true"};
+      return p;
+    case ParamKind::string:
+      p.type = "string";
+      p.values = std::vector<std::string>{text};
+      return p;
+    case ParamKind::integer:
+    case ParamKind::real:
+    case ParamKind::float_texture: {
+      p.type = declared.kind == ParamKind::integer ? "integer" : "float";
+      char* end = nullptr;
+      const double value = std::strtod(text.c_str(), &end);
+      if (text.empty() || *end != '\0') fail({}, "swap: \"{}\" is a number, {} was given", p.name, text);
+      p.values = std::vector<double>{value};
+      return p;
+    }
+    default: fail({}, "swap: \"{}\" cannot be given on the command line", p.name);
+  }
+}
+
+/// What the new material does not know of the old one's parameters is left out, with a warning: the two describe the
+/// same leaf, but each has its own method.
+void apply_swap(const MaterialSwap& swap, const MaterialInfo& info, ParsedPlugin& plugin, const Log& log) {
+  const auto declared = [&info](const std::string& name) {
+    return std::find_if(info.params.begin(), info.params.end(), [&](const Param& p) { return p.name == name; });
+  };
+  std::erase_if(plugin.params, [&](const ParsedParam& p) {
+    if (declared(p.name) != info.params.end()) return false;
+    log.warn(p.where, fmt::format("\"{}\" has no parameter \"{}\": left out by the swap", info.name, p.name));
+    return true;
+  });
+  for (const auto& [name, value] : swap.params) {
+    const auto it = declared(name);
+    if (it == info.params.end()) {
+      std::vector<std::string_view> names;
+      for (const Param& p : info.params) names.push_back(p.name);
+      fail({}, "swap: material \"{}\" has no parameter \"{}\"{}", info.name, name, suggestion(name, names));
+    }
+    std::erase_if(plugin.params, [&](const ParsedParam& p) { return p.name == name; });
+    plugin.params.push_back(parse_swap_value(*it, value));
+  }
+  plugin.name = swap.to;
+}
+
+void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry, const Log& log) {
+  for (const MaterialSwap& swap : swaps) {
+    const MaterialInfo& info = registry.materials.get(swap.to, {});
+    std::vector<std::string_view> names;
+    bool found = false;
+    for (MaterialDescription& m : description.materials) {
+      names.push_back(m.name.empty() ? m.plugin.name : m.name);
+      if (m.name != swap.from && m.plugin.name != swap.from) continue;
+      apply_swap(swap, info, m.plugin, log);
+      found = true;
+    }
+    if (!found) fail({}, "swap: the scene has no material \"{}\"{}", swap.from, suggestion(swap.from, names));
+  }
+}
+
+}  // namespace
+
+/// Turns the description into a scene, in the order of what depends on what.
+class SceneBuilder {
+ public:
+  SceneBuilder(Scene& scene, const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
+               ThreadPool& pool, const Log& log)
+      : scene_(scene), description_(description), registry_(registry), overrides_(overrides), pool_(pool), log_(log) {}
+
+  void build() {
+    apply_swaps(description_, overrides_.swaps, registry_, log_);
+    build_options();
+    SceneResolver resolver(description_, registry_, *scene_.wavelengths_);
+    build_view(resolver);
+    build_lights(resolver);
+    build_surfaces(resolver);
+    scene_.materials_ = resolver.materials();
+    const Preparation preparation{*scene_.wavelengths_, pool_, log_, overrides_.cache_dir};
+    for (const auto& material : scene_.materials_) material->prepare(preparation);
+    index_lights();
+    scene_.integrator_->prepare(scene_);
+  }
+
+ private:
+  /// Binding that needs no look-up of anything in the scene.
+  class NoResolver final : public ParamResolver {
+    std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
+    std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
+    std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
+    SpectrumPtr spectrum(const ParsedParam& p, bool) override { none(p.where); }
+    std::filesystem::path file(const std::string&, const Location& w) override { none(w); }
+    [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
+  };
+
+  template <class Info, class... Args>
+  auto make(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver, const Args&... args) {
+    const Info& info = table.get(plugin.name, plugin.where);
+    return info.make(Params(info, plugin, resolver), args...);
+  }
+
+  void build_options() {
+    NoResolver resolver;
+    ParsedPlugin plugin{"Option", {}, description_.options};
+    const Params p(kOptions, plugin, resolver);
+    const std::string name = overrides_.wavelengths.empty() ? p.string("wavelengths") : overrides_.wavelengths;
+    scene_.options_ = {name, overrides_.seed ? *overrides_.seed : uint64_t(p.integer("seed"))};
+    const WavelengthsInfo& info = registry_.wavelengths.get(name, overrides_.wavelengths.empty() ? p.where("wavelengths") : Location{});
+    scene_.wavelengths_ = info.make(Params(info, {name, {}, {}}, resolver));
+  }
+
+  void build_view(SceneResolver& resolver) {
+    scene_.film_ = make(registry_.films, description_.film, resolver);
+    scene_.camera_ = make(registry_.cameras, description_.camera, resolver,
+                          CameraPlacement{description_.camera_from_world.inverse(), scene_.film_.width, scene_.film_.height});
+    scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, scene_.options_.seed);
+    scene_.filter_ = make(registry_.filters, description_.filter, resolver);
+    scene_.integrator_ = make(registry_.integrators, description_.integrator, resolver);
+  }
+
+  void build_lights(SceneResolver& resolver) {
+    for (const LightDescription& light : description_.lights)
+      scene_.owned_lights_.push_back(make(registry_.lights, light.plugin, resolver, light.world_from_light));
+  }
+
+  void build_surfaces(SceneResolver& resolver) {
+    std::vector<Primitive> top = primitives(description_.shapes, resolver);
+    std::vector<std::vector<Primitive>> groups;
+    for (const ObjectDescription& object : description_.objects) groups.push_back(primitives(object.shapes, resolver));
+    std::vector<Placement> placements;
+    placements.reserve(description_.instances.size());
+    for (const InstanceDescription& instance : description_.instances)
+      placements.push_back({instance.world_from_object, instance.object});
+    scene_.accelerator_ = std::make_unique<Accelerator>(std::move(top), std::move(groups), placements, pool_.size());
+    const Bounds b = scene_.accelerator_->bounds();
+    scene_.radius_ = b.min.x <= b.max.x ? length(b.max - b.min) / 2 : 1;
+  }
+
+  std::vector<Primitive> primitives(const std::vector<ShapeDescription>& shapes, SceneResolver& resolver) {
+    std::vector<Primitive> result;
+    for (const ShapeDescription& shape : shapes) result.push_back(primitive(shape, resolver));
+    return result;
+  }
+
+  Primitive primitive(const ShapeDescription& shape, SceneResolver& resolver) {
+    const ShapeInfo& info = registry_.shapes.get(shape.plugin.name, shape.plugin.where);
+    const Params params(info, shape.plugin, resolver);
+    Primitive result{info.make(params, {shape.world_from_object, shape.reverse_orientation}), nullptr, nullptr, nullptr};
+    const auto alpha = params.float_texture("alpha");
+    if (!alpha->is_constant() || alpha->range().min < 1) result.alpha = alpha;
+    const auto material = resolver.material(shape.material);
+    result.material = material.get();
+    if (shape.area_light) result.light = area_light(description_.area_lights[*shape.area_light], shape.plugin.where, result.geometry, resolver);
+    if (material->is_leaf()) warn_of_double_faces(result.geometry, shape.plugin.where);
+    return result;
+  }
+
+  const AreaLight* area_light(const ParsedPlugin& plugin, const Location& where, const ShapeGeometry& geometry, SceneResolver& resolver) {
+    if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry); shape && !(*shape)->cannot_emit().empty())
+      fail(where, "this shape cannot give off light: {}; triangles can", (*shape)->cannot_emit());
+    auto light = make(registry_.area_lights, plugin, resolver, geometry);
+    const AreaLight* result = light.get();
+    scene_.owned_lights_.push_back(std::move(light));
+    return result;
+  }
+
+  /// Leaf meshes often carry each face twice, once for either side: a light path then meets two leaves in one.
+  void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where) {
+    const auto* mesh = std::get_if<MeshPtr>(&geometry);
+    if (!mesh) return;
+    std::set<std::array<std::array<float, 3>, 3>> faces;
+    size_t doubles = 0;
+    for (const auto& t : (*mesh)->triangles) {
+      std::array<std::array<float, 3>, 3> corners;
+      for (size_t k = 0; k < 3; ++k) corners[k] = {(*mesh)->p[t[k]].x, (*mesh)->p[t[k]].y, (*mesh)->p[t[k]].z};
+      std::sort(corners.begin(), corners.end());
+      doubles += !faces.insert(corners).second;
+    }
+    if (doubles > 0)
+      log_.warn(where, fmt::format("{} of {} faces of this leaf lie on one another: every ray passes two leaves there; a leaf has "
+                                   "its two sides in one face", doubles, (*mesh)->triangles.size()));
+  }
+
+  void index_lights() {
+    for (const auto& light : scene_.owned_lights_) {
+      light->set_index(int(scene_.lights_.size()));
+      scene_.lights_.push_back(light.get());
+      if (const auto* environment = dynamic_cast<const EnvironmentLight*>(light.get())) scene_.environment_.push_back(environment);
+    }
+    if (scene_.lights_.empty()) log_.warn({}, "the scene has no light: the image will be black");
+  }
+
+  Scene& scene_;
+  SceneDescription description_;
+  const Registry& registry_;
+  const SceneOverrides& overrides_;
+  ThreadPool& pool_;
+  const Log& log_;
+};
+
+Scene::Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides, ThreadPool& pool,
+             const Log& log) {
+  SceneBuilder(*this, description, registry, overrides, pool, log).build();
+}
+
+Scene::~Scene() = default;
+
+}  // namespace frond

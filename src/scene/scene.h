@@ -1,0 +1,78 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "core/parallel.h"
+#include "core/world.h"
+#include "scene/accelerator.h"
+#include "scene/description.h"
+#include "scene/registry.h"
+
+namespace frond {
+
+/// Puts one material in place of another: `leaf=abm`, or with parameters `leaf=abm,mode=analog`.
+struct MaterialSwap {
+  std::string from;  ///< name of a named material, or of a plugin
+  std::string to;    ///< name of a plugin
+  std::vector<std::pair<std::string, std::string>> params;
+};
+
+/// What the command line says over the scene file.
+struct SceneOverrides {
+  std::string wavelengths;  ///< empty: the scene's
+  std::optional<uint64_t> seed;
+  std::vector<MaterialSwap> swaps;
+  std::filesystem::path cache_dir;  ///< empty: no files are kept
+};
+
+/// Options of the scene file that are not a plugin's.
+struct SceneOptions {
+  std::string wavelengths;
+  uint64_t seed;
+};
+
+/// A scene ready to be rendered.
+class Scene final : public World {
+ public:
+  /// Throws InputError.
+  Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides, ThreadPool& pool,
+        const Log& log);
+  ~Scene() override;
+
+  bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override { return accelerator_->intersect(ray, key, point); }
+  bool occluded(const Ray& ray, uint64_t key) const override { return accelerator_->occluded(ray, key); }
+  std::span<const Light* const> lights() const override { return lights_; }
+  std::span<const EnvironmentLight* const> environment() const override { return environment_; }
+  float radius() const override { return radius_; }
+
+  const WavelengthStrategy& wavelengths() const { return *wavelengths_; }
+  const std::string& wavelengths_name() const { return options_.wavelengths; }
+  const FilmSettings& film() const { return film_; }
+  const Camera& camera() const { return *camera_; }
+  const Sampler& sampler() const { return *sampler_; }
+  const Filter& filter() const { return *filter_; }
+  const Integrator& integrator() const { return *integrator_; }
+  /// Of the random streams; the sampler has it too.
+  uint64_t seed() const { return options_.seed; }
+
+ private:
+  friend class SceneBuilder;
+
+  SceneOptions options_;
+  std::unique_ptr<WavelengthStrategy> wavelengths_;
+  FilmSettings film_;
+  std::unique_ptr<Camera> camera_;
+  std::unique_ptr<Sampler> sampler_;
+  std::unique_ptr<Filter> filter_;
+  std::unique_ptr<Integrator> integrator_;
+  std::vector<std::shared_ptr<Material>> materials_;
+  std::vector<std::unique_ptr<Light>> owned_lights_;
+  std::vector<const Light*> lights_;
+  std::vector<const EnvironmentLight*> environment_;
+  std::unique_ptr<Accelerator> accelerator_;
+  float radius_ = 0;
+};
+
+}  // namespace frond

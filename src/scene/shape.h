@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "core/plugin.h"
+#include "core/ray.h"
+#include "core/transform.h"
+#include "scene/mesh.h"
+
+namespace frond {
+
+struct Bounds {
+  Vec3 min{INFINITY, INFINITY, INFINITY}, max{-INFINITY, -INFINITY, -INFINITY};
+  void add(const Vec3& p);
+};
+
+/// A point of a surface: unit geometric normal on the front, and the surface's (u, v).
+struct ShapePoint {
+  Vec3 p, ng;
+  Vec2 uv;
+  float t = 0;  ///< along the ray that met it
+};
+
+/// A surface with its own intersection routine, in the space that its transform leads to; one or more primitives.
+class AnalyticShape {
+ public:
+  virtual ~AnalyticShape() = default;
+  virtual unsigned count() const { return 1; }
+  virtual Bounds bounds(unsigned primitive) const = 0;
+  virtual std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray) const = 0;
+  /// Uniform over the area.
+  virtual ShapePoint sample(Vec2 u) const = 0;
+  virtual double area() const = 0;
+  /// Why `sample` would not be uniform over the area here; empty where it is.
+  virtual std::string_view cannot_emit() const { return {}; }
+};
+
+using MeshPtr = std::shared_ptr<const TriangleMesh>;
+using AnalyticShapePtr = std::shared_ptr<const AnalyticShape>;
+
+/// What a shape plugin makes: triangles for Embree's own routines, or a surface with its own.
+using ShapeGeometry = std::variant<MeshPtr, AnalyticShapePtr>;
+
+struct ShapePlacement {
+  Transform to_scene;        ///< from the shape's space to that of the scene, or of the object it is defined in
+  bool reverse_orientation;  ///< of the directive: front and back swapped
+};
+
+struct ShapeInfo : PluginInfo {
+  ShapeGeometry (*make)(const Params&, const ShapePlacement&);
+};
+
+/// The parameter that every shape has besides its own.
+inline constexpr Param kAlphaParam{.name = "alpha",
+                                   .kind = ParamKind::float_texture,
+                                   .default_value = 1.0,
+                                   .range = {0, 1},
+                                   .doc = "Opacity: the chance that a ray meets the surface."};
+
+}  // namespace frond
