@@ -1,0 +1,52 @@
+#pragma once
+
+#include <limits>
+
+#include "core/error.h"
+#include "core/spectrum.h"
+
+namespace frond {
+
+/// Where a formula holds: every wavelength.
+inline constexpr Interval kEveryWavelength{1, std::numeric_limits<double>::infinity()};
+
+/// The same value at every wavelength (equal energy, as an emission).
+class ConstantSpectrum final : public Spectrum {
+ public:
+  explicit ConstantSpectrum(float value, Interval range_nm = kEveryWavelength) : value_(value), range_nm_(range_nm) {}
+  float at(float) const override { return value_; }
+  Interval range_nm() const override { return range_nm_; }
+  float max_value() const override { return value_; }
+
+ private:
+  float value_;
+  Interval range_nm_;
+};
+
+/// Planck's law, scaled so that its maximum over all wavelengths is 1 (as pbrt-v4's "blackbody").
+class BlackbodySpectrum final : public Spectrum {
+ public:
+  /// Throws InputError unless the temperature lies in [100, 1e6] K.
+  explicit BlackbodySpectrum(double kelvin, const Location& where = {});
+  float at(float lambda_nm) const override;
+  Interval range_nm() const override { return kEveryWavelength; }
+  float max_value() const override { return 1; }
+
+ private:
+  double kelvin_, scale_;
+};
+
+/// Another spectrum times a number.
+class ScaledSpectrum final : public Spectrum {
+ public:
+  ScaledSpectrum(SpectrumPtr base, double scale) : base_(std::move(base)), scale_(static_cast<float>(scale)) {}
+  float at(float lambda_nm) const override { return scale_ * base_->at(lambda_nm); }
+  Interval range_nm() const override { return base_->range_nm(); }
+  float max_value() const override { return scale_ * base_->max_value(); }
+
+ private:
+  SpectrumPtr base_;
+  float scale_;
+};
+
+}  // namespace frond

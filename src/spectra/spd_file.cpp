@@ -1,0 +1,61 @@
+#include "spectra/spd_file.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "spectra/tabulated.h"
+
+namespace frond {
+namespace {
+
+struct Number {
+  double value;
+  Location where;
+};
+
+double parse_number(std::string_view word, const Location& where) {
+  const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) fail(where, "\"{}\" is not a number", word);
+  return value;
+}
+
+void parse_line(std::string_view line, Location where, std::vector<Number>& numbers) {
+  line = line.substr(0, line.find('#'));
+  constexpr std::string_view kSpace = " \t\r\f\v";
+  for (size_t begin = 0; (begin = line.find_first_not_of(kSpace, begin)) != line.npos;) {
+    const size_t end = std::min(line.find_first_of(kSpace, begin), line.size());
+    where.column = static_cast<int>(begin) + 1;
+    numbers.push_back({parse_number(line.substr(begin, end - begin), where), where});
+    begin = end;
+  }
+}
+
+std::vector<Number> read_numbers(const std::filesystem::path& path, const Location& where) {
+  std::ifstream in(path);
+  if (!in) fail(where, "cannot read spectrum file \"{}\": {}", path.string(), std::strerror(errno));
+  Location here{std::make_shared<const std::string>(path.string()), 1, 1};
+  std::vector<Number> numbers;
+  for (std::string line; std::getline(in, line); ++here.line) parse_line(line, here, numbers);
+  if (in.bad() || !in.eof()) fail(where, "cannot read spectrum file \"{}\" to its end", path.string());
+  if (numbers.empty()) fail(here, "the file holds no spectrum: wavelength (nm) and value in turn are expected");
+  return numbers;
+}
+
+}  // namespace
+
+SpectrumPtr read_spd(const std::filesystem::path& path, const Location& where) {
+  const std::vector<Number> numbers = read_numbers(path, where);
+  if (numbers.size() % 2 != 0)
+    fail(numbers.back().where, "wavelength {} nm has no value: the file ends after it", numbers.back().value);
+  std::vector<SpectrumPoint> points;
+  for (size_t i = 0; i < numbers.size(); i += 2)
+    points.push_back({numbers[i].value, numbers[i + 1].value, numbers[i].where});
+  return make_tabulated(points);
+}
+
+}  // namespace frond
