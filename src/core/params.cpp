@@ -71,6 +71,7 @@ Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver
   for (size_t i = 0; i < parsed_.params.size(); ++i) {
     const ParsedParam& p = parsed_.params[i];
     const auto declared = std::find(names.begin(), names.end(), p.name);
+    if (declared == names.end() && p.may_be_unused) continue;
     if (declared == names.end())
       fail(p.where, "{} \"{}\" has no parameter \"{}\"{}", info_.kind, info_.name, p.name, suggestion(p.name, names));
     for (size_t j = 0; j < i; ++j)

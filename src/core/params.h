@@ -65,6 +65,7 @@ struct ParsedParam {
   Location where;        ///< of the quoted declaration
   Location value_where;  ///< of the first value
   std::variant<std::vector<double>, std::vector<std::string>, std::vector<bool>> values;
+  bool may_be_unused = false;  ///< from an `Attribute`: for those plugins that declare it
 };
 
 /// A directive with a plugin's name and parameters: `Material "diffuse" ...`.

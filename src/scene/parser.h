@@ -13,6 +13,6 @@ namespace frond {
 SceneDescription parse_scene(const std::filesystem::path& path, const Log& log);
 
 /// The same from text; `name` is what errors call it, and what Include resolves against.
-SceneDescription parse_scene_text(std::string text, const std::string& name, const Log& log);
+SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log);
 
 }  // namespace frond

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/description.h"
+
+namespace frond {
+
+/// What the directives of a scene file mean, once they are read: keeps the graphics state (transform, material, ...)
+/// and writes down what comes under it. Every method throws InputError where the directive makes no sense.
+class DescriptionBuilder {
+ public:
+  DescriptionBuilder(SceneDescription& scene, const Log& log);
+
+  bool in_world() const { return in_world_; }
+  void world_begin(const Location& where);
+  /// End of the main file: everything must be closed and every name known. `where` is that end.
+  void finish(const Location& where);
+
+  // Options
+  void camera(ParsedPlugin plugin);
+  void set_option_plugin(ParsedPlugin SceneDescription::*option, std::string_view directive, ParsedPlugin plugin);
+  void option(ParsedParam param) { scene_.options.push_back(std::move(param)); }
+  void color_space(const std::string& name, const Location& where);
+
+  // Transforms
+  void concat(const Transform& transform, std::string_view directive, const Location& where);
+  void set_transform(const Transform& transform) { state_.transform = transform; }
+  void name_transform(const std::string& name, const Location&) { scene_.coordinate_systems[name] = state_.transform; }
+  void recall_transform(const std::string& name, const Location& where);
+
+  // Graphics state
+  void attribute_begin(const Location& where);
+  void attribute_end(const Location& where);
+  void attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params);
+  void reverse_orientation() { state_.reverse_orientation = !state_.reverse_orientation; }
+  void material(ParsedPlugin plugin);
+  void named_material(const std::string& name, const Location& where);
+  void area_light(ParsedPlugin plugin);
+
+  // Things of the scene
+  void make_named_material(const std::string& name, ParsedPlugin plugin);
+  void texture(const std::string& name, const std::string& value, const Location& value_where, ParsedPlugin plugin);
+  void shape(ParsedPlugin plugin);
+  void light(ParsedPlugin plugin);
+  void object_begin(const std::string& name, const Location& where);
+  void object_end(const Location& where);
+  void object_instance(const std::string& name, const Location& where);
+
+ private:
+  /// Kinds of plugins that `Attribute` gives defaults to, in the order of kTargets.
+  enum class Target : uint8_t { shape, light, material, texture };
+  static constexpr std::array<std::string_view, 4> kTargets{"shape", "light", "material", "texture"};
+
+  struct State {
+    Transform transform;
+    bool reverse_orientation = false;
+    size_t material = 0;
+    std::optional<size_t> area_light;
+    std::array<std::vector<ParsedParam>, kTargets.size()> defaults;
+  };
+  struct Saved {
+    bool by_object;
+    Location where;
+    State state;
+  };
+  /// A name that may be used before it is defined.
+  struct Name {
+    size_t index;
+    Location first_use;
+    bool is_defined = false;
+  };
+  using Names = std::map<std::string, Name, std::less<>>;
+
+  void push(bool by_object, const Location& where) { saved_.push_back({by_object, where, state_}); }
+  void pop(bool by_object, const Location& where);
+  ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
+  size_t new_material(MaterialDescription material);
+  Name& material_called(const std::string& name, const Location& where);
+  Name& object_called(const std::string& name, const Location& where);
+
+  SceneDescription& scene_;
+  const Log& log_;
+  State state_;
+  std::vector<Saved> saved_;
+  bool in_world_ = false;
+  std::optional<size_t> open_object_;
+  Names materials_, objects_;
+  std::map<std::pair<TextureDescription::Value, std::string>, Location> textures_;
+};
+
+}  // namespace frond

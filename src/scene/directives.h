@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "scene/description_builder.h"
+#include "scene/parameter_list.h"
+#include "scene/tokenizer.h"
+
+namespace frond {
+
+/// What a directive reads its arguments from and writes its meaning to.
+struct DirectiveContext {
+  Tokenizer& tokens;
+  ParameterReader& parameters;
+  DescriptionBuilder& scene;
+  const Log& log;
+};
+
+/// Reads the arguments of directive `name`, whose word has been taken from the tokens, and carries it out; all but
+/// Include, which is the parser's. Throws InputError, for unknown directives too.
+void carry_out(const Token& name, DirectiveContext& context);
+
+/// The quoted string that must come next; `directive` asks for it.
+Token read_quoted(Tokenizer& tokens, std::string_view directive);
+
+}  // namespace frond

@@ -1,0 +1,141 @@
+#include "scene/tokenizer.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdlib>
+
+namespace frond {
+namespace {
+
+constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
+
+constexpr std::array<bool, 256> word_enders() {
+  std::array<bool, 256> ends{};
+  for (const char c : {' ', '\t', '\n', '\r', '\f', '\v', '"', '[', ']', '#'})
+    ends[static_cast<unsigned char>(c)] = true;
+  return ends;
+}
+constexpr std::array<bool, 256> kEndsWord = word_enders();
+
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+constexpr std::string_view kEscapes = "bfnrt\\\"'", kMeanings = "\b\f\n\r\t\\\"'";
+
+Location location_of(const std::shared_ptr<const std::string>& file, std::string_view text, size_t offset) {
+  const std::string_view before = text.substr(0, offset);
+  const size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
+  return {file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
+          static_cast<int>(offset - line_start) + 1};
+}
+
+void check_is_text(std::string_view text, const std::shared_ptr<const std::string>& file) {
+  if (text.starts_with("\x1f\x8b"))
+    fail({file, 1, 1}, "this file is compressed; compressed scene files are not supported yet");
+  if (const size_t offset = text.find('\0'); offset != text.npos)
+    fail(location_of(file, text, offset), "a zero byte: this is not a text file");
+}
+
+}  // namespace
+
+std::string Token::shown() const {
+  constexpr size_t kLongest = 40;
+  std::string shown(text.substr(0, kLongest));
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }, '?');
+  if (text.size() > kLongest) shown += "...";
+  switch (kind) {
+    case Kind::end:
+      return "the end of the file";
+    case Kind::string:
+      return '"' + shown + '"';
+    default:
+      return shown;
+  }
+}
+
+Tokenizer::Tokenizer(std::string_view text, std::shared_ptr<const std::string> file) : file_(std::move(file)) {
+  check_is_text(text, file_);
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  at_ = line_start_ = text.data();
+  end_ = at_ + text.size();
+  next_ = scan();
+}
+
+Token Tokenizer::next() {
+  const Token token = next_;
+  if (token.kind != Token::Kind::end) next_ = scan();
+  return token;
+}
+
+Token Tokenizer::token_at(const char* start) const {
+  Token token;
+  token.line = line_;
+  token.column = static_cast<int>(start - line_start_) + 1;
+  return token;
+}
+
+void Tokenizer::skip_blanks() {
+  for (; at_ != end_; ++at_) {
+    if (*at_ == '#') at_ = std::find(at_, end_, '\n');
+    if (at_ == end_ || !is_blank(*at_)) return;
+    if (*at_ == '\n') ++line_, line_start_ = at_ + 1;
+  }
+}
+
+Token Tokenizer::scan() {
+  skip_blanks();
+  const char* start = at_;
+  Token token = token_at(start);
+  if (at_ == end_) return token;
+  if (*at_ == '"') return scan_string();
+  if (*at_ == '[' || *at_ == ']') {
+    token.kind = *at_ == '[' ? Token::Kind::open_bracket : Token::Kind::close_bracket;
+    ++at_;
+  } else {
+    token.kind = Token::Kind::word;
+    while (at_ != end_ && !kEndsWord[static_cast<unsigned char>(*at_)]) ++at_;
+  }
+  token.text = {start, static_cast<size_t>(at_ - start)};
+  return token;
+}
+
+Token Tokenizer::scan_string() {
+  Token token = token_at(at_);
+  token.kind = Token::Kind::string;
+  const char* start = ++at_;
+  for (; at_ != end_ && *at_ != '"' && *at_ != '\n'; ++at_)
+    if (*at_ == '\\' && at_ + 1 != end_ && at_[1] != '\n') token.has_escapes = true, ++at_;
+  if (at_ == end_ || *at_ != '"') fail(where(token), "this string has no closing quote on its line");
+  token.text = {start, static_cast<size_t>(at_ - start)};
+  ++at_;
+  return token;
+}
+
+std::string Tokenizer::text_of(const Token& string) const {
+  if (!string.has_escapes) return std::string(string.text);
+  std::string text;
+  for (size_t i = 0; i < string.text.size(); ++i) {
+    char c = string.text[i];
+    if (c == '\\') {
+      const size_t escape = kEscapes.find(string.text[++i]);
+      if (escape == kEscapes.npos) fail(where(string), "\"\\{}\" is not an escape in a string", string.text[i]);
+      c = kMeanings[escape];
+    }
+    text += c;
+  }
+  return text;
+}
+
+std::optional<double> parse_number(std::string_view word) {
+  const size_t signs = word.starts_with('+') || word.starts_with('-') ? 1 : 0;
+  const char first = word.size() > signs ? word[signs] : '\0';
+  if (first != '.' && (first < '0' || first > '9')) return {};  // from_chars would take "nan" and "inf"
+  if (word[0] == '+') word.remove_prefix(1);                    // and no plus sign
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (end != word.data() + word.size() || error == std::errc::invalid_argument) return {};
+  if (error == std::errc::result_out_of_range) return std::strtod(std::string(word).c_str(), nullptr);
+  return value;
+}
+
+}  // namespace frond
