@@ -126,7 +126,7 @@ void fill_triangle(const TriangleMesh& mesh, const RTCHit& hit, Hit& out, Vec3& 
 Accelerator::Accelerator(std::vector<Primitive> top, std::vector<std::vector<Primitive>> groups,
                          const std::vector<Placement>& instances, int threads)
     : top_(std::move(top)), groups_(std::move(groups)) {
-  // The widest instructions for single rays, and the same bits on every machine that has them.
+  // AVX-512 gains nothing for single rays, and changes the last bits of hits.
   device_.reset(rtcNewDevice(fmt::format("max_isa=avx2,threads={}", threads).c_str()));
   if (!device_) fail({}, "Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
   for (const auto& group : groups_) {
@@ -185,14 +185,17 @@ Vec3 Accelerator::Instance::normal(const Vec3& n) const {
   return Vec3{dot(c0, n), dot(c1, n), dot(c2, n)} * sign;
 }
 
-bool Accelerator::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
-  RTCRayHit query;
+bool Accelerator::closest(const Ray& ray, uint64_t key, RTCRayHit& query) const {
   query.ray = to_embree(ray);
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embree::Query context(key);
   embree::intersect(scene_.get(), query, context);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
 
+bool Accelerator::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
+  RTCRayHit query;
+  if (!closest(ray, key, query)) return false;
   const bool instanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
   const Instance* instance = instanced ? &instances_[query.hit.instID[0] - top_.size()] : nullptr;
   const Primitive& primitive = (instanced ? groups_[instance->group] : top_)[query.hit.geomID];

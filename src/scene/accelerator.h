@@ -31,6 +31,8 @@ class Accelerator {
               int threads);
 
   bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const;
+  /// Embree's part of `intersect` alone.
+  bool closest(const Ray& ray, uint64_t key, RTCRayHit& query) const;
   bool occluded(const Ray& ray, uint64_t key) const;
   Bounds bounds() const;
 

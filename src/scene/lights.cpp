@@ -7,6 +7,7 @@
 #include "core/sampling.h"
 #include "scene/emitter.h"
 #include "scene/registry.h"
+#include "spectra/cie.h"
 
 namespace frond {
 namespace {
@@ -26,13 +27,6 @@ Vec3 direction_of(const Params& p, const Transform& world_from_light) {
   return normalize(world_from_light.vector(to - from));
 }
 
-/// Luminance of an emission whose spectrum is normalised: the mean over a coarse grid serves to choose lights by.
-double luminance(const Spectrum& s) {
-  double sum = 0;
-  for (float nm = 450; nm <= 650; nm += 10) sum += double(s.at(nm));
-  return sum;
-}
-
 class DistantLight final : public Light {
  public:
   DistantLight(const Params& p, const Transform& world_from_light)
@@ -43,7 +37,7 @@ class DistantLight final : public Light {
     return LightSample{spectrum_->sample(lambda) * scale_, wi_, INFINITY, 1};
   }
   bool is_delta() const override { return true; }
-  double power(float r) const override { return luminance(*spectrum_) * double(scale_) * kPiD * double(r) * double(r); }
+  double power(float r) const override { return photometric(*spectrum_) * double(scale_) * kPiD * double(r) * double(r); }
   Interval range_nm() const override { return spectrum_->range_nm(); }
 
  private:
@@ -65,7 +59,7 @@ class PointLight final : public Light {
     return LightSample{spectrum_->sample(lambda) * (scale_ / distance2), d / distance, distance, 1};
   }
   bool is_delta() const override { return true; }
-  double power(float) const override { return luminance(*spectrum_) * double(scale_) * 4 * kPiD; }
+  double power(float) const override { return photometric(*spectrum_) * double(scale_) * 4 * kPiD; }
   Interval range_nm() const override { return spectrum_->range_nm(); }
 
  private:
@@ -96,7 +90,7 @@ class SpotLight final : public Light {
     return LightSample{spectrum_->sample(lambda) * (scale_ * falloff / distance2), d / distance, distance, 1};
   }
   bool is_delta() const override { return true; }
-  double power(float) const override { return luminance(*spectrum_) * double(scale_) * solid_angle(); }
+  double power(float) const override { return photometric(*spectrum_) * double(scale_) * solid_angle(); }
   Interval range_nm() const override { return spectrum_->range_nm(); }
 
  private:
@@ -139,7 +133,7 @@ class DiffuseAreaLight final : public AreaLight {
   }
   bool is_delta() const override { return false; }
   double power(float) const override {
-    return luminance(*spectrum_) * double(scale_) * kPiD * surface_.area() * sides();
+    return photometric(*spectrum_) * double(scale_) * kPiD * surface_.area() * sides();
   }
   Interval range_nm() const override { return spectrum_->range_nm(); }
 

@@ -15,6 +15,16 @@ constexpr Param kOptionParams[] = {
 };
 constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
 
+/// Binding that needs no look-up of anything in the scene.
+class NoResolver final : public ParamResolver {
+  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
+  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
+  std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
+  SpectrumPtr spectrum(const ParsedParam& p, bool) override { none(p.where); }
+  std::filesystem::path file(const std::string&, const Location& w) override { none(w); }
+  [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
+};
+
 /// The value as a scene file would have it, for a parameter of a swap.
 ParsedParam parse_swap_value(const Param& declared, const std::string& text) {
   ParsedParam p{"", std::string(declared.name), {}, {}, {}};
@@ -105,16 +115,6 @@ class SceneBuilder {
   }
 
  private:
-  /// Binding that needs no look-up of anything in the scene.
-  class NoResolver final : public ParamResolver {
-    std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
-    std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
-    std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
-    SpectrumPtr spectrum(const ParsedParam& p, bool) override { none(p.where); }
-    std::filesystem::path file(const std::string&, const Location& w) override { none(w); }
-    [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
-  };
-
   template <class Info, class... Args>
   auto make(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver, const Args&... args) {
     const Info& info = table.get(plugin.name, plugin.where);
@@ -132,10 +132,12 @@ class SceneBuilder {
   }
 
   void build_view(SceneResolver& resolver) {
-    scene_.film_ = make(registry_.films, description_.film, resolver);
+    const FilmSettings film = Scene::film_settings(description_, registry_, overrides_);
     scene_.camera_ = make(registry_.cameras, description_.camera, resolver,
-                          CameraPlacement{description_.camera_from_world.inverse(), scene_.film_.width, scene_.film_.height});
+                          CameraPlacement{description_.camera_from_world.inverse(), film.width, film.height});
     scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, scene_.options_.seed);
+    const int samples = scene_.sampler_->samples_per_pixel();
+    scene_.samples_per_pixel_ = overrides_.quick ? std::max(1, samples / 16) : samples;
     scene_.filter_ = make(registry_.filters, description_.filter, resolver);
     scene_.integrator_ = make(registry_.integrators, description_.integrator, resolver);
   }
@@ -219,6 +221,17 @@ class SceneBuilder {
   ThreadPool& pool_;
   const Log& log_;
 };
+
+FilmSettings Scene::film_settings(const SceneDescription& description, const Registry& registry,
+                                  const SceneOverrides& overrides) {
+  NoResolver resolver;
+  const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
+  FilmSettings film = info.make(Params(info, description.film, resolver));
+  if (overrides.quick)
+    for (int* size : {&film.width, &film.height, &film.crop.x0, &film.crop.x1, &film.crop.y0, &film.crop.y1})
+      *size = (*size + 1) / 2;
+  return film;
+}
 
 Scene::Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides, ThreadPool& pool,
              const Log& log) {

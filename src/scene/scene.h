@@ -24,6 +24,7 @@ struct SceneOverrides {
   std::string wavelengths;  ///< empty: the scene's
   std::optional<uint64_t> seed;
   std::vector<MaterialSwap> swaps;
+  bool quick = false;               ///< half the resolution, a sixteenth of the samples
   std::filesystem::path cache_dir;  ///< empty: no files are kept
 };
 
@@ -36,6 +37,10 @@ struct SceneOptions {
 /// A scene ready to be rendered.
 class Scene final : public World {
  public:
+  /// What the scene says of its image; throws InputError.
+  static FilmSettings film_settings(const SceneDescription& description, const Registry& registry,
+                                    const SceneOverrides& overrides);
+
   /// Throws InputError.
   Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides, ThreadPool& pool,
         const Log& log);
@@ -49,11 +54,12 @@ class Scene final : public World {
 
   const WavelengthStrategy& wavelengths() const { return *wavelengths_; }
   const std::string& wavelengths_name() const { return options_.wavelengths; }
-  const FilmSettings& film() const { return film_; }
   const Camera& camera() const { return *camera_; }
   const Sampler& sampler() const { return *sampler_; }
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
+  const Accelerator& accelerator() const { return *accelerator_; }
+  int samples_per_pixel() const { return samples_per_pixel_; }
   /// Of the random streams; the sampler has it too.
   uint64_t seed() const { return options_.seed; }
 
@@ -62,7 +68,6 @@ class Scene final : public World {
 
   SceneOptions options_;
   std::unique_ptr<WavelengthStrategy> wavelengths_;
-  FilmSettings film_;
   std::unique_ptr<Camera> camera_;
   std::unique_ptr<Sampler> sampler_;
   std::unique_ptr<Filter> filter_;
@@ -73,6 +78,7 @@ class Scene final : public World {
   std::vector<const EnvironmentLight*> environment_;
   std::unique_ptr<Accelerator> accelerator_;
   float radius_ = 0;
+  int samples_per_pixel_ = 0;
 };
 
 }  // namespace frond

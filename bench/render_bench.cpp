@@ -1,0 +1,107 @@
+#include <benchmark/benchmark.h>
+
+#include "cli/commands.h"
+#include "integrators/render.h"
+#include "scene/parser.h"
+#include "scene/scene.h"
+
+namespace frond {
+namespace {
+
+/// Keeps every ray that passes, for a replay without anything around it.
+class RecordingWorld final : public World {
+ public:
+  struct Record {
+    Ray ray;
+    bool shadow;
+  };
+  explicit RecordingWorld(const World& world) : world_(world) {}
+  bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override {
+    records_.push_back({ray, false});
+    return world_.intersect(ray, key, point);
+  }
+  bool occluded(const Ray& ray, uint64_t key) const override {
+    records_.push_back({ray, true});
+    return world_.occluded(ray, key);
+  }
+  std::span<const Light* const> lights() const override { return world_.lights(); }
+  std::span<const EnvironmentLight* const> environment() const override { return world_.environment(); }
+  float radius() const override { return world_.radius(); }
+  const std::vector<Record>& records() const { return records_; }
+
+ private:
+  const World& world_;
+  mutable std::vector<Record> records_;
+};
+
+/// One scene, loaded once for all the benchmarks on it, on one thread.
+struct LoadedScene {
+  explicit LoadedScene(const std::string& file, std::vector<MaterialSwap> swaps = {})
+      : log(true), pool(1), description(parse_scene(std::string(FROND_SOURCE_DIR "/scenes/") + file, log)),
+        registry(builtin_registry()), overrides(make_overrides(std::move(swaps))),
+        scene(description, registry, overrides, pool, log),
+        film_settings(Scene::film_settings(description, registry, overrides)) {}
+
+  static SceneOverrides make_overrides(std::vector<MaterialSwap> swaps) {
+    SceneOverrides o;
+    o.wavelengths = "smpte";
+    o.swaps = std::move(swaps);
+    return o;
+  }
+  RenderJob job(const World& world, uint64_t samples) const {
+    return {world, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(), 0, samples};
+  }
+
+  Log log;
+  ThreadPool pool;
+  SceneDescription description;
+  Registry registry;
+  SceneOverrides overrides;
+  Scene scene;
+  FilmSettings film_settings;
+};
+
+/// CPU time for each camera path, with the rays that it takes.
+void render_paths(benchmark::State& state, const std::string& file, const std::vector<MaterialSwap>& swaps) {
+  const LoadedScene loaded(file, swaps);
+  RenderStatistics total;
+  for (auto _ : state) {
+    Film film(loaded.film_settings);
+    const RenderStatistics s = render(loaded.job(loaded.scene, 16), film, loaded.pool, {});
+    total.paths += s.paths, total.rays += s.rays, total.cpu_seconds += s.cpu_seconds;
+    state.counters["foliar_ratio"] = film.foliar_ratio();
+  }
+  state.counters["us_per_path"] = total.cpu_seconds / double(total.paths) * 1e6;
+  state.counters["rays_per_path"] = double(total.rays) / double(total.paths);
+}
+
+/// The render's own rays, through Embree alone: what share of the render's CPU time is ray tracing.
+void replay_rays(benchmark::State& state, const std::string& file) {
+  const LoadedScene loaded(file);
+  const RecordingWorld recorder(loaded.scene);
+  Film film(loaded.film_settings);
+  render(loaded.job(recorder, 1), film, loaded.pool, {});
+  double render_seconds = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    Film again(loaded.film_settings);
+    render_seconds += render(loaded.job(loaded.scene, 1), again, loaded.pool, {}).cpu_seconds;
+    state.ResumeTiming();
+    RTCRayHit query;
+    for (const auto& [ray, shadow] : recorder.records())
+      benchmark::DoNotOptimize(shadow ? loaded.scene.accelerator().occluded(ray, 0) : loaded.scene.accelerator().closest(ray, 0, query));
+  }
+  const double rays = double(recorder.records().size()) * double(state.iterations());
+  state.counters["ns_per_ray"] = benchmark::Counter(rays * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  // Divided by the loop's own seconds: render seconds for each second of Embree.
+  state.counters["render_over_embree"] = benchmark::Counter(render_seconds, benchmark::Counter::kIsRate);
+}
+
+BENCHMARK_CAPTURE(render_paths, leaves_simplified, "hundred-leaves/leaves.pbrt", {})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(render_paths, leaves_diffusetransmission, "hundred-leaves/leaves.pbrt", {{"leaf", "diffusetransmission", {}}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(render_paths, leaves_abm, "hundred-leaves/leaves.pbrt", {{"leaf", "abm", {}}})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay_rays, walled, "hundred-leaves/walled.pbrt")->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace frond

@@ -1,0 +1,44 @@
+# Sourced by the other scripts: installs what is missing, builds the release preset. Leaves FROND_BUILD and FROND set.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+FROND_BUILD="$root/build/release"
+FROND="$FROND_BUILD/frond"
+
+# Debian's packages that the project needs to build; callers add their own.
+build_packages=(
+  g++ cmake ninja-build pkg-config ccache mold
+  libembree-dev libopenimageio-dev libopencolorio-dev libfmt-dev libgtest-dev libgmock-dev libbenchmark-dev
+  libtbb-dev libcli11-dev nlohmann-json3-dev libxsimd-dev libboost-dev libeigen3-dev
+)
+
+install_missing() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  if ! command -v apt-get >/dev/null; then
+    echo "These packages are missing and there is no apt-get to install them: ${missing[*]}" >&2
+    exit 1
+  fi
+  local as_root=()
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+  echo "Installing ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq
+  DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# build TARGET...: configures once and builds; says nothing while all goes well.
+build() {
+  local options=() log
+  command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  command -v mold >/dev/null && options+=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=mold)
+  log=$(mktemp)
+  echo "Building $*"
+  if ! { cmake -S "$root" --preset release "${options[@]}" && cmake --build "$FROND_BUILD" --target "$@"; } >"$log" 2>&1; then
+    tail -n 60 "$log" >&2
+    rm -f "$log"
+    exit 1
+  fi
+  rm -f "$log"
+}

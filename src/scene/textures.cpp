@@ -1,0 +1,113 @@
+#include "core/error.h"
+#include "core/texture.h"
+#include "scene/registry.h"
+
+namespace frond {
+namespace {
+
+class ScaleFloat final : public FloatTexture {
+ public:
+  explicit ScaleFloat(const Params& p) : tex_(p.float_texture("tex")), scale_(p.float_texture("scale")) {}
+  float evaluate(Vec2 uv) const override { return tex_->evaluate(uv) * scale_->evaluate(uv); }
+  Interval range() const override {
+    const Interval a = tex_->range(), b = scale_->range();
+    const auto corners = {a.min * b.min, a.min * b.max, a.max * b.min, a.max * b.max};
+    return {std::min(corners), std::max(corners)};
+  }
+
+ private:
+  std::shared_ptr<const FloatTexture> tex_, scale_;
+};
+
+class ScaleSpectrum final : public SpectrumTexture {
+ public:
+  explicit ScaleSpectrum(const Params& p) : tex_(p.spectrum_texture("tex")), scale_(p.float_texture("scale")) {
+    if (const Interval r = scale_->range(); r.min < 0 || r.max * double(max_of_tex()) > 1)
+      fail(p.where("scale"), "\"scale\" takes \"tex\", up to {}, out of [0, 1]: it is {} to {}", max_of_tex(), r.min, r.max);
+  }
+  SampledSpectrum evaluate(Vec2 uv, const SampledWavelengths& lambda) const override {
+    return tex_->evaluate(uv, lambda) * scale_->evaluate(uv);
+  }
+  Interval range_nm() const override { return tex_->range_nm(); }
+  float max_value() const override { return max_of_tex() * float(scale_->range().max); }
+
+ private:
+  float max_of_tex() const { return tex_->max_value(); }
+  std::shared_ptr<const SpectrumTexture> tex_;
+  std::shared_ptr<const FloatTexture> scale_;
+};
+
+class MixFloat final : public FloatTexture {
+ public:
+  explicit MixFloat(const Params& p)
+      : a_(p.float_texture("tex1")), b_(p.float_texture("tex2")), amount_(p.float_texture("amount")) {}
+  float evaluate(Vec2 uv) const override {
+    const float t = amount_->evaluate(uv);
+    return (1 - t) * a_->evaluate(uv) + t * b_->evaluate(uv);
+  }
+  Interval range() const override {
+    const Interval a = a_->range(), b = b_->range(), t = amount_->range();
+    const auto at = [](double x, double y, double s) { return (1 - s) * x + s * y; };
+    return {std::min(at(a.min, b.min, t.min), at(a.min, b.min, t.max)), std::max(at(a.max, b.max, t.min), at(a.max, b.max, t.max))};
+  }
+
+ private:
+  std::shared_ptr<const FloatTexture> a_, b_, amount_;
+};
+
+class MixSpectrum final : public SpectrumTexture {
+ public:
+  explicit MixSpectrum(const Params& p)
+      : a_(p.spectrum_texture("tex1")), b_(p.spectrum_texture("tex2")), amount_(p.float_texture("amount")) {
+    if (const Interval r = amount_->range(); r.min < 0 || r.max > 1)
+      fail(p.where("amount"), "\"amount\" is {} to {}, outside 0 to 1", r.min, r.max);
+  }
+  SampledSpectrum evaluate(Vec2 uv, const SampledWavelengths& lambda) const override {
+    const float t = amount_->evaluate(uv);
+    return (1 - t) * a_->evaluate(uv, lambda) + t * b_->evaluate(uv, lambda);
+  }
+  Interval range_nm() const override {
+    const Interval a = a_->range_nm(), b = b_->range_nm();
+    return {std::max(a.min, b.min), std::min(a.max, b.max)};
+  }
+  float max_value() const override { return std::max(a_->max_value(), b_->max_value()); }
+
+ private:
+  std::shared_ptr<const SpectrumTexture> a_, b_;
+  std::shared_ptr<const FloatTexture> amount_;
+};
+
+std::unique_ptr<FloatTexture> make_constant_float(const Params& p) {
+  return std::make_unique<ConstantFloatTexture>(float(p.real("value")));
+}
+
+std::unique_ptr<SpectrumTexture> make_constant_spectrum(const Params& p) {
+  return std::make_unique<ConstantSpectrumTexture>(p.spectrum("value"));
+}
+
+template <class Base, class T>
+std::unique_ptr<Base> make(const Params& p) {
+  return std::make_unique<T>(p);
+}
+
+constexpr Param kFactor{.name = "scale", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "Factor."};
+constexpr Param kAmount{.name = "amount", .kind = ParamKind::float_texture, .default_value = 0.5, .range = {0, 1}, .doc = "Share of the second."};
+constexpr Param kConstantFloat[] = {{.name = "value", .kind = ParamKind::real, .default_value = 1.0, .doc = "Value."}};
+constexpr Param kConstantSpectrum[] = {{.name = "value", .kind = ParamKind::albedo, .default_value = 1.0, .doc = "Value."}};
+constexpr Param kScaleFloat[] = {{.name = "tex", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "What to scale."}, kFactor};
+constexpr Param kScaleSpectrum[] = {{.name = "tex", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "What to scale."}, kFactor};
+constexpr Param kMixFloat[] = {{.name = "tex1", .kind = ParamKind::float_texture, .default_value = 0.0, .doc = "First."},
+                               {.name = "tex2", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "Second."}, kAmount};
+constexpr Param kMixSpectrum[] = {{.name = "tex1", .kind = ParamKind::spectrum_texture, .default_value = 0.0, .doc = "First."},
+                                  {.name = "tex2", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "Second."}, kAmount};
+
+}  // namespace
+
+extern const FloatTextureInfo constant_float_texture{{"float texture", "constant", "The same number everywhere.", "pbrt-v4", kConstantFloat}, make_constant_float};
+extern const FloatTextureInfo scale_float_texture{{"float texture", "scale", "One texture times another.", "pbrt-v4", kScaleFloat}, make<FloatTexture, ScaleFloat>};
+extern const FloatTextureInfo mix_float_texture{{"float texture", "mix", "Between two textures.", "pbrt-v4", kMixFloat}, make<FloatTexture, MixFloat>};
+extern const SpectrumTextureInfo constant_spectrum_texture{{"spectrum texture", "constant", "The same spectrum everywhere.", "pbrt-v4", kConstantSpectrum}, make_constant_spectrum};
+extern const SpectrumTextureInfo scale_spectrum_texture{{"spectrum texture", "scale", "A texture times a number.", "pbrt-v4", kScaleSpectrum}, make<SpectrumTexture, ScaleSpectrum>};
+extern const SpectrumTextureInfo mix_spectrum_texture{{"spectrum texture", "mix", "Between two textures.", "pbrt-v4", kMixSpectrum}, make<SpectrumTexture, MixSpectrum>};
+
+}  // namespace frond

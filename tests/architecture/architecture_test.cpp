@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace frond {
+namespace {
+
+using Layers = std::map<std::string, std::set<std::string>>;
+
+/// The direction of includes, as docs/architecture.md states it: what each layer may include besides itself.
+const Layers kAllowed{
+    {"core", {}},
+    {"spectra", {"core"}},
+    {"leaf", {"core", "spectra"}},
+    {"materials", {"core", "spectra", "leaf"}},
+    {"scene", {"core", "spectra"}},
+    {"integrators", {"core", "spectra", "scene"}},
+    {"instruments", {"core", "spectra"}},
+    {"cli", {"core", "spectra", "leaf", "materials", "scene", "integrators", "instruments"}},
+};
+
+/// "file: includes" lines of every include that `allowed` does not permit.
+std::set<std::string> violations(const std::filesystem::path& src, const Layers& allowed) {
+  static const std::regex include(R"re(^\s*#include\s+"([a-z_]+)/([^"]+)")re");
+  std::set<std::string> found;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(src)) {
+    if (!entry.is_regular_file()) continue;
+    const auto relative = std::filesystem::relative(entry.path(), src);
+    const std::string layer = relative.begin()->string();
+    const auto rule = allowed.find(layer);
+    if (rule == allowed.end()) {
+      found.insert(relative.string() + ": unknown layer");
+      continue;
+    }
+    std::ifstream in(entry.path());
+    std::smatch match;
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_search(line, match, include) && match[1] != layer && !rule->second.contains(match[1]))
+        found.insert(relative.string() + ": " + match[1].str() + "/" + match[2].str());
+  }
+  return found;
+}
+
+TEST(Architecture, IncludesPointOneWay) {
+  EXPECT_EQ(violations(FROND_SOURCE_DIR "/src", kAllowed), std::set<std::string>{});
+}
+
+TEST(Architecture, AnIncludeTheOtherWayIsFound) {
+  Layers stricter = kAllowed;
+  stricter["spectra"].clear();
+  EXPECT_FALSE(violations(FROND_SOURCE_DIR "/src", stricter).empty());
+}
+
+TEST(Architecture, ImageAndColourLibrariesStayInTheFilesThatNeedThem) {
+  static const std::regex heavy(R"re(#include\s+<(OpenImageIO|OpenColorIO|CLI|nlohmann|embree[34])/)re");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(FROND_SOURCE_DIR "/src")) {
+    if (entry.path().extension() != ".h" || entry.path().filename() == "embree.h") continue;
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);) EXPECT_FALSE(std::regex_search(line, heavy)) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace frond

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+
+#include "integrators/registry.h"
+#include "integrators/render.h"
+#include "materials/registry.h"
+#include "scene/parser.h"
+#include "scene/scene.h"
+
+namespace frond::testing {
+
+struct RenderSettings {
+  int samples = 16;
+  uint64_t seed = 1;
+  int threads = 2;
+  std::string wavelengths = "smpte";
+  std::vector<MaterialSwap> swaps = {};
+};
+
+/// Renders a scene that a test spells out.
+inline Film render_text(const std::string& text, const RenderSettings& settings = {}) {
+  const Log quiet(true);
+  ThreadPool pool(settings.threads);
+  const SceneDescription description = parse_scene_text(text, "test.pbrt", quiet);
+  const Registry registry = make_registry(builtin_materials(), builtin_integrators());
+  SceneOverrides overrides;
+  overrides.wavelengths = settings.wavelengths;
+  overrides.seed = settings.seed;
+  overrides.swaps = settings.swaps;
+  const Scene scene(description, registry, overrides, pool, quiet);
+  Film film(Scene::film_settings(description, registry, overrides));
+  render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(), 0,
+          uint64_t(settings.samples)},
+         film, pool, {});
+  return film;
+}
+
+/// A channel's mean over the film and the standard error of that mean, from the pixels' own variances.
+struct ChannelMean {
+  double mean = 0, error = 0;
+};
+
+inline ChannelMean channel_mean(const Film& film, size_t channel) {
+  const Crop& c = film.settings().crop;
+  double sum = 0, variance = 0;
+  for (int y = c.y0; y < c.y1; ++y)
+    for (int x = c.x0; x < c.x1; ++x) sum += film.mean(x, y)[channel], variance += film.covariance(x, y)[channel];
+  const double n = double(c.width()) * double(c.height());
+  return {sum / n, std::sqrt(variance) / n};
+}
+
+}  // namespace frond::testing
