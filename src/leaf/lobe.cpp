@@ -1,0 +1,43 @@
+#include "leaf/lobe.h"
+
+namespace frond::leaf {
+namespace {
+
+/// -d kept / dx up to a constant. The wall's plane cuts the lobe along a great half circle; tilting the axis by d theta
+/// moves that edge, where the lobe is cos^e = (sin theta cos phi)^e: so d kept / d theta goes like sin^e theta, and
+/// kept falls from 1 at theta = 0 to 1/2 at 90 degrees. Here x^2 = 1 - cos theta.
+double edge(double x, double exponent) { return std::pow(x, exponent) * std::pow(2 - x * x, (exponent - 1) / 2); }
+
+/// Gauss-Legendre, five points.
+double integrate_edge(double from, double to, double exponent) {
+  constexpr std::array<double, 3> kPlace{0, 0.5384693101056831, 0.9061798459386640};
+  constexpr std::array<double, 3> kWeight{0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  const double middle = (from + to) / 2, half = (to - from) / 2;
+  double sum = kWeight[0] * edge(middle, exponent);
+  for (size_t i = 1; i < kPlace.size(); ++i)
+    sum += kWeight[i] * (edge(middle - half * kPlace[i], exponent) + edge(middle + half * kPlace[i], exponent));
+  return sum * half;
+}
+
+/// Beyond 7 numbers pow is cheaper.
+int maxima(double exponent) {
+  for (int k = 1; k <= 7; ++k)
+    if (exponent == 2 * k - 1) return k;
+  return 0;
+}
+
+}  // namespace
+
+Lobe::Lobe(double exponent) : exponent_(exponent), maxima_(maxima(exponent)) {
+  constexpr double kStep = 1.0 / kCells;
+  double sum = 0;
+  for (size_t i = 0; i <= kCells; ++i) {
+    const double x = static_cast<double>(i) * kStep;
+    if (i > 0) sum += integrate_edge(x - kStep, x, exponent);
+    nodes_[i] = {sum, edge(x, exponent) * kStep};
+  }
+  const double scale = -0.5 / sum;
+  for (Node& node : nodes_) node = {1 + scale * node.value, scale * node.slope};
+}
+
+}  // namespace frond::leaf

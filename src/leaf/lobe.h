@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+
+namespace frond::leaf {
+
+/// How a rough cell wall spreads light around an ideal direction: density proportional to cos^e of the angle to it
+/// (Lafortune and Willems 1994; eq. 2 of Baranoski and Rokne 1998), cut off at the plane of the wall by drawing again.
+class Lobe {
+ public:
+  /// exponent >= 0; 1 is the cosine lobe.
+  explicit Lobe(double exponent);
+
+  double exponent() const { return exponent_; }
+
+  /// 1/sr at cos_alpha from the axis, before the cut.
+  double density(double cos_alpha) const {
+    return cos_alpha > 0 ? (exponent_ + 1) / (2 * std::numbers::pi) * power(cos_alpha) : 0;
+  }
+
+  /// Share of the lobe on its axis's side of the wall, in [1/2, 1]; cos_axis in [0, 1] is the axis's to the wall's
+  /// normal. What is left after the cut has density() / kept().
+  double kept(double cos_axis) const {
+    const double x = std::sqrt(std::max(0.0, 1 - cos_axis)) * kCells;
+    const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
+    const double t = x - static_cast<double>(cell);
+    const Node &a = nodes_[cell], &b = nodes_[cell + 1];
+    const double rise = b.value - a.value;
+    // Cubic Hermite interpolation; slopes are per cell.
+    return a.value + t * (a.slope + t * (3 * rise - 2 * a.slope - b.slope + t * (a.slope + b.slope - 2 * rise)));
+  }
+
+  /// Cosine to the axis; `uniform` is one uniform number, the stream gives what more is needed.
+  double sample_cos(double uniform, RandomStream& rng) const {
+    if (maxima_ == 0) return std::pow(uniform, 1 / (exponent_ + 1));
+    // The k-th root of a uniform number is distributed like the largest of k of them, which costs less than pow.
+    for (int left = maxima_ - 1; left > 0; left -= 2) {
+      const uint64_t bits = rng.bits();
+      uniform = std::max(uniform, static_cast<double>(bits >> 32) * 0x1p-32);
+      if (left > 1) uniform = std::max(uniform, static_cast<double>(bits & 0xffffffff) * 0x1p-32);
+    }
+    return std::sqrt(uniform);
+  }
+
+ private:
+  double power(double c) const {
+    if (exponent_ == 5) return c * c * (c * c) * c;
+    if (exponent_ == 1) return c;
+    return std::pow(c, exponent_);
+  }
+
+  // At x = sqrt(1 - cos_axis), in equal steps.
+  struct Node {
+    double value, slope;
+  };
+  static constexpr size_t kCells = 256;
+
+  double exponent_;
+  int maxima_;  ///< (e + 1) / 2 for small odd exponents, else 0
+  std::array<Node, kCells + 1> nodes_;
+};
+
+}  // namespace frond::leaf
