@@ -1,0 +1,49 @@
+#include "leaf/constants.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "leaf/tissue.h"
+
+namespace frond::leaf {
+namespace {
+
+TEST(LeafConstants, HoldTheFirstValueBelowTheData) {
+  EXPECT_EQ(constants_at(360).chlorophyll, constants_at(400).chlorophyll);
+  EXPECT_EQ(constants_at(399).n_cuticle, 1.54);
+}
+
+TEST(LeafConstants, AreLinearBetweenNodes) {
+  EXPECT_DOUBLE_EQ(constants_at(405).chlorophyll, (7340 + 6230) / 2.0);
+  EXPECT_DOUBLE_EQ(constants_at(2475).n_antidermal_wall, (1.376 + 1.371) / 2);
+}
+
+TEST(LeafConstants, ReachFromVioletToShortWaveInfrared) {
+  for (double nm = 360; nm <= 2500; nm += 1) {
+    const Constants c = constants_at(nm);
+    for (const double absorption : {c.chlorophyll, c.carotenoids, c.protein, c.cellulose, c.water})
+      ASSERT_TRUE(std::isfinite(absorption) && absorption >= 0) << nm;
+    for (const double n : {c.n_cuticle, c.n_mesophyll, c.n_antidermal_wall}) ASSERT_TRUE(n > 1.3 && n < 1.6) << nm;
+    ASSERT_GE(c.n_cuticle, c.n_mesophyll) << nm;
+    ASSERT_GE(c.n_mesophyll, c.n_antidermal_wall) << nm;
+  }
+}
+
+TEST(LeafConstants, ChlorophyllAbsorbsLeastOfTheVisibleAt550To555) {
+  const double least = constants_at(550).chlorophyll;
+  EXPECT_EQ(constants_at(555).chlorophyll, least);
+  for (double nm = 400; nm <= 680; nm += 5) EXPECT_GE(constants_at(nm).chlorophyll, least) << nm;
+}
+
+TEST(TissueModel, SumsAbsorptionOverWhatTheMesophyllHolds) {
+  const TissueParams& p = find_specimen("soybean")->params;
+  const Constants c = constants_at(455);
+  const double mu =
+      5.1388 * c.chlorophyll + 1.1323 * c.carotenoids + 78.7059 * c.protein + 48.5006 * c.cellulose + c.water;
+  EXPECT_NEAR(absorption_coefficient(p, 455), mu, 1e-9 * mu);
+  EXPECT_NEAR(TissueModel(p).at(455).optical_depth[2], mu * 0.5 * 1.66e-4, 1e-12);
+}
+
+}  // namespace
+}  // namespace frond::leaf
