@@ -111,9 +111,9 @@ class Plant:
 
 
 def transform(placed):
-    """pbrt's Transform: the matrix column by column."""
+    """pbrt's Transform: the matrix column by column, rounded so that it reads the same everywhere (no -0)."""
     columns = [vec.mul(axis, placed.scale) + (0.0,) for axis in placed.frame] + [placed.origin + (1.0,)]
-    return " ".join(f"{x:.6f}" for column in columns for x in column)
+    return " ".join(f"{round(x, 6) + 0.0:.6f}" for column in columns for x in column)
 
 
 def pbrt_text(placed_leaflets, stems_file, mesh_folder):
