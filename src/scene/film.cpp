@@ -98,6 +98,7 @@ std::array<double, 6> Film::covariance(int x, int y) const {
   const double n = double(p.samples);
   for (size_t k = 0; k < 6; ++k)
     v[k] = (p.products[k] - p.sum[kPairs[k][0]] * p.sum[kPairs[k][1]] / n) / (n * (n - 1));
+  for (size_t c = 0; c < 3; ++c) v[c] = std::max(v[c], 0.0);  // rounding, where all samples are alike
   return v;
 }
 

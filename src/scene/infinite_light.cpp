@@ -31,5 +31,19 @@ class ConstantEnvironment final : public EnvironmentLight {
   float scale_;
 };
 
+constexpr Param kInfinite[] = {
+    {.name = "L", .kind = ParamKind::illuminant, .default_value = std::array<double, 3>{1, 1, 1}, .doc = "Radiance; spectra are normalised to luminance 1."},
+    {.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor."},
+    {.name = "illuminance", .kind = ParamKind::real, .unit = "lx", .range = kAtLeastZero, .doc = "Illuminance of a surface under the upper half, in place of the radiance's own."},
+};
+
+std::unique_ptr<Light> make_infinite(const Params& p, const Transform&) {
+  const double scale = p.given("illuminance") ? p.real("scale") * p.real("illuminance") / std::numbers::pi : p.real("scale");
+  return std::make_unique<ConstantEnvironment>(p, float(scale));
+}
+
 }  // namespace
+
+extern const LightInfo infinite_light{{"light", "infinite", "Light from all around: the same everywhere, or an image.", "pbrt-v4", kInfinite}, make_infinite};
+
 }  // namespace frond

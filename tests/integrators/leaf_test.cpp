@@ -34,20 +34,25 @@ Shape "trianglemesh" "point3 P" [-9 -9 0  9 -9 0  9 9 0  -9 9 0] "integer indice
 const std::string kAbm = R"("abm" "string specimen" "soybean")";
 const std::string kWeighted = R"("abm" "string specimen" "soybean" "string mode" "weighted")";
 const std::string kSimplified = R"("leaf_simplified" "string specimen" "soybean" "string tablemethod" "solve")";
-const std::string kAbove = R"(LightSource "distant" "point3 from" [-.3 .2 1] "point3 to" [0 0 0] "spectrum L" "stdillum-D65")";
-const std::string kBelow = R"(LightSource "distant" "point3 from" [-.3 .2 -1] "point3 to" [0 0 0] "spectrum L" "stdillum-D65")";
+const std::string kAbove =
+    R"(LightSource "distant" "point3 from" [-.3 .2 1] "point3 to" [0 0 0] "spectrum L" "stdillum-D65")";
+const std::string kBelow =
+    R"(LightSource "distant" "point3 from" [-.3 .2 -1] "point3 to" [0 0 0] "spectrum L" "stdillum-D65")";
 
 /// Two-sided z-test of two independent means; 5 standard errors: a false alarm in 1.7 million.
 void expect_same(const ChannelMean& a, const ChannelMean& b, const std::string& what) {
-  EXPECT_LT(std::abs(a.mean - b.mean), 5 * std::hypot(a.error, b.error) + 1e-5 * std::abs(a.mean)) << what << ": " << a.mean << " and " << b.mean;
+  EXPECT_LT(std::abs(a.mean - b.mean), 5 * std::hypot(a.error, b.error) + 1e-5 * std::abs(a.mean))
+      << what << ": " << a.mean << " and " << b.mean;
 }
 
 void expect_same(const Film& a, const Film& b, const std::string& what) {
-  for (size_t c = 0; c < 3; ++c) expect_same(channel_mean(a, c), channel_mean(b, c), fmt::format("{}, channel {}", what, c));
+  for (size_t c = 0; c < 3; ++c)
+    expect_same(channel_mean(a, c), channel_mean(b, c), fmt::format("{}, channel {}", what, c));
 }
 
 /// The material's own f cos, channel by channel, averaged over calls with streams of their own.
-std::array<ChannelMean, 3> own_f_cos(const std::string& plugin, std::vector<ParsedParam> params, const Vec3& wo, const Vec3& wi, int calls) {
+std::array<ChannelMean, 3> own_f_cos(const std::string& plugin, std::vector<ParsedParam> params, const Vec3& wo,
+                                     const Vec3& wi, int calls) {
   const Registry registry = make_registry(builtin_materials(), builtin_integrators());
   const auto strategy = testing::make_plugin(registry.wavelengths.get("smpte", {}), {});
   const auto material = testing::make_plugin(registry.materials.get(plugin, {}), std::move(params));
@@ -107,7 +112,8 @@ TEST(FlatLeaf, ReverseOrientationAndAMirrorSwapTheSides) {
     const Film adaxial = render_text(flat_leaf(kAbove, leaf), {.samples = 1000});
     const Film reversed = render_text(flat_leaf(kAbove, leaf, "ReverseOrientation"), {.samples = 1000, .seed = 2});
     const Film mirrored = render_text(flat_leaf(kAbove, leaf, "Scale 1 1 -1"), {.samples = 1000, .seed = 3});
-    const Film both = render_text(flat_leaf(kAbove, leaf, "ReverseOrientation Scale 1 1 -1"), {.samples = 1000, .seed = 4});
+    const Film both =
+        render_text(flat_leaf(kAbove, leaf, "ReverseOrientation Scale 1 1 -1"), {.samples = 1000, .seed = 4});
     const Film turned = render_text(flat_leaf(kAbove, leaf, "Rotate 180 1 0 0"), {.samples = 1000, .seed = 5});
     expect_same(reversed, mirrored, leaf + " reversed, mirrored");
     expect_same(reversed, turned, leaf + " reversed, turned over");

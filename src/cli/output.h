@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "scene/film.h"
+
+namespace frond {
+
+/// Which OpenColorIO display and view a PNG or JPEG goes through; empty: the configuration's defaults.
+struct DisplayChoice {
+  std::string display, view;
+};
+
+struct OutputDetails {
+  std::string film_space;   ///< of the film's channels
+  std::string color_space;  ///< what the scene asks for; empty: the film's own, or linear sRGB for XYZ
+  std::map<std::string, std::string> attributes;
+};
+
+/// Where a render goes. Made before rendering, so that what cannot be written is refused first.
+class ImageOutput {
+ public:
+  /// Throws InputError when the path cannot be written or the display is unknown.
+  ImageOutput(std::string path, DisplayChoice display);
+
+  /// EXR: R G B, the variance of their means and the share of leaf, linear. PNG and JPEG: R G B through the display
+  /// transform. Throws InputError when the image does not reach the disk.
+  void write(const Film& film, const OutputDetails& details) const;
+
+ private:
+  std::string path_;
+  DisplayChoice display_;
+};
+
+}  // namespace frond

@@ -1,0 +1,193 @@
+#include "integrators/render.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "scene/parser.h"
+#include "scene/scene.h"
+
+namespace frond {
+namespace {
+
+struct RenderOptions {
+  std::string scene, output, wavelengths, crop, cache;
+  std::vector<std::string> swaps;
+  DisplayChoice display;
+  int samples = 0, threads = 0;
+  uint64_t seed = 0;
+  bool seed_given = false, quick = false, json = false, quiet = false, no_cache = false;
+};
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  size_t start = 0;
+  for (size_t end; (end = text.find(separator, start)) != std::string::npos; start = end + 1)
+    parts.push_back(text.substr(start, end - start));
+  parts.push_back(text.substr(start));
+  return parts;
+}
+
+/// "leaf=abm" or "leaf=abm,mode=analog".
+MaterialSwap parse_swap(const std::string& text) {
+  const auto pair_of = [&text](const std::string& part) {
+    const size_t equals = part.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == part.size())
+      fail({}, "--swap takes MATERIAL=PLUGIN[,parameter=value...], \"{}\" was given", text);
+    return std::pair(part.substr(0, equals), part.substr(equals + 1));
+  };
+  const auto parts = split(text, ',');
+  const auto [from, to] = pair_of(parts[0]);
+  MaterialSwap swap{from, to, {}};
+  for (size_t i = 1; i < parts.size(); ++i) swap.params.push_back(pair_of(parts[i]));
+  return swap;
+}
+
+/// "x0,x1,y0,y1": pixels where all are whole numbers and one is above 1, fractions of the film otherwise.
+Crop parse_crop(const std::string& text, const FilmSettings& film) {
+  std::array<double, 4> v{};
+  const auto parts = split(text, ',');
+  bool good = parts.size() == 4, whole = true, above_one = false;
+  for (size_t i = 0; good && i < 4; ++i) {
+    char* end = nullptr;
+    v[i] = std::strtod(parts[i].c_str(), &end);
+    good = !parts[i].empty() && *end == '\0' && v[i] >= 0;
+    whole = whole && v[i] == std::floor(v[i]);
+    above_one = above_one || v[i] > 1;
+  }
+  if (!good || (above_one && !whole))
+    fail({}, "--crop takes x0,x1,y0,y1 as fractions of the film or as pixels, \"{}\" was given", text);
+  const double width = above_one ? 1 : film.width, height = above_one ? 1 : film.height;
+  const auto pixel = [](double x, int size) { return std::min(int(std::ceil(x)), size); };
+  const Crop crop{pixel(v[0] * width, film.width), pixel(v[2] * height, film.height), pixel(v[1] * width, film.width),
+                  pixel(v[3] * height, film.height)};
+  if (crop.width() <= 0 || crop.height() <= 0)
+    fail({}, "--crop {} holds no pixel of the {} x {} film", text, film.width, film.height);
+  return crop;
+}
+
+std::filesystem::path cache_directory(const RenderOptions& options) {
+  if (options.no_cache) return {};
+  if (!options.cache.empty()) return options.cache;
+  if (const char* base = std::getenv("XDG_CACHE_HOME"); base && *base) return std::filesystem::path(base) / "frond";
+  if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "frond";
+  return {};
+}
+
+SceneOverrides overrides_of(const RenderOptions& options) {
+  SceneOverrides overrides;
+  overrides.wavelengths = options.wavelengths;
+  if (options.seed_given) overrides.seed = options.seed;
+  for (const std::string& swap : options.swaps) overrides.swaps.push_back(parse_swap(swap));
+  overrides.cache_dir = cache_directory(options);
+  overrides.quick = options.quick;
+  return overrides;
+}
+
+/// One thing that was rendered, for people and for programs.
+struct Report {
+  RenderStatistics statistics;
+  double load_seconds;
+  int samples;
+  double foliar_ratio;
+};
+
+void print_report(const Report& r, const std::string& output, bool json) {
+  const RenderStatistics& s = r.statistics;
+  const double per_path = s.cpu_seconds / double(s.paths) * 1e6, rays_per_path = double(s.rays) / double(s.paths);
+  if (json) {
+    const nlohmann::ordered_json j{{"output", output},
+                                   {"samples_per_pixel", r.samples},
+                                   {"load_seconds", r.load_seconds},
+                                   {"wall_seconds", s.wall_seconds},
+                                   {"cpu_seconds", s.cpu_seconds},
+                                   {"paths", s.paths},
+                                   {"rays", s.rays},
+                                   {"cpu_us_per_path", per_path},
+                                   {"rays_per_path", rays_per_path},
+                                   {"foliar_ratio", r.foliar_ratio}};
+    fmt::print("{}\n", j.dump(2));
+    return;
+  }
+  fmt::print(stderr, "{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), loaded in {:.2f} s\n",
+             output, r.samples, s.wall_seconds, s.cpu_seconds, per_path, rays_per_path, r.load_seconds);
+  fmt::print(stderr, "foliar ratio {:.2f} %\n", 100 * r.foliar_ratio);
+}
+
+void render_scene(const RenderOptions& options, const std::string& command_line) {
+  const auto start = std::chrono::steady_clock::now();
+  const Log log(options.quiet);
+  ThreadPool pool(options.threads);
+  const SceneDescription description = parse_scene(options.scene, log);
+  const Registry registry = builtin_registry();
+  SceneOverrides overrides = overrides_of(options);
+  FilmSettings film_settings = Scene::film_settings(description, registry, overrides);
+  if (!options.crop.empty()) film_settings.crop = parse_crop(options.crop, film_settings);
+  // Refused now, not after an hour.
+  const std::string output = options.output.empty() ? film_settings.filename : options.output;
+  const ImageOutput writer(output, options.display);
+
+  const Scene scene(description, registry, overrides, pool, log);
+  const int samples = options.samples > 0 ? options.samples : scene.samples_per_pixel();
+  const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Film film(film_settings);
+  const RenderJob job{scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(),
+                      scene.seed(), 0, uint64_t(samples)};
+  RenderStatistics statistics;
+  {
+    ProgressLine line(options.quiet);
+    statistics = render(job, film, pool, std::ref(line));
+  }
+  writer.write(film, {.film_space = std::string(scene.wavelengths().film_space()),
+                      .color_space = description.color_space_where.file ? description.color_space : "",
+                      .attributes = {{"frond:version", FROND_VERSION},
+                                     {"frond:seed", std::to_string(scene.seed())},
+                                     {"frond:samples", std::to_string(samples)},
+                                     {"frond:wavelengths", scene.wavelengths_name()},
+                                     {"frond:scene_hash", fmt::format("{:016x}", description.content_hash)},
+                                     {"frond:command", command_line}}});
+  if (!options.quiet || options.json) print_report({statistics, load_seconds, samples, film.foliar_ratio()}, output, options.json);
+}
+
+/// What of the command decides the pixels: threads, paths and what is printed do not belong in a file's header.
+std::string command_line_of(const RenderOptions& o) {
+  std::string line = "frond render " + std::filesystem::path(o.scene).filename().string();
+  if (o.samples > 0) line += fmt::format(" --spp {}", o.samples);
+  if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
+  if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
+  if (!o.crop.empty()) line += " --crop " + o.crop;
+  for (const std::string& swap : o.swaps) line += " --swap " + swap;
+  if (o.quick) line += " --quick";
+  return line;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+  auto options = std::make_shared<RenderOptions>();
+  RenderOptions& o = *options;
+  auto* command = app.add_subcommand("render", "Render a pbrt-v4 scene file.");
+  command->add_option("scene", o.scene, "Scene file.")->required();
+  command->add_option("-o,--output", o.output, "Image: .exr (linear), .png or .jpg (through the display transform).");
+  command->add_option("--spp", o.samples, "Samples per pixel, in place of the scene's.")->check(CLI::PositiveNumber);
+  command->add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")->check(CLI::PositiveNumber);
+  auto* seed = command->add_option("--seed", o.seed, "Seed of all random numbers.");
+  command->add_option("--crop", o.crop, "x0,x1,y0,y1 of what to render, as fractions of the film or in pixels.");
+  command->add_option("--wavelengths", o.wavelengths, "Wavelength strategy: hero, or smpte for the paper's three.");
+  command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model for a material.");
+  command->add_option("--display", o.display.display, "Display of PNG and JPEG output; sRGB by default.");
+  command->add_option("--view", o.display.view, "View of that display.");
+  command->add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.");
+  command->add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
+  command->add_flag("--quick", o.quick, "A first look: half the resolution, a sixteenth of the samples.");
+  command->add_flag("--json", o.json, "Print the statistics as JSON on standard output.");
+  command->add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");
+  command->callback([options, seed] {
+    options->seed_given = seed->count() > 0;
+    render_scene(*options, command_line_of(*options));
+  });
+}
+
+}  // namespace frond

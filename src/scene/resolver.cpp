@@ -1,0 +1,132 @@
+#include "scene/resolver.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "spectra/analytic.h"
+#include "spectra/check_range.h"
+#include "spectra/cie.h"
+#include "spectra/color_space.h"
+#include "spectra/named.h"
+#include "spectra/rgb_upsampling.h"
+#include "spectra/spd_file.h"
+#include "spectra/tabulated.h"
+
+namespace frond {
+namespace {
+
+const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
+
+/// "stdillum-D65", or the name of an .spd file.
+SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneDescription& description) {
+  const auto& words = std::get<std::vector<std::string>>(p.values);
+  if (words.size() != 1) fail(p.value_where, "\"{}\" takes one spectrum, {} names given", p.name, words.size());
+  if (words[0].ends_with(".spd")) return read_spd(description.resolve(words[0], p.value_where), p.value_where);
+  return named_spectrum(words[0], p.value_where);
+}
+
+Triple rgb_of(const ParsedParam& p) {
+  const auto& v = numbers(p);
+  if (v.size() != 3) fail(p.value_where, "\"{}\" takes 3 values as rgb, {} given", p.name, v.size());
+  return {v[0], v[1], v[2]};
+}
+
+SpectrumPtr blackbody_of(const ParsedParam& p) {
+  const auto& v = numbers(p);
+  if (v.size() != 1) fail(p.value_where, "\"{}\" takes one temperature in kelvin, {} values given", p.name, v.size());
+  return std::make_shared<BlackbodySpectrum>(v[0], p.value_where);
+}
+
+/// An emission has luminance 1 before it is scaled; one that nobody sees cannot have that.
+SpectrumPtr normalized(SpectrumPtr s, const ParsedParam& p) {
+  if (s->max_value() > 0 && !(photometric(*s) > 0))
+    fail(p.value_where, "\"{}\" has no luminance between 360 and 830 nm, by which emissions are scaled", p.name);
+  return unit_luminance(std::move(s));
+}
+
+}  // namespace
+
+SceneResolver::SceneResolver(const SceneDescription& description, const Registry& registry, const WavelengthStrategy& wavelengths)
+    : description_(description),
+      registry_(registry),
+      wavelengths_(wavelengths),
+      color_space_(color_space(description.color_space, description.color_space_where)) {}
+
+SceneResolver::~SceneResolver() = default;
+
+template <class Texture, class Info>
+std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, const Location& where, TextureDescription::Value value,
+                                                      const PluginTable<Info>& table, std::map<std::string, std::shared_ptr<const Texture>>& made) {
+  if (const auto it = made.find(name); it != made.end()) return it->second;
+  std::vector<std::string_view> names;
+  for (const TextureDescription& t : description_.textures) {
+    if (t.value != value) continue;
+    names.push_back(t.name);
+    if (t.name != name) continue;
+    const std::string key = std::string(table.kind()) + ' ' + name;
+    if (!in_progress_.insert(key).second) fail(where, "texture \"{}\" refers to itself", name);
+    const Info& info = table.get(t.plugin.name, t.plugin.where);
+    std::shared_ptr<const Texture> result = info.make(Params(info, t.plugin, *this));
+    in_progress_.erase(key);
+    return made[name] = result;
+  }
+  fail(where, "there is no {} \"{}\"{}", table.kind(), name, suggestion(name, names));
+}
+
+std::shared_ptr<const FloatTexture> SceneResolver::float_texture(const std::string& name, const Location& where) {
+  return texture(name, where, TextureDescription::Value::real, registry_.float_textures, float_textures_);
+}
+
+std::shared_ptr<const SpectrumTexture> SceneResolver::spectrum_texture(const std::string& name, const Location& where) {
+  return texture(name, where, TextureDescription::Value::spectrum, registry_.spectrum_textures, spectrum_textures_);
+}
+
+std::shared_ptr<Material> SceneResolver::material(const std::string& name, const Location& where) {
+  std::vector<std::string_view> names;
+  for (size_t i = 0; i < description_.materials.size(); ++i) {
+    const std::string& candidate = description_.materials[i].name;
+    if (candidate.empty()) continue;
+    if (candidate != name) {
+      names.push_back(candidate);
+      continue;
+    }
+    if (in_progress_.contains("material " + name)) fail(where, "material \"{}\" refers to itself", name);
+    return material(i);
+  }
+  fail(where, "there is no material \"{}\"{}", name, suggestion(name, names));
+}
+
+std::shared_ptr<Material> SceneResolver::material(size_t index) {
+  if (const auto it = materials_.find(index); it != materials_.end()) return it->second;
+  const MaterialDescription& m = description_.materials[index];
+  const std::string key = "material " + m.name;
+  in_progress_.insert(key);
+  const MaterialInfo& info = registry_.materials.get(m.plugin.name, m.plugin.where);
+  std::shared_ptr<Material> result = info.make(Params(info, m.plugin, *this));
+  in_progress_.erase(key);
+  return materials_[index] = result;
+}
+
+std::vector<std::shared_ptr<Material>> SceneResolver::materials() const {
+  std::vector<std::shared_ptr<Material>> result;
+  for (const auto& [index, material] : materials_) result.push_back(material);
+  return result;
+}
+
+SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, bool emission) {
+  SpectrumPtr s;
+  if (p.type == "rgb") {
+    s = emission ? rgb_illuminant(color_space_, rgb_of(p), p.value_where) : rgb_albedo(color_space_, rgb_of(p), p.value_where);
+  } else {
+    if (p.type == "blackbody") s = blackbody_of(p);
+    else s = std::holds_alternative<std::vector<double>>(p.values) ? make_tabulated(numbers(p), p.value_where) : spectrum_of_name(p, description_);
+    if (emission) s = normalized(s, p);
+  }
+  check_range(*s, wavelengths_, p.value_where, p.name);
+  if (!emission && s->max_value() > 1) fail(p.value_where, "\"{}\" goes up to {}, outside its range 0 to 1", p.name, s->max_value());
+  return s;
+}
+
+std::filesystem::path SceneResolver::file(const std::string& name, const Location& where) { return description_.resolve(name, where); }
+
+}  // namespace frond
