@@ -173,15 +173,15 @@ void DescriptionBuilder::make_named_material(const std::string& name, ParsedPlug
   scene_.materials[entry.index].plugin = std::move(plugin);
 }
 
-void DescriptionBuilder::texture(const std::string& name, const std::string& value, const Location& value_where,
-                                 ParsedPlugin plugin) {
+void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, ParsedPlugin plugin) {
   using Value = TextureDescription::Value;
-  if (value != "float" && value != "spectrum")
-    fail(value_where, "unknown kind of texture \"{}\"{}", value, suggestion(value, {"float", "spectrum"}));
-  const Value kind = value == "float" ? Value::real : Value::spectrum;
-  const auto [known, is_new] = textures_.emplace(std::pair(kind, name), plugin.where);
-  if (!is_new) fail(plugin.where, "{} texture \"{}\" is defined again; first at {}", value, name, place(known->second));
-  scene_.textures.push_back({name, kind, with_defaults(std::move(plugin), Target::texture)});
+  if (value.text != "float" && value.text != "spectrum")
+    fail(value.where, "unknown kind of texture \"{}\"{}", value.text, suggestion(value.text, {"float", "spectrum"}));
+  const Value kind = value.text == "float" ? Value::real : Value::spectrum;
+  const auto [known, is_new] = textures_.emplace(std::pair(kind, name.text), name.where);
+  if (!is_new)
+    fail(name.where, "{} texture \"{}\" is defined again; first at {}", value.text, name.text, place(known->second));
+  scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture)});
 }
 
 void DescriptionBuilder::area_light(ParsedPlugin plugin) {

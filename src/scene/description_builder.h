@@ -9,6 +9,12 @@
 
 namespace frond {
 
+/// A quoted word of the scene and its place.
+struct Quoted {
+  std::string text;
+  Location where;
+};
+
 /// What the directives of a scene file mean, once they are read: keeps the graphics state (transform, material, ...)
 /// and writes down what comes under it. Every method throws InputError where the directive makes no sense.
 class DescriptionBuilder {
@@ -43,7 +49,7 @@ class DescriptionBuilder {
 
   // Things of the scene
   void make_named_material(const std::string& name, ParsedPlugin plugin);
-  void texture(const std::string& name, const std::string& value, const Location& value_where, ParsedPlugin plugin);
+  void texture(const Quoted& name, const Quoted& value, ParsedPlugin plugin);
   void shape(ParsedPlugin plugin);
   void light(ParsedPlugin plugin);
   void object_begin(const std::string& name, const Location& where);

@@ -84,7 +84,7 @@ Transform matrix(Directive& d) {
 
 void texture(Directive d) {
   const Token name = d.quoted(), value = d.quoted();
-  d.scene().texture(d.text(name), d.text(value), d.place(value), d.plugin());
+  d.scene().texture({d.text(name), d.place(name)}, {d.text(value), d.place(value)}, d.plugin());
 }
 
 void make_named_material(Directive d) {

@@ -55,9 +55,11 @@ std::string_view needed(Values values) {
 }
 
 /// The type that the first value of an untyped option shows.
-std::string_view type_from(const Token& value) {
+std::string_view type_from(const Token& value, std::string_view name, const Location& where) {
   if (value.kind == Kind::string) return "string";
   if (value.text == "true" || value.text == "false") return "bool";
+  if (!parse_number(value.text))
+    fail(where, "\"{}\" takes a number, true, false or a quoted string, {} was given", name, value.shown());
   return value.text.find_first_of(".eE") == value.text.npos ? "integer" : "float";
 }
 
@@ -155,8 +157,8 @@ ParsedParam ParameterReader::read_one(Tokenizer& tokens, bool type_is_optional) 
   const Token first = tokens.next();
   if (first.kind == Kind::end) fail(p.where, "parameter \"{}\" has no value", name);
   const Token& value = first.kind == Kind::open_bracket ? tokens.peek() : first;
-  p.type = type.empty() ? type_from(value) : type;
   p.value_where = tokens.where(value);
+  p.type = type.empty() ? type_from(value, name, p.value_where) : type;
   read_values(tokens, first, value.kind == Kind::string, p);
   return p;
 }
@@ -177,7 +179,8 @@ std::vector<double> ParameterReader::read_numbers(Tokenizer& tokens, const Token
   numbers_.clear();
   for_each_value(tokens, first, [&](const Token& value) {
     const auto number = number_of(tokens, value);
-    if (!number || (are_integers && !is_int(*number))) fail_value(tokens.where(value), p, numbers_.empty() || are_integers ? kind : Values::numbers, value);
+    if (!number || (are_integers && !is_int(*number)))
+      fail_value(tokens.where(value), p, numbers_.empty() || are_integers ? kind : Values::numbers, value);
     numbers_.push_back(*number);
   });
   return numbers_;

@@ -2,162 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "scene/file_bytes.h"
 #include "scene/ply_header.h"
-#include "scene/tokenizer.h"
+#include "scene/ply_source.h"
 
 namespace frond {
 namespace {
-
-constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-
-/// Values of a binary body, one after the other.
-class BinarySource {
- public:
-  BinarySource(std::string_view bytes, const PlyHeader& header, std::shared_ptr<const std::string> file)
-      : bytes_(bytes),
-        at_(header.bytes),
-        value_at_(at_),
-        swap_((header.format == PlyFormat::little_endian) != (std::endian::native == std::endian::little)),
-        file_(std::move(file)) {}
-
-  /// Least bytes that one value takes.
-  static size_t least_bytes(PlyType type) { return size_of(type); }
-  size_t bytes_left() const { return bytes_.size() - at_; }
-  bool at_end() {
-    value_at_ = at_;
-    return std::all_of(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), bytes_.end(), is_blank);
-  }
-
-  bool start_row() { return true; }
-  bool end_row() { return true; }
-  /// False when there is no value; `problem` says why.
-  bool next(PlyType type, double& value) {
-    value_at_ = at_;
-    if (size_of(type) > bytes_left()) return false;
-    value = value_of(type);
-    at_ += size_of(type);
-    return true;
-  }
-  bool skip(PlyType type, size_t count) {
-    value_at_ = at_;
-    if (count > bytes_left() / size_of(type)) return false;
-    at_ += count * size_of(type);
-    return true;
-  }
-  std::string problem() const { return "the file ends too early"; }
-  /// At the last value asked for.
-  [[noreturn]] void fail_here(const std::string& message) const {
-    fail({}, "{}: byte {}: {}", *file_, value_at_, message);
-  }
-
- private:
-  template <class T>
-  double load() const {
-    std::array<char, sizeof(T)> raw;
-    std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
-    if (swap_) std::reverse(raw.begin(), raw.end());
-    return static_cast<double>(std::bit_cast<T>(raw));
-  }
-  double value_of(PlyType type) const {
-    switch (type) {
-      case PlyType::int8:
-        return load<int8_t>();
-      case PlyType::uint8:
-        return load<uint8_t>();
-      case PlyType::int16:
-        return load<int16_t>();
-      case PlyType::uint16:
-        return load<uint16_t>();
-      case PlyType::int32:
-        return load<int32_t>();
-      case PlyType::uint32:
-        return load<uint32_t>();
-      case PlyType::float32:
-        return load<float>();
-      case PlyType::float64:
-        return load<double>();
-    }
-    return 0;
-  }
-
-  std::string_view bytes_;
-  size_t at_, value_at_;
-  bool swap_;
-  std::shared_ptr<const std::string> file_;
-};
-
-/// Values of an ASCII body: a row of an element is a line.
-class AsciiSource {
- public:
-  AsciiSource(std::string_view bytes, const PlyHeader& header, std::shared_ptr<const std::string> file)
-      : bytes_(bytes), at_(header.bytes), line_start_(at_), line_(header.lines + 1), file_(std::move(file)) {}
-
-  static size_t least_bytes(PlyType) { return 2; }  // a digit and what parts it from the next
-  size_t bytes_left() const { return bytes_.size() - at_ + 1; }
-  bool at_end() {
-    skip_empty_lines();
-    return !find_word();
-  }
-
-  bool start_row() {
-    skip_empty_lines();
-    return find_word() || refuse("the file ends too early");
-  }
-  bool end_row() {
-    if (find_word()) return refuse("the row has more values than the element has properties");
-    return true;
-  }
-  bool next(PlyType, double& value) {
-    if (!find_word()) return refuse(at_ == bytes_.size() ? "the file ends too early" : "the row ends too early");
-    const auto number = parse_number(word_);
-    if (!number)
-      return refuse(
-          fmt::format("a number is needed, {} was given", Token{.kind = Token::Kind::word, .text = word_}.shown()));
-    value = *number;
-    at_ += word_.size();
-    return true;
-  }
-  bool skip(PlyType type, size_t count) {
-    for (double value; count > 0; --count)
-      if (!next(type, value)) return false;
-    return true;
-  }
-  const std::string& problem() const { return problem_; }
-  [[noreturn]] void fail_here(const std::string& message) const {
-    fail({file_, word_line_, static_cast<int>(word_start_ - line_start_) + 1}, "{}", message);
-  }
-
- private:
-  bool refuse(std::string problem) {
-    problem_ = std::move(problem);
-    return false;
-  }
-  void skip_empty_lines() {
-    for (; at_ < bytes_.size() && is_blank(bytes_[at_]); ++at_)
-      if (bytes_[at_] == '\n') ++line_, line_start_ = at_ + 1;
-  }
-  /// The next word on this line, without taking it.
-  bool find_word() {
-    while (at_ < bytes_.size() && bytes_[at_] != '\n' && is_blank(bytes_[at_])) ++at_;
-    size_t end = at_;
-    while (end < bytes_.size() && !is_blank(bytes_[end])) ++end;
-    word_ = bytes_.substr(at_, end - at_);
-    word_start_ = at_;
-    word_line_ = line_;
-    return !word_.empty();
-  }
-
-  std::string_view bytes_, word_;
-  size_t at_, line_start_, word_start_ = 0;
-  int line_, word_line_ = 0;
-  std::shared_ptr<const std::string> file_;
-  std::string problem_;
-};
 
 /// Where a vertex property goes: x y z, nx ny nz, u v; or nowhere.
 constexpr size_t kSlots = 8, kNoSlot = kSlots;
@@ -209,11 +61,24 @@ const PlyElement& element_called(const PlyHeader& header, std::string_view name,
   fail(end, "the header declares no element \"{}\"", name);
 }
 
+/// Where the mesh is among the file's elements; checked before any of the body is read.
+struct MeshLayout {
+  uint64_t vertices;  ///< how many the header declares
+  VertexLayout vertex;
+  size_t indices;  ///< property of a face
+
+  MeshLayout(const PlyElement& vertex_element, const PlyElement& face_element)
+      : vertices(vertex_element.count), vertex(vertex_element), indices(index_property(face_element)) {
+    if (vertices > UINT32_MAX) fail(vertex_element.where, "{} vertices are more than indices can tell", vertices);
+    if (face_element.count == 0) fail(face_element.where, "the mesh has no faces");
+  }
+};
+
 template <class Source>
 class BodyReader {
  public:
-  BodyReader(Source& source, const PlyHeader& header, TriangleMesh& mesh, uint64_t vertices)
-      : source_(source), header_(header), mesh_(mesh), vertices_(vertices) {}
+  BodyReader(Source& source, const PlyHeader& header, const MeshLayout& layout, TriangleMesh& mesh)
+      : source_(source), header_(header), layout_(layout), mesh_(mesh) {}
 
   void read() {
     for (const PlyElement& element : header_.elements) {
@@ -237,7 +102,7 @@ class BodyReader {
     size_t least = 0;
     for (const PlyProperty& p : element.properties) least += Source::least_bytes(p.count_type.value_or(p.type));
     if (element.count > 0 && least == 0) fail(element.where, "element \"{}\" has no properties", element.name);
-    if (element.count > 0 && element.count > source_.bytes_left() / least)
+    if (element.count > 0 && element.count > (source_.bytes_left() + Source::kMissingEnd) / least)
       fail(element.where, "element \"{}\" has {} rows of at least {} bytes, but {} bytes are left in the file",
            element.name, element.count, least, source_.bytes_left());
   }
@@ -253,7 +118,7 @@ class BodyReader {
   }
 
   void read_vertices() {
-    const VertexLayout layout(*element_);
+    const VertexLayout& layout = layout_.vertex;
     const size_t count = static_cast<size_t>(element_->count);
     mesh_.p.reserve(count);
     if (layout.has_normals) mesh_.n.reserve(count);
@@ -274,7 +139,7 @@ class BodyReader {
   }
 
   void read_faces() {
-    const size_t indices = index_property(*element_);
+    const size_t indices = layout_.indices;
     const size_t least = 3 * Source::least_bytes(element_->properties[indices].type);
     mesh_.triangles.reserve(std::min(static_cast<size_t>(element_->count), source_.bytes_left() / least));
     for_each_row([&](const PlyProperty& p, size_t i) { i == indices ? read_face(p) : skip(p); }, [] {});
@@ -292,8 +157,8 @@ class BodyReader {
 
   uint32_t index(PlyType type) {
     const double value = number(type);
-    if (!(value >= 0 && value < static_cast<double>(vertices_)) || value != std::floor(value))
-      fail_row(fmt::format("index {} is out of range: there are {} vertices", value, vertices_));
+    if (!(value >= 0 && value < static_cast<double>(layout_.vertices)) || value != std::floor(value))
+      fail_row(fmt::format("index {} is out of range: there are {} vertices", value, layout_.vertices));
     return static_cast<uint32_t>(value);
   }
 
@@ -320,8 +185,8 @@ class BodyReader {
 
   Source& source_;
   const PlyHeader& header_;
+  const MeshLayout& layout_;
   TriangleMesh& mesh_;
-  uint64_t vertices_;
   const PlyElement* element_ = nullptr;
   uint64_t row_ = 0;
 };
@@ -332,16 +197,13 @@ TriangleMesh read_ply_text(std::string_view bytes, const std::string& name) {
   const auto file = std::make_shared<const std::string>(name);
   const PlyHeader header = read_ply_header(bytes, file);
   const Location end{file, header.lines, 1};
-  const PlyElement& vertices = element_called(header, "vertex", end);
-  const PlyElement& faces = element_called(header, "face", end);
-  if (vertices.count > UINT32_MAX) fail(vertices.where, "{} vertices are more than indices can tell", vertices.count);
-  if (faces.count == 0) fail(faces.where, "the mesh has no faces");
+  const MeshLayout layout(element_called(header, "vertex", end), element_called(header, "face", end));
   TriangleMesh mesh;
-  const auto read_from = [&](auto source) { BodyReader(source, header, mesh, vertices.count).read(); };
+  const auto read_from = [&](auto source) { BodyReader(source, header, layout, mesh).read(); };
   if (header.format == PlyFormat::ascii)
-    read_from(AsciiSource(bytes, header, file));
+    read_from(ply::AsciiSource(bytes, header, file));
   else
-    read_from(BinarySource(bytes, header, file));
+    read_from(ply::BinarySource(bytes, header, file));
   return mesh;
 }
 
