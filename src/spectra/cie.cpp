@@ -158,7 +158,8 @@ SpectrumPtr d65() {
 }
 
 SpectrumPtr unit_d65() {
-  static const SpectrumPtr spectrum = unit_luminance(d65());
+  static const SpectrumPtr spectrum = std::make_shared<DenseSpectrum>(
+      sample_densely(*unit_luminance(d65()), int(kCieRange_nm.min), int(kCieRange_nm.max)));
   return spectrum;
 }
 

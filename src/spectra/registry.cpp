@@ -1,0 +1,15 @@
+#include "spectra/registry.h"
+
+#include <array>
+
+namespace frond {
+
+extern const WavelengthsInfo smpte_wavelengths;
+extern const WavelengthsInfo hero_wavelengths;
+
+std::span<const WavelengthsInfo* const> builtin_wavelengths() {
+  static constexpr std::array kAll{&smpte_wavelengths, &hero_wavelengths};
+  return kAll;
+}
+
+}  // namespace frond
