@@ -97,11 +97,11 @@ void replay_rays(benchmark::State& state, const std::string& file) {
   state.counters["render_over_embree"] = benchmark::Counter(render_seconds, benchmark::Counter::kIsRate);
 }
 
-BENCHMARK_CAPTURE(render_paths, leaves_simplified, "hundred-leaves/leaves.pbrt", {})->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(render_paths, leaves_diffusetransmission, "hundred-leaves/leaves.pbrt", {{"leaf", "diffusetransmission", {}}})
+BENCHMARK_CAPTURE(render_paths, leaves_simplified, "hundred-leaves/scene.pbrt", {})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(render_paths, leaves_diffusetransmission, "hundred-leaves/scene.pbrt", {{"leaf", "diffusetransmission", {}}})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(render_paths, leaves_abm, "hundred-leaves/leaves.pbrt", {{"leaf", "abm", {}}})->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(replay_rays, walled, "hundred-leaves/walled.pbrt")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(render_paths, leaves_abm, "hundred-leaves/scene.pbrt", {{"leaf", "abm", {}}})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay_rays, closed, "hundred-leaves/closed.pbrt")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace frond

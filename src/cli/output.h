@@ -4,6 +4,8 @@
 #include <string>
 
 #include "scene/film.h"
+#include "scene/image_file.h"
+#include "spectra/color_management.h"
 
 namespace frond {
 
@@ -14,9 +16,15 @@ struct DisplayChoice {
 
 struct OutputDetails {
   std::string film_space;   ///< of the film's channels
-  std::string color_space;  ///< what the scene asks for; empty: the film's own, or linear sRGB for XYZ
+  std::string color_space;  ///< what the scene asks for, by linear name; empty: the film's own, linear sRGB for XYZ
   std::map<std::string, std::string> attributes;
 };
+
+bool is_exr(const std::string& path);
+
+/// R, G and B of an image that is linear in `space`, through a display transform, as PNG or JPEG.
+void write_display_image(const std::string& path, const Image& image, std::string_view space, const ColorManager& colors,
+                         const DisplayChoice& choice, const std::map<std::string, std::string>& text);
 
 /// Where a render goes. Made before rendering, so that what cannot be written is refused first.
 class ImageOutput {
@@ -31,6 +39,7 @@ class ImageOutput {
  private:
   std::string path_;
   DisplayChoice display_;
+  ColorManager colors_;
 };
 
 }  // namespace frond

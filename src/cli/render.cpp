@@ -8,6 +8,7 @@
 #include "cli/progress.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
+#include "spectra/color_space.h"
 
 namespace frond {
 namespace {
@@ -116,6 +117,12 @@ void print_report(const Report& r, const std::string& output, bool json) {
   fmt::print(stderr, "foliar ratio {:.2f} %\n", 100 * r.foliar_ratio);
 }
 
+/// A ColorSpace directive decides the image's space too; without one the wavelength strategy's own serves.
+std::string output_space(const SceneDescription& description) {
+  if (!description.color_space_where.file) return {};
+  return std::string(color_space(description.color_space, description.color_space_where).linear_name);
+}
+
 void render_scene(const RenderOptions& options, const std::string& command_line) {
   const auto start = std::chrono::steady_clock::now();
   const Log log(options.quiet);
@@ -141,7 +148,7 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
     statistics = render(job, film, pool, std::ref(line));
   }
   writer.write(film, {.film_space = std::string(scene.wavelengths().film_space()),
-                      .color_space = description.color_space_where.file ? description.color_space : "",
+                      .color_space = output_space(description),
                       .attributes = {{"frond:version", FROND_VERSION},
                                      {"frond:seed", std::to_string(scene.seed())},
                                      {"frond:samples", std::to_string(samples)},

@@ -131,10 +131,12 @@ Accelerator::Accelerator(std::vector<Primitive> top, std::vector<std::vector<Pri
   if (!device_) fail({}, "Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
   for (const auto& group : groups_) {
     group_scenes_.emplace_back(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(group_scenes_.back().get(), RTC_SCENE_FLAG_ROBUST);
     attach(group_scenes_.back().get(), group);
     rtcCommitScene(group_scenes_.back().get());
   }
   scene_.reset(rtcNewScene(device_.get()));
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   attach(scene_.get(), top_);
   attach(scene_.get(), instances);
   rtcCommitScene(scene_.get());

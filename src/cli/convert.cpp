@@ -1,0 +1,48 @@
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "cli/linear_image.h"
+#include "cli/output.h"
+
+namespace frond {
+namespace {
+
+struct ConvertOptions {
+  std::vector<std::string> inputs;
+  std::string output;
+  DisplayChoice display;
+  double exposure = 0;
+};
+
+void convert(const ConvertOptions& options) {
+  check_writable(options.output);
+  const ColorManager colors;
+  LinearImage mean = read_linear(options.inputs[0]);
+  for (size_t i = 1; i < options.inputs.size(); ++i) {
+    const LinearImage next = read_linear(options.inputs[i]);
+    check_same_size(mean, next);
+    if (next.space != mean.space) fail({}, "{} is in {}, {} in {}: only images of one colour space are averaged", mean.path, mean.space, next.path, next.space);
+    for (size_t k = 0; k < mean.image.pixels.size(); ++k) mean.image.pixels[k] += next.image.pixels[k];
+  }
+  const float scale = float(std::exp2(options.exposure) / double(options.inputs.size()));
+  for (float& v : mean.image.pixels) v *= scale;
+  if (is_exr(options.output))
+    write_image(options.output, mean.image, {mean.space, {{"frond:version", FROND_VERSION}}});
+  else
+    write_display_image(options.output, mean.image, mean.space, colors, options.display, {});
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& app) {
+  auto* command = app.add_subcommand("convert", "Average linear images and show them through a display transform.");
+  auto o = std::make_shared<ConvertOptions>();
+  command->add_option("images", o->inputs, "EXR files of one size and colour space.")->required();
+  command->add_option("-o,--output", o->output, "Image: .png, .jpg or .exr.")->required();
+  command->add_option("--exposure", o->exposure, "Stops.");
+  command->add_option("--display", o->display.display, "Display of PNG and JPEG output; sRGB by default.");
+  command->add_option("--view", o->display.view, "View of that display.");
+  command->callback([o] { convert(*o); });
+}
+
+}  // namespace frond

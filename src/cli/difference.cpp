@@ -1,0 +1,125 @@
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/linear_image.h"
+#include "cli/output.h"
+#include "instruments/image_error.h"
+
+namespace frond {
+namespace {
+
+constexpr std::string_view kSpace = "linear SMPTE-C";
+constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
+
+struct DifferenceOptions {
+  std::vector<std::string> images;  ///< A1 A2 B1 B2
+  std::string output;
+  double scale = 0.1;
+  bool json = false;
+};
+
+/// Luminance of SMPTE-C (white D65 at 0.3127, 0.3290).
+float luminance(const Image& image, int x, int y) {
+  return 0.2124f * image.at(x, y, 0) + 0.7011f * image.at(x, y, 1) + 0.0866f * image.at(x, y, 2);
+}
+
+std::vector<float> channel_of(const Image& image, size_t channel) {
+  std::vector<float> values;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) values.push_back(image.at(x, y, channel));
+  return values;
+}
+
+/// Signed difference in false colour: blue where `b` is brighter, red where `a` is, white where they agree. The ends are
+/// told apart by those who see no red or green as well.
+std::array<float, 3> false_color(float t) {
+  t = std::clamp(t, -1.f, 1.f);
+  const std::array<float, 3> blue{0.13f, 0.40f, 0.67f}, white{0.97f, 0.97f, 0.97f}, red{0.70f, 0.09f, 0.17f};
+  const auto& end = t < 0 ? blue : red;
+  std::array<float, 3> c{};
+  for (size_t k = 0; k < 3; ++k) c[k] = white[k] + (end[k] - white[k]) * std::abs(t);
+  return c;
+}
+
+void write_difference(const std::string& path, const std::vector<LinearImage>& halves, double scale) {
+  const Image& size = halves[0].image;
+  Image picture(size.width, size.height, {"R", "G", "B"});
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const auto at = [&](size_t i) { return luminance(halves[i].image, x, y); };
+      const auto color = false_color((at(0) + at(1) - at(2) - at(3)) / 2 / float(scale));
+      for (size_t c = 0; c < 3; ++c) picture.at(x, y, c) = color[c];
+    }
+  write_image(path, picture, {"", {{"frond:difference_scale", fmt::format("{}", scale)}}});
+}
+
+std::vector<LinearImage> read_halves(const std::vector<std::string>& paths) {
+  const ColorManager colors;
+  std::vector<LinearImage> halves;
+  for (const std::string& path : paths) {
+    halves.push_back(read_linear(path));
+    check_same_size(halves[0], halves.back());
+    colors.convert(halves.back().image.pixels, halves.back().space, kSpace);
+  }
+  return halves;
+}
+
+nlohmann::ordered_json errors_of(const std::vector<LinearImage>& halves, std::span<const float> use) {
+  nlohmann::ordered_json j;
+  for (size_t c = 0; c < 3; ++c) {
+    std::array<std::vector<float>, 4> v;
+    for (size_t i = 0; i < 4; ++i) v[i] = channel_of(halves[i].image, c);
+    const ImageError e = image_error(v[0], v[1], v[2], v[3], use);
+    const auto put = [&](const char* name, double value) { j[fmt::format("{}_{}", name, kChannels[c])] = value; };
+    put("rms", e.rms), put("rms_clipped", e.rms_clipped), put("noise", e.noise), put("bias", e.bias());
+    put("bias_upper", e.bias_upper()), put("mean_difference", e.mean_difference);
+  }
+  return j;
+}
+
+void print_text(const nlohmann::ordered_json& j) {
+  fmt::print("{:<18} {:>9} {:>9} {:>9}\n", "", "red", "green", "blue");
+  const auto row = [&](const char* title, const char* key) {
+    fmt::print("{:<18}", title);
+    for (const char* channel : kChannels) fmt::print(" {:9.5f}", j[fmt::format("{}_{}", key, channel)].get<double>());
+    fmt::print("\n");
+  };
+  row("RMS", "rms"), row("RMS, clipped", "rms_clipped"), row("noise", "noise"), row("bias", "bias");
+  row("bias, upper 95 %", "bias_upper"), row("mean difference", "mean_difference");
+}
+
+void difference(const DifferenceOptions& options) {
+  if (!options.output.empty()) {
+    check_writable(options.output);
+    if (is_exr(options.output)) fail({}, "{}: a difference is a picture in false colour: name a .png or .jpg", options.output);
+  }
+  const auto halves = read_halves(options.images);
+  if (!options.output.empty()) write_difference(options.output, halves, options.scale);
+  nlohmann::ordered_json j = errors_of(halves, {});
+  const bool knows_leaves = !halves[0].leaf.empty();
+  if (knows_leaves) j["leaf_pixels"] = errors_of(halves, halves[0].leaf);
+  if (options.json) {
+    fmt::print("{}\n", j.dump(2));
+    return;
+  }
+  fmt::print("All pixels, linear SMPTE-C\n");
+  print_text(j);
+  if (!knows_leaves) return;
+  fmt::print("\nLeaf pixels\n");
+  print_text(j["leaf_pixels"]);
+}
+
+}  // namespace
+
+void add_difference_command(CLI::App& app) {
+  auto* command = app.add_subcommand("difference", "RMS error between two renders, with noise and bias told apart.");
+  auto o = std::make_shared<DifferenceOptions>();
+  command->add_option("images", o->images, "A1 A2 B1 B2: two halves of each render, with seeds of their own.")->required()->expected(4);
+  command->add_option("-o,--output", o->output, "Picture of the signed difference in luminance: red where A is brighter.");
+  command->add_option("--scale", o->scale, "Difference at full colour; 0.1 by default.")->check(CLI::PositiveNumber);
+  command->add_flag("--json", o->json, "Print JSON.");
+  command->callback([o] { difference(*o); });
+}
+
+}  // namespace frond

@@ -1,0 +1,30 @@
+#include "cli/linear_image.h"
+
+namespace frond {
+
+LinearImage read_linear(const std::string& path) {
+  const ImageFile file = read_image(path, {});
+  if (file.eight_bit) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
+  if (file.header.color_space.empty())
+    fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
+  LinearImage result{path, file.header.color_space, Image(file.image.width, file.image.height, {"R", "G", "B"}), {}};
+  const auto leaf = file.image.channel("leaf");
+  for (int y = 0; y < file.image.height; ++y)
+    for (int x = 0; x < file.image.width; ++x) {
+      for (size_t c = 0; c < 3; ++c) {
+        const auto channel = file.image.channel(result.image.channels[c]);
+        if (!channel) fail({}, "{} has no channel {}", path, result.image.channels[c]);
+        result.image.at(x, y, c) = file.image.at(x, y, *channel);
+      }
+      if (leaf) result.leaf.push_back(file.image.at(x, y, *leaf));
+    }
+  return result;
+}
+
+void check_same_size(const LinearImage& a, const LinearImage& b) {
+  if (a.image.width != b.image.width || a.image.height != b.image.height)
+    fail({}, "{} is {} x {}, {} is {} x {}: images of one size are needed", a.path, a.image.width, a.image.height, b.path,
+         b.image.width, b.image.height);
+}
+
+}  // namespace frond

@@ -1,0 +1,76 @@
+#include "cli/output.h"
+
+#include "core/error.h"
+#include "scene/image_file.h"
+#include "spectra/matrix3.h"
+
+namespace frond {
+namespace {
+
+/// Rows of the matrix that the manager's conversion is, found by converting the unit vectors.
+Matrix3 matrix_of(const ColorManager& colors, std::string_view from, std::string_view to) {
+  std::array<float, 9> unit{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  colors.convert(unit, from, to);
+  Matrix3 m;
+  for (size_t column = 0; column < 3; ++column)
+    for (size_t row = 0; row < 3; ++row) m.row[row][column] = double(unit[3 * column + row]);
+  return m;
+}
+
+/// Diagonal of m c m^T; the covariance c as 00 11 22 01 02 12.
+Triple variance_after(const Matrix3& m, const std::array<double, 6>& c) {
+  Triple v{};
+  for (size_t i = 0; i < 3; ++i) {
+    const Triple& r = m.row[i];
+    v[i] = r[0] * r[0] * c[0] + r[1] * r[1] * c[1] + r[2] * r[2] * c[2] +
+           2 * (r[0] * r[1] * c[3] + r[0] * r[2] * c[4] + r[1] * r[2] * c[5]);
+  }
+  return v;
+}
+
+Image linear_image(const Film& film, const Matrix3& to_output) {
+  const Crop& crop = film.settings().crop;
+  Image image(crop.width(), crop.height(), {"R", "G", "B", "variance.R", "variance.G", "variance.B", "leaf"});
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const Triple rgb = to_output * film.mean(crop.x0 + x, crop.y0 + y);
+      const Triple variance = variance_after(to_output, film.covariance(crop.x0 + x, crop.y0 + y));
+      for (size_t c = 0; c < 3; ++c) {
+        image.at(x, y, c) = float(rgb[c]);
+        image.at(x, y, 3 + c) = float(variance[c]);
+      }
+      image.at(x, y, 6) = float(film.leaf_fraction(crop.x0 + x, crop.y0 + y));
+    }
+  return image;
+}
+
+}  // namespace
+
+bool is_exr(const std::string& path) { return path.ends_with(".exr"); }
+
+void write_display_image(const std::string& path, const Image& image, std::string_view space, const ColorManager& colors,
+                         const DisplayChoice& choice, const std::map<std::string, std::string>& text) {
+  Image shown(image.width, image.height, {"R", "G", "B"});
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (size_t c = 0; c < 3; ++c) shown.at(x, y, c) = image.at(x, y, c);
+  colors.display(shown.pixels, space, choice.display, choice.view);
+  write_image(path, shown, {"", text});
+}
+
+ImageOutput::ImageOutput(std::string path, DisplayChoice display) : path_(std::move(path)), display_(std::move(display)) {
+  check_writable(path_);
+  if (!is_exr(path_)) colors_.check_display("linear sRGB", display_.display, display_.view);
+}
+
+void ImageOutput::write(const Film& film, const OutputDetails& details) const {
+  std::string space = details.color_space.empty() ? details.film_space : details.color_space;
+  if (space == kXyzName) space = "linear sRGB";
+  const Image image = linear_image(film, matrix_of(colors_, details.film_space, space));
+  if (is_exr(path_))
+    write_image(path_, image, {space, details.attributes}, film.settings().half ? ExrDepth::half : ExrDepth::single);
+  else
+    write_display_image(path_, image, space, colors_, display_, details.attributes);
+}
+
+}  // namespace frond
