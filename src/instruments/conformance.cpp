@@ -1,0 +1,68 @@
+#include "instruments/conformance.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "instruments/examination.h"
+#include "instruments/statistics.h"
+
+namespace frond {
+
+std::string_view law_name(Law law) {
+  constexpr std::array<std::string_view, 11> kNames{"parameters",  "sampling",     "agreement", "normalisation",
+                                                    "energy",      "flags",        "values",    "lanes",
+                                                    "reciprocity", "unbiasedness", "coverage"};
+  return kNames[static_cast<size_t>(law)];
+}
+
+Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims, const Effort& effort,
+                 const std::string& where) {
+  Findings findings;
+  for (const double angle_deg : effort.angles_deg)
+    for (const int side : {1, -1}) {
+      const double cos_theta = side * std::cos(angle_deg * std::numbers::pi / 180);
+      const double phi = 0.4 + 0.03 * angle_deg;  // no axis, where mistakes of azimuth hide
+      Effort own = effort;
+      own.seed = hash_key(effort.seed, static_cast<uint64_t>(angle_deg), static_cast<uint64_t>(side + 1));
+      const Series s(bsdf, lambda, sphere_direction(cos_theta, phi), own,
+                     fmt::format("{}, wo at {} deg on the {}", where, angle_deg, side > 0 ? "front" : "back"));
+      check_sampling(s, findings);
+      check_normalisation(s, findings);
+      check_energy(s, claims, own.seed, findings);
+      check_unbiasedness(s, findings);
+      check_agreement(s, findings);
+      check_flags(s, findings);
+      check_lanes(s, findings);
+      check_coverage(s, findings);
+      check_values(s, findings);
+    }
+  check_awkward_values(bsdf, where, effort.seed, findings);
+  if (claims.reciprocal) check_reciprocity(bsdf, where, effort.seed, findings);
+  return findings;
+}
+
+void judge(Findings& findings, double false_alarm_rate) {
+  size_t tests = 0;
+  for (const Finding& f : findings) tests += f.statistical ? 1 : 0;
+  const double level = sidak_level(false_alarm_rate, tests);
+  for (Finding& f : findings) f.passed = f.p_value >= level;
+}
+
+std::set<Law> broken_laws(std::span<const Finding> findings) {
+  std::set<Law> laws;
+  for (const Finding& f : findings)
+    if (!f.passed) laws.insert(f.law);
+  return laws;
+}
+
+std::string failures_text(std::span<const Finding> findings) {
+  std::string text;
+  for (const Finding& f : findings)
+    if (!f.passed) text += fmt::format("{} [{}] {} (p = {:.2g})\n", law_name(f.law), f.where, f.message, f.p_value);
+  return text;
+}
+
+}  // namespace frond

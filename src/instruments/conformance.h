@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/bsdf.h"
+
+namespace frond {
+
+/// What every BSDF and every material plugin must obey. An exact BSDF is one that is not stochastic and whose samples
+/// say that their pdf is the density.
+enum class Law : uint8_t {
+  parameters,     ///< a plugin reads every parameter it declares and no other, and can be made from its defaults
+  sampling,       ///< exact: directions of `sample` are distributed as `pdf` (chi-square over bins of the sphere)
+  agreement,      ///< exact: f and pdf of a sample are those of `f` and `pdf` for its direction
+  normalisation,  ///< `pdf` integrates to the share of calls of `sample` that give a direction; else, to 1
+  energy,         ///< no more comes out than went in, at each wavelength; just as much where nothing is said to absorb
+  flags,          ///< what flags say of sides and lobes holds
+  values,         ///< all finite and not negative, densities of samples positive; nothing scatters at cos theta = 0
+  lanes,          ///< lanes that are not active hold 0
+  reciprocity,    ///< f(a, b) = f(b, a), where claimed
+  unbiasedness,   ///< not exact: in every bin the mean weight of `sample` is the integral of f |cos theta|
+  coverage,       ///< `pdf` is positive wherever f is
+};
+std::string_view law_name(Law law);
+
+/// The outcome of one test of one law.
+struct Finding {
+  Law law;
+  std::string where;    ///< what was tested: plugin, parameters, wavelengths, direction
+  std::string message;  ///< what was compared
+  double p_value = 1;   ///< of a statistical test; 0 or 1 for any other
+  bool statistical = false;
+  bool passed = true;  ///< set by `judge`
+};
+using Findings = std::vector<Finding>;
+
+/// What is known of a material beyond what all of them owe.
+struct Claims {
+  bool lossless = false;  ///< absorbs nothing: as much comes out as goes in
+  bool reciprocal = false;
+  /// f(wo, wi) conserves energy for light that arrives along wi and is summed over wo, not for a path that arrives
+  /// along wo and is summed over wi. The two differ where f is not reciprocal.
+  bool conserves_from_light = false;
+};
+
+/// How much work goes into one BSDF. Directions `wo` lie at each of the angles on both sides.
+struct Effort {
+  int samples = 20000;  ///< of `sample` for each direction
+  std::vector<double> angles_deg = {0, 30, 60, 80, 89};
+  uint64_t seed = 1;
+};
+
+/// Runs all laws that a BSDF can be asked about. `where` begins the text of each finding. `judge` comes after.
+Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims, const Effort& effort,
+                 const std::string& where);
+
+/// Sets `passed`. `false_alarm_rate` is that of all the findings together: the chance that any law is said to be broken
+/// though all hold.
+void judge(Findings& findings, double false_alarm_rate);
+
+std::set<Law> broken_laws(std::span<const Finding> findings);
+/// One line for each finding that did not pass.
+std::string failures_text(std::span<const Finding> findings);
+
+}  // namespace frond

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <vector>
+
+#include "instruments/conformance.h"
+#include "instruments/sphere.h"
+#include "instruments/statistics.h"
+
+template <>
+struct fmt::formatter<frond::Vec3> : fmt::formatter<float> {
+  template <class Context>
+  auto format(const frond::Vec3& v, Context& context) const {
+    return fmt::format_to(context.out(), "({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
+  }
+};
+
+template <>
+struct fmt::formatter<frond::SampledSpectrum> : fmt::formatter<float> {
+  template <class Context>
+  auto format(const frond::SampledSpectrum& s, Context& context) const {
+    return fmt::format_to(context.out(), "[{:.6g} {:.6g} {:.6g} {:.6g}]", s[0], s[1], s[2], s[3]);
+  }
+};
+
+namespace frond {
+
+/// Everything that was asked of a BSDF for one direction wo: the material the laws are judged by. Only conformance*.cpp
+/// include this.
+struct Series {
+  /// f for a direction uniform in one bin.
+  struct Probe {
+    Vec3 wi;
+    SampledSpectrum f;
+    float pdf;
+    size_t bin;
+  };
+
+  static constexpr int kPilotShare = 4;
+
+  Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction, const Effort& effort,
+         const std::string& asked_where);
+
+  double share(int64_t count) const { return static_cast<double>(count) / static_cast<double>(drawn); }
+
+  const Bsdf& bsdf;
+  const SampledWavelengths& lambda;
+  Vec3 wo;
+  std::string where;
+  int64_t drawn;  ///< calls of `sample`
+  /// Further samples, a quarter as many, that decide where the bins are and which of them can be tested: what is tested
+  /// must not choose its own tests.
+  std::vector<BsdfSample> pilot;
+  std::vector<BsdfSample> samples;  ///< those that gave a direction
+  bool exact;                       ///< see Law
+  SphereBins bins;
+  std::vector<Probe> probes;
+  std::vector<double> pdf_mass;  ///< integral of `pdf` over each bin
+
+ private:
+  std::vector<BsdfSample> draw(int64_t count, uint64_t seed) const;
+  void probe(uint64_t seed);
+};
+
+/// Largest relative difference that float arithmetic explains, where exponents go to 1000: 1000 times a few roundings.
+inline constexpr double kRounding = 1e-3;
+
+/// Relative error allowed to the quadrature of a pdf: float rounding of the pdf and the rule's own error.
+inline constexpr double kQuadrature = 5e-4;
+
+inline std::optional<BsdfSample> draw_once(const Bsdf& bsdf, const Vec3& wo, uint64_t key) {
+  RandomStream numbers(hash_key(key, 0)), stream(hash_key(key, 1));
+  const float uc = numbers.uniform(), u = numbers.uniform(), v = numbers.uniform();
+  return bsdf.sample(wo, uc, {u, v}, stream);
+}
+
+/// A random stream for one call of `f`.
+inline SampledSpectrum f_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, uint64_t key) {
+  RandomStream stream(key);
+  return bsdf.f(wo, wi, stream);
+}
+
+// Laws of one series.
+void check_sampling(const Series& s, Findings& findings);
+void check_normalisation(const Series& s, Findings& findings);
+void check_energy(const Series& s, const Claims& claims, uint64_t seed, Findings& findings);
+void check_unbiasedness(const Series& s, Findings& findings);
+void check_agreement(const Series& s, Findings& findings);
+void check_flags(const Series& s, Findings& findings);
+void check_lanes(const Series& s, Findings& findings);
+void check_coverage(const Series& s, Findings& findings);
+void check_values(const Series& s, Findings& findings);
+
+// Laws of a BSDF as a whole.
+void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
+/// Of a BSDF that is not stochastic.
+void check_reciprocity(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
+
+/// The verdict on a law that allows no exception: passes until the first fault, whose text it keeps.
+class Verdict {
+ public:
+  Verdict(Law law, const std::string& where) : finding_{.law = law, .where = where, .message = {}} {}
+
+  bool failed() const { return finding_.p_value == 0; }
+  template <class... Args>
+  void expect(bool holds, fmt::format_string<Args...> format, const Args&... args) {
+    if (holds || failed()) return;
+    finding_.p_value = 0;
+    finding_.message = fmt::vformat(format, fmt::make_format_args(args...));
+  }
+  const Finding& finding() const { return finding_; }
+
+ private:
+  Finding finding_;
+};
+
+}  // namespace frond

@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "instruments/examination.h"
+
+namespace frond {
+namespace {
+
+Finding statistical(Law law, const Series& s, double p_value, std::string message) {
+  return {.law = law, .where = s.where, .message = std::move(message), .p_value = p_value, .statistical = true};
+}
+
+bool is_specular(const BsdfSample& sample) { return any(sample.flags & Lobes::specular); }
+
+double weight(const BsdfSample& sample, int lane) {
+  return static_cast<double>(sample.f[lane]) * std::abs(static_cast<double>(sample.wi.z)) /
+         static_cast<double>(sample.pdf);
+}
+
+double total(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum;
+}
+
+}  // namespace
+
+void check_sampling(const Series& s, Findings& findings) {
+  if (!s.exact) return;
+  std::vector<double> observed(s.bins.size(), 0), expected(s.bins.size(), 0);
+  for (const BsdfSample& sample : s.samples)
+    if (!is_specular(sample)) observed[s.bins.find(sample.wi)] += 1;
+  const double count = total(observed), mass = total(s.pdf_mass);
+  if (count < 50 || mass <= 0) return;  // a purely specular one; coverage and normalisation see what is wrong otherwise
+  for (size_t b = 0; b < expected.size(); ++b) expected[b] = count * s.pdf_mass[b] / mass;
+  findings.push_back(statistical(Law::sampling, s, chi_square_p(observed, expected),
+                                 fmt::format("{} sampled directions in {} bins", count, s.bins.size())));
+}
+
+void check_normalisation(const Series& s, Findings& findings) {
+  const double mass = total(s.pdf_mass);
+  if (!s.exact || !(mass <= 1 + kQuadrature)) {
+    Verdict verdict(Law::normalisation, s.where);
+    verdict.expect(std::abs(mass - 1) <= kQuadrature, "pdf integrates to {:.6g}, not to 1", mass);
+    findings.push_back(verdict.finding());
+    return;
+  }
+  int64_t directions = 0;
+  for (const BsdfSample& sample : s.samples) directions += is_specular(sample) ? 0 : 1;
+  findings.push_back(
+      statistical(Law::normalisation, s, binomial_p(directions, s.drawn, mass - kQuadrature, mass + kQuadrature),
+                  fmt::format("pdf integrates to {:.6g}, sample gives a direction in {:.6g} of all calls", mass,
+                              s.share(directions))));
+}
+
+namespace {
+
+/// Rounding of a mean of weights in float.
+constexpr double kWeightRounding = 1e-4;
+
+/// Mean weight of `sample`, a call without a direction counting as 0.
+Estimate mean_weight(const Series& s, int lane) {
+  Moments moments;
+  for (const BsdfSample& sample : s.samples) moments.add(weight(sample, lane));
+  moments.add_zeros(s.drawn - moments.count());
+  return moments.estimate();
+}
+
+/// Integral of f(w, s.wo) |cos theta| over w, lane by lane: a stratified mean over the bins.
+std::array<Estimate, kLanes> albedo_from_light(const Series& s, uint64_t seed) {
+  std::array<Estimate, kLanes> result{};
+  const int64_t each = std::max<int64_t>(4, s.drawn / static_cast<int64_t>(s.bins.size()));
+  RandomStream numbers(seed);
+  for (size_t b = 0; b < s.bins.size(); ++b) {
+    const SphereBox& box = s.bins.box(b);
+    std::array<Moments, kLanes> moments{};
+    for (int64_t i = 0; i < each; ++i) {
+      const double u = numbers.uniform_open(), v = numbers.uniform_open();
+      const Vec3 w = box.at(u, v);
+      const SampledSpectrum f = f_once(s.bsdf, w, s.wo, hash_key(seed, b, i));
+      for (int lane = 0; lane < kLanes; ++lane)
+        moments[static_cast<size_t>(lane)].add(static_cast<double>(f[lane] * std::abs(w.z)) * box.solid_angle());
+    }
+    for (size_t lane = 0; lane < kLanes; ++lane) result[lane] += moments[lane].estimate();
+  }
+  return result;
+}
+
+}  // namespace
+
+void check_energy(const Series& s, const Claims& claims, uint64_t seed, Findings& findings) {
+  std::array<Estimate, kLanes> from_light{};
+  if (claims.conserves_from_light) from_light = albedo_from_light(s, seed);
+  for (int lane = 0; lane < s.lambda.count; ++lane) {
+    if (!s.lambda.is_active(lane)) continue;
+    const Estimate out = claims.conserves_from_light ? from_light[static_cast<size_t>(lane)] : mean_weight(s, lane);
+    const double p =
+        claims.lossless ? equality_p(out, {.mean = 1}, kWeightRounding) : at_most_p(out, 1, kWeightRounding);
+    findings.push_back(
+        statistical(Law::energy, s, p,
+                    fmt::format("of 1 at {} nm, {:.6g} +- {:.2g} comes out", s.lambda.nm[static_cast<size_t>(lane)],
+                                out.mean, out.standard_error())));
+  }
+}
+
+namespace {
+
+/// Means of fewer equal values than this are far from a normal distribution.
+constexpr double kEnoughForNormal = 100;
+
+/// What `sample` and `f` say of one bin, or of several together.
+struct BinComparison {
+  Moments sampled;           // weights of samples in the bin; calls that went elsewhere are not counted yet
+  double sampled_count = 0;  // effective count that the pilot promises
+  Estimate integrated;       // of f |cos theta| over the bin
+  double integrated_count = 0;
+
+  void add(const BinComparison& other) {
+    sampled.add(other.sampled);
+    sampled_count += other.sampled_count;
+    integrated += other.integrated;
+    integrated_count += other.integrated_count;
+  }
+};
+
+std::vector<BinComparison> compare_bins(const Series& s, int lane) {
+  std::vector<BinComparison> bins(s.bins.size());
+  std::vector<Moments> pilots(s.bins.size()), integrals(s.bins.size());
+  for (const BsdfSample& sample : s.pilot) pilots[s.bins.find(sample.wi)].add(weight(sample, lane));
+  for (const BsdfSample& sample : s.samples) bins[s.bins.find(sample.wi)].sampled.add(weight(sample, lane));
+  for (const Series::Probe& probe : s.probes)
+    integrals[probe.bin].add(static_cast<double>(probe.f[lane] * std::abs(probe.wi.z)) *
+                             s.bins.box(probe.bin).solid_angle());
+  for (size_t b = 0; b < bins.size(); ++b) {
+    bins[b].sampled_count = Series::kPilotShare * pilots[b].effective_count();
+    bins[b].integrated = integrals[b].estimate();
+    bins[b].integrated_count = integrals[b].effective_count();
+  }
+  return bins;
+}
+
+Finding compare(const Series& s, int lane, BinComparison bin, const std::string& name) {
+  bin.sampled.add_zeros(s.drawn - bin.sampled.count());
+  const Estimate sampled = bin.sampled.estimate();
+  const double slack = kRounding * std::max(sampled.mean, bin.integrated.mean);
+  return statistical(
+      Law::unbiasedness, s, equality_p(sampled, bin.integrated, slack),
+      fmt::format("lane {}, {}: sample carries {:.4g} +- {:.2g}, f {:.4g} +- {:.2g}", lane, name, sampled.mean,
+                  sampled.standard_error(), bin.integrated.mean, bin.integrated.standard_error()));
+}
+
+std::string box_text(const SphereBox& box) {
+  return fmt::format("cos theta {:.3f} to {:.3f}, phi {:.3f} to {:.3f}", box.z0, box.z1, box.phi0, box.phi1);
+}
+
+}  // namespace
+
+void check_unbiasedness(const Series& s, Findings& findings) {
+  if (s.exact) return;
+  for (int lane = 0; lane < s.lambda.count; ++lane) {
+    if (!s.lambda.is_active(lane)) continue;
+    BinComparison thin;  // bins with too little in them to be compared alone
+    const auto bins = compare_bins(s, lane);
+    for (size_t b = 0; b < bins.size(); ++b) {
+      if (bins[b].sampled_count < kEnoughForNormal)
+        thin.add(bins[b]);
+      else
+        findings.push_back(compare(s, lane, bins[b], box_text(s.bins.box(b))));
+    }
+    if (std::max(thin.sampled_count, thin.integrated_count) >= kEnoughForNormal)
+      findings.push_back(compare(s, lane, thin, "all thin bins"));
+  }
+}
+
+}  // namespace frond

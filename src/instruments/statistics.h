@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace frond {
+
+/// An estimated expectation, with the variance and the third cumulant of the estimate itself: those of independent
+/// estimates add.
+struct Estimate {
+  double mean = 0, variance = 0, third_cumulant = 0;
+
+  double standard_error() const { return std::sqrt(variance); }
+  Estimate& operator+=(const Estimate& other) {
+    mean += other.mean;
+    variance += other.variance;
+    third_cumulant += other.third_cumulant;
+    return *this;
+  }
+};
+
+/// Running sums of a sample, for its mean and how far to trust it.
+class Moments {
+ public:
+  void add(double x) {
+    ++count_;
+    sum_ += x;
+    sum_of_squares_ += x * x;
+    sum_of_cubes_ += x * x * x;
+  }
+  void add(const Moments& other) {
+    count_ += other.count_;
+    sum_ += other.sum_;
+    sum_of_squares_ += other.sum_of_squares_;
+    sum_of_cubes_ += other.sum_of_cubes_;
+  }
+  /// As if 0 had been added that often.
+  void add_zeros(int64_t zeros) { count_ += zeros; }
+
+  int64_t count() const { return count_; }
+  double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
+  /// Unbiased; 0 for fewer than two values.
+  double variance() const;
+  /// Of the expectation.
+  Estimate estimate() const;
+  /// How many equal values would carry as much (Kish 1965): sum^2 / sum of squares.
+  double effective_count() const { return sum_of_squares_ > 0 ? sum_ * sum_ / sum_of_squares_ : 0; }
+
+ private:
+  int64_t count_ = 0;
+  double sum_ = 0, sum_of_squares_ = 0, sum_of_cubes_ = 0;
+};
+
+/// P(Z >= z) of a standard normal variable.
+double normal_upper_tail(double z);
+
+/// Two-sided p-value of "the two have equal expectations", by a z-test with the skewness taken out (Hall 1992, "On the
+/// Removal of Skewness by Transformation"): means of Monte Carlo weights are far from normal where it matters, in the
+/// tails. A difference of up to `slack`, for rounding, counts as none. NaN on either side gives 0.
+double equality_p(const Estimate& a, const Estimate& b, double slack);
+
+/// One-sided p-value of "the expectation is at most `bound`", by the same test.
+double at_most_p(const Estimate& a, double bound, double slack);
+
+/// Two-sided p-value of `successes` out of `trials`, where the success probability lies somewhere in [low, high]: that
+/// of the most favourable one.
+double binomial_p(int64_t successes, int64_t trials, double low, double high);
+
+/// Pearson's chi-square test of counts against expectations. Classes are pooled, in their order, until each expects at
+/// least 5 (Cochran 1954). 1 where fewer than two classes are left: nothing can be told.
+double chi_square_p(std::span<const double> observed, std::span<const double> expected);
+
+/// Level of each of `tests` tests such that all of them together raise a false alarm at most at `rate` (Sidak 1967).
+double sidak_level(double rate, size_t tests);
+
+}  // namespace frond

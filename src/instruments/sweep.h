@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/params.h"
+#include "core/plugin.h"
+
+namespace frond {
+
+/// One choice of values for a plugin's parameters.
+struct ParameterSet {
+  std::string label;  ///< "defaults", "thickness = 0.01", ...
+  ParsedPlugin plugin;
+};
+
+struct SweepOptions {
+  std::vector<ParsedParam> pinned = {};  ///< given in every set and not swept, as far as the plugin declares them
+  int random_corners = 4;                ///< sets with every parameter at one end of its range
+  int random_points = 4;                 ///< sets with every parameter inside
+  uint64_t seed = 1;
+};
+
+/// Sets of parameters over a plugin's declared box: the defaults, each end of each parameter's range and each choice
+/// alone, corners and points inside. Names of files and other free strings keep their defaults. 1000 stands for an end
+/// at infinity, and twice the default (at least 1) where points inside are drawn. Sets may break rules between
+/// parameters: the plugin then refuses them.
+std::vector<ParameterSet> parameter_sweep(const PluginInfo& info, const SweepOptions& options);
+
+/// Scene files' side of binding without a scene: spectra that are the numbers given, linear in between (rgb: their mean
+/// at every wavelength), one material behind every name, no textures.
+class PlainResolver final : public ParamResolver {
+ public:
+  using MaterialByName = std::function<std::shared_ptr<Material>(const std::string& name)>;
+  explicit PlainResolver(MaterialByName material_by_name) : material_by_name_(std::move(material_by_name)) {}
+
+  std::shared_ptr<const FloatTexture> float_texture(const std::string& name, const Location& where) override;
+  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string& name, const Location& where) override;
+  std::shared_ptr<Material> material(const std::string& name, const Location&) override {
+    return material_by_name_(name);
+  }
+  SpectrumPtr spectrum(const ParsedParam& param, bool emission) override;
+  std::filesystem::path file(const std::string& name, const Location&) override { return name; }
+
+ private:
+  MaterialByName material_by_name_;
+};
+
+}  // namespace frond

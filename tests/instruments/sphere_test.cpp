@@ -1,0 +1,89 @@
+#include "instruments/sphere.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+
+namespace frond {
+namespace {
+
+constexpr double kSphere = 4 * std::numbers::pi;
+
+/// Directions, most of them within a degree or so of one.
+std::vector<Vec3> cluster(double cos_theta, uint64_t seed = 5) {
+  const Frame frame = Frame::around(sphere_direction(cos_theta, 1.2));
+  RandomStream numbers(seed);
+  std::vector<Vec3> result;
+  for (int i = 0; i < 4000; ++i)
+    result.push_back(
+        frame.to_world(sphere_direction(std::pow(numbers.uniform_double(), 1e-3), 6.28 * numbers.uniform())));
+  return result;
+}
+
+TEST(SphereBins, CoverTheSphereOnce) {
+  for (const double cos_theta : {1.0, 0.5, 0.01}) {
+    const SphereBins bins(cluster(cos_theta), 64);
+    double area = 0;
+    for (size_t b = 0; b < bins.size(); ++b) area += bins.box(b).solid_angle();
+    EXPECT_NEAR(area, kSphere, 1e-9);
+  }
+}
+
+TEST(SphereBins, FindReturnsTheBinThatADirectionWasTakenFrom) {
+  const SphereBins bins(cluster(0.5), 64);
+  for (size_t b = 0; b < bins.size(); ++b) EXPECT_EQ(bins.find(bins.box(b).at(0.5, 0.5)), b);
+}
+
+TEST(SphereBins, HoldAboutEquallyManyDirections) {
+  const auto directions = cluster(0.5);
+  const SphereBins bins(directions, 64);
+  std::vector<size_t> counts(bins.size(), 0);
+  for (const Vec3& w : directions) ++counts[bins.find(w)];
+  for (const size_t count : counts) EXPECT_LE(count, directions.size() / 64 + 1);
+}
+
+TEST(SphereBins, NoneCrossesTheHorizonOrIsLarge) {
+  const SphereBins bins(cluster(0.01), 64);
+  for (size_t b = 0; b < bins.size(); ++b) {
+    EXPECT_GE(bins.box(b).z0 * bins.box(b).z1, 0);
+    EXPECT_LE(bins.box(b).solid_angle(), kSphere / 16 + 1e-9);
+  }
+}
+
+TEST(SphereBins, ManyEqualDirectionsEndTheCutting) {
+  const SphereBins bins(std::vector<Vec3>(1000, sphere_direction(0.3, 2)), 10);
+  EXPECT_LT(bins.size(), 100u);
+}
+
+TEST(Integrate, SolidAngleOfTheSphere) {
+  EXPECT_NEAR(integrate(
+                  {}, [](const Vec3&) { return 1; }, 1e-9),
+              kSphere, 1e-12);
+}
+
+TEST(Integrate, PartOfACosineLobe) {
+  // cos theta / pi over cos theta in [a, b), phi in [0, 1): (b^2 - a^2) / (2 pi).
+  const SphereBox box{0.2, 0.9, 0, 1};
+  const auto lobe = [](const Vec3& w) { return static_cast<double>(w.z) / std::numbers::pi; };
+  EXPECT_NEAR(integrate(box, lobe, 1e-9), (0.81 - 0.04) / (2 * std::numbers::pi), 1e-8);
+}
+
+TEST(Integrate, NarrowLobeThroughBinsThatFollowIt) {
+  for (const double cos_theta : {1.0, 0.7, 0.1})
+    for (uint64_t seed = 0; seed < 5; ++seed) {
+      const Vec3 axis = sphere_direction(cos_theta, 1.2);
+      const auto lobe = [&](const Vec3& w) {
+        return 1001 / (2 * std::numbers::pi) * std::pow(std::max(0.f, dot(w, axis)), 1000.0);
+      };
+      const SphereBins bins(cluster(cos_theta, seed), 64);
+      double sum = 0;
+      for (size_t b = 0; b < bins.size(); ++b) sum += bins.integral(b, lobe, 1e-8);
+      EXPECT_NEAR(sum, 1, 2e-4) << seed;  // directions are float: their rounding, 1000 times over
+    }
+}
+
+}  // namespace
+}  // namespace frond

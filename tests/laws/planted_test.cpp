@@ -1,0 +1,164 @@
+#include "tests/planted/planted.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/laws/setup.h"
+
+namespace frond::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// Over a whole examination of one BSDF. With some 40 of them below, this file's tests raise a false alarm at less than
+/// one in 20,000 changes of the seed.
+constexpr double kFalseAlarmRate = 1e-6;
+
+Findings findings(const MaterialInfo& info, const Claims& claims = {},
+                  const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455})) {
+  const Setup setup(wavelengths);
+  PlainResolver resolver([](const std::string&) { return nullptr; });
+  const auto sets = parameter_sweep(info, {});
+  Findings found = examine(info, std::span(sets).first(1),
+                           {.preparation = setup.preparation,
+                            .resolver = resolver,
+                            .claims = [&](const ParsedPlugin&) { return claims; },
+                            .effort = {}});
+  judge(found, kFalseAlarmRate);
+  return found;
+}
+
+template <class B>
+std::set<Law> broken(const Claims& claims = {},
+                     const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455})) {
+  return broken_laws(findings(planted<B>("planted"), claims, wavelengths));
+}
+
+template <class B>
+class GoodBsdf : public ::testing::Test {};
+using GoodBsdfs = ::testing::Types<GoodLambertian, GoodLossless, GoodNarrowLobe, GoodCoatedDiffuse, GoodStochastic>;
+TYPED_TEST_SUITE(GoodBsdf, GoodBsdfs);
+
+TYPED_TEST(GoodBsdf, BreaksNoLaw) {
+  const auto found = findings(planted<TypeParam>("good"));
+  EXPECT_EQ(failures_text(found), "");
+}
+
+TYPED_TEST(GoodBsdf, BreaksNoLawWithOneWavelength) {
+  EXPECT_THAT(broken<TypeParam>({}, GivenWavelengths({550})), IsEmpty());
+}
+
+TYPED_TEST(GoodBsdf, BreaksNoLawWithARetiredLane) {
+  EXPECT_THAT(broken<TypeParam>({}, GivenWavelengths({420, 500, 580, 660}, {1})), IsEmpty());
+}
+
+TEST(GoodClaims, Hold) {
+  EXPECT_THAT((broken<GoodLossless>({.lossless = true, .reciprocal = true})), IsEmpty());
+  EXPECT_THAT((broken<GoodLossless>({.lossless = true, .conserves_from_light = true})), IsEmpty());
+}
+
+TEST(Planted, PdfWithoutTheLobesProbabilityBreaksNormalisation) {
+  EXPECT_THAT(broken<PdfWithoutProbability>(), ElementsAre(Law::normalisation));
+}
+
+TEST(Planted, SampleThatGivesUpUnannouncedBreaksNormalisation) {
+  EXPECT_THAT(broken<SampleGivesUp>(), ElementsAre(Law::normalisation));
+}
+
+TEST(Planted, ApproximatePdfThatIntegratesToMoreBreaksNormalisation) {
+  EXPECT_THAT(broken<ApproximatePdfTooLarge>(), ElementsAre(Law::normalisation));
+}
+
+TEST(Planted, TransmissionThatFlagsDenyBreaksFlags) {
+  EXPECT_THAT(broken<HiddenTransmission>(), ElementsAre(Law::flags));
+}
+
+TEST(Planted, TransmittedSampleCalledReflectedBreaksFlags) {
+  EXPECT_THAT(broken<FalseSampleFlag>(), ElementsAre(Law::flags));
+}
+
+TEST(Planted, OnePercentLostBreaksEnergyWhereLosslessIsClaimed) {
+  EXPECT_THAT(broken<LostEnergy>(), IsEmpty());
+  EXPECT_THAT((broken<LostEnergy>({.lossless = true})), ElementsAre(Law::energy));
+  EXPECT_THAT((broken<LostEnergy>({.lossless = true, .conserves_from_light = true})), ElementsAre(Law::energy));
+}
+
+TEST(Planted, OnePercentGainedBreaksEnergy) {
+  EXPECT_THAT(broken<GainedEnergy>(), ElementsAre(Law::energy));
+  EXPECT_THAT((broken<GainedEnergy>({.conserves_from_light = true})), ElementsAre(Law::energy));
+}
+
+TEST(Planted, WrongWarpBreaksSampling) { EXPECT_THAT(broken<WrongWarp>(), ElementsAre(Law::sampling)); }
+
+TEST(Planted, LobesChosenInOtherSharesThanThePdfSaysBreakSampling) {
+  EXPECT_THAT(broken<WrongLobeChoice>(), ElementsAre(Law::sampling));
+}
+
+TEST(Planted, NarrowLobeOfAnotherExponentBreaksSampling) {
+  EXPECT_THAT(broken<WrongExponent>(), ElementsAre(Law::sampling));
+}
+
+TEST(Planted, SampleWithAnotherFBreaksAgreement) {
+  EXPECT_THAT(broken<SampleOfAnotherF>(), ElementsAre(Law::agreement));
+}
+
+TEST(Planted, NanAtGrazingBreaksValues) { EXPECT_THAT(broken<NanAtGrazing>(), ElementsAre(Law::values)); }
+
+TEST(Planted, ScatteringAtZeroCosineBreaksValues) {
+  EXPECT_THAT(broken<ScattersAtZeroCosine>(), ElementsAre(Law::values));
+}
+
+TEST(Planted, NegativeFBreaksValues) { EXPECT_THAT(broken<NegativeF>(), ElementsAre(Law::values)); }
+
+TEST(Planted, WorkForARetiredLaneBreaksLanes) {
+  EXPECT_THAT((broken<WorksForRetiredLane>({}, GivenWavelengths({420, 500, 580, 660}, {1}))), ElementsAre(Law::lanes));
+}
+
+TEST(Planted, OneWayStreetThatClaimsReciprocityBreaksIt) {
+  EXPECT_THAT(broken<OneWay>(), IsEmpty());
+  EXPECT_THAT((broken<OneWay>({.reciprocal = true})), ElementsAre(Law::reciprocity));
+}
+
+TEST(Planted, StochasticFThatMissesAWayOutBreaksUnbiasedness) {
+  EXPECT_THAT(broken<StochasticMissesAWayOut>(), ElementsAre(Law::unbiasedness));
+}
+
+TEST(Planted, StochasticFWrongByAFifthInAConeBreaksUnbiasedness) {
+  EXPECT_THAT(broken<StochasticWrongByLittle>(), ElementsAre(Law::unbiasedness));
+}
+
+TEST(Planted, TransmissionThatIsNeverSampledBreaksCoverage) {
+  EXPECT_THAT(broken<NeverSamplesTransmission>(), ElementsAre(Law::coverage));
+}
+
+// Parameters.
+
+constexpr Param kLevel[] = {
+    {.name = "level", .kind = ParamKind::real, .default_value = 0.5, .range = {0, 1}, .doc = "A level."}};
+
+TEST(Planted, DeclaredParameterThatIsNeverReadBreaksParameters) {
+  EXPECT_THAT(broken_laws(findings(planted<GoodLambertian>("unread", kLevel))), ElementsAre(Law::parameters));
+}
+
+struct ReadsUndeclared final : Material {
+  explicit ReadsUndeclared(const Params& p) { p.real("secret"); }
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
+};
+
+TEST(Planted, ReadingAnUndeclaredParameterBreaksParameters) {
+  const MaterialInfo info{{"material", "reads_undeclared", "", "", {}}, make_material<ReadsUndeclared>};
+  EXPECT_THAT(broken_laws(findings(info)), ElementsAre(Law::parameters));
+}
+
+struct RefusesItsDefaults final : Material {
+  explicit RefusesItsDefaults(const Params& p) { fail(p.where("level"), "{} is too much", p.real("level")); }
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
+};
+
+TEST(Planted, RefusingItsOwnDefaultsBreaksParameters) {
+  const MaterialInfo info{{"material", "refuses", "", "", kLevel}, make_material<RefusesItsDefaults>};
+  EXPECT_THAT(broken_laws(findings(info)), ElementsAre(Law::parameters));
+}
+
+}  // namespace
+}  // namespace frond::test

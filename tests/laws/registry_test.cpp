@@ -1,0 +1,107 @@
+#include "materials/registry.h"
+
+#include <gmock/gmock.h>
+
+#include "core/texture.h"
+#include "tests/laws/setup.h"
+
+/// All laws over all built-in materials.
+namespace frond::test {
+namespace {
+
+/// Of each test here: with a handful of materials and five tests each, a new seed raises a false alarm in this file
+/// less than once in 10,000 times.
+constexpr double kFalseAlarmRate = 1e-6;
+
+const MaterialInfo& material(std::string_view name) {
+  return PluginTable<MaterialInfo>("material", builtin_materials()).get(name, {});
+}
+
+/// Children of a `mix`: two built-in materials that differ in everything.
+PlainResolver two_materials() {
+  return PlainResolver([](const std::string& name) -> std::shared_ptr<Material> {
+    PlainResolver nothing([](const std::string&) { return nullptr; });
+    const MaterialInfo& info = material(name == "one" ? "diffuse" : "diffusetransmission");
+    return info.make(Params(info, {}, nothing));
+  });
+}
+
+bool has_value(const ParsedPlugin& plugin, std::string_view name, const std::string& value) {
+  const auto p = std::ranges::find(plugin.params, name, &ParsedParam::name);
+  if (p == plugin.params.end()) return false;
+  const auto* words = std::get_if<std::vector<std::string>>(&p->values);
+  return words && words->front() == value;
+}
+
+Claims claims_of(const ParsedPlugin& plugin) {
+  return {.reciprocal = plugin.name == "diffuse" || plugin.name == "diffusetransmission",
+          .conserves_from_light = has_value(plugin, "incident", "light")};
+}
+
+/// The same value at every wavelength.
+ParsedParam level(const std::string& name, double value) {
+  ParsedParam p;
+  p.type = "spectrum", p.name = name, p.values = std::vector<double>{300, value, 3000, value};
+  return p;
+}
+
+/// Tables of a size that is quick to make: what they hold is tested elsewhere.
+const SweepOptions kSweep{.pinned = {}};
+
+Findings run(const MaterialInfo& info, std::span<const ParameterSet> sets, const WavelengthStrategy& wavelengths,
+             const Effort& effort, const ClaimsOf& claims = claims_of) {
+  const Setup setup(wavelengths);
+  PlainResolver resolver = two_materials();
+  Findings findings =
+      examine(info, sets, {.preparation = setup.preparation, .resolver = resolver, .claims = claims, .effort = effort});
+  judge(findings, kFalseAlarmRate);
+  return findings;
+}
+
+class Laws : public ::testing::TestWithParam<const MaterialInfo*> {
+ protected:
+  const MaterialInfo& info() const { return *GetParam(); }
+
+  void expect_defaults_hold(const WavelengthStrategy& wavelengths) const {
+    const auto sets = parameter_sweep(info(), kSweep);
+    EXPECT_EQ(failures_text(run(info(), std::span(sets).first(1), wavelengths, {})), "");
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Registry, Laws, ::testing::ValuesIn(builtin_materials().begin(), builtin_materials().end()),
+                         [](const auto& instance) { return std::string(instance.param->name); });
+
+TEST_P(Laws, HoldAtTheDefaultsWithThreeWavelengths) { expect_defaults_hold(GivenWavelengths({608, 551, 455})); }
+
+TEST_P(Laws, HoldAtTheDefaultsWithOneWavelength) { expect_defaults_hold(GivenWavelengths({550})); }
+
+TEST_P(Laws, HoldAtTheDefaultsWithWavelengthsThatVary) { expect_defaults_hold(StratifiedWavelengths()); }
+
+TEST_P(Laws, HoldAtTheDefaultsWithARetiredLane) {
+  expect_defaults_hold(GivenWavelengths({430, 550, 670, 800}, {0, 2}));
+}
+
+TEST_P(Laws, HoldOverTheDeclaredBox) {
+  const auto sets = parameter_sweep(info(), kSweep);
+  const Findings findings =
+      run(info(), sets, GivenWavelengths({608, 551, 455}), {.samples = 4000, .angles_deg = {0, 50, 89}});
+  EXPECT_EQ(failures_text(findings), "");
+  const auto made = std::ranges::count(findings, Law::parameters, &Finding::law);
+  EXPECT_GE(made, static_cast<ptrdiff_t>(sets.size() / 2)) << "most sets are refused: the sweep says little";
+}
+
+void expect_lossless(std::string_view name, std::vector<ParsedParam> params) {
+  const ParameterSet set{"lossless", {std::string(name), {}, std::move(params)}};
+  const Findings findings = run(material(name), {&set, 1}, GivenWavelengths({608, 551, 455}), {},
+                                [](const ParsedPlugin&) { return Claims{.lossless = true}; });
+  EXPECT_EQ(failures_text(findings), "");
+}
+
+TEST(Lossless, WhiteDiffuseReturnsAllLight) { expect_lossless("diffuse", {level("reflectance", 1)}); }
+
+TEST(Lossless, DiffuseTransmissionReturnsAllLightWhereItsSharesAddUp) {
+  expect_lossless("diffusetransmission", {level("reflectance", 0.7), level("transmittance", 0.3)});
+}
+
+}  // namespace
+}  // namespace frond::test

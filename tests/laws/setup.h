@@ -1,0 +1,62 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "instruments/material_conformance.h"
+
+namespace frond::test {
+
+/// The same wavelengths for every path; some lanes may be retired, as an integrator retires them.
+class GivenWavelengths final : public WavelengthStrategy {
+ public:
+  explicit GivenWavelengths(std::vector<float> nm, std::vector<int> retired = {}) : nm_(std::move(nm)) {
+    lambda_.count = static_cast<int>(nm_.size());
+    for (size_t i = 0; i < nm_.size(); ++i) {
+      lambda_.nm[i] = nm_[i];
+      lambda_.pdf[i] = 1;
+      lambda_.active[i] = true;
+    }
+    for (const int lane : retired) lambda_.active[static_cast<size_t>(lane)] = false;
+  }
+
+  SampledWavelengths sample(float) const override { return lambda_; }
+  Interval range_nm() const override { return {*std::ranges::min_element(nm_), *std::ranges::max_element(nm_)}; }
+  std::span<const float> fixed_nm() const override { return nm_; }
+  std::array<double, 3> sensor(const SampledSpectrum&, const SampledWavelengths&) const override { return {}; }
+  std::string_view film_space() const override { return "XYZ"; }
+
+ private:
+  std::vector<float> nm_;
+  SampledWavelengths lambda_;
+};
+
+/// Four wavelengths spread evenly over the visible, at a random place for each path.
+class StratifiedWavelengths final : public WavelengthStrategy {
+ public:
+  SampledWavelengths sample(float u) const override {
+    SampledWavelengths lambda;
+    lambda.count = kLanes;
+    for (size_t i = 0; i < kLanes; ++i) {
+      lambda.nm[i] = 400 + 75 * (static_cast<float>(i) + u);
+      lambda.pdf[i] = 1.f / 300;
+      lambda.active[i] = true;
+    }
+    return lambda;
+  }
+  Interval range_nm() const override { return {400, 700}; }
+  std::span<const float> fixed_nm() const override { return {}; }
+  std::array<double, 3> sensor(const SampledSpectrum&, const SampledWavelengths&) const override { return {}; }
+  std::string_view film_space() const override { return "XYZ"; }
+};
+
+/// What it takes to make a material ready without a scene.
+struct Setup {
+  explicit Setup(const WavelengthStrategy& wavelengths) : preparation{wavelengths, pool, log, {}} {}
+
+  ThreadPool pool{1};
+  Log log{/*quiet=*/true};
+  Preparation preparation;
+};
+
+}  // namespace frond::test
