@@ -51,7 +51,7 @@ def ambient():
     """A young plant seen from above."""
     stem = [(0.0, 0.0, 0.0), (0.005, 0.0, 0.05), (-0.004, 0.003, 0.10), (0.0, 0.0, 0.15)]
     return Plant(stem, [
-        Leaf(0.05, 10, 28, 0.10, 1.00, pitch=-10, seed=21),
+        Leaf(0.05, 12, 28, 0.085, 1.00, pitch=-10, seed=21),
         Leaf(0.06, 195, 30, 0.10, 1.05, pitch=-12, seed=22),
         Leaf(0.08, 105, 38, 0.10, 1.05, pitch=-8, seed=23),
         Leaf(0.10, -78, 40, 0.10, 1.05, pitch=-10, seed=24),
