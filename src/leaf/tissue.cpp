@@ -68,6 +68,7 @@ Tissue TissueModel::at(double lambda_nm) const {
   const bool bifacial = params_.structure == Structure::bifacial;
 
   Tissue t{};
+  t.owner = lobes_;
   t.sieve_and_detour = params_.sieve_and_detour;
   t.air_space_moves = !bifacial;
   // Going down: reflected, refracted; going up: reflected, refracted.

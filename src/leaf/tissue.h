@@ -40,7 +40,7 @@ const Specimen* find_specimen(std::string_view name);
 double absorption_coefficient(const TissueParams& params, double lambda_nm);
 
 /// A leaf at one wavelength, as a ray meets it. Interfaces 0 to 5 count from the adaxial side. Medium i lies above
-/// interface i: 0 is the air over the leaf, 6 the air under it. The lobes belong to the TissueModel that made it.
+/// interface i: 0 is the air over the leaf, 6 the air under it.
 struct Tissue {
   static constexpr size_t kInterfaces = 6, kMedia = 7, kBeneath = 6;
 
@@ -51,12 +51,13 @@ struct Tissue {
   /// The air space (medium 3) lies anywhere in the mesophyll: media 2 and 4 share the depth as p to 1 - p, p uniform.
   bool air_space_moves;
   bool sieve_and_detour;
+  std::shared_ptr<const void> owner;  ///< of the lobes
 
   double n_cuticle() const { return n[1]; }
   const Lobe& surface_lobe() const { return *lobes[0][0][0]; }
 };
 
-/// A leaf at all wavelengths. Cheap to copy; must outlive the tissues that it makes.
+/// A leaf at all wavelengths. Cheap to copy.
 class TissueModel {
  public:
   explicit TissueModel(const TissueParams& params);

@@ -10,6 +10,9 @@ namespace frond::leaf {
 /// unit vectors in the leaf's frame, z the adaxial normal. wo points to where the traced ray came from, wi to where it
 /// leaves to. Both want |z| > 0.
 
+/// Increase with any change that may change results: tables on disk are kept by it.
+inline constexpr int kWalkVersion = 1;
+
 /// How the mesophyll absorbs: whole rays at random, or a share of each. The means agree. Weighted walks end by
 /// roulette.
 enum class Absorption : uint8_t { analog, weighted };

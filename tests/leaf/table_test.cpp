@@ -1,0 +1,236 @@
+#include "leaf/table.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <numbers>
+
+#include "leaf/lookup.h"
+#include "leaf/table_cache.h"
+#include "tests/leaf/statistics.h"
+
+namespace frond::leaf {
+namespace {
+
+namespace fs = std::filesystem;
+
+TableRequest request_of(std::string_view specimen, TableMethod method, int rays = 500) {
+  return {.params = find_specimen(specimen)->params, .wavelengths_nm = {608, 551, 455}, .method = method, .rays = rays};
+}
+
+TEST(Solver, GivesTheCheckFigures) {
+  struct {
+    double lambda_nm, r, t, r_abaxial, t_abaxial;
+  } constexpr kFigures[] = {{455, 0.04514, 0.01753, 0.21745, 0.01485},
+                            {550, 0.07592, 0.14742, 0.23045, 0.14498},
+                            {605, 0.05446, 0.10064, 0.21641, 0.09502},
+                            {800, 0.44167, 0.45604, 0.40437, 0.51735}};
+  const TissueModel soybean(find_specimen("soybean")->params);
+  for (const auto& f : kFigures) {
+    const std::vector<Shares> s = solve(soybean.at(f.lambda_nm), std::array{8.0, 172.0});
+    // Printed to five digits from a solution good to 1e-5.
+    EXPECT_NEAR(s[0].surface + s[0].subsurface, f.r, 1.5e-5) << f.lambda_nm;
+    EXPECT_NEAR(s[0].transmitted, f.t, 1.5e-5) << f.lambda_nm;
+    EXPECT_NEAR(s[1].surface + s[1].subsurface, f.r_abaxial, 1.5e-5) << f.lambda_nm;
+    EXPECT_NEAR(s[1].transmitted, f.t_abaxial, 1.5e-5) << f.lambda_nm;
+  }
+}
+
+TEST(Solver, ConvergesAsStated) {
+  for (const char* specimen : {"soybean", "maize"})
+    for (const double aspect : {0.0, 0.5, 5.0, 100.0}) {
+      TissueParams params = find_specimen(specimen)->params;
+      params.epidermis_aspect = params.spongy_aspect = params.palisade_aspect = aspect;
+      const Tissue tissue = TissueModel(params).at(455);
+      const std::array angles{0.0, 50.0, 88.0, 110.0};
+      const auto coarse = solve(tissue, angles), fine = solve(tissue, angles, 20);
+      for (size_t i = 0; i < angles.size(); ++i) {
+        EXPECT_NEAR(coarse[i].subsurface, fine[i].subsurface, 1e-4) << specimen << " " << aspect;
+        EXPECT_NEAR(coarse[i].transmitted, fine[i].transmitted, 1e-4) << specimen << " " << aspect;
+      }
+    }
+}
+
+TEST(Solver, LeafThatAbsorbsNothingLosesNothing) {
+  for (const char* specimen : {"soybean", "maize"}) {
+    TissueParams params = find_specimen(specimen)->params;
+    params.mesophyll_fraction = 0;
+    for (const Shares& s : solve(TissueModel(params).at(800), std::array{0.0, 45.0, 90.0, 91.0, 180.0}))
+      EXPECT_NEAR(s.surface + s.subsurface + s.transmitted, 1, 1e-12);
+  }
+}
+
+TEST(Table, WalksAndSolutionAgreeAtEveryDegree) {
+  constexpr int kRays = 3000;
+  const double limit = test::z_limit(2 * 3 * 181 * 3);
+  for (const char* specimen : {"soybean", "maize"}) {
+    const ThreadPool pool(2);
+    const Table walked = make_table(request_of(specimen, TableMethod::monte_carlo, kRays), pool);
+    const Table solved = make_table(request_of(specimen, TableMethod::solve), pool);
+    const auto expect_close = [&](double measured, double exact, size_t i) {
+      // Few counts are far from normal: half a count and the score test's variance, that of the exact value.
+      const double slack = limit * std::sqrt(exact * (1 - exact) / kRays) + (limit * limit / 6 + 0.5) / kRays;
+      EXPECT_NEAR(measured, exact, slack) << specimen << " degree " << i % Table::kDegrees;
+    };
+    for (size_t i = 0; i < walked.shares.size(); ++i) {
+      expect_close(walked.shares[i].surface, solved.shares[i].surface, i);
+      expect_close(walked.shares[i].subsurface, solved.shares[i].subsurface, i);
+      expect_close(walked.shares[i].transmitted, solved.shares[i].transmitted, i);
+    }
+  }
+}
+
+TEST(Table, IsTheSameToTheBitForAnyNumberOfThreads) {
+  for (const TableMethod method : {TableMethod::monte_carlo, TableMethod::solve}) {
+    const TableRequest request = request_of("soybean", method);
+    EXPECT_EQ(make_table(request, ThreadPool(1)).shares, make_table(request, ThreadPool(3)).shares);
+  }
+}
+
+TEST(Table, WavelengthDoesNotDependOnItsCompany) {
+  TableRequest request = request_of("soybean", TableMethod::monte_carlo);
+  const Table all = make_table(request, ThreadPool(2));
+  request.wavelengths_nm = {551};
+  const Table one = make_table(request, ThreadPool(2));
+  EXPECT_TRUE(std::equal(one.shares.begin(), one.shares.end(), all.shares.begin() + Table::kDegrees));
+}
+
+TEST(Table, GrazingLightIsAllReflected) {
+  for (const TableMethod method : {TableMethod::monte_carlo, TableMethod::solve}) {
+    const Table table = make_table(request_of("soybean", method, 10), ThreadPool(1));
+    EXPECT_EQ(table.at(0, 90).surface, 1);
+    EXPECT_EQ(table.at(0, 90).subsurface, 0);
+    EXPECT_EQ(table.at(0, 90).transmitted, 0);
+  }
+}
+
+class TableCache : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ =
+        fs::temp_directory_path() / ("frond-table-" + std::to_string(testing::UnitTest::GetInstance()->random_seed()) +
+                                     testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  Table get(const TableRequest& request) const { return cached_table(request, "test", ThreadPool(1), Log(true), dir_); }
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> result;
+    for (const auto& entry : fs::directory_iterator(dir_)) result.push_back(entry.path());
+    return result;
+  }
+
+  fs::path dir_;
+};
+
+TEST_F(TableCache, GivesBackTheSameBits) {
+  const TableRequest request = request_of("maize", TableMethod::solve);
+  const Table made = get(request), read = get(request);
+  EXPECT_EQ(made.shares, read.shares);
+  EXPECT_EQ(made.wavelengths_nm, read.wavelengths_nm);
+  EXPECT_EQ(made.error, read.error);
+  EXPECT_EQ(files().size(), 1u);
+}
+
+TEST_F(TableCache, IsReadWhereItStands) {
+  const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 10);
+  Table planted = make_table(request, ThreadPool(1));
+  planted.shares[7].transmitted = 0.125;
+  get(request);
+  std::ofstream(files().at(0)) << to_csv(planted, describe(request));
+  EXPECT_EQ(get(request).shares[7].transmitted, 0.125);
+}
+
+TEST_F(TableCache, KeepsTablesOfDifferentRequestsApart) {
+  const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 10);
+  std::vector<TableRequest> others(6, request);
+  others[0].params.lignin += 1e-9;
+  others[1].params.sieve_and_detour = true;
+  others[2].wavelengths_nm[1] += 1;
+  others[3].rays = 11;
+  others[4].seed = 1;
+  others[5].method = TableMethod::solve;
+  get(request);
+  for (const TableRequest& other : others) get(other);
+  EXPECT_EQ(files().size(), 7u);
+}
+
+TEST_F(TableCache, MakesADamagedFileAnew) {
+  const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 50);
+  const Table sound = get(request);
+  const fs::path file = files().at(0);
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string flipped = text;
+  flipped[text.size() / 2] ^= 1;
+  for (const std::string& damaged : {std::string(), text.substr(0, text.size() / 2), flipped, text + "0,455,0,0,0\n"}) {
+    std::ofstream(file) << damaged;
+    EXPECT_EQ(get(request).shares, sound.shares);
+    Table again;
+    std::ifstream repaired(file);
+    EXPECT_TRUE(from_csv(std::string{std::istreambuf_iterator<char>(repaired), {}}, describe(request), again));
+  }
+}
+
+TEST_F(TableCache, DoesWithoutADiskThatCannotBeWritten) {
+  const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 10);
+  const Table table = cached_table(request, "test", ThreadPool(1), Log(true), "/proc/none");
+  EXPECT_EQ(table.shares, make_table(request, ThreadPool(1)).shares);
+}
+
+double cos_degrees(double theta) { return std::cos(theta * std::numbers::pi / 180); }
+
+void expect_near(const SampledShares& looked_up, int lane, const Shares& exact, double tolerance, double theta) {
+  EXPECT_NEAR(looked_up.surface[lane], exact.surface, tolerance) << theta;
+  EXPECT_NEAR(looked_up.subsurface[lane], exact.subsurface, tolerance) << theta;
+  EXPECT_NEAR(looked_up.transmitted[lane], exact.transmitted, tolerance) << theta;
+}
+
+TEST(TableLookup, IsRightBetweenDegreesAndAtGrazing) {
+  const TableRequest request = request_of("soybean", TableMethod::solve);
+  const TableLookup lookup = TableLookup::for_lanes(make_table(request, ThreadPool(2)));
+  const Tissue green = TissueModel(request.params).at(551);
+  for (double theta = 0.25; theta < 180; theta += 1.5) {
+    const Shares exact = solve(green, std::array{theta})[0];
+    expect_near(lookup(static_cast<float>(cos_degrees(theta)), {}), 1, exact, 1e-4, theta);
+  }
+}
+
+TEST(TableLookup, InterpolatesWavelengths) {
+  TableRequest request = request_of("maize", TableMethod::solve);
+  request.wavelengths_nm = {500, 510, 520};
+  const Table table = make_table(request, ThreadPool(2));
+  const TableLookup lookup = TableLookup::for_spectra(table);
+  SampledWavelengths lambda;
+  lambda.count = 4;
+  lambda.nm = {500, 515, 520, 512};
+  for (const size_t degree : {0u, 40u, 140u}) {
+    const SampledShares s = lookup(static_cast<float>(cos_degrees(static_cast<double>(degree))), lambda);
+    const auto blend = [&](double part) {
+      const Shares &a = table.at(1, degree), &b = table.at(2, degree);
+      return Shares{a.surface + part * (b.surface - a.surface), a.subsurface + part * (b.subsurface - a.subsurface),
+                    a.transmitted + part * (b.transmitted - a.transmitted)};
+    };
+    expect_near(s, 0, table.at(0, degree), 1e-4, 0);
+    expect_near(s, 1, blend(0.5), 1e-4, 0);
+    expect_near(s, 2, blend(1), 1e-4, 0);
+    expect_near(s, 3, blend(0.2), 1e-4, 0);
+  }
+}
+
+TEST(TableLookup, NeverGivesMoreThanAll) {
+  TableRequest request = request_of("soybean", TableMethod::monte_carlo, 20);
+  request.params.mesophyll_fraction = 0;
+  const TableLookup lookup = TableLookup::for_lanes(make_table(request, ThreadPool(1)));
+  for (int i = -1000; i <= 1000; ++i) {
+    const SampledShares s = lookup(static_cast<float>(i) / 1000, {});
+    for (int lane = 0; lane < 3; ++lane) {
+      EXPECT_GE(std::min({s.surface[lane], s.subsurface[lane], s.transmitted[lane]}), 0);
+      EXPECT_LE(s.surface[lane] + s.subsurface[lane] + s.transmitted[lane], 1 + 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace frond::leaf
