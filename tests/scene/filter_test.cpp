@@ -34,9 +34,16 @@ std::unique_ptr<Filter> make(std::string_view name, std::vector<ParsedParam> par
 }
 
 TEST(Filters, WeightsAverageToOneAndCentreOnThePixel) {
-  for (const std::string_view name : {"box", "triangle", "gaussian", "mitchell", "sinc"}) {
+  struct Case {
+    std::string_view name;
+    double sign_changes;  ///< along an axis
+  };
+  for (const auto& [name, sign_changes] :
+       {Case{"box", 0}, {"triangle", 0}, {"gaussian", 0}, {"mitchell", 2}, {"sinc", 4}}) {
+    // A sign that changes within a step of the grid is misplaced by half of it at most; |weight| is below 1.5.
+    const double tolerance = 1e-5 + 2 * sign_changes * 1e-3 * 1.5;
     const Moments m = moments(*make(name));
-    EXPECT_NEAR(m.weight, 1, 2e-3) << name;  // negative lobes start between grid points
+    EXPECT_NEAR(m.weight, 1, tolerance) << name;
     EXPECT_NEAR(m.x, 0, 1e-3) << name;
   }
 }
@@ -51,9 +58,8 @@ TEST(Filters, SecondMomentsAreThoseOfTheShapes) {
   EXPECT_NEAR(moments(*make("gaussian", radii(5))).xx, 0.25, 1e-3);
 }
 
-TEST(Filters, MitchellKeepsQuadratics) {
-  // B + 2C = 1 makes the cubic exact for linear functions, and its second moment is (12 - ... ) known: B/3 in squares of
-  // half the radius.
+TEST(Filters, MitchellHasItsSecondMoment) {
+  // B / 3, in squares of half the radius.
   EXPECT_NEAR(moments(*make("mitchell")).xx, (1.0 / 3) / 3, 5e-3);
 }
 

@@ -51,9 +51,10 @@ TEST(PaddedSobol, OneDimensionIsStratified) {
   EXPECT_EQ(cells.size(), 1024u);
 }
 
-/// Pearson correlation of the first numbers of two streams; |r| sqrt(n) is standard normal where they are independent, so
-/// 5 means a false alarm in 1.7 million.
-double correlation_score(Sampler& a, std::pair<int, int> pixel_a, int skip_a, Sampler& b, std::pair<int, int> pixel_b, int skip_b) {
+/// Pearson correlation of the first numbers of two streams; |r| sqrt(n) is standard normal where they are independent,
+/// so 5 means a false alarm in 1.7 million.
+double correlation_score(Sampler& a, std::pair<int, int> pixel_a, int skip_a, Sampler& b, std::pair<int, int> pixel_b,
+                         int skip_b) {
   constexpr int kCount = 4096;
   double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
   for (uint64_t i = 0; i < kCount; ++i) {

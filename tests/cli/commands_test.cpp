@@ -1,0 +1,209 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "scene/image_file.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code;
+  std::string out, err;
+};
+
+Outcome frond_command(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "frond");
+  std::vector<const char*> argv;
+  for (const std::string& a : arguments) argv.push_back(a.c_str());
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  const int code = run(int(argv.size()), argv.data());
+  std::fflush(stdout);
+  return {code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Commands : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("SOURCE_DATE_EPOCH", "0", 1);
+    folder_.write("scene.pbrt", R"(
+LookAt 0 0 2  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+Sampler "paddedsobol" "integer pixelsamples" 4
+WorldBegin
+LightSource "infinite" "spectrum L" "stdillum-D65"
+MakeNamedMaterial "thing" "string type" "diffuse" "rgb reflectance" [.2 .5 .1]
+NamedMaterial "thing"
+Shape "sphere" "float radius" .5
+)");
+  }
+  std::string path(const std::string& name) const { return folder_.name_of(name); }
+  Outcome render(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"render", path("scene.pbrt"), "--no-cache"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return frond_command(arguments);
+  }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_.name_of("."))) names.push_back(entry.path().filename().string());
+    return names;
+  }
+
+  TestFolder folder_{"cli"};
+};
+
+TEST_F(Commands, BadUseExitsWithOneAndAMessage) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {}, {"rendr"}, {"render"}, {"render", "--spp", "0", "x.pbrt"}, {"render", "x.pbrt", "--nonsense"},
+           {"render", "--threads", "-1", "x.pbrt"}, {"render", "/no/such/scene.pbrt"}, {"describe", "abn"}, {"describe"}}) {
+    const Outcome o = frond_command(arguments);
+    EXPECT_EQ(o.code, 1) << ::testing::PrintToString(arguments);
+    EXPECT_THAT(o.err, ::testing::Not(IsEmpty())) << ::testing::PrintToString(arguments);
+  }
+}
+
+TEST_F(Commands, HelpAndVersionExitWithZero) {
+  for (const char* flag : {"--help", "--version"}) EXPECT_EQ(frond_command({flag}).code, 0);
+}
+
+TEST_F(Commands, ListNamesEveryPluginAndDescribeItsParameters) {
+  const Outcome list = frond_command({"list"});
+  EXPECT_EQ(list.code, 0);
+  for (const PluginInfo* info : all_plugins(builtin_registry())) {
+    EXPECT_THAT(list.out, HasSubstr(std::string(info->name)));
+    const Outcome describe = frond_command({"describe", std::string(info->name)});
+    EXPECT_EQ(describe.code, 0);
+    for (const Param& p : info->params) EXPECT_THAT(describe.out, HasSubstr(std::string(p.name)));
+  }
+  EXPECT_THAT(frond_command({"describe", "abn"}).err, HasSubstr("did you mean \"abm\"?"));
+}
+
+TEST_F(Commands, RenderWritesWhatItSays) {
+  const Outcome o = render({"-o", path("a.exr"), "--spp", "3", "--seed", "9", "--wavelengths", "smpte", "--json", "-q"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, IsEmpty());
+  const auto json = nlohmann::json::parse(o.out);
+  EXPECT_EQ(json["samples_per_pixel"], 3);
+  EXPECT_EQ(json["paths"], 24 * 16 * 3);
+  const ImageFile file = read_image(path("a.exr"), {});
+  EXPECT_EQ(file.image.width, 24);
+  EXPECT_EQ(file.image.height, 16);
+  EXPECT_EQ(file.header.color_space, "linear SMPTE-C");
+  EXPECT_EQ(file.header.text.at("frond:seed"), "9");
+  EXPECT_EQ(file.header.text.at("frond:samples"), "3");
+  EXPECT_EQ(file.header.text.at("frond:command"), "frond render scene.pbrt --spp 3 --seed 9 --wavelengths smpte");
+  EXPECT_EQ(file.header.text.at("frond:scene_hash").size(), 16u);
+  ASSERT_TRUE(file.chromaticities);
+  EXPECT_NEAR(file.chromaticities->red.x, 0.630, 1e-6);
+  // The corners see the sky of radiance 1, the centre the sphere.
+  EXPECT_NEAR(file.image.at(0, 0, *file.image.channel("G")), 1, 1e-5);
+  EXPECT_LT(file.image.at(12, 8, *file.image.channel("R")), 0.6);
+}
+
+TEST_F(Commands, TheSameFileOnAnyNumberOfThreads) {
+  for (const char* threads : {"1", "2", "5"})
+    ASSERT_EQ(render({"-o", path(std::string("t") + threads + ".exr"), "--threads", threads, "-q"}).code, 0);
+  EXPECT_EQ(bytes_of(path("t1.exr")), bytes_of(path("t2.exr")));
+  EXPECT_EQ(bytes_of(path("t1.exr")), bytes_of(path("t5.exr")));
+  ASSERT_EQ(render({"-o", path("other.exr"), "--seed", "2", "-q"}).code, 0);
+  EXPECT_NE(bytes_of(path("t1.exr")), bytes_of(path("other.exr")));
+}
+
+TEST_F(Commands, ACropIsAPartOfTheWhole) {
+  ASSERT_EQ(render({"-o", path("whole.exr"), "-q"}).code, 0);
+  ASSERT_EQ(render({"-o", path("part.exr"), "--crop", "6,18,4,8", "-q"}).code, 0);
+  const Image whole = read_image(path("whole.exr"), {}).image, part = read_image(path("part.exr"), {}).image;
+  ASSERT_EQ(part.width, 12);
+  ASSERT_EQ(part.height, 4);
+  const size_t g = *whole.channel("G");
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 12; ++x) EXPECT_EQ(part.at(x, y, g), whole.at(x + 6, y + 4, g));
+  EXPECT_EQ(render({"-o", path("x.exr"), "--crop", "5,5,0,1"}).code, 1);
+  EXPECT_EQ(render({"-o", path("x.exr"), "--crop", "0,.5,0"}).code, 1);
+}
+
+TEST_F(Commands, QuickIsSmallerAndCoarser) {
+  const Outcome o = render({"-o", path("q.png"), "--quick", "--json", "-q"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(read_image(path("q.png"), {}).image.width, 12);
+  EXPECT_EQ(nlohmann::json::parse(o.out)["samples_per_pixel"], 1);
+}
+
+TEST_F(Commands, SwapChangesTheModelByOneWord) {
+  const Outcome o = render({"-o", path("s.exr"), "--swap", "thing=diffusetransmission", "-q"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thin=diffuse"}).err, HasSubstr("did you mean \"thing\"?"));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing=difuse"}).err, HasSubstr("did you mean \"diffuse\"?"));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing"}).err, HasSubstr("MATERIAL=PLUGIN"));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing=diffusetransmission,scal=2"}).err, HasSubstr("did you mean \"scale\"?"));
+}
+
+TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
+  const auto before = files();
+  for (const std::string& output : {path("no/such/folder.exr"), path("picture.xyz"), folder_.name_of(".")}) {
+    const Outcome o = render({"-o", output, "--spp", "100000000"});  // would take days
+    EXPECT_EQ(o.code, 1) << output;
+    EXPECT_THAT(o.err, ::testing::Not(IsEmpty()));
+  }
+  EXPECT_EQ(render({"-o", path("a.png"), "--display", "no such display", "--spp", "100000000"}).code, 1);
+  EXPECT_EQ(render({"-o", path("a.exr"), "--wavelengths", "rgb", "--spp", "100000000"}).code, 1);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Commands, ErrorsInTheSceneNameTheirPlace) {
+  folder_.write("bad.pbrt", "WorldBegin\nMaterial \"diffuse\" \"rgb reflectanc\" [1 1 1]\nShape \"sphere\"\n");
+  const Outcome o = frond_command({"render", path("bad.pbrt"), "-o", path("bad.exr")});
+  EXPECT_EQ(o.code, 1);
+  EXPECT_THAT(o.err, HasSubstr("bad.pbrt:2:20: material \"diffuse\" has no parameter \"reflectanc\"; did you mean \"reflectance\"?"));
+  EXPECT_FALSE(fs::exists(path("bad.exr")));
+}
+
+TEST_F(Commands, DifferenceTellsNoiseFromBias) {
+  for (const char* seed : {"1", "2"}) {
+    ASSERT_EQ(render({"-o", path(std::string("a") + seed + ".exr"), "--seed", seed, "-q"}).code, 0);
+    ASSERT_EQ(render({"-o", path(std::string("b") + seed + ".exr"), "--seed", std::string(seed) + "1", "-q"}).code, 0);
+    ASSERT_EQ(render({"-o", path(std::string("c") + seed + ".exr"), "--seed", std::string(seed) + "2", "--swap", "thing=diffusetransmission", "-q"}).code, 0);
+  }
+  const auto difference = [&](const char* a, const char* b) {
+    const Outcome o = frond_command({"difference", path(a + std::string("1.exr")), path(a + std::string("2.exr")),
+                                     path(b + std::string("1.exr")), path(b + std::string("2.exr")), "--json", "-o", path("d.png")});
+    EXPECT_EQ(o.code, 0) << o.err;
+    return nlohmann::json::parse(o.out);
+  };
+  const auto same = difference("a", "b"), other = difference("a", "c");
+  EXPECT_GT(same["rms_green"], 0);
+  EXPECT_LT(same["bias_green"], same["noise_green"]);
+  EXPECT_GT(other["bias_green"], other["noise_green"]);
+  EXPECT_EQ(read_image(path("d.png"), {}).image.width, 24);
+}
+
+TEST_F(Commands, ConvertAveragesAndShows) {
+  for (const char* seed : {"1", "2"}) ASSERT_EQ(render({"-o", path(std::string("a") + seed + ".exr"), "--seed", seed, "-q"}).code, 0);
+  ASSERT_EQ(frond_command({"convert", path("a1.exr"), path("a2.exr"), "-o", path("mean.exr")}).code, 0);
+  const Image a = read_image(path("a1.exr"), {}).image, b = read_image(path("a2.exr"), {}).image, mean = read_image(path("mean.exr"), {}).image;
+  const size_t g = *a.channel("G"), m = *mean.channel("G");
+  EXPECT_NEAR(mean.at(12, 8, m), (a.at(12, 8, g) + b.at(12, 8, g)) / 2, 1e-6);
+  ASSERT_EQ(frond_command({"convert", path("mean.exr"), "-o", path("mean.png")}).code, 0);
+  EXPECT_EQ(frond_command({"convert", path("mean.png"), "-o", path("again.png")}).code, 1);
+}
+
+}  // namespace
+}  // namespace frond
