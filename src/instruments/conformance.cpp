@@ -59,9 +59,13 @@ std::set<Law> broken_laws(std::span<const Finding> findings) {
 }
 
 std::string failures_text(std::span<const Finding> findings) {
+  constexpr int kLines = 20;
   std::string text;
+  int failures = 0;
   for (const Finding& f : findings)
-    if (!f.passed) text += fmt::format("{} [{}] {} (p = {:.2g})\n", law_name(f.law), f.where, f.message, f.p_value);
+    if (!f.passed && ++failures <= kLines)
+      text += fmt::format("{} [{}] {} (p = {:.2g})\n", law_name(f.law), f.where, f.message, f.p_value);
+  if (failures > kLines) text += fmt::format("and {} more\n", failures - kLines);
   return text;
 }
 

@@ -64,7 +64,7 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
 void judge(Findings& findings, double false_alarm_rate);
 
 std::set<Law> broken_laws(std::span<const Finding> findings);
-/// One line for each finding that did not pass.
+/// A line for each finding that did not pass, up to 20.
 std::string failures_text(std::span<const Finding> findings);
 
 }  // namespace frond

@@ -27,8 +27,8 @@ struct fmt::formatter<frond::SampledSpectrum> : fmt::formatter<float> {
 
 namespace frond {
 
-/// Everything that was asked of a BSDF for one direction wo: the material the laws are judged by. Only conformance*.cpp
-/// include this.
+/// Everything that was asked of a BSDF for one direction wo: the material the laws are judged by. Part of
+/// the laws' own implementation.
 struct Series {
   /// f for a direction uniform in one bin.
   struct Probe {

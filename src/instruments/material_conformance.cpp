@@ -5,11 +5,21 @@
 
 #include <stdexcept>
 
+#include "instruments/examination.h"
+
 namespace frond {
 namespace {
 
-constexpr Hit kFlat{
-    .p = {0.3f, 0.2f, 0.1f}, .ng = {0, 0, 1}, .shading = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .uv = {0.5f, 0.5f}};
+Hit flat_hit() {
+  return {.p = {0.3f, 0.2f, 0.1f}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .uv = {0.5f, 0.5f}};
+}
+
+/// Where a shading normal leans away from the surface.
+Hit tilted_hit() {
+  Hit hit = flat_hit();
+  hit.shading = Frame::around(normalize(Vec3{0.5f, -0.3f, 0.8f}));
+  return hit;
+}
 
 std::string wavelengths_text(const SampledWavelengths& lambda) {
   std::string text;
@@ -59,10 +69,12 @@ Findings examine(const MaterialInfo& info, std::span<const ParameterSet> sets, c
     const auto material = make_ready(info, set, &set == sets.data(), where, how, findings);
     if (!material) continue;
     arena.reset();
-    const Bsdf* bsdf = material->evaluate(kFlat, lambda, arena);
-    if (!bsdf) continue;  // the surface is not there
-    const Findings more = examine(*bsdf, lambda, how.claims(set.plugin), effort, where);
-    findings.insert(findings.end(), more.begin(), more.end());
+    if (const Bsdf* bsdf = material->evaluate(flat_hit(), lambda, arena)) {  // else the surface is not there
+      const Findings more = examine(*bsdf, lambda, how.claims(set.plugin), effort, where);
+      findings.insert(findings.end(), more.begin(), more.end());
+    }
+    if (const Bsdf* bsdf = material->evaluate(tilted_hit(), lambda, arena))
+      check_awkward_values(*bsdf, where + ", under a tilted shading normal", effort.seed, findings);
   }
   return findings;
 }

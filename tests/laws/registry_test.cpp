@@ -2,8 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "core/texture.h"
 #include "tests/laws/setup.h"
+#include "tests/planted/planted.h"
 
 /// All laws over all built-in materials.
 namespace frond::test {
@@ -48,13 +52,15 @@ ParsedParam level(const std::string& name, double value) {
 /// Tables of a size that is quick to make: what they hold is tested elsewhere.
 const SweepOptions kSweep{.pinned = {}};
 
-Findings run(const MaterialInfo& info, std::span<const ParameterSet> sets, const WavelengthStrategy& wavelengths,
-             const Effort& effort, const ClaimsOf& claims = claims_of) {
+/// Runs the laws and fails the test where one is broken.
+Findings expect_lawful(const MaterialInfo& info, std::span<const ParameterSet> sets,
+                       const WavelengthStrategy& wavelengths, const Effort& effort, const ClaimsOf& claims = claims_of,
+                       PlainResolver resolver = two_materials()) {
   const Setup setup(wavelengths);
-  PlainResolver resolver = two_materials();
   Findings findings =
       examine(info, sets, {.preparation = setup.preparation, .resolver = resolver, .claims = claims, .effort = effort});
   judge(findings, kFalseAlarmRate);
+  EXPECT_THAT(broken_laws(findings), ::testing::IsEmpty()) << failures_text(findings);
   return findings;
 }
 
@@ -64,7 +70,7 @@ class Laws : public ::testing::TestWithParam<const MaterialInfo*> {
 
   void expect_defaults_hold(const WavelengthStrategy& wavelengths) const {
     const auto sets = parameter_sweep(info(), kSweep);
-    EXPECT_EQ(failures_text(run(info(), std::span(sets).first(1), wavelengths, {})), "");
+    expect_lawful(info(), std::span(sets).first(1), wavelengths, {});
   }
 };
 
@@ -84,23 +90,64 @@ TEST_P(Laws, HoldAtTheDefaultsWithARetiredLane) {
 TEST_P(Laws, HoldOverTheDeclaredBox) {
   const auto sets = parameter_sweep(info(), kSweep);
   const Findings findings =
-      run(info(), sets, GivenWavelengths({608, 551, 455}), {.samples = 4000, .angles_deg = {0, 50, 89}});
-  EXPECT_EQ(failures_text(findings), "");
+      expect_lawful(info(), sets, GivenWavelengths({608, 551, 455}), {.samples = 4000, .angles_deg = {0, 50, 89}});
   const auto made = std::ranges::count(findings, Law::parameters, &Finding::law);
   EXPECT_GE(made, static_cast<ptrdiff_t>(sets.size() / 2)) << "most sets are refused: the sweep says little";
 }
 
 void expect_lossless(std::string_view name, std::vector<ParsedParam> params) {
   const ParameterSet set{"lossless", {std::string(name), {}, std::move(params)}};
-  const Findings findings = run(material(name), {&set, 1}, GivenWavelengths({608, 551, 455}), {},
-                                [](const ParsedPlugin&) { return Claims{.lossless = true}; });
-  EXPECT_EQ(failures_text(findings), "");
+  expect_lawful(material(name), {&set, 1}, GivenWavelengths({608, 551, 455}), {},
+                [](const ParsedPlugin&) { return Claims{.lossless = true}; });
 }
 
 TEST(Lossless, WhiteDiffuseReturnsAllLight) { expect_lossless("diffuse", {level("reflectance", 1)}); }
 
 TEST(Lossless, DiffuseTransmissionReturnsAllLightWhereItsSharesAddUp) {
   expect_lossless("diffusetransmission", {level("reflectance", 0.7), level("transmittance", 0.3)});
+}
+
+/// Of a `mix`, half and half, of a built-in material and one of the test's own.
+template <class M>
+void expect_lawful_mixture(const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455})) {
+  PlainResolver resolver([](const std::string& name) -> std::shared_ptr<Material> {
+    PlainResolver nothing([](const std::string&) { return nullptr; });
+    const MaterialInfo own{{"material", "own", "", "", {}}, make_material<M>};
+    const MaterialInfo& info = name == "one" ? material("diffusetransmission") : own;
+    return info.make(Params(info, {}, nothing));
+  });
+  const MaterialInfo& mix = material("mix");
+  const auto sets = parameter_sweep(mix, {});
+  expect_lawful(mix, std::span(sets).first(1), wavelengths, {}, claims_of, resolver);
+}
+
+struct NotThere final : Material {
+  explicit NotThere(const Params&) {}
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
+};
+
+TEST(Mix, ObeysWithAStochasticMaterialInIt) { expect_lawful_mixture<Everywhere<GoodStochastic>>(); }
+TEST(Mix, ObeysWithANarrowLobeInIt) { expect_lawful_mixture<Everywhere<GoodNarrowLobe>>(); }
+TEST(Mix, ObeysWithAMirrorInIt) { expect_lawful_mixture<Everywhere<GoodCoatedDiffuse>>(); }
+TEST(Mix, ObeysWhereOneMaterialIsNotThere) {
+  expect_lawful_mixture<NotThere>();
+  expect_lawful_mixture<NotThere>(GivenWavelengths({420, 500, 580, 660}, {1}));
+}
+
+/// Lines of src/materials that define a plugin.
+ptrdiff_t defined_materials() {
+  ptrdiff_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(FROND_SOURCE_DIR "/src/materials")) {
+    if (entry.path().extension() != ".cpp") continue;
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);)
+      if (line.starts_with("extern const MaterialInfo") && line.find('{') != std::string::npos) ++count;
+  }
+  return count;
+}
+
+TEST(Registry, HoldsEveryMaterialThatIsDefined) {
+  EXPECT_EQ(static_cast<ptrdiff_t>(builtin_materials().size()), defined_materials());
 }
 
 }  // namespace

@@ -1,9 +1,17 @@
 #pragma once
 
 #include <algorithm>
+#include <ostream>
 #include <vector>
 
 #include "instruments/material_conformance.h"
+
+namespace frond {
+
+/// How a failed test names a law.
+inline void PrintTo(Law law, std::ostream* out) { *out << law_name(law); }
+
+}  // namespace frond
 
 namespace frond::test {
 
