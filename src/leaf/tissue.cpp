@@ -1,53 +1,15 @@
 #include "leaf/tissue.h"
 
+#include <algorithm>
+
 #include "leaf/constants.h"
 
 namespace frond::leaf {
 namespace {
 
-// Baranoski 2006 and Baranoski and Eng 2007.
-constexpr Specimen kSpecimens[] = {
-    {"soybean",
-     "Soybean, a bifacial leaf.",
-     {.structure = Structure::bifacial,
-      .thickness_m = 1.66e-4,
-      .mesophyll_fraction = 0.5,
-      .chlorophyll_a = 3.9775,
-      .chlorophyll_b = 1.1613,
-      .carotenoids = 1.1323,
-      .protein = 78.7059,
-      .cellulose = 37.7565,
-      .lignin = 10.7441,
-      .cuticle_aspect = 5,
-      .epidermis_aspect = 5,
-      .spongy_aspect = 5,
-      .palisade_aspect = 1}},
-    {"maize",
-     "Maize, a unifacial leaf.",
-     {.structure = Structure::unifacial,
-      .thickness_m = 2.04e-4,
-      .mesophyll_fraction = 0.8,
-      .chlorophyll_a = 2.895146,
-      .chlorophyll_b = 0.79866,
-      .carotenoids = 0.658895,
-      .protein = 53.08714,
-      .cellulose = 53.18709,
-      .lignin = 6.05853,
-      .cuticle_aspect = 10,
-      .epidermis_aspect = 5,
-      .spongy_aspect = 5,
-      .palisade_aspect = 5}},
-};
+constexpr double kStep_nm = 5;
 
 }  // namespace
-
-std::span<const Specimen> specimens() { return kSpecimens; }
-
-const Specimen* find_specimen(std::string_view name) {
-  for (const Specimen& specimen : kSpecimens)
-    if (specimen.name == name) return &specimen;
-  return nullptr;
-}
 
 double absorption_coefficient(const TissueParams& p, double lambda_nm) {
   const Constants c = constants_at(lambda_nm);
@@ -58,22 +20,36 @@ double absorption_coefficient(const TissueParams& p, double lambda_nm) {
 TissueModel::TissueModel(const TissueParams& params)
     : params_(params),
       lobes_(std::make_shared<const Lobes>(Lobes{Lobe(params.cuticle_aspect), Lobe(params.epidermis_aspect),
-                                                 Lobe(params.spongy_aspect), Lobe(params.palisade_aspect)})) {}
+                                                 Lobe(params.spongy_aspect), Lobe(params.palisade_aspect)})) {
+  const double thickness = params.mesophyll_fraction * params.thickness_m;
+  for (double nm = kConstantsRange_nm.min; nm <= kConstantsRange_nm.max; nm += kStep_nm) {
+    const Constants c = constants_at(nm);
+    optics_.push_back(
+        {c.n_cuticle, c.n_mesophyll, c.n_antidermal_wall, absorption_coefficient(params, nm) * thickness});
+  }
+}
 
-Tissue TissueModel::at(double lambda_nm) const {
-  const Constants c = constants_at(lambda_nm);
-  const double depth = absorption_coefficient(params_, lambda_nm) * params_.mesophyll_fraction * params_.thickness_m;
+TissueModel::Optics TissueModel::optics_at(double lambda_nm) const {
+  const double x = (lambda_nm - kConstantsRange_nm.min) / kStep_nm;
+  const auto below = std::min(static_cast<size_t>(std::max(0.0, x)), optics_.size() - 2);
+  const double t = x - static_cast<double>(below), s = 1 - t;
+  const Optics &a = optics_[below], &b = optics_[below + 1];
+  return {s * a.n_cuticle + t * b.n_cuticle, s * a.n_mesophyll + t * b.n_mesophyll,
+          s * a.n_antidermal_wall + t * b.n_antidermal_wall, s * a.depth + t * b.depth};
+}
+
+Tissue TissueModel::at(double lambda_nm) const& {
+  const auto [n_cuticle, n_mesophyll, n_antidermal_wall, depth] = optics_at(lambda_nm);
   const Lobe *cut = &lobes_->cuticle, *epi = &lobes_->epidermis, *spo = &lobes_->spongy, *pal = &lobes_->palisade;
   constexpr const Lobe* none = nullptr;
   const bool bifacial = params_.structure == Structure::bifacial;
 
   Tissue t{};
-  t.owner = lobes_;
   t.sieve_and_detour = params_.sieve_and_detour;
   t.air_space_moves = !bifacial;
   // Going down: reflected, refracted; going up: reflected, refracted.
   if (bifacial) {
-    t.n = {1, c.n_cuticle, c.n_mesophyll, 1, c.n_antidermal_wall, c.n_cuticle, 1};
+    t.n = {1, n_cuticle, n_mesophyll, 1, n_antidermal_wall, n_cuticle, 1};
     t.optical_depth = {0, 0, depth, 0, 0, 0, 0};
     t.lobes = {{{{{cut, epi}, {epi, none}}},     // air, adaxial epidermis
                 {{{epi, pal}, {pal, epi}}},      // adaxial epidermis, mesophyll
@@ -82,7 +58,7 @@ Tissue TissueModel::at(double lambda_nm) const {
                 {{{none, epi}, {epi, none}}},    // antidermal wall, abaxial epidermis
                 {{{epi, none}, {cut, epi}}}}};   // abaxial epidermis, air
   } else {
-    t.n = {1, c.n_cuticle, c.n_mesophyll, 1, c.n_mesophyll, c.n_cuticle, 1};
+    t.n = {1, n_cuticle, n_mesophyll, 1, n_mesophyll, n_cuticle, 1};
     t.optical_depth = {0, 0, depth, 0, depth, 0, 0};
     t.lobes = {{{{{cut, epi}, {epi, none}}},    // air, adaxial epidermis
                 {{{epi, spo}, {spo, epi}}},     // adaxial epidermis, mesophyll

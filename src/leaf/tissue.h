@@ -2,45 +2,18 @@
 
 #include <array>
 #include <memory>
-#include <span>
-#include <string_view>
+#include <vector>
 
 #include "leaf/lobe.h"
+#include "leaf/tissue_params.h"
 
 namespace frond::leaf {
-
-/// How the cells of a leaf are layered (Baranoski 2006; Baranoski and Eng 2007).
-enum class Structure : uint8_t {
-  bifacial,   ///< palisade cells above, spongy cells below, an air space under both
-  unifacial,  ///< one kind of mesophyll on both sides of an air space, whose place varies from ray to ray
-};
-
-/// A leaf in the terms of its biology.
-struct TissueParams {
-  Structure structure = Structure::bifacial;
-  double thickness_m = 0;
-  double mesophyll_fraction = 0;  ///< of the thickness, in [0, 1]: the part that absorbs
-  /// Concentrations in the mesophyll, kg/m^3.
-  double chlorophyll_a = 0, chlorophyll_b = 0, carotenoids = 0, protein = 0, cellulose = 0, lignin = 0;
-  /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
-  double cuticle_aspect = 0, epidermis_aspect = 0, spongy_aspect = 0, palisade_aspect = 0;
-  bool sieve_and_detour = false;  ///< the later form of Beer's law, with cos(cos theta) for cos theta
-};
-
-/// A leaf measured by botanists, ready to use.
-struct Specimen {
-  std::string_view name, doc;
-  TissueParams params;
-};
-std::span<const Specimen> specimens();
-/// nullptr where there is none of that name.
-const Specimen* find_specimen(std::string_view name);
 
 /// Of the mesophyll, 1/m.
 double absorption_coefficient(const TissueParams& params, double lambda_nm);
 
 /// A leaf at one wavelength, as a ray meets it. Interfaces 0 to 5 count from the adaxial side. Medium i lies above
-/// interface i: 0 is the air over the leaf, 6 the air under it.
+/// interface i: 0 is the air over the leaf, 6 the air under it. The lobes belong to the TissueModel that made it.
 struct Tissue {
   static constexpr size_t kInterfaces = 6, kMedia = 7, kBeneath = 6;
 
@@ -51,28 +24,34 @@ struct Tissue {
   /// The air space (medium 3) lies anywhere in the mesophyll: media 2 and 4 share the depth as p to 1 - p, p uniform.
   bool air_space_moves;
   bool sieve_and_detour;
-  std::shared_ptr<const void> owner;  ///< of the lobes
 
   double n_cuticle() const { return n[1]; }
   const Lobe& surface_lobe() const { return *lobes[0][0][0]; }
 };
 
-/// A leaf at all wavelengths. Cheap to copy.
+/// A leaf at all wavelengths. Must outlive the tissues that it makes; copies share their lobes.
 class TissueModel {
  public:
   explicit TissueModel(const TissueParams& params);
 
   const TissueParams& params() const { return params_; }
-  /// lambda_nm within kConstantsRange_nm.
-  Tissue at(double lambda_nm) const;
+  /// lambda_nm within kConstantsRange_nm. Quick enough for the render loop.
+  Tissue at(double lambda_nm) const&;
+  Tissue at(double lambda_nm) && = delete;
 
  private:
   struct Lobes {
     Lobe cuticle, epidermis, spongy, palisade;
   };
+  /// What varies with the wavelength.
+  struct Optics {
+    double n_cuticle, n_mesophyll, n_antidermal_wall, depth;
+  };
+  Optics optics_at(double lambda_nm) const;
 
   TissueParams params_;
   std::shared_ptr<const Lobes> lobes_;
+  std::vector<Optics> optics_;  ///< at every 5 nm: linear between, like the constants that they come from
 };
 
 /// Share of light that the mesophyll lets through, for a ray at |cos| `c` from the normal: Beer's law.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "leaf/specimens.h"
 #include "leaf/tissue.h"
 
 namespace frond::leaf {
@@ -42,7 +43,20 @@ TEST(TissueModel, SumsAbsorptionOverWhatTheMesophyllHolds) {
   const double mu =
       5.1388 * c.chlorophyll + 1.1323 * c.carotenoids + 78.7059 * c.protein + 48.5006 * c.cellulose + c.water;
   EXPECT_NEAR(absorption_coefficient(p, 455), mu, 1e-9 * mu);
-  EXPECT_NEAR(TissueModel(p).at(455).optical_depth[2], mu * 0.5 * 1.66e-4, 1e-12);
+  const TissueModel model(p);
+  EXPECT_NEAR(model.at(455).optical_depth[2], mu * 0.5 * 1.66e-4, 1e-12);
+}
+
+TEST(TissueModel, FollowsTheConstantsAtEveryWavelength) {
+  const TissueParams& p = find_specimen("maize")->params;
+  const TissueModel model(p);
+  for (double nm = 360; nm <= 2500; nm += 0.5) {
+    const Tissue tissue = model.at(nm);
+    ASSERT_NEAR(tissue.n_cuticle(), constants_at(nm).n_cuticle, 1e-12) << nm;
+    ASSERT_NEAR(tissue.n[2], constants_at(nm).n_mesophyll, 1e-12) << nm;
+    const double depth = absorption_coefficient(p, nm) * p.mesophyll_fraction * p.thickness_m;
+    ASSERT_NEAR(tissue.optical_depth[4], depth, 1e-12 * (1 + depth)) << nm;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "leaf/lookup.h"
+#include "leaf/specimens.h"
 #include "leaf/table_cache.h"
 #include "tests/leaf/statistics.h"
 
@@ -41,7 +42,8 @@ TEST(Solver, ConvergesAsStated) {
     for (const double aspect : {0.0, 0.5, 5.0, 100.0}) {
       TissueParams params = find_specimen(specimen)->params;
       params.epidermis_aspect = params.spongy_aspect = params.palisade_aspect = aspect;
-      const Tissue tissue = TissueModel(params).at(455);
+      const TissueModel model(params);
+      const Tissue tissue = model.at(455);
       const std::array angles{0.0, 50.0, 88.0, 110.0};
       const auto coarse = solve(tissue, angles), fine = solve(tissue, angles, 20);
       for (size_t i = 0; i < angles.size(); ++i) {
@@ -55,7 +57,8 @@ TEST(Solver, LeafThatAbsorbsNothingLosesNothing) {
   for (const char* specimen : {"soybean", "maize"}) {
     TissueParams params = find_specimen(specimen)->params;
     params.mesophyll_fraction = 0;
-    for (const Shares& s : solve(TissueModel(params).at(800), std::array{0.0, 45.0, 90.0, 91.0, 180.0}))
+    const TissueModel model(params);
+    for (const Shares& s : solve(model.at(800), std::array{0.0, 45.0, 90.0, 91.0, 180.0}))
       EXPECT_NEAR(s.surface + s.subsurface + s.transmitted, 1, 1e-12);
   }
 }
@@ -190,7 +193,8 @@ void expect_near(const SampledShares& looked_up, int lane, const Shares& exact, 
 TEST(TableLookup, IsRightBetweenDegreesAndAtGrazing) {
   const TableRequest request = request_of("soybean", TableMethod::solve);
   const TableLookup lookup = TableLookup::for_lanes(make_table(request, ThreadPool(2)));
-  const Tissue green = TissueModel(request.params).at(551);
+  const TissueModel model(request.params);
+  const Tissue green = model.at(551);
   for (double theta = 0.25; theta < 180; theta += 1.5) {
     const Shares exact = solve(green, std::array{theta})[0];
     expect_near(lookup(static_cast<float>(cos_degrees(theta)), {}), 1, exact, 1e-4, theta);

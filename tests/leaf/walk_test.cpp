@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <span>
 
 #include "leaf/fresnel.h"
+#include "leaf/specimens.h"
 #include "tests/leaf/statistics.h"
 
 namespace frond::leaf {
@@ -88,7 +90,8 @@ TEST(Walk, SieveAndDetourIsAsPublished) {
 TEST(Walk, SurfaceReflectsFresnelsShareOnBothSides) {
   constexpr double kAngles[] = {0, 30, 60, 75, 85, 89, 91, 110, 150, 180};
   const double limit = test::z_limit(static_cast<int>(std::size(kAngles)));
-  const Tissue tissue = model_of("soybean").at(550);
+  const TissueModel model = model_of("soybean");
+  const Tissue tissue = model.at(550);
   const double n = tissue.n_cuticle();
   for (const double theta : kAngles) {
     const Measured m = measure(tissue, theta, Absorption::analog, 100000);
@@ -108,7 +111,8 @@ TEST(Walk, WeightedAndAnalogAbsorptionAgree) {
     for (const double nm : {455.0, 550.0})
       for (const double theta : {20.0, 130.0})
         for (const bool sieve : {false, true}) {
-          const Tissue tissue = model_of(specimen, sieve).at(nm);
+          const TissueModel model = model_of(specimen, sieve);
+          const Tissue tissue = model.at(nm);
           const Measured a = measure(tissue, theta, Absorption::analog, 50000);
           const Measured w = measure(tissue, theta, Absorption::weighted, 50000);
           EXPECT_LT(std::abs(test::z_score(a.reflected, w.reflected)), limit) << specimen << nm << " " << theta;
@@ -122,13 +126,15 @@ TEST(Walk, LeafThatAbsorbsNothingLosesNothing) {
       for (const double theta : {0.0, 45.0, 89.99, 91.0, 170.0}) {
         TissueParams params = find_specimen(specimen)->params;
         params.mesophyll_fraction = 0;
-        const Measured m = measure(TissueModel(params).at(800), theta, absorption, 3000);
+        const TissueModel model(params);
+        const Measured m = measure(model.at(800), theta, absorption, 3000);
         EXPECT_NEAR(m.all_reflected.mean() + m.transmitted.mean(), 1, 1e-12) << specimen << theta;
       }
 }
 
 TEST(Walk, KeepsDirectionsUnitAndOnTheirSide) {
-  const Tissue tissue = model_of("soybean").at(800);
+  const TissueModel model = model_of("soybean");
+  const Tissue tissue = model.at(800);
   RandomStream rng(5);
   for (int i = 0; i < 100000; ++i) {
     const Vec3d wo = incidence(i % 2 ? 70 : 110);
@@ -144,7 +150,8 @@ TEST(Walk, NarrowestAndWidestLobesEnd) {
   params.mesophyll_fraction = 0;
   for (const double aspect : {0.0, 1000.0}) {
     params.cuticle_aspect = params.epidermis_aspect = params.spongy_aspect = params.palisade_aspect = aspect;
-    const Measured m = measure(TissueModel(params).at(550), 60, Absorption::analog, 2000);
+    const TissueModel model(params);
+    const Measured m = measure(model.at(550), 60, Absorption::analog, 2000);
     EXPECT_NEAR(m.all_reflected.mean() + m.transmitted.mean(), 1, 1e-12);
   }
 }
@@ -192,10 +199,11 @@ TEST(Walk, EstimatedFIsTheDensityOfTheWalk) {
   // Wide lobes, of which the interfaces cut off much.
   TissueParams wide = find_specimen("soybean")->params;
   wide.epidermis_aspect = 0.5;
+  const TissueModel soybean = model_of("soybean"), maize = model_of("maize"), widened(wide);
   for (const double theta : kAngles) {
-    expect_f_to_match_walks(model_of("soybean").at(800), theta, Absorption::weighted, limit);
-    expect_f_to_match_walks(model_of("maize").at(550), theta, Absorption::analog, limit);
-    expect_f_to_match_walks(TissueModel(wide).at(800), theta, Absorption::analog, limit);
+    expect_f_to_match_walks(soybean.at(800), theta, Absorption::weighted, limit);
+    expect_f_to_match_walks(maize.at(550), theta, Absorption::analog, limit);
+    expect_f_to_match_walks(widened.at(800), theta, Absorption::analog, limit);
   }
 }
 

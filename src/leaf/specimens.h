@@ -1,0 +1,54 @@
+#pragma once
+
+#include "leaf/tissue_params.h"
+
+namespace frond::leaf {
+
+/// A leaf measured by botanists, ready to use.
+struct Specimen {
+  std::string_view name, doc;
+  TissueParams params;
+};
+
+/// Baranoski 2006 (Remote Sensing of Environment 100:335-347); Baranoski and Eng 2007 (IEEE TGRS 45:2593-2599).
+inline constexpr Specimen kSpecimens[] = {
+    {"soybean",
+     "Soybean, a bifacial leaf.",
+     {.structure = Structure::bifacial,
+      .thickness_m = 1.66e-4,
+      .mesophyll_fraction = 0.5,
+      .chlorophyll_a = 3.9775,
+      .chlorophyll_b = 1.1613,
+      .carotenoids = 1.1323,
+      .protein = 78.7059,
+      .cellulose = 37.7565,
+      .lignin = 10.7441,
+      .cuticle_aspect = 5,
+      .epidermis_aspect = 5,
+      .spongy_aspect = 5,
+      .palisade_aspect = 1}},
+    {"maize",
+     "Maize, a unifacial leaf.",
+     {.structure = Structure::unifacial,
+      .thickness_m = 2.04e-4,
+      .mesophyll_fraction = 0.8,
+      .chlorophyll_a = 2.895146,
+      .chlorophyll_b = 0.79866,
+      .carotenoids = 0.658895,
+      .protein = 53.08714,
+      .cellulose = 53.18709,
+      .lignin = 6.05853,
+      .cuticle_aspect = 10,
+      .epidermis_aspect = 5,
+      .spongy_aspect = 5,
+      .palisade_aspect = 5}},  // a unifacial leaf has no palisade: unused
+};
+
+/// nullptr where there is none of that name.
+constexpr const Specimen* find_specimen(std::string_view name) {
+  for (const Specimen& specimen : kSpecimens)
+    if (specimen.name == name) return &specimen;
+  return nullptr;
+}
+
+}  // namespace frond::leaf

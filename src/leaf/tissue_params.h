@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace frond::leaf {
+
+/// How the cells of a leaf are layered (Baranoski 2006; Baranoski and Eng 2007).
+enum class Structure : uint8_t {
+  bifacial,   ///< palisade cells above, spongy cells below, an air space under both
+  unifacial,  ///< one kind of mesophyll on both sides of an air space, whose place varies from ray to ray
+};
+
+/// A leaf in the terms of its biology.
+struct TissueParams {
+  Structure structure = Structure::bifacial;
+  double thickness_m = 0;
+  double mesophyll_fraction = 0;  ///< of the thickness, in [0, 1]: the part that absorbs
+  /// Concentrations in the mesophyll, kg/m^3.
+  double chlorophyll_a = 0, chlorophyll_b = 0, carotenoids = 0, protein = 0, cellulose = 0, lignin = 0;
+  /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
+  double cuticle_aspect = 0, epidermis_aspect = 0, spongy_aspect = 0, palisade_aspect = 0;
+  bool sieve_and_detour = false;  ///< the later form of Beer's law, with cos(cos theta) for cos theta
+};
+
+}  // namespace frond::leaf
