@@ -19,16 +19,21 @@ double integrate_edge(double from, double to, double exponent) {
   return sum * half;
 }
 
+/// -1 where pow is cheaper than multiplications.
+int small_whole(double exponent) {
+  const bool small = exponent == std::floor(exponent) && exponent <= 64;
+  return small ? static_cast<int>(exponent) : -1;
+}
+
 /// Beyond 7 numbers pow is cheaper.
 int maxima(double exponent) {
-  for (int k = 1; k <= 7; ++k)
-    if (exponent == 2 * k - 1) return k;
-  return 0;
+  const int whole = small_whole(exponent);
+  return whole % 2 == 1 && whole <= 13 ? (whole + 1) / 2 : 0;
 }
 
 }  // namespace
 
-Lobe::Lobe(double exponent) : exponent_(exponent), maxima_(maxima(exponent)) {
+Lobe::Lobe(double exponent) : exponent_(exponent), whole_(small_whole(exponent)), maxima_(maxima(exponent)) {
   constexpr double kStep = 1.0 / kCells;
   double sum = 0;
   for (size_t i = 0; i <= kCells; ++i) {

@@ -35,7 +35,9 @@ class Lobe {
     return a.value + t * (a.slope + t * (3 * rise - 2 * a.slope - b.slope + t * (a.slope + b.slope - 2 * rise)));
   }
 
-  /// Cosine to the axis; `uniform` is one uniform number, the stream gives what more is needed.
+  /// Cosine to the axis from one uniform number.
+  float cos_from_uniform(float uniform) const { return std::pow(uniform, static_cast<float>(1 / (exponent_ + 1))); }
+  /// The same, quicker but not monotonous: `uniform` is one uniform number, the stream gives what more is needed.
   double sample_cos(double uniform, RandomStream& rng) const {
     if (maxima_ == 0) return std::pow(uniform, 1 / (exponent_ + 1));
     // The k-th root of a uniform number is distributed like the largest of k of them, which costs less than pow.
@@ -49,9 +51,11 @@ class Lobe {
 
  private:
   double power(double c) const {
-    if (exponent_ == 5) return c * c * (c * c) * c;
-    if (exponent_ == 1) return c;
-    return std::pow(c, exponent_);
+    if (whole_ < 0) return std::pow(c, exponent_);
+    double result = 1;
+    for (int bits = whole_; bits > 0; bits >>= 1, c *= c)
+      if (bits & 1) result *= c;
+    return result;
   }
 
   // At x = sqrt(1 - cos_axis), in equal steps.
@@ -61,6 +65,7 @@ class Lobe {
   static constexpr size_t kCells = 256;
 
   double exponent_;
+  int whole_;   ///< the exponent where it is a small whole number, else -1
   int maxima_;  ///< (e + 1) / 2 for small odd exponents, else 0
   std::array<Node, kCells + 1> nodes_;
 };

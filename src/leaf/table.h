@@ -20,6 +20,8 @@ struct TableRequest {
   TableMethod method = TableMethod::solve;
   int rays = 1'000'000;  ///< for each degree, Monte Carlo only
   uint64_t seed = 0;
+
+  friend bool operator==(const TableRequest&, const TableRequest&) = default;
 };
 
 /// Rs, Rd and T at every degree of incidence in [0, 180] (above 90 the abaxial side is lit).

@@ -21,6 +21,8 @@ struct TissueParams {
   /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
   double cuticle_aspect = 0, epidermis_aspect = 0, spongy_aspect = 0, palisade_aspect = 0;
   bool sieve_and_detour = false;  ///< the later form of Beer's law, with cos(cos theta) for cos theta
+
+  friend bool operator==(const TissueParams&, const TissueParams&) = default;
 };
 
 }  // namespace frond::leaf
