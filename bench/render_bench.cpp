@@ -37,8 +37,11 @@ class RecordingWorld final : public World {
 /// One scene, loaded once for all the benchmarks on it, on one thread.
 struct LoadedScene {
   explicit LoadedScene(const std::string& file, std::vector<MaterialSwap> swaps = {})
-      : log(true), pool(1), description(parse_scene(std::string(FROND_SOURCE_DIR "/scenes/") + file, log)),
-        registry(builtin_registry()), overrides(make_overrides(std::move(swaps))),
+      : log(true),
+        pool(1),
+        description(parse_scene(std::string(FROND_SOURCE_DIR "/scenes/") + file, log)),
+        registry(builtin_registry()),
+        overrides(make_overrides(std::move(swaps))),
         scene(description, registry, overrides, pool, log),
         film_settings(Scene::film_settings(description, registry, overrides)) {}
 
@@ -49,7 +52,9 @@ struct LoadedScene {
     return o;
   }
   RenderJob job(const World& world, uint64_t samples) const {
-    return {world, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(), 0, samples};
+    return {world,          scene.camera(),  scene.integrator(), scene.wavelengths(),
+            scene.filter(), scene.sampler(), scene.seed(),       0,
+            samples};
   }
 
   Log log;
@@ -89,18 +94,22 @@ void replay_rays(benchmark::State& state, const std::string& file) {
     state.ResumeTiming();
     RTCRayHit query;
     for (const auto& [ray, shadow] : recorder.records())
-      benchmark::DoNotOptimize(shadow ? loaded.scene.accelerator().occluded(ray, 0) : loaded.scene.accelerator().closest(ray, 0, query));
+      benchmark::DoNotOptimize(shadow ? loaded.scene.accelerator().occluded(ray, 0)
+                                      : loaded.scene.accelerator().closest(ray, 0, query));
   }
   const double rays = double(recorder.records().size()) * double(state.iterations());
-  state.counters["ns_per_ray"] = benchmark::Counter(rays * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["ns_per_ray"] =
+      benchmark::Counter(rays * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   // Divided by the loop's own seconds: render seconds for each second of Embree.
   state.counters["render_over_embree"] = benchmark::Counter(render_seconds, benchmark::Counter::kIsRate);
 }
 
 BENCHMARK_CAPTURE(render_paths, leaves_simplified, "hundred-leaves/scene.pbrt", {})->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(render_paths, leaves_diffusetransmission, "hundred-leaves/scene.pbrt", {{"leaf", "diffusetransmission", {}}})
+BENCHMARK_CAPTURE(render_paths, leaves_diffusetransmission, "hundred-leaves/scene.pbrt",
+                  {{"leaf", "diffusetransmission", {}}})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(render_paths, leaves_abm, "hundred-leaves/scene.pbrt", {{"leaf", "abm", {}}})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(render_paths, leaves_abm, "hundred-leaves/scene.pbrt", {{"leaf", "abm", {}}})
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(replay_rays, closed, "hundred-leaves/closed.pbrt")->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -21,7 +21,9 @@ void convert(const ConvertOptions& options) {
   for (size_t i = 1; i < options.inputs.size(); ++i) {
     const LinearImage next = read_linear(options.inputs[i]);
     check_same_size(mean, next);
-    if (next.space != mean.space) fail({}, "{} is in {}, {} in {}: only images of one colour space are averaged", mean.path, mean.space, next.path, next.space);
+    if (next.space != mean.space)
+      fail({}, "{} is in {}, {} in {}: only images of one colour space are averaged", mean.path, mean.space, next.path,
+           next.space);
     for (size_t k = 0; k < mean.image.pixels.size(); ++k) mean.image.pixels[k] += next.image.pixels[k];
   }
   const float scale = float(std::exp2(options.exposure) / double(options.inputs.size()));

@@ -9,20 +9,34 @@ namespace {
 
 constexpr std::string_view type_name(ParamKind kind) {
   switch (kind) {
-    case ParamKind::boolean: return "bool";
-    case ParamKind::integer: return "integer";
-    case ParamKind::real: return "float";
-    case ParamKind::string: return "string";
-    case ParamKind::point2: return "point2";
-    case ParamKind::vector2: return "vector2";
-    case ParamKind::point3: return "point3";
-    case ParamKind::vector3: return "vector3";
-    case ParamKind::normal3: return "normal";
-    case ParamKind::illuminant: return "rgb | spectrum | blackbody";
-    case ParamKind::albedo: return "rgb | spectrum";
-    case ParamKind::float_texture: return "float | texture";
-    case ParamKind::spectrum_texture: return "rgb | spectrum | texture";
-    case ParamKind::material: return "string";
+    case ParamKind::boolean:
+      return "bool";
+    case ParamKind::integer:
+      return "integer";
+    case ParamKind::real:
+      return "float";
+    case ParamKind::string:
+      return "string";
+    case ParamKind::point2:
+      return "point2";
+    case ParamKind::vector2:
+      return "vector2";
+    case ParamKind::point3:
+      return "point3";
+    case ParamKind::vector3:
+      return "vector3";
+    case ParamKind::normal3:
+      return "normal";
+    case ParamKind::illuminant:
+      return "rgb | spectrum | blackbody";
+    case ParamKind::albedo:
+      return "rgb | spectrum";
+    case ParamKind::float_texture:
+      return "float | texture";
+    case ParamKind::spectrum_texture:
+      return "rgb | spectrum | texture";
+    case ParamKind::material:
+      return "string";
   }
   return "";
 }
@@ -84,6 +98,7 @@ void describe(const std::string& name, bool markdown) {
   const auto all = all_plugins(registry);
   std::vector<std::string_view> names;
   bool found = false;
+  if (markdown && name.empty()) fmt::print("# Plugins\n\nMade by `frond describe --markdown`.\n\n");
   for (const PluginInfo* info : all) {
     names.push_back(info->name);
     const bool chosen = name.empty() ? markdown : info->name == name || info->kind == name;

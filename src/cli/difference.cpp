@@ -31,8 +31,8 @@ std::vector<float> channel_of(const Image& image, size_t channel) {
   return values;
 }
 
-/// Signed difference in false colour: blue where `b` is brighter, red where `a` is, white where they agree. The ends are
-/// told apart by those who see no red or green as well.
+/// Signed difference in false colour: blue where `b` is brighter, red where `a` is, white where they agree. The ends
+/// are told apart by those who see no red or green as well.
 std::array<float, 3> false_color(float t) {
   t = std::clamp(t, -1.f, 1.f);
   const std::array<float, 3> blue{0.13f, 0.40f, 0.67f}, white{0.97f, 0.97f, 0.97f}, red{0.70f, 0.09f, 0.17f};
@@ -92,7 +92,8 @@ void print_text(const nlohmann::ordered_json& j) {
 void difference(const DifferenceOptions& options) {
   if (!options.output.empty()) {
     check_writable(options.output);
-    if (is_exr(options.output)) fail({}, "{}: a difference is a picture in false colour: name a .png or .jpg", options.output);
+    if (is_exr(options.output))
+      fail({}, "{}: a difference is a picture in false colour: name a .png or .jpg", options.output);
   }
   const auto halves = read_halves(options.images);
   if (!options.output.empty()) write_difference(options.output, halves, options.scale);
@@ -115,8 +116,11 @@ void difference(const DifferenceOptions& options) {
 void add_difference_command(CLI::App& app) {
   auto* command = app.add_subcommand("difference", "RMS error between two renders, with noise and bias told apart.");
   auto o = std::make_shared<DifferenceOptions>();
-  command->add_option("images", o->images, "A1 A2 B1 B2: two halves of each render, with seeds of their own.")->required()->expected(4);
-  command->add_option("-o,--output", o->output, "Picture of the signed difference in luminance: red where A is brighter.");
+  command->add_option("images", o->images, "A1 A2 B1 B2: two halves of each render, with seeds of their own.")
+      ->required()
+      ->expected(4);
+  command->add_option("-o,--output", o->output,
+                      "Picture of the signed difference in luminance: red where A is brighter.");
   command->add_option("--scale", o->scale, "Difference at full colour; 0.1 by default.")->check(CLI::PositiveNumber);
   command->add_flag("--json", o->json, "Print JSON.");
   command->callback([o] { difference(*o); });

@@ -23,8 +23,8 @@ LinearImage read_linear(const std::string& path) {
 
 void check_same_size(const LinearImage& a, const LinearImage& b) {
   if (a.image.width != b.image.width || a.image.height != b.image.height)
-    fail({}, "{} is {} x {}, {} is {} x {}: images of one size are needed", a.path, a.image.width, a.image.height, b.path,
-         b.image.width, b.image.height);
+    fail({}, "{} is {} x {}, {} is {} x {}: images of one size are needed", a.path, a.image.width, a.image.height,
+         b.path, b.image.width, b.image.height);
 }
 
 }  // namespace frond

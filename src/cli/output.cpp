@@ -48,8 +48,9 @@ Image linear_image(const Film& film, const Matrix3& to_output) {
 
 bool is_exr(const std::string& path) { return path.ends_with(".exr"); }
 
-void write_display_image(const std::string& path, const Image& image, std::string_view space, const ColorManager& colors,
-                         const DisplayChoice& choice, const std::map<std::string, std::string>& text) {
+void write_display_image(const std::string& path, const Image& image, std::string_view space,
+                         const ColorManager& colors, const DisplayChoice& choice,
+                         const std::map<std::string, std::string>& text) {
   Image shown(image.width, image.height, {"R", "G", "B"});
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
@@ -58,7 +59,8 @@ void write_display_image(const std::string& path, const Image& image, std::strin
   write_image(path, shown, {"", text});
 }
 
-ImageOutput::ImageOutput(std::string path, DisplayChoice display) : path_(std::move(path)), display_(std::move(display)) {
+ImageOutput::ImageOutput(std::string path, DisplayChoice display)
+    : path_(std::move(path)), display_(std::move(display)) {
   check_writable(path_);
   if (!is_exr(path_)) colors_.check_display("linear sRGB", display_.display, display_.view);
 }

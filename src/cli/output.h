@@ -23,8 +23,9 @@ struct OutputDetails {
 bool is_exr(const std::string& path);
 
 /// R, G and B of an image that is linear in `space`, through a display transform, as PNG or JPEG.
-void write_display_image(const std::string& path, const Image& image, std::string_view space, const ColorManager& colors,
-                         const DisplayChoice& choice, const std::map<std::string, std::string>& text);
+void write_display_image(const std::string& path, const Image& image, std::string_view space,
+                         const ColorManager& colors, const DisplayChoice& choice,
+                         const std::map<std::string, std::string>& text);
 
 /// Where a render goes. Made before rendering, so that what cannot be written is refused first.
 class ImageOutput {

@@ -112,7 +112,9 @@ void print_report(const Report& r, const std::string& output, bool json) {
     fmt::print("{}\n", j.dump(2));
     return;
   }
-  fmt::print(stderr, "{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), loaded in {:.2f} s\n",
+  fmt::print(stderr,
+             "{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), loaded in "
+             "{:.2f} s\n",
              output, r.samples, s.wall_seconds, s.cpu_seconds, per_path, rays_per_path, r.load_seconds);
   fmt::print(stderr, "foliar ratio {:.2f} %\n", 100 * r.foliar_ratio);
 }
@@ -140,8 +142,9 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   const int samples = options.samples > 0 ? options.samples : scene.samples_per_pixel();
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Film film(film_settings);
-  const RenderJob job{scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(),
-                      scene.seed(), 0, uint64_t(samples)};
+  const RenderJob job{
+      scene, scene.camera(),   scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
+      0,     uint64_t(samples)};
   RenderStatistics statistics;
   {
     ProgressLine line(options.quiet);
@@ -155,7 +158,8 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
                                      {"frond:wavelengths", scene.wavelengths_name()},
                                      {"frond:scene_hash", fmt::format("{:016x}", description.content_hash)},
                                      {"frond:command", command_line}}});
-  if (!options.quiet || options.json) print_report({statistics, load_seconds, samples, film.foliar_ratio()}, output, options.json);
+  if (!options.quiet || options.json)
+    print_report({statistics, load_seconds, samples, film.foliar_ratio()}, output, options.json);
 }
 
 /// What of the command decides the pixels: threads, paths and what is printed do not belong in a file's header.
@@ -179,7 +183,8 @@ void add_render_command(CLI::App& app) {
   command->add_option("scene", o.scene, "Scene file.")->required();
   command->add_option("-o,--output", o.output, "Image: .exr (linear), .png or .jpg (through the display transform).");
   command->add_option("--spp", o.samples, "Samples per pixel, in place of the scene's.")->check(CLI::PositiveNumber);
-  command->add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")->check(CLI::PositiveNumber);
+  command->add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")
+      ->check(CLI::PositiveNumber);
   auto* seed = command->add_option("--seed", o.seed, "Seed of all random numbers.");
   command->add_option("--crop", o.crop, "x0,x1,y0,y1 of what to render, as fractions of the film or in pixels.");
   command->add_option("--wavelengths", o.wavelengths, "Wavelength strategy: hero, or smpte for the paper's three.");

@@ -16,18 +16,18 @@ enum class Lobes : uint8_t {
   transmission = 2,
   diffuse = 4,
   glossy = 8,
-  specular = 16,     ///< delta lobes
-  stochastic = 32,   ///< f and sample are unbiased estimates that use their random stream
-  surface = 64,      ///< light that never entered the body (Rs of a leaf)
+  specular = 16,    ///< delta lobes
+  stochastic = 32,  ///< f and sample are unbiased estimates that use their random stream
+  surface = 64,     ///< light that never entered the body (Rs of a leaf)
 };
 constexpr Lobes operator|(Lobes a, Lobes b) { return Lobes(uint8_t(a) | uint8_t(b)); }
 constexpr Lobes operator&(Lobes a, Lobes b) { return Lobes(uint8_t(a) & uint8_t(b)); }
 constexpr bool any(Lobes a) { return a != Lobes::none; }
 
 struct BsdfSample {
-  SampledSpectrum f;   ///< 1/sr, without cosine; the path's weight is f |cos theta_i| / pdf
-  Vec3 wi;             ///< local frame, unit
-  float pdf = 0;       ///< 1/sr, positive
+  SampledSpectrum f;  ///< 1/sr, without cosine; the path's weight is f |cos theta_i| / pdf
+  Vec3 wi;            ///< local frame, unit
+  float pdf = 0;      ///< 1/sr, positive
   Lobes flags = Lobes::none;
   /// True where f / pdf is the right weight but `pdf` is not the density of wi: MIS must ask `pdf()` instead.
   bool pdf_is_approximate = false;

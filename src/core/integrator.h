@@ -26,7 +26,8 @@ class Integrator {
   /// Called once, before the first path.
   virtual void prepare(const World&) {}
   /// Unbiased estimate of the radiance that arrives along `ray`. Thread-safe.
-  virtual PathResult trace(const World& world, const Ray& ray, SampledWavelengths lambda, PathContext& context) const = 0;
+  virtual PathResult trace(const World& world, const Ray& ray, SampledWavelengths lambda,
+                           PathContext& context) const = 0;
 };
 
 struct IntegratorInfo : PluginInfo {

@@ -13,9 +13,9 @@ namespace frond {
 
 /// What a material may know of the surface point that it is asked for.
 struct Hit {
-  Vec3 p;        ///< world space
-  Vec3 ng;       ///< geometric normal, unit, on the surface's front (a leaf's adaxial side) whichever side was hit
-  Frame shading; ///< z: shading normal, in the hemisphere of ng
+  Vec3 p;         ///< world space
+  Vec3 ng;        ///< geometric normal, unit, on the surface's front (a leaf's adaxial side) whichever side was hit
+  Frame shading;  ///< z: shading normal, in the hemisphere of ng
   Vec2 uv;
 };
 

@@ -13,8 +13,8 @@ class ThreadPool {
   explicit ThreadPool(int threads = 0);
 
   int size() const { return threads_; }
-  /// Calls body(index, worker) for each index in [0, count), worker in [0, size()). Returns when all are done; the first
-  /// exception of a body stops the loop and is thrown here.
+  /// Calls body(index, worker) for each index in [0, count), worker in [0, size()). Returns when all are done; the
+  /// first exception of a body stops the loop and is thrown here.
   void for_each(int64_t count, const std::function<void(int64_t index, int worker)>& body) const;
 
  private:

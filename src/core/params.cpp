@@ -80,7 +80,8 @@ Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver
   }
   for (const Param& p : info_.params)
     if (p.required && !given(p.name))
-      fail(parsed_.where, "{} \"{}\" needs parameter \"{} {}\"", info_.kind, info_.name, traits(p.kind).types[0], p.name);
+      fail(parsed_.where, "{} \"{}\" needs parameter \"{} {}\"", info_.kind, info_.name, traits(p.kind).types[0],
+           p.name);
 }
 
 void Params::check(const Param& declared, const ParsedParam& p) const {
@@ -229,7 +230,8 @@ std::vector<std::shared_ptr<Material>> Params::materials(std::string_view name) 
   const auto [declared, parsed] = find(name);
   std::vector<std::shared_ptr<Material>> result;
   if (parsed)
-    for (const std::string& material : words(*parsed)) result.push_back(resolver_.material(material, parsed->value_where));
+    for (const std::string& material : words(*parsed))
+      result.push_back(resolver_.material(material, parsed->value_where));
   return result;
 }
 

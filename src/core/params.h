@@ -54,8 +54,8 @@ struct Param {
   Unit unit = "";
   Interval range = kAnyValue;  ///< of each number; both ends allowed
   std::string_view doc;
-  bool list = false;      ///< any number of values, not one
-  bool required = false;  ///< the scene must give it
+  bool list = false;                               ///< any number of values, not one
+  bool required = false;                           ///< the scene must give it
   std::span<const std::string_view> choices = {};  ///< of a string; empty: any
 };
 

@@ -22,7 +22,8 @@ struct PluginInfo {
 template <class Info>
 class PluginTable {
  public:
-  PluginTable(std::string_view kind, std::span<const Info* const> infos) : kind_(kind), infos_(infos.begin(), infos.end()) {}
+  PluginTable(std::string_view kind, std::span<const Info* const> infos)
+      : kind_(kind), infos_(infos.begin(), infos.end()) {}
 
   void add(const Info& info) { infos_.push_back(&info); }
   const std::vector<const Info*>& all() const { return infos_; }

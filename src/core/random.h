@@ -27,8 +27,8 @@ constexpr uint64_t hash_bytes(std::string_view bytes, uint64_t seed = 0) {
   return mix64(h);
 }
 
-/// Counter-based random numbers: draw n of a stream depends on its key and n alone (SplitMix64 in counter form), so that
-/// results do not depend on threads, tiles or the order in which pixels are rendered.
+/// Counter-based random numbers: draw n of a stream depends on its key and n alone (SplitMix64 in counter form), so
+/// that results do not depend on threads, tiles or the order in which pixels are rendered.
 class RandomStream {
  public:
   explicit constexpr RandomStream(uint64_t key) : state_(key) {}

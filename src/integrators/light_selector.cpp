@@ -4,10 +4,14 @@
 
 namespace frond {
 
-LightSelector::LightSelector(const World& world, bool by_power) : lights_(world.lights().begin(), world.lights().end()) {
+LightSelector::LightSelector(const World& world, bool by_power)
+    : lights_(world.lights().begin(), world.lights().end()) {
   std::vector<double> powers;
   double total = 0;
-  for (const Light* light : lights_) total += powers.emplace_back(by_power ? light->power(world.radius()) : 1);
+  for (const Light* light : lights_) {
+    total += powers.emplace_back(by_power ? light->power(world.radius()) : 1);
+    has_extent_ = has_extent_ || !light->is_delta();
+  }
   double sum = 0;
   for (const double power : powers) {
     // A scene whose lights all have no power still needs probabilities.

@@ -53,11 +53,31 @@ class LocalBsdf {
 constexpr std::string_view kTerminations[] = {"roulette", "attenuation"};
 constexpr std::string_view kLightSamplers[] = {"power", "uniform"};
 constexpr Param kPath[] = {
-    {.name = "maxdepth", .kind = ParamKind::integer, .default_value = 5, .range = {0, 1 << 20}, .doc = "Longest path, in scattering events."},
-    {.name = "sampledirect", .kind = ParamKind::boolean, .default_value = true, .doc = "Sample the lights at every hit; false: follow scattered rays alone."},
-    {.name = "lightsampler", .kind = ParamKind::string, .default_value = std::string_view("power"), .doc = "How a hit chooses its light.", .choices = kLightSamplers},
-    {.name = "termination", .kind = ParamKind::string, .default_value = std::string_view("roulette"), .doc = "roulette: unbiased. attenuation: a path ends when the luminance of its attenuation falls below the cutoff, as in the paper; biased.", .choices = kTerminations},
-    {.name = "cutoff", .kind = ParamKind::real, .default_value = 0.01, .range = {0, 1}, .doc = "Attenuation below which a path ends."},
+    {.name = "maxdepth",
+     .kind = ParamKind::integer,
+     .default_value = 5,
+     .range = {0, 1 << 20},
+     .doc = "Longest path, in scattering events."},
+    {.name = "sampledirect",
+     .kind = ParamKind::boolean,
+     .default_value = true,
+     .doc = "Sample the lights at every hit; false: follow scattered rays alone."},
+    {.name = "lightsampler",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("power"),
+     .doc = "How a hit chooses its light.",
+     .choices = kLightSamplers},
+    {.name = "termination",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("roulette"),
+     .doc = "roulette: unbiased. attenuation: a path ends when the luminance of its attenuation falls below the "
+            "cutoff, as in the paper; biased.",
+     .choices = kTerminations},
+    {.name = "cutoff",
+     .kind = ParamKind::real,
+     .default_value = 0.01,
+     .range = {0, 1},
+     .doc = "Attenuation below which a path ends."},
 };
 
 /// Unidirectional path tracing; light sampling and BSDF sampling combined by the power heuristic.
@@ -72,7 +92,8 @@ class PathIntegrator final : public Integrator {
 
   void prepare(const World& world) override { selector_ = LightSelector(world, select_by_power_); }
 
-  PathResult trace(const World& world, const Ray& camera_ray, SampledWavelengths lambda, PathContext& context) const override {
+  PathResult trace(const World& world, const Ray& camera_ray, SampledWavelengths lambda,
+                   PathContext& context) const override {
     PathResult result;
     Ray ray = camera_ray;
     SampledSpectrum throughput(1);
@@ -86,13 +107,15 @@ class PathIntegrator final : public Integrator {
       ++context.rays;
       if (!world.intersect(ray, vertex_key, point)) {
         for (const EnvironmentLight* light : world.environment())
-          result.radiance += throughput * light->radiance(ray.d, lambda) * weight_of(*light, scatter_pdf, light->pdf(ray.d));
+          result.radiance +=
+              throughput * light->radiance(ray.d, lambda) * weight_of(*light, scatter_pdf, light->pdf(ray.d));
         return result;
       }
       if (depth == 0) result.sees_leaf = point.material && point.material->is_leaf();
       if (point.light) {
         const float pdf = point.light->pdf(point.hit.ng, ray.d, distance_between(previous, point.hit.p));
-        result.radiance += throughput * point.light->radiance(point.hit.ng, -ray.d, lambda) * weight_of(*point.light, scatter_pdf, pdf);
+        result.radiance += throughput * point.light->radiance(point.hit.ng, -ray.d, lambda) *
+                           weight_of(*point.light, scatter_pdf, pdf);
       }
       if (depth >= max_depth_ || !point.material) return result;
 
@@ -101,7 +124,8 @@ class PathIntegrator final : public Integrator {
       if (!bsdf) return result;
       const LocalBsdf local(*bsdf, point.hit, -ray.d);
       if (sample_lights_ && !selector_.empty())
-        result.radiance += throughput * light_from_sample(world, point.hit, local, lambda, stream(Use::light_bsdf), hash_key(vertex_key, uint64_t(Use::shadow_ray)), context);
+        result.radiance += throughput * light_from_sample(world, point.hit, local, lambda, stream(Use::light_bsdf),
+                                                          hash_key(vertex_key, uint64_t(Use::shadow_ray)), context);
 
       SampledSpectrum weight;
       const float uc = context.sampler.get1d();
@@ -126,10 +150,14 @@ class PathIntegrator final : public Integrator {
     return power_heuristic(scatter_pdf, light_pdf * selector_.probability(light));
   }
 
-  SampledSpectrum light_from_sample(const World& world, const Hit& hit, const LocalBsdf& bsdf, const SampledWavelengths& lambda,
-                                    RandomStream rng, uint64_t shadow_key, PathContext& context) const {
-    const auto [light, probability] = selector_.choose(context.sampler.get1d());
-    const auto sample = light->sample(hit.p, context.sampler.get2d(), lambda);
+  SampledSpectrum light_from_sample(const World& world, const Hit& hit, const LocalBsdf& bsdf,
+                                    const SampledWavelengths& lambda, RandomStream rng, uint64_t shadow_key,
+                                    PathContext& context) const {
+    // Numbers that no light of the scene would read are not made; which are made is the same for every sample.
+    const float choice = selector_.has_choice() ? context.sampler.get1d() : 0;
+    const Vec2 u = selector_.has_extent() ? context.sampler.get2d() : Vec2{};
+    const auto [light, probability] = selector_.choose(choice);
+    const auto sample = light->sample(hit.p, u, lambda);
     if (!sample || sample->radiance.is_black()) return {};
     float scatter_pdf = 0;
     const SampledSpectrum f_cos = bsdf.f_cos(sample->wi, rng, scatter_pdf);
@@ -145,7 +173,8 @@ class PathIntegrator final : public Integrator {
   }
 
   /// Whether the path ends here; roulette rewards the survivors.
-  bool ends(const SampledSpectrum& throughput, const SampledWavelengths& lambda, int depth, RandomStream rng, SampledSpectrum& rewarded) const {
+  bool ends(const SampledSpectrum& throughput, const SampledWavelengths& lambda, int depth, RandomStream rng,
+            SampledSpectrum& rewarded) const {
     if (throughput.is_black()) return true;
     if (cut_off_attenuation_) return attenuation(throughput, lambda) < cutoff_;
     const float survival = throughput.max();
@@ -172,7 +201,8 @@ std::unique_ptr<Integrator> make_path(const Params& p) { return std::make_unique
 }  // namespace
 
 extern const IntegratorInfo path_integrator{
-    {"integrator", "path", "Path tracing with light sampling and multiple importance sampling.", "Kajiya 1986; Veach and Guibas 1995", kPath},
+    {"integrator", "path", "Path tracing with light sampling and multiple importance sampling.",
+     "Kajiya 1986; Veach and Guibas 1995", kPath},
     make_path};
 
 }  // namespace frond

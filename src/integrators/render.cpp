@@ -1,9 +1,8 @@
 #include "integrators/render.h"
 
-#include <ctime>
-
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <memory>
 #include <mutex>
 

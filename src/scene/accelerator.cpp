@@ -27,7 +27,8 @@ Vec2 uv_at(const Primitive& primitive, unsigned index, float u, float v) {
   return mesh.uv.empty() ? Vec2{u, v} : triangle_at(mesh, index, u, v).interpolate(mesh.uv);
 }
 
-/// Whether a ray passes a partly transparent surface: decided for each ray and primitive, in whatever order Embree asks.
+/// Whether a ray passes a partly transparent surface: decided for each ray and primitive, in whatever order Embree
+/// asks.
 bool passes(const Primitive& primitive, Vec2 uv, uint64_t key, unsigned geometry, unsigned index, unsigned instance) {
   const float alpha = primitive.alpha->evaluate(uv);
   if (alpha >= 1) return false;
@@ -56,7 +57,8 @@ std::optional<ShapePoint> meet(const Arguments* args, const RTCRay& ray) {
   const auto point = std::get<AnalyticShapePtr>(primitive.geometry)->intersect(args->primID, ray_of(ray));
   if (!point || point->t <= ray.tnear) return {};
   const unsigned instance = args->context->instID[0];
-  if (primitive.alpha && passes(primitive, point->uv, key_of(args->context), args->geomID, args->primID, instance)) return {};
+  if (primitive.alpha && passes(primitive, point->uv, key_of(args->context), args->geomID, args->primID, instance))
+    return {};
   return point;
 }
 
@@ -66,8 +68,10 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
   const auto point = meet(args, ray_hit.ray);
   if (!point) return;
   ray_hit.ray.tfar = point->t;
-  ray_hit.hit = {point->ng.x, point->ng.y, point->ng.z, point->uv.x, point->uv.y, args->primID, args->geomID,
-                 {args->context->instID[0]}};
+  RTCHit& hit = ray_hit.hit;
+  hit.Ng_x = point->ng.x, hit.Ng_y = point->ng.y, hit.Ng_z = point->ng.z;
+  hit.u = point->uv.x, hit.v = point->uv.y;
+  hit.primID = args->primID, hit.geomID = args->geomID, hit.instID[0] = args->context->instID[0];
 }
 
 void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
@@ -88,7 +92,8 @@ RTCGeometry mesh_geometry(RTCDevice device, const Primitive& primitive) {
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                              sizeof(mesh.triangles[0]), mesh.triangles.size());
   // Embree reads 16 bytes at the last vertex: a copy that it pads itself.
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.p.size());
+  void* vertices =
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.p.size());
   std::copy(mesh.p.begin(), mesh.p.end(), static_cast<Vec3*>(vertices));
   if (primitive.alpha) {
     rtcSetGeometryIntersectFilterFunction(geometry, filter_alpha);
@@ -131,7 +136,7 @@ Accelerator::Accelerator(std::vector<Primitive> top, std::vector<std::vector<Pri
   if (!device_) fail({}, "Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
   for (const auto& group : groups_) {
     group_scenes_.emplace_back(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(group_scenes_.back().get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(group_scenes_.back().get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips between triangles
     attach(group_scenes_.back().get(), group);
     rtcCommitScene(group_scenes_.back().get());
   }
@@ -145,14 +150,16 @@ Accelerator::Accelerator(std::vector<Primitive> top, std::vector<std::vector<Pri
 
 void Accelerator::check() const {
   if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
-    fail({}, "Embree cannot build the scene: {}", error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(error)));
+    fail({}, "Embree cannot build the scene: {}",
+         error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(error)));
 }
 
 void Accelerator::attach(RTCScene scene, const std::vector<Primitive>& primitives) {
   for (unsigned i = 0; i < primitives.size(); ++i) {
     const Primitive& primitive = primitives[i];
     const bool is_mesh = std::holds_alternative<MeshPtr>(primitive.geometry);
-    RTCGeometry geometry = is_mesh ? mesh_geometry(device_.get(), primitive) : analytic_geometry(device_.get(), primitive);
+    RTCGeometry geometry =
+        is_mesh ? mesh_geometry(device_.get(), primitive) : analytic_geometry(device_.get(), primitive);
     rtcSetGeometryUserData(geometry, const_cast<Primitive*>(&primitive));
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, i);

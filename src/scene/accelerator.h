@@ -27,8 +27,8 @@ struct Placement {
 class Accelerator {
  public:
   /// Throws InputError when Embree cannot build.
-  Accelerator(std::vector<Primitive> top, std::vector<std::vector<Primitive>> groups, const std::vector<Placement>& instances,
-              int threads);
+  Accelerator(std::vector<Primitive> top, std::vector<std::vector<Primitive>> groups,
+              const std::vector<Placement>& instances, int threads);
 
   bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const;
   /// Embree's part of `intersect` alone.

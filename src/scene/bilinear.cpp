@@ -98,8 +98,8 @@ class BilinearMesh final : public AnalyticShape {
   }
 
  private:
-  void add(const Params& p, const Transform& to_scene, const std::vector<Vec3>& corners, const std::vector<Vec2>& texture,
-           const int* index) {
+  void add(const Params& p, const Transform& to_scene, const std::vector<Vec3>& corners,
+           const std::vector<Vec2>& texture, const int* index) {
     Patch patch;
     std::array<Vec2, 4> uv{{{0, 0}, {1, 0}, {0, 1}, {1, 1}}};
     for (size_t k = 0; k < 4; ++k) {
@@ -139,7 +139,10 @@ class BilinearMesh final : public AnalyticShape {
 constexpr Param kBilinear[] = {
     {.name = "P", .kind = ParamKind::point3, .doc = "Corners.", .list = true, .required = true},
     {.name = "uv", .kind = ParamKind::point2, .doc = "Texture coordinates, one for each corner.", .list = true},
-    {.name = "indices", .kind = ParamKind::integer, .doc = "Four corners for each patch: (0,0), (1,0), (0,1), (1,1).", .list = true},
+    {.name = "indices",
+     .kind = ParamKind::integer,
+     .doc = "Four corners for each patch: (0,0), (1,0), (0,1), (1,1).",
+     .list = true},
     kAlphaParam};
 
 ShapeGeometry make_bilinear(const Params& p, const ShapePlacement& placement) {

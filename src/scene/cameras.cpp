@@ -76,13 +76,34 @@ class OrthographicCamera final : public ProjectiveCamera {
 };
 
 constexpr Interval kPositive{1e-30, 1e30};
-constexpr Param kFrameAspect{.name = "frameaspectratio", .kind = ParamKind::real, .range = {1e-3, 1e3}, .doc = "Width over height; the film's by default."};
-constexpr Param kScreenWindow{.name = "screenwindow", .kind = ParamKind::real, .doc = "x0 x1 y0 y1 of the screen; the shorter axis spans -1 to 1 by default.", .list = true};
-constexpr Param kLensRadius{.name = "lensradius", .kind = ParamKind::real, .default_value = 0.0, .range = kAtLeastZero, .doc = "Radius of the thin lens; 0: a pinhole."};
-constexpr Param kFocalDistance{.name = "focaldistance", .kind = ParamKind::real, .default_value = 1e6, .range = kPositive, .doc = "Distance of the plane in focus."};
-constexpr Param kPerspective[] = {
-    kFrameAspect, kScreenWindow, kLensRadius, kFocalDistance,
-    {.name = "fov", .kind = ParamKind::real, .default_value = 90.0, .unit = "degrees", .range = {1e-3, 179.999}, .doc = "Field of view along the shorter axis."}};
+constexpr Param kFrameAspect{.name = "frameaspectratio",
+                             .kind = ParamKind::real,
+                             .range = {1e-3, 1e3},
+                             .doc = "Width over height; the film's by default."};
+constexpr Param kScreenWindow{.name = "screenwindow",
+                              .kind = ParamKind::real,
+                              .doc = "x0 x1 y0 y1 of the screen; the shorter axis spans -1 to 1 by default.",
+                              .list = true};
+constexpr Param kLensRadius{.name = "lensradius",
+                            .kind = ParamKind::real,
+                            .default_value = 0.0,
+                            .range = kAtLeastZero,
+                            .doc = "Radius of the thin lens; 0: a pinhole."};
+constexpr Param kFocalDistance{.name = "focaldistance",
+                               .kind = ParamKind::real,
+                               .default_value = 1e6,
+                               .range = kPositive,
+                               .doc = "Distance of the plane in focus."};
+constexpr Param kPerspective[] = {kFrameAspect,
+                                  kScreenWindow,
+                                  kLensRadius,
+                                  kFocalDistance,
+                                  {.name = "fov",
+                                   .kind = ParamKind::real,
+                                   .default_value = 90.0,
+                                   .unit = "degrees",
+                                   .range = {1e-3, 179.999},
+                                   .doc = "Field of view along the shorter axis."}};
 constexpr Param kOrthographic[] = {kFrameAspect, kScreenWindow, kLensRadius, kFocalDistance};
 
 template <class T>
@@ -92,7 +113,9 @@ std::unique_ptr<Camera> make_camera(const Params& p, const CameraPlacement& film
 
 }  // namespace
 
-extern const CameraInfo perspective_camera{{"camera", "perspective", "Pinhole or thin lens.", "pbrt-v4", kPerspective}, make_camera<PerspectiveCamera>};
-extern const CameraInfo orthographic_camera{{"camera", "orthographic", "Parallel projection.", "pbrt-v4", kOrthographic}, make_camera<OrthographicCamera>};
+extern const CameraInfo perspective_camera{{"camera", "perspective", "Pinhole or thin lens.", "pbrt-v4", kPerspective},
+                                           make_camera<PerspectiveCamera>};
+extern const CameraInfo orthographic_camera{
+    {"camera", "orthographic", "Parallel projection.", "pbrt-v4", kOrthographic}, make_camera<OrthographicCamera>};
 
 }  // namespace frond

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-// The one place that knows which Embree this is: 3 and 4 differ in includes, in the default ray mask and in how a query's
-// context is passed.
+// The one place that knows which Embree this is: 3 and 4 differ in includes, in the default ray mask and in how a
+// query's context is passed.
 #if FROND_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else

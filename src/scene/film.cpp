@@ -15,23 +15,65 @@ constexpr std::array<std::array<size_t, 2>, 6> kPairs{{{0, 0}, {1, 1}, {2, 2}, {
 constexpr Interval kResolution{1, 65536};
 constexpr std::string_view kSensors[] = {"cie1931"};
 constexpr Param kRgb[] = {
-    {.name = "xresolution", .kind = ParamKind::integer, .default_value = 1280, .unit = "pixels", .range = kResolution, .doc = "Width."},
-    {.name = "yresolution", .kind = ParamKind::integer, .default_value = 720, .unit = "pixels", .range = kResolution, .doc = "Height."},
-    {.name = "cropwindow", .kind = ParamKind::real, .range = {0, 1}, .doc = "x0 x1 y0 y1 of what to render, as fractions.", .list = true},
-    {.name = "pixelbounds", .kind = ParamKind::integer, .doc = "x0 x1 y0 y1 of what to render, in pixels.", .list = true},
-    {.name = "filename", .kind = ParamKind::string, .default_value = std::string_view("frond.exr"), .doc = "Output; -o goes before it."},
+    {.name = "xresolution",
+     .kind = ParamKind::integer,
+     .default_value = 1280,
+     .unit = "pixels",
+     .range = kResolution,
+     .doc = "Width."},
+    {.name = "yresolution",
+     .kind = ParamKind::integer,
+     .default_value = 720,
+     .unit = "pixels",
+     .range = kResolution,
+     .doc = "Height."},
+    {.name = "cropwindow",
+     .kind = ParamKind::real,
+     .range = {0, 1},
+     .doc = "x0 x1 y0 y1 of what to render, as fractions.",
+     .list = true},
+    {.name = "pixelbounds",
+     .kind = ParamKind::integer,
+     .doc = "x0 x1 y0 y1 of what to render, in pixels.",
+     .list = true},
+    {.name = "filename",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("frond.exr"),
+     .doc = "Output; -o goes before it."},
     {.name = "savefp16", .kind = ParamKind::boolean, .default_value = false, .doc = "EXR with 16-bit floats."},
-    {.name = "diagonal", .kind = ParamKind::real, .default_value = 35.0, .unit = "mm", .range = kAtLeastZero, .doc = "Film size; no camera of ours depends on it."},
-    {.name = "iso", .kind = ParamKind::real, .default_value = 100.0, .range = kAtLeastZero, .doc = "Film speed; 100 and 1 s leave radiance as it is."},
-    {.name = "exposuretime", .kind = ParamKind::real, .default_value = 1.0, .unit = "s", .range = kAtLeastZero, .doc = "Exposure."},
-    {.name = "sensor", .kind = ParamKind::string, .default_value = std::string_view("cie1931"), .doc = "Response of the film.", .choices = kSensors},
-    {.name = "maxcomponentvalue", .kind = ParamKind::real, .range = kAtLeastZero, .doc = "Clamps samples and so biases the image; none by default."},
+    {.name = "diagonal",
+     .kind = ParamKind::real,
+     .default_value = 35.0,
+     .unit = "mm",
+     .range = kAtLeastZero,
+     .doc = "Film size; no camera of ours depends on it."},
+    {.name = "iso",
+     .kind = ParamKind::real,
+     .default_value = 100.0,
+     .range = kAtLeastZero,
+     .doc = "Film speed; 100 and 1 s leave radiance as it is."},
+    {.name = "exposuretime",
+     .kind = ParamKind::real,
+     .default_value = 1.0,
+     .unit = "s",
+     .range = kAtLeastZero,
+     .doc = "Exposure."},
+    {.name = "sensor",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("cie1931"),
+     .doc = "Response of the film.",
+     .choices = kSensors},
+    {.name = "maxcomponentvalue",
+     .kind = ParamKind::real,
+     .range = kAtLeastZero,
+     .doc = "Clamps samples and so biases the image; none by default."},
 };
 
 Crop crop_of(const Params& p, int width, int height) {
   const auto window = p.reals("cropwindow");
   const auto bounds = p.integers("pixelbounds");
-  if (!window.empty() && !bounds.empty()) fail(p.where("pixelbounds"), "\"cropwindow\" and \"pixelbounds\" exclude each other");
+  if (!window.empty() && !bounds.empty())
+    fail(p.where("pixelbounds"), "\"cropwindow\" and \"pixelbounds\" exclude each other");
   Crop crop{0, 0, width, height};
   if (!window.empty()) {
     if (window.size() != 4) fail(p.where("cropwindow"), "\"cropwindow\" takes 4 values, {} given", window.size());
@@ -42,7 +84,8 @@ Crop crop_of(const Params& p, int width, int height) {
     if (bounds.size() != 4) fail(p.where("pixelbounds"), "\"pixelbounds\" takes 4 values, {} given", bounds.size());
     crop = {std::max(bounds[0], 0), std::max(bounds[2], 0), std::min(bounds[1], width), std::min(bounds[3], height)};
   }
-  if (crop.width() <= 0 || crop.height() <= 0) fail(p.where(), "the crop holds no pixel of the {} x {} film", width, height);
+  if (crop.width() <= 0 || crop.height() <= 0)
+    fail(p.where(), "the crop holds no pixel of the {} x {} film", width, height);
   return crop;
 }
 
@@ -54,7 +97,8 @@ FilmSettings make_rgb_film(const Params& p) {
   s.filename = p.string("filename");
   s.half = p.boolean("savefp16");
   s.exposure = p.real("exposuretime") * p.real("iso") / 100;
-  s.max_component = p.given("maxcomponentvalue") ? p.real("maxcomponentvalue") : std::numeric_limits<double>::infinity();
+  s.max_component =
+      p.given("maxcomponentvalue") ? p.real("maxcomponentvalue") : std::numeric_limits<double>::infinity();
   (void)p.real("diagonal");
   (void)p.string("sensor");
   return s;
@@ -75,7 +119,8 @@ size_t Film::index(int x, int y) const {
 
 void Film::add(int x, int y, std::array<double, 3> sensor, double weight, bool leaf) {
   const double largest = std::max({sensor[0], sensor[1], sensor[2]}) * settings_.exposure;
-  const double scale = weight * settings_.exposure * (largest > settings_.max_component ? settings_.max_component / largest : 1);
+  const double scale =
+      weight * settings_.exposure * (largest > settings_.max_component ? settings_.max_component / largest : 1);
   Pixel& pixel = pixels_[index(x, y)];
   for (double& value : sensor) value *= scale;
   for (size_t c = 0; c < 3; ++c) pixel.sum[c] += sensor[c];
@@ -96,8 +141,7 @@ std::array<double, 6> Film::covariance(int x, int y) const {
   if (p.samples < 2) return {};
   std::array<double, 6> v{};
   const double n = double(p.samples);
-  for (size_t k = 0; k < 6; ++k)
-    v[k] = (p.products[k] - p.sum[kPairs[k][0]] * p.sum[kPairs[k][1]] / n) / (n * (n - 1));
+  for (size_t k = 0; k < 6; ++k) v[k] = (p.products[k] - p.sum[kPairs[k][0]] * p.sum[kPairs[k][1]] / n) / (n * (n - 1));
   for (size_t c = 0; c < 3; ++c) v[c] = std::max(v[c], 0.0);  // rounding, where all samples are alike
   return v;
 }

@@ -19,9 +19,9 @@ struct FilmSettings {
   int width, height;  ///< full resolution, pixels
   Crop crop;
   std::string filename;
-  bool half = false;          ///< EXR with 16-bit floats
-  double exposure = 1;        ///< factor from radiance to film
-  double max_component = 0;   ///< samples are scaled down to this channel value; infinity: not at all
+  bool half = false;         ///< EXR with 16-bit floats
+  double exposure = 1;       ///< factor from radiance to film
+  double max_component = 0;  ///< samples are scaled down to this channel value; infinity: not at all
 };
 
 struct FilmInfo : PluginInfo {
@@ -48,8 +48,8 @@ class Film {
   const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
   /// Mean sensor response.
   std::array<double, 3> mean(int x, int y) const;
-  /// Estimated covariance of `mean`, as 00 11 22 01 02 12; 0 with less than two samples. With low-discrepancy samples it
-  /// is an upper bound: it does not know that they repel each other.
+  /// Estimated covariance of `mean`, as 00 11 22 01 02 12; 0 with less than two samples. With low-discrepancy samples
+  /// it is an upper bound: it does not know that they repel each other.
   std::array<double, 6> covariance(int x, int y) const;
   /// Fraction of the samples that saw a leaf first.
   double leaf_fraction(int x, int y) const;

@@ -10,9 +10,7 @@ namespace {
 constexpr Interval kPositive{1e-6, 1e6};
 
 /// The quantile of a triangle on [-1, 1].
-float sample_tent(float u) {
-  return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(std::max(0.f, 2 - 2 * u));
-}
+float sample_tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(std::max(0.f, 2 - 2 * u)); }
 
 Vec2 radius_of(const Params& p) {
   return {static_cast<float>(p.real("xradius")), static_cast<float>(p.real("yradius"))};
@@ -68,7 +66,8 @@ class SeparableFilter final : public Filter {
     static std::vector<float> tabulate(float radius, F value) {
       std::vector<float> cells;
       for (int i = 0; i < kCells; ++i)
-        cells.push_back(static_cast<float>(value((2 * (i + 0.5) / kCells - 1) * static_cast<double>(radius), static_cast<double>(radius))));
+        cells.push_back(static_cast<float>(
+            value((2 * (i + 0.5) / kCells - 1) * static_cast<double>(radius), static_cast<double>(radius))));
       return cells;
     }
     static std::vector<float> absolute(std::vector<float> cells) {
@@ -87,7 +86,8 @@ class SeparableFilter final : public Filter {
 double mitchell(double x, double b, double c) {
   x = std::abs(x);
   if (x <= 1) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
-  if (x <= 2) return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + (8 * b + 24 * c)) / 6;
+  if (x <= 2)
+    return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + (8 * b + 24 * c)) / 6;
   return 0;
 }
 
@@ -109,8 +109,7 @@ std::unique_ptr<Filter> make_mitchell(const Params& p) {
 
 std::unique_ptr<Filter> make_sinc(const Params& p) {
   const double tau = p.real("tau");
-  return std::make_unique<SeparableFilter>(
-      radius_of(p), [tau](double x, double) { return sinc(x) * sinc(x / tau); });
+  return std::make_unique<SeparableFilter>(radius_of(p), [tau](double x, double) { return sinc(x) * sinc(x / tau); });
 }
 
 template <class T>
@@ -119,31 +118,45 @@ std::unique_ptr<Filter> make_filter(const Params& p) {
 }
 
 constexpr Param radius(std::string_view name, double value) {
-  return {.name = name, .kind = ParamKind::real, .default_value = value, .unit = "pixels", .range = kPositive, .doc = "Half the filter's width."};
+  return {.name = name,
+          .kind = ParamKind::real,
+          .default_value = value,
+          .unit = "pixels",
+          .range = kPositive,
+          .doc = "Half the filter's width."};
 }
 
 constexpr Param kBox[] = {radius("xradius", 0.5), radius("yradius", 0.5)};
 constexpr Param kTriangle[] = {radius("xradius", 2), radius("yradius", 2)};
-constexpr Param kGaussian[] = {
-    radius("xradius", 1.5), radius("yradius", 1.5),
-    {.name = "sigma", .kind = ParamKind::real, .default_value = 0.5, .unit = "pixels", .range = kPositive, .doc = "Standard deviation."}};
+constexpr Param kGaussian[] = {radius("xradius", 1.5),
+                               radius("yradius", 1.5),
+                               {.name = "sigma",
+                                .kind = ParamKind::real,
+                                .default_value = 0.5,
+                                .unit = "pixels",
+                                .range = kPositive,
+                                .doc = "Standard deviation."}};
 constexpr Param kMitchell[] = {
-    radius("xradius", 2), radius("yradius", 2),
+    radius("xradius", 2),
+    radius("yradius", 2),
     {.name = "B", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Blur."},
     {.name = "C", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Ringing."}};
 constexpr Param kSinc[] = {
-    radius("xradius", 4), radius("yradius", 4),
+    radius("xradius", 4),
+    radius("yradius", 4),
     {.name = "tau", .kind = ParamKind::real, .default_value = 3.0, .range = kPositive, .doc = "Cycles of the window."}};
 
 }  // namespace
 
-extern const FilterInfo box_filter{{"pixel filter", "box", "Equal weight over a rectangle.", "", kBox}, make_filter<BoxFilter>};
+extern const FilterInfo box_filter{{"pixel filter", "box", "Equal weight over a rectangle.", "", kBox},
+                                   make_filter<BoxFilter>};
 extern const FilterInfo triangle_filter{{"pixel filter", "triangle", "Weight that falls linearly.", "", kTriangle},
                                         make_filter<TriangleFilter>};
-extern const FilterInfo gaussian_filter{{"pixel filter", "gaussian", "Gaussian, lowered to end at zero.", "", kGaussian},
-                                        make_gaussian};
+extern const FilterInfo gaussian_filter{
+    {"pixel filter", "gaussian", "Gaussian, lowered to end at zero.", "", kGaussian}, make_gaussian};
 extern const FilterInfo mitchell_filter{
-    {"pixel filter", "mitchell", "Cubic with negative lobes.", "Mitchell and Netravali 1988", kMitchell}, make_mitchell};
+    {"pixel filter", "mitchell", "Cubic with negative lobes.", "Mitchell and Netravali 1988", kMitchell},
+    make_mitchell};
 extern const FilterInfo sinc_filter{{"pixel filter", "sinc", "Windowed sinc.", "Lanczos window", kSinc}, make_sinc};
 
 }  // namespace frond

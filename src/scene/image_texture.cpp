@@ -21,7 +21,8 @@ constexpr std::string_view kMappings[] = {"uv"};
 class Lookup {
  public:
   Lookup(const Params& p, int width, int height)
-      : width_(width), height_(height),
+      : width_(width),
+        height_(height),
         scale_{float(p.real("uscale")), float(p.real("vscale"))},
         delta_{float(p.real("udelta")), float(p.real("vdelta"))},
         wrap_(p.string("wrap")[0]),
@@ -92,7 +93,8 @@ class ImageFloat final : public FloatTexture {
 
  private:
   ImageFloat(const Params& p, const RgbImage& image) : lookup_(p, image.width, image.height) {
-    for (size_t i = 0; i < image.rgb.size(); i += 3) values_.push_back((image.rgb[i] + image.rgb[i + 1] + image.rgb[i + 2]) / 3);
+    for (size_t i = 0; i < image.rgb.size(); i += 3)
+      values_.push_back((image.rgb[i] + image.rgb[i + 1] + image.rgb[i + 2]) / 3);
     const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
     range_ = {double(*low), double(*high)};
     if (p.string("wrap") == "black") range_ = {std::min(range_.min, 0.0), std::max(range_.max, 0.0)};
@@ -131,7 +133,8 @@ class ImageSpectrum final : public SpectrumTexture {
   }
   void add_color(const std::array<float, 3>& c, const ColorSpace& space, const Location& where) {
     for (const float v : c)
-      if (!(v >= 0 && v <= 1)) fail(where, "the image holds the value {}, a reflectance lies in 0 to 1; \"scale\" can bring it there", v);
+      if (!(v >= 0 && v <= 1))
+        fail(where, "the image holds the value {}, a reflectance lies in 0 to 1; \"scale\" can bring it there", v);
     colors_.push_back(fit_reflectance(space, {double(c[0]), double(c[1]), double(c[2])}).reflectance);
     max_ = std::max(max_, colors_.back().max_value());
   }
@@ -143,13 +146,31 @@ class ImageSpectrum final : public SpectrumTexture {
 };
 
 constexpr Param kImageMap[] = {
-    {.name = "filename", .kind = ParamKind::string, .doc = "Image file: EXR, PNG, JPEG, HDR or whatever OpenImageIO reads.", .required = true},
-    {.name = "filter", .kind = ParamKind::string, .default_value = std::string_view("bilinear"), .doc = "Between texels.", .choices = kFilters},
-    {.name = "wrap", .kind = ParamKind::string, .default_value = std::string_view("repeat"), .doc = "Beyond the image's edge.", .choices = kWraps},
-    {.name = "encoding", .kind = ParamKind::string, .doc = "Of the file's values; sRGB by default for 8 bits, else linear.", .choices = kEncodings},
+    {.name = "filename",
+     .kind = ParamKind::string,
+     .doc = "Image file: EXR, PNG, JPEG, HDR or whatever OpenImageIO reads.",
+     .required = true},
+    {.name = "filter",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("bilinear"),
+     .doc = "Between texels.",
+     .choices = kFilters},
+    {.name = "wrap",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("repeat"),
+     .doc = "Beyond the image's edge.",
+     .choices = kWraps},
+    {.name = "encoding",
+     .kind = ParamKind::string,
+     .doc = "Of the file's values; sRGB by default for 8 bits, else linear.",
+     .choices = kEncodings},
     {.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor."},
     {.name = "invert", .kind = ParamKind::boolean, .default_value = false, .doc = "One minus the value."},
-    {.name = "mapping", .kind = ParamKind::string, .default_value = std::string_view("uv"), .doc = "What places the image.", .choices = kMappings},
+    {.name = "mapping",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("uv"),
+     .doc = "What places the image.",
+     .choices = kMappings},
     {.name = "uscale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor of u."},
     {.name = "vscale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor of v."},
     {.name = "udelta", .kind = ParamKind::real, .default_value = 0.0, .doc = "Added to u."},
@@ -163,7 +184,11 @@ std::unique_ptr<Base> make(const Params& p) {
 
 }  // namespace
 
-extern const FloatTextureInfo image_float_texture{{"float texture", "imagemap", "The mean of an image's channels.", "pbrt-v4", kImageMap}, make<FloatTexture, ImageFloat>};
-extern const SpectrumTextureInfo image_spectrum_texture{{"spectrum texture", "imagemap", "An image's colours as smooth reflectances.", "Jakob and Hanika 2019", kImageMap}, make<SpectrumTexture, ImageSpectrum>};
+extern const FloatTextureInfo image_float_texture{
+    {"float texture", "imagemap", "The mean of an image's channels.", "pbrt-v4", kImageMap},
+    make<FloatTexture, ImageFloat>};
+extern const SpectrumTextureInfo image_spectrum_texture{
+    {"spectrum texture", "imagemap", "An image's colours as smooth reflectances.", "Jakob and Hanika 2019", kImageMap},
+    make<SpectrumTexture, ImageSpectrum>};
 
 }  // namespace frond

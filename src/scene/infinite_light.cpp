@@ -18,9 +18,12 @@ class ConstantEnvironment final : public EnvironmentLight {
   explicit ConstantEnvironment(const Params& p, float scale) : spectrum_(p.spectrum("L")), scale_(scale) {}
   std::optional<LightSample> sample(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
     const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.f, 1 - z * z)), phi = 2 * kPi * u.y;
-    return LightSample{spectrum_->sample(lambda) * scale_, {r * std::cos(phi), r * std::sin(phi), z}, INFINITY, kUniformPdf};
+    return LightSample{
+        spectrum_->sample(lambda) * scale_, {r * std::cos(phi), r * std::sin(phi), z}, INFINITY, kUniformPdf};
   }
-  SampledSpectrum radiance(const Vec3&, const SampledWavelengths& lambda) const override { return spectrum_->sample(lambda) * scale_; }
+  SampledSpectrum radiance(const Vec3&, const SampledWavelengths& lambda) const override {
+    return spectrum_->sample(lambda) * scale_;
+  }
   float pdf(const Vec3&) const override { return kUniformPdf; }
   bool is_delta() const override { return false; }
   double power(float radius) const override {
@@ -65,9 +68,12 @@ class ImageEnvironment final : public EnvironmentLight {
   std::optional<LightSample> sample(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
     const auto [uv, density] = texels_by_power_.sample(u);
     if (!(density > 0)) return {};
-    return LightSample{at(uv, lambda), normalize(world_from_light_.vector(sphere_from_square(uv))), INFINITY, density * kPerSphere};
+    return LightSample{at(uv, lambda), normalize(world_from_light_.vector(sphere_from_square(uv))), INFINITY,
+                       density * kPerSphere};
   }
-  SampledSpectrum radiance(const Vec3& direction, const SampledWavelengths& lambda) const override { return at(to_square(direction), lambda); }
+  SampledSpectrum radiance(const Vec3& direction, const SampledWavelengths& lambda) const override {
+    return at(to_square(direction), lambda);
+  }
   float pdf(const Vec3& direction) const override { return texels_by_power_.pdf(to_square(direction)) * kPerSphere; }
   bool is_delta() const override { return false; }
   double power(float radius) const override {
@@ -84,10 +90,15 @@ class ImageEnvironment final : public EnvironmentLight {
   };
 
   ImageEnvironment(const Params& p, const Transform& world_from_light, const RgbImage& image)
-      : world_from_light_(world_from_light), light_from_world_(world_from_light.inverse()), size_(image.width), white_(unit_d65()),
+      : world_from_light_(world_from_light),
+        light_from_world_(world_from_light.inverse()),
+        size_(image.width),
+        white_(unit_d65()),
         texels_by_power_(luminances(image), image.width) {
     if (image.width != image.height)
-      fail(p.where("filename"), "the image is {} x {}: an environment is square, in pbrt-v4's equal-area map of the sphere", image.width, image.height);
+      fail(p.where("filename"),
+           "the image is {} x {}: an environment is square, in pbrt-v4's equal-area map of the sphere", image.width,
+           image.height);
     const float scale = float(p.real("scale"));
     std::map<std::array<float, 3>, uint32_t> known;
     for (size_t i = 0; i < image.rgb.size(); i += 3) {
@@ -97,23 +108,27 @@ class ImageEnvironment final : public EnvironmentLight {
       texels_.push_back(it->second);
     }
     mean_luminance_ = double(scale) * mean_of(luminances(image));
-    if (p.given("illuminance")) fail(p.where("illuminance"), "\"illuminance\" of an image is not supported yet: use \"scale\"");
+    if (p.given("illuminance"))
+      fail(p.where("illuminance"), "\"illuminance\" of an image is not supported yet: use \"scale\"");
   }
 
   static Color color(const std::array<float, 3>& c, float scale, const Location& where) {
     for (const float v : c)
-      if (!(v >= 0 && std::isfinite(v))) fail(where, "the image holds the value {}: radiance is not negative and finite", v);
+      if (!(v >= 0 && std::isfinite(v)))
+        fail(where, "the image holds the value {}: radiance is not negative and finite", v);
     // Twice the brightest channel leaves the reflectance room on both sides.
     const double peak = 2 * double(std::max({c[0], c[1], c[2]}));
     if (peak == 0) return {SigmoidPolynomial({0, 0, 0}), 0};
-    const auto fit = fit_reflectance(color_space("srgb", {}), {double(c[0]) / peak, double(c[1]) / peak, double(c[2]) / peak});
+    const auto fit =
+        fit_reflectance(color_space("srgb", {}), {double(c[0]) / peak, double(c[1]) / peak, double(c[2]) / peak});
     return {fit.reflectance, float(peak) * scale};
   }
   static std::vector<float> luminances(const RgbImage& image) {
     const Triple& y = color_space("srgb", {}).xyz_from_rgb.row[1];
     std::vector<float> result;
     for (size_t i = 0; i < image.rgb.size(); i += 3)
-      result.push_back(std::max(0.f, float(y[0]) * image.rgb[i] + float(y[1]) * image.rgb[i + 1] + float(y[2]) * image.rgb[i + 2]));
+      result.push_back(
+          std::max(0.f, float(y[0]) * image.rgb[i] + float(y[1]) * image.rgb[i + 1] + float(y[2]) * image.rgb[i + 2]));
     return result;
   }
   static double mean_of(const std::vector<float>& values) {
@@ -121,7 +136,9 @@ class ImageEnvironment final : public EnvironmentLight {
     for (const float v : values) sum += double(v);
     return sum / double(values.size());
   }
-  Vec2 to_square(const Vec3& direction) const { return square_from_sphere(normalize(light_from_world_.vector(direction))); }
+  Vec2 to_square(const Vec3& direction) const {
+    return square_from_sphere(normalize(light_from_world_.vector(direction)));
+  }
   size_t index(Vec2 uv) const {
     const auto cell = [this](float t) { return size_t(std::clamp(int(t * float(size_)), 0, size_ - 1)); };
     return cell(uv.y) * size_t(size_) + cell(uv.x);
@@ -143,10 +160,19 @@ class ImageEnvironment final : public EnvironmentLight {
 };
 
 constexpr Param kInfinite[] = {
-    {.name = "L", .kind = ParamKind::illuminant, .default_value = std::array<double, 3>{1, 1, 1}, .doc = "Radiance; spectra are normalised to luminance 1."},
-    {.name = "filename", .kind = ParamKind::string, .doc = "Square image in the equal-area map of pbrt-v4, linear sRGB; in place of L."},
+    {.name = "L",
+     .kind = ParamKind::illuminant,
+     .default_value = std::array<double, 3>{1, 1, 1},
+     .doc = "Radiance; spectra are normalised to luminance 1."},
+    {.name = "filename",
+     .kind = ParamKind::string,
+     .doc = "Square image in the equal-area map of pbrt-v4, linear sRGB; in place of L."},
     {.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor."},
-    {.name = "illuminance", .kind = ParamKind::real, .unit = "lx", .range = kAtLeastZero, .doc = "Illuminance of a surface under the upper half, in place of the radiance's own."},
+    {.name = "illuminance",
+     .kind = ParamKind::real,
+     .unit = "lx",
+     .range = kAtLeastZero,
+     .doc = "Illuminance of a surface under the upper half, in place of the radiance's own."},
 };
 
 std::unique_ptr<Light> make_infinite(const Params& p, const Transform& world_from_light) {
@@ -154,12 +180,15 @@ std::unique_ptr<Light> make_infinite(const Params& p, const Transform& world_fro
     if (p.given("L")) fail(p.where("L"), "\"L\" and \"filename\" exclude each other");
     return std::make_unique<ImageEnvironment>(p, world_from_light);
   }
-  const double scale = p.given("illuminance") ? p.real("scale") * p.real("illuminance") / std::numbers::pi : p.real("scale");
+  const double scale =
+      p.given("illuminance") ? p.real("scale") * p.real("illuminance") / std::numbers::pi : p.real("scale");
   return std::make_unique<ConstantEnvironment>(p, float(scale));
 }
 
 }  // namespace
 
-extern const LightInfo infinite_light{{"light", "infinite", "Light from all around: the same everywhere, or an image.", "pbrt-v4", kInfinite}, make_infinite};
+extern const LightInfo infinite_light{
+    {"light", "infinite", "Light from all around: the same everywhere, or an image.", "pbrt-v4", kInfinite},
+    make_infinite};
 
 }  // namespace frond

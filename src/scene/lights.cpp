@@ -30,14 +30,14 @@ Vec3 direction_of(const Params& p, const Transform& world_from_light) {
 class DistantLight final : public Light {
  public:
   DistantLight(const Params& p, const Transform& world_from_light)
-      : spectrum_(p.spectrum("L")),
-        scale_(scale_of(p, "illuminance", 1)),
-        wi_(-direction_of(p, world_from_light)) {}
+      : spectrum_(p.spectrum("L")), scale_(scale_of(p, "illuminance", 1)), wi_(-direction_of(p, world_from_light)) {}
   std::optional<LightSample> sample(const Vec3&, Vec2, const SampledWavelengths& lambda) const override {
     return LightSample{spectrum_->sample(lambda) * scale_, wi_, INFINITY, 1};
   }
   bool is_delta() const override { return true; }
-  double power(float r) const override { return photometric(*spectrum_) * double(scale_) * kPiD * double(r) * double(r); }
+  double power(float r) const override {
+    return photometric(*spectrum_) * double(scale_) * kPiD * double(r) * double(r);
+  }
   Interval range_nm() const override { return spectrum_->range_nm(); }
 
  private:
@@ -76,7 +76,8 @@ class SpotLight final : public Light {
         position_(world_from_light.point(p.vec3("from"))),
         axis_(direction_of(p, world_from_light)) {
     const double cone = p.real("coneangle"), delta = p.real("conedeltaangle");
-    if (delta > cone) fail(p.where("conedeltaangle"), "\"conedeltaangle\" {} is more than \"coneangle\" {}", delta, cone);
+    if (delta > cone)
+      fail(p.where("conedeltaangle"), "\"conedeltaangle\" {} is more than \"coneangle\" {}", delta, cone);
     cos_outer_ = float(std::cos(cone * kPiD / 180));
     cos_inner_ = float(std::cos((cone - delta) * kPiD / 180));
     scale_ = scale_of(p, "power", solid_angle());
@@ -111,7 +112,8 @@ class DiffuseAreaLight final : public AreaLight {
  public:
   DiffuseAreaLight(const Params& p, const ShapeGeometry& geometry)
       : spectrum_(p.spectrum("L")), surface_(geometry), two_sided_(p.boolean("twosided")) {
-    if (!(surface_.area() > 0)) fail(p.where(), "an area light needs a surface with an area, this one has {}", surface_.area());
+    if (!(surface_.area() > 0))
+      fail(p.where(), "an area light needs a surface with an area, this one has {}", surface_.area());
     scale_ = scale_of(p, "power", sides() * kPiD * surface_.area());
   }
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
@@ -147,20 +149,59 @@ class DiffuseAreaLight final : public AreaLight {
 };
 
 constexpr Default kWhite = std::array<double, 3>{1, 1, 1};
-constexpr Param kScale{.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor."};
-constexpr Param kRadiance{.name = "L", .kind = ParamKind::illuminant, .default_value = kWhite, .doc = "Emission; spectra are normalised to luminance 1."};
-constexpr Param kIntensity{.name = "I", .kind = ParamKind::illuminant, .default_value = kWhite, .doc = "Radiant intensity; spectra are normalised to luminance 1."};
-constexpr Param kPower{.name = "power", .kind = ParamKind::real, .unit = "lm", .range = kAtLeastZero, .doc = "Total power, in place of the spectrum's own."};
-constexpr Param kFrom{.name = "from", .kind = ParamKind::point3, .default_value = std::array<double, 3>{0, 0, 0}, .doc = "Position."};
-constexpr Param kTo{.name = "to", .kind = ParamKind::point3, .default_value = std::array<double, 3>{0, 0, 1}, .doc = "What the light points at."};
-constexpr Param kDistant[] = {kRadiance, kScale, kFrom, kTo,
-                              {.name = "illuminance", .kind = ParamKind::real, .unit = "lx", .range = kAtLeastZero, .doc = "Illuminance of a surface that faces the light."}};
+constexpr Param kScale{
+    .name = "scale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor."};
+constexpr Param kRadiance{.name = "L",
+                          .kind = ParamKind::illuminant,
+                          .default_value = kWhite,
+                          .doc = "Emission; spectra are normalised to luminance 1."};
+constexpr Param kIntensity{.name = "I",
+                           .kind = ParamKind::illuminant,
+                           .default_value = kWhite,
+                           .doc = "Radiant intensity; spectra are normalised to luminance 1."};
+constexpr Param kPower{.name = "power",
+                       .kind = ParamKind::real,
+                       .unit = "lm",
+                       .range = kAtLeastZero,
+                       .doc = "Total power, in place of the spectrum's own."};
+constexpr Param kFrom{
+    .name = "from", .kind = ParamKind::point3, .default_value = std::array<double, 3>{0, 0, 0}, .doc = "Position."};
+constexpr Param kTo{.name = "to",
+                    .kind = ParamKind::point3,
+                    .default_value = std::array<double, 3>{0, 0, 1},
+                    .doc = "What the light points at."};
+constexpr Param kDistant[] = {kRadiance,
+                              kScale,
+                              kFrom,
+                              kTo,
+                              {.name = "illuminance",
+                               .kind = ParamKind::real,
+                               .unit = "lx",
+                               .range = kAtLeastZero,
+                               .doc = "Illuminance of a surface that faces the light."}};
 constexpr Param kPoint[] = {kIntensity, kScale, kPower, kFrom};
-constexpr Param kSpot[] = {kIntensity, kScale, kPower, kFrom, kTo,
-                           {.name = "coneangle", .kind = ParamKind::real, .default_value = 30.0, .unit = "degrees", .range = {1e-3, 180}, .doc = "From the axis to the cone's edge."},
-                           {.name = "conedeltaangle", .kind = ParamKind::real, .default_value = 5.0, .unit = "degrees", .range = {0, 180}, .doc = "Width of the soft rim."}};
-constexpr Param kDiffuseArea[] = {kRadiance, kScale, kPower,
-                                  {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Both sides give off light."}};
+constexpr Param kSpot[] = {kIntensity,
+                           kScale,
+                           kPower,
+                           kFrom,
+                           kTo,
+                           {.name = "coneangle",
+                            .kind = ParamKind::real,
+                            .default_value = 30.0,
+                            .unit = "degrees",
+                            .range = {1e-3, 180},
+                            .doc = "From the axis to the cone's edge."},
+                           {.name = "conedeltaangle",
+                            .kind = ParamKind::real,
+                            .default_value = 5.0,
+                            .unit = "degrees",
+                            .range = {0, 180},
+                            .doc = "Width of the soft rim."}};
+constexpr Param kDiffuseArea[] = {
+    kRadiance,
+    kScale,
+    kPower,
+    {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Both sides give off light."}};
 
 template <class T>
 std::unique_ptr<Light> make_light(const Params& p, const Transform& world_from_light) {
@@ -173,9 +214,13 @@ std::unique_ptr<AreaLight> make_area_light(const Params& p, const ShapeGeometry&
 
 }  // namespace
 
-extern const LightInfo distant_light{{"light", "distant", "Parallel light.", "pbrt-v4", kDistant}, make_light<DistantLight>};
-extern const LightInfo point_light{{"light", "point", "The same intensity in every direction.", "pbrt-v4", kPoint}, make_light<PointLight>};
-extern const LightInfo spot_light{{"light", "spot", "A cone with a soft rim.", "pbrt-v4", kSpot}, make_light<SpotLight>};
-extern const AreaLightInfo diffuse_area_light{{"area light", "diffuse", "The same radiance in every direction.", "pbrt-v4", kDiffuseArea}, make_area_light};
+extern const LightInfo distant_light{{"light", "distant", "Parallel light.", "pbrt-v4", kDistant},
+                                     make_light<DistantLight>};
+extern const LightInfo point_light{{"light", "point", "The same intensity in every direction.", "pbrt-v4", kPoint},
+                                   make_light<PointLight>};
+extern const LightInfo spot_light{{"light", "spot", "A cone with a soft rim.", "pbrt-v4", kSpot},
+                                  make_light<SpotLight>};
+extern const AreaLightInfo diffuse_area_light{
+    {"area light", "diffuse", "The same radiance in every direction.", "pbrt-v4", kDiffuseArea}, make_area_light};
 
 }  // namespace frond

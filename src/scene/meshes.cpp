@@ -16,8 +16,8 @@ Vec3 face_normal(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
 void orient(TriangleMesh& mesh, const ShapePlacement& placement) {
   const bool flip_winding = placement.reverse_orientation != placement.to_scene.swaps_handedness();
   for (auto& t : mesh.triangles) {
-    const bool flip = mesh.n.empty() ? flip_winding
-                                     : dot(face_normal(mesh, t), mesh.n[t[0]] + mesh.n[t[1]] + mesh.n[t[2]]) < 0;
+    const bool flip =
+        mesh.n.empty() ? flip_winding : dot(face_normal(mesh, t), mesh.n[t[0]] + mesh.n[t[1]] + mesh.n[t[2]]) < 0;
     if (flip) std::swap(t[1], t[2]);
   }
 }
@@ -67,17 +67,24 @@ ShapeGeometry make_ply_mesh(const Params& p, const ShapePlacement& placement) {
 
 constexpr Param kTriangleMesh[] = {
     {.name = "P", .kind = ParamKind::point3, .doc = "Vertices.", .list = true, .required = true},
-    {.name = "N", .kind = ParamKind::normal3, .doc = "Shading normals, one for each vertex; they also decide the front.", .list = true},
+    {.name = "N",
+     .kind = ParamKind::normal3,
+     .doc = "Shading normals, one for each vertex; they also decide the front.",
+     .list = true},
     {.name = "uv", .kind = ParamKind::point2, .doc = "Texture coordinates, one for each vertex.", .list = true},
     {.name = "indices", .kind = ParamKind::integer, .doc = "Three vertices for each triangle.", .list = true},
     kAlphaParam};
-constexpr Param kPlyMesh[] = {
-    {.name = "filename", .kind = ParamKind::string, .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals.", .required = true},
-    kAlphaParam};
+constexpr Param kPlyMesh[] = {{.name = "filename",
+                               .kind = ParamKind::string,
+                               .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals.",
+                               .required = true},
+                              kAlphaParam};
 
 }  // namespace
 
-extern const ShapeInfo triangle_mesh_shape{{"shape", "trianglemesh", "Triangles.", "pbrt-v4", kTriangleMesh}, make_triangle_mesh};
-extern const ShapeInfo ply_mesh_shape{{"shape", "plymesh", "Triangles from a PLY file.", "pbrt-v4", kPlyMesh}, make_ply_mesh};
+extern const ShapeInfo triangle_mesh_shape{{"shape", "trianglemesh", "Triangles.", "pbrt-v4", kTriangleMesh},
+                                           make_triangle_mesh};
+extern const ShapeInfo ply_mesh_shape{{"shape", "plymesh", "Triangles from a PLY file.", "pbrt-v4", kPlyMesh},
+                                      make_ply_mesh};
 
 }  // namespace frond

@@ -26,8 +26,8 @@ class Quadric : public AnalyticShape {
     const Vec3 x = to_scene_.vector({1, 0, 0}), y = to_scene_.vector({0, 1, 0}), z = to_scene_.vector({0, 0, 1});
     const float xx = dot(x, x), slack = 1e-4f * xx;
     const auto near = [slack](float a, float b) { return std::abs(a - b) <= slack; };
-    const bool similar = near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) &&
-                         near(dot(z, x), 0);
+    const bool similar =
+        near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) && near(dot(z, x), 0);
     return similar ? "" : "its transform stretches it unevenly";
   }
 
@@ -64,7 +64,8 @@ class Sphere final : public Quadric {
     const double z0 = p.given("zmin") ? p.real("zmin") : -radius_, z1 = p.given("zmax") ? p.real("zmax") : radius_;
     z_min_ = std::clamp(std::min(z0, z1), -radius_, radius_);
     z_max_ = std::clamp(std::max(z0, z1), -radius_, radius_);
-    if (z_min_ == z_max_) fail(p.where("zmin"), "the sphere is empty: zmin {} and zmax {} with radius {}", z0, z1, radius_);
+    if (z_min_ == z_max_)
+      fail(p.where("zmin"), "the sphere is empty: zmin {} and zmax {} with radius {}", z0, z1, radius_);
   }
 
   Bounds bounds(unsigned) const override {
@@ -111,7 +112,8 @@ class Disk final : public Quadric {
  public:
   Disk(const Params& p, const ShapePlacement& placement)
       : Quadric(p, placement), radius_(p.real("radius")), inner_(p.real("innerradius")), height_(p.real("height")) {
-    if (inner_ >= radius_) fail(p.where("innerradius"), "\"innerradius\" {} must be less than \"radius\" {}", inner_, radius_);
+    if (inner_ >= radius_)
+      fail(p.where("innerradius"), "\"innerradius\" {} must be less than \"radius\" {}", inner_, radius_);
   }
 
   Bounds bounds(unsigned) const override {
@@ -145,19 +147,29 @@ class Disk final : public Quadric {
   double radius_, inner_, height_;
 };
 
-constexpr Param kPhiMax{.name = "phimax", .kind = ParamKind::real, .default_value = 360.0, .unit = "degrees", .range = {1e-3, 360},
+constexpr Param kPhiMax{.name = "phimax",
+                        .kind = ParamKind::real,
+                        .default_value = 360.0,
+                        .unit = "degrees",
+                        .range = {1e-3, 360},
                         .doc = "Sweep angle."};
 constexpr Interval kLength{1e-30, 1e30};
 constexpr Param kSphere[] = {
     {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Radius."},
     {.name = "zmin", .kind = ParamKind::real, .doc = "Lower cut; the whole sphere by default."},
     {.name = "zmax", .kind = ParamKind::real, .doc = "Upper cut; the whole sphere by default."},
-    kPhiMax, kAlphaParam};
+    kPhiMax,
+    kAlphaParam};
 constexpr Param kDisk[] = {
     {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Outer radius."},
-    {.name = "innerradius", .kind = ParamKind::real, .default_value = 0.0, .range = kAtLeastZero, .doc = "Radius of the hole."},
+    {.name = "innerradius",
+     .kind = ParamKind::real,
+     .default_value = 0.0,
+     .range = kAtLeastZero,
+     .doc = "Radius of the hole."},
     {.name = "height", .kind = ParamKind::real, .default_value = 0.0, .doc = "Place along z."},
-    kPhiMax, kAlphaParam};
+    kPhiMax,
+    kAlphaParam};
 
 template <class T>
 ShapeGeometry make_quadric(const Params& p, const ShapePlacement& placement) {
@@ -171,7 +183,8 @@ void Bounds::add(const Vec3& p) {
   max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
 }
 
-extern const ShapeInfo sphere_shape{{"shape", "sphere", "Sphere or part of one.", "pbrt-v4", kSphere}, make_quadric<Sphere>};
+extern const ShapeInfo sphere_shape{{"shape", "sphere", "Sphere or part of one.", "pbrt-v4", kSphere},
+                                    make_quadric<Sphere>};
 extern const ShapeInfo disk_shape{{"shape", "disk", "Flat disk or ring.", "pbrt-v4", kDisk}, make_quadric<Disk>};
 
 }  // namespace frond

@@ -14,7 +14,8 @@ extern const ShapeInfo triangle_mesh_shape, ply_mesh_shape, sphere_shape, disk_s
 extern const LightInfo infinite_light, distant_light, point_light, spot_light;
 extern const AreaLightInfo diffuse_area_light;
 extern const FloatTextureInfo constant_float_texture, scale_float_texture, mix_float_texture, image_float_texture;
-extern const SpectrumTextureInfo constant_spectrum_texture, scale_spectrum_texture, mix_spectrum_texture, image_spectrum_texture;
+extern const SpectrumTextureInfo constant_spectrum_texture, scale_spectrum_texture, mix_spectrum_texture,
+    image_spectrum_texture;
 
 namespace {
 
@@ -25,7 +26,8 @@ constexpr std::array kFilters{&box_filter, &triangle_filter, &gaussian_filter, &
 constexpr std::array kShapes{&triangle_mesh_shape, &ply_mesh_shape, &sphere_shape, &disk_shape, &bilinear_mesh_shape};
 constexpr std::array kLights{&infinite_light, &distant_light, &point_light, &spot_light};
 constexpr std::array kAreaLights{&diffuse_area_light};
-constexpr std::array kFloatTextures{&constant_float_texture, &scale_float_texture, &mix_float_texture, &image_float_texture};
+constexpr std::array kFloatTextures{&constant_float_texture, &scale_float_texture, &mix_float_texture,
+                                    &image_float_texture};
 constexpr std::array kSpectrumTextures{&constant_spectrum_texture, &scale_spectrum_texture, &mix_spectrum_texture,
                                        &image_spectrum_texture};
 

@@ -33,6 +33,7 @@ struct Registry {
 std::vector<const PluginInfo*> all_plugins(const Registry& registry);
 
 /// The tables of this layer and of spectra, with the materials and integrators given.
-Registry make_registry(std::span<const MaterialInfo* const> materials, std::span<const IntegratorInfo* const> integrators);
+Registry make_registry(std::span<const MaterialInfo* const> materials,
+                       std::span<const IntegratorInfo* const> integrators);
 
 }  // namespace frond

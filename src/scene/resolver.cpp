@@ -46,7 +46,8 @@ SpectrumPtr normalized(SpectrumPtr s, const ParsedParam& p) {
 
 }  // namespace
 
-SceneResolver::SceneResolver(const SceneDescription& description, const Registry& registry, const WavelengthStrategy& wavelengths)
+SceneResolver::SceneResolver(const SceneDescription& description, const Registry& registry,
+                             const WavelengthStrategy& wavelengths)
     : description_(description),
       registry_(registry),
       wavelengths_(wavelengths),
@@ -55,8 +56,9 @@ SceneResolver::SceneResolver(const SceneDescription& description, const Registry
 SceneResolver::~SceneResolver() = default;
 
 template <class Texture, class Info>
-std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, const Location& where, TextureDescription::Value value,
-                                                      const PluginTable<Info>& table, std::map<std::string, std::shared_ptr<const Texture>>& made) {
+std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, const Location& where,
+                                                      TextureDescription::Value value, const PluginTable<Info>& table,
+                                                      std::map<std::string, std::shared_ptr<const Texture>>& made) {
   if (const auto it = made.find(name); it != made.end()) return it->second;
   std::vector<std::string_view> names;
   for (const TextureDescription& t : description_.textures) {
@@ -116,17 +118,24 @@ std::vector<std::shared_ptr<Material>> SceneResolver::materials() const {
 SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, bool emission) {
   SpectrumPtr s;
   if (p.type == "rgb") {
-    s = emission ? rgb_illuminant(color_space_, rgb_of(p), p.value_where) : rgb_albedo(color_space_, rgb_of(p), p.value_where);
+    s = emission ? rgb_illuminant(color_space_, rgb_of(p), p.value_where)
+                 : rgb_albedo(color_space_, rgb_of(p), p.value_where);
   } else {
-    if (p.type == "blackbody") s = blackbody_of(p);
-    else s = std::holds_alternative<std::vector<double>>(p.values) ? make_tabulated(numbers(p), p.value_where) : spectrum_of_name(p, description_);
+    if (p.type == "blackbody")
+      s = blackbody_of(p);
+    else
+      s = std::holds_alternative<std::vector<double>>(p.values) ? make_tabulated(numbers(p), p.value_where)
+                                                                : spectrum_of_name(p, description_);
     if (emission) s = normalized(s, p);
   }
   check_range(*s, wavelengths_, p.value_where, p.name);
-  if (!emission && s->max_value() > 1) fail(p.value_where, "\"{}\" goes up to {}, outside its range 0 to 1", p.name, s->max_value());
+  if (!emission && s->max_value() > 1)
+    fail(p.value_where, "\"{}\" goes up to {}, outside its range 0 to 1", p.name, s->max_value());
   return s;
 }
 
-std::filesystem::path SceneResolver::file(const std::string& name, const Location& where) { return description_.resolve(name, where); }
+std::filesystem::path SceneResolver::file(const std::string& name, const Location& where) {
+  return description_.resolve(name, where);
+}
 
 }  // namespace frond

@@ -12,8 +12,8 @@ namespace frond {
 
 struct ColorSpace;
 
-/// Looks up what parameters refer to: textures and materials by name, spectra by value, name or file. Things are made when
-/// first asked for. A spectrum whose data do not reach the render's wavelengths is an error at its parameter.
+/// Looks up what parameters refer to: textures and materials by name, spectra by value, name or file. Things are made
+/// when first asked for. A spectrum whose data do not reach the render's wavelengths is an error at its parameter.
 class SceneResolver final : public ParamResolver {
  public:
   SceneResolver(const SceneDescription& description, const Registry& registry, const WavelengthStrategy& wavelengths);
@@ -31,8 +31,9 @@ class SceneResolver final : public ParamResolver {
 
  private:
   template <class Texture, class Info>
-  std::shared_ptr<const Texture> texture(const std::string& name, const Location& where, TextureDescription::Value value,
-                                         const PluginTable<Info>& table, std::map<std::string, std::shared_ptr<const Texture>>& made);
+  std::shared_ptr<const Texture> texture(const std::string& name, const Location& where,
+                                         TextureDescription::Value value, const PluginTable<Info>& table,
+                                         std::map<std::string, std::shared_ptr<const Texture>>& made);
 
   const SceneDescription& description_;
   const Registry& registry_;

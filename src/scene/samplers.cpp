@@ -7,8 +7,16 @@ namespace frond {
 namespace {
 
 constexpr Param kSamplerParams[] = {
-    {.name = "pixelsamples", .kind = ParamKind::integer, .default_value = 16, .range = {1, 1 << 30}, .doc = "Samples per pixel."},
-    {.name = "seed", .kind = ParamKind::integer, .default_value = 0, .range = {0, 2147483647}, .doc = "Seed; --seed goes before it."},
+    {.name = "pixelsamples",
+     .kind = ParamKind::integer,
+     .default_value = 16,
+     .range = {1, 1 << 30},
+     .doc = "Samples per pixel."},
+    {.name = "seed",
+     .kind = ParamKind::integer,
+     .default_value = 0,
+     .range = {0, 2147483647},
+     .doc = "Seed; --seed goes before it."},
 };
 
 class SamplerBase : public Sampler {
@@ -48,8 +56,8 @@ constexpr uint32_t reverse_bits(uint32_t v) {
   return (v & 0x55555555u) << 1 | (v >> 1 & 0x55555555u);
 }
 
-/// Owen scrambling of a number whose bits are reversed, as a hash in which each bit depends on lower bits only: Laine and
-/// Karras 2011, with the constants of Vegdahl 2021, "Building a Better LK Hash".
+/// Owen scrambling of a number whose bits are reversed, as a hash in which each bit depends on lower bits only: Laine
+/// and Karras 2011, with the constants of Vegdahl 2021, "Building a Better LK Hash".
 constexpr uint32_t owen_hash(uint32_t v, uint32_t seed) {
   v ^= v * 0x3d20adeau;
   v += seed;
@@ -58,8 +66,8 @@ constexpr uint32_t owen_hash(uint32_t v, uint32_t seed) {
   return v ^ v * 0x53a22864u;
 }
 
-/// Second dimension of Sobol's sequence before the bit reversal: Pascal's triangle modulo 2 times the index. That matrix
-/// is [[P, P], [0, P]] in its own halves, hence five steps.
+/// Second dimension of Sobol's sequence before the bit reversal: Pascal's triangle modulo 2 times the index. That
+/// matrix is [[P, P], [0, P]] in its own halves, hence five steps.
 constexpr uint32_t sobol_second(uint32_t v) {
   v ^= v >> 16;
   v ^= (v & 0xff00ff00u) >> 8;
@@ -111,7 +119,8 @@ std::unique_ptr<Sampler> make_sampler(const Params& p, uint64_t seed) {
 }  // namespace
 
 extern const SamplerInfo independent_sampler{
-    {"sampler", "independent", "Independent uniform random numbers.", "", kSamplerParams}, make_sampler<IndependentSampler>};
+    {"sampler", "independent", "Independent uniform random numbers.", "", kSamplerParams},
+    make_sampler<IndependentSampler>};
 extern const SamplerInfo padded_sobol_sampler{
     {"sampler", "paddedsobol", "Owen-scrambled Sobol' points, shuffled anew for each pair of dimensions.",
      "Burley 2020, Practical Hash-based Owen Scrambling", kSamplerParams},

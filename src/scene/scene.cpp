@@ -10,8 +10,15 @@ namespace frond {
 namespace {
 
 constexpr Param kOptionParams[] = {
-    {.name = "seed", .kind = ParamKind::integer, .default_value = 0, .range = {0, 2147483647}, .doc = "Seed of all random numbers."},
-    {.name = "wavelengths", .kind = ParamKind::string, .default_value = std::string_view("hero"), .doc = "Wavelength strategy."},
+    {.name = "seed",
+     .kind = ParamKind::integer,
+     .default_value = 0,
+     .range = {0, 2147483647},
+     .doc = "Seed of all random numbers."},
+    {.name = "wavelengths",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("hero"),
+     .doc = "Wavelength strategy."},
 };
 constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
 
@@ -48,7 +55,8 @@ ParsedParam parse_swap_value(const Param& declared, const std::string& text) {
       p.values = std::vector<double>{value};
       return p;
     }
-    default: fail({}, "swap: \"{}\" cannot be given on the command line", p.name);
+    default:
+      fail({}, "swap: \"{}\" cannot be given on the command line", p.name);
   }
 }
 
@@ -76,7 +84,8 @@ void apply_swap(const MaterialSwap& swap, const MaterialInfo& info, ParsedPlugin
   plugin.name = swap.to;
 }
 
-void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry, const Log& log) {
+void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
+                 const Log& log) {
   for (const MaterialSwap& swap : swaps) {
     const MaterialInfo& info = registry.materials.get(swap.to, {});
     std::vector<std::string_view> names;
@@ -96,8 +105,8 @@ void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>&
 /// Turns the description into a scene, in the order of what depends on what.
 class SceneBuilder {
  public:
-  SceneBuilder(Scene& scene, const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
-               ThreadPool& pool, const Log& log)
+  SceneBuilder(Scene& scene, const SceneDescription& description, const Registry& registry,
+               const SceneOverrides& overrides, ThreadPool& pool, const Log& log)
       : scene_(scene), description_(description), registry_(registry), overrides_(overrides), pool_(pool), log_(log) {}
 
   void build() {
@@ -127,7 +136,8 @@ class SceneBuilder {
     const Params p(kOptions, plugin, resolver);
     const std::string name = overrides_.wavelengths.empty() ? p.string("wavelengths") : overrides_.wavelengths;
     scene_.options_ = {name, overrides_.seed ? *overrides_.seed : uint64_t(p.integer("seed"))};
-    const WavelengthsInfo& info = registry_.wavelengths.get(name, overrides_.wavelengths.empty() ? p.where("wavelengths") : Location{});
+    const WavelengthsInfo& info =
+        registry_.wavelengths.get(name, overrides_.wavelengths.empty() ? p.where("wavelengths") : Location{});
     scene_.wavelengths_ = info.make(Params(info, {name, {}, {}}, resolver));
   }
 
@@ -169,17 +179,21 @@ class SceneBuilder {
   Primitive primitive(const ShapeDescription& shape, SceneResolver& resolver) {
     const ShapeInfo& info = registry_.shapes.get(shape.plugin.name, shape.plugin.where);
     const Params params(info, shape.plugin, resolver);
-    Primitive result{info.make(params, {shape.world_from_object, shape.reverse_orientation}), nullptr, nullptr, nullptr};
+    Primitive result{info.make(params, {shape.world_from_object, shape.reverse_orientation}), nullptr, nullptr,
+                     nullptr};
     const auto alpha = params.float_texture("alpha");
     if (!alpha->is_constant() || alpha->range().min < 1) result.alpha = alpha;
     const auto material = resolver.material(shape.material);
     result.material = material.get();
-    if (shape.area_light) result.light = area_light(description_.area_lights[*shape.area_light], shape.plugin.where, result.geometry, resolver);
+    if (shape.area_light)
+      result.light =
+          area_light(description_.area_lights[*shape.area_light], shape.plugin.where, result.geometry, resolver);
     if (material->is_leaf()) warn_of_double_faces(result.geometry, shape.plugin.where);
     return result;
   }
 
-  const AreaLight* area_light(const ParsedPlugin& plugin, const Location& where, const ShapeGeometry& geometry, SceneResolver& resolver) {
+  const AreaLight* area_light(const ParsedPlugin& plugin, const Location& where, const ShapeGeometry& geometry,
+                              SceneResolver& resolver) {
     if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry); shape && !(*shape)->cannot_emit().empty())
       fail(where, "this shape cannot give off light: {}; triangles can", (*shape)->cannot_emit());
     auto light = make(registry_.area_lights, plugin, resolver, geometry);
@@ -201,15 +215,19 @@ class SceneBuilder {
       doubles += !faces.insert(corners).second;
     }
     if (doubles > 0)
-      log_.warn(where, fmt::format("{} of {} faces of this leaf lie on one another: every ray passes two leaves there; a leaf has "
-                                   "its two sides in one face", doubles, (*mesh)->triangles.size()));
+      log_.warn(
+          where,
+          fmt::format("{} of {} faces of this leaf lie on one another: every ray passes two leaves there; a leaf has "
+                      "its two sides in one face",
+                      doubles, (*mesh)->triangles.size()));
   }
 
   void index_lights() {
     for (const auto& light : scene_.owned_lights_) {
       light->set_index(int(scene_.lights_.size()));
       scene_.lights_.push_back(light.get());
-      if (const auto* environment = dynamic_cast<const EnvironmentLight*>(light.get())) scene_.environment_.push_back(environment);
+      if (const auto* environment = dynamic_cast<const EnvironmentLight*>(light.get()))
+        scene_.environment_.push_back(environment);
     }
     if (scene_.lights_.empty()) log_.warn({}, "the scene has no light: the image will be black");
   }
@@ -233,8 +251,8 @@ FilmSettings Scene::film_settings(const SceneDescription& description, const Reg
   return film;
 }
 
-Scene::Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides, ThreadPool& pool,
-             const Log& log) {
+Scene::Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
+             ThreadPool& pool, const Log& log) {
   SceneBuilder(*this, description, registry, overrides, pool, log).build();
 }
 

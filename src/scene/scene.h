@@ -42,11 +42,13 @@ class Scene final : public World {
                                     const SceneOverrides& overrides);
 
   /// Throws InputError.
-  Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides, ThreadPool& pool,
-        const Log& log);
+  Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
+        ThreadPool& pool, const Log& log);
   ~Scene() override;
 
-  bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override { return accelerator_->intersect(ray, key, point); }
+  bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override {
+    return accelerator_->intersect(ray, key, point);
+  }
   bool occluded(const Ray& ray, uint64_t key) const override { return accelerator_->occluded(ray, key); }
   std::span<const Light* const> lights() const override { return lights_; }
   std::span<const EnvironmentLight* const> environment() const override { return environment_; }

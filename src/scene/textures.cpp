@@ -23,7 +23,8 @@ class ScaleSpectrum final : public SpectrumTexture {
  public:
   explicit ScaleSpectrum(const Params& p) : tex_(p.spectrum_texture("tex")), scale_(p.float_texture("scale")) {
     if (const Interval r = scale_->range(); r.min < 0 || r.max * double(max_of_tex()) > 1)
-      fail(p.where("scale"), "\"scale\" takes \"tex\", up to {}, out of [0, 1]: it is {} to {}", max_of_tex(), r.min, r.max);
+      fail(p.where("scale"), "\"scale\" takes \"tex\", up to {}, out of [0, 1]: it is {} to {}", max_of_tex(), r.min,
+           r.max);
   }
   SampledSpectrum evaluate(Vec2 uv, const SampledWavelengths& lambda) const override {
     return tex_->evaluate(uv, lambda) * scale_->evaluate(uv);
@@ -48,7 +49,8 @@ class MixFloat final : public FloatTexture {
   Interval range() const override {
     const Interval a = a_->range(), b = b_->range(), t = amount_->range();
     const auto at = [](double x, double y, double s) { return (1 - s) * x + s * y; };
-    return {std::min(at(a.min, b.min, t.min), at(a.min, b.min, t.max)), std::max(at(a.max, b.max, t.min), at(a.max, b.max, t.max))};
+    return {std::min(at(a.min, b.min, t.min), at(a.min, b.min, t.max)),
+            std::max(at(a.max, b.max, t.min), at(a.max, b.max, t.max))};
   }
 
  private:
@@ -91,23 +93,42 @@ std::unique_ptr<Base> make(const Params& p) {
 }
 
 constexpr Param kFactor{.name = "scale", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "Factor."};
-constexpr Param kAmount{.name = "amount", .kind = ParamKind::float_texture, .default_value = 0.5, .range = {0, 1}, .doc = "Share of the second."};
+constexpr Param kAmount{.name = "amount",
+                        .kind = ParamKind::float_texture,
+                        .default_value = 0.5,
+                        .range = {0, 1},
+                        .doc = "Share of the second."};
 constexpr Param kConstantFloat[] = {{.name = "value", .kind = ParamKind::real, .default_value = 1.0, .doc = "Value."}};
-constexpr Param kConstantSpectrum[] = {{.name = "value", .kind = ParamKind::albedo, .default_value = 1.0, .doc = "Value."}};
-constexpr Param kScaleFloat[] = {{.name = "tex", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "What to scale."}, kFactor};
-constexpr Param kScaleSpectrum[] = {{.name = "tex", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "What to scale."}, kFactor};
-constexpr Param kMixFloat[] = {{.name = "tex1", .kind = ParamKind::float_texture, .default_value = 0.0, .doc = "First."},
-                               {.name = "tex2", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "Second."}, kAmount};
-constexpr Param kMixSpectrum[] = {{.name = "tex1", .kind = ParamKind::spectrum_texture, .default_value = 0.0, .doc = "First."},
-                                  {.name = "tex2", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "Second."}, kAmount};
+constexpr Param kConstantSpectrum[] = {
+    {.name = "value", .kind = ParamKind::albedo, .default_value = 1.0, .doc = "Value."}};
+constexpr Param kScaleFloat[] = {
+    {.name = "tex", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "What to scale."}, kFactor};
+constexpr Param kScaleSpectrum[] = {
+    {.name = "tex", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "What to scale."}, kFactor};
+constexpr Param kMixFloat[] = {
+    {.name = "tex1", .kind = ParamKind::float_texture, .default_value = 0.0, .doc = "First."},
+    {.name = "tex2", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "Second."},
+    kAmount};
+constexpr Param kMixSpectrum[] = {
+    {.name = "tex1", .kind = ParamKind::spectrum_texture, .default_value = 0.0, .doc = "First."},
+    {.name = "tex2", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "Second."},
+    kAmount};
 
 }  // namespace
 
-extern const FloatTextureInfo constant_float_texture{{"float texture", "constant", "The same number everywhere.", "pbrt-v4", kConstantFloat}, make_constant_float};
-extern const FloatTextureInfo scale_float_texture{{"float texture", "scale", "One texture times another.", "pbrt-v4", kScaleFloat}, make<FloatTexture, ScaleFloat>};
-extern const FloatTextureInfo mix_float_texture{{"float texture", "mix", "Between two textures.", "pbrt-v4", kMixFloat}, make<FloatTexture, MixFloat>};
-extern const SpectrumTextureInfo constant_spectrum_texture{{"spectrum texture", "constant", "The same spectrum everywhere.", "pbrt-v4", kConstantSpectrum}, make_constant_spectrum};
-extern const SpectrumTextureInfo scale_spectrum_texture{{"spectrum texture", "scale", "A texture times a number.", "pbrt-v4", kScaleSpectrum}, make<SpectrumTexture, ScaleSpectrum>};
-extern const SpectrumTextureInfo mix_spectrum_texture{{"spectrum texture", "mix", "Between two textures.", "pbrt-v4", kMixSpectrum}, make<SpectrumTexture, MixSpectrum>};
+extern const FloatTextureInfo constant_float_texture{
+    {"float texture", "constant", "The same number everywhere.", "pbrt-v4", kConstantFloat}, make_constant_float};
+extern const FloatTextureInfo scale_float_texture{
+    {"float texture", "scale", "One texture times another.", "pbrt-v4", kScaleFloat}, make<FloatTexture, ScaleFloat>};
+extern const FloatTextureInfo mix_float_texture{{"float texture", "mix", "Between two textures.", "pbrt-v4", kMixFloat},
+                                                make<FloatTexture, MixFloat>};
+extern const SpectrumTextureInfo constant_spectrum_texture{
+    {"spectrum texture", "constant", "The same spectrum everywhere.", "pbrt-v4", kConstantSpectrum},
+    make_constant_spectrum};
+extern const SpectrumTextureInfo scale_spectrum_texture{
+    {"spectrum texture", "scale", "A texture times a number.", "pbrt-v4", kScaleSpectrum},
+    make<SpectrumTexture, ScaleSpectrum>};
+extern const SpectrumTextureInfo mix_spectrum_texture{
+    {"spectrum texture", "mix", "Between two textures.", "pbrt-v4", kMixSpectrum}, make<SpectrumTexture, MixSpectrum>};
 
 }  // namespace frond

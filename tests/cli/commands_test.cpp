@@ -1,3 +1,5 @@
+#include "cli/commands.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +9,6 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "cli/commands.h"
 #include "scene/image_file.h"
 #include "tests/support/input_error.h"
 
@@ -63,7 +64,8 @@ Shape "sphere" "float radius" .5
   }
   std::vector<std::string> files() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_.name_of("."))) names.push_back(entry.path().filename().string());
+    for (const auto& entry : fs::directory_iterator(folder_.name_of(".")))
+      names.push_back(entry.path().filename().string());
     return names;
   }
 
@@ -71,9 +73,16 @@ Shape "sphere" "float radius" .5
 };
 
 TEST_F(Commands, BadUseExitsWithOneAndAMessage) {
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {}, {"rendr"}, {"render"}, {"render", "--spp", "0", "x.pbrt"}, {"render", "x.pbrt", "--nonsense"},
-           {"render", "--threads", "-1", "x.pbrt"}, {"render", "/no/such/scene.pbrt"}, {"describe", "abn"}, {"describe"}}) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {"rendr"},
+                                             {"render"},
+                                             {"render", "--spp", "0", "x.pbrt"},
+                                             {"render", "x.pbrt", "--nonsense"},
+                                             {"render", "--threads", "-1", "x.pbrt"},
+                                             {"render", "/no/such/scene.pbrt"},
+                                             {"describe", "abn"},
+                                             {"describe"}}) {
     const Outcome o = frond_command(arguments);
     EXPECT_EQ(o.code, 1) << ::testing::PrintToString(arguments);
     EXPECT_THAT(o.err, ::testing::Not(IsEmpty())) << ::testing::PrintToString(arguments);
@@ -96,8 +105,14 @@ TEST_F(Commands, ListNamesEveryPluginAndDescribeItsParameters) {
   EXPECT_THAT(frond_command({"describe", "abn"}).err, HasSubstr("did you mean \"abm\"?"));
 }
 
+TEST_F(Commands, TheDocumentedPluginsAreThoseOfThisBuild) {
+  EXPECT_EQ(frond_command({"describe", "--markdown"}).out, bytes_of(FROND_SOURCE_DIR "/docs/plugins.md"))
+      << "run: frond describe --markdown > docs/plugins.md";
+}
+
 TEST_F(Commands, RenderWritesWhatItSays) {
-  const Outcome o = render({"-o", path("a.exr"), "--spp", "3", "--seed", "9", "--wavelengths", "smpte", "--json", "-q"});
+  const Outcome o =
+      render({"-o", path("a.exr"), "--spp", "3", "--seed", "9", "--wavelengths", "smpte", "--json", "-q"});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.err, IsEmpty());
   const auto json = nlohmann::json::parse(o.out);
@@ -153,7 +168,8 @@ TEST_F(Commands, SwapChangesTheModelByOneWord) {
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thin=diffuse"}).err, HasSubstr("did you mean \"thing\"?"));
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing=difuse"}).err, HasSubstr("did you mean \"diffuse\"?"));
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing"}).err, HasSubstr("MATERIAL=PLUGIN"));
-  EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing=diffusetransmission,scal=2"}).err, HasSubstr("did you mean \"scale\"?"));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing=diffusetransmission,scal=2"}).err,
+              HasSubstr("did you mean \"scale\"?"));
 }
 
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
@@ -172,7 +188,9 @@ TEST_F(Commands, ErrorsInTheSceneNameTheirPlace) {
   folder_.write("bad.pbrt", "WorldBegin\nMaterial \"diffuse\" \"rgb reflectanc\" [1 1 1]\nShape \"sphere\"\n");
   const Outcome o = frond_command({"render", path("bad.pbrt"), "-o", path("bad.exr")});
   EXPECT_EQ(o.code, 1);
-  EXPECT_THAT(o.err, HasSubstr("bad.pbrt:2:20: material \"diffuse\" has no parameter \"reflectanc\"; did you mean \"reflectance\"?"));
+  EXPECT_THAT(
+      o.err,
+      HasSubstr("bad.pbrt:2:20: material \"diffuse\" has no parameter \"reflectanc\"; did you mean \"reflectance\"?"));
   EXPECT_FALSE(fs::exists(path("bad.exr")));
 }
 
@@ -180,11 +198,15 @@ TEST_F(Commands, DifferenceTellsNoiseFromBias) {
   for (const char* seed : {"1", "2"}) {
     ASSERT_EQ(render({"-o", path(std::string("a") + seed + ".exr"), "--seed", seed, "-q"}).code, 0);
     ASSERT_EQ(render({"-o", path(std::string("b") + seed + ".exr"), "--seed", std::string(seed) + "1", "-q"}).code, 0);
-    ASSERT_EQ(render({"-o", path(std::string("c") + seed + ".exr"), "--seed", std::string(seed) + "2", "--swap", "thing=diffusetransmission", "-q"}).code, 0);
+    ASSERT_EQ(render({"-o", path(std::string("c") + seed + ".exr"), "--seed", std::string(seed) + "2", "--swap",
+                      "thing=diffusetransmission", "-q"})
+                  .code,
+              0);
   }
   const auto difference = [&](const char* a, const char* b) {
-    const Outcome o = frond_command({"difference", path(a + std::string("1.exr")), path(a + std::string("2.exr")),
-                                     path(b + std::string("1.exr")), path(b + std::string("2.exr")), "--json", "-o", path("d.png")});
+    const Outcome o =
+        frond_command({"difference", path(a + std::string("1.exr")), path(a + std::string("2.exr")),
+                       path(b + std::string("1.exr")), path(b + std::string("2.exr")), "--json", "-o", path("d.png")});
     EXPECT_EQ(o.code, 0) << o.err;
     return nlohmann::json::parse(o.out);
   };
@@ -196,9 +218,11 @@ TEST_F(Commands, DifferenceTellsNoiseFromBias) {
 }
 
 TEST_F(Commands, ConvertAveragesAndShows) {
-  for (const char* seed : {"1", "2"}) ASSERT_EQ(render({"-o", path(std::string("a") + seed + ".exr"), "--seed", seed, "-q"}).code, 0);
+  for (const char* seed : {"1", "2"})
+    ASSERT_EQ(render({"-o", path(std::string("a") + seed + ".exr"), "--seed", seed, "-q"}).code, 0);
   ASSERT_EQ(frond_command({"convert", path("a1.exr"), path("a2.exr"), "-o", path("mean.exr")}).code, 0);
-  const Image a = read_image(path("a1.exr"), {}).image, b = read_image(path("a2.exr"), {}).image, mean = read_image(path("mean.exr"), {}).image;
+  const Image a = read_image(path("a1.exr"), {}).image, b = read_image(path("a2.exr"), {}).image,
+              mean = read_image(path("mean.exr"), {}).image;
   const size_t g = *a.channel("G"), m = *mean.channel("G");
   EXPECT_NEAR(mean.at(12, 8, m), (a.at(12, 8, g) + b.at(12, 8, g)) / 2, 1e-6);
   ASSERT_EQ(frond_command({"convert", path("mean.exr"), "-o", path("mean.png")}).code, 0);

@@ -30,8 +30,8 @@ inline Film render_text(const std::string& text, const RenderSettings& settings 
   overrides.swaps = settings.swaps;
   const Scene scene(description, registry, overrides, pool, quiet);
   Film film(Scene::film_settings(description, registry, overrides));
-  render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(), 0,
-          uint64_t(settings.samples)},
+  render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
+          0, uint64_t(settings.samples)},
          film, pool, {});
   return film;
 }
