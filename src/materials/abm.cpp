@@ -1,7 +1,9 @@
 #include "core/material.h"
 #include "core/sampling.h"
+#include "leaf/constants.h"
 #include "leaf/walk.h"
 #include "materials/leaf_params.h"
+#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -102,7 +104,9 @@ class Abm final : public Material {
         absorption_(p.string("mode") == "analog" ? leaf::Absorption::analog : leaf::Absorption::weighted),
         where_(p.where()) {}
 
-  void prepare(const Preparation& preparation) override { check_leaf_range(preparation.wavelengths, where_); }
+  void prepare(const Preparation& preparation) override {
+    check_range(leaf::kConstantsRange_nm, preparation.wavelengths, where_, "leaf optics");
+  }
 
   const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
     std::array<const Tissue*, kLanes> tissues{};

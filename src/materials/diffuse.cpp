@@ -1,6 +1,8 @@
+#include "core/material.h"
 #include "core/texture.h"
+#include "materials/lobes/active_lanes.h"
 #include "materials/lobes/lambertian.h"
-#include "materials/wavelength_range.h"
+#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -18,7 +20,7 @@ class Diffuse final : public Material {
   explicit Diffuse(const Params& p) : reflectance_(p.spectrum_texture("reflectance")), where_(p.where("reflectance")) {}
 
   void prepare(const Preparation& preparation) override {
-    check_range(*reflectance_, preparation.wavelengths, "reflectance", where_);
+    check_range(reflectance_->range_nm(), preparation.wavelengths, where_, "reflectance");
   }
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     return arena.make<LambertianBsdf>(active_lanes(reflectance_->evaluate(hit.uv, lambda), lambda), SampledSpectrum());

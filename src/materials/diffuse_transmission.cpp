@@ -1,6 +1,8 @@
+#include "core/material.h"
 #include "core/texture.h"
+#include "materials/lobes/active_lanes.h"
 #include "materials/lobes/lambertian.h"
-#include "materials/wavelength_range.h"
+#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -35,8 +37,8 @@ class DiffuseTransmission final : public Material {
   }
 
   void prepare(const Preparation& preparation) override {
-    check_range(*reflectance_, preparation.wavelengths, "reflectance", reflectance_where_);
-    check_range(*transmittance_, preparation.wavelengths, "transmittance", transmittance_where_);
+    check_range(reflectance_->range_nm(), preparation.wavelengths, reflectance_where_, "reflectance");
+    check_range(transmittance_->range_nm(), preparation.wavelengths, transmittance_where_, "transmittance");
   }
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const auto [r, t] = shares(hit.uv, lambda);

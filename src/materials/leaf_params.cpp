@@ -1,7 +1,5 @@
 #include "materials/leaf_params.h"
 
-#include "leaf/constants.h"
-
 namespace frond {
 
 leaf::TissueParams leaf_params(const Params& p) {
@@ -23,13 +21,6 @@ leaf::TissueParams leaf_params(const Params& p) {
   override_by(t.palisade_aspect, "palisadeaspect");
   t.sieve_and_detour = p.boolean("sieve");
   return t;
-}
-
-void check_leaf_range(const WavelengthStrategy& wavelengths, const Location& where) {
-  const Interval need = wavelengths.range_nm(), have = leaf::kConstantsRange_nm;
-  if (need.min >= have.min && need.max <= have.max) return;
-  fail(where, "leaves are known from {} to {} nm, the render needs {} to {} nm", have.min, have.max, need.min,
-       need.max);
 }
 
 }  // namespace frond

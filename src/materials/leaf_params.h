@@ -4,7 +4,6 @@
 #include <array>
 
 #include "core/params.h"
-#include "core/wavelengths.h"
 #include "leaf/specimens.h"
 
 namespace frond {
@@ -71,8 +70,5 @@ constexpr auto with_leaf_params(const Param (&own)[N]) {
 }
 
 leaf::TissueParams leaf_params(const Params& p);
-
-/// Throws where a render would carry wavelengths beyond the leaf's data.
-void check_leaf_range(const WavelengthStrategy& wavelengths, const Location& where);
 
 }  // namespace frond

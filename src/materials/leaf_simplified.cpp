@@ -1,7 +1,9 @@
 #include "core/material.h"
+#include "leaf/constants.h"
 #include "leaf/table_cache.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/three_lobe.h"
+#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -57,7 +59,7 @@ class LeafSimplified final : public Material {
   }
 
   void prepare(const Preparation& preparation) override {
-    check_leaf_range(preparation.wavelengths, where_);
+    check_range(leaf::kConstantsRange_nm, preparation.wavelengths, where_, "leaf optics");
     const bool fixed = !preparation.wavelengths.fixed_nm().empty();
     const bool walks = method_ == "montecarlo" || (method_ == "auto" && fixed);
     leaf::TableRequest request = request_;

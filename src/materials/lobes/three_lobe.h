@@ -6,6 +6,7 @@
 #include "core/sampling.h"
 #include "leaf/lobe.h"
 #include "leaf/lookup.h"
+#include "materials/lobes/active_lanes.h"
 
 namespace frond {
 
@@ -74,9 +75,8 @@ class ThreeLobeBsdf final : public Bsdf {
     Incidence& in = incidence_;
     in.cos_theta = wo.z;
     in.shares = table_(wo.z, lambda_);
-    for (int lane = 0; lane < kLanes; ++lane)
-      if (!lambda_.is_active(lane))
-        in.shares.surface[lane] = in.shares.subsurface[lane] = in.shares.transmitted[lane] = 0;
+    for (SampledSpectrum* share : {&in.shares.surface, &in.shares.subsurface, &in.shares.transmitted})
+      *share = active_lanes(*share, lambda_);
     const auto sum = [](const SampledSpectrum& s) { return s[0] + s[1] + s[2] + s[3]; };
     const float surface = sum(in.shares.surface), subsurface = sum(in.shares.subsurface);
     const float transmitted = sum(in.shares.transmitted), all = surface + subsurface + transmitted;
