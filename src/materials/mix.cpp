@@ -35,8 +35,8 @@ class Mix final : public Material {
     const Bsdf* first = materials_[0]->evaluate(hit, lambda, arena);
     const Bsdf* second = materials_[1]->evaluate(hit, lambda, arena);
     if (!first && !second) return nullptr;
-    if (!first) first = arena.make<PassThroughBsdf>();
-    if (!second) second = arena.make<PassThroughBsdf>();
+    if (!first) first = arena.make<PassThroughBsdf>(lambda);
+    if (!second) second = arena.make<PassThroughBsdf>(lambda);
     return arena.make<MixtureBsdf>(*first, *second, amount);
   }
 

@@ -1,19 +1,25 @@
 #pragma once
 
 #include "core/bsdf.h"
+#include "materials/lobes/active_lanes.h"
 
 namespace frond {
 
 /// Lets everything straight through: a surface that is not there.
 class PassThroughBsdf final : public Bsdf {
  public:
+  explicit PassThroughBsdf(const SampledWavelengths& lambda) : share_(active_lanes(SampledSpectrum(1), lambda)) {}
+
   Lobes flags() const override { return Lobes::specular | Lobes::transmission; }
   SampledSpectrum f(const Vec3&, const Vec3&, RandomStream&) const override { return {}; }
   std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2, RandomStream&) const override {
     if (wo.z == 0) return {};
-    return BsdfSample{SampledSpectrum(1 / std::abs(wo.z)), -wo, 1, flags()};
+    return BsdfSample{share_ * (1 / std::abs(wo.z)), -wo, 1, flags()};
   }
   float pdf(const Vec3&, const Vec3&) const override { return 0; }
+
+ private:
+  SampledSpectrum share_;
 };
 
 /// Two BSDFs, the second with share `amount`, the first with the rest: an exact mixture, not a choice at each hit.
