@@ -106,7 +106,10 @@ class Chain {
     const Directions& d = directions_[medium];
     const AzimuthMean mean(lobe.exponent());
     MatrixXd matrix(d.mu.size(), d.mu.size());
-    for (Index i = 0; i < d.mu.size(); ++i) matrix.row(i) = spread(mean, d.mu[i], d);
+    for (Index i = 0; i < d.mu.size(); ++i)
+      for (Index j = 0; j <= i; ++j) matrix(i, j) = matrix(j, i) = mean(d.mu[i], d.mu[j]);
+    matrix *= d.weight.asDiagonal();
+    matrix.array().colwise() /= matrix.rowwise().sum().array().eval();
     return kernels_[key] = matrix;
   }
 

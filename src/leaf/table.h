@@ -30,7 +30,7 @@ struct Table {
 
   std::vector<double> wavelengths_nm;
   std::vector<Shares> shares;  ///< [wavelength][degree]
-  double error = 0;            ///< largest standard error; of a solved table, the discretisation's largest error seen
+  double error = 0;  ///< largest standard error; of a solved table, the discretisation's, seen at the middle wavelength
 
   const Shares& at(size_t wavelength, size_t degree) const { return shares[wavelength * kDegrees + degree]; }
 };
