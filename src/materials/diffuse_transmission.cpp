@@ -50,8 +50,8 @@ class DiffuseTransmission final : public Material {
     SampledSpectrum reflected, transmitted;
   };
   Shares shares(Vec2 uv, const SampledWavelengths& lambda) const {
-    return {active_lanes(reflectance_->evaluate(uv, lambda) * scale_, lambda),
-            active_lanes(transmittance_->evaluate(uv, lambda) * scale_, lambda)};
+    const SampledSpectrum scale = scale_ * lane_mask(lambda);
+    return {reflectance_->evaluate(uv, lambda) * scale, transmittance_->evaluate(uv, lambda) * scale};
   }
 
   /// Constants are looked at every 2 nm, textures also at 16 x 16 places: between these, an excess can hide.

@@ -4,11 +4,11 @@
 
 namespace frond {
 
-/// Values of the active lanes, 0 elsewhere.
-inline SampledSpectrum active_lanes(SampledSpectrum s, const SampledWavelengths& lambda) {
-  for (int i = 0; i < kLanes; ++i)
-    if (!lambda.is_active(i)) s[i] = 0;
-  return s;
+/// 1 in active lanes, 0 elsewhere.
+inline SampledSpectrum lane_mask(const SampledWavelengths& lambda) {
+  SampledSpectrum mask;
+  for (size_t i = 0; i < kLanes; ++i) mask.v[i] = static_cast<float>(lambda.active[i]);
+  return mask;
 }
 
 }  // namespace frond

@@ -8,7 +8,7 @@ namespace frond {
 /// Lets everything straight through: a surface that is not there.
 class PassThroughBsdf final : public Bsdf {
  public:
-  explicit PassThroughBsdf(const SampledWavelengths& lambda) : share_(active_lanes(SampledSpectrum(1), lambda)) {}
+  explicit PassThroughBsdf(const SampledWavelengths& lambda) : share_(lane_mask(lambda)) {}
 
   Lobes flags() const override { return Lobes::specular | Lobes::transmission; }
   SampledSpectrum f(const Vec3&, const Vec3&, RandomStream&) const override { return {}; }

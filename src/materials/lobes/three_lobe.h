@@ -18,7 +18,11 @@ class ThreeLobeBsdf final : public Bsdf {
   /// returns it as if it were a delta lobe, so that light sampling never sees it.
   ThreeLobeBsdf(const leaf::TableLookup& shares, const leaf::Lobe& surface, const SampledWavelengths& lambda,
                 bool surface_direct)
-      : table_(shares), surface_(surface), lambda_(lambda), surface_direct_(surface_direct) {}
+      : table_(shares),
+        surface_(surface),
+        lambda_(lambda),
+        active_(lane_mask(lambda)),
+        surface_direct_(surface_direct) {}
 
   Lobes flags() const override {
     const Lobes surface = Lobes::surface | (surface_direct_ ? Lobes::glossy : Lobes::glossy | Lobes::specular);
@@ -26,12 +30,7 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
-    if (!scatters(wo, wi)) return {};
-    const Incidence& in = at(wo);
-    if (!same_side(wo, wi)) return in.shares.transmitted * kInvPi;
-    SampledSpectrum f = in.shares.subsurface * kInvPi;
-    if (surface_direct_) f += in.shares.surface * (surface_density(in, wo, wi) / std::abs(wi.z));
-    return f;
+    return scatters(wo, wi) ? at(wo, wi).f : SampledSpectrum();
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
@@ -41,19 +40,13 @@ class ThreeLobeBsdf final : public Bsdf {
     Vec3 wi = sample_cosine_hemisphere(u);
     const bool reflects = uc < in.surface + in.subsurface;
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
-    const float density = pdf(wo, wi);
-    if (density == 0) return {};  // black
-    return BsdfSample{f(wo, wi, rng), wi, density,
-                      Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission)};
+    if (!scatters(wo, wi)) return {};
+    const Value value = at(wo, wi);
+    if (value.pdf == 0) return {};  // black
+    return BsdfSample{value.f, wi, value.pdf, Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission)};
   }
 
-  float pdf(const Vec3& wo, const Vec3& wi) const override {
-    if (!scatters(wo, wi)) return 0;
-    const Incidence& in = at(wo);
-    const float cosine = std::abs(wi.z) * kInvPi;
-    if (!same_side(wo, wi)) return in.transmitted * cosine;
-    return in.subsurface * cosine + (surface_direct_ ? in.surface * surface_density(in, wo, wi) : 0);
-  }
+  float pdf(const Vec3& wo, const Vec3& wi) const override { return scatters(wo, wi) ? at(wo, wi).pdf : 0; }
 
  private:
   /// What depends on wo alone.
@@ -62,6 +55,11 @@ class ThreeLobeBsdf final : public Bsdf {
     float surface, subsurface, transmitted;  ///< probabilities of the lobes
     float scale;                             ///< of the surface lobe's density, for what the cut leaves
     leaf::SampledShares shares;              ///< 0 in lanes that are not active
+  };
+
+  struct Value {
+    SampledSpectrum f;
+    float pdf;
   };
 
   static bool scatters(const Vec3& wo, const Vec3& wi) {
@@ -75,8 +73,9 @@ class ThreeLobeBsdf final : public Bsdf {
     Incidence& in = incidence_;
     in.cos_theta = wo.z;
     in.shares = table_(wo.z, lambda_);
-    for (SampledSpectrum* share : {&in.shares.surface, &in.shares.subsurface, &in.shares.transmitted})
-      *share = active_lanes(*share, lambda_);
+    in.shares.surface *= active_;
+    in.shares.subsurface *= active_;
+    in.shares.transmitted *= active_;
     const auto sum = [](const SampledSpectrum& s) { return s[0] + s[1] + s[2] + s[3]; };
     const float surface = sum(in.shares.surface), subsurface = sum(in.shares.subsurface);
     const float transmitted = sum(in.shares.transmitted), all = surface + subsurface + transmitted;
@@ -88,11 +87,20 @@ class ThreeLobeBsdf final : public Bsdf {
     return in;
   }
 
-  static Vec3 mirror(const Vec3& wo) { return {-wo.x, -wo.y, wo.z}; }
-
-  float surface_density(const Incidence& in, const Vec3& wo, const Vec3& wi) const {
-    return in.scale * static_cast<float>(surface_.density(dot(mirror(wo), wi)));
+  /// Where wi scatters.
+  Value at(const Vec3& wo, const Vec3& wi) const {
+    const Incidence& in = at(wo);
+    const float cos_theta_i = std::abs(wi.z), cosine = cos_theta_i * kInvPi;
+    if (!same_side(wo, wi)) return {in.shares.transmitted * kInvPi, in.transmitted * cosine};
+    Value value{in.shares.subsurface * kInvPi, in.subsurface * cosine};
+    if (!surface_direct_) return value;
+    const float density = in.scale * static_cast<float>(surface_.density(dot(mirror(wo), wi)));
+    value.f += in.shares.surface * (density / cos_theta_i);
+    value.pdf += in.surface * density;
+    return value;
   }
+
+  static Vec3 mirror(const Vec3& wo) { return {-wo.x, -wo.y, wo.z}; }
 
   std::optional<BsdfSample> sample_surface(const Incidence& in, const Vec3& wo, Vec2 u, RandomStream& rng) const {
     const Frame frame = Frame::around(mirror(wo));
@@ -104,19 +112,21 @@ class ThreeLobeBsdf final : public Bsdf {
       const float s = std::sqrt(std::max(0.f, 1 - cos_alpha * cos_alpha) / r2);
       const Vec3 wi = normalize(frame.to_world({s * disk.x, s * disk.y, cos_alpha}));
       if (!same_side(wo, wi) || !scatters(wo, wi)) continue;
-      return surface_sample(in, wo, wi, rng);
+      return surface_sample(in, wo, wi);
     }
   }
 
-  BsdfSample surface_sample(const Incidence& in, const Vec3& wo, const Vec3& wi, RandomStream& rng) const {
+  BsdfSample surface_sample(const Incidence& in, const Vec3& wo, const Vec3& wi) const {
     const Lobes lobe = Lobes::reflection | Lobes::glossy | Lobes::surface;
-    if (surface_direct_) return {f(wo, wi, rng), wi, pdf(wo, wi), lobe};
-    return {in.shares.surface * (1 / std::abs(wi.z)), wi, in.surface, lobe | Lobes::specular};
+    if (!surface_direct_) return {in.shares.surface * (1 / std::abs(wi.z)), wi, in.surface, lobe | Lobes::specular};
+    const Value value = at(wo, wi);
+    return {value.f, wi, value.pdf, lobe};
   }
 
   const leaf::TableLookup& table_;
   const leaf::Lobe& surface_;
   SampledWavelengths lambda_;
+  SampledSpectrum active_;
   bool surface_direct_;
   mutable Incidence incidence_;
 };
