@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "scene/atomic_file.h"
+#include "scene/file_bytes.h"
 
 namespace frond {
 namespace {
@@ -50,6 +51,7 @@ OIIO::ImageSpec make_spec(const Image& image, const ImageHeader& header, Format 
                                                           : OIIO::TypeDesc::HALF;
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), type);
   spec.channelnames = image.channels;
+  spec.attribute("oiio:UnassociatedAlpha", 1);  // no division by alpha on the way to a PNG
   for (const auto& [key, value] : header.text) spec.attribute(key, value);
   spec.attribute("DateTime", fmt::format("{:%Y:%m:%d %H:%M:%S}", fmt::gmtime(file_time())));
   if (!header.color_space.empty()) spec.attribute(kColorSpaceKey, header.color_space);
@@ -108,6 +110,12 @@ ImageHeader read_header(const OIIO::ImageSpec& spec) {
   return header;
 }
 
+/// libjpeg fills what is missing with grey and reports success: a whole file has its end marker after its last scan.
+bool is_whole_jpeg(const std::string& bytes) {
+  const size_t last_scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
+  return last_scan != std::string::npos && end != std::string::npos && end > last_scan;
+}
+
 uintmax_t size_of_file(const fs::path& path, const Location& where) {
   std::error_code error;
   const uintmax_t size = fs::file_size(path, error);
@@ -151,6 +159,8 @@ ImageFile read_image(const fs::path& path, const Location& where) {
   if (!in) fail(where, "cannot read image \"{}\": {}", path.string(), OIIO::geterror());
   const OIIO::ImageSpec& spec = in->spec();
   check_size(spec, file_size, where, path);
+  if (std::strcmp(in->format_name(), "jpeg") == 0 && !is_whole_jpeg(read_file_bytes(path, where)))
+    fail(where, "cannot read image \"{}\": the file ends too soon", path.string());
   ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
                  spec.format == OIIO::TypeDesc::UINT8};
   if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.pixels.data()))
