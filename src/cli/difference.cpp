@@ -65,24 +65,28 @@ std::vector<LinearImage> read_halves(const std::vector<std::string>& paths) {
   return halves;
 }
 
-nlohmann::ordered_json errors_of(const std::vector<LinearImage>& halves, std::span<const float> use) {
-  nlohmann::ordered_json j;
+/// Adds "rms_red" and so on, with `prefix` before each name.
+void add_errors(nlohmann::ordered_json& j, const std::string& prefix, const std::vector<LinearImage>& halves,
+                std::span<const float> use) {
   for (size_t c = 0; c < 3; ++c) {
     std::array<std::vector<float>, 4> v;
     for (size_t i = 0; i < 4; ++i) v[i] = channel_of(halves[i].image, c);
     const ImageError e = image_error(v[0], v[1], v[2], v[3], use);
-    const auto put = [&](const char* name, double value) { j[fmt::format("{}_{}", name, kChannels[c])] = value; };
+    const auto put = [&](const char* name, double value) {
+      j[fmt::format("{}{}_{}", prefix, name, kChannels[c])] = value;
+    };
     put("rms", e.rms), put("rms_clipped", e.rms_clipped), put("noise", e.noise), put("bias", e.bias());
     put("bias_upper", e.bias_upper()), put("mean_difference", e.mean_difference);
+    put("noise_a", e.noise_a), put("noise_b", e.noise_b);
   }
-  return j;
 }
 
-void print_text(const nlohmann::ordered_json& j) {
+void print_text(const nlohmann::ordered_json& j, const std::string& prefix) {
   fmt::print("{:<18} {:>9} {:>9} {:>9}\n", "", "red", "green", "blue");
   const auto row = [&](const char* title, const char* key) {
     fmt::print("{:<18}", title);
-    for (const char* channel : kChannels) fmt::print(" {:9.5f}", j[fmt::format("{}_{}", key, channel)].get<double>());
+    for (const char* channel : kChannels)
+      fmt::print(" {:9.5f}", j[fmt::format("{}{}_{}", prefix, key, channel)].get<double>());
     fmt::print("\n");
   };
   row("RMS", "rms"), row("RMS, clipped", "rms_clipped"), row("noise", "noise"), row("bias", "bias");
@@ -97,18 +101,19 @@ void difference(const DifferenceOptions& options) {
   }
   const auto halves = read_halves(options.images);
   if (!options.output.empty()) write_difference(options.output, halves, options.scale);
-  nlohmann::ordered_json j = errors_of(halves, {});
+  nlohmann::ordered_json j;
+  add_errors(j, "", halves, {});
   const bool knows_leaves = !halves[0].leaf.empty();
-  if (knows_leaves) j["leaf_pixels"] = errors_of(halves, halves[0].leaf);
+  if (knows_leaves) add_errors(j, "leaf_", halves, halves[0].leaf);
   if (options.json) {
     fmt::print("{}\n", j.dump(2));
     return;
   }
   fmt::print("All pixels, linear SMPTE-C\n");
-  print_text(j);
+  print_text(j, "");
   if (!knows_leaves) return;
   fmt::print("\nLeaf pixels\n");
-  print_text(j["leaf_pixels"]);
+  print_text(j, "leaf_");
 }
 
 }  // namespace

@@ -14,11 +14,12 @@ struct Estimate {
 /// independent halves of each tell them apart, since the mean of (A1 - B1)(A2 - B2) over pixels estimates bias squared
 /// without any noise in it.
 struct ImageError {
-  double rms = 0;              ///< of the difference of the full images, (A1 + A2)/2 - (B1 + B2)/2
-  double rms_clipped = 0;      ///< the same after clipping both to [0, 1]
-  Estimate bias_squared;       ///< may come out negative where there is less bias than noise
-  double noise = 0;            ///< root of what bias leaves of rms squared
-  double mean_difference = 0;  ///< A - B
+  double rms = 0;                   ///< of the difference of the full images, (A1 + A2)/2 - (B1 + B2)/2
+  double rms_clipped = 0;           ///< the same after clipping both to [0, 1]
+  Estimate bias_squared;            ///< may come out negative where there is less bias than noise
+  double noise = 0;                 ///< root of what bias leaves of rms squared
+  double noise_a = 0, noise_b = 0;  ///< of each full image alone, from how its halves differ
+  double mean_difference = 0;       ///< A - B
 
   double bias() const;
   /// Upper end of the 95 % interval of the bias.

@@ -130,10 +130,10 @@ TEST(Walk, AnalogWeightedAndScatteringAloneAgreeWithinTheirNoise) {
   const auto scene = [&](const std::string& leaf, const char* direct) {
     return flat_leaf(sky, leaf, second, fmt::format("\"integer maxdepth\" 6 \"bool sampledirect\" {}", direct));
   };
-  const std::array films{render_text(scene(kAbm, "true"), {.samples = 400, .seed = 1}),
-                         render_text(scene(kWeighted, "true"), {.samples = 400, .seed = 2}),
-                         render_text(scene(kAbm, "false"), {.samples = 400, .seed = 3}),
-                         render_text(scene(kWeighted, "false"), {.samples = 400, .seed = 4})};
+  const std::array films{render_text(scene(kAbm, "true"), {.samples = 1600, .seed = 1}),
+                         render_text(scene(kWeighted, "true"), {.samples = 1600, .seed = 2}),
+                         render_text(scene(kAbm, "false"), {.samples = 1600, .seed = 3}),
+                         render_text(scene(kWeighted, "false"), {.samples = 1600, .seed = 4})};
   for (size_t i = 1; i < films.size(); ++i) expect_same(films[0], films[i], "variant " + std::to_string(i));
   EXPECT_LT(channel_mean(films[0], 1).error, 0.02 * channel_mean(films[0], 1).mean) << "the test has lost its power";
 }
