@@ -21,7 +21,7 @@ class WavelengthStrategy {
   virtual std::span<const float> fixed_nm() const = 0;
   /// What one path of this radiance adds to the three film channels: an unbiased estimate of the sensor's response.
   virtual std::array<double, 3> sensor(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const = 0;
-  /// Colour space of those channels, a name of spectra/color.h: "XYZ" or "linear SMPTE-C".
+  /// Colour space of those channels, a name of spectra/color_space.h: "XYZ" or "linear SMPTE-C".
   virtual std::string_view film_space() const = 0;
 };
 
