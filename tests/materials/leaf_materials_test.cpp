@@ -1,0 +1,162 @@
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "leaf/solver.h"
+#include "leaf/specimens.h"
+#include "materials/leaf_params.h"
+#include "tests/leaf/statistics.h"
+#include "tests/materials/support.h"
+#include "tests/support/input_error.h"
+
+namespace frond::test {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::number;
+
+const ParsedParam kSolve = words("tablemethod", {"solve"});
+
+TEST(LeafMaterials, ShareTheParametersOfTheLeaf) {
+  for (const char* name : {"abm", "leaf_simplified"}) {
+    const auto params = material_info(name).params;
+    ASSERT_GE(params.size(), kLeafParams.size());
+    for (size_t i = 0; i < kLeafParams.size(); ++i) EXPECT_EQ(params[i].name, kLeafParams[i].name) << name;
+  }
+}
+
+TEST(LeafMaterials, AreLeaves) {
+  EXPECT_TRUE(Ready("abm", {}).material().is_leaf());
+  EXPECT_TRUE(Ready("leaf_simplified", {kSolve}).material().is_leaf());
+}
+
+TEST(LeafMaterials, RefuseTexturesAndWhatIsOutOfRange) {
+  const ParsedParam texture{"texture", "chlorophylla", {}, {}, std::vector<std::string>{"spots"}};
+  for (const char* name : {"abm", "leaf_simplified"}) {
+    EXPECT_THAT(error_of([&] { Ready(name, {texture}); }), HasSubstr("\"chlorophylla\" is float, a texture was given"));
+    EXPECT_THAT(error_of([&] { Ready(name, {number("float", "thickness", {1})}); }), HasSubstr("0.01 m"));
+    EXPECT_THAT(error_of([&] { Ready(name, {words("specimen", {"soyabean"})}); }), HasSubstr("soybean, maize"));
+  }
+}
+
+leaf::TissueParams read(std::vector<ParsedParam> params) {
+  Resolver resolver;
+  return leaf_params(Params(material_info("abm"), {"abm", {}, std::move(params)}, resolver));
+}
+
+TEST(LeafMaterials, TakeFromTheSpecimenWhatIsNotGiven) {
+  EXPECT_EQ(read({}), leaf::find_specimen("soybean")->params);
+  EXPECT_EQ(read({words("specimen", {"maize"})}), leaf::find_specimen("maize")->params);
+  leaf::TissueParams changed = leaf::find_specimen("maize")->params;
+  changed.lignin = 3;
+  changed.sieve_and_detour = true;
+  EXPECT_EQ(read({words("specimen", {"maize"}), number("float", "lignin", {3}), flag("sieve", true)}), changed);
+}
+
+/// Mean weight of `sample`: what comes back of light of each wavelength.
+struct Albedo {
+  std::array<Estimate, 3> reflected, transmitted;
+};
+
+Albedo albedo(Ready& leaf, const Vec3& wo, int samples) {
+  Albedo result;
+  RandomStream rng(3);
+  const Bsdf& bsdf = leaf.bsdf();
+  for (int i = 0; i < samples; ++i) {
+    const auto s = bsdf.sample(wo, rng.uniform(), {rng.uniform(), rng.uniform()}, rng);
+    for (int lane = 0; lane < 3; ++lane) {
+      const float weight = s ? s->f[lane] * std::abs(s->wi.z) / s->pdf : 0;
+      const bool reflects = s && same_side(wo, s->wi);
+      result.reflected[static_cast<size_t>(lane)].add(reflects ? weight : 0);
+      result.transmitted[static_cast<size_t>(lane)].add(reflects ? 0 : weight);
+    }
+  }
+  return result;
+}
+
+/// Of look-ups in tables: measured with the tables.
+constexpr double kLookupError = 1e-4;
+
+TEST(LeafSimplified, AlbedoIsThatOfItsTable) {
+  constexpr std::array kAngles_deg{0.0, 40.0, 80.0, 110.0, 180.0};
+  const double limit = z_limit(2 * static_cast<int>(kAngles_deg.size()) * 3 * 2);
+  const auto expect_close = [&](const Estimate& measured, double exact, double theta_deg) {
+    EXPECT_NEAR(measured.mean(), exact, limit * measured.standard_error() + 2 * kLookupError) << theta_deg;
+  };
+  const leaf::TissueModel model(leaf::find_specimen("soybean")->params);
+  for (const bool surface_direct : {true, false}) {
+    Ready leaf("leaf_simplified", {kSolve, flag("surfacedirect", surface_direct)});
+    for (const double theta_deg : kAngles_deg) {
+      const double theta = theta_deg * std::numbers::pi / 180;
+      const Vec3 wo{static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
+      const Albedo measured = albedo(leaf, wo, 40000);
+      for (size_t lane = 0; lane < 3; ++lane) {
+        const leaf::Tissue tissue = model.at(leaf.lambda().nm[lane]);
+        const leaf::Shares exact = leaf::solve(tissue, std::array{theta_deg})[0];
+        expect_close(measured.reflected[lane], exact.surface + exact.subsurface, theta_deg);
+        expect_close(measured.transmitted[lane], exact.transmitted, theta_deg);
+      }
+    }
+  }
+}
+
+TEST(LeafSimplified, LeavesTheSurfaceToFollowedRaysIfTold) {
+  Ready all("leaf_simplified", {kSolve}), published("leaf_simplified", {kSolve, flag("surfacedirect", false)});
+  RandomStream rng(1);
+  const Vec3 wo = normalize(Vec3{1, 0, 1}), mirror = normalize(Vec3{-1, 0, 1}), below = -mirror;
+  const leaf::TissueModel model(leaf::find_specimen("soybean")->params);
+  const leaf::Tissue tissue = model.at(608);
+  const leaf::Shares exact = leaf::solve(tissue, std::array{45.0})[0];
+  EXPECT_GT(all.bsdf().f(wo, mirror, rng)[0], published.bsdf().f(wo, mirror, rng)[0]);
+  EXPECT_NEAR(published.bsdf().f(wo, mirror, rng)[0], exact.subsurface / std::numbers::pi, 1e-5);
+  EXPECT_NEAR(published.bsdf().f(wo, below, rng)[0], exact.transmitted / std::numbers::pi, 1e-5);
+  EXPECT_EQ(all.bsdf().f(wo, below, rng), published.bsdf().f(wo, below, rng));
+}
+
+TEST(LeafSimplified, ReflectsAllAtGrazing) {
+  Ready leaf("leaf_simplified", {kSolve});
+  const Albedo measured = albedo(leaf, {1, 0, 1e-7f}, 1000);
+  for (const Estimate& reflected : measured.reflected) EXPECT_NEAR(reflected.mean(), 1, 2 * kLookupError);
+}
+
+TEST(LeafSimplified, ScattersNothingAlongTheLeaf) {
+  Ready leaf("leaf_simplified", {kSolve});
+  RandomStream rng(1);
+  EXPECT_TRUE(leaf.bsdf().f({1, 0, 0}, {0, 0, 1}, rng).is_black());
+  EXPECT_TRUE(leaf.bsdf().f({0, 0, 1}, {1, 0, 0}, rng).is_black());
+  EXPECT_FALSE(leaf.bsdf().sample({1, 0, 0}, 0.5f, {0.5f, 0.5f}, rng));
+}
+
+TEST(LeafSimplified, SeesTheSameLeafWhetherWavelengthsAreFixedOrNot) {
+  Ready spectral("leaf_simplified", {}, "hero");
+  const leaf::TissueModel model(leaf::find_specimen("soybean")->params);
+  const Vec3 wo = normalize(Vec3{0, 1, -1}), wi = normalize(Vec3{0.2f, 0, 1});
+  RandomStream rng(1);
+  const SampledSpectrum f = spectral.bsdf().f(wo, wi, rng);
+  for (int lane = 0; lane < spectral.lambda().count; ++lane) {
+    const double nm = spectral.lambda().nm[static_cast<size_t>(lane)];
+    const leaf::Tissue tissue = model.at(nm);
+    EXPECT_NEAR(f[lane], leaf::solve(tissue, std::array{135.0})[0].transmitted / std::numbers::pi, 1e-3) << nm;
+  }
+}
+
+/// Walks of one lane leave the others black, so that nobody takes its way for theirs.
+TEST(Abm, SamplesOneWavelengthAtATime) {
+  Ready leaf("abm", {});
+  RandomStream rng(1);
+  const Bsdf& bsdf = leaf.bsdf();
+  std::array<int, 3> drawn{};
+  for (int i = 0; i < 300; ++i) {
+    const auto s = bsdf.sample({0, 0, -1}, rng.uniform(), {rng.uniform(), rng.uniform()}, rng);
+    if (!s) continue;
+    EXPECT_TRUE(s->pdf_is_approximate);
+    int lit = 0;
+    for (int lane = 0; lane < 3; ++lane)
+      if (s->f[lane] > 0) ++lit, ++drawn[static_cast<size_t>(lane)];
+    EXPECT_EQ(lit, 1);
+  }
+  for (const int count : drawn) EXPECT_GT(count, 0);
+}
+
+}  // namespace
+}  // namespace frond::test

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "core/material.h"
+#include "materials/registry.h"
+#include "spectra/registry.h"
+#include "spectra/tabulated.h"
+#include "tests/support/bind.h"
+
+namespace frond::test {
+
+/// Spectra are the numbers given; any material's name is that of a built-in material with its defaults.
+class Resolver final : public ParamResolver {
+ public:
+  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
+  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
+  std::filesystem::path file(const std::string& name, const Location&) override { return name; }
+  SpectrumPtr spectrum(const ParsedParam& p, bool) override {
+    return make_tabulated(std::get<std::vector<double>>(p.values), p.where);
+  }
+  std::shared_ptr<Material> material(const std::string& name, const Location& where) override;
+
+ private:
+  [[noreturn]] static void none(const Location& where) { fail(where, "this test has no textures"); }
+};
+
+inline const MaterialInfo& material_info(std::string_view name) {
+  return PluginTable<MaterialInfo>("material", builtin_materials()).get(name, {});
+}
+
+inline std::shared_ptr<Material> Resolver::material(const std::string& name, const Location& where) {
+  const MaterialInfo& info = material_info(name);
+  return info.make(Params(info, {name, where, {}}, *this));
+}
+
+inline ParsedParam words(std::string name, std::vector<std::string> values) {
+  return {"string", std::move(name), {}, {}, std::move(values)};
+}
+inline ParsedParam flag(std::string name, bool value) {
+  return {"bool", std::move(name), {}, {}, std::vector<bool>{value}};
+}
+inline ParsedParam level(std::string name, double value) {
+  return {"spectrum", std::move(name), {}, {}, std::vector<double>{300, value, 3000, value}};
+}
+
+/// A material made ready for a render, and its BSDF at a flat hit.
+class Ready {
+ public:
+  Ready(std::string_view material, std::vector<ParsedParam> params, std::string_view wavelengths = "smpte") {
+    Resolver resolver;
+    const MaterialInfo& info = material_info(material);
+    material_ = info.make(Params(info, {std::string(material), {}, std::move(params)}, resolver));
+    strategy_ = testing::make_plugin(
+        PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get(wavelengths, {}), {});
+    material_->prepare({*strategy_, pool_, log_, {}});
+    lambda_ = strategy_->sample(0.3f);
+  }
+
+  const Material& material() const { return *material_; }
+  const SampledWavelengths& lambda() const { return lambda_; }
+  const Bsdf& bsdf() {
+    arena_.reset();
+    return *material_->evaluate({{}, {0, 0, 1}, Frame::around(Vec3{0, 0, 1}), {}}, lambda_, arena_);
+  }
+
+ private:
+  ThreadPool pool_{2};
+  Log log_{true};
+  Arena arena_;
+  std::unique_ptr<Material> material_;
+  std::unique_ptr<WavelengthStrategy> strategy_;
+  SampledWavelengths lambda_;
+};
+
+}  // namespace frond::test
