@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "spectra/builtin_config.h"
 #include "spectra/color_space.h"
+#include "tests/support/input_error.h"
 
 namespace frond {
 namespace {
@@ -66,15 +67,6 @@ std::string user_config(std::string_view roles) {
       "0.5, "
       "0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1]}}\n",
       roles);
-}
-
-std::string error_of(const auto& action) {
-  try {
-    action();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 class ColorManagement : public testing::Test {

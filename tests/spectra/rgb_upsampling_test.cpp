@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "spectra/cie.h"
+#include "tests/support/input_error.h"
 
 namespace frond {
 namespace {
@@ -46,15 +47,6 @@ void for_each_color(const Body& body) {
 }
 
 const Location kHere{std::make_shared<const std::string>("a.pbrt"), 4, 2};
-
-std::string error_of(const auto& action) {
-  try {
-    action();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 /// What a render measures of a surface under D65, in the film's linear RGB, against what the scene asked for.
 void expect_round_trip(const char* name) {

@@ -4,20 +4,12 @@
 
 #include "spectra/analytic.h"
 #include "spectra/named.h"
+#include "tests/support/input_error.h"
 
 namespace frond {
 namespace {
 
 using testing::HasSubstr;
-
-std::string error_of(const auto& action) {
-  try {
-    action();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 const Location kHere{std::make_shared<const std::string>("scene.pbrt"), 3, 7};
 
