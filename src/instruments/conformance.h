@@ -23,7 +23,8 @@ enum class Law : uint8_t {
   values,         ///< all finite and not negative, densities of samples positive; nothing scatters at cos theta = 0
   lanes,          ///< lanes that are not active hold 0
   reciprocity,    ///< f(a, b) = f(b, a), where claimed
-  unbiasedness,   ///< not exact: in every bin the mean weight of `sample` is the integral of f |cos theta|
+  unbiasedness,   ///< not exact: in every bin and on each side, the mean weight of `sample` is the integral of f |cos
+                  ///< theta|
   coverage,       ///< `pdf` is positive wherever f is
 };
 std::string_view law_name(Law law);

@@ -12,8 +12,6 @@ std::vector<Vec3> directions(std::span<const BsdfSample> samples) {
   return result;
 }
 
-constexpr double kQuadratureOfPart = 1e-8;  // of a pdf, in each of some 1,000 parts of the sphere
-
 }  // namespace
 
 Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction, const Effort& effort,
@@ -26,12 +24,19 @@ Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const V
       pilot(draw(effort.samples / kPilotShare, hash_key(effort.seed, 0))),
       samples(draw(effort.samples, hash_key(effort.seed, 1))),
       exact(!any(bsdf.flags() & Lobes::stochastic) && std::ranges::none_of(samples, &BsdfSample::pdf_is_approximate)),
-      bins(directions(pilot), effort.samples / (exact ? 256 : 512)) {
+      bins(directions(pilot), std::min(effort.samples / (exact ? 256 : 512), exact ? 128 : 64)) {
+  integrate_pdf();
   probe(hash_key(effort.seed, 2));
-  pdf_mass.reserve(bins.size());
-  for (size_t b = 0; b < bins.size(); ++b)
-    pdf_mass.push_back(bins.integral(
-        b, [this](const Vec3& wi) { return bsdf.pdf(wo, wi); }, kQuadratureOfPart));
+}
+
+void Series::integrate_pdf() {
+  constexpr double kTolerance = 1e-8;  // for each of up to some 1,000 parts of the sphere
+  const auto density = [this](const Vec3& wi) { return static_cast<double>(bsdf.pdf(wo, wi)); };
+  for (size_t b = 0; b < bins.size(); ++b) {
+    auto parts = integrate(bins.box(b), density, kTolerance, bins.points(b));
+    pdf_mass.push_back(total(parts));
+    in_bin.emplace_back(std::move(parts));
+  }
 }
 
 std::vector<BsdfSample> Series::draw(int64_t count, uint64_t seed) const {
@@ -49,9 +54,8 @@ void Series::probe(uint64_t seed) {
   RandomStream numbers(seed);
   for (size_t bin = 0; bin < bins.size(); ++bin)
     for (int64_t i = 0; i < each; ++i) {
-      const double u = numbers.uniform_open(), v = numbers.uniform_open();
-      const Vec3 wi = bins.box(bin).at(u, v);
-      probes.push_back({wi, f_once(bsdf, wo, wi, hash_key(seed, bin, i)), bsdf.pdf(wo, wi), bin});
+      const auto drawn_wi = in_bin[bin].draw(numbers);
+      probes.push_back({drawn_wi, f_once(bsdf, wo, drawn_wi.w, hash_key(seed, bin, i)), bsdf.pdf(wo, drawn_wi.w), bin});
     }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "instruments/conformance.h"
-#include "instruments/sphere.h"
+#include "instruments/cubature.h"
 #include "instruments/statistics.h"
 
 template <>
@@ -30,12 +30,13 @@ namespace frond {
 /// Everything that was asked of a BSDF for one direction wo: the material the laws are judged by. Part of
 /// the laws' own implementation.
 struct Series {
-  /// f for a direction uniform in one bin.
+  /// f for a direction drawn in one bin.
   struct Probe {
-    Vec3 wi;
+    PartSampler::Draw drawn;
     SampledSpectrum f;
     float pdf;
     size_t bin;
+    const Vec3& wi() const { return drawn.w; }
   };
 
   static constexpr int kPilotShare = 4;
@@ -56,11 +57,13 @@ struct Series {
   std::vector<BsdfSample> samples;  ///< those that gave a direction
   bool exact;                       ///< see Law
   SphereBins bins;
+  std::vector<double> pdf_mass;     ///< integral of `pdf` over each bin
+  std::vector<PartSampler> in_bin;  ///< draws directions in each bin
   std::vector<Probe> probes;
-  std::vector<double> pdf_mass;  ///< integral of `pdf` over each bin
 
  private:
   std::vector<BsdfSample> draw(int64_t count, uint64_t seed) const;
+  void integrate_pdf();
   void probe(uint64_t seed);
 };
 

@@ -57,9 +57,9 @@ void check_flags(const Series& s, Findings& findings) {
                    "a sample is neither diffuse nor glossy nor specular");
   }
   for (const Series::Probe& probe : s.probes) {
-    const Lobes side = same_side(s.wo, probe.wi) ? Lobes::reflection : Lobes::transmission;
+    const Lobes side = same_side(s.wo, probe.wi()) ? Lobes::reflection : Lobes::transmission;
     verdict.expect(any(all & side) || probe.f.is_black(), "f is {} for wi {}, a side that the flags exclude", probe.f,
-                   probe.wi);
+                   probe.wi());
   }
   findings.push_back(verdict.finding());
 }
@@ -70,7 +70,7 @@ void check_lanes(const Series& s, Findings& findings) {
     verdict.expect(idle_lanes_are_black(sample.f, s.lambda), "sample, wi {}: a lane that is not active is not 0",
                    sample.wi);
   for (const Series::Probe& probe : s.probes)
-    verdict.expect(idle_lanes_are_black(probe.f, s.lambda), "f, wi {}: a lane that is not active is not 0", probe.wi);
+    verdict.expect(idle_lanes_are_black(probe.f, s.lambda), "f, wi {}: a lane that is not active is not 0", probe.wi());
   findings.push_back(verdict.finding());
 }
 
@@ -78,7 +78,7 @@ void check_coverage(const Series& s, Findings& findings) {
   constexpr float kUnderflow = 1e-30f;  // where f has all but vanished, a density may have vanished
   Verdict verdict(Law::coverage, s.where);
   for (const Series::Probe& probe : s.probes)
-    verdict.expect(probe.pdf > 0 || !(probe.f.max() > kUnderflow), "wi {}: f is {}, pdf {}", probe.wi, probe.f,
+    verdict.expect(probe.pdf > 0 || !(probe.f.max() > kUnderflow), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
                    probe.pdf);
   findings.push_back(verdict.finding());
 }
@@ -89,7 +89,8 @@ void check_values(const Series& s, Findings& findings) {
     verdict.expect(is_proper(sample.f) && std::isfinite(sample.pdf) && sample.pdf > 0, "sample, wi {}: f is {}, pdf {}",
                    sample.wi, sample.f, sample.pdf);
   for (const Series::Probe& probe : s.probes)
-    verdict.expect(is_proper(probe.f) && is_proper(probe.pdf), "wi {}: f is {}, pdf {}", probe.wi, probe.f, probe.pdf);
+    verdict.expect(is_proper(probe.f) && is_proper(probe.pdf), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
+                   probe.pdf);
   findings.push_back(verdict.finding());
 }
 

@@ -1,12 +1,22 @@
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "core/vec.h"
 
 namespace frond {
+
+/// A direction and its coordinates.
+struct SpherePoint {
+  double cos_theta, phi;  ///< phi in [0, 2 pi)
+  Vec3 w;
+
+  explicit SpherePoint(const Vec3& direction);
+};
+
+/// Unit vector from cos theta and azimuth (radians).
+Vec3 sphere_direction(double cos_theta, double phi);
 
 /// A patch of the unit sphere: cos theta in [z0, z1), phi in [phi0, phi1).
 struct SphereBox {
@@ -18,12 +28,6 @@ struct SphereBox {
   Vec3 at(double u, double v) const;
 };
 
-/// A function of direction, per sr.
-using Density = std::function<double(const Vec3&)>;
-
-/// Unit vector from cos theta and azimuth (radians).
-Vec3 sphere_direction(double cos_theta, double phi);
-
 /// The whole sphere cut into patches that hold about as many of some directions each, and none of which reaches across
 /// the horizon or is larger than 1/16 of the sphere. So a narrow lobe gets narrow patches.
 class SphereBins {
@@ -31,16 +35,16 @@ class SphereBins {
   /// `bins`: how many there should be, about.
   SphereBins(std::span<const Vec3> directions, int bins);
 
-  size_t size() const { return boxes_.size(); }
-  const SphereBox& box(size_t bin) const { return boxes_[bin]; }
-  /// Integral over a bin of a density that is large where the directions lie. The bin is first cut between these, so
-  /// that no lobe slips through the quadrature's nodes.
-  double integral(size_t bin, const Density& density, double tolerance) const;
+  size_t size() const { return bins_.size(); }
+  const SphereBox& box(size_t bin) const { return bins_[bin].box; }
+  /// Those of the directions that lie in the bin.
+  std::span<const SpherePoint> points(size_t bin) const { return bins_[bin].points; }
   size_t find(const Vec3& w) const;
 
  private:
-  struct Point {
-    double z, phi;
+  struct Bin {
+    SphereBox box;
+    std::span<const SpherePoint> points;
   };
   struct Node {
     bool by_phi = false;
@@ -48,27 +52,13 @@ class SphereBins {
     size_t below = 0, above = 0;  ///< nodes; in a leaf, `below` is the bin
     bool leaf = false;
   };
-  struct Cut {
-    bool by_phi;
-    double at = 0;
-    SphereBox below = {}, above = {};
-    std::span<Point> points_below = {}, points_above = {};
-  };
-  static Point point(const Vec3& w);
-  static Cut cut(const SphereBox& box, std::span<Point> points, int depth);
-  size_t build(const SphereBox& box, std::span<Point> points, int depth);
-  void cut_into_cells(const SphereBox& box, std::span<Point> points, int depth);
+  size_t build(const SphereBox& box, std::span<SpherePoint> points, int depth);
 
   size_t largest_count_;
-  std::vector<SphereBox> boxes_;
-  std::vector<SphereBox> cells_;     ///< parts of the bins, bin after bin
-  std::vector<size_t> cells_begin_;  ///< of each bin
+  std::vector<SpherePoint> points_;
+  std::vector<Bin> bins_;
   std::vector<Node> nodes_;
   size_t root_;
 };
-
-/// Integral over a patch by adaptive Gauss quadrature. Parts are cut until cutting them changes them by no more than
-/// `tolerance` and a 10,000th of their value.
-double integrate(const SphereBox& box, const Density& density, double tolerance);
 
 }  // namespace frond

@@ -42,7 +42,7 @@ TEST(SphereBins, HoldAboutEquallyManyDirections) {
   const SphereBins bins(directions, 64);
   std::vector<size_t> counts(bins.size(), 0);
   for (const Vec3& w : directions) ++counts[bins.find(w)];
-  for (const size_t count : counts) EXPECT_LE(count, directions.size() / 64 + 1);
+  for (const size_t count : counts) EXPECT_LE(count, directions.size() / 64);
 }
 
 TEST(SphereBins, NoneCrossesTheHorizonOrIsLarge) {
@@ -56,33 +56,6 @@ TEST(SphereBins, NoneCrossesTheHorizonOrIsLarge) {
 TEST(SphereBins, ManyEqualDirectionsEndTheCutting) {
   const SphereBins bins(std::vector<Vec3>(1000, sphere_direction(0.3, 2)), 10);
   EXPECT_LT(bins.size(), 100u);
-}
-
-TEST(Integrate, SolidAngleOfTheSphere) {
-  EXPECT_NEAR(integrate(
-                  {}, [](const Vec3&) { return 1; }, 1e-9),
-              kSphere, 1e-12);
-}
-
-TEST(Integrate, PartOfACosineLobe) {
-  // cos theta / pi over cos theta in [a, b), phi in [0, 1): (b^2 - a^2) / (2 pi).
-  const SphereBox box{0.2, 0.9, 0, 1};
-  const auto lobe = [](const Vec3& w) { return static_cast<double>(w.z) / std::numbers::pi; };
-  EXPECT_NEAR(integrate(box, lobe, 1e-9), (0.81 - 0.04) / (2 * std::numbers::pi), 1e-8);
-}
-
-TEST(Integrate, NarrowLobeThroughBinsThatFollowIt) {
-  for (const double cos_theta : {1.0, 0.7, 0.1})
-    for (uint64_t seed = 0; seed < 5; ++seed) {
-      const Vec3 axis = sphere_direction(cos_theta, 1.2);
-      const auto lobe = [&](const Vec3& w) {
-        return 1001 / (2 * std::numbers::pi) * std::pow(std::max(0.f, dot(w, axis)), 1000.0);
-      };
-      const SphereBins bins(cluster(cos_theta, seed), 64);
-      double sum = 0;
-      for (size_t b = 0; b < bins.size(); ++b) sum += bins.integral(b, lobe, 1e-8);
-      EXPECT_NEAR(sum, 1, 2e-4) << seed;  // directions are float: their rounding, 1000 times over
-    }
 }
 
 }  // namespace

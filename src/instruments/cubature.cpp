@@ -1,0 +1,136 @@
+#include "instruments/cubature.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+
+namespace frond {
+namespace {
+
+constexpr int kOrder = 5;
+struct Rule {
+  std::array<double, kOrder> x, weight;  // on [0, 1]
+};
+
+Rule gauss_rule() {
+  using Gauss = boost::math::quadrature::gauss<double, kOrder>;
+  const auto& nodes = Gauss::abscissa();  // the half that is not negative, 0 first
+  const auto& weights = Gauss::weights();
+  Rule rule{};
+  rule.x[0] = 0.5, rule.weight[0] = weights[0] / 2;
+  for (size_t i = 1; i < nodes.size(); ++i) {
+    rule.x[2 * i - 1] = (1 - nodes[i]) / 2, rule.x[2 * i] = (1 + nodes[i]) / 2;
+    rule.weight[2 * i - 1] = rule.weight[2 * i] = weights[i] / 2;
+  }
+  return rule;
+}
+
+struct Value {
+  double integral = 0, largest = 0;  // largest density at a node
+};
+
+/// A direction where the density is known.
+struct Peak {
+  double cos_theta, phi, density;
+};
+
+class Cubature {
+ public:
+  Cubature(const Density& density, double tolerance) : density_(density), tolerance_(tolerance) {}
+
+  Value product_rule(const SphereBox& box) const {
+    static const Rule rule = gauss_rule();
+    Value value;
+    for (size_t i = 0; i < kOrder; ++i)
+      for (size_t j = 0; j < kOrder; ++j) {
+        const double d = density_(box.at(rule.x[i], rule.x[j]));
+        value.integral += rule.weight[i] * rule.weight[j] * d;
+        value.largest = std::max(value.largest, d);
+      }
+    value.integral *= box.solid_angle();
+    return value;
+  }
+
+  void refine(const SphereBox& box, const Value& whole, std::span<Peak> peaks, int depth,
+              std::vector<SpherePart>& parts) const {
+    const double z = (box.z0 + box.z1) / 2, phi = (box.phi0 + box.phi1) / 2;
+    const std::array<SphereBox, 4> quarters{{{box.z0, z, box.phi0, phi},
+                                             {box.z0, z, phi, box.phi1},
+                                             {z, box.z1, box.phi0, phi},
+                                             {z, box.z1, phi, box.phi1}}};
+    std::array<Value, 4> values;
+    Value sum;
+    for (size_t i = 0; i < 4; ++i) {
+      values[i] = product_rule(quarters[i]);
+      sum.integral += values[i].integral;
+      sum.largest = std::max(sum.largest, values[i].largest);
+    }
+    if (depth == 0 || is_settled(whole, sum, peaks)) {
+      parts.push_back({box, sum.integral});
+      return;
+    }
+    for (size_t i = 0; i < 4; ++i) {
+      const SphereBox& q = quarters[i];
+      const auto others = std::ranges::partition(peaks, [&q](const Peak& p) {
+        return p.cos_theta >= q.z0 && p.cos_theta < q.z1 && p.phi >= q.phi0 && p.phi < q.phi1;
+      });
+      refine(q, values[i], peaks.first(peaks.size() - others.size()), depth - 1, parts);
+    }
+  }
+
+ private:
+  bool is_settled(const Value& whole, const Value& sum, std::span<const Peak> peaks) const {
+    constexpr double kRelative = 1e-4;  // finer, the rounding of float densities would drive the cutting
+    constexpr double kOverlooked = 3;   // times what the nodes see: they have missed a lobe
+    if (std::abs(sum.integral - whole.integral) > tolerance_ + kRelative * std::abs(sum.integral)) return false;
+    return std::ranges::none_of(peaks, [&sum](const Peak& p) { return p.density > kOverlooked * sum.largest; });
+  }
+
+  const Density& density_;
+  double tolerance_;
+};
+
+}  // namespace
+
+std::vector<SpherePart> integrate(const SphereBox& box, const Density& density, double tolerance,
+                                  std::span<const SpherePoint> peaks) {
+  constexpr int kDeepest = 10;
+  std::vector<Peak> known;
+  known.reserve(peaks.size());
+  for (const SpherePoint& p : peaks) known.push_back({p.cos_theta, p.phi, density(p.w)});
+  const Cubature cubature(density, tolerance);
+  std::vector<SpherePart> parts;
+  cubature.refine(box, cubature.product_rule(box), known, kDeepest, parts);
+  return parts;
+}
+
+double total(std::span<const SpherePart> parts) {
+  double sum = 0;
+  for (const SpherePart& part : parts) sum += part.integral;
+  return sum;
+}
+
+PartSampler::PartSampler(std::vector<SpherePart> parts) : parts_(std::move(parts)) {
+  double area = 0;
+  for (const SpherePart& part : parts_) area += part.box.solid_angle();
+  const double integral = total(parts_);
+  double sum = 0;
+  for (const SpherePart& part : parts_) {
+    const double by_area = part.box.solid_angle() / area;
+    sum += integral > 0 ? (by_area + part.integral / integral) / 2 : by_area;
+    cumulative_.push_back(sum);
+  }
+}
+
+PartSampler::Draw PartSampler::draw(RandomStream& numbers) const {
+  const double u = numbers.uniform_double() * cumulative_.back();
+  const auto chosen = std::min<size_t>(
+      static_cast<size_t>(std::ranges::upper_bound(cumulative_, u) - cumulative_.begin()), parts_.size() - 1);
+  const double probability = cumulative_[chosen] - (chosen > 0 ? cumulative_[chosen - 1] : 0);
+  const SphereBox& box = parts_[chosen].box;
+  const double a = numbers.uniform_open(), b = numbers.uniform_open();
+  return {box.at(a, b), probability / box.solid_angle()};
+}
+
+}  // namespace frond
