@@ -112,7 +112,8 @@ class ThreeLobeBsdf final : public Bsdf {
       const float s = std::sqrt(std::max(0.f, 1 - cos_alpha * cos_alpha) / r2);
       const Vec3 wi = normalize(frame.to_world({s * disk.x, s * disk.y, cos_alpha}));
       if (!same_side(wo, wi) || !scatters(wo, wi)) continue;
-      return surface_sample(in, wo, wi);
+      const BsdfSample sample = surface_sample(in, wo, wi);
+      if (sample.pdf > 0) return sample;  // not on the lobe's very edge
     }
   }
 
