@@ -66,7 +66,7 @@ class Cubature {
       sum.integral += values[i].integral;
       sum.largest = std::max(sum.largest, values[i].largest);
     }
-    if (depth == 0 || is_settled(whole, sum, peaks)) {
+    if (depth == 0 || is_settled(box, whole, sum, peaks)) {
       parts.push_back({box, sum.integral});
       return;
     }
@@ -80,10 +80,13 @@ class Cubature {
   }
 
  private:
-  bool is_settled(const Value& whole, const Value& sum, std::span<const Peak> peaks) const {
+  bool is_settled(const SphereBox& box, const Value& whole, const Value& sum, std::span<const Peak> peaks) const {
     constexpr double kRelative = 1e-4;  // finer, the rounding of float densities would drive the cutting
-    constexpr double kOverlooked = 3;   // times what the nodes see: they have missed a lobe
+    constexpr double kUneven =
+        8;  // largest over mean: a lobe stands between few nodes, and two rules may agree by chance
+    constexpr double kOverlooked = 3;  // times what the nodes see: they have missed a lobe
     if (std::abs(sum.integral - whole.integral) > tolerance_ + kRelative * std::abs(sum.integral)) return false;
+    if (sum.largest * box.solid_angle() > tolerance_ + kUneven * sum.integral) return false;
     return std::ranges::none_of(peaks, [&sum](const Peak& p) { return p.density > kOverlooked * sum.largest; });
   }
 
