@@ -69,7 +69,7 @@ struct LoadedScene {
 };
 
 /// The solved table costs no walks at load, and the render the same.
-const std::vector<MaterialSwap> kSolved{{"leaf", "leaf_simplified", {{"tablemethod", "solve"}}}};
+const std::vector<MaterialSwap> kSolved{{"leaf", {"leaf_simplified", {{"tablemethod", "solve"}}}}};
 
 /// CPU time for each camera path, with the rays that it takes.
 void render_paths(benchmark::State& state, const std::string& file, const std::vector<MaterialSwap>& swaps) {
@@ -109,9 +109,9 @@ void replay_rays(benchmark::State& state, const std::string& file) {
 
 BENCHMARK_CAPTURE(render_paths, leaves_simplified, "hundred-leaves/scene.pbrt", kSolved)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(render_paths, leaves_diffusetransmission, "hundred-leaves/scene.pbrt",
-                  {{"leaf", "diffusetransmission", {}}})
+                  {{"leaf", {"diffusetransmission", {}}}})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(render_paths, leaves_abm, "hundred-leaves/scene.pbrt", {{"leaf", "abm", {}}})
+BENCHMARK_CAPTURE(render_paths, leaves_abm, "hundred-leaves/scene.pbrt", {{"leaf", {"abm", {}}}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(replay_rays, closed, "hundred-leaves/closed.pbrt")->Unit(benchmark::kMillisecond);
 

@@ -33,17 +33,10 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 /// "leaf=abm" or "leaf=abm,mode=analog".
 MaterialSwap parse_swap(const std::string& text) {
-  const auto pair_of = [&text](const std::string& part) {
-    const size_t equals = part.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == part.size())
-      fail({}, "--swap takes MATERIAL=PLUGIN[,parameter=value...], \"{}\" was given", text);
-    return std::pair(part.substr(0, equals), part.substr(equals + 1));
-  };
-  const auto parts = split(text, ',');
-  const auto [from, to] = pair_of(parts[0]);
-  MaterialSwap swap{from, to, {}};
-  for (size_t i = 1; i < parts.size(); ++i) swap.params.push_back(pair_of(parts[i]));
-  return swap;
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    fail({}, "--swap takes MATERIAL=PLUGIN[,parameter=value...], \"{}\" was given", text);
+  return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), {})};
 }
 
 /// "x0,x1,y0,y1": pixels where all are whole numbers and one is above 1, fractions of the film otherwise.
@@ -187,7 +180,8 @@ void add_render_command(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   auto* seed = command->add_option("--seed", o.seed, "Seed of all random numbers.");
   command->add_option("--crop", o.crop, "x0,x1,y0,y1 of what to render, as fractions of the film or in pixels.");
-  command->add_option("--wavelengths", o.wavelengths, "Wavelength strategy: hero, or smpte for the paper's three.");
+  command->add_option("--wavelengths", o.wavelengths,
+                      "hero (also hero,lambdamin=400,lambdamax=700), or smpte for the paper's three.");
   command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model for a material.");
   command->add_option("--display", o.display.display, "Display of PNG and JPEG output; sRGB by default.");
   command->add_option("--view", o.display.view, "View of that display.");

@@ -10,12 +10,16 @@ Distribution1D::Distribution1D(const std::vector<float>& weights) : cdf_(weights
   const double n = static_cast<double>(weights.size());
   for (size_t i = 1; i < cdf_.size(); ++i) cdf_[i] = sum_ > 0 ? cdf_[i] / sum_ : static_cast<double>(i) / n;
   cdf_.back() = 1;
+  for (size_t i = 0, cell = 0; i < weights.size(); ++i) {
+    while (cdf_[cell + 1] <= static_cast<double>(i) / n) ++cell;
+    guide_.push_back(static_cast<uint32_t>(cell));
+  }
 }
 
 Distribution1D::Sample Distribution1D::sample(float u) const {
   const double x = static_cast<double>(u);
-  const auto above = std::upper_bound(cdf_.begin(), cdf_.end() - 1, x);
-  const size_t cell = static_cast<size_t>(above - cdf_.begin()) - 1;
+  size_t cell = guide_[static_cast<size_t>(x * static_cast<double>(guide_.size()))];
+  while (cdf_[cell + 1] <= x) ++cell;
   const double width = cdf_[cell + 1] - cdf_[cell];
   const float fraction = width > 0 ? static_cast<float>((x - cdf_[cell]) / width) : 0;
   return {cell, std::min(fraction, 0x1.fffffep-1f), static_cast<float>(width)};

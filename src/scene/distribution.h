@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/vec.h"
 
 namespace frond {
 
-/// Piecewise constant density over n cells, sampled by inverting its cumulative sum.
+/// Piecewise constant density over n cells, sampled by inverting its cumulative sum with a guide table (Chen
+/// and Asau 1974).
 class Distribution1D {
  public:
   struct Sample {
@@ -24,6 +26,7 @@ class Distribution1D {
 
  private:
   std::vector<double> cdf_;
+  std::vector<uint32_t> guide_;  ///< cell at each nth of the unit interval: the search starts there
   double sum_ = 0;
 };
 

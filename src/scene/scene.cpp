@@ -32,62 +32,23 @@ class NoResolver final : public ParamResolver {
   [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
 };
 
-/// The value as a scene file would have it, for a parameter of a swap.
-ParsedParam parse_swap_value(const Param& declared, const std::string& text) {
-  ParsedParam p{"", std::string(declared.name), {}, {}, {}};
-  switch (declared.kind) {
-    case ParamKind::boolean:
-      p.type = "bool";
-      if (text != "true" && text != "false") fail({}, "swap: \"{}\" is true or false, {} was given", p.name, text);
-      p.values = std::vector<bool>{text == "true"};
-      return p;
-    case ParamKind::string:
-      p.type = "string";
-      p.values = std::vector<std::string>{text};
-      return p;
-    case ParamKind::integer:
-    case ParamKind::real:
-    case ParamKind::float_texture: {
-      p.type = declared.kind == ParamKind::integer ? "integer" : "float";
-      char* end = nullptr;
-      const double value = std::strtod(text.c_str(), &end);
-      if (text.empty() || *end != '\0') fail({}, "swap: \"{}\" is a number, {} was given", p.name, text);
-      p.values = std::vector<double>{value};
-      return p;
-    }
-    default:
-      fail({}, "swap: \"{}\" cannot be given on the command line", p.name);
-  }
-}
-
 /// What the new material does not know of the old one's parameters is left out, with a warning: the two describe the
 /// same leaf, but each has its own method.
 void apply_swap(const MaterialSwap& swap, const MaterialInfo& info, ParsedPlugin& plugin, const Log& log) {
-  const auto declared = [&info](const std::string& name) {
-    return std::find_if(info.params.begin(), info.params.end(), [&](const Param& p) { return p.name == name; });
-  };
-  std::erase_if(plugin.params, [&](const ParsedParam& p) {
-    if (declared(p.name) != info.params.end()) return false;
-    log.warn(p.where, fmt::format("\"{}\" has no parameter \"{}\": left out by the swap", info.name, p.name));
+  std::erase_if(plugin.params, [&](const ParsedParam& given) {
+    const auto same_name = [&given](const Param& p) { return p.name == given.name; };
+    if (std::any_of(info.params.begin(), info.params.end(), same_name)) return false;
+    log.warn(given.where, fmt::format("\"{}\" has no parameter \"{}\": left out by the swap", info.name, given.name));
     return true;
   });
-  for (const auto& [name, value] : swap.params) {
-    const auto it = declared(name);
-    if (it == info.params.end()) {
-      std::vector<std::string_view> names;
-      for (const Param& p : info.params) names.push_back(p.name);
-      fail({}, "swap: material \"{}\" has no parameter \"{}\"{}", info.name, name, suggestion(name, names));
-    }
-    std::erase_if(plugin.params, [&](const ParsedParam& p) { return p.name == name; });
-    plugin.params.push_back(parse_swap_value(*it, value));
-  }
-  plugin.name = swap.to;
+  set_params(swap.to, info, {}, plugin);
+  plugin.name = swap.to.name;
 }
 
 void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
                  const Log& log) {
   for (const MaterialSwap& swap : swaps) {
-    const MaterialInfo& info = registry.materials.get(swap.to, {});
+    const MaterialInfo& info = registry.materials.get(swap.to.name, {});
     std::vector<std::string_view> names;
     bool found = false;
     for (MaterialDescription& m : description.materials) {
@@ -132,13 +93,16 @@ class SceneBuilder {
 
   void build_options() {
     NoResolver resolver;
-    ParsedPlugin plugin{"Option", {}, description_.options};
-    const Params p(kOptions, plugin, resolver);
-    const std::string name = overrides_.wavelengths.empty() ? p.string("wavelengths") : overrides_.wavelengths;
-    scene_.options_ = {name, overrides_.seed ? *overrides_.seed : uint64_t(p.integer("seed"))};
-    const WavelengthsInfo& info =
-        registry_.wavelengths.get(name, overrides_.wavelengths.empty() ? p.where("wavelengths") : Location{});
-    scene_.wavelengths_ = info.make(Params(info, {name, {}, {}}, resolver));
+    const Params p(kOptions, {"Option", {}, description_.options}, resolver);
+    const bool from_scene = overrides_.wavelengths.empty();
+    const Location where = from_scene ? p.where("wavelengths") : Location{};
+    const std::string text = from_scene ? p.string("wavelengths") : overrides_.wavelengths;
+    scene_.options_ = {text, overrides_.seed ? *overrides_.seed : uint64_t(p.integer("seed"))};
+    const PluginText choice = parse_plugin_text(text, where);
+    const WavelengthsInfo& info = registry_.wavelengths.get(choice.name, where);
+    ParsedPlugin plugin{choice.name, where, {}};
+    set_params(choice, info, where, plugin);
+    scene_.wavelengths_ = info.make(Params(info, plugin, resolver));
   }
 
   void build_view(SceneResolver& resolver) {

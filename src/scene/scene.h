@@ -8,20 +8,20 @@
 #include "core/world.h"
 #include "scene/accelerator.h"
 #include "scene/description.h"
+#include "scene/plugin_text.h"
 #include "scene/registry.h"
 
 namespace frond {
 
-/// Puts one material in place of another: `leaf=abm`, or with parameters `leaf=abm,mode=analog`.
+/// Puts one material in place of another.
 struct MaterialSwap {
   std::string from;  ///< name of a named material, or of a plugin
-  std::string to;    ///< name of a plugin
-  std::vector<std::pair<std::string, std::string>> params;
+  PluginText to;
 };
 
 /// What the command line says over the scene file.
 struct SceneOverrides {
-  std::string wavelengths;  ///< empty: the scene's
+  std::string wavelengths;  ///< a PluginText; empty: the scene's
   std::optional<uint64_t> seed;
   std::vector<MaterialSwap> swaps;
   bool quick = false;               ///< half the resolution, a sixteenth of the samples

@@ -29,13 +29,14 @@ class VisibleDensity {
   explicit VisibleDensity(Interval nm)
       : range_nm_(nm), tanh_min_(std::tanh(reduced(nm.min))), tanh_max_(std::tanh(reduced(nm.max))) {}
 
-  double sample(double u) const {
+  struct Sample {
+    double nm, pdf;
+  };
+  Sample sample(double u) const {
     const double t = std::lerp(tanh_min_, tanh_max_, u);
-    return std::clamp(kPeak_nm + std::atanh(t) / kRate, range_nm_.min, range_nm_.max);
-  }
-  double pdf(double nm) const {
-    const double c = std::cosh(reduced(nm));
-    return kRate / ((tanh_max_ - tanh_min_) * c * c);
+    const double atanh_t = std::log((1 + t) / (1 - t)) / 2;
+    return {std::clamp(kPeak_nm + atanh_t / kRate, range_nm_.min, range_nm_.max),
+            kRate * (1 - t * t) / (tanh_max_ - tanh_min_)};
   }
   Interval range_nm() const { return range_nm_; }
 
@@ -66,8 +67,9 @@ class Hero final : public WavelengthStrategy {
     for (size_t i = 0; i < kLanes; ++i) {
       double turned = double(u) + double(i) / kLanes;
       turned -= turned < 1 ? 0 : 1;
-      lambda.nm[i] = static_cast<float>(density_.sample(turned));
-      lambda.pdf[i] = static_cast<float>(density_.pdf(double(lambda.nm[i])));
+      const auto [nm, pdf] = density_.sample(turned);
+      lambda.nm[i] = static_cast<float>(nm);
+      lambda.pdf[i] = static_cast<float>(pdf);
       lambda.active[i] = true;
     }
     return lambda;

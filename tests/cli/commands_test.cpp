@@ -172,6 +172,17 @@ TEST_F(Commands, SwapChangesTheModelByOneWord) {
               HasSubstr("did you mean \"scale\"?"));
 }
 
+TEST_F(Commands, WavelengthsTakeParameters) {
+  EXPECT_EQ(render({"-o", path("w.exr"), "--wavelengths", "hero,lambdamin=500,lambdamax=600", "-q"}).code, 0);
+  EXPECT_THAT(render({"-o", path("x.exr"), "--wavelengths", "hero,lambdamix=500"}).err,
+              HasSubstr("did you mean \"lambdamin\"?"));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--wavelengths", "hero,lambdamax=2600"}).err,
+              HasSubstr("outside its range"));
+  // D65 has no data there, and there is no silent zero.
+  EXPECT_THAT(render({"-o", path("x.exr"), "--wavelengths", "hero,lambdamax=1000"}).err,
+              HasSubstr("scene.pbrt:7:37: \"L\" is known from 360 to 830 nm, the render needs 360 to 1000 nm"));
+}
+
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
   const auto before = files();
   for (const std::string& output : {path("no/such/folder.exr"), path("picture.xyz"), folder_.name_of(".")}) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/plugin.h"
+
+namespace frond {
+
+/// A plugin with parameters in one word of a command line: `hero`, or `hero,lambdamin=400,lambdamax=700`.
+struct PluginText {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> params;
+};
+
+/// Throws InputError at `where` when the text has another form.
+PluginText parse_plugin_text(const std::string& text, const Location& where);
+
+/// Puts the text's parameters into `plugin`, in place of those of the same name there; types follow from the
+/// declarations of `info`. Throws InputError at `where` for unknown names and for values of the wrong type.
+void set_params(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin);
+
+}  // namespace frond
