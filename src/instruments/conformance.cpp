@@ -12,9 +12,9 @@
 namespace frond {
 
 std::string_view law_name(Law law) {
-  constexpr std::array<std::string_view, 11> kNames{"parameters",  "sampling",     "agreement", "normalisation",
+  constexpr std::array<std::string_view, 12> kNames{"parameters",  "sampling",     "agreement", "normalisation",
                                                     "energy",      "flags",        "values",    "lanes",
-                                                    "reciprocity", "unbiasedness", "coverage"};
+                                                    "reciprocity", "unbiasedness", "streams",   "coverage"};
   return kNames[static_cast<size_t>(law)];
 }
 
@@ -33,6 +33,7 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
       check_normalisation(s, findings);
       check_energy(s, claims, own.seed, findings);
       check_unbiasedness(s, findings);
+      check_streams(s, own.seed, findings);
       check_agreement(s, findings);
       check_flags(s, findings);
       check_lanes(s, findings);

@@ -17,7 +17,8 @@ enum class Law : uint8_t {
   parameters,     ///< a plugin reads every parameter it declares and no other, and can be made from its defaults
   sampling,       ///< exact: directions of `sample` are distributed as `pdf` (chi-square over bins of the sphere)
   agreement,      ///< exact: f and pdf of a sample are those of `f` and `pdf` for its direction
-  normalisation,  ///< `pdf` integrates to the share of calls of `sample` that give a direction; else, to 1
+  normalisation,  ///< exact: `pdf` integrates to the share of calls of `sample` that give a direction, delta lobes
+                  ///< apart; not exact: to 1, or less if there are delta lobes
   energy,         ///< no more comes out than went in, at each wavelength; just as much where nothing is said to absorb
   flags,          ///< what flags say of sides and lobes holds
   values,         ///< all finite and not negative, densities of samples positive; nothing scatters at cos theta = 0
@@ -25,6 +26,7 @@ enum class Law : uint8_t {
   reciprocity,    ///< f(a, b) = f(b, a), where claimed
   unbiasedness,   ///< not exact: in every bin and on each side, the mean weight of `sample` is the integral of f |cos
                   ///< theta|
+  streams,        ///< not exact: the noise of f is drawn from its stream, not from its directions
   coverage,       ///< `pdf` is positive wherever f is
 };
 std::string_view law_name(Law law);

@@ -90,6 +90,7 @@ void check_sampling(const Series& s, Findings& findings);
 void check_normalisation(const Series& s, Findings& findings);
 void check_energy(const Series& s, const Claims& claims, uint64_t seed, Findings& findings);
 void check_unbiasedness(const Series& s, Findings& findings);
+void check_streams(const Series& s, uint64_t seed, Findings& findings);
 void check_agreement(const Series& s, Findings& findings);
 void check_flags(const Series& s, Findings& findings);
 void check_lanes(const Series& s, Findings& findings);

@@ -127,6 +127,10 @@ TEST(Planted, StochasticFWrongByAFifthInAConeBreaksUnbiasedness) {
   EXPECT_THAT(broken<StochasticWrongByLittle>(), ElementsAre(Law::unbiasedness));
 }
 
+TEST(Planted, NoiseMadeFromDirectionsBreaksStreams) {
+  EXPECT_THAT(broken<NoiseFromDirections>(), ElementsAre(Law::streams));
+}
+
 TEST(Planted, TransmissionThatIsNeverSampledBreaksCoverage) {
   EXPECT_THAT(broken<NeverSamplesTransmission>(), ElementsAre(Law::coverage));
 }

@@ -21,12 +21,15 @@ const MaterialInfo& material(std::string_view name) {
   return PluginTable<MaterialInfo>("material", builtin_materials()).get(name, {});
 }
 
+std::shared_ptr<Material> with_defaults(const MaterialInfo& info) {
+  PlainResolver nothing([](const std::string&) { return nullptr; });
+  return info.make(Params(info, {}, nothing));
+}
+
 /// Children of a `mix`: two built-in materials that differ in everything.
 PlainResolver two_materials() {
-  return PlainResolver([](const std::string& name) -> std::shared_ptr<Material> {
-    PlainResolver nothing([](const std::string&) { return nullptr; });
-    const MaterialInfo& info = material(name == "one" ? "diffuse" : "diffusetransmission");
-    return info.make(Params(info, {}, nothing));
+  return PlainResolver([](const std::string& name) {
+    return with_defaults(material(name == "one" ? "diffuse" : "diffusetransmission"));
   });
 }
 
@@ -115,19 +118,26 @@ TEST(Lossless, DiffuseTransmissionReturnsAllLightWhereItsSharesAddUp) {
   expect_lossless("diffusetransmission", {level("reflectance", 0.7), level("transmittance", 0.3)});
 }
 
+TEST(Lossless, LeavesWithoutMesophyllReturnAllLight) {
+  const ParsedParam nothing_absorbs = given("float", "mesophyllfraction", 0.0);
+  for (const std::string specimen : {"soybean", "maize"})
+    for (const std::string mode : {"analog", "weighted"})
+      expect_lossless("abm", {nothing_absorbs, given("string", "specimen", specimen), given("string", "mode", mode)});
+  for (const std::string method : {"montecarlo", "solve"})
+    expect_lossless("leaf_simplified",
+                    {nothing_absorbs, given("string", "tablemethod", method), given("integer", "tablerays", 100.0)});
+}
+
 TEST(LeafSimplified, ObeysWithATableThatWasSolved) {
   const ParameterSet set{"solved", {"leaf_simplified", {}, {given("string", "tablemethod", std::string("solve"))}}};
   expect_lawful(material("leaf_simplified"), {&set, 1}, GivenWavelengths({550}), {});
 }
 
-/// Of a `mix`, half and half, of a built-in material and one of the test's own.
-template <class M>
-void expect_lawful_mixture(const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455})) {
-  PlainResolver resolver([](const std::string& name) -> std::shared_ptr<Material> {
-    PlainResolver nothing([](const std::string&) { return nullptr; });
-    const MaterialInfo own{{"material", "own", "", "", {}}, make_material<M>};
-    const MaterialInfo& info = name == "one" ? material("diffusetransmission") : own;
-    return info.make(Params(info, {}, nothing));
+/// Of a `mix`, half and half, of a built-in material and another one.
+void expect_lawful_mixture(const MaterialInfo& other,
+                           const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455})) {
+  const PlainResolver resolver([&other](const std::string& name) {
+    return with_defaults(name == "one" ? material("diffusetransmission") : other);
   });
   const MaterialInfo& mix = material("mix");
   const auto sets = parameter_sweep(mix, {});
@@ -139,12 +149,14 @@ struct NotThere final : Material {
   const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
 };
 
-TEST(Mix, ObeysWithAStochasticMaterialInIt) { expect_lawful_mixture<Everywhere<GoodStochastic>>(); }
-TEST(Mix, ObeysWithANarrowLobeInIt) { expect_lawful_mixture<Everywhere<GoodNarrowLobe>>(); }
-TEST(Mix, ObeysWithAMirrorInIt) { expect_lawful_mixture<Everywhere<GoodCoatedDiffuse>>(); }
+TEST(Mix, ObeysWithAStochasticMaterialInIt) { expect_lawful_mixture(planted<GoodStochastic>("noisy")); }
+TEST(Mix, ObeysWithARandomWalkInIt) { expect_lawful_mixture(material("abm")); }
+TEST(Mix, ObeysWithANarrowLobeInIt) { expect_lawful_mixture(planted<GoodNarrowLobe>("narrow")); }
+TEST(Mix, ObeysWithAMirrorInIt) { expect_lawful_mixture(planted<GoodCoatedDiffuse>("coated")); }
 TEST(Mix, ObeysWhereOneMaterialIsNotThere) {
-  expect_lawful_mixture<NotThere>();
-  expect_lawful_mixture<NotThere>(GivenWavelengths({420, 500, 580, 660}, {1}));
+  const MaterialInfo not_there{{"material", "not_there", "", "", {}}, make_material<NotThere>};
+  expect_lawful_mixture(not_there);
+  expect_lawful_mixture(not_there, GivenWavelengths({420, 500, 580, 660}, {1}));
 }
 
 /// Lines of src/materials that define a plugin.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <numbers>
 
 #include "core/material.h"
@@ -245,6 +246,15 @@ struct StochasticWrongByLittle final : GoodStochastic {
   using GoodStochastic::GoodStochastic;
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const override {
     return GoodStochastic::f(wo, wi, rng) * (wi.z > 0.5f ? 1.2f : 1);
+  }
+};
+
+/// The noise is a hash of the direction, as layered BSDFs have it.
+struct NoiseFromDirections final : GoodStochastic {
+  using GoodStochastic::GoodStochastic;
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
+    RandomStream own(hash_key(std::bit_cast<uint32_t>(wi.x), std::bit_cast<uint32_t>(wi.y)));
+    return evaluate(wo, wi) * (2 * own.uniform());
   }
 };
 
