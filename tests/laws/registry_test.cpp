@@ -128,6 +128,14 @@ TEST(Lossless, LeavesWithoutMesophyllReturnAllLight) {
                     {nothing_absorbs, given("string", "tablemethod", method), given("integer", "tablerays", 100.0)});
 }
 
+// Nearly white, so that a mean of many samples is sharp: an f that is 3 % too small or too large is seen.
+TEST(Abm, ObeysWithManySamplesWhereLittleIsAbsorbed) {
+  for (const std::string specimen : {"soybean", "maize"}) {
+    const ParameterSet set{specimen, {"abm", {}, {given("string", "specimen", specimen)}}};
+    expect_lawful(material("abm"), {&set, 1}, GivenWavelengths({800}), {.samples = 300000, .angles_deg = {40}});
+  }
+}
+
 TEST(LeafSimplified, ObeysWithATableThatWasSolved) {
   const ParameterSet set{"solved", {"leaf_simplified", {}, {given("string", "tablemethod", std::string("solve"))}}};
   expect_lawful(material("leaf_simplified"), {&set, 1}, GivenWavelengths({550}), {});
