@@ -1,5 +1,7 @@
 #include "integrators/render.h"
 
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -14,22 +16,14 @@ namespace frond {
 namespace {
 
 struct RenderOptions {
-  std::string scene, output, wavelengths, crop, cache;
+  std::string scene, output, wavelengths, cache;
+  std::vector<double> crop;
   std::vector<std::string> swaps;
   DisplayChoice display;
   int samples = 0, threads = 0;
   uint64_t seed = 0;
   bool seed_given = false, quick = false, json = false, quiet = false, no_cache = false;
 };
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  size_t start = 0;
-  for (size_t end; (end = text.find(separator, start)) != std::string::npos; start = end + 1)
-    parts.push_back(text.substr(start, end - start));
-  parts.push_back(text.substr(start));
-  return parts;
-}
 
 /// "leaf=abm" or "leaf=abm,mode=analog".
 MaterialSwap parse_swap(const std::string& text) {
@@ -39,26 +33,18 @@ MaterialSwap parse_swap(const std::string& text) {
   return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), {})};
 }
 
-/// "x0,x1,y0,y1": pixels where all are whole numbers and one is above 1, fractions of the film otherwise.
-Crop parse_crop(const std::string& text, const FilmSettings& film) {
-  std::array<double, 4> v{};
-  const auto parts = split(text, ',');
-  bool good = parts.size() == 4, whole = true, above_one = false;
-  for (size_t i = 0; good && i < 4; ++i) {
-    char* end = nullptr;
-    v[i] = std::strtod(parts[i].c_str(), &end);
-    good = !parts[i].empty() && *end == '\0' && v[i] >= 0;
-    whole = whole && v[i] == std::floor(v[i]);
-    above_one = above_one || v[i] > 1;
-  }
-  if (!good || (above_one && !whole))
-    fail({}, "--crop takes x0,x1,y0,y1 as fractions of the film or as pixels, \"{}\" was given", text);
-  const double width = above_one ? 1 : film.width, height = above_one ? 1 : film.height;
-  const auto pixel = [](double x, int size) { return std::min(int(std::ceil(x)), size); };
-  const Crop crop{pixel(v[0] * width, film.width), pixel(v[2] * height, film.height), pixel(v[1] * width, film.width),
-                  pixel(v[3] * height, film.height)};
+/// x0 x1 y0 y1: pixels where all are whole numbers and one is above 1, fractions of the film otherwise.
+Crop crop_of(const std::vector<double>& v, const FilmSettings& film) {
+  const bool in_pixels = std::any_of(v.begin(), v.end(), [](double x) { return x > 1; });
+  const auto is_bad = [in_pixels](double x) { return !(x >= 0) || (in_pixels && x != std::floor(x)); };
+  if (std::any_of(v.begin(), v.end(), is_bad))
+    fail({}, "--crop takes x0,x1,y0,y1 as fractions of the film or as pixels, {} was given", fmt::join(v, ","));
+  const auto pixel = [in_pixels](double x, int size) {
+    return int(std::min(in_pixels ? x : std::ceil(x * size), double(size)));
+  };
+  const Crop crop{pixel(v[0], film.width), pixel(v[2], film.height), pixel(v[1], film.width), pixel(v[3], film.height)};
   if (crop.width() <= 0 || crop.height() <= 0)
-    fail({}, "--crop {} holds no pixel of the {} x {} film", text, film.width, film.height);
+    fail({}, "--crop {} holds no pixel of the {} x {} film", fmt::join(v, ","), film.width, film.height);
   return crop;
 }
 
@@ -126,7 +112,7 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   const Registry registry = builtin_registry();
   SceneOverrides overrides = overrides_of(options);
   FilmSettings film_settings = Scene::film_settings(description, registry, overrides);
-  if (!options.crop.empty()) film_settings.crop = parse_crop(options.crop, film_settings);
+  if (!options.crop.empty()) film_settings.crop = crop_of(options.crop, film_settings);
   // Refused now, not after an hour.
   const std::string output = options.output.empty() ? film_settings.filename : options.output;
   const ImageOutput writer(output, options.display);
@@ -161,7 +147,7 @@ std::string command_line_of(const RenderOptions& o) {
   if (o.samples > 0) line += fmt::format(" --spp {}", o.samples);
   if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
   if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
-  if (!o.crop.empty()) line += " --crop " + o.crop;
+  if (!o.crop.empty()) line += fmt::format(" --crop {}", fmt::join(o.crop, ","));
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
   if (o.quick) line += " --quick";
   return line;
@@ -179,7 +165,9 @@ void add_render_command(CLI::App& app) {
   command->add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")
       ->check(CLI::PositiveNumber);
   auto* seed = command->add_option("--seed", o.seed, "Seed of all random numbers.");
-  command->add_option("--crop", o.crop, "x0,x1,y0,y1 of what to render, as fractions of the film or in pixels.");
+  command->add_option("--crop", o.crop, "x0,x1,y0,y1 of what to render, as fractions of the film or in pixels.")
+      ->delimiter(',')
+      ->expected(4);
   command->add_option("--wavelengths", o.wavelengths,
                       "hero (also hero,lambdamin=400,lambdamax=700), or smpte for the paper's three.");
   command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model for a material.");
