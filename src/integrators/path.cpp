@@ -10,7 +10,28 @@ namespace frond {
 namespace {
 
 /// Streams of one path vertex, told apart by what they are for.
-enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette };
+enum class Use : uint64_t { shadow_ray, light_bsdf, bsdf, roulette };
+
+/// Keys of the random numbers of one vertex: those of its rays, and streams by use.
+struct VertexKey {
+  uint64_t value;
+
+  uint64_t of(Use use) const { return hash_key(value, uint64_t(use)); }
+  RandomStream stream(Use use) const { return RandomStream(of(use)); }
+};
+
+/// A path on its way from the camera to the lights.
+struct Path {
+  Ray ray;
+  SampledWavelengths lambda;
+  SampledSpectrum throughput{1};
+  /// Density of the last direction, for the balance with light sampling; infinite where no light sample competes.
+  float scatter_pdf = INFINITY;
+  Vec3 previous = ray.o;  ///< the last vertex
+  PathResult result;
+
+  void add(const SampledSpectrum& radiance, float weight) { result.radiance += throughput * radiance * weight; }
+};
 
 /// A BSDF at a hit, in world space. The geometric normal decides the side: where the shading normal would put a
 /// direction on the other one, nothing is scattered there.
@@ -94,55 +115,40 @@ class PathIntegrator final : public Integrator {
 
   PathResult trace(const World& world, const Ray& camera_ray, SampledWavelengths lambda,
                    PathContext& context) const override {
-    PathResult result;
-    Ray ray = camera_ray;
-    SampledSpectrum throughput(1);
-    // Density of the last direction for the balance with light sampling; infinite where no light sample competes.
-    float scatter_pdf = INFINITY;
-    Vec3 previous = ray.o;
+    Path path{.ray = camera_ray, .lambda = lambda, .result = {}};
     for (int depth = 0;; ++depth) {
-      const uint64_t vertex_key = hash_key(context.key, uint64_t(depth));
-      const auto stream = [vertex_key](Use use) { return RandomStream(hash_key(vertex_key, uint64_t(use))); };
+      const VertexKey key{hash_key(context.key, uint64_t(depth))};
       SurfacePoint point;
       ++context.rays;
-      if (!world.intersect(ray, vertex_key, point)) {
-        for (const EnvironmentLight* light : world.environment())
-          result.radiance +=
-              throughput * light->radiance(ray.d, lambda) * weight_of(*light, scatter_pdf, light->pdf(ray.d));
-        return result;
+      if (!world.intersect(path.ray, key.value, point)) {
+        add_environment(world, path);
+        break;
       }
-      if (depth == 0) result.sees_leaf = point.material && point.material->is_leaf();
-      if (point.light) {
-        const float pdf = point.light->pdf(point.hit.ng, ray.d, distance_between(previous, point.hit.p));
-        result.radiance += throughput * point.light->radiance(point.hit.ng, -ray.d, lambda) *
-                           weight_of(*point.light, scatter_pdf, pdf);
-      }
-      if (depth >= max_depth_ || !point.material) return result;
+      if (depth == 0) path.result.sees_leaf = point.material->is_leaf();
+      if (point.light) add_emission(point, path);
+      if (depth >= max_depth_) break;
 
       context.arena.reset();
-      const Bsdf* bsdf = point.material->evaluate(point.hit, lambda, context.arena);
-      if (!bsdf) return result;
-      const LocalBsdf local(*bsdf, point.hit, -ray.d);
-      if (sample_lights_ && !selector_.empty())
-        result.radiance += throughput * light_from_sample(world, point.hit, local, lambda, stream(Use::light_bsdf),
-                                                          hash_key(vertex_key, uint64_t(Use::shadow_ray)), context);
-
-      SampledSpectrum weight;
-      const float uc = context.sampler.get1d();
-      const Vec2 u = context.sampler.get2d();
-      const auto sample = local.sample(uc, u, stream(Use::bsdf), weight, scatter_pdf);
-      if (!sample) return result;
-      throughput *= weight;
-      lambda.retire_black_lanes(throughput);
-      if (!sample_lights_ || any(sample->flags & Lobes::specular)) scatter_pdf = INFINITY;
-      if (ends(throughput, lambda, depth, stream(Use::roulette), throughput)) return result;
-      previous = point.hit.p;
-      ray = {offset_origin(point.hit, sample->wi), sample->wi};
+      const Bsdf* bsdf = point.material->evaluate(point.hit, path.lambda, context.arena);
+      if (!bsdf) break;
+      const LocalBsdf local(*bsdf, point.hit, -path.ray.d);
+      if (sample_lights_ && !selector_.empty()) add_sampled_light(world, point.hit, local, key, path, context);
+      if (!scatter(point.hit, local, key, path, context) || ends(depth, key, path)) break;
     }
+    return path.result;
   }
 
  private:
-  static float distance_between(const Vec3& a, const Vec3& b) { return length(b - a); }
+  void add_environment(const World& world, Path& path) const {
+    for (const EnvironmentLight* light : world.environment())
+      path.add(light->radiance(path.ray.d, path.lambda), weight_of(*light, path.scatter_pdf, light->pdf(path.ray.d)));
+  }
+
+  void add_emission(const SurfacePoint& point, Path& path) const {
+    const AreaLight& light = *point.light;
+    const float pdf = light.pdf(point.hit.ng, path.ray.d, length(point.hit.p - path.previous));
+    path.add(light.radiance(point.hit.ng, -path.ray.d, path.lambda), weight_of(light, path.scatter_pdf, pdf));
+  }
 
   /// Weight of light met by a scattered ray.
   float weight_of(const Light& light, float scatter_pdf, float light_pdf) const {
@@ -150,37 +156,49 @@ class PathIntegrator final : public Integrator {
     return power_heuristic(scatter_pdf, light_pdf * selector_.probability(light));
   }
 
-  SampledSpectrum light_from_sample(const World& world, const Hit& hit, const LocalBsdf& bsdf,
-                                    const SampledWavelengths& lambda, RandomStream rng, uint64_t shadow_key,
-                                    PathContext& context) const {
+  void add_sampled_light(const World& world, const Hit& hit, const LocalBsdf& bsdf, VertexKey key, Path& path,
+                         PathContext& context) const {
     // Numbers that no light of the scene would read are not made; which are made is the same for every sample.
     const float choice = selector_.has_choice() ? context.sampler.get1d() : 0;
     const Vec2 u = selector_.has_extent() ? context.sampler.get2d() : Vec2{};
     const auto [light, probability] = selector_.choose(choice);
-    const auto sample = light->sample(hit.p, u, lambda);
-    if (!sample || sample->radiance.is_black()) return {};
+    const auto sample = light->sample(hit.p, u, path.lambda);
+    if (!sample || sample->radiance.is_black()) return;
     float scatter_pdf = 0;
-    const SampledSpectrum f_cos = bsdf.f_cos(sample->wi, rng, scatter_pdf);
-    if (f_cos.is_black()) return {};
-    const Vec3 origin = offset_origin(hit, sample->wi);
+    const SampledSpectrum f_cos = bsdf.f_cos(sample->wi, key.stream(Use::light_bsdf), scatter_pdf);
+    if (f_cos.is_black()) return;
     // Just short of the light's own surface.
     const float reach = std::isinf(sample->distance) ? sample->distance : sample->distance * (1 - 0x1p-13f);
     ++context.rays;
-    if (world.occluded({origin, sample->wi, reach}, shadow_key)) return {};
+    if (world.occluded({offset_origin(hit, sample->wi), sample->wi, reach}, key.of(Use::shadow_ray))) return;
     const float light_pdf = sample->pdf * probability;
     const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
-    return f_cos * sample->radiance * (weight / light_pdf);
+    path.add(f_cos * sample->radiance, weight / light_pdf);
+  }
+
+  /// Turns the path into the next direction. False where nothing is scattered.
+  bool scatter(const Hit& hit, const LocalBsdf& bsdf, VertexKey key, Path& path, PathContext& context) const {
+    const float uc = context.sampler.get1d();
+    const Vec2 u = context.sampler.get2d();
+    SampledSpectrum weight;
+    const auto sample = bsdf.sample(uc, u, key.stream(Use::bsdf), weight, path.scatter_pdf);
+    if (!sample) return false;
+    path.throughput *= weight;
+    path.lambda.retire_black_lanes(path.throughput);
+    if (!sample_lights_ || any(sample->flags & Lobes::specular)) path.scatter_pdf = INFINITY;
+    path.previous = hit.p;
+    path.ray = {offset_origin(hit, sample->wi), sample->wi};
+    return true;
   }
 
   /// Whether the path ends here; roulette rewards the survivors.
-  bool ends(const SampledSpectrum& throughput, const SampledWavelengths& lambda, int depth, RandomStream rng,
-            SampledSpectrum& rewarded) const {
-    if (throughput.is_black()) return true;
-    if (cut_off_attenuation_) return attenuation(throughput, lambda) < cutoff_;
-    const float survival = throughput.max();
+  bool ends(int depth, VertexKey key, Path& path) const {
+    if (path.throughput.is_black()) return true;
+    if (cut_off_attenuation_) return attenuation(path.throughput, path.lambda) < cutoff_;
+    const float survival = path.throughput.max();
     if (depth < 2 || survival >= 1) return false;
-    if (rng.uniform() >= survival) return true;
-    rewarded *= 1 / survival;
+    if (key.stream(Use::roulette).uniform() >= survival) return true;
+    path.throughput *= 1 / survival;
     return false;
   }
 
