@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "integrators/render.h"
+#include "scene/embree.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
 

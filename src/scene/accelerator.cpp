@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/error.h"
+#include "scene/embree.h"
 
 namespace frond {
 namespace {
@@ -127,6 +128,9 @@ void fill_triangle(const TriangleMesh& mesh, const RTCHit& hit, Hit& out, Vec3& 
 }
 
 }  // namespace
+
+void embree::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+void embree::Release::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
 
 Accelerator::Accelerator(std::vector<Primitive> top, std::vector<std::vector<Primitive>> groups,
                          const std::vector<Placement>& instances, int threads)

@@ -1,13 +1,27 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/texture.h"
 #include "core/world.h"
-#include "scene/embree.h"
 #include "scene/shape.h"
 
+// Embree's, by name alone: who includes this header need not have Embree.
+struct RTCDeviceTy;
+struct RTCSceneTy;
+struct RTCRayHit;
+
 namespace frond {
+
+namespace embree {
+struct Release {
+  void operator()(RTCDeviceTy* device) const;
+  void operator()(RTCSceneTy* scene) const;
+};
+using Device = std::unique_ptr<RTCDeviceTy, Release>;
+using Scene = std::unique_ptr<RTCSceneTy, Release>;
+}  // namespace embree
 
 /// A shape with what it is made of.
 struct Primitive {
@@ -47,8 +61,8 @@ class Accelerator {
     Vec3 normal(const Vec3& n) const;  ///< by the cofactors: the inverse transpose up to a positive factor
   };
 
-  void attach(RTCScene scene, const std::vector<Primitive>& primitives);
-  void attach(RTCScene scene, const std::vector<Placement>& instances);
+  void attach(RTCSceneTy* scene, const std::vector<Primitive>& primitives);
+  void attach(RTCSceneTy* scene, const std::vector<Placement>& instances);
   void check() const;
 
   std::vector<Primitive> top_;

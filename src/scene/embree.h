@@ -1,13 +1,15 @@
 #pragma once
 
-#include <memory>
+#include <cstdint>
 
 // The one place that knows which Embree this is: 3 and 4 differ in includes, in the default ray mask and in how a
 // query's context is passed.
 #if FROND_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
-#else
+#elif FROND_EMBREE_MAJOR == 3
 #include <embree3/rtcore.h>
+#else
+#error "Who includes this links frond_embree, which says the version"
 #endif
 
 namespace frond::embree {
@@ -46,12 +48,5 @@ inline void occluded(RTCScene scene, RTCRay& ray, Query& query) {
   rtcOccluded1(scene, &query.base, &ray);
 #endif
 }
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, Release>;
-using Scene = std::unique_ptr<RTCSceneTy, Release>;
 
 }  // namespace frond::embree
