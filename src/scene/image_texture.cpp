@@ -122,7 +122,7 @@ class ImageSpectrum final : public SpectrumTexture {
 
  private:
   ImageSpectrum(const Params& p, const RgbImage& image) : lookup_(p, image.width, image.height) {
-    const ColorSpace& space = color_space("srgb", {});
+    const ColorSpace& space = *find_color_space("srgb");
     std::map<std::array<float, 3>, uint32_t> known;
     for (size_t i = 0; i < image.rgb.size(); i += 3) {
       const std::array<float, 3> c{image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]};

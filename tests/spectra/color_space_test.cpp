@@ -99,7 +99,7 @@ double dominant_wavelength_nm(const Chromaticity& c, const Chromaticity& white) 
 
 TEST(ColorSpace, DominantWavelengthsOfTheSmpteCPrimaries) {
   // The paper's 608, 551 and 455 nm: its blue is off by 10 nm.
-  const Chromaticities& c = color_space("smpte-c", {}).chromaticities;
+  const Chromaticities& c = find_color_space("smpte-c")->chromaticities;
   EXPECT_NEAR(dominant_wavelength_nm(c.red, c.white), 607.9, 0.05);
   EXPECT_NEAR(dominant_wavelength_nm(c.green, c.white), 551.0, 0.06);
   EXPECT_NEAR(dominant_wavelength_nm(c.blue, c.white), 464.7, 0.05);

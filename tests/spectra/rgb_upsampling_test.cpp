@@ -50,7 +50,7 @@ const Location kHere{std::make_shared<const std::string>("a.pbrt"), 4, 2};
 
 /// What a render measures of a surface under D65, in the film's linear RGB, against what the scene asked for.
 void expect_round_trip(const char* name) {
-  const ColorSpace& space = color_space(name, {});
+  const ColorSpace& space = *find_color_space(name);
   const Triple nominal_white = kD65White.xyz(), table_white = to_xyz(*unit_d65());
   const Matrix3 to_table_white = bradford(nominal_white, table_white);
   double worst = 0, worst_nominal = 0, worst_delta_e = 0;
@@ -127,7 +127,7 @@ TEST(RgbAlbedo, MaximumIsThatOfItsValues) {
 }
 
 TEST(RgbAlbedo, ImpossibleColorsAreRefusedWhereTheyStand) {
-  const ColorSpace& srgb = color_space("srgb", {});
+  const ColorSpace& srgb = *find_color_space("srgb");
   EXPECT_EQ(error_of([&] {
               rgb_albedo(srgb, {1.2, 0, 0}, kHere);
             }),
@@ -141,7 +141,7 @@ TEST(RgbAlbedo, ImpossibleColorsAreRefusedWhereTheyStand) {
 }
 
 TEST(RgbUnbounded, IsLinearInItsScale) {
-  const ColorSpace& srgb = color_space("srgb", {});
+  const ColorSpace& srgb = *find_color_space("srgb");
   const SpectrumPtr a = rgb_unbounded(srgb, {0.1, 0.4, 0.2}, {}), b = rgb_unbounded(srgb, {10, 40, 20}, {});
   for (float nm = 360; nm <= 830; nm += 10) ASSERT_NEAR(a->at(nm) * 100, b->at(nm), 1e-3f * b->max_value());
   const Triple back = srgb.rgb_from_xyz * to_xyz(Product(*b, *unit_d65()));
@@ -159,7 +159,7 @@ TEST(RgbIlluminant, WhiteIsD65OfUnitLuminanceInEverySpace) {
 TEST(RgbIlluminant, ColorsComeBackWithTheirLuminance) {
   const Matrix3 to_table_white = bradford(kD65White.xyz(), to_xyz(*unit_d65()));
   for (const char* name : {"srgb", "smpte-c", "rec2020", "dci-p3"}) {
-    const ColorSpace& space = color_space(name, {});
+    const ColorSpace& space = *find_color_space(name);
     for_each_color([&](const Triple& rgb) {
       const double scale = 30, largest = std::max({rgb[0], rgb[1], rgb[2]});
       const Triple light{scale * rgb[0], scale * rgb[1], scale * rgb[2]};
