@@ -6,26 +6,14 @@ find_package(fmt REQUIRED)
 find_package(Eigen3 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(OpenImageIO REQUIRED)
 find_package(embree 4 QUIET)
 if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED)
 endif()
 
-# OpenImageIO's target names include directories that Debian does not have, and CMake stops at those.
-get_target_property(frond_oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
-if(frond_oiio_includes)
-  set(frond_oiio_existing "")
-  foreach(dir IN LISTS frond_oiio_includes)
-    if(EXISTS "${dir}")
-      list(APPEND frond_oiio_existing "${dir}")
-    endif()
-  endforeach()
-  set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${frond_oiio_existing}")
-endif()
-
-# OpenColorIO's CMake config is broken in Debian 12 and 13: its pkg-config file is not.
+# In Debian 12 and 13 OpenColorIO's CMake config is broken, and OpenImageIO's wants its tools and Qt: not so pkg-config's.
 pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 
 if(NOT TARGET frond_fmt)
   add_library(frond_fmt INTERFACE IMPORTED GLOBAL)
@@ -36,7 +24,7 @@ if(NOT TARGET frond_fmt)
   target_link_options(frond_fmt INTERFACE "LINKER:--as-needed")
 
   add_library(frond_oiio INTERFACE IMPORTED GLOBAL)
-  target_link_libraries(frond_oiio INTERFACE OpenImageIO::OpenImageIO)
+  target_link_libraries(frond_oiio INTERFACE PkgConfig::OIIO)
   add_library(frond_ocio INTERFACE IMPORTED GLOBAL)
   target_link_libraries(frond_ocio INTERFACE PkgConfig::OCIO)
   add_library(frond_embree INTERFACE IMPORTED GLOBAL)
