@@ -6,9 +6,9 @@ FROND="$FROND_BUILD/frond"
 
 # Debian's packages that the project needs to build; callers add their own.
 build_packages=(
-  g++ cmake ninja-build pkg-config ccache mold
-  libembree-dev libopenimageio-dev libopencolorio-dev libfmt-dev libgtest-dev libgmock-dev libbenchmark-dev
-  libtbb-dev libcli11-dev nlohmann-json3-dev libxsimd-dev libboost-dev libeigen3-dev
+  g++ cmake ninja-build pkg-config ccache
+  libembree-dev libopenimageio-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
+  libboost-dev libgmock-dev libbenchmark-dev
 )
 
 install_missing() {
@@ -32,7 +32,6 @@ install_missing() {
 build() {
   local options=() log
   command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  command -v mold >/dev/null && options+=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=mold)
   log=$(mktemp)
   echo "Building $*"
   if ! { cmake -S "$root" --preset release "${options[@]}" && cmake --build "$FROND_BUILD" --target "$@"; } >"$log" 2>&1; then
