@@ -44,7 +44,7 @@ constexpr std::string_view type_name(ParamKind kind) {
 std::string default_text(const Param& p) {
   if (p.required) return "required";
   struct Print {
-    std::string operator()(std::monostate) const { return "-"; }
+    std::string operator()(std::monostate) const { return ""; }
     std::string operator()(bool v) const { return v ? "true" : "false"; }
     std::string operator()(std::string_view v) const { return fmt::format("\"{}\"", v); }
     std::string operator()(const std::array<double, 3>& v) const { return fmt::format("{}", fmt::join(v, " ")); }
@@ -69,9 +69,11 @@ void print_text(const PluginInfo& info) {
   if (!info.source.empty()) fmt::print("  After: {}\n", info.source);
   for (const Param& p : info.params) {
     fmt::print("\n  \"{} {}\"{}\n      {}\n", type_name(p.kind), p.name, p.list ? " [ ... ]" : "", p.doc);
-    fmt::print("      default {}", default_text(p));
-    if (!p.unit.empty()) fmt::print(" {}", p.unit);
-    if (const auto range = range_text(p); !range.empty()) fmt::print("; {}", range);
+    std::vector<std::string> facts;
+    if (const auto text = default_text(p); !text.empty()) facts.push_back(p.required ? text : "default " + text);
+    if (const auto text = range_text(p); !text.empty()) facts.push_back(text);
+    if (!p.unit.empty()) facts.push_back("in " + std::string(p.unit));
+    if (!facts.empty()) fmt::print("      {}", fmt::join(facts, "; "));
     fmt::print("\n");
   }
 }

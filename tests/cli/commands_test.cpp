@@ -163,6 +163,10 @@ TEST_F(Commands, QuickIsSmallerAndCoarser) {
 }
 
 TEST_F(Commands, SwapChangesTheModelByOneWord) {
+  EXPECT_EQ(
+      frond_command({"render", "-q", "--swap", "thing=diffusetransmission", path("scene.pbrt"), "-o", path("s.exr")})
+          .code,
+      0);
   const Outcome o = render({"-o", path("s.exr"), "--swap", "thing=diffusetransmission", "-q"});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thin=diffuse"}).err, HasSubstr("did you mean \"thing\"?"));
