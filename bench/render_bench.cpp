@@ -46,7 +46,7 @@ struct LoadedScene {
         registry(builtin_registry()),
         overrides(make_overrides(std::move(swaps))),
         scene(description, registry, overrides, pool, log),
-        film_settings(Scene::film_settings(description, registry, overrides)) {}
+        film_settings(Scene::film_settings(description, registry)) {}
 
   static SceneOverrides make_overrides(std::vector<MaterialSwap> swaps) {
     SceneOverrides o;

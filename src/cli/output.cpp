@@ -28,7 +28,12 @@ Triple variance_after(const Matrix3& m, const std::array<double, 6>& c) {
   return v;
 }
 
+/// Brighter values than the file can hold become its largest, not infinite.
+float held(double value, double largest) { return float(std::clamp(value, -largest, largest)); }
+
 Image linear_image(const Film& film, const Matrix3& to_output) {
+  constexpr double kLargestHalf = 65504;
+  const double largest = film.settings().half ? kLargestHalf : double(std::numeric_limits<float>::max());
   const Crop& crop = film.settings().crop;
   Image image(crop.width(), crop.height(), {"R", "G", "B", "variance.R", "variance.G", "variance.B", "leaf"});
   for (int y = 0; y < image.height; ++y)
@@ -36,8 +41,8 @@ Image linear_image(const Film& film, const Matrix3& to_output) {
       const Triple rgb = to_output * film.mean(crop.x0 + x, crop.y0 + y);
       const Triple variance = variance_after(to_output, film.covariance(crop.x0 + x, crop.y0 + y));
       for (size_t c = 0; c < 3; ++c) {
-        image.at(x, y, c) = float(rgb[c]);
-        image.at(x, y, 3 + c) = float(variance[c]);
+        image.at(x, y, c) = held(rgb[c], largest);
+        image.at(x, y, 3 + c) = held(variance[c], largest);
       }
       image.at(x, y, 6) = float(film.leaf_fraction(crop.x0 + x, crop.y0 + y));
     }
@@ -45,8 +50,6 @@ Image linear_image(const Film& film, const Matrix3& to_output) {
 }
 
 }  // namespace
-
-bool is_exr(const std::string& path) { return path.ends_with(".exr"); }
 
 void write_display_image(const std::string& path, const Image& image, std::string_view space,
                          const ColorManager& colors, const DisplayChoice& choice,
@@ -56,21 +59,26 @@ void write_display_image(const std::string& path, const Image& image, std::strin
     for (int x = 0; x < image.width; ++x)
       for (size_t c = 0; c < 3; ++c) shown.at(x, y, c) = image.at(x, y, c);
   colors.display(shown.pixels, space, choice.display, choice.view);
-  write_image(path, shown, {"", text});
+  write_image(path, shown, {.color_space = "", .text = text});
 }
 
 ImageOutput::ImageOutput(std::string path, DisplayChoice display)
     : path_(std::move(path)), display_(std::move(display)) {
   check_writable(path_);
+  if (is_exr(path_) && !(display_.display.empty() && display_.view.empty()))
+    fail({}, "--display and --view are for .png and .jpg: {} holds linear values", path_);
   if (!is_exr(path_)) colors_.check_display("linear sRGB", display_.display, display_.view);
 }
 
 void ImageOutput::write(const Film& film, const OutputDetails& details) const {
   std::string space = details.color_space.empty() ? details.film_space : details.color_space;
   if (space == kXyzName) space = "linear sRGB";
+  const FilmSettings& settings = film.settings();
   const Image image = linear_image(film, matrix_of(colors_, details.film_space, space));
   if (is_exr(path_))
-    write_image(path_, image, {space, details.attributes}, film.settings().half ? ExrDepth::half : ExrDepth::single);
+    write_image(path_, image,
+                {space, details.attributes, settings.crop.x0, settings.crop.y0, settings.width, settings.height},
+                settings.half ? ExrDepth::half : ExrDepth::single);
   else
     write_display_image(path_, image, space, colors_, display_, details.attributes);
 }

@@ -20,8 +20,6 @@ struct OutputDetails {
   std::map<std::string, std::string> attributes;
 };
 
-bool is_exr(const std::string& path);
-
 /// R, G and B of an image that is linear in `space`, through a display transform, as PNG or JPEG.
 void write_display_image(const std::string& path, const Image& image, std::string_view space,
                          const ColorManager& colors, const DisplayChoice& choice,

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
@@ -111,16 +112,17 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   const SceneDescription description = parse_scene(options.scene, log);
   const Registry registry = builtin_registry();
   SceneOverrides overrides = overrides_of(options);
-  FilmSettings film_settings = Scene::film_settings(description, registry, overrides);
+  FilmSettings film_settings = Scene::film_settings(description, registry);
   if (!options.crop.empty()) film_settings.crop = crop_of(options.crop, film_settings);
+  if (options.quick) film_settings = halved(film_settings);
   // Refused now, not after an hour.
   const std::string output = options.output.empty() ? film_settings.filename : options.output;
   const ImageOutput writer(output, options.display);
 
+  Film film(film_settings, description.film.where);
   const Scene scene(description, registry, overrides, pool, log);
   const int samples = options.samples > 0 ? options.samples : scene.samples_per_pixel();
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  Film film(film_settings);
   const RenderJob job{
       scene, scene.camera(),   scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
       0,     uint64_t(samples)};
@@ -129,6 +131,9 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
     ProgressLine line(options.quiet);
     statistics = render(job, film, pool, std::ref(line));
   }
+  if (const int64_t count = film.not_finite(); count > 0)
+    log.warn({}, fmt::format("{} of {} samples were too bright for a number, or none at all, and count as black", count,
+                             statistics.paths));
   writer.write(film, {.film_space = std::string(scene.wavelengths().film_space()),
                       .color_space = output_space(description),
                       .attributes = {{"frond:version", FROND_VERSION},
@@ -153,6 +158,13 @@ std::string command_line_of(const RenderOptions& o) {
   return line;
 }
 
+/// CLI11 alone lets -1 and 10^30 become the largest number.
+std::string is_seed(const std::string& text) {
+  uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  return error == std::errc() && end == text.data() + text.size() ? "" : "a whole number from 0 to 2^64 - 1 is needed";
+}
+
 }  // namespace
 
 void add_render_command(CLI::App& app) {
@@ -161,16 +173,17 @@ void add_render_command(CLI::App& app) {
   auto* command = app.add_subcommand("render", "Render a pbrt-v4 scene file.");
   command->add_option("scene", o.scene, "Scene file.")->required();
   command->add_option("-o,--output", o.output, "Image: .exr (linear), .png or .jpg (through the display transform).");
-  command->add_option("--spp", o.samples, "Samples per pixel, in place of the scene's.")->check(CLI::PositiveNumber);
+  command->add_option("--spp", o.samples, "Samples per pixel, in place of the scene's.")->check(CLI::Range(1, 1 << 30));
   command->add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")
-      ->check(CLI::PositiveNumber);
-  auto* seed = command->add_option("--seed", o.seed, "Seed of all random numbers.");
+      ->check(CLI::Range(1, 1024));
+  auto* seed = command->add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
   command->add_option("--crop", o.crop, "x0,x1,y0,y1 of what to render, as fractions of the film or in pixels.")
       ->delimiter(',')
       ->expected(4);
   command->add_option("--wavelengths", o.wavelengths,
                       "hero (also hero,lambdamin=400,lambdamax=700), or smpte for the paper's three.");
-  command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model for a material.");
+  command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model; may be given again.")
+      ->allow_extra_args(false);
   command->add_option("--display", o.display.display, "Display of PNG and JPEG output; sRGB by default.");
   command->add_option("--view", o.display.view, "View of that display.");
   command->add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.");

@@ -17,6 +17,8 @@ struct Hit {
   Vec3 ng;        ///< geometric normal, unit, on the surface's front (a leaf's adaxial side) whichever side was hit
   Frame shading;  ///< z: shading normal, in the hemisphere of ng
   Vec2 uv;
+  float extent =
+      0;  ///< largest coordinate that went into `p`: its rounding error is some units of this one's last place
 };
 
 /// What a material gets to make itself ready once the scene is known, before the first path.

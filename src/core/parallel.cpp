@@ -3,6 +3,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,7 +27,11 @@ void ThreadPool::for_each(int64_t count, const std::function<void(int64_t, int)>
   };
   {
     std::vector<std::jthread> helpers;
-    for (int worker = 1; worker < threads_ && worker < count; ++worker) helpers.emplace_back(work, worker);
+    try {
+      for (int worker = 1; worker < threads_ && worker < count; ++worker) helpers.emplace_back(work, worker);
+    } catch (const std::system_error&) {
+      // No more threads are to be had: those that are there do the work.
+    }
     work(0);
   }
   if (error) std::rethrow_exception(error);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "core/plugin.h"
 #include "core/random.h"
@@ -20,10 +21,12 @@ class Sampler {
   virtual std::unique_ptr<Sampler> clone() const = 0;
   /// Samples per pixel that the scene asks for.
   virtual int samples_per_pixel() const = 0;
+  virtual uint64_t seed() const = 0;
 };
 
 struct SamplerInfo : PluginInfo {
-  std::unique_ptr<Sampler> (*make)(const Params&, uint64_t seed);
+  /// `seed` goes before the sampler's own parameter.
+  std::unique_ptr<Sampler> (*make)(const Params&, std::optional<uint64_t> seed);
 };
 
 /// Key of one sample of one pixel: the root of its random streams.

@@ -25,7 +25,9 @@ inline Vec3 sample_cosine_hemisphere(Vec2 u) {
 /// Weight of a strategy of density `a` against one of density `b`, one sample each (Veach and Guibas 1995).
 inline float power_heuristic(float a, float b) {
   if (std::isinf(a)) return 1;
-  return a > 0 ? a * a / (a * a + b * b) : 0;
+  if (!(a > 0)) return 0;
+  const float ratio = b / a;  // the squares themselves can overflow
+  return 1 / (1 + ratio * ratio);
 }
 
 }  // namespace frond

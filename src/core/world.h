@@ -13,7 +13,6 @@ struct SurfacePoint {
   Hit hit;
   const Material* material = nullptr;
   const AreaLight* light = nullptr;  ///< nullptr: the surface gives off no light
-  float distance = 0;                ///< along the ray, in units of its direction
 };
 
 /// What an integrator sees of a scene. Thread-safe. `key` feeds the random numbers of partly transparent surfaces
@@ -32,10 +31,8 @@ class World {
 
 /// A ray from a hit that cannot meet the same surface again: the origin is lifted off along ng, to the side of `d`.
 inline Vec3 offset_origin(const Hit& hit, const Vec3& d) {
-  // Positions come from float barycentrics and transforms: their error is some units of the last place of the largest
-  // coordinate. 2^-17 of it leaves room for an instance's transform and is 8 um at 1 m.
-  const float scale = std::max({std::abs(hit.p.x), std::abs(hit.p.y), std::abs(hit.p.z)});
-  const float lift = scale * 0x1p-17f + 0x1p-40f;
+  // 2^-17 of the largest coordinate behind p leaves room for barycentrics and an instance's transform: 8 um at 1 m.
+  const float lift = hit.extent * 0x1p-17f + 0x1p-40f;
   return hit.p + hit.ng * (dot(d, hit.ng) < 0 ? -lift : lift);
 }
 

@@ -167,13 +167,18 @@ class PathIntegrator final : public Integrator {
     float scatter_pdf = 0;
     const SampledSpectrum f_cos = bsdf.f_cos(sample->wi, key.stream(Use::light_bsdf), scatter_pdf);
     if (f_cos.is_black()) return;
-    // Just short of the light's own surface.
-    const float reach = std::isinf(sample->distance) ? sample->distance : sample->distance * (1 - 0x1p-13f);
     ++context.rays;
-    if (world.occluded({offset_origin(hit, sample->wi), sample->wi, reach}, key.of(Use::shadow_ray))) return;
+    if (world.occluded(shadow_ray(hit, *sample), key.of(Use::shadow_ray))) return;
     const float light_pdf = sample->pdf * probability;
     const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
     path.add(f_cos * sample->radiance, weight / light_pdf);
+  }
+
+  /// From the lifted origin to the same point of the light, and just short of its surface.
+  static Ray shadow_ray(const Hit& hit, const LightSample& sample) {
+    const Vec3 origin = offset_origin(hit, sample.wi);
+    if (std::isinf(sample.distance)) return {origin, sample.wi};
+    return {origin, hit.p + sample.wi * sample.distance - origin, 1 - 0x1p-13f};
   }
 
   /// Turns the path into the next direction. False where nothing is scattered.

@@ -129,7 +129,8 @@ Table cached_table(const TableRequest& request, std::string_view name, const Thr
   const std::string header = describe(request);
   const auto path = cache_dir / fmt::format("leaf-{:016x}.csv", hash_bytes(header));
   Table table;
-  if (!cache_dir.empty() && std::filesystem::exists(path)) {
+  std::error_code error;  // a cache that cannot be looked into is none
+  if (!cache_dir.empty() && std::filesystem::is_regular_file(path, error)) {
     if (from_csv(read_file(path), header, table)) {
       log.info(summary(request, name, table.error) + ", from the cache");
       return table;

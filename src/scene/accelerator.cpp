@@ -30,10 +30,12 @@ Vec2 uv_at(const Primitive& primitive, unsigned index, float u, float v) {
 
 /// Whether a ray passes a partly transparent surface: decided for each ray and primitive, in whatever order Embree
 /// asks.
-bool passes(const Primitive& primitive, Vec2 uv, uint64_t key, unsigned geometry, unsigned index, unsigned instance) {
+/// `layer` counts the sheets of one primitive along the ray.
+bool passes(const Primitive& primitive, Vec2 uv, uint64_t key, unsigned geometry, unsigned index, unsigned instance,
+            unsigned layer = 0) {
   const float alpha = primitive.alpha->evaluate(uv);
   if (alpha >= 1) return false;
-  RandomStream random(hash_key(key, (uint64_t(geometry) << 32) | index, instance));
+  RandomStream random(hash_key(key, (uint64_t(geometry) << 32) | index, instance, layer));
   return random.uniform() >= alpha;
 }
 
@@ -51,15 +53,20 @@ void filter_alpha(const RTCFilterFunctionNArguments* args) {
 
 Ray ray_of(const RTCRay& r) { return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar}; }
 
-/// The point where the analytic primitive stops the ray, if it does.
+/// The point where the analytic primitive stops the ray, if it does: behind a sheet that lets it pass there may be
+/// another.
 template <class Arguments>
-std::optional<ShapePoint> meet(const Arguments* args, const RTCRay& ray) {
+std::optional<ShapePoint> meet(const Arguments* args, const RTCRay& embree_ray) {
   const auto& primitive = *static_cast<const Primitive*>(args->geometryUserPtr);
-  const auto point = std::get<AnalyticShapePtr>(primitive.geometry)->intersect(args->primID, ray_of(ray));
-  if (!point || point->t <= ray.tnear) return {};
-  const unsigned instance = args->context->instID[0];
-  if (primitive.alpha && passes(primitive, point->uv, key_of(args->context), args->geomID, args->primID, instance))
-    return {};
+  const AnalyticShape& shape = *std::get<AnalyticShapePtr>(primitive.geometry);
+  const Ray ray = ray_of(embree_ray);
+  auto point = shape.intersect(args->primID, ray, embree_ray.tnear);
+  for (unsigned layer = 0; point && primitive.alpha; ++layer) {
+    if (!passes(primitive, point->uv, key_of(args->context), args->geomID, args->primID, args->context->instID[0],
+                layer))
+      break;
+    point = shape.intersect(args->primID, ray, point->t);
+  }
   return point;
 }
 
@@ -69,6 +76,7 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
   const auto point = meet(args, ray_hit.ray);
   if (!point) return;
   ray_hit.ray.tfar = point->t;
+  reinterpret_cast<embree::Query*>(args->context)->p = point->p;
   RTCHit& hit = ray_hit.hit;
   hit.Ng_x = point->ng.x, hit.Ng_y = point->ng.y, hit.Ng_z = point->ng.z;
   hit.u = point->uv.x, hit.v = point->uv.y;
@@ -118,10 +126,20 @@ RTCRay to_embree(const Ray& ray) {
 
 Vec3 face_forward(const Vec3& n, const Vec3& reference) { return dot(n, reference) < 0 ? -n : n; }
 
+/// Where the surface is so small, or its vertex normals so contrary, that there is no normal, the next best: no NaN.
+void set_frame(Hit& hit, const Vec3& ng, const Vec3& ns, const Vec3& direction) {
+  const Vec3 geometric = normalize_any(ng), shading = normalize_any(ns);
+  hit.ng = geometric == Vec3{} ? -direction : geometric;
+  hit.shading = Frame::around(shading == Vec3{} ? hit.ng : face_forward(shading, hit.ng));
+}
+
+float largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
 /// Everything but the material, in the space of the group.
 void fill_triangle(const TriangleMesh& mesh, const RTCHit& hit, Hit& out, Vec3& ns) {
   const Triangle t = triangle_at(mesh, hit.primID, hit.u, hit.v);
   out.p = t.interpolate(mesh.p);
+  for (const uint32_t i : t.index) out.extent = std::max(out.extent, largest_coordinate(mesh.p[i]));
   out.ng = cross(mesh.p[t.index[1]] - mesh.p[t.index[0]], mesh.p[t.index[2]] - mesh.p[t.index[0]]);
   ns = mesh.n.empty() ? out.ng : t.interpolate(mesh.n);
   out.uv = mesh.uv.empty() ? Vec2{hit.u, hit.v} : t.interpolate(mesh.uv);
@@ -192,6 +210,12 @@ Vec3 Accelerator::Instance::point(const Vec3& p) const {
   return Vec3{dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)} + translation;
 }
 
+float Accelerator::Instance::largest_stretch() const {
+  float largest = 0;
+  for (const Vec3& row : rows) largest = std::max(largest, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+  return largest;
+}
+
 Vec3 Accelerator::Instance::normal(const Vec3& n) const {
   const Vec3 c0 = cross(rows[1], rows[2]), c1 = cross(rows[2], rows[0]), c2 = cross(rows[0], rows[1]);
   const float sign = dot(rows[0], c0) < 0 ? -1.f : 1.f;
@@ -199,39 +223,44 @@ Vec3 Accelerator::Instance::normal(const Vec3& n) const {
 }
 
 bool Accelerator::closest(const Ray& ray, uint64_t key, RTCRayHit& query) const {
+  embree::Query context(key);
+  return closest(ray, context, query);
+}
+
+bool Accelerator::closest(const Ray& ray, embree::Query& context, RTCRayHit& query) const {
   query.ray = to_embree(ray);
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  embree::Query context(key);
   embree::intersect(scene_.get(), query, context);
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 bool Accelerator::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
   RTCRayHit query;
-  if (!closest(ray, key, query)) return false;
+  embree::Query context(key);
+  if (!closest(ray, context, query)) return false;
   const bool instanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
   const Instance* instance = instanced ? &instances_[query.hit.instID[0] - top_.size()] : nullptr;
   const Primitive& primitive = (instanced ? groups_[instance->group] : top_)[query.hit.geomID];
   Hit& hit = point.hit;
+  hit.extent = 0;
   Vec3 ns;
   if (const auto* mesh = std::get_if<MeshPtr>(&primitive.geometry)) {
     fill_triangle(**mesh, query.hit, hit, ns);
   } else {
-    // Where the ray met it, in the group's space; the shape's own front.
     hit.ng = ns = {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
     hit.uv = {query.hit.u, query.hit.v};
-    hit.p = ray.o + ray.d * query.ray.tfar;
+    hit.p = context.p;
+    hit.extent = largest_coordinate(hit.p);
   }
   if (instanced) {
-    if (std::holds_alternative<MeshPtr>(primitive.geometry)) hit.p = instance->point(hit.p);
-    hit.ng = instance->normal(hit.ng);
-    ns = instance->normal(ns);
+    hit.p = instance->point(hit.p);
+    hit.extent = instance->largest_stretch() * hit.extent + largest_coordinate(instance->translation);
+    hit.ng = instance->normal(normalize_any(hit.ng));
+    ns = instance->normal(normalize_any(ns));
   }
-  hit.ng = normalize(hit.ng);
-  hit.shading = Frame::around(normalize(face_forward(ns, hit.ng)));
+  set_frame(hit, hit.ng, ns, ray.d);
   point.material = primitive.material;
   point.light = primitive.light;
-  point.distance = query.ray.tfar;
   return true;
 }
 

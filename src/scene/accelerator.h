@@ -15,6 +15,7 @@ struct RTCRayHit;
 namespace frond {
 
 namespace embree {
+struct Query;
 struct Release {
   void operator()(RTCDeviceTy* device) const;
   void operator()(RTCSceneTy* scene) const;
@@ -58,9 +59,11 @@ class Accelerator {
     uint32_t group;
 
     Vec3 point(const Vec3& p) const;
+    float largest_stretch() const;  ///< bound of the image's largest coordinate over the point's, without translation
     Vec3 normal(const Vec3& n) const;  ///< by the cofactors: the inverse transpose up to a positive factor
   };
 
+  bool closest(const Ray& ray, embree::Query& context, RTCRayHit& query) const;
   void attach(RTCSceneTy* scene, const std::vector<Primitive>& primitives);
   void attach(RTCSceneTy* scene, const std::vector<Placement>& instances);
   void check() const;

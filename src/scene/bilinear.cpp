@@ -63,7 +63,7 @@ class BilinearMesh final : public AnalyticShape {
   }
 
   /// Reshetov 2019, "Cool Patches": the u where the ray meets the line between the patch's two u-curves, then v and t.
-  std::optional<ShapePoint> intersect(unsigned i, const Ray& ray) const override {
+  std::optional<ShapePoint> intersect(unsigned i, const Ray& ray, float t_min) const override {
     const Patch& patch = patches_[i];
     const Vec3d o = to_double(ray.o), d = to_double(ray.d);
     const Vec3d left = patch.p[2] - patch.p[0], right = patch.p[3] - patch.p[1];
@@ -76,7 +76,7 @@ class BilinearMesh final : public AnalyticShape {
       if (!(u >= 0 && u <= 1)) continue;
       const Vec3d base = q0 * (1 - u) + q1 * u, side = left * (1 - u) + right * u, n = cross(d, side);
       const double det = dot(n, n), t = dot(cross(n, base), side) / det, v = dot(cross(n, base), d) / det;
-      if (!(v >= 0 && v <= 1 && t > 0 && t < best_t)) continue;
+      if (!(v >= 0 && v <= 1 && float(t) > t_min && t < best_t)) continue;
       best_t = t, best_u = u, best_v = v, found = true;
     }
     if (!found) return {};
@@ -122,7 +122,7 @@ class BilinearMesh final : public AnalyticShape {
 
   ShapePoint at(unsigned i, double u, double v, float t) const {
     const Patch& patch = patches_[i];
-    const Vec3 ng = normalize(to_float(patch.normal(u, v)));
+    const Vec3 ng = to_float(normalize_any(patch.normal(u, v)));
     const auto& q = uv_[i];
     const float fu = float(u), fv = float(v);
     const Vec2 uv = (q[0] * (1 - fu) + q[1] * fu) * (1 - fv) + (q[2] * (1 - fu) + q[3] * fu) * fv;

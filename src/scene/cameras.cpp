@@ -47,7 +47,7 @@ class ProjectiveCamera : public Camera {
       o += Vec3{on_disk.x * lens_radius_, on_disk.y * lens_radius_, 0};
       d = focus - o;
     }
-    return {world_from_camera_.point(o), normalize(world_from_camera_.vector(d))};
+    return {world_from_camera_.point(o), normalize_any(world_from_camera_.vector(normalize_any(d)))};
   }
 
  private:

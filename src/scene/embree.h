@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "core/vec.h"
+
 // The one place that knows which Embree this is: 3 and 4 differ in includes, in the default ray mask and in how a
 // query's context is passed.
 #if FROND_EMBREE_MAJOR >= 4
@@ -24,6 +26,7 @@ struct Query {
   explicit Query(uint64_t random_key) : key(random_key) { rtcInitIntersectContext(&base); }
 #endif
   uint64_t key;
+  Vec3 p{};  ///< where the analytic shape that last reported a hit was met, in its group's space
 };
 
 inline void intersect(RTCScene scene, RTCRayHit& ray, Query& query) {

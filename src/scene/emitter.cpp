@@ -3,8 +3,10 @@
 namespace frond {
 namespace {
 
-Vec3 edge_cross(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
-  return cross(mesh.p[t[1]] - mesh.p[t[0]], mesh.p[t[2]] - mesh.p[t[0]]);
+/// In double: the squares of what small and large triangles give do not fit into floats.
+Vec3d edge_cross(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
+  const Vec3 a = mesh.p[t[1]] - mesh.p[t[0]], b = mesh.p[t[2]] - mesh.p[t[0]];
+  return cross(Vec3d{a.x, a.y, a.z}, Vec3d{b.x, b.y, b.z});
 }
 
 }  // namespace
@@ -17,7 +19,7 @@ EmittingSurface::EmittingSurface(const ShapeGeometry& geometry) : geometry_(geom
   const TriangleMesh& mesh = *std::get<MeshPtr>(geometry_);
   std::vector<float> areas;
   areas.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) areas.push_back(length(edge_cross(mesh, t)) / 2);
+  for (const auto& t : mesh.triangles) areas.push_back(float(length(edge_cross(mesh, t)) / 2));
   triangles_by_area_.emplace(areas);
   area_ = triangles_by_area_->sum();
 }
@@ -29,7 +31,8 @@ ShapePoint EmittingSurface::sample(Vec2 u) const {
   const auto& t = mesh.triangles[index];
   const float root = std::sqrt(fraction), b1 = 1 - root, b2 = u.y * root;
   const Vec3 p = mesh.p[t[0]] * (1 - b1 - b2) + mesh.p[t[1]] * b1 + mesh.p[t[2]] * b2;
-  return {p, normalize(edge_cross(mesh, t)), {}, 0};
+  const Vec3d n = normalize_any(edge_cross(mesh, t));
+  return {p, {float(n.x), float(n.y), float(n.z)}, {}, 0};
 }
 
 }  // namespace frond

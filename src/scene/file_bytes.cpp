@@ -12,9 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CloseFile {
-  void operator()(std::FILE* file) const {
-    if (file != stdin) std::fclose(file);
-  }
+  void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
@@ -29,11 +27,16 @@ void check_kind(const fs::path& path, const Location& where) {
 }
 
 File open(const fs::path& path, const Location& where) {
-  if (path == "-") return File(stdin);
   check_kind(path, where);
   File file(std::fopen(path.c_str(), "rb"));
   if (!file) fail(where, "cannot open {}: {}", path.string(), std::strerror(errno));
   return file;
+}
+
+void append_rest(std::FILE* file, const fs::path& path, const Location& where, std::string& bytes) {
+  std::array<char, 1 << 16> block;
+  while (const size_t count = std::fread(block.data(), 1, block.size(), file)) bytes.append(block.data(), count);
+  if (std::ferror(file)) fail(where, "cannot read {}: {}", path.string(), std::strerror(errno));
 }
 
 }  // namespace
@@ -43,9 +46,13 @@ std::string read_file_bytes(const fs::path& path, const Location& where) {
   std::string bytes;
   std::error_code unknown_size;
   if (const auto size = fs::file_size(path, unknown_size); !unknown_size) bytes.reserve(size);
-  std::array<char, 1 << 16> block;
-  while (const size_t count = std::fread(block.data(), 1, block.size(), file.get())) bytes.append(block.data(), count);
-  if (std::ferror(file.get())) fail(where, "cannot read {}: {}", path.string(), std::strerror(errno));
+  append_rest(file.get(), path, where, bytes);
+  return bytes;
+}
+
+std::string read_standard_input() {
+  std::string bytes;
+  append_rest(stdin, "standard input", {}, bytes);
   return bytes;
 }
 

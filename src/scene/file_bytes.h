@@ -7,7 +7,9 @@
 
 namespace frond {
 
-/// The whole of a file or, for "-", of standard input. Throws InputError at `where` when it cannot be read.
+/// The whole of a file. Throws InputError at `where` when it cannot be read.
 std::string read_file_bytes(const std::filesystem::path& path, const Location& where);
+/// The whole of standard input.
+std::string read_standard_input();
 
 }  // namespace frond

@@ -1,5 +1,7 @@
 #include "scene/film.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -106,10 +108,34 @@ FilmSettings make_rgb_film(const Params& p) {
 
 }  // namespace
 
+FilmSettings halved(FilmSettings s) {
+  s.width = (s.width + 1) / 2;
+  s.height = (s.height + 1) / 2;
+  s.crop.x0 /= 2, s.crop.y0 /= 2;
+  s.crop.x1 = (s.crop.x1 + 1) / 2, s.crop.y1 = (s.crop.y1 + 1) / 2;
+  return s;
+}
+
 extern const FilmInfo rgb_film{{"film", "rgb", "Three colour channels.", "pbrt-v4", kRgb}, make_rgb_film};
 
-Film::Film(const FilmSettings& settings)
-    : settings_(settings), pixels_(size_t(settings.crop.width()) * size_t(settings.crop.height())) {}
+namespace {
+
+/// Linux promises memory that is not there, and ends the program when it comes to use it.
+size_t pixels_that_fit(const Crop& crop, const Location& where) {
+  constexpr double kImageBytes = 64;  // of the picture that is made of a pixel in the end, and its file
+  const double count = double(crop.width()) * double(crop.height()),
+               bytes = count * (sizeof(Film::Pixel) + kImageBytes);
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (bytes > memory)
+    fail(where, "the film's {} x {} pixels need {:.1f} GB of memory, this machine has {:.1f} GB: --crop renders a part",
+         crop.width(), crop.height(), bytes * 1e-9, memory * 1e-9);
+  return size_t(count);
+}
+
+}  // namespace
+
+Film::Film(const FilmSettings& settings, const Location& where)
+    : settings_(settings), pixels_(pixels_that_fit(settings.crop, where)) {}
 
 size_t Film::index(int x, int y) const {
   const Crop& c = settings_.crop;
@@ -118,10 +144,14 @@ size_t Film::index(int x, int y) const {
 }
 
 void Film::add(int x, int y, std::array<double, 3> sensor, double weight, bool leaf) {
+  Pixel& pixel = pixels_[index(x, y)];
+  if (!std::isfinite(sensor[0] + sensor[1] + sensor[2])) {
+    sensor = {};
+    ++pixel.not_finite;
+  }
   const double largest = std::max({sensor[0], sensor[1], sensor[2]}) * settings_.exposure;
   const double scale =
       weight * settings_.exposure * (largest > settings_.max_component ? settings_.max_component / largest : 1);
-  Pixel& pixel = pixels_[index(x, y)];
   for (double& value : sensor) value *= scale;
   for (size_t c = 0; c < 3; ++c) pixel.sum[c] += sensor[c];
   for (size_t k = 0; k < 6; ++k) pixel.products[k] += sensor[kPairs[k][0]] * sensor[kPairs[k][1]];
@@ -138,10 +168,10 @@ std::array<double, 3> Film::mean(int x, int y) const {
 
 std::array<double, 6> Film::covariance(int x, int y) const {
   const Pixel& p = pixel(x, y);
-  if (p.samples < 2) return {};
+  if (p.samples < 2 || p.weight == 0) return {};
   std::array<double, 6> v{};
-  const double n = double(p.samples);
-  for (size_t k = 0; k < 6; ++k) v[k] = (p.products[k] - p.sum[kPairs[k][0]] * p.sum[kPairs[k][1]] / n) / (n * (n - 1));
+  const double n = double(p.samples), scale = n / ((n - 1) * p.weight * p.weight);  // the mean divides by the weights
+  for (size_t k = 0; k < 6; ++k) v[k] = (p.products[k] - p.sum[kPairs[k][0]] * p.sum[kPairs[k][1]] / n) * scale;
   for (size_t c = 0; c < 3; ++c) v[c] = std::max(v[c], 0.0);  // rounding, where all samples are alike
   return v;
 }
@@ -155,6 +185,12 @@ double Film::foliar_ratio() const {
   double leaf = 0, samples = 0;
   for (const Pixel& p : pixels_) leaf += p.leaf, samples += double(p.samples);
   return samples > 0 ? leaf / samples : 0;
+}
+
+int64_t Film::not_finite() const {
+  int64_t count = 0;
+  for (const Pixel& p : pixels_) count += p.not_finite;
+  return count;
 }
 
 }  // namespace frond

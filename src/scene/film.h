@@ -24,6 +24,9 @@ struct FilmSettings {
   double max_component = 0;  ///< samples are scaled down to this channel value; infinity: not at all
 };
 
+/// The same picture at half the resolution; the crop keeps a pixel at least.
+FilmSettings halved(FilmSettings settings);
+
 struct FilmInfo : PluginInfo {
   FilmSettings (*make)(const Params&);
 };
@@ -37,11 +40,14 @@ class Film {
     std::array<double, 6> products{};  ///< of the channels: 00 11 22 01 02 12
     double weight = 0, leaf = 0;
     int64_t samples = 0;
+    int64_t not_finite = 0;  ///< of these samples
   };
 
-  explicit Film(const FilmSettings& settings);
+  /// Throws InputError, with the place of the directive, if the pixels need more memory than the machine has.
+  explicit Film(const FilmSettings& settings, const Location& where = {});
 
-  /// Adds one sample: sensor response, filter weight, and whether the camera ray met a leaf.
+  /// Adds one sample: sensor response, filter weight, and whether the camera ray met a leaf. A response that is no
+  /// finite number counts as black, and is counted.
   void add(int x, int y, std::array<double, 3> sensor, double weight, bool leaf);
 
   const FilmSettings& settings() const { return settings_; }
@@ -54,6 +60,8 @@ class Film {
   /// Fraction of the samples that saw a leaf first.
   double leaf_fraction(int x, int y) const;
   double foliar_ratio() const;
+  /// Samples of all pixels that were no finite numbers.
+  int64_t not_finite() const;
 
  private:
   size_t index(int x, int y) const;

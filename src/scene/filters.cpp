@@ -38,7 +38,10 @@ class TriangleFilter final : public Filter {
 class SeparableFilter final : public Filter {
  public:
   template <class F>
-  SeparableFilter(Vec2 radius, F value) : x_(radius.x, value), y_(radius.y, value) {}
+  SeparableFilter(const Params& p, F value) : x_(radius_of(p).x, value), y_(radius_of(p).y, value) {
+    if (!x_.is_usable() || !y_.is_usable())
+      fail(p.where(), "this filter weighs nothing within its radius; other parameters are needed");
+  }
   Sample sample(Vec2 u) const override {
     const auto [x, wx] = x_.sample(u.x);
     const auto [y, wy] = y_.sample(u.y);
@@ -54,6 +57,7 @@ class SeparableFilter final : public Filter {
       for (const float c : cells_) sum += c, absolute_sum += std::abs(c);
       weight_ = static_cast<float>(absolute_sum / sum);
     }
+    bool is_usable() const { return std::isfinite(weight_) && weight_ > 0; }
     std::pair<float, float> sample(float u) const {
       const auto [cell, fraction, pdf] = magnitude_.sample(u);
       const float t = (static_cast<float>(cell) + fraction) / static_cast<float>(cells_.size());
@@ -95,7 +99,7 @@ double sinc(double x) { return std::abs(x) < 1e-5 ? 1 : std::sin(M_PI * x) / (M_
 
 std::unique_ptr<Filter> make_gaussian(const Params& p) {
   const double sigma = p.real("sigma");
-  return std::make_unique<SeparableFilter>(radius_of(p), [sigma](double x, double radius) {
+  return std::make_unique<SeparableFilter>(p, [sigma](double x, double radius) {
     const auto g = [sigma](double v) { return std::exp(-v * v / (2 * sigma * sigma)); };
     return std::max(0.0, g(x) - g(radius));
   });
@@ -103,13 +107,13 @@ std::unique_ptr<Filter> make_gaussian(const Params& p) {
 
 std::unique_ptr<Filter> make_mitchell(const Params& p) {
   const double b = p.real("B"), c = p.real("C");
-  return std::make_unique<SeparableFilter>(radius_of(p),
+  return std::make_unique<SeparableFilter>(p,
                                            [b, c](double x, double radius) { return mitchell(2 * x / radius, b, c); });
 }
 
 std::unique_ptr<Filter> make_sinc(const Params& p) {
   const double tau = p.real("tau");
-  return std::make_unique<SeparableFilter>(radius_of(p), [tau](double x, double) { return sinc(x) * sinc(x / tau); });
+  return std::make_unique<SeparableFilter>(p, [tau](double x, double) { return sinc(x) * sinc(x / tau); });
 }
 
 template <class T>

@@ -56,6 +56,10 @@ OIIO::ImageSpec make_spec(const Image& image, const ImageHeader& header, Format 
   spec.attribute("DateTime", fmt::format("{:%Y:%m:%d %H:%M:%S}", fmt::gmtime(file_time())));
   if (!header.color_space.empty()) spec.attribute(kColorSpaceKey, header.color_space);
   if (format == Format::exr) {
+    if (header.full_width > 0) {
+      spec.x = header.x, spec.y = header.y;
+      spec.full_width = header.full_width, spec.full_height = header.full_height;
+    }
     spec.attribute("compression", "zip");
     if (const Chromaticities* c = chromaticities_of(header.color_space)) {
       std::vector<float> xy;
@@ -116,6 +120,13 @@ bool is_whole_jpeg(const std::string& bytes) {
   return last_scan != std::string::npos && end != std::string::npos && end > last_scan;
 }
 
+/// OpenImageIO can take a PNG for whole that ends in its pixels.
+bool is_whole_png(const std::string& bytes) {
+  constexpr size_t kAfterName = 8;  // name and checksum
+  const size_t end = bytes.rfind("IEND");
+  return end != std::string::npos && end + kAfterName <= bytes.size();
+}
+
 uintmax_t size_of_file(const fs::path& path, const Location& where) {
   std::error_code error;
   const uintmax_t size = fs::file_size(path, error);
@@ -133,6 +144,8 @@ std::optional<size_t> Image::channel(std::string_view name) const {
   if (it == channels.end()) return {};
   return static_cast<size_t>(it - channels.begin());
 }
+
+bool is_exr(const fs::path& path) { return format_of(path) == Format::exr; }
 
 void check_writable(const fs::path& path) {
   format_of(path);
@@ -159,7 +172,10 @@ ImageFile read_image(const fs::path& path, const Location& where) {
   if (!in) fail(where, "cannot read image \"{}\": {}", path.string(), OIIO::geterror());
   const OIIO::ImageSpec& spec = in->spec();
   check_size(spec, file_size, where, path);
-  if (std::strcmp(in->format_name(), "jpeg") == 0 && !is_whole_jpeg(read_file_bytes(path, where)))
+  if (spec.depth > 1 || spec.deep) fail(where, "image \"{}\" is a volume, or deep", path.string());
+  const bool is_jpeg = std::strcmp(in->format_name(), "jpeg") == 0, is_png = std::strcmp(in->format_name(), "png") == 0;
+  if ((is_jpeg && !is_whole_jpeg(read_file_bytes(path, where))) ||
+      (is_png && !is_whole_png(read_file_bytes(path, where))))
     fail(where, "cannot read image \"{}\": the file ends too soon", path.string());
   ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
                  spec.format == OIIO::TypeDesc::UINT8};

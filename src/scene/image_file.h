@@ -36,6 +36,8 @@ struct Image {
 struct ImageHeader {
   std::string color_space;                  ///< linear name of spectra/color_space.h; empty: unknown
   std::map<std::string, std::string> text;  ///< attributes by name, such as "frond:seed"
+  /// Where the image lies in a larger one of which it is a part (EXR's data and display windows); 0: it is the whole.
+  int x = 0, y = 0, full_width = 0, full_height = 0;
 };
 
 enum class ExrDepth { half, single };
@@ -43,6 +45,9 @@ enum class ExrDepth { half, single };
 /// Refuses, by InputError, a path that `write_image` could not write: unknown extension, missing folder, no permission,
 /// something that is no regular file. Nothing is left behind.
 void check_writable(const std::filesystem::path& path);
+
+/// By the extension, in whatever case.
+bool is_exr(const std::filesystem::path& path);
 
 /// Writes .exr (floats), or .png and .jpg (8 bits; values are already encoded for a display, and clamped to [0, 1]).
 /// The image is encoded in memory, written beside its place, synchronised to the disk and renamed: a file of that name

@@ -65,18 +65,17 @@ class Lookup {
   bool bilinear_;
 };
 
-float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
-
 /// Reads the file's R G B (or its one channel, three times), linear, scaled and inverted as the parameters say.
 RgbImage load(const Params& p) {
   RgbImage image = read_rgb(p.file("filename"), p.where("filename"));
   const std::string encoding = p.given("encoding") ? p.string("encoding") : image.is_eight_bit ? "sRGB" : "linear";
   const float scale = float(p.real("scale"));
   const bool invert = p.boolean("invert");
+  if (encoding == "sRGB") decode_srgb(image);
   for (float& v : image.rgb) {
-    if (encoding == "sRGB") v = decode_srgb(v);
     v *= scale;
     if (invert) v = 1 - v;
+    if (!std::isfinite(v)) fail(p.where("scale"), "\"scale\" {} makes values of the image infinite", scale);
   }
   return image;
 }

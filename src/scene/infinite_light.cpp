@@ -63,7 +63,7 @@ Vec2 square_from_sphere(const Vec3& d) {
 class ImageEnvironment final : public EnvironmentLight {
  public:
   ImageEnvironment(const Params& p, const Transform& world_from_light)
-      : ImageEnvironment(p, world_from_light, read_rgb(p.file("filename"), p.where("filename"))) {}
+      : ImageEnvironment(p, world_from_light, load(p)) {}
 
   std::optional<LightSample> sample(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
     const auto [uv, density] = texels_by_power_.sample(u);
@@ -88,6 +88,12 @@ class ImageEnvironment final : public EnvironmentLight {
     SigmoidPolynomial reflectance;
     float scale;
   };
+
+  static RgbImage load(const Params& p) {
+    RgbImage image = read_rgb(p.file("filename"), p.where("filename"));
+    if (image.is_eight_bit) decode_srgb(image);
+    return image;
+  }
 
   ImageEnvironment(const Params& p, const Transform& world_from_light, const RgbImage& image)
       : world_from_light_(world_from_light),

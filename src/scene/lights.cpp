@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kPiD = std::numbers::pi;
 
+/// Squared distance below which a point on a surface counts as the light's own: what divides by it would overflow.
+constexpr float kLeastSquare = 1e-30f;
+
 /// "scale", times what makes the light's total match where the scene states a total.
 float scale_of(const Params& p, std::string_view total, double unit_total) {
   const double scale = p.real("scale");
@@ -24,7 +27,7 @@ float scale_of(const Params& p, std::string_view total, double unit_total) {
 Vec3 direction_of(const Params& p, const Transform& world_from_light) {
   const Vec3 from = p.vec3("from"), to = p.vec3("to");
   if (from == to) fail(p.where("to"), "\"from\" and \"to\" are the same point: the light has no direction");
-  return normalize(world_from_light.vector(to - from));
+  return normalize_any(world_from_light.vector(normalize_any(to - from)));
 }
 
 class DistantLight final : public Light {
@@ -55,7 +58,7 @@ class PointLight final : public Light {
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
     const Vec3 d = position_ - p;
     const float distance2 = dot(d, d), distance = std::sqrt(distance2);
-    if (distance == 0) return {};
+    if (distance2 < kLeastSquare) return {};
     return LightSample{spectrum_->sample(lambda) * (scale_ / distance2), d / distance, distance, 1};
   }
   bool is_delta() const override { return true; }
@@ -79,13 +82,14 @@ class SpotLight final : public Light {
     if (delta > cone)
       fail(p.where("conedeltaangle"), "\"conedeltaangle\" {} is more than \"coneangle\" {}", delta, cone);
     cos_outer_ = float(std::cos(cone * kPiD / 180));
+    if (!(cos_outer_ < 1)) fail(p.where("coneangle"), "a \"coneangle\" of {} degrees lets no light through", cone);
     cos_inner_ = float(std::cos((cone - delta) * kPiD / 180));
     scale_ = scale_of(p, "power", solid_angle());
   }
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
     const Vec3 d = position_ - p;
     const float distance2 = dot(d, d), distance = std::sqrt(distance2);
-    if (distance == 0) return {};
+    if (distance2 < kLeastSquare) return {};
     const float falloff = intensity(-dot(d, axis_) / distance);
     if (falloff == 0) return {};
     return LightSample{spectrum_->sample(lambda) * (scale_ * falloff / distance2), d / distance, distance, 1};

@@ -12,13 +12,14 @@ Vec3 face_normal(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
   return cross(mesh.p[t[1]] - mesh.p[t[0]], mesh.p[t[2]] - mesh.p[t[0]]);
 }
 
-/// As in pbrt: the normals decide which side is the front where a mesh has them, winding and handedness where not.
+/// As in pbrt: the normals decide which side is the front where a mesh has them, winding and handedness where not, or
+/// where they are 0 or lie in the face.
 void orient(TriangleMesh& mesh, const ShapePlacement& placement) {
   const bool flip_winding = placement.reverse_orientation != placement.to_scene.swaps_handedness();
   for (auto& t : mesh.triangles) {
-    const bool flip =
-        mesh.n.empty() ? flip_winding : dot(face_normal(mesh, t), mesh.n[t[0]] + mesh.n[t[1]] + mesh.n[t[2]]) < 0;
-    if (flip) std::swap(t[1], t[2]);
+    const Vec3 n = mesh.n.empty() ? Vec3{} : mesh.n[t[0]] + mesh.n[t[1]] + mesh.n[t[2]];
+    const float agreement = dot(normalize_any(face_normal(mesh, t)), n);
+    if (agreement == 0 ? flip_winding : agreement < 0) std::swap(t[1], t[2]);
   }
 }
 
@@ -26,9 +27,8 @@ void orient(TriangleMesh& mesh, const ShapePlacement& placement) {
 ShapeGeometry place(TriangleMesh mesh, const ShapePlacement& placement) {
   for (Vec3& p : mesh.p) p = placement.to_scene.point(p);
   for (Vec3& n : mesh.n) {
-    const Vec3 m = placement.to_scene.normal(n);
-    const float size = length(m);
-    if (size > 0) n = m * ((placement.reverse_orientation ? -1 : 1) / size);
+    const Vec3 m = normalize_any(placement.to_scene.normal(normalize_any(n)));
+    n = placement.reverse_orientation ? -m : m;
   }
   orient(mesh, placement);
   return std::make_shared<const TriangleMesh>(std::move(mesh));

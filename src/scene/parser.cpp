@@ -78,7 +78,8 @@ void SceneReader::check_include(const fs::path& path, const Location& where) con
 }  // namespace
 
 SceneDescription parse_scene(const fs::path& path, const Log& log) {
-  return parse_scene_text(read_file_bytes(path, {}), path == "-" ? "standard input" : path.string(), log);
+  if (path == "-") return parse_scene_text(read_standard_input(), "standard input", log);
+  return parse_scene_text(read_file_bytes(path, {}), path.string(), log);
 }
 
 SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log) {

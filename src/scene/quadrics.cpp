@@ -33,7 +33,7 @@ class Quadric : public AnalyticShape {
 
  protected:
   ShapePoint to_scene(const Vec3d& p, const Vec3d& n, Vec2 uv, float t) const {
-    const Vec3 ng = normalize(to_scene_.normal(to_float(n)));
+    const Vec3 ng = normalize_any(to_scene_.normal(to_float(normalize_any(n))));
     return {to_scene_.point(to_float(p)), flip_ ? -ng : ng, uv, t};
   }
   Vec3d local_point(const Vec3& p) const { return to_double(from_scene_.point(p)); }
@@ -44,6 +44,8 @@ class Quadric : public AnalyticShape {
       bounds.add(to_scene_.point({corner & 1 ? lo.x : hi.x, corner & 2 ? lo.y : hi.y, corner & 4 ? lo.z : hi.z}));
     return bounds;
   }
+  /// As a float, which is what a search that goes on from there compares with.
+  static bool within(double t, float t_min, const Ray& ray) { return float(t) > t_min && float(t) < ray.t_max; }
   /// Azimuth in [0, 2 pi).
   static double azimuth(const Vec3d& p) {
     const double phi = std::atan2(p.y, p.x);
@@ -73,7 +75,7 @@ class Sphere final : public Quadric {
     return transformed_box({-r, -r, float(z_min_)}, {r, r, float(z_max_)});
   }
 
-  std::optional<ShapePoint> intersect(unsigned, const Ray& ray) const override {
+  std::optional<ShapePoint> intersect(unsigned, const Ray& ray, float t_min) const override {
     const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
     // Distance of the line from the centre first: the discriminant then does not cancel for far origins.
     const double dd = dot(d, d), b = -dot(o, d) / dd;
@@ -82,7 +84,7 @@ class Sphere final : public Quadric {
     if (discriminant < 0) return {};
     const double half = std::sqrt(discriminant / dd);
     for (const double t : {b - half, b + half}) {
-      if (t <= 0 || t >= double(ray.t_max)) continue;
+      if (!within(t, t_min, ray)) continue;
       const Vec3d on_ray = o + d * t, p = on_ray * (radius_ / length(on_ray));
       const double phi = azimuth(p);
       if (p.z < z_min_ || p.z > z_max_ || phi > phi_max()) continue;
@@ -121,11 +123,11 @@ class Disk final : public Quadric {
     return transformed_box({-r, -r, h}, {r, r, h});
   }
 
-  std::optional<ShapePoint> intersect(unsigned, const Ray& ray) const override {
+  std::optional<ShapePoint> intersect(unsigned, const Ray& ray, float t_min) const override {
     const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
     if (d.z == 0) return {};
     const double t = (height_ - o.z) / d.z;
-    if (t <= 0 || t >= double(ray.t_max)) return {};
+    if (!within(t, t_min, ray)) return {};
     const Vec3d p{o.x + t * d.x, o.y + t * d.y, height_};
     const double r = std::hypot(p.x, p.y);
     if (r > radius_ || r < inner_ || azimuth(p) > phi_max()) return {};

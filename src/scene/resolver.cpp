@@ -25,6 +25,12 @@ SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneDescription& descr
   return named_spectrum(words[0], p.value_where);
 }
 
+/// Names that stand for names, level upon level; each level can double the work of a lookup.
+void check_depth(size_t levels, const Location& where) {
+  constexpr size_t kDeepest = 16;
+  if (levels > kDeepest) fail(where, "textures and materials are nested more than {} deep", kDeepest);
+}
+
 Triple rgb_of(const ParsedParam& p) {
   const auto& v = numbers(p);
   if (v.size() != 3) fail(p.value_where, "\"{}\" takes 3 values as rgb, {} given", p.name, v.size());
@@ -67,6 +73,7 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
     if (t.name != name) continue;
     const std::string key = std::string(table.kind()) + ' ' + name;
     if (!in_progress_.insert(key).second) fail(where, "texture \"{}\" refers to itself", name);
+    check_depth(in_progress_.size(), where);
     const Info& info = table.get(t.plugin.name, t.plugin.where);
     std::shared_ptr<const Texture> result = info.make(Params(info, t.plugin, *this));
     in_progress_.erase(key);
@@ -93,6 +100,7 @@ std::shared_ptr<Material> SceneResolver::material(const std::string& name, const
       continue;
     }
     if (in_progress_.contains("material " + name)) fail(where, "material \"{}\" refers to itself", name);
+    check_depth(in_progress_.size(), where);
     return material(i);
   }
   fail(where, "there is no material \"{}\"{}", name, suggestion(name, names));

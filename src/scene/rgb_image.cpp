@@ -1,5 +1,7 @@
 #include "scene/rgb_image.h"
 
+#include <cmath>
+
 #include "scene/image_file.h"
 
 namespace frond {
@@ -19,8 +21,16 @@ RgbImage read_rgb(const std::filesystem::path& path, const Location& where) {
   result.rgb.reserve(size_t(image.width) * size_t(image.height) * 3);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      for (const size_t c : channels) result.rgb.push_back(image.at(x, y, c));
+      for (const size_t c : channels) {
+        const float v = image.at(x, y, c);
+        if (!std::isfinite(v)) fail(where, "{} holds the value {} in column {}, row {}", path.string(), v, x, y);
+        result.rgb.push_back(v);
+      }
   return result;
+}
+
+void decode_srgb(RgbImage& image) {
+  for (float& v : image.rgb) v = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
 }  // namespace frond

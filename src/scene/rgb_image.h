@@ -14,6 +14,9 @@ struct RgbImage {
   bool is_eight_bit = false;  ///< still encoded for a display
 };
 
+/// To linear values, by the curve of IEC 61966-2-1.
+void decode_srgb(RgbImage& image);
+
 /// R, G and B of an image, or its only channel three times. Throws InputError at `where`.
 RgbImage read_rgb(const std::filesystem::path& path, const Location& where);
 

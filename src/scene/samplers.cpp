@@ -16,18 +16,16 @@ constexpr Param kSamplerParams[] = {
      .kind = ParamKind::integer,
      .default_value = 0,
      .range = {0, 2147483647},
-     .doc = "Seed; --seed goes before it."},
+     .doc = "Seed; --seed and the option of that name go before it."},
 };
 
 class SamplerBase : public Sampler {
  public:
-  SamplerBase(const Params& p, uint64_t seed)
-      : samples_per_pixel_(p.integer("pixelsamples")),
-        seed_(seed != 0 ? seed : static_cast<uint64_t>(p.integer("seed"))) {}
+  SamplerBase(const Params& p, std::optional<uint64_t> seed)
+      : samples_per_pixel_(p.integer("pixelsamples")), seed_(seed.value_or(static_cast<uint64_t>(p.integer("seed")))) {}
   int samples_per_pixel() const override { return samples_per_pixel_; }
 
- protected:
-  uint64_t seed() const { return seed_; }
+  uint64_t seed() const override { return seed_; }
 
  private:
   int samples_per_pixel_;
@@ -112,7 +110,7 @@ class PaddedSobolSampler final : public SamplerBase {
 };
 
 template <class T>
-std::unique_ptr<Sampler> make_sampler(const Params& p, uint64_t seed) {
+std::unique_ptr<Sampler> make_sampler(const Params& p, std::optional<uint64_t> seed) {
   return std::make_unique<T>(p, seed);
 }
 

@@ -74,6 +74,7 @@ class SceneBuilder {
     apply_swaps(description_, overrides_.swaps, registry_, log_);
     build_options();
     SceneResolver resolver(description_, registry_, *scene_.wavelengths_);
+    check_declarations(resolver);
     build_view(resolver);
     build_lights(resolver);
     build_surfaces(resolver);
@@ -91,13 +92,32 @@ class SceneBuilder {
     return info.make(Params(info, plugin, resolver), args...);
   }
 
+  template <class Info>
+  void check(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver) const {
+    Params(table.get(plugin.name, plugin.where), plugin, resolver);
+  }
+
+  /// Also of what no shape uses: a name or parameter that is wrong is told at once.
+  void check_declarations(SceneResolver& resolver) const {
+    for (const TextureDescription& t : description_.textures) {
+      if (t.value == TextureDescription::Value::real)
+        check(registry_.float_textures, t.plugin, resolver);
+      else
+        check(registry_.spectrum_textures, t.plugin, resolver);
+    }
+    for (const MaterialDescription& m : description_.materials) check(registry_.materials, m.plugin, resolver);
+    for (const ParsedPlugin& light : description_.area_lights) check(registry_.area_lights, light, resolver);
+  }
+
   void build_options() {
     NoResolver resolver;
     const Params p(kOptions, {"Option", {}, description_.options}, resolver);
     const bool from_scene = overrides_.wavelengths.empty();
     const Location where = from_scene ? p.where("wavelengths") : Location{};
     const std::string text = from_scene ? p.string("wavelengths") : overrides_.wavelengths;
-    scene_.options_ = {text, overrides_.seed ? *overrides_.seed : uint64_t(p.integer("seed"))};
+    scene_.wavelengths_name_ = text;
+    seed_ = overrides_.seed;
+    if (!seed_ && p.given("seed")) seed_ = uint64_t(p.integer("seed"));
     const PluginText choice = parse_plugin_text(text, where);
     const WavelengthsInfo& info = registry_.wavelengths.get(choice.name, where);
     ParsedPlugin plugin{choice.name, where, {}};
@@ -106,14 +126,32 @@ class SceneBuilder {
   }
 
   void build_view(SceneResolver& resolver) {
-    const FilmSettings film = Scene::film_settings(description_, registry_, overrides_);
+    FilmSettings film = Scene::film_settings(description_, registry_);
+    if (overrides_.quick) film = halved(film);
     scene_.camera_ = make(registry_.cameras, description_.camera, resolver,
                           CameraPlacement{description_.camera_from_world.inverse(), film.width, film.height});
-    scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, scene_.options_.seed);
+    check_camera(film);
+    scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, seed_);
     const int samples = scene_.sampler_->samples_per_pixel();
     scene_.samples_per_pixel_ = overrides_.quick ? std::max(1, samples / 16) : samples;
     scene_.filter_ = make(registry_.filters, description_.filter, resolver);
     scene_.integrator_ = make(registry_.integrators, description_.integrator, resolver);
+  }
+
+  /// Embree takes no ray whose numbers are too large; the film's corners and the lens's rim have the largest.
+  void check_camera(const FilmSettings& film) const {
+    constexpr float kFarthest = 1e12f;
+    const auto within = [](const Vec3& v, float limit) {
+      return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;  // false for NaN
+    };
+    for (const float x : {0.f, float(film.width)})
+      for (const float y : {0.f, float(film.height)})
+        for (const Vec2 lens : {Vec2{0, 0.5f}, Vec2{1, 0.5f}, Vec2{0.5f, 0}, Vec2{0.5f, 1}}) {
+          const Ray ray = scene_.camera_->ray({x, y}, lens);
+          if (!within(ray.o, kFarthest) || !within(ray.d, 2) || ray.d == Vec3{})
+            fail(description_.camera.where, "this camera stands or reaches out of bounds: {:g} units at most",
+                 kFarthest);
+        }
   }
 
   void build_lights(SceneResolver& resolver) {
@@ -145,8 +183,11 @@ class SceneBuilder {
     const Params params(info, shape.plugin, resolver);
     Primitive result{info.make(params, {shape.world_from_object, shape.reverse_orientation}), nullptr, nullptr,
                      nullptr};
+    check_extent(result.geometry, shape.plugin.where);
     const auto alpha = params.float_texture("alpha");
     if (!alpha->is_constant() || alpha->range().min < 1) result.alpha = alpha;
+    if (result.alpha && shape.area_light)
+      fail(params.where("alpha"), "\"alpha\" on a shape that gives off light is not supported yet");
     const auto material = resolver.material(shape.material);
     result.material = material.get();
     if (shape.area_light)
@@ -154,6 +195,25 @@ class SceneBuilder {
           area_light(description_.area_lights[*shape.area_light], shape.plugin.where, result.geometry, resolver);
     if (material->is_leaf()) warn_of_double_faces(result.geometry, shape.plugin.where);
     return result;
+  }
+
+  /// Embree leaves out what lies farther than 1.8e18, without a word.
+  static void check_extent(const ShapeGeometry& geometry, const Location& where) {
+    static constexpr float kFarthest = 1e18f;
+    const auto check = [&where](const Vec3& p) {
+      if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthest))
+        fail(where, "this shape reaches to ({:g}, {:g}, {:g}): {:g} units from the origin is the limit", p.x, p.y, p.z,
+             kFarthest);
+    };
+    if (const auto* mesh = std::get_if<MeshPtr>(&geometry)) {
+      std::for_each((*mesh)->p.begin(), (*mesh)->p.end(), check);
+      return;
+    }
+    const AnalyticShape& shape = *std::get<AnalyticShapePtr>(geometry);
+    for (unsigned i = 0; i < shape.count(); ++i) {
+      check(shape.bounds(i).min);
+      check(shape.bounds(i).max);
+    }
   }
 
   const AreaLight* area_light(const ParsedPlugin& plugin, const Location& where, const ShapeGeometry& geometry,
@@ -197,6 +257,7 @@ class SceneBuilder {
   }
 
   Scene& scene_;
+  std::optional<uint64_t> seed_;  ///< of the command line or the scene's options; the sampler's own where there is none
   SceneDescription description_;
   const Registry& registry_;
   const SceneOverrides& overrides_;
@@ -204,15 +265,10 @@ class SceneBuilder {
   const Log& log_;
 };
 
-FilmSettings Scene::film_settings(const SceneDescription& description, const Registry& registry,
-                                  const SceneOverrides& overrides) {
+FilmSettings Scene::film_settings(const SceneDescription& description, const Registry& registry) {
   NoResolver resolver;
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
-  FilmSettings film = info.make(Params(info, description.film, resolver));
-  if (overrides.quick)
-    for (int* size : {&film.width, &film.height, &film.crop.x0, &film.crop.x1, &film.crop.y0, &film.crop.y1})
-      *size = (*size + 1) / 2;
-  return film;
+  return info.make(Params(info, description.film, resolver));
 }
 
 Scene::Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,

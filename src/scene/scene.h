@@ -28,18 +28,11 @@ struct SceneOverrides {
   std::filesystem::path cache_dir;  ///< empty: no files are kept
 };
 
-/// Options of the scene file that are not a plugin's.
-struct SceneOptions {
-  std::string wavelengths;
-  uint64_t seed;
-};
-
 /// A scene ready to be rendered.
 class Scene final : public World {
  public:
-  /// What the scene says of its image; throws InputError.
-  static FilmSettings film_settings(const SceneDescription& description, const Registry& registry,
-                                    const SceneOverrides& overrides);
+  /// What the scene says of its image, at its full size; throws InputError.
+  static FilmSettings film_settings(const SceneDescription& description, const Registry& registry);
 
   /// Throws InputError.
   Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
@@ -55,20 +48,20 @@ class Scene final : public World {
   float radius() const override { return radius_; }
 
   const WavelengthStrategy& wavelengths() const { return *wavelengths_; }
-  const std::string& wavelengths_name() const { return options_.wavelengths; }
+  const std::string& wavelengths_name() const { return wavelengths_name_; }
   const Camera& camera() const { return *camera_; }
   const Sampler& sampler() const { return *sampler_; }
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
   const Accelerator& accelerator() const { return *accelerator_; }
   int samples_per_pixel() const { return samples_per_pixel_; }
-  /// Of the random streams; the sampler has it too.
-  uint64_t seed() const { return options_.seed; }
+  /// Of all random numbers.
+  uint64_t seed() const { return sampler_->seed(); }
 
  private:
   friend class SceneBuilder;
 
-  SceneOptions options_;
+  std::string wavelengths_name_;
   std::unique_ptr<WavelengthStrategy> wavelengths_;
   std::unique_ptr<Camera> camera_;
   std::unique_ptr<Sampler> sampler_;

@@ -30,7 +30,8 @@ class AnalyticShape {
   virtual ~AnalyticShape() = default;
   virtual unsigned count() const { return 1; }
   virtual Bounds bounds(unsigned primitive) const = 0;
-  virtual std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray) const = 0;
+  /// The nearest point with t_min < t < ray.t_max.
+  virtual std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray, float t_min) const = 0;
   /// Uniform over the area.
   virtual ShapePoint sample(Vec2 u) const = 0;
   virtual double area() const = 0;

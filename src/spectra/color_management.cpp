@@ -93,7 +93,9 @@ class ColorManager::Impl {
     require(fmt::format("view of display {}", display), view, known_views);
     Place source = find(from);
     Chain chain;
-    if (source.config != config_) {
+    if (source.config != config_ && !knows_aces(config_) && config_->getColorSpace(source.space.c_str())) {
+      source.config = config_;  // a small configuration that at least calls something by that name
+    } else if (source.config != config_) {
       const std::string common = aces(config_);
       chain = conversion(from, common);
       source.space = common;
@@ -122,17 +124,22 @@ class ColorManager::Impl {
   }
 
  private:
-  /// In the user's configuration if it is there, in ours otherwise.
+  /// Our names mean ours, whatever the user's configuration calls so: the pixels of an EXR do not depend on it.
   Place find(std::string_view name) const {
     const std::string space(name);
-    for (const auto& config : {config_, builtin_})
+    for (const auto& config : {builtin_, config_})
       if (config->getColorSpace(space.c_str())) return {config, space};
     fail_unknown("color space", name, spaces());
   }
 
+  static constexpr std::array kAcesNames{"aces_interchange", "ACES2065-1", "ACES - ACES2065-1"};
+  static bool knows_aces(const OCIO::ConstConfigRcPtr& config) {
+    return std::any_of(kAcesNames.begin(), kAcesNames.end(), [&](auto name) { return config->getColorSpace(name); });
+  }
+
   /// What a configuration calls ACES2065-1, by which two configurations meet.
   std::string aces(const OCIO::ConstConfigRcPtr& config) const {
-    for (const char* name : {"aces_interchange", "ACES2065-1", "ACES - ACES2065-1"})
+    for (const char* name : kAcesNames)
       if (config->getColorSpace(name)) return name;
     fail({},
          "the OpenColorIO configuration \"{}\" does not say what ACES2065-1 is (role aces_interchange), so that other "

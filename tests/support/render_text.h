@@ -29,7 +29,7 @@ inline Film render_text(const std::string& text, const RenderSettings& settings 
   overrides.seed = settings.seed;
   overrides.swaps = settings.swaps;
   const Scene scene(description, registry, overrides, pool, quiet);
-  Film film(Scene::film_settings(description, registry, overrides));
+  Film film(Scene::film_settings(description, registry));
   render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
           0, uint64_t(settings.samples)},
          film, pool, {});

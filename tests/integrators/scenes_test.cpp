@@ -1,0 +1,42 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/render_text.h"
+
+namespace frond {
+namespace {
+
+/// A scene of the project at two samples a pixel, its leaves by a table that costs no walks.
+Film render_scene(const std::string& path) {
+  const Log quiet(true);
+  ThreadPool pool(2);
+  const SceneDescription description = parse_scene(FROND_SOURCE_DIR "/scenes/" + path, quiet);
+  const Registry registry = make_registry(builtin_materials(), builtin_integrators());
+  SceneOverrides overrides;
+  overrides.wavelengths = "smpte";
+  if (path.starts_with("soybean")) overrides.swaps = {{"leaf", {"leaf_simplified", {{"tablemethod", "solve"}}}}};
+  const Scene scene(description, registry, overrides, pool, quiet);
+  Film film(Scene::film_settings(description, registry));
+  render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
+          0, 2},
+         film, pool, {});
+  return film;
+}
+
+/// The paper's foliar ratios (table 2), within 0.3 % of the view; half a million stratified camera rays leave a
+/// standard error below 0.06 %, far less than what the margin has left.
+TEST(Scenes, LeavesCoverThePapersShareOfTheView) {
+  EXPECT_NEAR(render_scene("soybean-front/scene.pbrt").foliar_ratio(), 0.2497, 0.003);
+  EXPECT_NEAR(render_scene("soybean-back/scene.pbrt").foliar_ratio(), 0.1942, 0.003);
+  EXPECT_NEAR(render_scene("soybean-ambient/scene.pbrt").foliar_ratio(), 0.3761, 0.003);
+}
+
+/// A mean over 4096 pixels whose standard error is known; 5 of them: a false alarm in 1.7 million.
+TEST(Scenes, FurnacesAreWhite) {
+  for (const char* path : {"furnace/scene.pbrt", "furnace/transmission.pbrt"}) {
+    const auto [mean, error] = testing::channel_mean(render_scene(path), 1);
+    EXPECT_NEAR(mean, 1, 5 * error + 1e-5) << path;
+  }
+}
+
+}  // namespace
+}  // namespace frond
