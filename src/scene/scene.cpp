@@ -165,8 +165,10 @@ class SceneBuilder {
     for (const ObjectDescription& object : description_.objects) groups.push_back(primitives(object.shapes, resolver));
     std::vector<Placement> placements;
     placements.reserve(description_.instances.size());
-    for (const InstanceDescription& instance : description_.instances)
+    for (const InstanceDescription& instance : description_.instances) {
+      check_scale(instance);
       placements.push_back({instance.world_from_object, instance.object});
+    }
     scene_.accelerator_ = std::make_unique<Accelerator>(std::move(top), std::move(groups), placements, pool_.size());
     const Bounds b = scene_.accelerator_->bounds();
     scene_.radius_ = b.min.x <= b.max.x ? length(b.max - b.min) / 2 : 1;
@@ -195,6 +197,15 @@ class SceneBuilder {
           area_light(description_.area_lights[*shape.area_light], shape.plugin.where, result.geometry, resolver);
     if (material->is_leaf()) warn_of_double_faces(result.geometry, shape.plugin.where);
     return result;
+  }
+
+  /// Rays in the object's own space are longer or shorter by this; Embree's products of such numbers overflow or
+  /// vanish.
+  static void check_scale(const InstanceDescription& instance) {
+    constexpr Interval kScale{1e-9, 1e9};
+    for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+      if (const double size = double(length(instance.world_from_object.vector(axis))); !kScale.contains(size))
+        fail(instance.where, "this instance scales by {:g}: {:g} to {:g} is the limit", size, kScale.min, kScale.max);
   }
 
   /// Embree leaves out what lies farther than 1.8e18, without a word.

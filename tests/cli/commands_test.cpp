@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -242,6 +243,41 @@ TEST_F(Commands, ConvertAveragesAndShows) {
   EXPECT_NEAR(mean.at(12, 8, m), (a.at(12, 8, g) + b.at(12, 8, g)) / 2, 1e-6);
   ASSERT_EQ(frond_command({"convert", path("mean.exr"), "-o", path("mean.png")}).code, 0);
   EXPECT_EQ(frond_command({"convert", path("mean.png"), "-o", path("again.png")}).code, 1);
+}
+
+TEST_F(Commands, NumbersThatAreNoneAreRefused) {
+  for (const std::vector<std::string>& option :
+       std::vector<std::vector<std::string>>{{"--seed", "-1"},
+                                             {"--seed", "99999999999999999999"},
+                                             {"--seed", "1e30"},
+                                             {"--spp", "1e30"},
+                                             {"--spp", "-3"},
+                                             {"--threads", "100000"}}) {
+    std::vector<std::string> more{"-o", path("x.exr")};
+    more.insert(more.end(), option.begin(), option.end());
+    EXPECT_EQ(render(more).code, 1) << option[0] << option[1];
+  }
+  EXPECT_FALSE(fs::exists(path("x.exr")));
+}
+
+TEST_F(Commands, AFilmLargerThanMemoryIsRefused) {
+  folder_.write("vast.pbrt", "Film \"rgb\" \"integer xresolution\" 65536 \"integer yresolution\" 65536 WorldBegin");
+  const Outcome o = frond_command({"render", path("vast.pbrt"), "-o", path("x.exr")});
+  EXPECT_EQ(o.code, 1);
+  EXPECT_THAT(o.err, HasSubstr("vast.pbrt:1:6: the film's 65536 x 65536 pixels need"));
+  EXPECT_EQ(frond_command({"render", path("vast.pbrt"), "-o", path("x.exr"), "--crop", "0,4,0,4", "--spp", "1"}).code,
+            0);
+}
+
+TEST_F(Commands, PixelsTooBrightForTheFileHoldItsLargestNumber) {
+  folder_.write("bright.pbrt", R"(
+Film "rgb" "integer xresolution" 2 "integer yresolution" 2 "float iso" 1e38 "float exposuretime" 1e38
+WorldBegin
+LightSource "infinite"
+)");
+  const Outcome o = frond_command({"render", path("bright.pbrt"), "-o", path("b.exr"), "-q"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  for (const float v : read_image(path("b.exr"), {}).image.pixels) EXPECT_TRUE(std::isfinite(v)) << v;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "core/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <stdexcept>
@@ -42,6 +43,20 @@ TEST(ThreadPool, ThrowsWhatABodyThrowsAndStops) {
 }
 
 TEST(ThreadPool, ZeroMeansTheMachinesThreads) { EXPECT_GE(ThreadPool().size(), 1); }
+
+TEST(ThreadPool, WorksWithFewerThreadsThanAsked) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer needs more addresses than the limit leaves";
+#endif
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  const rlimit little{rlim_t{2} << 30, before.rlim_max};  // for the stacks of some hundreds
+  setrlimit(RLIMIT_AS, &little);
+  std::atomic<int64_t> sum{0};
+  ThreadPool(5000).for_each(5000, [&](int64_t i, int) { sum += i; });
+  setrlimit(RLIMIT_AS, &before);
+  EXPECT_EQ(sum, 5000 * 4999 / 2);
+}
 
 }  // namespace
 }  // namespace frond

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "core/sampling.h"
 
 namespace frond {
 namespace {
@@ -53,6 +54,23 @@ TEST(Frame, LocalAndWorldUndoEachOther) {
     EXPECT_NEAR(length(f.to_world(f.to_local(v)) - v), 0, 1e-14);
     EXPECT_NEAR(length(f.to_local(z) - Vec3d{0, 0, 1}), 0, 1e-14);
   }
+}
+
+TEST(Vec3, NormalizesWhatFloatsHold) {
+  for (const float size : {1e-42f, 1e-30f, 1e-12f, 1.f, 1e12f, 3e38f}) {
+    const Vec3 n = normalize_any(Vec3{0, -size, size});
+    EXPECT_NEAR(n.y, -std::sqrt(0.5f), 1e-6f) << size;
+    EXPECT_NEAR(n.z, std::sqrt(0.5f), 1e-6f) << size;
+  }
+  EXPECT_EQ(normalize_any(Vec3{}), Vec3{});
+}
+
+TEST(Sampling, PowerHeuristicStandsOverflow) {
+  EXPECT_EQ(power_heuristic(1e30f, 1e30f), 0.5f);
+  EXPECT_EQ(power_heuristic(1, 1e30f), 0);
+  EXPECT_EQ(power_heuristic(1e30f, 1), 1);
+  EXPECT_EQ(power_heuristic(1, INFINITY), 0);
+  EXPECT_EQ(power_heuristic(0, 0), 0);
 }
 
 }  // namespace

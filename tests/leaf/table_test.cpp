@@ -236,5 +236,11 @@ TEST(TableLookup, NeverGivesMoreThanAll) {
   }
 }
 
+TEST_F(TableCache, ThatCannotBeLookedIntoIsNone) {
+  const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 5);
+  const Table table = cached_table(request, "test", ThreadPool(1), Log(true), std::string(300, 'x'));
+  EXPECT_FALSE(table.shares.empty());
+}
+
 }  // namespace
 }  // namespace frond::leaf

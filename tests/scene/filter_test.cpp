@@ -6,6 +6,7 @@
 
 #include "scene/registry.h"
 #include "tests/support/bind.h"
+#include "tests/support/input_error.h"
 
 namespace frond {
 namespace {
@@ -61,6 +62,10 @@ TEST(Filters, SecondMomentsAreThoseOfTheShapes) {
 TEST(Filters, MitchellHasItsSecondMoment) {
   // B / 3, in squares of half the radius.
   EXPECT_NEAR(moments(*make("mitchell")).xx, (1.0 / 3) / 3, 5e-3);
+}
+
+TEST(Filters, ThatWeighNothingAreRefused) {
+  EXPECT_NE(error_of([] { make("gaussian", {testing::number("float", "sigma", {1e-6})}); }), "");
 }
 
 }  // namespace

@@ -282,5 +282,17 @@ TEST_F(ImageFiles, SmallFilesThatClaimHugeImagesAreRefused) {
   EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("a.exr"));
 }
 
+TEST_F(ImageFiles, ThatEndTooSoonAreRefusedWhereverTheyEnd) {
+  for (const char* name : {"t.png", "t.jpg", "t.exr"}) {
+    const fs::path path = folder_ / name;
+    write_image(path, sample({"R", "G", "B"}), {});
+    const std::string whole = bytes_of(path);
+    for (size_t size = 0; size < whole.size(); size += whole.size() / 40 + 1) {
+      std::ofstream(path, std::ios::binary) << whole.substr(0, size);
+      EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr(name)) << size << " of " << whole.size();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace frond
