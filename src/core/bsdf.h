@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "core/random.h"
 #include "core/spectrum.h"
@@ -16,9 +17,10 @@ enum class Lobes : uint8_t {
   transmission = 2,
   diffuse = 4,
   glossy = 8,
-  specular = 16,    ///< delta lobes
-  stochastic = 32,  ///< f and sample are unbiased estimates that use their random stream
-  surface = 64,     ///< light that never entered the body (Rs of a leaf)
+  specular = 16,     ///< delta lobes
+  stochastic = 32,   ///< f and sample are unbiased estimates that use their random stream
+  surface = 64,      ///< light that never entered the body (Rs of a leaf)
+  from_light = 128,  ///< f is not reciprocal, and the direction that its model calls incident is wi, not wo
 };
 constexpr Lobes operator|(Lobes a, Lobes b) { return Lobes(uint8_t(a) | uint8_t(b)); }
 constexpr Lobes operator&(Lobes a, Lobes b) { return Lobes(uint8_t(a) & uint8_t(b)); }
@@ -31,6 +33,13 @@ struct BsdfSample {
   Lobes flags = Lobes::none;
   /// True where f / pdf is the right weight but `pdf` is not the density of wi: MIS must ask `pdf()` instead.
   bool pdf_is_approximate = false;
+};
+
+/// What became of a ray of light at a surface.
+struct Scattered {
+  Vec3 direction;            ///< the way it leaves, unit; undefined where all of it was absorbed
+  Lobes lobe = Lobes::none;  ///< as of a BsdfSample
+  SampledSpectrum weight;    ///< share of the ray that leaves, lane by lane
 };
 
 /// Scattering at one point of a surface.
@@ -52,6 +61,11 @@ class Bsdf {
   virtual std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const = 0;
   /// Density of `sample`, or an approximation of it that is positive wherever f is; used to weight both strategies.
   virtual float pdf(const Vec3& wo, const Vec3& wi) const = 0;
+
+  /// For virtual instruments: sends light in from the direction `incident`, which is what the BSDF's model calls so
+  /// whichever of wo and wi that is, and tells what becomes of each ray. Means of the weights are reflectance and
+  /// transmittance for that incidence. A BSDF `from_light` whose pdf is approximate must have its own.
+  virtual void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const;
 
  protected:
   ~Bsdf() = default;  // lives in an arena and is never deleted

@@ -57,6 +57,12 @@ class MixtureBsdf final : public Bsdf {
     return (1 - amount_) * first_.pdf(wo, wi) + amount_ * second_.pdf(wo, wi);
   }
 
+  /// Each may have its own idea of what is incident.
+  void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
+    for (size_t i = 0; i < rays.size(); ++i)
+      (rng.uniform() < amount_ ? second_ : first_).scatter(incident, rng, rays.subspan(i, 1));
+  }
+
  private:
   const Bsdf& first_;
   const Bsdf& second_;

@@ -1,0 +1,28 @@
+#include "core/bsdf.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace frond {
+namespace {
+
+/// Draws as a path that arrives along `incident` would. Where the model's incident direction is wi, the pair is turned
+/// round for its value: the directions are then only an importance sampling of where the light goes.
+Scattered scatter_one(const Bsdf& bsdf, bool from_light, const Vec3& incident, RandomStream& rng) {
+  const float uc = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+  const auto s = bsdf.sample(incident, uc, {u, v}, rng);
+  if (!s) return {};
+  const bool turn_round = from_light && !any(s->flags & Lobes::specular);
+  assert(!turn_round || !s->pdf_is_approximate);
+  const SampledSpectrum f = turn_round ? bsdf.f(s->wi, incident, rng) : s->f;
+  return {s->wi, s->flags, f * (std::abs(s->wi.z) / s->pdf)};
+}
+
+}  // namespace
+
+void Bsdf::scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const {
+  const bool from_light = any(flags() & Lobes::from_light);
+  for (Scattered& ray : rays) ray = scatter_one(*this, from_light, incident, rng);
+}
+
+}  // namespace frond
