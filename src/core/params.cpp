@@ -210,11 +210,42 @@ SpectrumPtr Params::spectrum(std::string_view name) const {
   return resolver_.spectrum(default_spectrum(declared, parsed_.where), emission);
 }
 
+namespace {
+
+std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, const Param& declared,
+                                                     const std::string& name, const Location& where) {
+  auto texture = resolver.float_texture(name, where);
+  const Interval values = texture->range();
+  if (!declared.range.contains(values.min) || !declared.range.contains(values.max))
+    fail(where, "texture \"{}\" has values from {} to {}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
+         values.max, declared.range.min, declared.range.max, declared.unit.empty() ? "" : " ", declared.unit,
+         declared.name);
+  return texture;
+}
+
+}  // namespace
+
 std::shared_ptr<const FloatTexture> Params::float_texture(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  if (parsed && parsed->type == "texture") return resolver_.float_texture(words(*parsed)[0], parsed->value_where);
+  if (is_texture(name)) return texture_in_range(resolver_, declared, words(*parsed)[0], parsed->value_where);
   const double value = parsed ? numbers(*parsed)[0] : std::get<double>(declared.default_value);
   return std::make_shared<ConstantFloatTexture>(static_cast<float>(value));
+}
+
+std::vector<std::shared_ptr<const FloatTexture>> Params::float_textures(std::string_view name) const {
+  const auto [declared, parsed] = find(name);
+  std::vector<std::shared_ptr<const FloatTexture>> result;
+  if (is_texture(name))
+    for (const std::string& word : words(*parsed))
+      result.push_back(texture_in_range(resolver_, declared, word, parsed->value_where));
+  else if (parsed)
+    for (const double x : numbers(*parsed)) result.push_back(std::make_shared<ConstantFloatTexture>(float(x)));
+  return result;
+}
+
+bool Params::is_texture(std::string_view name) const {
+  const ParsedParam* parsed = find(name).parsed;
+  return parsed && parsed->type == "texture";
 }
 
 std::shared_ptr<const SpectrumTexture> Params::spectrum_texture(std::string_view name) const {
@@ -225,6 +256,12 @@ std::shared_ptr<const SpectrumTexture> Params::spectrum_texture(std::string_view
 }
 
 std::filesystem::path Params::file(std::string_view name) const { return resolver_.file(string(name), where(name)); }
+
+std::vector<std::filesystem::path> Params::files(std::string_view name) const {
+  std::vector<std::filesystem::path> result;
+  for (const std::string& file : strings(name)) result.push_back(resolver_.file(file, where(name)));
+  return result;
+}
 
 std::vector<std::shared_ptr<Material>> Params::materials(std::string_view name) const {
   const auto [declared, parsed] = find(name);

@@ -103,6 +103,7 @@ class Params {
   Vec2 vec2(std::string_view name) const;
   Vec3 vec3(std::string_view name) const;
   SpectrumPtr spectrum(std::string_view name) const;
+  /// Refuses textures whose values leave the declared range.
   std::shared_ptr<const FloatTexture> float_texture(std::string_view name) const;
   std::shared_ptr<const SpectrumTexture> spectrum_texture(std::string_view name) const;
   std::filesystem::path file(std::string_view name) const;
@@ -113,9 +114,13 @@ class Params {
   std::vector<Vec2> vec2s(std::string_view name) const;
   std::vector<Vec3> vec3s(std::string_view name) const;
   std::vector<std::shared_ptr<Material>> materials(std::string_view name) const;
+  std::vector<std::shared_ptr<const FloatTexture>> float_textures(std::string_view name) const;
+  std::vector<std::filesystem::path> files(std::string_view name) const;
 
   /// Whether the scene gives the parameter itself.
   bool given(std::string_view name) const;
+  /// Whether it does so by the name of a texture.
+  bool is_texture(std::string_view name) const;
   /// Where the parameter stands, or the directive if it is not given: for a plugin's own errors.
   Location where(std::string_view name) const;
   const Location& where() const { return parsed_.where; }

@@ -1,5 +1,7 @@
 #include "leaf/lobe.h"
 
+#include <boost/math/special_functions/beta.hpp>
+
 namespace frond::leaf {
 namespace {
 
@@ -33,7 +35,17 @@ int maxima(double exponent) {
 
 }  // namespace
 
-Lobe::Lobe(double exponent) : exponent_(exponent), whole_(small_whole(exponent)), maxima_(maxima(exponent)) {
+Lobe::Lobe(double exponent) : exponent_(exponent), whole_(small_whole(exponent)), maxima_(maxima(exponent)) {}
+
+double Lobe::kept_exactly(double cos_axis) const {
+  // The integral of `edge` in theta, over the whole of it: a regularised incomplete beta function of sin^2 theta. Its
+  // complement, taken at cos^2 theta, keeps digits at grazing.
+  constexpr boost::math::policies::policy<boost::math::policies::promote_double<false>> kInDouble;
+  const double c2 = std::min(1.0, cos_axis * cos_axis);
+  return 0.5 + 0.5 * boost::math::ibeta(0.5, (exponent_ + 1) / 2, c2, kInDouble);
+}
+
+Lobe::KeptTable::KeptTable(double exponent) {
   constexpr double kStep = 1.0 / kCells;
   double sum = 0;
   for (size_t i = 0; i <= kCells; ++i) {

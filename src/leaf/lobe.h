@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "core/random.h"
@@ -24,16 +25,8 @@ class Lobe {
   }
 
   /// Share of the lobe on its axis's side of the wall, in [1/2, 1]; cos_axis in [0, 1] is the axis's to the wall's
-  /// normal. What is left after the cut has density() / kept().
-  double kept(double cos_axis) const {
-    const double x = std::sqrt(std::max(0.0, 1 - cos_axis)) * kCells;
-    const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
-    const double t = x - static_cast<double>(cell);
-    const Node &a = nodes_[cell], &b = nodes_[cell + 1];
-    const double rise = b.value - a.value;
-    // Cubic Hermite interpolation; slopes are per cell.
-    return a.value + t * (a.slope + t * (3 * rise - 2 * a.slope - b.slope + t * (a.slope + b.slope - 2 * rise)));
-  }
+  /// normal. What is left after the cut has density() / kept(). Quick for a TabulatedLobe alone.
+  double kept(double cos_axis) const { return table_ ? table_->at(cos_axis) : kept_exactly(cos_axis); }
 
   /// Cosine to the axis from one uniform number.
   float cos_from_uniform(float uniform) const { return std::pow(uniform, static_cast<float>(1 / (exponent_ + 1))); }
@@ -49,7 +42,33 @@ class Lobe {
     return std::sqrt(uniform);
   }
 
+ protected:
+  /// What is kept, at x = sqrt(1 - cos_axis) in equal steps.
+  class KeptTable {
+   public:
+    explicit KeptTable(double exponent);
+    double at(double cos_axis) const {
+      const double x = std::sqrt(std::max(0.0, 1 - cos_axis)) * kCells;
+      const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
+      const double t = x - static_cast<double>(cell);
+      const Node &a = nodes_[cell], &b = nodes_[cell + 1];
+      const double rise = b.value - a.value;
+      // Cubic Hermite interpolation; slopes are per cell.
+      return a.value + t * (a.slope + t * (3 * rise - 2 * a.slope - b.slope + t * (a.slope + b.slope - 2 * rise)));
+    }
+
+   private:
+    struct Node {
+      double value, slope;
+    };
+    static constexpr size_t kCells = 256;
+    std::array<Node, kCells + 1> nodes_;
+  };
+
+  Lobe(double exponent, const KeptTable* table) : Lobe(exponent) { table_ = table; }
+
  private:
+  double kept_exactly(double cos_axis) const;
   double power(double c) const {
     if (whole_ < 0) return std::pow(c, exponent_);
     double result = 1;
@@ -58,16 +77,22 @@ class Lobe {
     return result;
   }
 
-  // At x = sqrt(1 - cos_axis), in equal steps.
-  struct Node {
-    double value, slope;
-  };
-  static constexpr size_t kCells = 256;
-
   double exponent_;
-  int whole_;   ///< the exponent where it is a small whole number, else -1
-  int maxima_;  ///< (e + 1) / 2 for small odd exponents, else 0
-  std::array<Node, kCells + 1> nodes_;
+  int whole_;                         ///< the exponent where it is a small whole number, else -1
+  int maxima_;                        ///< (e + 1) / 2 for small odd exponents, else 0
+  const KeptTable* table_ = nullptr;  ///< not owned
+};
+
+/// A lobe that is asked often for what the cut keeps. Plain lobes that are copied from it must not outlive it.
+class TabulatedLobe final : public Lobe {
+ public:
+  explicit TabulatedLobe(double exponent) : TabulatedLobe(exponent, std::make_shared<const KeptTable>(exponent)) {}
+
+ private:
+  TabulatedLobe(double exponent, std::shared_ptr<const KeptTable> table)
+      : Lobe(exponent, table.get()), table_(std::move(table)) {}
+
+  std::shared_ptr<const KeptTable> table_;
 };
 
 }  // namespace frond::leaf

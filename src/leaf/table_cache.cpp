@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <bit>
 #include <charconv>
 #include <chrono>
 #include <fstream>
@@ -86,6 +87,11 @@ std::string describe(const TableRequest& request) {
       method_name(request.method), p.structure == Structure::bifacial ? "bifacial" : "unifacial", p.thickness_m,
       p.mesophyll_fraction, p.chlorophyll_a, p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose, p.lignin,
       p.cuticle_aspect, p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.sieve_and_detour);
+  for (const Pigment& pigment : p.pigments) {
+    uint64_t curve = 0;
+    for (const double x : pigment.specific_absorption) curve = hash_key(curve, std::bit_cast<uint64_t>(x));
+    text += fmt::format("# pigment {} kg/m3, absorption {:016x}\n", pigment.concentration, curve);
+  }
   if (request.method == TableMethod::monte_carlo)
     text += fmt::format("# rays {}, seed {}, walk {}", request.rays, request.seed, kWalkVersion);
   else

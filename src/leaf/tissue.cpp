@@ -1,46 +1,41 @@
 #include "leaf/tissue.h"
 
-#include <algorithm>
-
 #include "leaf/constants.h"
 
 namespace frond::leaf {
-namespace {
-
-constexpr double kStep_nm = 5;
-
-}  // namespace
-
-double absorption_coefficient(const TissueParams& p, double lambda_nm) {
-  const Constants c = constants_at(lambda_nm);
-  return (p.chlorophyll_a + p.chlorophyll_b) * c.chlorophyll + p.carotenoids * c.carotenoids + p.protein * c.protein +
-         (p.cellulose + p.lignin) * c.cellulose + c.water;
-}
 
 TissueModel::TissueModel(const TissueParams& params)
     : params_(params),
-      lobes_(std::make_shared<const Lobes>(Lobes{Lobe(params.cuticle_aspect), Lobe(params.epidermis_aspect),
-                                                 Lobe(params.spongy_aspect), Lobe(params.palisade_aspect)})) {
+      lobes_(std::make_shared<const Lobes>(
+          Lobes{TabulatedLobe(params.cuticle_aspect), TabulatedLobe(params.epidermis_aspect),
+                TabulatedLobe(params.spongy_aspect), TabulatedLobe(params.palisade_aspect)})) {
   const double thickness = params.mesophyll_fraction * params.thickness_m;
-  for (double nm = kConstantsRange_nm.min; nm <= kConstantsRange_nm.max; nm += kStep_nm) {
-    const Constants c = constants_at(nm);
-    optics_.push_back(
-        {c.n_cuticle, c.n_mesophyll, c.n_antidermal_wall, absorption_coefficient(params, nm) * thickness});
+  const std::vector<double> absorption = absorption_coefficients(params);
+  for (size_t i = 0; i < kAbsorptionGrid.size(); ++i) {
+    const Constants c = constants_at(kAbsorptionGrid.nm(i));
+    optics_.push_back({c.n_cuticle, c.n_mesophyll, c.n_antidermal_wall, absorption[i] * thickness});
   }
 }
 
 TissueModel::Optics TissueModel::optics_at(double lambda_nm) const {
-  const double x = (lambda_nm - kConstantsRange_nm.min) / kStep_nm;
-  const auto below = std::min(static_cast<size_t>(std::max(0.0, x)), optics_.size() - 2);
-  const double t = x - static_cast<double>(below), s = 1 - t;
-  const Optics &a = optics_[below], &b = optics_[below + 1];
+  const auto [i, t] = kAbsorptionGrid.cell(lambda_nm);
+  const Optics &a = optics_[i], &b = optics_[i + 1];
+  const double s = 1 - t;
   return {s * a.n_cuticle + t * b.n_cuticle, s * a.n_mesophyll + t * b.n_mesophyll,
           s * a.n_antidermal_wall + t * b.n_antidermal_wall, s * a.depth + t * b.depth};
 }
 
-Tissue TissueModel::at(double lambda_nm) const& {
-  const auto [n_cuticle, n_mesophyll, n_antidermal_wall, depth] = optics_at(lambda_nm);
-  const Lobe *cut = &lobes_->cuticle, *epi = &lobes_->epidermis, *spo = &lobes_->spongy, *pal = &lobes_->palisade;
+Tissue TissueModel::at(double lambda_nm) const& { return build(optics_at(lambda_nm), lobes()); }
+
+Tissue TissueModel::at(double lambda_nm, double optical_depth, const LeafLobes& lobes) const {
+  Optics optics = optics_at(lambda_nm);
+  optics.depth = optical_depth;
+  return build(optics, lobes);
+}
+
+Tissue TissueModel::build(const Optics& optics, const LeafLobes& lobes) const {
+  const auto [n_cuticle, n_mesophyll, n_antidermal_wall, depth] = optics;
+  const auto [cut, epi, spo, pal] = lobes;
   constexpr const Lobe* none = nullptr;
   const bool bifacial = params_.structure == Structure::bifacial;
 

@@ -4,13 +4,16 @@
 #include <memory>
 #include <vector>
 
+#include "leaf/absorption.h"
 #include "leaf/lobe.h"
 #include "leaf/tissue_params.h"
 
 namespace frond::leaf {
 
-/// Of the mesophyll, 1/m.
-double absorption_coefficient(const TissueParams& params, double lambda_nm);
+/// How the walls in a leaf spread light. Not owned.
+struct LeafLobes {
+  const Lobe *cuticle, *epidermis, *spongy, *palisade;
+};
 
 /// A leaf at one wavelength, as a ray meets it. Interfaces 0 to 5 count from the adaxial side. Medium i lies above
 /// interface i: 0 is the air over the leaf, 6 the air under it. The lobes belong to the TissueModel that made it.
@@ -35,23 +38,28 @@ class TissueModel {
   explicit TissueModel(const TissueParams& params);
 
   const TissueParams& params() const { return params_; }
+  LeafLobes lobes() const& { return {&lobes_->cuticle, &lobes_->epidermis, &lobes_->spongy, &lobes_->palisade}; }
+
   /// lambda_nm within kConstantsRange_nm. Quick enough for the render loop.
   Tissue at(double lambda_nm) const&;
   Tissue at(double lambda_nm) && = delete;
+  /// With another optical depth of the mesophyll, or other lobes: for leaves that vary from place to place.
+  Tissue at(double lambda_nm, double optical_depth, const LeafLobes& lobes) const;
 
  private:
   struct Lobes {
-    Lobe cuticle, epidermis, spongy, palisade;
+    TabulatedLobe cuticle, epidermis, spongy, palisade;
   };
   /// What varies with the wavelength.
   struct Optics {
     double n_cuticle, n_mesophyll, n_antidermal_wall, depth;
   };
   Optics optics_at(double lambda_nm) const;
+  Tissue build(const Optics& optics, const LeafLobes& lobes) const;
 
   TissueParams params_;
   std::shared_ptr<const Lobes> lobes_;
-  std::vector<Optics> optics_;  ///< at every 5 nm: linear between, like the constants that they come from
+  std::vector<Optics> optics_;  ///< at kAbsorptionGrid: linear between, like the constants that they come from
 };
 
 /// Share of light that the mesophyll lets through, for a ray at |cos| `c` from the normal: Beer's law.

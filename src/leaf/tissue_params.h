@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace frond::leaf {
 
@@ -11,6 +12,14 @@ enum class Structure : uint8_t {
   unifacial,  ///< one kind of mesophyll on both sides of an air space, whose place varies from ray to ray
 };
 
+/// One beyond those of every green leaf, such as the anthocyanins of petals and autumn leaves.
+struct Pigment {
+  double concentration = 0;                 ///< in the mesophyll, kg/m^3
+  std::vector<double> specific_absorption;  ///< m^2/kg, at kAbsorptionGrid
+
+  friend bool operator==(const Pigment&, const Pigment&) = default;
+};
+
 /// A leaf in the terms of its biology.
 struct TissueParams {
   Structure structure = Structure::bifacial;
@@ -18,6 +27,7 @@ struct TissueParams {
   double mesophyll_fraction = 0;  ///< of the thickness, in [0, 1]: the part that absorbs
   /// Concentrations in the mesophyll, kg/m^3.
   double chlorophyll_a = 0, chlorophyll_b = 0, carotenoids = 0, protein = 0, cellulose = 0, lignin = 0;
+  std::vector<Pigment> pigments = {};
   /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
   double cuticle_aspect = 0, epidermis_aspect = 0, spongy_aspect = 0, palisade_aspect = 0;
   bool sieve_and_detour = false;  ///< the later form of Beer's law, with cos(cos theta) for cos theta

@@ -1,9 +1,7 @@
 #include "core/material.h"
 #include "core/sampling.h"
-#include "leaf/constants.h"
 #include "leaf/walk.h"
 #include "materials/leaf_params.h"
-#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -100,13 +98,11 @@ class AbmBsdf final : public Bsdf {
 class Abm final : public Material {
  public:
   explicit Abm(const Params& p)
-      : model_(leaf_params(p)),
-        absorption_(p.string("mode") == "analog" ? leaf::Absorption::analog : leaf::Absorption::weighted),
-        where_(p.where()) {}
+      : leaf_(p),
+        model_(leaf_.tissue()),
+        absorption_(p.string("mode") == "analog" ? leaf::Absorption::analog : leaf::Absorption::weighted) {}
 
-  void prepare(const Preparation& preparation) override {
-    check_range(leaf::kConstantsRange_nm, preparation.wavelengths, where_, "leaf optics");
-  }
+  void prepare(const Preparation& preparation) override { leaf_.check_wavelengths(preparation.wavelengths); }
 
   const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
     std::array<const Tissue*, kLanes> tissues{};
@@ -118,9 +114,9 @@ class Abm final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
+  LeafParams leaf_;
   leaf::TissueModel model_;
   leaf::Absorption absorption_;
-  Location where_;
 };
 
 }  // namespace

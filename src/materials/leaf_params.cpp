@@ -1,26 +1,76 @@
 #include "materials/leaf_params.h"
 
+#include "leaf/absorption.h"
+#include "leaf/constants.h"
+#include "spectra/check_range.h"
+#include "spectra/spd_file.h"
+
 namespace frond {
 
-leaf::TissueParams leaf_params(const Params& p) {
-  leaf::TissueParams t = leaf::find_specimen(p.string("specimen"))->params;
-  const auto override_by = [&p](double& value, std::string_view name) {
-    if (p.given(name)) value = p.real(name);
+using leaf::TissueParams;
+
+LeafParams::LeafParams(const Params& p)
+    : specimen_(p.string("specimen")),
+      where_(p.where()),
+      pigments_where_(p.where("pigments")),
+      tissue_(leaf::find_specimen(specimen_)->params),
+      from_light_(p.string("incident") == "light"),
+      depth_(read(p)) {}
+
+leaf::DepthMap LeafParams::read(const Params& p) {
+  Varying varying;
+  /// The texture, if it is one that varies.
+  const auto replace = [&p, this](double TissueParams::*number, std::string_view name) -> Aspect {
+    if (!p.given(name)) return nullptr;
+    if (!p.is_texture(name)) {
+      tissue_.*number = p.real(name);
+      return nullptr;
+    }
+    const auto texture = p.float_texture(name);
+    tissue_.*number = texture->range().max;
+    return texture->is_constant() ? nullptr : texture;
   };
-  override_by(t.thickness_m, "thickness");
-  override_by(t.mesophyll_fraction, "mesophyllfraction");
-  override_by(t.chlorophyll_a, "chlorophylla");
-  override_by(t.chlorophyll_b, "chlorophyllb");
-  override_by(t.carotenoids, "carotenoids");
-  override_by(t.protein, "protein");
-  override_by(t.cellulose, "cellulose");
-  override_by(t.lignin, "lignin");
-  override_by(t.cuticle_aspect, "cuticleaspect");
-  override_by(t.epidermis_aspect, "epidermisaspect");
-  override_by(t.spongy_aspect, "spongyaspect");
-  override_by(t.palisade_aspect, "palisadeaspect");
-  t.sieve_and_detour = p.boolean("sieve");
-  return t;
+  struct Named {
+    double TissueParams::*number;
+    std::string_view name;
+  };
+  for (const auto& [number, name] :
+       {Named{&TissueParams::thickness_m, "thickness"}, Named{&TissueParams::mesophyll_fraction, "mesophyllfraction"},
+        Named{&TissueParams::chlorophyll_a, "chlorophylla"}, Named{&TissueParams::chlorophyll_b, "chlorophyllb"},
+        Named{&TissueParams::carotenoids, "carotenoids"}, Named{&TissueParams::protein, "protein"},
+        Named{&TissueParams::cellulose, "cellulose"}, Named{&TissueParams::lignin, "lignin"}})
+    if (auto texture = replace(number, name))
+      varying.push_back({[number = number](TissueParams& t) -> double& { return t.*number; }, std::move(texture)});
+  aspects_ = {replace(&TissueParams::cuticle_aspect, "cuticleaspect"),
+              replace(&TissueParams::epidermis_aspect, "epidermisaspect"),
+              replace(&TissueParams::spongy_aspect, "spongyaspect"),
+              replace(&TissueParams::palisade_aspect, "palisadeaspect")};
+  tissue_.sieve_and_detour = p.boolean("sieve");
+  read_pigments(p, varying);
+  return {tissue_, varying};
+}
+
+void LeafParams::read_pigments(const Params& p, Varying& varying) {
+  const auto files = p.files("pigments");
+  const auto concentrations = p.float_textures("pigmentconcentrations");
+  if (files.size() != concentrations.size())
+    fail(p.where(files.size() < concentrations.size() ? "pigmentconcentrations" : "pigments"),
+         "{} pigments have {} concentrations: one for each is needed", files.size(), concentrations.size());
+  for (size_t i = 0; i < files.size(); ++i) {
+    const SpectrumPtr spectrum = read_spd(files[i], pigments_where_);
+    pigment_data_.push_back({files[i].string(), spectrum->range_nm()});
+    leaf::Pigment& pigment = tissue_.pigments.emplace_back();
+    pigment.concentration = concentrations[i]->range().max;
+    for (size_t k = 0; k < leaf::kAbsorptionGrid.size(); ++k)
+      pigment.specific_absorption.push_back(double(spectrum->at(float(leaf::kAbsorptionGrid.nm(k)))));
+    if (!concentrations[i]->is_constant())
+      varying.push_back({[i](TissueParams& t) -> double& { return t.pigments[i].concentration; }, concentrations[i]});
+  }
+}
+
+void LeafParams::check_wavelengths(const WavelengthStrategy& wavelengths) const {
+  check_range(leaf::kConstantsRange_nm, wavelengths, where_, "leaf optics");
+  for (const auto& [file, range_nm] : pigment_data_) check_range(range_nm, wavelengths, pigments_where_, file);
 }
 
 }  // namespace frond

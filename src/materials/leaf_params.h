@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
 
 #include "core/params.h"
+#include "core/wavelengths.h"
+#include "leaf/depth_map.h"
 #include "leaf/specimens.h"
 
 namespace frond {
@@ -19,8 +23,10 @@ inline constexpr auto kSpecimenNames = specimen_names();
 
 inline constexpr Unit kDensity = "kg/m^3";
 
+inline constexpr std::string_view kIncident[] = {"traced", "light"};
+
 constexpr Param leaf_number(std::string_view name, Unit unit, Interval range, std::string_view doc) {
-  return {.name = name, .kind = ParamKind::real, .unit = unit, .range = range, .doc = doc};
+  return {.name = name, .kind = ParamKind::float_texture, .unit = unit, .range = range, .doc = doc};
 }
 
 }  // namespace detail
@@ -55,10 +61,26 @@ inline constexpr std::array kLeafParams{
                         "Aspect ratio of the spongy cells' caps; by default the specimen's."),
     detail::leaf_number("palisadeaspect", "", {0, 100},
                         "Aspect ratio of the palisade cells' caps, in bifacial leaves; by default the specimen's."),
+    Param{.name = "pigments",
+          .kind = ParamKind::string,
+          .doc = "Files (.spd) of the specific absorption of further pigments, in nm and m^2/kg.",
+          .list = true},
+    Param{.name = "pigmentconcentrations",
+          .kind = ParamKind::float_texture,
+          .unit = detail::kDensity,
+          .range = {0, 100},
+          .doc = "Concentrations of these pigments in the mesophyll, one for each file.",
+          .list = true},
     Param{.name = "sieve",
           .kind = ParamKind::boolean,
           .default_value = false,
           .doc = "Absorb with the sieve and detour effects of the later model (Baranoski and Eng 2007)."},
+    Param{.name = "incident",
+          .kind = ParamKind::string,
+          .default_value = std::string_view("traced"),
+          .doc = "What the model, which is not reciprocal, takes for its incident ray: the one that is traced, as "
+                 "published, or the light.",
+          .choices = detail::kIncident},
 };
 
 /// The leaf's parameters and then a material's own.
@@ -69,6 +91,45 @@ constexpr auto with_leaf_params(const Param (&own)[N]) {
   return all;
 }
 
-leaf::TissueParams leaf_params(const Params& p);
+/// A leaf as a scene gives it.
+class LeafParams {
+ public:
+  explicit LeafParams(const Params& p);
+
+  /// What is constant; where a texture stands for a number, the greatest that it can be.
+  const leaf::TissueParams& tissue() const { return tissue_; }
+  const leaf::DepthMap& depth() const { return depth_; }
+  /// nullptr where the aspect ratio is constant.
+  using Aspect = std::shared_ptr<const FloatTexture>;
+  const Aspect& cuticle_aspect() const { return aspects_[0]; }
+  const Aspect& epidermis_aspect() const { return aspects_[1]; }
+  const Aspect& spongy_aspect() const { return aspects_[2]; }
+  const Aspect& palisade_aspect() const { return aspects_[3]; }
+
+  bool from_light() const { return from_light_; }  ///< "incident" is "light"
+  std::string specimen() const { return specimen_; }
+
+  /// Throws InputError where the optical constants or a pigment's data do not reach the wavelengths.
+  void check_wavelengths(const WavelengthStrategy& wavelengths) const;
+
+ private:
+  struct PigmentData {
+    std::string file;
+    Interval range_nm;
+  };
+  using Varying = std::vector<leaf::DepthMap::Varying>;
+
+  /// Fill in what the members before `depth_` hold.
+  leaf::DepthMap read(const Params& p);
+  void read_pigments(const Params& p, Varying& varying);
+
+  std::string specimen_;
+  Location where_, pigments_where_;
+  leaf::TissueParams tissue_;
+  std::array<Aspect, 4> aspects_;
+  std::vector<PigmentData> pigment_data_;
+  bool from_light_;
+  leaf::DepthMap depth_;
+};
 
 }  // namespace frond

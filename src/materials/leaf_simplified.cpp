@@ -1,9 +1,7 @@
 #include "core/material.h"
-#include "leaf/constants.h"
 #include "leaf/table_cache.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/three_lobe.h"
-#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -49,17 +47,20 @@ std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) {
 class LeafSimplified final : public Material {
  public:
   explicit LeafSimplified(const Params& p)
-      : specimen_(p.string("specimen")),
+      : leaf_(p),
         method_(p.string("tablemethod")),
-        where_(p.where()),
-        surface_(p.given("oblateness") ? p.real("oblateness") : leaf_params(p).cuticle_aspect),
+        surface_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
         surface_direct_(p.boolean("surfacedirect")) {
-    request_.params = leaf_params(p);
+    if (!leaf_.depth().is_constant() || leaf_.cuticle_aspect() || leaf_.epidermis_aspect() || leaf_.spongy_aspect() ||
+        leaf_.palisade_aspect())
+      fail(p.where(), "leaf_simplified takes no textures: abm does");
+    if (leaf_.from_light()) fail(p.where("incident"), "leaf_simplified takes \"traced\" alone: abm takes \"light\"");
+    request_.params = leaf_.tissue();
     request_.rays = p.integer("tablerays");
   }
 
   void prepare(const Preparation& preparation) override {
-    check_range(leaf::kConstantsRange_nm, preparation.wavelengths, where_, "leaf optics");
+    leaf_.check_wavelengths(preparation.wavelengths);
     const bool fixed = !preparation.wavelengths.fixed_nm().empty();
     const bool walks = method_ == "montecarlo" || (method_ == "auto" && fixed);
     leaf::TableRequest request = request_;
@@ -68,7 +69,7 @@ class LeafSimplified final : public Material {
     if (request == request_) return;  // a mixture and the scene may both ask
     request_ = request;
     const leaf::Table table =
-        leaf::cached_table(request_, specimen_, preparation.pool, preparation.log, preparation.cache_dir);
+        leaf::cached_table(request_, leaf_.specimen(), preparation.pool, preparation.log, preparation.cache_dir);
     lookup_ = fixed ? leaf::TableLookup::for_lanes(table) : leaf::TableLookup::for_spectra(table);
   }
 
@@ -79,11 +80,11 @@ class LeafSimplified final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
-  std::string specimen_, method_;
-  Location where_;
+  LeafParams leaf_;
+  std::string method_;
   leaf::TableRequest request_;
   leaf::TableLookup lookup_;
-  leaf::Lobe surface_;
+  leaf::TabulatedLobe surface_;
   bool surface_direct_;
 };
 

@@ -14,13 +14,15 @@ constexpr double kExponents[] = {0, 0.2, 0.5, 1, 2, 3, 5, 7.5, 10, 13, 30, 100, 
 
 TEST(Lobe, KeepsAllAtTheNormalAndHalfAtGrazing) {
   for (const double e : kExponents) {
+    EXPECT_NEAR(TabulatedLobe(e).kept(1), 1, 1e-12) << e;
+    EXPECT_NEAR(TabulatedLobe(e).kept(0), 0.5, 1e-12) << e;
     EXPECT_NEAR(Lobe(e).kept(1), 1, 1e-12) << e;
     EXPECT_NEAR(Lobe(e).kept(0), 0.5, 1e-12) << e;
   }
 }
 
 TEST(Lobe, KeepsTheClosedFormsShare) {
-  const Lobe even(0), cosine(1), cubic(3);
+  const TabulatedLobe even(0), cosine(1), cubic(3);
   for (double theta = 0; theta <= 1.57; theta += 0.01) {
     const double c = std::cos(theta);
     EXPECT_NEAR(even.kept(c), 1 - theta / std::numbers::pi, 1e-6);
@@ -46,6 +48,11 @@ TEST(Lobe, KeepsWhatQuadratureFindsForAnyExponent) {
   for (const double e : kExponents)
     for (const double theta : {0.05, 0.4, 0.9, 1.3, 1.5, 1.55, 1.57})
       EXPECT_NEAR(Lobe(e).kept(std::cos(theta)), kept_by_quadrature(e, theta), 1e-4) << e << " " << theta;
+}
+
+TEST(Lobe, TableIsWhatItTabulates) {
+  for (const double e : kExponents)
+    for (double c = 0; c <= 1; c += 1e-3) EXPECT_NEAR(TabulatedLobe(e).kept(c), Lobe(e).kept(c), 1e-5) << e << " " << c;
 }
 
 TEST(Lobe, DensityIntegratesToOneBeforeTheCut) {

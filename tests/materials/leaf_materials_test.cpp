@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <numbers>
 
+#include "leaf/absorption.h"
 #include "leaf/solver.h"
 #include "leaf/specimens.h"
 #include "materials/leaf_params.h"
@@ -30,10 +33,10 @@ TEST(LeafMaterials, AreLeaves) {
   EXPECT_TRUE(Ready("leaf_simplified", {kSolve}).material().is_leaf());
 }
 
-TEST(LeafMaterials, RefuseTexturesAndWhatIsOutOfRange) {
-  const ParsedParam texture{"texture", "chlorophylla", {}, {}, std::vector<std::string>{"spots"}};
+TEST(LeafMaterials, RefuseWhatIsOutOfRange) {
   for (const char* name : {"abm", "leaf_simplified"}) {
-    EXPECT_THAT(error_of([&] { Ready(name, {texture}); }), HasSubstr("\"chlorophylla\" is float, a texture was given"));
+    EXPECT_THAT(error_of([&] { Ready(name, {texture("chlorophylla", {"3:300"})}); }),
+                HasSubstr("texture \"3:300\" has values from 3 to 300, outside the range 0 to 100 kg/m^3"));
     EXPECT_THAT(error_of([&] { Ready(name, {number("float", "thickness", {1})}); }), HasSubstr("0.01 m"));
     EXPECT_THAT(error_of([&] { Ready(name, {words("specimen", {"soyabean"})}); }), HasSubstr("soybean, maize"));
   }
@@ -41,7 +44,7 @@ TEST(LeafMaterials, RefuseTexturesAndWhatIsOutOfRange) {
 
 leaf::TissueParams read(std::vector<ParsedParam> params) {
   Resolver resolver;
-  return leaf_params(Params(material_info("abm"), {"abm", {}, std::move(params)}, resolver));
+  return LeafParams(Params(material_info("abm"), {"abm", {}, std::move(params)}, resolver)).tissue();
 }
 
 TEST(LeafMaterials, TakeFromTheSpecimenWhatIsNotGiven) {
@@ -51,6 +54,49 @@ TEST(LeafMaterials, TakeFromTheSpecimenWhatIsNotGiven) {
   changed.lignin = 3;
   changed.sieve_and_detour = true;
   EXPECT_EQ(read({words("specimen", {"maize"}), number("float", "lignin", {3}), flag("sieve", true)}), changed);
+}
+
+TEST(LeafParams, KnowsWhatTexturesVary) {
+  Resolver resolver;
+  const auto leaf = [&](std::vector<ParsedParam> params) {
+    return LeafParams(Params(material_info("abm"), {"abm", {}, std::move(params)}, resolver));
+  };
+  EXPECT_TRUE(leaf({}).depth().is_constant());
+  EXPECT_TRUE(leaf({texture("chlorophylla", {"2:2"})}).depth().is_constant());
+  EXPECT_EQ(leaf({texture("chlorophylla", {"2:2"})}).tissue().chlorophyll_a, 2);
+  EXPECT_FALSE(leaf({texture("chlorophylla", {"1:2"})}).depth().is_constant());
+  EXPECT_EQ(leaf({texture("spongyaspect", {"1:2"})}).cuticle_aspect(), nullptr);
+  EXPECT_NE(leaf({texture("spongyaspect", {"1:2"})}).spongy_aspect(), nullptr);
+}
+
+class Pigments : public ::testing::Test {
+ protected:
+  Pigments() : file_(std::filesystem::temp_directory_path() / fmt::format("frond_pigment_{}.spd", getpid())) {
+    std::ofstream(file_) << "400 0 500 0 550 40 600 0 700 0\n";
+  }
+  ~Pigments() override { std::filesystem::remove(file_); }
+
+  const std::filesystem::path file_;
+};
+
+TEST_F(Pigments, AddTheirAbsorption) {
+  const leaf::TissueParams plain = read({});
+  const leaf::TissueParams red = read({words("pigments", {file_}), number("float", "pigmentconcentrations", {2})});
+  EXPECT_NEAR(leaf::absorption_coefficient(red, 540) - leaf::absorption_coefficient(plain, 540), 2 * 32, 1e-3);
+  EXPECT_EQ(leaf::absorption_coefficient(red, 450), leaf::absorption_coefficient(plain, 450));
+}
+
+TEST_F(Pigments, AreNeededInPairsAndWithinTheirData) {
+  EXPECT_THAT(error_of([&] { Ready("abm", {words("pigments", {file_})}); }),
+              HasSubstr("1 pigments have 0 concentrations"));
+  EXPECT_THAT(error_of([&] {
+                Ready("abm", {words("pigments", {file_}), number("float", "pigmentconcentrations", {2})}, "hero");
+              }),
+              HasSubstr("from 400 to 700 nm"));
+  EXPECT_THAT(error_of([&] {
+                Ready("abm", {words("pigments", {"no.spd"}), number("float", "pigmentconcentrations", {2})});
+              }),
+              HasSubstr("no.spd"));
 }
 
 /// Mean weight of `sample`: what comes back of light of each wavelength.

@@ -8,10 +8,24 @@
 
 namespace frond::test {
 
-/// Spectra are the numbers given; any material's name is that of a built-in material with its defaults.
+/// From `low` at u = 0 to `high` at u = 1.
+class Ramp final : public FloatTexture {
+ public:
+  Ramp(float low, float high) : low_(low), high_(high) {}
+  float evaluate(Vec2 uv) const override { return low_ + uv.x * (high_ - low_); }
+  Interval range() const override { return {double(std::min(low_, high_)), double(std::max(low_, high_))}; }
+
+ private:
+  float low_, high_;
+};
+
+/// Spectra are the numbers given; any material's name is that of a built-in material with its defaults; a float texture
+/// "0.5:2" is the ramp between these numbers.
 class Resolver final : public ParamResolver {
  public:
-  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
+  std::shared_ptr<const FloatTexture> float_texture(const std::string& name, const Location&) override {
+    return std::make_shared<Ramp>(std::stof(name), std::stof(name.substr(name.find(':') + 1)));
+  }
   std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
   std::filesystem::path file(const std::string& name, const Location&) override { return name; }
   SpectrumPtr spectrum(const ParsedParam& p, bool) override {
@@ -35,6 +49,9 @@ inline std::shared_ptr<Material> Resolver::material(const std::string& name, con
 inline ParsedParam words(std::string name, std::vector<std::string> values) {
   return {"string", std::move(name), {}, {}, std::move(values)};
 }
+inline ParsedParam texture(std::string name, std::vector<std::string> textures) {
+  return {"texture", std::move(name), {}, {}, std::move(textures)};
+}
 inline ParsedParam flag(std::string name, bool value) {
   return {"bool", std::move(name), {}, {}, std::vector<bool>{value}};
 }
@@ -57,9 +74,9 @@ class Ready {
 
   const Material& material() const { return *material_; }
   const SampledWavelengths& lambda() const { return lambda_; }
-  const Bsdf& bsdf() {
+  const Bsdf& bsdf(Vec2 uv = {}) {
     arena_.reset();
-    return *material_->evaluate({{}, {0, 0, 1}, Frame::around(Vec3{0, 0, 1}), {}}, lambda_, arena_);
+    return *material_->evaluate({{}, {0, 0, 1}, Frame::around(Vec3{0, 0, 1}), uv}, lambda_, arena_);
   }
 
  private:
