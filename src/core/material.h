@@ -37,6 +37,8 @@ class Material {
   virtual void prepare(const Preparation&) {}
   /// Thread-safe. The BSDF lives until the arena is reset; nullptr: the surface is not there.
   virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
+  /// Claims f(a, b) = f(b, a), and the laws hold it to that.
+  virtual bool is_reciprocal() const { return false; }
   /// Counts as foliage in the foliar ratio.
   virtual bool is_leaf() const { return false; }
 };

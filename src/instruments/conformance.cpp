@@ -41,7 +41,7 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
       check_values(s, findings);
     }
   check_awkward_values(bsdf, where, effort.seed, findings);
-  if (claims.reciprocal) check_reciprocity(bsdf, where, effort.seed, findings);
+  if (claims.reciprocal) check_reciprocity(bsdf, where, effort, findings);
   return findings;
 }
 

@@ -42,13 +42,11 @@ struct Finding {
 };
 using Findings = std::vector<Finding>;
 
-/// What is known of a material beyond what all of them owe.
+/// What is known of a material beyond what all of them owe. Which way round f conserves energy, its flags say
+/// (Lobes::from_light).
 struct Claims {
   bool lossless = false;  ///< absorbs nothing: as much comes out as goes in
   bool reciprocal = false;
-  /// f(wo, wi) conserves energy for light that arrives along wi and is summed over wo, not for a path that arrives
-  /// along wo and is summed over wi. The two differ where f is not reciprocal.
-  bool conserves_from_light = false;
 };
 
 /// How much work goes into one BSDF. Directions `wo` lie at each of the angles on both sides.

@@ -73,6 +73,9 @@ inline constexpr double kRounding = 1e-3;
 /// Relative error allowed to the quadrature of a pdf: float rounding of the pdf and the rule's own error.
 inline constexpr double kQuadrature = 5e-4;
 
+/// Means of fewer equal values than this are far from a normal distribution.
+inline constexpr double kEnoughForNormal = 100;
+
 inline std::optional<BsdfSample> draw_once(const Bsdf& bsdf, const Vec3& wo, uint64_t key) {
   RandomStream numbers(hash_key(key, 0)), stream(hash_key(key, 1));
   const float uc = numbers.uniform(), u = numbers.uniform(), v = numbers.uniform();
@@ -99,8 +102,7 @@ void check_values(const Series& s, Findings& findings);
 
 // Laws of a BSDF as a whole.
 void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
-/// Of a BSDF that is not stochastic.
-void check_reciprocity(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
+void check_reciprocity(const Bsdf& bsdf, const std::string& where, const Effort& effort, Findings& findings);
 
 /// The verdict on a law that allows no exception: passes until the first fault, whose text it keeps.
 class Verdict {

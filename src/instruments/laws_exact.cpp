@@ -150,7 +150,9 @@ void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t s
   findings.push_back(verdict.finding());
 }
 
-void check_reciprocity(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings) {
+namespace {
+
+void check_exact_reciprocity(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings) {
   Verdict verdict(Law::reciprocity, where);
   const auto directions = random_directions(20, seed);
   for (const Vec3& a : directions)
@@ -159,6 +161,39 @@ void check_reciprocity(const Bsdf& bsdf, const std::string& where, uint64_t seed
       verdict.expect(near(there, back), "f is {} from {} to {}, {} back", there, a, b, back);
     }
   findings.push_back(verdict.finding());
+}
+
+/// Means of f over the streams, both ways, for a few pairs of directions.
+void check_mean_reciprocity(const Bsdf& bsdf, const std::string& where, const Effort& effort, Findings& findings) {
+  const auto directions = random_directions(16, effort.seed);
+  for (size_t pair = 0; pair + 1 < directions.size(); pair += 2) {
+    const Vec3 &a = directions[pair], &b = directions[pair + 1];
+    std::array<Moments, kLanes> there, back;
+    for (int64_t i = 0; i < effort.samples; ++i) {
+      const SampledSpectrum f = f_once(bsdf, a, b, hash_key(effort.seed, pair, i, 0));
+      const SampledSpectrum g = f_once(bsdf, b, a, hash_key(effort.seed, pair, i, 1));
+      for (size_t lane = 0; lane < kLanes; ++lane) there[lane].add(f.v[lane]), back[lane].add(g.v[lane]);
+    }
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      const Estimate x = there[lane].estimate(), y = back[lane].estimate();
+      if (std::max(there[lane].effective_count(), back[lane].effective_count()) < kEnoughForNormal) continue;
+      findings.push_back({.law = Law::reciprocity,
+                          .where = where,
+                          .message = fmt::format("mean f is {:.4g} +- {:.2g} from {} to {}, {:.4g} +- {:.2g} back",
+                                                 x.mean, x.standard_error(), a, b, y.mean, y.standard_error()),
+                          .p_value = equality_p(x, y, kRounding * std::max(x.mean, y.mean)),
+                          .statistical = true});
+    }
+  }
+}
+
+}  // namespace
+
+void check_reciprocity(const Bsdf& bsdf, const std::string& where, const Effort& effort, Findings& findings) {
+  if (any(bsdf.flags() & Lobes::stochastic))
+    check_mean_reciprocity(bsdf, where, effort, findings);
+  else
+    check_exact_reciprocity(bsdf, where, effort.seed, findings);
 }
 
 }  // namespace frond

@@ -70,7 +70,8 @@ Estimate mean_weight(const Series& s, int lane) {
   return moments.estimate();
 }
 
-/// Integral of f(w, s.wo) |cos theta| over w, lane by lane: a stratified mean over the bins.
+/// Integral of f(w, s.wo) |cos theta| over w, lane by lane, for a BSDF that conserves the energy of light that arrives
+/// along wi, summed over wo: a stratified mean over the bins.
 std::array<Estimate, kLanes> albedo_from_light(const Series& s, uint64_t seed) {
   std::array<Estimate, kLanes> result{};
   const int64_t each = std::max<int64_t>(4, s.drawn / static_cast<int64_t>(s.bins.size()));
@@ -91,11 +92,12 @@ std::array<Estimate, kLanes> albedo_from_light(const Series& s, uint64_t seed) {
 }  // namespace
 
 void check_energy(const Series& s, const Claims& claims, uint64_t seed, Findings& findings) {
+  const bool is_from_light = any(s.bsdf.flags() & Lobes::from_light);
   std::array<Estimate, kLanes> from_light{};
-  if (claims.conserves_from_light) from_light = albedo_from_light(s, seed);
+  if (is_from_light) from_light = albedo_from_light(s, seed);
   for (int lane = 0; lane < s.lambda.count; ++lane) {
     if (!s.lambda.is_active(lane)) continue;
-    const Estimate out = claims.conserves_from_light ? from_light[static_cast<size_t>(lane)] : mean_weight(s, lane);
+    const Estimate out = is_from_light ? from_light[static_cast<size_t>(lane)] : mean_weight(s, lane);
     const double p =
         claims.lossless ? equality_p(out, {.mean = 1}, kWeightRounding) : at_most_p(out, 1, kWeightRounding);
     findings.push_back(
@@ -106,9 +108,6 @@ void check_energy(const Series& s, const Claims& claims, uint64_t seed, Findings
 }
 
 namespace {
-
-/// Means of fewer equal values than this are far from a normal distribution.
-constexpr double kEnoughForNormal = 100;
 
 /// What `sample` and `f` say of one bin, or of several together.
 struct BinComparison {

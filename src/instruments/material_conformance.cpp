@@ -68,9 +68,10 @@ Findings examine(const MaterialInfo& info, std::span<const ParameterSet> sets, c
     const std::string where = fmt::format("{}: {}; {}", info.name, set.label, wavelengths_text(lambda));
     const auto material = make_ready(info, set, &set == sets.data(), where, how, findings);
     if (!material) continue;
+    const Claims claims{how.claims.lossless, how.claims.reciprocal || material->is_reciprocal()};
     arena.reset();
     if (const Bsdf* bsdf = material->evaluate(flat_hit(), lambda, arena)) {  // else the surface is not there
-      const Findings more = examine(*bsdf, lambda, how.claims(set.plugin), effort, where);
+      const Findings more = examine(*bsdf, lambda, claims, effort, where);
       findings.insert(findings.end(), more.begin(), more.end());
     }
     if (const Bsdf* bsdf = material->evaluate(tilted_hit(), lambda, arena))

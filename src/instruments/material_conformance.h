@@ -1,20 +1,15 @@
 #pragma once
 
-#include <functional>
-
 #include "core/material.h"
 #include "instruments/conformance.h"
 #include "instruments/sweep.h"
 
 namespace frond {
 
-/// What is claimed for one choice of a plugin's parameters.
-using ClaimsOf = std::function<Claims(const ParsedPlugin&)>;
-
 struct MaterialExamination {
   const Preparation& preparation;  ///< its wavelengths are those that the BSDFs are asked at
   ParamResolver& resolver;
-  ClaimsOf claims = [](const ParsedPlugin&) { return Claims{}; };
+  Claims claims;  ///< for every set of parameters, beside what the material claims itself
   Effort effort;
 };
 

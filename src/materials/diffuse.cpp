@@ -25,6 +25,7 @@ class Diffuse final : public Material {
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     return arena.make<LambertianBsdf>(reflectance_->evaluate(hit.uv, lambda) * lane_mask(lambda), SampledSpectrum());
   }
+  bool is_reciprocal() const override { return true; }
 
  private:
   std::shared_ptr<const SpectrumTexture> reflectance_;

@@ -44,6 +44,7 @@ class DiffuseTransmission final : public Material {
     const auto [r, t] = shares(hit.uv, lambda);
     return arena.make<LambertianBsdf>(r, t);
   }
+  bool is_reciprocal() const override { return true; }
 
  private:
   struct Shares {

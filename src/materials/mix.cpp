@@ -40,6 +40,7 @@ class Mix final : public Material {
     return arena.make<MixtureBsdf>(*first, *second, amount);
   }
 
+  bool is_reciprocal() const override { return materials_[0]->is_reciprocal() && materials_[1]->is_reciprocal(); }
   bool is_leaf() const override { return materials_[0]->is_leaf() || materials_[1]->is_leaf(); }
 
  private:

@@ -33,18 +33,6 @@ PlainResolver two_materials() {
   });
 }
 
-bool has_value(const ParsedPlugin& plugin, std::string_view name, const std::string& value) {
-  const auto p = std::ranges::find(plugin.params, name, &ParsedParam::name);
-  if (p == plugin.params.end()) return false;
-  const auto* words = std::get_if<std::vector<std::string>>(&p->values);
-  return words && words->front() == value;
-}
-
-Claims claims_of(const ParsedPlugin& plugin) {
-  return {.reciprocal = plugin.name == "diffuse" || plugin.name == "diffusetransmission",
-          .conserves_from_light = has_value(plugin, "incident", "light")};
-}
-
 /// The same value at every wavelength.
 ParsedParam level(const std::string& name, double value) {
   ParsedParam p;
@@ -65,7 +53,7 @@ const SweepOptions kSweep{
 
 /// Runs the laws and fails the test where one is broken.
 Findings expect_lawful(const MaterialInfo& info, std::span<const ParameterSet> sets,
-                       const WavelengthStrategy& wavelengths, const Effort& effort, const ClaimsOf& claims = claims_of,
+                       const WavelengthStrategy& wavelengths, const Effort& effort, const Claims& claims = {},
                        PlainResolver resolver = two_materials()) {
   const Setup setup(wavelengths);
   Findings findings =
@@ -108,8 +96,7 @@ TEST_P(Laws, HoldOverTheDeclaredBox) {
 
 void expect_lossless(std::string_view name, std::vector<ParsedParam> params) {
   const ParameterSet set{"lossless", {std::string(name), {}, std::move(params)}};
-  expect_lawful(material(name), {&set, 1}, GivenWavelengths({608, 551, 455}), {},
-                [](const ParsedPlugin&) { return Claims{.lossless = true}; });
+  expect_lawful(material(name), {&set, 1}, GivenWavelengths({608, 551, 455}), {}, {.lossless = true});
 }
 
 TEST(Lossless, WhiteDiffuseReturnsAllLight) { expect_lossless("diffuse", {level("reflectance", 1)}); }
@@ -149,7 +136,16 @@ void expect_lawful_mixture(const MaterialInfo& other,
   });
   const MaterialInfo& mix = material("mix");
   const auto sets = parameter_sweep(mix, {});
-  expect_lawful(mix, std::span(sets).first(1), wavelengths, {}, claims_of, resolver);
+  expect_lawful(mix, std::span(sets).first(1), wavelengths, {}, {}, resolver);
+}
+
+TEST(Claims, DiffuseMaterialsAreReciprocalAndLeavesAreNot) {
+  for (const MaterialInfo* info : builtin_materials()) {
+    PlainResolver resolver = two_materials();
+    const auto sets = parameter_sweep(*info, kSweep);
+    const bool claims = info->make(Params(*info, sets[0].plugin, resolver))->is_reciprocal();
+    EXPECT_EQ(claims, info->name != "abm" && info->name != "leaf_simplified") << info->name;
+  }
 }
 
 struct NotThere final : Material {

@@ -52,8 +52,15 @@ class Honest : public Bsdf {
 struct GoodLambertian final : Honest {
   explicit GoodLambertian(const SampledWavelengths& lambda) : Honest(lambda, 0.5f, 0.3f) {}
 };
-struct GoodLossless final : Honest {
+struct GoodLossless : Honest {
   explicit GoodLossless(const SampledWavelengths& lambda) : Honest(lambda, 0.6f, 0.4f) {}
+};
+
+/// The same BSDF, which says that it conserves the energy of light that arrives along wi.
+template <class B>
+struct FromLight final : B {
+  using B::B;
+  Lobes flags() const override { return B::flags() | Lobes::from_light; }
 };
 
 /// A lobe cos^e about the mirror direction; what falls below the horizon is lost, and the density says so.
@@ -167,11 +174,11 @@ struct FalseSampleFlag final : Honest {
   Lobes sample_flags(bool) const override { return Lobes::diffuse | Lobes::reflection; }
 };
 
-struct LostEnergy final : Honest {
+struct LostEnergy : Honest {
   explicit LostEnergy(const SampledWavelengths& lambda) : Honest(lambda, 0.6f, 0.39f) {}
 };
 
-struct GainedEnergy final : Honest {
+struct GainedEnergy : Honest {
   explicit GainedEnergy(const SampledWavelengths& lambda) : Honest(lambda, 0.6f, 0.41f) {}
 };
 
@@ -232,6 +239,18 @@ struct OneWay final : Honest {
   explicit OneWay(const SampledWavelengths& lambda) : Honest(lambda, 0.4f, 0.4f) {}
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
     return evaluate(wo, wi) * (1 - 0.1f * std::abs(wo.z));
+  }
+};
+
+struct StochasticOneWay final : GoodStochastic {
+  using GoodStochastic::GoodStochastic;
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const override {
+    return GoodStochastic::f(wo, wi, rng) * (1 - 0.1f * std::abs(wo.z));
+  }
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
+    auto s = GoodStochastic::sample(wo, uc, u, rng);
+    if (s) s->f *= 1 - 0.1f * std::abs(wo.z);
+    return s;
   }
 };
 
