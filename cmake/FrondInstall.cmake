@@ -6,11 +6,12 @@ list(TRANSFORM frond_layer_targets PREPEND frond_)
 set(frond_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/frond")
 
 install(TARGETS frond RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-install(TARGETS ${frond_layer_targets} EXPORT frond ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS ${frond_layer_targets} frond_plugin EXPORT frond ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}")
 foreach(layer IN LISTS frond_layers)
   install(DIRECTORY "src/${layer}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond" FILES_MATCHING PATTERN "*.h")
 endforeach()
+install(FILES "${frond_generated}/core/build_identity.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond/core")
 configure_package_config_file(cmake/frondConfig.cmake.in "${CMAKE_CURRENT_BINARY_DIR}/frondConfig.cmake"
                               INSTALL_DESTINATION "${frond_package_dir}")
 write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/frondConfigVersion.cmake" COMPATIBILITY SameMinorVersion)

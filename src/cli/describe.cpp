@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cli/plugins.h"
 
 namespace frond {
 namespace {
@@ -95,8 +96,15 @@ void print_markdown(const PluginInfo& info) {
   fmt::print("\n");
 }
 
-void describe(const std::string& name, bool markdown) {
-  const Registry registry = builtin_registry();
+struct DescribeOptions {
+  std::string name;
+  bool markdown = false;
+  std::vector<std::string> plugins;
+};
+
+void describe(const DescribeOptions& options) {
+  const auto& [name, markdown, plugins] = options;
+  const Registry registry = load_registry(plugins);
   const auto all = all_plugins(registry);
   std::vector<std::string_view> names;
   bool found = false;
@@ -116,13 +124,13 @@ void describe(const std::string& name, bool markdown) {
 
 void add_describe_command(CLI::App& app) {
   auto* command = app.add_subcommand("describe", "Print a plugin's parameters: types, defaults, units and ranges.");
-  auto name = std::make_shared<std::string>();
-  auto markdown = std::make_shared<bool>(false);
-  command->add_option("name", *name, "A plugin's name (see frond list), or a kind such as material.");
-  command->add_flag("--markdown", *markdown, "Print Markdown; without a name, of every plugin.");
-  command->callback([name, markdown] {
-    if (name->empty() && !*markdown) fail({}, "frond describe takes the name of a plugin; frond list prints them");
-    describe(*name, *markdown);
+  auto o = std::make_shared<DescribeOptions>();
+  command->add_option("name", o->name, "A plugin's name (see frond list), or a kind such as material.");
+  command->add_flag("--markdown", o->markdown, "Print Markdown; without a name, of every plugin.");
+  add_plugin_option(*command, o->plugins);
+  command->callback([o] {
+    if (o->name.empty() && !o->markdown) fail({}, "frond describe takes the name of a plugin; frond list prints them");
+    describe(*o);
   });
 }
 

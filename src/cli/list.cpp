@@ -1,12 +1,13 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cli/plugins.h"
 
 namespace frond {
 namespace {
 
-void list() {
-  const Registry registry = builtin_registry();
+void list(const std::vector<std::string>& plugins) {
+  const Registry registry = load_registry(plugins);
   std::string_view kind;
   for (const PluginInfo* info : all_plugins(registry)) {
     if (info->kind != kind) fmt::print("{}{}\n", kind.empty() ? "" : "\n", info->kind);
@@ -18,7 +19,10 @@ void list() {
 }  // namespace
 
 void add_list_command(CLI::App& app) {
-  app.add_subcommand("list", "List every plugin that a scene can name.")->callback(list);
+  auto* command = app.add_subcommand("list", "List every plugin that a scene can name.");
+  auto plugins = std::make_shared<std::vector<std::string>>();
+  add_plugin_option(*command, *plugins);
+  command->callback([plugins] { list(*plugins); });
 }
 
 }  // namespace frond

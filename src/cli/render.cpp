@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/output.h"
+#include "cli/plugins.h"
 #include "cli/progress.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
@@ -19,7 +20,7 @@ namespace {
 struct RenderOptions {
   std::string scene, output, wavelengths, cache;
   std::vector<double> crop;
-  std::vector<std::string> swaps;
+  std::vector<std::string> swaps, plugins;
   DisplayChoice display;
   int samples = 0, threads = 0;
   uint64_t seed = 0;
@@ -110,7 +111,7 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   const Log log(options.quiet);
   ThreadPool pool(options.threads);
   const SceneDescription description = parse_scene(options.scene, log);
-  const Registry registry = builtin_registry();
+  const Registry registry = load_registry(options.plugins);
   SceneOverrides overrides = overrides_of(options);
   FilmSettings film_settings = Scene::film_settings(description, registry);
   if (!options.crop.empty()) film_settings.crop = crop_of(options.crop, film_settings);
@@ -153,6 +154,7 @@ std::string command_line_of(const RenderOptions& o) {
   if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
   if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
   if (!o.crop.empty()) line += fmt::format(" --crop {}", fmt::join(o.crop, ","));
+  for (const std::string& plugin : o.plugins) line += " --plugin " + std::filesystem::path(plugin).filename().string();
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
   if (o.quick) line += " --quick";
   return line;
@@ -184,6 +186,7 @@ void add_render_command(CLI::App& app) {
                       "hero (also hero,lambdamin=400,lambdamax=700), or smpte for the paper's three.");
   command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model; may be given again.")
       ->allow_extra_args(false);
+  add_plugin_option(*command, o.plugins);
   command->add_option("--display", o.display.display, "Display of PNG and JPEG output; sRGB by default.");
   command->add_option("--view", o.display.view, "View of that display.");
   command->add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.");

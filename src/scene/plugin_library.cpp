@@ -1,0 +1,88 @@
+#include "scene/plugin_library.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+
+#include "core/plugin_module.h"
+
+namespace frond {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Why the last call of the loader failed.
+std::string loader_error() {
+  const char* text = dlerror();
+  return text ? text : "unknown reason";
+}
+
+void* open_library(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) fail({}, "plug-in \"{}\": there is no such file", file.string());
+  // Absolute: the loader would look for a bare name in its own folders. Now, not at the first call: nothing that is
+  // missing shall be found out in the middle of a render.
+  void* library = dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library) return library;
+  const std::string reason = loader_error();
+  const bool lacks_symbol = reason.find("undefined symbol") != std::string::npos;
+  fail({}, "plug-in \"{}\" cannot be loaded: {}{}", file.string(), reason,
+       lacks_symbol ? "; it uses what this frond does not export, or was built for another one" : "");
+}
+
+const PluginModule& module_of(void* library, const fs::path& file) {
+  const auto function = reinterpret_cast<decltype(&frond_plugin)>(dlsym(library, "frond_plugin"));
+  if (!function) fail({}, "plug-in \"{}\" has no function frond_plugin (core/plugin_module.h)", file.string());
+  const PluginModule* module = function();
+  if (!module) fail({}, "plug-in \"{}\": frond_plugin returned nothing", file.string());
+  if (module->interface_version != kPluginInterface)
+    fail({}, "plug-in \"{}\" has version {} of the plug-in interface, this frond has version {}: build it again",
+         file.string(), module->interface_version, kPluginInterface);
+  if (const std::string_view ours = FROND_PLUGIN_BUILD; module->build != ours)
+    fail({}, "plug-in \"{}\" was built for {}, this is {}: build it again", file.string(), module->build, ours);
+  return *module;
+}
+
+template <class Info>
+void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTable<Info>& table) {
+  for (const Info* info : infos) {
+    const Info* known = table.find(info->name);
+    if (known == info) continue;
+    if (known) fail({}, "plug-in \"{}\": there is a {} \"{}\" already", file.string(), table.kind(), info->name);
+    if (info->kind != table.kind())
+      fail({}, "plug-in \"{}\" offers \"{}\" as a {}, but calls it a {}", file.string(), info->name, table.kind(),
+           info->kind);
+    table.add(*info);
+  }
+}
+
+}  // namespace
+
+void load_plugin(const fs::path& file, Registry& registry) {
+  const PluginModule& module = module_of(open_library(file), file);
+  add_all(module.materials, file, registry.materials);
+  add_all(module.integrators, file, registry.integrators);
+  add_all(module.wavelengths, file, registry.wavelengths);
+  add_all(module.cameras, file, registry.cameras);
+  add_all(module.samplers, file, registry.samplers);
+  add_all(module.filters, file, registry.filters);
+  add_all(module.float_textures, file, registry.float_textures);
+  add_all(module.spectrum_textures, file, registry.spectrum_textures);
+}
+
+std::vector<fs::path> plugins_in(std::string_view folders) {
+  std::vector<fs::path> files;
+  while (!folders.empty()) {
+    const fs::path folder = folders.substr(0, folders.find(':'));
+    folders.remove_prefix(std::min(folders.size(), folder.native().size() + 1));
+    if (folder.empty()) continue;
+    if (!fs::is_directory(folder)) fail({}, "plug-ins: there is no folder \"{}\"", folder.string());
+    const auto first = static_cast<ptrdiff_t>(files.size());
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".so") files.push_back(entry.path());
+    std::sort(files.begin() + first, files.end());
+  }
+  return files;
+}
+
+}  // namespace frond

@@ -1,0 +1,56 @@
+#include "tests/planted/planted.h"
+
+#include "core/plugin_module.h"
+
+/// The materials that are wrong on purpose, as somebody else's shared object.
+namespace frond::test {
+namespace {
+
+constexpr Param kLevel[] = {
+    {.name = "level", .kind = ParamKind::real, .default_value = 0.5, .range = {0, 1}, .doc = "Below 0.9."}};
+
+/// Finds out by itself that a parameter is wrong.
+struct Picky final : Material {
+  explicit Picky(const Params& p) {
+    if (const double level = p.real("level"); level >= 0.9)
+      fail(p.where("level"), "\"level\" is {}, and picky wants less than 0.9", level);
+  }
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
+    return arena.make<GoodLambertian>(lambda);
+  }
+};
+
+struct NotThere final : Material {
+  explicit NotThere(const Params&) {}
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
+};
+
+const MaterialInfo kTable[] = {
+    {{"material", "picky", "Refuses what it dislikes.", "", kLevel}, make_material<Picky>},
+    {{"material", "not_there", "A surface that is none.", "", {}}, make_material<NotThere>},
+    planted<GoodLambertian>("good"),
+    planted<GoodStochastic>("good_stochastic"),
+    planted<WrongWarp>("wrong_warp"),
+    planted<LostEnergy>("lost_energy"),
+    planted<SampleOfAnotherF>("wrong_weight"),
+    planted<PdfWithoutProbability>("wrong_pdf"),
+    planted<OneWay>("one_way"),
+    planted<NegativeF>("negative"),
+    planted<StochasticMissesAWayOut>("misses_a_way_out"),
+    planted<StochasticWrongByLittle>("wrong_cone"),
+};
+
+constexpr auto pointers() {
+  std::array<const MaterialInfo*, std::size(kTable)> result{};
+  for (size_t i = 0; i < result.size(); ++i) result[i] = &kTable[i];
+  return result;
+}
+constexpr auto kMaterials = pointers();
+
+}  // namespace
+}  // namespace frond::test
+
+const frond::PluginModule* frond_plugin() {
+  static const frond::PluginModule module{.materials = frond::test::kMaterials};
+  return &module;
+}
