@@ -17,6 +17,7 @@ int run(int argc, const char* const* argv) {
   add_difference_command(app);
   add_list_command(app);
   add_describe_command(app);
+  add_table_command(app);
   try {
     app.parse(argc, argv);
     return 0;

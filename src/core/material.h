@@ -6,6 +6,7 @@
 #include "core/bsdf.h"
 #include "core/parallel.h"
 #include "core/plugin.h"
+#include "core/shared_work.h"
 #include "core/vec.h"
 #include "core/wavelengths.h"
 
@@ -27,6 +28,7 @@ struct Preparation {
   ThreadPool& pool;
   const Log& log;
   std::filesystem::path cache_dir;  ///< empty: keep nothing on disk
+  SharedWork* shared = nullptr;     ///< what the scene's materials may have in common; nullptr: each works alone
 };
 
 /// Textures and parameters in, a BSDF for one hit out.

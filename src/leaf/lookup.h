@@ -13,13 +13,14 @@ struct SampledShares {
 };
 
 /// A table made ready for the render loop: linear between nodes that are even in sqrt |cos theta|, where they are dense
-/// toward grazing and need no arc cosine. The table's degrees are carried over to the nodes by cubic interpolation.
+/// toward grazing and need no arc cosine. The table's angles are carried over to the nodes by cubic interpolation, each
+/// side by its own: those up to 90 degrees and those from there on. Where these do not reach, the nearest holds.
 class TableLookup {
  public:
   TableLookup() = default;
   /// Lanes of paths are the table's wavelengths, one by one; at most kLanes.
   static TableLookup for_lanes(const Table& table);
-  /// Lanes are anywhere between the table's wavelengths, which are evenly spaced.
+  /// Lanes are anywhere between the table's wavelengths, which are two at least, and ascend.
   static TableLookup for_spectra(const Table& table);
 
   /// cos_theta in [-1, 1], of the traced ray's origin to the adaxial normal. Lanes not in use: undefined.
@@ -28,7 +29,7 @@ class TableLookup {
     const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
     const float t = x - static_cast<float>(cell);
     const size_t node = (cos_theta < 0 ? kCells + 1 : 0) + cell;
-    if (step_nm_ == 0) return mix(lanes_[node], lanes_[node + 1], t);
+    if (nm_.empty()) return mix(lanes_[node], lanes_[node + 1], t);
     return between_wavelengths(node, t, lambda);
   }
 
@@ -41,17 +42,27 @@ class TableLookup {
     float surface, subsurface, transmitted, pad;
   };
 
-  static Node resample(const Table& table, size_t wavelength, size_t node);
+  /// [node] of one wavelength.
+  static std::vector<Node> resample(const Table& table, size_t wavelength);
   static SampledShares mix(const SampledShares& a, const SampledShares& b, float t) {
     const float s = 1 - t;
     return {a.surface * s + b.surface * t, a.subsurface * s + b.subsurface * t, a.transmitted * s + b.transmitted * t};
   }
+  void index_wavelengths();
   SampledShares between_wavelengths(size_t node, float t, const SampledWavelengths& lambda) const;
+  /// The wavelength below, or the first but one from the end.
+  size_t wavelength_below(float nm) const {
+    const auto bin = static_cast<size_t>(std::clamp((nm - nm_[0]) * bins_per_nm_, 0.f, last_bin_));
+    size_t below = first_in_bin_[bin];
+    while (below + 2 < nm_.size() && nm >= nm_[below + 1]) ++below;
+    return below;
+  }
 
-  std::vector<SampledShares> lanes_;  ///< [node]
-  std::vector<Node> spectra_;         ///< [node][wavelength]
-  size_t wavelengths_ = 0;
-  float first_nm_ = 0, step_nm_ = 0;  ///< step 0: lanes
+  std::vector<SampledShares> lanes_;    ///< [node]
+  std::vector<Node> spectra_;           ///< [node][wavelength]
+  std::vector<float> nm_;               ///< empty: lanes
+  std::vector<uint32_t> first_in_bin_;  ///< wavelength below the beginning of each of many even steps
+  float bins_per_nm_ = 0, last_bin_ = 0;
 };
 
 }  // namespace frond::leaf

@@ -1,16 +1,16 @@
 #include "leaf/table_cache.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <bit>
-#include <charconv>
 #include <chrono>
 #include <fstream>
 #include <iterator>
 
 #include "core/random.h"
 #include "leaf/constants.h"
+#include "leaf/table_file.h"
 #include "leaf/walk.h"
 
 namespace frond::leaf {
@@ -18,33 +18,9 @@ namespace {
 
 std::string_view method_name(TableMethod method) { return method == TableMethod::monte_carlo ? "montecarlo" : "solve"; }
 
-std::string checksum_line(std::string_view text) { return fmt::format("# checksum {:016x}\n", hash_bytes(text)); }
+constexpr std::string_view kChecksum = "# checksum ";
 
-/// Reads what `to_csv` has laid out, from the front of `text`.
-class Reader {
- public:
-  explicit Reader(std::string_view text) : text_(text) {}
-
-  bool skip(std::string_view expected) {
-    if (!text_.starts_with(expected)) return good_ = false;
-    text_.remove_prefix(expected.size());
-    return true;
-  }
-  double number(char end) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
-    good_ = good_ && error == std::errc();
-    text_.remove_prefix(static_cast<size_t>(stop - text_.data()));
-    skip({&end, 1});
-    return value;
-  }
-  bool good() const { return good_; }
-  bool at_end() const { return text_.empty(); }
-
- private:
-  std::string_view text_;
-  bool good_ = true;
-};
+std::string checksum_line(std::string_view text) { return fmt::format("{}{:016x}\n", kChecksum, hash_bytes(text)); }
 
 std::string read_file(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -69,11 +45,14 @@ bool write_file(const std::filesystem::path& path, const std::string& text) {
   return !error;
 }
 
-std::string summary(const TableRequest& request, std::string_view name, double error) {
-  const bool walks = request.method == TableMethod::monte_carlo;
-  return fmt::format("leaf table: {}, {} wavelengths x {} angles, {}{}, {} <= {:.1e}", name,
-                     request.wavelengths_nm.size(), Table::kDegrees, method_name(request.method),
-                     walks ? fmt::format(" {} rays", request.rays) : "", walks ? "standard error" : "error", error);
+/// Evenly spaced numbers in short, others one by one.
+std::string list_text(const std::vector<double>& values) {
+  if (values.size() > 2) {
+    const double step = values[1] - values[0];
+    if (step > 0 && even_steps(values[0], values.back(), step) == values)
+      return fmt::format("{}:{}:{}", values[0], values.back(), step);
+  }
+  return fmt::format("{}", fmt::join(values, ","));
 }
 
 }  // namespace
@@ -96,38 +75,29 @@ std::string describe(const TableRequest& request) {
     text += fmt::format("# rays {}, seed {}, walk {}", request.rays, request.seed, kWalkVersion);
   else
     text += fmt::format("# nodes {}, solver {}", kSolverNodes, kSolverVersion);
-  text += fmt::format(", constants {:016x}\n# wavelengths_nm", constants_hash());
-  for (const double nm : request.wavelengths_nm) text += fmt::format(" {}", nm);
-  return text + "\n";
+  return text + fmt::format(", constants {:016x}\n# wavelengths_nm {}\n# theta_deg {}\n", constants_hash(),
+                            list_text(request.wavelengths_nm), list_text(request.theta_deg));
 }
 
-std::string to_csv(const Table& table, std::string_view header) {
-  std::string text = fmt::format("{}# error {}\ntheta_deg,wavelength_nm,Rs,Rd,T\n", header, table.error);
-  for (size_t w = 0; w < table.wavelengths_nm.size(); ++w)
-    for (size_t degree = 0; degree < Table::kDegrees; ++degree) {
-      const Shares& s = table.at(w, degree);
-      fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", degree, table.wavelengths_nm[w], s.surface,
-                     s.subsurface, s.transmitted);
-    }
+std::string summary(const TableRequest& request, std::string_view name, const Table& table) {
+  const bool walks = request.method == TableMethod::monte_carlo;
+  return fmt::format("leaf table: {}, {} wavelengths x {} angles, {}{}, {} <= {:.1e}", name,
+                     table.wavelengths_nm.size(), table.theta_deg.size(), method_name(request.method),
+                     walks ? fmt::format(" {} rays", request.rays) : "", walks ? "standard error" : "error",
+                     table.error);
+}
+
+std::string seal(const Table& table, std::string_view header) {
+  const std::string text = to_csv(table, header);
   return text + checksum_line(text);
 }
 
-bool from_csv(std::string_view text, std::string_view header, Table& table) {
-  const std::string_view last = "# checksum ";
-  const size_t body = text.rfind(last);
+bool unseal(std::string_view text, std::string_view header, Table& table) {
+  const size_t body = text.rfind(kChecksum);
   if (body == std::string_view::npos || text.substr(body) != checksum_line(text.substr(0, body))) return false;
-  Reader in(text.substr(0, body));
-  if (!in.skip(header) || !in.skip("# error ")) return false;
-  table = {};
-  table.error = in.number('\n');
-  in.skip("theta_deg,wavelength_nm,Rs,Rd,T\n");
-  while (in.good() && !in.at_end()) {
-    const double degree = in.number(','), lambda_nm = in.number(',');
-    if (degree == 0) table.wavelengths_nm.push_back(lambda_nm);
-    const double surface = in.number(','), subsurface = in.number(','), transmitted = in.number('\n');
-    table.shares.push_back({surface, subsurface, transmitted});
-  }
-  return in.good() && table.shares.size() == table.wavelengths_nm.size() * Table::kDegrees;
+  if (!text.starts_with(header)) return false;
+  table = parse_table(text.substr(0, body), "cache");
+  return true;
 }
 
 Table cached_table(const TableRequest& request, std::string_view name, const ThreadPool& pool, const Log& log,
@@ -137,8 +107,8 @@ Table cached_table(const TableRequest& request, std::string_view name, const Thr
   Table table;
   std::error_code error;  // a cache that cannot be looked into is none
   if (!cache_dir.empty() && std::filesystem::is_regular_file(path, error)) {
-    if (from_csv(read_file(path), header, table)) {
-      log.info(summary(request, name, table.error) + ", from the cache");
+    if (unseal(read_file(path), header, table)) {
+      log.info(summary(request, name, table) + ", from the cache");
       return table;
     }
     log.warn({}, fmt::format("{} is damaged, its table is made anew", path.string()));
@@ -146,8 +116,8 @@ Table cached_table(const TableRequest& request, std::string_view name, const Thr
   const auto start = std::chrono::steady_clock::now();
   table = make_table(request, pool);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  log.info(summary(request, name, table.error) + fmt::format(", {:.2g} s", seconds.count()));
-  if (!cache_dir.empty() && !write_file(path, to_csv(table, header)))
+  log.info(summary(request, name, table) + fmt::format(", {:.2g} s", seconds.count()));
+  if (!cache_dir.empty() && !write_file(path, seal(table, header)))
     log.warn({}, fmt::format("cannot write {}: the table is made anew next time", path.string()));
   return table;
 }

@@ -12,12 +12,16 @@ namespace frond::leaf {
 Table cached_table(const TableRequest& request, std::string_view name, const ThreadPool& pool, const Log& log,
                    const std::filesystem::path& cache_dir);
 
-/// Everything that a table depends on, as text: the request, the optical constants, the versions of the code.
+/// Everything that a table depends on, as comments of its file: the request, the optical constants, the versions of the
+/// code.
 std::string describe(const TableRequest& request);
 
-/// CSV (theta_deg, wavelength_nm, Rs, Rd, T) with `header` and a checksum as comments; numbers read back to the bit.
-std::string to_csv(const Table& table, std::string_view header);
-/// What `to_csv` wrote under the same header; false if it is anything else.
-bool from_csv(std::string_view text, std::string_view header, Table& table);
+/// One line for people: what the table holds and how good it is.
+std::string summary(const TableRequest& request, std::string_view name, const Table& table);
+
+/// A table's file with a checksum at its end.
+std::string seal(const Table& table, std::string_view header);
+/// What `seal` wrote under the same header; false if it is anything else.
+bool unseal(std::string_view text, std::string_view header, Table& table);
 
 }  // namespace frond::leaf

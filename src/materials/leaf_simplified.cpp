@@ -1,7 +1,9 @@
 #include "core/material.h"
 #include "leaf/table_cache.h"
+#include "leaf/table_file.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/three_lobe.h"
+#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -27,21 +29,58 @@ constexpr Param kOwn[] = {
      .default_value = 1000000,
      .range = {1, 1e9},
      .doc = "Walks for each degree of incidence."},
+    {.name = "tablefile",
+     .kind = ParamKind::string,
+     .doc = "A file with the leaf's reflectance and transmittance, made by frond table or measured "
+            "(docs/table_format.md), in place of all that is said of its tissue."},
 };
 constexpr auto kLeafSimplified = with_leaf_params(kOwn);
+
+/// What says nothing where a file holds the table; the cuticle still shapes the surface lobe.
+constexpr std::string_view kOfTissue[] = {
+    "thickness",       "mesophyllfraction", "chlorophylla", "chlorophyllb", "carotenoids",
+    "protein",         "cellulose",         "lignin",       "pigments",     "pigmentconcentrations",
+    "epidermisaspect", "palisadeaspect",    "spongyaspect", "sieve",        "tablemethod",
+    "tablerays"};
 
 /// Step of tables that are interpolated, nm. At 2.5 nm the error stays below 8e-4, at the red edge; its mean is 5e-5.
 constexpr double kStep_nm = 2.5;
 
-std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) {
+std::vector<double> fixed_wavelengths(const WavelengthStrategy& strategy) {
   const auto fixed = strategy.fixed_nm();
-  if (!fixed.empty()) return {fixed.begin(), fixed.end()};
+  return {fixed.begin(), fixed.end()};
+}
+
+/// The fixed wavelengths, or a grid that holds those that vary.
+std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) {
+  if (!strategy.fixed_nm().empty()) return fixed_wavelengths(strategy);
   const Interval range = strategy.range_nm();
   std::vector<double> grid;
   const auto first = static_cast<int>(std::floor(range.min / kStep_nm));
   const auto last = std::max(first + 1, static_cast<int>(std::ceil(range.max / kStep_nm)));
   for (int i = first; i <= last; ++i) grid.push_back(i * kStep_nm);
   return grid;
+}
+
+/// A leaf that is the same seen from below needs one side.
+std::vector<double> table_angles(const leaf::TissueParams& params) {
+  return leaf::even_steps(0, params.structure == leaf::Structure::unifacial ? 90 : 180, 1);
+}
+
+leaf::TableLookup lookup_of(const leaf::Table& table, const WavelengthStrategy& strategy) {
+  return strategy.fixed_nm().empty() ? leaf::TableLookup::for_spectra(table) : leaf::TableLookup::for_lanes(table);
+}
+
+/// A file's table as the render needs it. One wavelength alone stands for all.
+leaf::TableLookup file_lookup(const leaf::Table& table, const std::string& name, const Location& where,
+                              const WavelengthStrategy& strategy) {
+  const Interval range = leaf::wavelength_range(table), needed = strategy.range_nm();
+  const bool grey = table.wavelengths_nm.size() == 1;
+  if (!grey) check_range(range, strategy, where, name);
+  std::vector<double> wavelengths = fixed_wavelengths(strategy);
+  if (wavelengths.empty()) wavelengths = grey ? std::vector{needed.min, needed.max + 1} : table.wavelengths_nm;
+  if (strategy.fixed_nm().empty()) std::ranges::sort(wavelengths);
+  return lookup_of(leaf::at_wavelengths(table, wavelengths), strategy);
 }
 
 class LeafSimplified final : public Material {
@@ -56,34 +95,75 @@ class LeafSimplified final : public Material {
       fail(p.where(), "leaf_simplified takes no textures: abm does");
     if (leaf_.from_light()) fail(p.where("incident"), "leaf_simplified takes \"traced\" alone: abm takes \"light\"");
     request_.params = leaf_.tissue();
+    request_.theta_deg = table_angles(request_.params);
     request_.rays = p.integer("tablerays");
+    if (p.given("tablefile")) take_file(p);
   }
 
   void prepare(const Preparation& preparation) override {
-    leaf_.check_wavelengths(preparation.wavelengths);
-    const bool fixed = !preparation.wavelengths.fixed_nm().empty();
-    const bool walks = method_ == "montecarlo" || (method_ == "auto" && fixed);
-    leaf::TableRequest request = request_;
-    request.method = walks ? leaf::TableMethod::monte_carlo : leaf::TableMethod::solve;
-    request.wavelengths_nm = table_wavelengths(preparation.wavelengths);
-    if (request == request_) return;  // a mixture and the scene may both ask
-    request_ = request;
-    const leaf::Table table =
-        leaf::cached_table(request_, leaf_.specimen(), preparation.pool, preparation.log, preparation.cache_dir);
-    lookup_ = fixed ? leaf::TableLookup::for_lanes(table) : leaf::TableLookup::for_spectra(table);
+    for (const auto& [name, where] : std::exchange(unused_, {}))
+      preparation.log.warn(where, fmt::format("\"{}\" has no effect beside \"tablefile\"", name));
+    const auto make = [&] { return file_.empty() ? made_lookup(preparation) : read_lookup(preparation); };
+    const std::string key = file_.empty() ? key_of_request(preparation) : "leaf table file " + file_.string();
+    SharedWork alone;
+    SharedWork& shared = preparation.shared ? *preparation.shared : alone;
+    lookup_ = shared.get<leaf::TableLookup>(key, make);
   }
 
   const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
-    return arena.make<ThreeLobeBsdf>(lookup_, surface_, lambda, surface_direct_);
+    return arena.make<ThreeLobeBsdf>(*lookup_, surface_, lambda, surface_direct_);
   }
 
   bool is_leaf() const override { return true; }
 
  private:
+  void take_file(const Params& p) {
+    file_ = p.file("tablefile");
+    where_ = p.where("tablefile");
+    for (const std::string_view name : kOfTissue)
+      if (p.given(name)) unused_.push_back({name, p.where(name)});
+  }
+
+  leaf::TableRequest request_for(const WavelengthStrategy& wavelengths) const {
+    const bool walks = method_ == "montecarlo" || (method_ == "auto" && !wavelengths.fixed_nm().empty());
+    leaf::TableRequest request = request_;
+    request.method = walks ? leaf::TableMethod::monte_carlo : leaf::TableMethod::solve;
+    request.wavelengths_nm = table_wavelengths(wavelengths);
+    return request;
+  }
+
+  std::string key_of_request(const Preparation& preparation) const {
+    return (preparation.wavelengths.fixed_nm().empty() ? "varying wavelengths\n" : "fixed wavelengths\n") +
+           leaf::describe(request_for(preparation.wavelengths));
+  }
+
+  leaf::TableLookup made_lookup(const Preparation& preparation) const {
+    leaf_.check_wavelengths(preparation.wavelengths);
+    const leaf::Table table = leaf::cached_table(request_for(preparation.wavelengths), leaf_.specimen(),
+                                                 preparation.pool, preparation.log, preparation.cache_dir);
+    return lookup_of(table, preparation.wavelengths);
+  }
+
+  leaf::TableLookup read_lookup(const Preparation& preparation) const {
+    const leaf::Table table = leaf::read_table(file_, where_);
+    preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} angles{}", file_.string(),
+                                     table.wavelengths_nm.size(), table.theta_deg.size(),
+                                     table.has_equal_sides() ? ", both sides the same" : ""));
+    return file_lookup(table, file_.string(), where_, preparation.wavelengths);
+  }
+
+  struct Unused {
+    std::string_view name;
+    Location where;
+  };
+
   LeafParams leaf_;
   std::string method_;
+  Location where_;              ///< of the file
+  std::filesystem::path file_;  ///< empty: the table is made
+  std::vector<Unused> unused_;
   leaf::TableRequest request_;
-  leaf::TableLookup lookup_;
+  std::shared_ptr<const leaf::TableLookup> lookup_;
   leaf::TabulatedLobe surface_;
   bool surface_direct_;
 };

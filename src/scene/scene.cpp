@@ -79,7 +79,8 @@ class SceneBuilder {
     build_lights(resolver);
     build_surfaces(resolver);
     scene_.materials_ = resolver.materials();
-    const Preparation preparation{*scene_.wavelengths_, pool_, log_, overrides_.cache_dir};
+    SharedWork shared;
+    const Preparation preparation{*scene_.wavelengths_, pool_, log_, overrides_.cache_dir, &shared};
     for (const auto& material : scene_.materials_) material->prepare(preparation);
     index_lights();
     scene_.integrator_->prepare(scene_);

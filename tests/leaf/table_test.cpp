@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr size_t kDegrees = 181;
+
 TableRequest request_of(std::string_view specimen, TableMethod method, int rays = 500) {
   return {.params = find_specimen(specimen)->params, .wavelengths_nm = {608, 551, 455}, .method = method, .rays = rays};
 }
@@ -73,7 +75,7 @@ TEST(Table, WalksAndSolutionAgreeAtEveryDegree) {
     const auto expect_close = [&](double measured, double exact, size_t i) {
       // Few counts are far from normal: half a count and the score test's variance, that of the exact value.
       const double slack = limit * std::sqrt(exact * (1 - exact) / kRays) + (limit * limit / 6 + 0.5) / kRays;
-      EXPECT_NEAR(measured, exact, slack) << specimen << " degree " << i % Table::kDegrees;
+      EXPECT_NEAR(measured, exact, slack) << specimen << " degree " << i % kDegrees;
     };
     for (size_t i = 0; i < walked.shares.size(); ++i) {
       expect_close(walked.shares[i].surface, solved.shares[i].surface, i);
@@ -95,7 +97,7 @@ TEST(Table, WavelengthDoesNotDependOnItsCompany) {
   const Table all = make_table(request, ThreadPool(2));
   request.wavelengths_nm = {551};
   const Table one = make_table(request, ThreadPool(2));
-  EXPECT_TRUE(std::equal(one.shares.begin(), one.shares.end(), all.shares.begin() + Table::kDegrees));
+  EXPECT_TRUE(std::equal(one.shares.begin(), one.shares.end(), all.shares.begin() + kDegrees));
 }
 
 TEST(Table, GrazingLightIsAllReflected) {
@@ -141,7 +143,7 @@ TEST_F(TableCache, IsReadWhereItStands) {
   Table planted = make_table(request, ThreadPool(1));
   planted.shares[7].transmitted = 0.125;
   get(request);
-  std::ofstream(files().at(0)) << to_csv(planted, describe(request));
+  std::ofstream(files().at(0)) << seal(planted, describe(request));
   EXPECT_EQ(get(request).shares[7].transmitted, 0.125);
 }
 
@@ -172,7 +174,7 @@ TEST_F(TableCache, MakesADamagedFileAnew) {
     EXPECT_EQ(get(request).shares, sound.shares);
     Table again;
     std::ifstream repaired(file);
-    EXPECT_TRUE(from_csv(std::string{std::istreambuf_iterator<char>(repaired), {}}, describe(request), again));
+    EXPECT_TRUE(unseal(std::string{std::istreambuf_iterator<char>(repaired), {}}, describe(request), again));
   }
 }
 

@@ -159,6 +159,69 @@ TEST(LeafSimplified, LeavesTheSurfaceToFollowedRaysIfTold) {
   EXPECT_EQ(all.bsdf().f(wo, below, rng), published.bsdf().f(wo, below, rng));
 }
 
+TEST(LeafSimplified, TakesItsTableFromAFile) {
+  const TestFolder folder("leaf_table");
+  const std::string columns = "theta_deg,wavelength_nm,Rs,Rd,T\n";
+  const auto file = [&](const std::string& rows) {
+    return words("tablefile", {folder.write("t.csv", columns + rows)});
+  };
+  const Vec3 wo = normalize(Vec3{0, 1, 2}), below{0, 0, -1};
+  RandomStream rng(1);
+  Ready grey("leaf_simplified", {file("8,551,.04,.1,.2\n")});
+  Ready spectral("leaf_simplified", {file("8,300,.04,.1,.2\n8,900,.04,.1,.8\n")}, "hero");
+  for (int lane = 0; lane < 3; ++lane) EXPECT_NEAR(grey.bsdf().f(wo, below, rng)[lane], 0.2 / std::numbers::pi, 1e-6);
+  for (int lane = 0; lane < 4; ++lane) {
+    const double nm = spectral.lambda().nm[static_cast<size_t>(lane)];
+    EXPECT_NEAR(spectral.bsdf().f(wo, below, rng)[lane], (nm / 1000 - 0.1) / std::numbers::pi, 1e-6);
+  }
+  EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {file("8,500,0,0,0\n8,600,0,0,0\n")}); }),
+              HasSubstr("is known from 500 to 600 nm, the render needs 455 to 608 nm"));
+  EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {file("8,551,1,1,1\n")}); }),
+              HasSubstr("t.csv:2:1: Rs + Rd + T"));
+}
+
+TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
+  const TestFolder folder("leaf_table");
+  const std::string path = folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n8,551,.04,.1,.2\n");
+  const ParsedParam thickness = number("float", "thickness", {1e-4});
+  const MaterialInfo& info = material_info("leaf_simplified");
+  Resolver resolver;
+  const auto material = info.make(Params(info, {"", {}, {words("tablefile", {path}), thickness}}, resolver));
+  const auto strategy =
+      testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
+  ThreadPool pool(1);
+  const Log log;
+  ::testing::internal::CaptureStderr();
+  material->prepare({*strategy, pool, log, {}});
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              HasSubstr("warning: \"thickness\" has no effect beside \"tablefile\""));
+}
+
+/// The tables of a scene, by what they say of themselves.
+size_t tables_made(const std::vector<std::vector<ParsedParam>>& leaves) {
+  const MaterialInfo& info = material_info("leaf_simplified");
+  const auto strategy =
+      testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
+  ThreadPool pool(1);
+  const Log log;
+  SharedWork shared;
+  Resolver resolver;
+  std::vector<std::unique_ptr<Material>> materials;
+  ::testing::internal::CaptureStderr();
+  for (const auto& params : leaves) {
+    materials.push_back(info.make(Params(info, {"", {}, params}, resolver)));
+    for (int twice = 0; twice < 2; ++twice) materials.back()->prepare({*strategy, pool, log, {}, &shared});
+  }
+  const std::string messages = ::testing::internal::GetCapturedStderr();
+  return static_cast<size_t>(std::ranges::count(messages, '\n'));
+}
+
+TEST(LeafSimplified, SharesTheTableOfLeavesThatAreTheSame) {
+  const ParsedParam maize = words("specimen", {"maize"}), wax = number("float", "oblateness", {2});
+  EXPECT_EQ(tables_made({{kSolve}, {kSolve, wax}, {kSolve}}), 1u);
+  EXPECT_EQ(tables_made({{kSolve}, {kSolve, maize}, {kSolve, maize, wax}}), 2u);
+}
+
 TEST(LeafSimplified, ReflectsAllAtGrazing) {
   Ready leaf("leaf_simplified", {kSolve});
   const Albedo measured = albedo(leaf, {1, 0, 1e-7f}, 1000);

@@ -1,0 +1,140 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/number_list.h"
+#include "core/parallel.h"
+#include "leaf/constants.h"
+#include "leaf/constants.h"
+#include "leaf/table_cache.h"
+#include "leaf/table_file.h"
+#include "materials/leaf_params.h"
+#include "scene/atomic_file.h"
+#include "scene/plugin_text.h"
+
+namespace frond {
+namespace {
+
+struct TableOptions {
+  std::vector<std::string> words;
+  std::string specimen, method = "solve", wavelengths, angles = "0:180:1", output, rays = "1e6";
+  uint64_t seed = 0;
+  int threads = 0;
+  bool equal_sides = false, quiet = false;
+};
+
+constexpr PluginInfo kLeaf{"leaf", "leaf", "", "", kLeafParams};
+
+/// A leaf on the command line is made of numbers and words alone.
+class NoReferences final : public ParamResolver {
+ public:
+  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { refuse(); }
+  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location&) override { refuse(); }
+  std::shared_ptr<Material> material(const std::string&, const Location&) override { refuse(); }
+  SpectrumPtr spectrum(const ParsedParam&, bool) override { refuse(); }
+  std::filesystem::path file(const std::string& name, const Location&) override { return name; }
+
+ private:
+  [[noreturn]] static void refuse() { fail({}, "a leaf's table is made for one leaf: numbers alone, no textures"); }
+};
+
+leaf::TissueParams tissue_of(const TableOptions& options) {
+  std::string text = "leaf";
+  for (const std::string& word : options.words) text += "," + word;
+  if (!options.specimen.empty()) text += ",specimen=" + options.specimen;
+  ParsedPlugin plugin{"leaf", {}, {}};
+  set_params(parse_plugin_text(text, {}), kLeaf, {}, plugin);
+  NoReferences none;
+  return LeafParams(Params(kLeaf, plugin, none)).tissue();
+}
+
+void check_ascending(const std::vector<double>& theta_deg) {
+  for (size_t i = 0; i < theta_deg.size(); ++i) {
+    if (!(theta_deg[i] >= 0 && theta_deg[i] <= 180))
+      fail({}, "--angles are from 0 to 180 degrees, {} was given", theta_deg[i]);
+    if (i > 0 && !(theta_deg[i] > theta_deg[i - 1]))
+      fail({}, "--angles ascend, {} comes after {}", theta_deg[i], theta_deg[i - 1]);
+  }
+}
+
+/// Angles up to 90 and their counterparts on the other side.
+std::vector<double> on_both_sides(std::vector<double> theta_deg) {
+  if (theta_deg.back() > 90) std::erase_if(theta_deg, [](double theta) { return theta > 90; });
+  if (theta_deg.empty()) fail({}, "--equalsides needs angles up to 90");
+  for (size_t i = theta_deg.size(); i-- > 0;)
+    if (theta_deg[i] < 90) theta_deg.push_back(180 - theta_deg[i]);
+  return theta_deg;
+}
+
+void check_wavelengths(std::vector<double> wavelengths_nm) {
+  for (const double nm : wavelengths_nm)
+    if (!leaf::kConstantsRange_nm.contains(nm))
+      fail({}, "leaf optics are known from {} to {} nm, --wavelengths has {}", leaf::kConstantsRange_nm.min,
+           leaf::kConstantsRange_nm.max, nm);
+  std::ranges::sort(wavelengths_nm);
+  if (const auto twice = std::ranges::adjacent_find(wavelengths_nm); twice != wavelengths_nm.end())
+    fail({}, "--wavelengths has {} twice", *twice);
+}
+
+leaf::TableRequest request_of(const TableOptions& options) {
+  leaf::TableRequest request{.params = tissue_of(options),
+                             .wavelengths_nm = parse_numbers("--wavelengths", options.wavelengths),
+                             .theta_deg = parse_numbers("--angles", options.angles),
+                             .seed = options.seed};
+  if (options.method == "montecarlo") request.method = leaf::TableMethod::monte_carlo;
+  constexpr int kMostRays = 1'000'000'000;
+  const int64_t rays = parse_count("--rays", options.rays, 1);
+  if (rays > kMostRays) fail({}, "--rays goes up to {}, {} was given", kMostRays, rays);
+  request.rays = static_cast<int>(rays);
+  check_wavelengths(request.wavelengths_nm);
+  check_ascending(request.theta_deg);
+  if (options.equal_sides) request.theta_deg = on_both_sides(request.theta_deg);
+  return request;
+}
+
+void write(const std::string& path, const std::string& text) {
+  if (path == "-") {
+    fmt::print("{}", text);
+    if (std::fflush(stdout) != 0) fail({}, "cannot write the table to standard output");
+    return;
+  }
+  replace_file(path, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+}
+
+void make_table_file(const TableOptions& options) {
+  if (options.output != "-") check_replaceable(options.output);  // now, not after the walks
+  const leaf::TableRequest request = request_of(options);
+  leaf::Table table = leaf::make_table(request, ThreadPool(options.threads));
+  std::string header = leaf::describe(request);
+  if (options.equal_sides) {
+    table = leaf::mean_of_sides(table);
+    header += "# mean of both sides\n";
+  }
+  write(options.output, leaf::to_csv(table, header));
+  Log(options.quiet).info(leaf::summary(request, options.output, table));
+}
+
+}  // namespace
+
+void add_table_command(CLI::App& app) {
+  auto options = std::make_shared<TableOptions>();
+  TableOptions& o = *options;
+  auto* command =
+      app.add_subcommand("table", "Write a leaf's reflectance and transmittance by angle and wavelength as CSV.");
+  command->add_option("leaf", o.words, "The leaf: name=value ..., as leaf_simplified takes them (frond describe).");
+  command->add_option("--specimen", o.specimen, "A leaf from the literature; soybean by default.");
+  command->add_option("--method", o.method, "solve: without noise. montecarlo: random walks, as published.")
+      ->check(CLI::IsMember({"solve", "montecarlo"}));
+  command->add_option("--wavelengths", o.wavelengths, "In nm: 608,551,455 or 360:830:5.")->required();
+  command->add_option("--angles", o.angles, "Angles of incidence, degrees, above 90 on the abaxial side; 0:180:1.");
+  command->add_option("--rays", o.rays, "Walks for each angle and wavelength; 1e6.");
+  command->add_option("--seed", o.seed, "Seed of the walks.");
+  command->add_option("--threads", o.threads, "Threads; all by default. The table does not depend on it.")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--equalsides", o.equal_sides, "The mean of both sides, on angles up to 90.");
+  command->add_option("-o,--output", o.output, "The table's file; - for standard output.")->required();
+  command->add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");
+  command->callback([options] { make_table_file(*options); });
+}
+
+}  // namespace frond

@@ -1,0 +1,97 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/commands.h"
+#include "leaf/specimens.h"
+#include "leaf/table_file.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+struct Outcome {
+  int code;
+  std::string out, err;
+};
+
+Outcome table_command(std::vector<std::string> arguments) {
+  std::vector<const char*> argv{"frond", "table"};
+  for (const std::string& a : arguments) argv.push_back(a.c_str());
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  const int code = run(int(argv.size()), argv.data());
+  std::fflush(stdout);
+  return {code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
+}
+
+TEST(TableCommand, WritesTheTableOfALeaf) {
+  const TestFolder folder("table");
+  const std::string path = folder.name_of("t.csv");
+  const Outcome o = table_command({"specimen=maize", "thickness=0.0001", "--wavelengths", "608,551,455", "-o", path});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("3 wavelengths x 181 angles, solve, error <= "));
+  const leaf::Table table = leaf::read_table(path, {});
+  EXPECT_THAT(table.wavelengths_nm, ElementsAre(608, 551, 455));
+  EXPECT_THAT(table.theta_deg, SizeIs(181));
+  leaf::TissueParams params = leaf::find_specimen("maize")->params;
+  params.thickness_m = 0.0001;
+  const leaf::TissueModel model(params);
+  EXPECT_EQ(table.at(1, 30), leaf::solve(model.at(551), std::array{30.0})[0]);
+}
+
+TEST(TableCommand, WritesToStandardOutput) {
+  const Outcome o = table_command({"--method", "montecarlo", "--rays", "1e2", "--seed", "7", "--wavelengths", "551",
+                                   "--angles", "0:80:40,85", "-q", "-o", "-"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(o.err, "");
+  const leaf::Table table = leaf::parse_table(o.out, "stdout");
+  EXPECT_THAT(table.theta_deg, ElementsAre(0, 40, 80, 85));
+  EXPECT_THAT(table.standard_errors, SizeIs(4));
+  EXPECT_THAT(o.out, HasSubstr("# rays 100, seed 7"));
+}
+
+TEST(TableCommand, FoldsBothSidesIntoOne) {
+  const auto table_of = [](std::vector<std::string> more) {
+    std::vector<std::string> all{"--wavelengths", "800", "-q", "-o", "-", "--angles"};
+    all.insert(all.end(), more.begin(), more.end());
+    return leaf::parse_table(table_command(all).out, "stdout");
+  };
+  const leaf::Table folded = table_of({"0:90:30", "--equalsides"}), both = table_of({"0:180:30"});
+  EXPECT_TRUE(folded.has_equal_sides());
+  EXPECT_DOUBLE_EQ(folded.at(0, 1).transmitted, (both.at(0, 1).transmitted + both.at(0, 5).transmitted) / 2);
+}
+
+TEST(TableCommand, RefusesWhatItCannotDo) {
+  struct {
+    std::vector<std::string> arguments;
+    std::string message;
+  } const kCases[] = {
+      {{"--wavelengths", "3000"}, "leaf optics are known from 360 to 2500 nm, --wavelengths has 3000"},
+      {{"--wavelengths", "551,551"}, "--wavelengths has 551 twice"},
+      {{"--wavelengths", "green"}, "\"green\" is neither"},
+      {{"--wavelengths", "551", "--angles", "0,200"}, "--angles are from 0 to 180 degrees, 200 was given"},
+      {{"--wavelengths", "551", "--angles", "20,10"}, "--angles ascend, 10 comes after 20"},
+      {{"--wavelengths", "551", "--angles", "91:180:1", "--equalsides"}, "--equalsides needs angles up to 90"},
+      {{"--wavelengths", "551", "--rays", "0"}, "--rays takes a whole number from 1 on"},
+      {{"--wavelengths", "551", "thicknes=1"}, "has no parameter \"thicknes\"; did you mean \"thickness\"?"},
+      {{"--wavelengths", "551", "thickness"}, "a parameter looks like name=value"},
+      {{"--wavelengths", "551", "thickness=7"}, "0.01 m"},
+      {{"--wavelengths", "551", "--specimen", "oak"}, "soybean, maize"},
+  };
+  for (const auto& [arguments, message] : kCases) {
+    std::vector<std::string> all = arguments;
+    all.insert(all.end(), {"-o", "-"});
+    const Outcome o = table_command(all);
+    EXPECT_EQ(o.code, 1) << message;
+    EXPECT_THAT(o.err, HasSubstr(message));
+    EXPECT_EQ(o.out, "");
+  }
+  EXPECT_THAT(table_command({"--wavelengths", "551", "-o", "/no/folder/t.csv"}).err, HasSubstr("there is no folder"));
+}
+
+}  // namespace
+}  // namespace frond
