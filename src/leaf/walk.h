@@ -1,14 +1,17 @@
 #pragma once
 
+#include <span>
+
 #include "core/random.h"
+#include "core/spectrum.h"
 #include "core/vec.h"
 #include "leaf/tissue.h"
 
 namespace frond::leaf {
 
-/// Random walks of light through a leaf, one wavelength each (Baranoski and Rokne 1997; Baranoski 2006). Directions are
-/// unit vectors in the leaf's frame, z the adaxial normal. wo points to where the traced ray came from, wi to where it
-/// leaves to. Both want |z| > 0.
+/// Random walks of light through a leaf (Baranoski and Rokne 1997; Baranoski 2006), at one wavelength or at several on
+/// one walk. Directions are unit vectors in the leaf's frame, z the adaxial normal. wo points to where the traced ray
+/// came from, wi to where it leaves to. Both want |z| > 0.
 
 /// Increase with any change that may change results: tables on disk are kept by it.
 inline constexpr int kWalkVersion = 1;
@@ -40,6 +43,20 @@ struct FirstEvent {
 WalkEnd walk(const Tissue& tissue, const Vec3d& wo, Absorption absorption, const FirstEvent& first, RandomStream& rng);
 WalkEnd walk(const Tissue& tissue, const Vec3d& wo, Absorption absorption, RandomStream& rng);
 
+using LaneValues = std::array<double, kLanes>;
+
+struct SpectralWalkEnd {
+  Fate fate;
+  Vec3d wi;
+  LaneValues weight;  ///< at most K at each of K wavelengths
+};
+
+/// One walk for 1 to kLanes wavelengths. `tissues` are of one leaf, and `hero` is one of them, drawn uniformly: then
+/// the mean of each weight over any fate and directions is that of walks at its own wavelength, however the indices
+/// differ.
+SpectralWalkEnd walk(std::span<const Tissue* const> tissues, size_t hero, const Vec3d& wo, Absorption absorption,
+                     const FirstEvent& first, RandomStream& rng);
+
 /// f of light reflected at the outer surface, 1/sr: exact. 0 where wi is on the other side.
 double surface_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi);
 
@@ -48,6 +65,10 @@ double surface_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi);
 /// event before it would leave.
 double estimate_body_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, Absorption absorption,
                        RandomStream& rng);
+
+/// The same at several wavelengths by one walk, as `walk` does it.
+LaneValues estimate_body_f(std::span<const Tissue* const> tissues, size_t hero, const Vec3d& wo, const Vec3d& wi,
+                           Absorption absorption, RandomStream& rng);
 
 /// Fresnel reflectance of the outer surface, the same on both sides.
 double surface_reflectance(const Tissue& tissue, double cos_theta);

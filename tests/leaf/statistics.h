@@ -45,4 +45,10 @@ inline double z_score(const Estimate& a, const Estimate& b) {
   return difference == 0 ? 0 : difference / std::hypot(a.standard_error(), b.standard_error());
 }
 
+/// The chi-square of `n` squares as a standard normal variable (Wilson and Hilferty 1931).
+inline double z_of_chi_square(double chi_square, int n) {
+  const double variance = 2.0 / (9 * n);
+  return (std::cbrt(chi_square / n) - (1 - variance)) / std::sqrt(variance);
+}
+
 }  // namespace frond::test
