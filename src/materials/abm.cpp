@@ -2,6 +2,7 @@
 #include "core/sampling.h"
 #include "leaf/walk.h"
 #include "materials/leaf_params.h"
+#include "materials/lobes/surface_lobe.h"
 
 namespace frond {
 namespace {
@@ -22,66 +23,91 @@ constexpr auto kAbm = with_leaf_params(kOwn);
 constexpr float kLeastCosine = 1e-20f;
 
 Vec3d in_double(const Vec3& w) { return normalize(Vec3d{w.x, w.y, w.z}); }
+Vec3 in_float(const Vec3d& w) { return {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}; }
 
-/// Walks through the leaf, one wavelength each: refraction differs by wavelength, so no walk serves two. `f` walks once
-/// for every lane; `sample` walks for one lane, drawn evenly, and leaves the others black.
-class AbmBsdf final : public Bsdf {
- public:
-  /// A tissue for each active lane, nullptr for the others.
-  AbmBsdf(const std::array<const Tissue*, kLanes>& tissues, leaf::Absorption absorption)
-      : tissues_(tissues), absorption_(absorption) {
-    for (int lane = 0; lane < kLanes; ++lane)
-      if (tissue(lane)) active_[static_cast<size_t>(count_++)] = lane;
+/// The leaf where it was hit, at the wavelengths of the path: a tissue for each active lane.
+struct LeafLanes {
+  std::array<const Tissue*, kLanes> tissues{};
+  std::array<int, kLanes> lane{};
+  size_t count = 0;
+
+  void add(int of_lane, const Tissue* tissue) {
+    tissues[count] = tissue;
+    lane[count++] = of_lane;
   }
+  std::span<const Tissue* const> all() const { return std::span(tissues).first(count); }
+  size_t draw_hero(RandomStream& rng) const { return count > 1 ? rng.bits() % count : 0; }
+};
+
+/// Walks through the leaf, one for all the wavelengths of a path.
+class AbmBsdf : public Bsdf {
+ public:
+  AbmBsdf(const LeafLanes& lanes, leaf::Absorption absorption) : lanes_(lanes), absorption_(absorption) {}
 
   Lobes flags() const override {
     return Lobes::reflection | Lobes::transmission | Lobes::diffuse | Lobes::glossy | Lobes::surface |
            Lobes::stochastic;
   }
 
-  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const override {
-    SampledSpectrum f;
-    if (wo.z == 0 || std::abs(wi.z) < kLeastCosine) return f;
-    const Vec3d o = in_double(wo), i = in_double(wi);
-    for (int k = 0; k < count_; ++k) {
-      const int lane = active_[static_cast<size_t>(k)];
-      f[lane] = static_cast<float>(leaf::surface_f(*tissue(lane), o, i) +
-                                   leaf::estimate_body_f(*tissue(lane), o, i, absorption_, rng));
-    }
-    return f;
-  }
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const override { return leaf_f(wo, wi, rng); }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
-    if (wo.z == 0 || count_ == 0) return {};
-    const float place = uc * static_cast<float>(count_);
-    const int hero = std::min(static_cast<int>(place), count_ - 1), lane = active_[static_cast<size_t>(hero)];
-    const Vec2 disk = sample_disk(u);
-    const leaf::WalkEnd end =
-        leaf::walk(*tissue(lane), in_double(wo), absorption_, {place - static_cast<float>(hero), disk.x, disk.y}, rng);
-    if (end.weight == 0) return {};
-    const Vec3 wi{static_cast<float>(end.wi.x), static_cast<float>(end.wi.y), static_cast<float>(end.wi.z)};
-    if (std::abs(wi.z) < kLeastCosine) return {};
-    BsdfSample s{{}, wi, pdf(wo, wi), lobes_of(end.fate), true};
-    s.f[lane] = static_cast<float>(count_ * end.weight) * (s.pdf / std::abs(wi.z));
-    return s;
+    const auto [wi, lobe, weight] = walk(wo, uc, u, rng);
+    if (weight.is_black()) return {};
+    const float density = pdf(wo, wi);
+    return BsdfSample{weight * (density / std::abs(wi.z)), wi, density, lobe, true};
   }
 
   /// Exact for the surface at one of the wavelengths, a cosine lobe on each side for all that has been inside.
   float pdf(const Vec3& wo, const Vec3& wi) const override {
-    if (wo.z == 0 || std::abs(wi.z) < kLeastCosine || count_ == 0) return 0;
-    const Tissue& any_tissue = *tissue(active_[0]);
-    // Kept off 1, so that no direction is left without density.
-    const double surface = std::min(leaf::surface_reflectance(any_tissue, wo.z), 0.95);
-    double density = (1 - surface) / 2 * std::abs(wi.z) * kInvPi;
-    if (same_side(wo, wi)) {
-      const leaf::Lobe& lobe = any_tissue.surface_lobe();
-      density += surface * lobe.density(dot(Vec3{-wo.x, -wo.y, wo.z}, wi)) / lobe.kept(std::abs(wo.z));
-    }
-    return static_cast<float>(density);
+    if (wo.z == 0 || std::abs(wi.z) < kLeastCosine || lanes_.count == 0) return 0;
+    const float surface = surface_share(wo);
+    float density = (1 - surface) / 2 * std::abs(wi.z) * kInvPi;
+    if (same_side(wo, wi)) density += surface * surface_lobe_pdf(tissue().surface_lobe(), wo, wi);
+    return density;
   }
 
+  void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
+    for (Scattered& ray : rays) {
+      const float uc = rng.uniform(), u = rng.uniform();
+      ray = walk(incident, uc, {u, rng.uniform()}, rng);
+    }
+  }
+
+ protected:
+  /// From `incident` to `leaving`.
+  SampledSpectrum leaf_f(const Vec3& incident, const Vec3& leaving, RandomStream& rng) const {
+    SampledSpectrum f;
+    if (incident.z == 0 || std::abs(leaving.z) < kLeastCosine || lanes_.count == 0) return f;
+    const Vec3d from = in_double(incident), to = in_double(leaving);
+    const auto body = leaf::estimate_body_f(lanes_.all(), lanes_.draw_hero(rng), from, to, absorption_, rng);
+    for (size_t i = 0; i < lanes_.count; ++i)
+      f[lanes_.lane[i]] = static_cast<float>(leaf::surface_f(*lanes_.tissues[i], from, to) + body[i]);
+    return f;
+  }
+
+  /// Of a path's lobes; kept off 1, so that no direction is left without density.
+  float surface_share(const Vec3& wo) const {
+    return std::min(static_cast<float>(leaf::surface_reflectance(tissue(), wo.z)), 0.95f);
+  }
+
+  const Tissue& tissue() const { return *lanes_.tissues[0]; }
+  bool is_empty() const { return lanes_.count == 0; }
+
  private:
-  const Tissue* tissue(int lane) const { return tissues_[static_cast<size_t>(lane)]; }
+  /// `uc` draws the hero and then the first branch.
+  Scattered walk(const Vec3& incident, float uc, Vec2 u, RandomStream& rng) const {
+    if (incident.z == 0 || lanes_.count == 0) return {};
+    const float place = uc * static_cast<float>(lanes_.count);
+    const size_t hero = std::min(static_cast<size_t>(place), lanes_.count - 1);
+    const Vec2 disk = sample_disk(u);
+    const leaf::SpectralWalkEnd end = leaf::walk(lanes_.all(), hero, in_double(incident), absorption_,
+                                                 {place - static_cast<float>(hero), disk.x, disk.y}, rng);
+    Scattered ray{in_float(end.wi), lobes_of(end.fate), {}};
+    if (std::abs(ray.direction.z) < kLeastCosine) return ray;
+    for (size_t i = 0; i < lanes_.count; ++i) ray.weight[lanes_.lane[i]] = static_cast<float>(end.weight[i]);
+    return ray;
+  }
 
   static Lobes lobes_of(leaf::Fate fate) {
     if (fate == leaf::Fate::surface) return Lobes::reflection | Lobes::glossy | Lobes::surface | Lobes::stochastic;
@@ -89,10 +115,31 @@ class AbmBsdf final : public Bsdf {
     return side | Lobes::diffuse | Lobes::stochastic;
   }
 
-  std::array<const Tissue*, kLanes> tissues_;
-  std::array<int, kLanes> active_{};  ///< the lanes that have a tissue
-  int count_ = 0;
+  LeafLanes lanes_;
   leaf::Absorption absorption_;
+};
+
+/// The same leaf, whose incident light comes along wi: a walk from there tells how much leaves along wo. Walks do not
+/// end where they are wanted, so directions are drawn from `pdf`, which is then their density.
+class AbmFromLightBsdf final : public AbmBsdf {
+ public:
+  using AbmBsdf::AbmBsdf;
+
+  Lobes flags() const override { return AbmBsdf::flags() | Lobes::from_light; }
+
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const override { return leaf_f(wi, wo, rng); }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
+    if (wo.z == 0 || is_empty()) return {};
+    const float surface = surface_share(wo), reflected = (1 + surface) / 2;
+    const bool off_surface = uc < surface, reflects = uc < reflected;
+    Vec3 wi = off_surface ? sample_surface_lobe(tissue().surface_lobe(), wo, u, rng) : sample_cosine_hemisphere(u);
+    if (!off_surface && (wo.z > 0) != reflects) wi.z = -wi.z;
+    if (std::abs(wi.z) < kLeastCosine) return {};
+    const Lobes side = reflects ? Lobes::reflection : Lobes::transmission;
+    const Lobes lobe = off_surface ? Lobes::glossy | Lobes::surface : Lobes::diffuse;
+    return BsdfSample{f(wo, wi, rng), wi, pdf(wo, wi), side | lobe | Lobes::stochastic};
+  }
 };
 
 class Abm final : public Material {
@@ -104,16 +151,44 @@ class Abm final : public Material {
 
   void prepare(const Preparation& preparation) override { leaf_.check_wavelengths(preparation.wavelengths); }
 
-  const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
-    std::array<const Tissue*, kLanes> tissues{};
-    for (size_t lane = 0; lane < kLanes; ++lane)
-      if (lambda.active[lane]) tissues[lane] = arena.make<Tissue>(model_.at(lambda.nm[lane]));
-    return arena.make<AbmBsdf>(tissues, absorption_);
+  const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
+    const LeafLanes lanes = leaf_at(hit.uv, lambda, arena);
+    if (leaf_.from_light()) return arena.make<AbmFromLightBsdf>(lanes, absorption_);
+    return arena.make<AbmBsdf>(lanes, absorption_);
   }
 
   bool is_leaf() const override { return true; }
 
  private:
+  LeafLanes leaf_at(Vec2 uv, const SampledWavelengths& lambda, Arena& arena) const {
+    LeafLanes lanes;
+    if (leaf_.is_constant()) {
+      for (int lane = 0; lane < lambda.count; ++lane)
+        if (lambda.is_active(lane)) lanes.add(lane, arena.make<Tissue>(model_.at(nm(lambda, lane))));
+      return lanes;
+    }
+    const leaf::LeafLobes lobes = lobes_at(uv, arena);
+    const auto depth = leaf_.depth().at(uv, lambda);
+    for (int lane = 0; lane < lambda.count; ++lane)
+      if (lambda.is_active(lane))
+        lanes.add(lane, arena.make<Tissue>(model_.at(nm(lambda, lane), depth[static_cast<size_t>(lane)], lobes)));
+    return lanes;
+  }
+
+  leaf::LeafLobes lobes_at(Vec2 uv, Arena& arena) const {
+    leaf::LeafLobes lobes = model_.lobes();
+    const auto replace = [&](const leaf::Lobe*& lobe, const LeafParams::Aspect& aspect) {
+      if (aspect) lobe = arena.make<leaf::Lobe>(static_cast<double>(aspect->evaluate(uv)));
+    };
+    replace(lobes.cuticle, leaf_.cuticle_aspect());
+    replace(lobes.epidermis, leaf_.epidermis_aspect());
+    replace(lobes.spongy, leaf_.spongy_aspect());
+    replace(lobes.palisade, leaf_.palisade_aspect());
+    return lobes;
+  }
+
+  static double nm(const SampledWavelengths& lambda, int lane) { return lambda.nm[static_cast<size_t>(lane)]; }
+
   LeafParams leaf_;
   leaf::TissueModel model_;
   leaf::Absorption absorption_;

@@ -99,6 +99,10 @@ class LeafParams {
   /// What is constant; where a texture stands for a number, the greatest that it can be.
   const leaf::TissueParams& tissue() const { return tissue_; }
   const leaf::DepthMap& depth() const { return depth_; }
+  /// Whether nothing varies over the leaf.
+  bool is_constant() const {
+    return depth_.is_constant() && std::all_of(aspects_.begin(), aspects_.end(), [](const Aspect& a) { return !a; });
+  }
   /// nullptr where the aspect ratio is constant.
   using Aspect = std::shared_ptr<const FloatTexture>;
   const Aspect& cuticle_aspect() const { return aspects_[0]; }

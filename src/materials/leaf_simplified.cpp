@@ -90,9 +90,7 @@ class LeafSimplified final : public Material {
         method_(p.string("tablemethod")),
         surface_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
         surface_direct_(p.boolean("surfacedirect")) {
-    if (!leaf_.depth().is_constant() || leaf_.cuticle_aspect() || leaf_.epidermis_aspect() || leaf_.spongy_aspect() ||
-        leaf_.palisade_aspect())
-      fail(p.where(), "leaf_simplified takes no textures: abm does");
+    if (!leaf_.is_constant()) fail(p.where(), "leaf_simplified takes no textures: abm does");
     if (leaf_.from_light()) fail(p.where("incident"), "leaf_simplified takes \"traced\" alone: abm takes \"light\"");
     request_.params = leaf_.tissue();
     request_.theta_deg = table_angles(request_.params);

@@ -123,7 +123,7 @@ TEST_P(SpectralWalk, FillsTheDetectorsAsWalksOfOneWavelengthDo) {
       const double z = test::z_score(alone.bin(i), together[lane].bin(i));
       chi_square += z * z;
     }
-    EXPECT_GT(compared, 20);
+    EXPECT_GT(compared, 15);
     EXPECT_LT(test::z_of_chi_square(chi_square, compared), limit) << "lane " << lane << ": " << chi_square;
   }
 }

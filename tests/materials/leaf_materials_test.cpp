@@ -249,22 +249,82 @@ TEST(LeafSimplified, SeesTheSameLeafWhetherWavelengthsAreFixedOrNot) {
   }
 }
 
-/// Walks of one lane leave the others black, so that nobody takes its way for theirs.
-TEST(Abm, SamplesOneWavelengthAtATime) {
+TEST(Abm, CarriesAllWavelengthsOnOneWalk) {
+  for (const char* mode : {"analog", "weighted"}) {
+    Ready leaf("abm", {words("mode", {mode})});
+    const leaf::TissueModel model(leaf::find_specimen("soybean")->params);
+    const double limit = z_limit(2 * 3 * 2);
+    const Albedo measured = albedo(leaf, normalize(Vec3{0.7f, 0.1f, 0.6f}), 50000);
+    const double theta_deg = std::acos(double(normalize(Vec3{0.7f, 0.1f, 0.6f}).z)) * 180 / std::numbers::pi;
+    for (size_t lane = 0; lane < 3; ++lane) {
+      const leaf::Tissue tissue = model.at(leaf.lambda().nm[lane]);
+      const leaf::Shares exact = leaf::solve(tissue, std::array{theta_deg})[0];
+      const Estimate &r = measured.reflected[lane], &t = measured.transmitted[lane];
+      EXPECT_NEAR(r.mean(), exact.surface + exact.subsurface, limit * r.standard_error() + 1e-5) << mode << lane;
+      EXPECT_NEAR(t.mean(), exact.transmitted, limit * t.standard_error() + 1e-5) << mode << lane;
+    }
+  }
+}
+
+TEST(Abm, SamplesEveryActiveLane) {
   Ready leaf("abm", {});
   RandomStream rng(1);
-  const Bsdf& bsdf = leaf.bsdf();
-  std::array<int, 3> drawn{};
-  for (int i = 0; i < 300; ++i) {
-    const auto s = bsdf.sample({0, 0, -1}, rng.uniform(), {rng.uniform(), rng.uniform()}, rng);
+  const auto s = leaf.bsdf().sample({0, 0, 1}, 0.01f, {0.5f, 0.25f}, rng);  // off the surface
+  ASSERT_TRUE(s);
+  EXPECT_TRUE(s->pdf_is_approximate);
+  for (int lane = 0; lane < 3; ++lane) EXPECT_GT(s->f[lane], 0) << lane;
+}
+
+TEST(Abm, IsWhereATextureSaysTheLeafOfThatValue) {
+  Ready varied("abm", {texture("chlorophylla", {"1:2"}), texture("thickness", {"0.001:0.003"}),
+                       texture("spongyaspect", {"2:3"}), texture("cuticleaspect", {"1:7"})});
+  Ready constant("abm", {number("float", "chlorophylla", {1.5}), number("float", "thickness", {0.002}),
+                         number("float", "spongyaspect", {2.5}), number("float", "cuticleaspect", {4})});
+  const Vec3 wo = normalize(Vec3{0.3f, 0.2f, 0.5f}), wi = normalize(Vec3{0.3f, -0.2f, 0.8f});
+  for (uint64_t key = 0; key < 300; ++key) {
+    RandomStream a(key), b(key);
+    const float uc = a.uniform();
+    b.uniform();
+    const auto s = varied.bsdf({0.5f, 0}).sample(wo, uc, {0.2f, 0.7f}, a);
+    const auto t = constant.bsdf().sample(wo, uc, {0.2f, 0.7f}, b);
+    const float f = varied.bsdf({0.5f, 0}).f(wo, wi, a)[1], g = constant.bsdf().f(wo, wi, b)[1];
+    EXPECT_NEAR(f, g, 1e-3f * g) << key;
+    ASSERT_EQ(s.has_value(), t.has_value()) << key;
     if (!s) continue;
-    EXPECT_TRUE(s->pdf_is_approximate);
-    int lit = 0;
-    for (int lane = 0; lane < 3; ++lane)
-      if (s->f[lane] > 0) ++lit, ++drawn[static_cast<size_t>(lane)];
-    EXPECT_EQ(lit, 1);
+    EXPECT_LT(length(s->wi - t->wi), 1e-4f) << key;
+    EXPECT_NEAR(s->f[1], t->f[1], 1e-3f * t->f[1]) << key;
   }
-  for (const int count : drawn) EXPECT_GT(count, 0);
+}
+
+/// Mean weights of `scatter`, and of the lobes that are the surface's.
+std::array<Estimate, 2> scattered(Ready& leaf, const Vec3& incident) {
+  std::array<Estimate, 2> all_and_surface;
+  std::vector<Scattered> rays(40000);
+  RandomStream rng(7);
+  leaf.bsdf().scatter(incident, rng, rays);
+  for (const Scattered& ray : rays) {
+    all_and_surface[0].add(ray.weight[1]);
+    all_and_surface[1].add(any(ray.lobe & Lobes::surface) ? ray.weight[1] : 0);
+  }
+  return all_and_surface;
+}
+
+TEST(Abm, IsTheSameLeafToInstrumentsWhateverIsIncident) {
+  Ready traced("abm", {}), light("abm", {words("incident", {"light"})});
+  const Vec3 incident = normalize(Vec3{1, 0, 1});
+  const auto a = scattered(traced, incident), b = scattered(light, incident);
+  for (size_t i = 0; i < 2; ++i) EXPECT_LT(std::abs(z_score(a[i], b[i])), z_limit(2)) << i;
+  EXPECT_FALSE(any(traced.bsdf().flags() & Lobes::from_light));
+  EXPECT_TRUE(any(light.bsdf().flags() & Lobes::from_light));
+}
+
+TEST(Abm, FromLightIsTheLeafTheOtherWayRound) {
+  Ready traced("abm", {}), light("abm", {words("incident", {"light"})});
+  const Vec3 a = normalize(Vec3{0.1f, 0, 1}), b = normalize(Vec3{2, 0.5f, 1});
+  for (uint64_t key = 0; key < 20; ++key) {
+    RandomStream x(key), y(key);
+    EXPECT_EQ(light.bsdf().f(a, b, x), traced.bsdf().f(b, a, y));
+  }
 }
 
 }  // namespace
