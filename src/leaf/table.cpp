@@ -6,24 +6,26 @@
 #include <numbers>
 #include <numeric>
 
-#include "leaf/walk.h"
+#include "leaf/batch_walk.h"
 
 namespace frond::leaf {
 namespace {
 
 /// The paper's virtual spectrophotometer: counts of where rays go.
-Shares measure(const Tissue& tissue, double theta_deg, int rays, RandomStream rng) {
+Shares measure(const Tissue& tissue, double theta_deg, int rays, uint64_t key) {
   if (theta_deg == 90) return {.surface = 1};  // Fresnel's limit at grazing; a ray along the leaf never meets it
   const double theta = theta_deg * std::numbers::pi / 180;
   const Vec3d wo{std::sin(theta), 0, std::cos(theta)};
-  int surface = 0, subsurface = 0, transmitted = 0;
-  for (int i = 0; i < rays; ++i) {
-    const Fate fate = walk(tissue, wo, Absorption::analog, rng).fate;
-    surface += fate == Fate::surface;
-    subsurface += fate == Fate::reflected;
-    transmitted += fate == Fate::transmitted;
+  std::array<int, 4> counts{};  // by Fate
+  std::array<BatchRay, 4096> batch;
+  const auto all = static_cast<size_t>(rays);
+  for (size_t first = 0; first < all; first += batch.size()) {
+    const std::span<BatchRay> some(batch.data(), std::min(batch.size(), all - first));
+    walk_batch(tissue, wo, Absorption::analog, key, some, first);
+    for (const BatchRay& ray : some) ++counts[static_cast<size_t>(ray.fate)];
   }
-  return {1.0 * surface / rays, 1.0 * subsurface / rays, 1.0 * transmitted / rays};
+  const auto share = [&](Fate fate) { return 1.0 * counts[static_cast<size_t>(fate)] / rays; };
+  return {share(Fate::surface), share(Fate::reflected), share(Fate::transmitted)};
 }
 
 Shares standard_error(const Shares& s, int rays) {
@@ -45,9 +47,8 @@ void fill_by_monte_carlo(Table& table, const TissueModel& model, const TableRequ
   pool.for_each(static_cast<int64_t>(table.shares.size()), [&](int64_t index, int) {
     const auto i = static_cast<size_t>(index);
     const double theta_deg = table.theta_deg[i % angles], lambda_nm = table.wavelengths_nm[i / angles];
-    const RandomStream rng(
-        hash_key(request.seed, std::bit_cast<uint64_t>(lambda_nm), std::bit_cast<uint64_t>(theta_deg)));
-    table.shares[i] = measure(model.at(lambda_nm), theta_deg, request.rays, rng);
+    const uint64_t key = hash_key(request.seed, std::bit_cast<uint64_t>(lambda_nm), std::bit_cast<uint64_t>(theta_deg));
+    table.shares[i] = measure(model.at(lambda_nm), theta_deg, request.rays, key);
     table.standard_errors[i] = standard_error(table.shares[i], request.rays);
   });
   table.error = largest_difference(table.standard_errors, std::vector<Shares>(table.shares.size()));

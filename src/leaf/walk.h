@@ -14,7 +14,7 @@ namespace frond::leaf {
 /// came from, wi to where it leaves to. Both want |z| > 0.
 
 /// Increase with any change that may change results: tables on disk are kept by it.
-inline constexpr int kWalkVersion = 1;
+inline constexpr int kWalkVersion = 2;
 
 /// How the mesophyll absorbs: whole rays at random, or a share of each. The means agree. Weighted walks end by
 /// roulette.
