@@ -5,7 +5,6 @@
 #include "cli/number_list.h"
 #include "core/parallel.h"
 #include "leaf/constants.h"
-#include "leaf/constants.h"
 #include "leaf/table_cache.h"
 #include "leaf/table_file.h"
 #include "materials/leaf_params.h"

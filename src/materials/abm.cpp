@@ -1,6 +1,6 @@
 #include "core/material.h"
 #include "core/sampling.h"
-#include "leaf/walk.h"
+#include "leaf/batch_walk.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/surface_lobe.h"
 
@@ -68,6 +68,7 @@ class AbmBsdf : public Bsdf {
   }
 
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
+    if (lanes_.count == 1 && incident.z != 0) return scatter_batch(incident, rng, rays);
     for (Scattered& ray : rays) {
       const float uc = rng.uniform(), u = rng.uniform();
       ray = walk(incident, uc, {u, rng.uniform()}, rng);
@@ -95,6 +96,19 @@ class AbmBsdf : public Bsdf {
   bool is_empty() const { return lanes_.count == 0; }
 
  private:
+  void scatter_batch(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const {
+    std::array<leaf::BatchRay, 256> batch;
+    while (!rays.empty()) {
+      const auto part = std::span(batch).first(std::min(batch.size(), rays.size()));
+      leaf::walk_batch(tissue(), in_double(incident), absorption_, rng.bits(), part);
+      for (size_t i = 0; i < part.size(); ++i) {
+        rays[i] = {part[i].wi, lobes_of(part[i].fate), {}};
+        rays[i].weight[lanes_.lane[0]] = part[i].weight;
+      }
+      rays = rays.subspan(part.size());
+    }
+  }
+
   /// `uc` draws the hero and then the first branch.
   Scattered walk(const Vec3& incident, float uc, Vec2 u, RandomStream& rng) const {
     if (incident.z == 0 || lanes_.count == 0) return {};
