@@ -1,0 +1,49 @@
+#include "instruments/beam.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace frond {
+
+Vec3 toward_light(const Beam& beam) {
+  constexpr float kGrazing = 1e-7f;
+  if (beam.theta_deg == 90) return {1, 0, kGrazing};
+  const double theta = beam.theta_deg * std::numbers::pi / 180;
+  return {static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
+}
+
+void check_beam(const Beam& beam) {
+  if (!(beam.theta_deg >= 0 && beam.theta_deg <= 180))
+    fail({}, "the angle of incidence goes from 0 to 180 degrees, {} was given", beam.theta_deg);
+  if (!(beam.lambda_nm > 0 && std::isfinite(beam.lambda_nm)))
+    fail({}, "a wavelength is a positive number of nanometres, {} was given", beam.lambda_nm);
+}
+
+void check_rays(int64_t rays) {
+  if (rays < 2) fail({}, "a measurement takes 2 rays at least, for its standard error; {} were asked for", rays);
+}
+
+const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
+  Hit hit;
+  hit.ng = {0, 0, 1};
+  hit.shading = Frame::around(hit.ng);
+  hit.uv = {0.5f, 0.5f};
+  const Bsdf* bsdf = material.evaluate(hit, OneWavelength(beam.lambda_nm).sample(0), arena);
+  if (!bsdf) fail({}, "the material says that it has no surface there: nothing can be measured");
+  return *bsdf;
+}
+
+SampledWavelengths OneWavelength::sample(float) const {
+  SampledWavelengths lambda;
+  lambda.count = 1;
+  lambda.nm[0] = nm_;
+  lambda.pdf[0] = 1;
+  lambda.active[0] = true;
+  return lambda;
+}
+
+std::array<double, 3> OneWavelength::sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const {
+  return {double(radiance[0]), double(radiance[0]), double(radiance[0])};
+}
+
+}  // namespace frond

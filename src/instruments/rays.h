@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/parallel.h"
+#include "instruments/beam.h"
+
+namespace frond {
+
+/// Rays are shot in blocks, each with a random stream of its own.
+inline constexpr int64_t kRaysPerBlock = 1 << 16;
+
+/// Called now and then, from the measuring thread, with the rays shot so far.
+using RayProgress = std::function<void(int64_t rays)>;
+
+/// What becomes of the rays of one block, a batch at a time. What they do depends on the exposure and the block's
+/// number alone.
+class RayBlock {
+ public:
+  RayBlock(const Exposure& exposure, int64_t number)
+      : bsdf_(bsdf_of(exposure.material, exposure.beam, arena_)),
+        toward_light_(toward_light(exposure.beam)),
+        rng_(hash_key(exposure.seed, std::bit_cast<uint64_t>(exposure.beam.theta_deg),
+                      std::bit_cast<uint64_t>(exposure.beam.lambda_nm), number)) {}
+  RayBlock(const RayBlock&) = delete;
+  RayBlock& operator=(const RayBlock&) = delete;
+
+  std::span<const Scattered> next(int64_t wanted) {
+    const std::span batch = std::span(rays_).first(static_cast<size_t>(std::min<int64_t>(wanted, kBatch)));
+    bsdf_.scatter(toward_light_, rng_, batch);
+    return batch;
+  }
+
+ private:
+  static constexpr int64_t kBatch = 512;
+
+  Arena arena_;
+  const Bsdf& bsdf_;
+  Vec3 toward_light_;
+  RandomStream rng_;
+  std::array<Scattered, kBatch> rays_;
+};
+
+/// Shoots rays number `first` to `last` and adds them to `total`. `first` is a multiple of kRaysPerBlock. A Tally has
+/// add(ray), add(tally) and clear(); those of the blocks are added in their order, so that sums have the same bits for
+/// any number of threads.
+template <class Tally>
+void shoot(const Exposure& exposure, int64_t first, int64_t last, Tally& total, const ThreadPool& pool,
+           const RayProgress& progress) {
+  const int64_t wave = int64_t{kRaysPerBlock} * 8 * pool.size();
+  Tally blank = total;
+  blank.clear();
+  std::vector<Tally> tallies(8 * static_cast<size_t>(pool.size()), blank);
+  for (int64_t start = first; start < last; start += wave) {
+    const int64_t end = std::min(last, start + wave), blocks = (end - start + kRaysPerBlock - 1) / kRaysPerBlock;
+    pool.for_each(blocks, [&](int64_t i, int) {
+      Tally& tally = tallies[static_cast<size_t>(i)];
+      tally.clear();
+      RayBlock block(exposure, start / kRaysPerBlock + i);
+      for (int64_t left = std::min(kRaysPerBlock, end - start - i * kRaysPerBlock); left > 0;) {
+        const auto batch = block.next(left);
+        for (const Scattered& ray : batch) tally.add(ray);
+        left -= static_cast<int64_t>(batch.size());
+      }
+    });
+    for (int64_t i = 0; i < blocks; ++i) total.add(tallies[static_cast<size_t>(i)]);
+    if (progress) progress(end);
+  }
+}
+
+}  // namespace frond
