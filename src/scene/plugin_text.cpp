@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 namespace frond {
 namespace {
@@ -15,11 +16,34 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-double number(const std::string& name, const std::string& text, const Location& where) {
+std::optional<double> number(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0') fail(where, "\"{}\" is a number, {} was given", name, text);
+  if (text.empty() || *end != '\0') return {};
   return value;
+}
+
+std::vector<double> numbers(const std::string& name, const std::string& text, const Location& where) {
+  std::vector<double> values;
+  for (const std::string& part : split(text, ',')) {
+    const auto value = number(part);
+    if (!value) fail(where, "\"{}\" is a number, {} was given", name, text);
+    values.push_back(*value);
+  }
+  return values;
+}
+
+/// One number: that at every wavelength. Three: rgb. Pairs: wavelengths (nm) and values. Else a name or an .spd file.
+void set_spectrum(const std::string& text, const Location& where, ParsedParam& p) {
+  p.type = "spectrum";
+  if (!number(split(text, ',')[0])) {
+    p.values = std::vector<std::string>{text};
+    return;
+  }
+  auto values = numbers(p.name, text, where);
+  if (values.size() == 1) values = {360, values[0], 2500, values[0]};
+  if (values.size() == 3) p.type = "rgb";
+  p.values = std::move(values);
 }
 
 /// The value as a scene file would have it.
@@ -32,14 +56,20 @@ ParsedParam typed(const Param& declared, const std::string& text, const Location
       p.values = std::vector<bool>{text == "true"};
       return p;
     case ParamKind::string:
+    case ParamKind::material:
       p.type = "string";
-      p.values = std::vector<std::string>{text};
+      p.values = declared.list ? split(text, ',') : std::vector<std::string>{text};
+      return p;
+    case ParamKind::illuminant:
+    case ParamKind::albedo:
+    case ParamKind::spectrum_texture:
+      set_spectrum(text, where, p);
       return p;
     case ParamKind::integer:
     case ParamKind::real:
     case ParamKind::float_texture:
       p.type = declared.kind == ParamKind::integer ? "integer" : "float";
-      p.values = std::vector<double>{number(p.name, text, where)};
+      p.values = numbers(p.name, text, where);
       return p;
     default:
       fail(where, "\"{}\" cannot be given on the command line: write it in the scene", p.name);

@@ -18,7 +18,9 @@ struct PluginText {
 PluginText parse_plugin_text(const std::string& text, const Location& where);
 
 /// Puts the text's parameters into `plugin`, in place of those of the same name there; types follow from the
-/// declarations of `info`. Throws InputError at `where` for unknown names and for values of the wrong type.
+/// declarations of `info`: lists have commas in them, and a spectrum is one number (the same at every wavelength),
+/// three (rgb), pairs of wavelength (nm) and value, the name of one, or an .spd file. Throws InputError at `where` for
+/// unknown names and for values of the wrong type.
 void set_params(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin);
 
 }  // namespace frond
