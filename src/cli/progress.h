@@ -1,22 +1,37 @@
 #pragma once
 
+#include <string>
+
 #include "integrators/render.h"
 
 namespace frond {
 
-/// A line on a terminal's standard error that says how far the render is; nothing when it is piped or `quiet`.
-class ProgressLine {
+/// A line on a terminal's standard error that is written over and over, and gone at the end; nothing when it is piped
+/// or `quiet`.
+class TerminalLine {
  public:
-  explicit ProgressLine(bool quiet);
-  ~ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
+  explicit TerminalLine(bool quiet);
+  ~TerminalLine();
+  TerminalLine(const TerminalLine&) = delete;
+  TerminalLine& operator=(const TerminalLine&) = delete;
 
-  void operator()(double fraction, const RenderStatistics& so_far);
+  /// Whether it is time for a new text, `seconds` after the start.
+  bool is_due(double seconds);
+  void show(const std::string& text);
 
  private:
   bool active_;
   double last_shown_ = -1;
+};
+
+/// How far a render is.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet) : line_(quiet) {}
+  void operator()(double fraction, const RenderStatistics& so_far);
+
+ private:
+  TerminalLine line_;
 };
 
 }  // namespace frond

@@ -3,10 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/common_options.h"
 #include "cli/output.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
@@ -50,20 +50,12 @@ Crop crop_of(const std::vector<double>& v, const FilmSettings& film) {
   return crop;
 }
 
-std::filesystem::path cache_directory(const RenderOptions& options) {
-  if (options.no_cache) return {};
-  if (!options.cache.empty()) return options.cache;
-  if (const char* base = std::getenv("XDG_CACHE_HOME"); base && *base) return std::filesystem::path(base) / "frond";
-  if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "frond";
-  return {};
-}
-
 SceneOverrides overrides_of(const RenderOptions& options) {
   SceneOverrides overrides;
   overrides.wavelengths = options.wavelengths;
   if (options.seed_given) overrides.seed = options.seed;
   for (const std::string& swap : options.swaps) overrides.swaps.push_back(parse_swap(swap));
-  overrides.cache_dir = cache_directory(options);
+  overrides.cache_dir = cache_directory(options.cache, options.no_cache);
   overrides.quick = options.quick;
   return overrides;
 }
@@ -158,13 +150,6 @@ std::string command_line_of(const RenderOptions& o) {
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
   if (o.quick) line += " --quick";
   return line;
-}
-
-/// CLI11 alone lets -1 and 10^30 become the largest number.
-std::string is_seed(const std::string& text) {
-  uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  return error == std::errc() && end == text.data() + text.size() ? "" : "a whole number from 0 to 2^64 - 1 is needed";
 }
 
 }  // namespace

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "cli/specimen.h"
+#include "core/parallel.h"
+#include "instruments/beam.h"
+#include "instruments/rays.h"
+
+namespace CLI {
+class App;
+}
+
+namespace frond {
+
+/// What both instruments are told on the command line.
+struct InstrumentOptions {
+  std::vector<std::string> material;  ///< NAME parameter=value ...
+  std::vector<std::string> with;      ///< further materials, each in one word
+  std::vector<std::string> plugins;   ///< shared objects
+  std::vector<std::string> angles = {"8"}, wavelengths;
+  std::string rays, csv, json, plot, cache;
+  uint64_t seed = 0;
+  int threads = 0;
+  bool no_cache = false, quiet = false;
+};
+
+void add_instrument_options(CLI::App& command, InstrumentOptions& options);
+
+/// A bench with everything on it: made before the first ray is shot, so that what is wrong is told at once.
+class InstrumentBench {
+ public:
+  /// Throws InputError for lists, names, parameters, angles and wavelengths that are wrong, and for outputs that cannot
+  /// be written.
+  explicit InstrumentBench(const InstrumentOptions& options);
+
+  const ThreadPool& pool() const { return pool_; }
+  const Log& log() const { return log_; }
+  const std::vector<double>& angles_deg() const { return angles_deg_; }
+  const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
+  const std::vector<Specimen>& specimens() const { return specimens_; }
+  size_t size() const { return specimens_.size() * angles_deg_.size() * wavelengths_nm_.size(); }
+
+  /// Exposure number i: wavelengths run fastest, then angles, then specimens. Random numbers differ from one to the
+  /// next, by material, angle and wavelength, not by place in the list.
+  Exposure exposure(size_t i) const;
+  const Specimen& specimen(size_t i) const { return specimens_[i / (angles_deg_.size() * wavelengths_nm_.size())]; }
+
+ private:
+  ThreadPool pool_;
+  Log log_;
+  uint64_t seed_;
+  std::vector<double> angles_deg_, wavelengths_nm_;
+  std::vector<Specimen> specimens_;
+};
+
+/// Tells on a terminal how far a list of exposures is.
+class InstrumentProgress {
+ public:
+  InstrumentProgress(size_t exposures, int64_t rays_each, bool quiet);
+  ~InstrumentProgress();
+  InstrumentProgress(const InstrumentProgress&) = delete;
+  InstrumentProgress& operator=(const InstrumentProgress&) = delete;
+
+  void start(size_t exposure) { exposure_ = exposure; }
+  void operator()(int64_t rays);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  size_t exposures_, exposure_ = 0;
+  int64_t rays_each_;
+};
+
+/// The lines that begin every file an instrument writes: who measured what, and which way the light went.
+std::vector<std::string> instrument_notes(const std::string& instrument, const InstrumentOptions& options,
+                                          const InstrumentBench& bench);
+
+}  // namespace frond

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "instruments/spectrophotometer.h"
+
+namespace frond {
+
+/// A spectrophotometer's reading and the material it is of.
+struct LabelledReading {
+  std::string material;
+  SpectrophotometerReading reading;
+};
+
+/// Comment lines, a line of names, a line for each reading; Rs and Rd blank where the material does not tell them
+/// apart.
+std::string shares_csv(const std::vector<std::string>& notes, const std::vector<LabelledReading>& readings);
+
+/// The same, null for blank, and the notes as a list.
+std::string shares_json(const std::vector<std::string>& notes, const std::vector<LabelledReading>& readings);
+
+/// For people: each value with its standard error in units of its last digits.
+std::string shares_text(const std::vector<LabelledReading>& readings);
+
+/// A gnuplot script: reflectance from below and transmittance from above, as is usual for leaves, so that what lies
+/// between is absorbed. Against wavelength or angle, whichever has more values; a colour for each material and each
+/// value of the other. Throws InputError where there is nothing to plot against, or there are more curves than colours.
+std::string shares_chart(const std::vector<LabelledReading>& readings);
+
+/// Throws as shares_chart does, before anything is measured.
+void check_shares_chart(size_t materials, size_t angles, size_t wavelengths);
+
+}  // namespace frond

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/material.h"
+#include "scene/registry.h"
+
+namespace frond {
+
+/// A material as a command line gives it, `abm specimen=soybean`, made without a scene and prepared for wavelengths one
+/// by one.
+class Specimen {
+ public:
+  /// Throws InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not
+  /// reach.
+  Specimen(const std::vector<std::string>& words, const Registry& registry, const std::vector<double>& wavelengths_nm,
+           ThreadPool& pool, const Log& log, const std::filesystem::path& cache_dir);
+
+  const std::string& label() const { return label_; }
+  /// Prepared for the wavelength of that index.
+  const Material& at(size_t wavelength) const { return *materials_[wavelength]; }
+
+ private:
+  std::string label_;
+  std::vector<std::shared_ptr<Material>> materials_;
+};
+
+}  // namespace frond
