@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -183,38 +184,66 @@ std::array<VectorXd, Tissue::kMedia> survivals(const Tissue& tissue, const Chain
   return result;
 }
 
+Outcome swapped(const Outcome& outcome) { return outcome.rowwise().reverse(); }
+
 /// Mean over the places of the air space. Grazing rays make the integrand behave like p ln p at both ends: the change
-/// of variable p = s^2 (3 - 2 s) takes that away.
-Prospects mean_prospects(const Tissue& tissue, const Chain& chain, int nodes) {
+/// of variable p = s^2 (3 - 2 s) takes that away. Such a leaf is the same seen from below, with 1 - p for p: so half of
+/// the places tell the whole.
+Prospects mean_prospects(const Tissue& tissue, const Chain& chain, int places) {
   if (!tissue.air_space_moves) return prospects(chain, survivals(tissue, chain, 1));
-  Prospects sum{Outcome::Zero(chain.count(kFirst), 2), Outcome::Zero(chain.count(kLast), 2)};
-  for (const auto& [s, weight] : gauss_legendre(nodes)) {
+  Outcome sum = Outcome::Zero(chain.count(kFirst), 2);
+  for (const auto& [s, weight] : gauss_legendre(places)) {
+    constexpr double kMiddle = 0.5, kRounding = 1e-12;
+    if (s > kMiddle + kRounding) break;
     const Prospects part = prospects(chain, survivals(tissue, chain, s * s * (3 - 2 * s)));
-    const double w = weight * 6 * s * (1 - s);
-    sum.from_above += w * part.from_above;
-    sum.from_below += w * part.from_below;
+    const double w = weight * 6 * s * (1 - s) * (s > kMiddle - kRounding ? 0.5 : 1);  // the middle is its own mirror
+    sum += w * (part.from_above + swapped(part.from_below));
   }
-  return sum;
+  return {sum, swapped(sum)};
 }
 
 }  // namespace
 
+int solver_nodes(const Tissue& tissue) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (size_t m = kFirst; m <= kLast; ++m)
+    for (const bool up : {false, true})
+      for (const bool refracts : {false, true})
+        if (const Lobe* lobe = tissue.lobes[up ? m - 1 : m][up][refracts]) {
+          least = std::min(least, lobe->exponent());
+          most = std::max(most, lobe->exponent());
+        }
+  constexpr double kSmooth = 1, kNarrow = 20;
+  return least >= kSmooth && most <= kNarrow ? 6 : 12;
+}
+
 std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_deg, int nodes) {
   const Chain chain(tissue, nodes);
-  const Prospects inside = mean_prospects(tissue, chain, nodes);
+  const Prospects inside = mean_prospects(tissue, chain, 2 * nodes);
   const AzimuthMean entrance(tissue.lobes[0][false][true]->exponent());
+  std::map<double, VectorXd> entrances;  // both epidermes are of one index: each angle serves both sides
+  const auto entering = [&](double mu) -> const VectorXd& {
+    VectorXd& row = entrances[mu];
+    if (row.size() == 0) row = spread(entrance, mu, chain.directions(kFirst));
+    return row;
+  };
   std::vector<Shares> result;
   for (const double theta : theta_deg) {
     const bool above = theta <= 90;
-    const double mu = theta == 90 ? 0 : std::abs(std::cos(theta * std::numbers::pi / 180));
+    const double from_normal = above ? theta : 180 - theta;
+    const double mu = from_normal == 90 ? 0 : std::cos(from_normal * std::numbers::pi / 180);
     const Crossing surface = fresnel(mu, 1 / tissue.n_cuticle());
-    const VectorXd row = spread(entrance, surface.cos_t, chain.directions(above ? kFirst : kLast));
-    const Eigen::RowVector2d out = row.transpose() * (above ? inside.from_above : inside.from_below);
+    const Eigen::RowVector2d out =
+        entering(surface.cos_t).transpose() * (above ? inside.from_above : inside.from_below);
     const double enters = 1 - surface.reflectance;
     result.push_back(
         {surface.reflectance, enters * out[above ? kAdaxial : kAbaxial], enters * out[above ? kAbaxial : kAdaxial]});
   }
   return result;
+}
+
+std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_deg) {
+  return solve(tissue, theta_deg, solver_nodes(tissue));
 }
 
 }  // namespace frond::leaf

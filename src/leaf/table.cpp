@@ -68,7 +68,8 @@ void fill_by_solving(Table& table, const TissueModel& model, const ThreadPool& p
   pool.for_each(static_cast<int64_t>(judged.size() + count), [&](int64_t index, int) {
     const auto i = static_cast<size_t>(index);
     if (i < judged.size()) {
-      finer[i] = solve(model.at(table.wavelengths_nm[judged[i]]), table.theta_deg, kSolverNodes * 3 / 2);
+      const Tissue tissue = model.at(table.wavelengths_nm[judged[i]]);
+      finer[i] = solve(tissue, table.theta_deg, solver_nodes(tissue) * 3 / 2);
       return;
     }
     const size_t w = i - judged.size();

@@ -74,7 +74,7 @@ std::string describe(const TableRequest& request) {
   if (request.method == TableMethod::monte_carlo)
     text += fmt::format("# rays {}, seed {}, walk {}", request.rays, request.seed, kWalkVersion);
   else
-    text += fmt::format("# nodes {}, solver {}", kSolverNodes, kSolverVersion);
+    text += fmt::format("# solver {}", kSolverVersion);
   return text + fmt::format(", constants {:016x}\n# wavelengths_nm {}\n# theta_deg {}\n", constants_hash(),
                             list_text(request.wavelengths_nm), list_text(request.theta_deg));
 }

@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-constexpr std::string_view kMethods[] = {"auto", "montecarlo", "solve"};
+constexpr std::string_view kMethods[] = {"solve", "montecarlo"};
 constexpr Param kOwn[] = {
     {.name = "oblateness",
      .kind = ParamKind::real,
@@ -20,9 +20,8 @@ constexpr Param kOwn[] = {
      .doc = "Light sampling sees the surface lobe; false, as published: only rays that follow the lobe do."},
     {.name = "tablemethod",
      .kind = ParamKind::string,
-     .default_value = std::string_view("auto"),
-     .doc = "How reflectance and transmittance are found: random walks, as published, or a solution without noise. "
-            "auto: walks where the wavelengths are fixed, else the solution.",
+     .default_value = std::string_view("solve"),
+     .doc = "How reflectance and transmittance are found: solve, without noise, or by random walks, as published.",
      .choices = kMethods},
     {.name = "tablerays",
      .kind = ParamKind::integer,
@@ -87,13 +86,13 @@ class LeafSimplified final : public Material {
  public:
   explicit LeafSimplified(const Params& p)
       : leaf_(p),
-        method_(p.string("tablemethod")),
         surface_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
         surface_direct_(p.boolean("surfacedirect")) {
     if (!leaf_.is_constant()) fail(p.where(), "leaf_simplified takes no textures: abm does");
     if (leaf_.from_light()) fail(p.where("incident"), "leaf_simplified takes \"traced\" alone: abm takes \"light\"");
     request_.params = leaf_.tissue();
     request_.theta_deg = table_angles(request_.params);
+    if (p.string("tablemethod") == "montecarlo") request_.method = leaf::TableMethod::monte_carlo;
     request_.rays = p.integer("tablerays");
     if (p.given("tablefile")) take_file(p);
   }
@@ -123,9 +122,7 @@ class LeafSimplified final : public Material {
   }
 
   leaf::TableRequest request_for(const WavelengthStrategy& wavelengths) const {
-    const bool walks = method_ == "montecarlo" || (method_ == "auto" && !wavelengths.fixed_nm().empty());
     leaf::TableRequest request = request_;
-    request.method = walks ? leaf::TableMethod::monte_carlo : leaf::TableMethod::solve;
     request.wavelengths_nm = table_wavelengths(wavelengths);
     return request;
   }
@@ -156,7 +153,6 @@ class LeafSimplified final : public Material {
   };
 
   LeafParams leaf_;
-  std::string method_;
   Location where_;              ///< of the file
   std::filesystem::path file_;  ///< empty: the table is made
   std::vector<Unused> unused_;

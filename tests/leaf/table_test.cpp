@@ -1,5 +1,6 @@
 #include "leaf/table.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -39,20 +40,54 @@ TEST(Solver, GivesTheCheckFigures) {
   }
 }
 
-TEST(Solver, ConvergesAsStated) {
+/// Both sides, grazing angles above all.
+std::vector<double> test_angles() {
+  std::vector<double> angles = even_steps(0, 180, 4);
+  for (const double grazing : {85.0, 86.0, 87.0, 89.0, 89.9, 90.1, 91.0, 93.0, 95.0}) angles.push_back(grazing);
+  return angles;
+}
+
+void expect_converged(const Tissue& tissue, double tolerance, const std::string& what) {
+  const auto angles = test_angles();
+  const int nodes = solver_nodes(tissue);
+  const auto coarse = solve(tissue, angles), fine = solve(tissue, angles, 2 * nodes);
+  for (size_t i = 0; i < angles.size(); ++i) {
+    EXPECT_EQ(coarse[i].surface, fine[i].surface);
+    EXPECT_NEAR(coarse[i].subsurface, fine[i].subsurface, tolerance) << what << " at " << angles[i];
+    EXPECT_NEAR(coarse[i].transmitted, fine[i].transmitted, tolerance) << what << " at " << angles[i];
+  }
+}
+
+TEST(Solver, IsNearItsAnswerAtTwiceTheNodes) {
   for (const char* specimen : {"soybean", "maize"})
-    for (const double aspect : {0.0, 0.5, 5.0, 100.0}) {
+    for (const bool sieve : {false, true}) {
+      TissueParams params = find_specimen(specimen)->params;
+      params.sieve_and_detour = sieve;
+      const TissueModel model(params);
+      for (const double nm : {455.0, 551.0, 608.0, 680.0, 800.0}) expect_converged(model.at(nm), 1e-5, specimen);
+    }
+}
+
+TEST(Solver, ConvergesAsStatedForOtherLobes) {
+  struct {
+    double aspect, tolerance;
+  } constexpr kStated[] = {{0, 4e-4}, {0.5, 4e-5}, {2.5, 1e-5}, {20, 1e-5}, {100, 1e-5}};
+  for (const auto& [aspect, tolerance] : kStated)
+    for (const char* specimen : {"soybean", "maize"}) {
       TissueParams params = find_specimen(specimen)->params;
       params.epidermis_aspect = params.spongy_aspect = params.palisade_aspect = aspect;
       const TissueModel model(params);
-      const Tissue tissue = model.at(455);
-      const std::array angles{0.0, 50.0, 88.0, 110.0};
-      const auto coarse = solve(tissue, angles), fine = solve(tissue, angles, 20);
-      for (size_t i = 0; i < angles.size(); ++i) {
-        EXPECT_NEAR(coarse[i].subsurface, fine[i].subsurface, 1e-4) << specimen << " " << aspect;
-        EXPECT_NEAR(coarse[i].transmitted, fine[i].transmitted, 1e-4) << specimen << " " << aspect;
-      }
+      expect_converged(model.at(455), tolerance, fmt::format("{} with lobes of {}", specimen, aspect));
     }
+}
+
+TEST(Solver, UnifacialLeafHasEqualSides) {
+  const TissueModel maize(find_specimen("maize")->params);
+  const auto s = solve(maize.at(551), std::array{0.0, 30.0, 89.0, 91.0, 150.0, 180.0});
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(s[i].subsurface, s[5 - i].subsurface, 1e-14);
+    EXPECT_NEAR(s[i].transmitted, s[5 - i].transmitted, 1e-14);
+  }
 }
 
 TEST(Solver, LeafThatAbsorbsNothingLosesNothing) {
@@ -193,13 +228,19 @@ void expect_near(const SampledShares& looked_up, int lane, const Shares& exact, 
 }
 
 TEST(TableLookup, IsRightBetweenDegreesAndAtGrazing) {
-  const TableRequest request = request_of("soybean", TableMethod::solve);
-  const TableLookup lookup = TableLookup::for_lanes(make_table(request, ThreadPool(2)));
-  const TissueModel model(request.params);
-  const Tissue green = model.at(551);
-  for (double theta = 0.25; theta < 180; theta += 1.5) {
-    const Shares exact = solve(green, std::array{theta})[0];
-    expect_near(lookup(static_cast<float>(cos_degrees(theta)), {}), 1, exact, 1e-4, theta);
+  for (const char* specimen : {"soybean", "maize"}) {
+    const TableRequest request = request_of(specimen, TableMethod::solve);
+    const TableLookup lookup = TableLookup::for_lanes(make_table(request, ThreadPool(2)));
+    const TissueModel model(request.params);
+    std::vector<double> angles = even_steps(0.25, 179.9, 1.5);
+    for (const double grazing : even_steps(85.05, 94.95, 0.11)) angles.push_back(grazing);
+    for (int lane = 0; lane < 3; ++lane) {
+      const std::vector<Shares> exact = solve(model.at(request.wavelengths_nm[static_cast<size_t>(lane)]), angles);
+      for (size_t i = 0; i < angles.size(); ++i) {
+        const SampledShares s = lookup(static_cast<float>(cos_degrees(angles[i])), {});
+        expect_near(s, lane, exact[i], 1e-4, angles[i]);
+      }
+    }
   }
 }
 

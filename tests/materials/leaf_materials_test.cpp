@@ -236,16 +236,33 @@ TEST(LeafSimplified, ScattersNothingAlongTheLeaf) {
   EXPECT_FALSE(leaf.bsdf().sample({1, 0, 0}, 0.5f, {0.5f, 0.5f}, rng));
 }
 
-TEST(LeafSimplified, SeesTheSameLeafWhetherWavelengthsAreFixedOrNot) {
-  Ready spectral("leaf_simplified", {}, "hero");
-  const leaf::TissueModel model(leaf::find_specimen("soybean")->params);
-  const Vec3 wo = normalize(Vec3{0, 1, -1}), wi = normalize(Vec3{0.2f, 0, 1});
-  RandomStream rng(1);
-  const SampledSpectrum f = spectral.bsdf().f(wo, wi, rng);
-  for (int lane = 0; lane < spectral.lambda().count; ++lane) {
-    const double nm = spectral.lambda().nm[static_cast<size_t>(lane)];
-    const leaf::Tissue tissue = model.at(nm);
-    EXPECT_NEAR(f[lane], leaf::solve(tissue, std::array{135.0})[0].transmitted / std::numbers::pi, 1e-3) << nm;
+/// Between angles, grazing ones above all, and between wavelengths, on both sides; as stated at kStep_nm.
+TEST(LeafSimplified, InterpolatesAsWellAsStated) {
+  for (const char* specimen : {"soybean", "maize"}) {
+    Ready spectral("leaf_simplified", {words("specimen", {specimen}), flag("surfacedirect", false)}, "hero");
+    const leaf::TissueModel model(leaf::find_specimen(specimen)->params);
+    RandomStream rng(5);
+    double sum = 0, count = 0;
+    const auto compare = [&](double measured, double exact, double theta_deg, double nm) {
+      EXPECT_NEAR(measured, exact, 8e-4) << specimen << " " << theta_deg << " " << nm;
+      sum += std::abs(measured - exact), ++count;
+    };
+    for (int i = 0; i < 60; ++i) {
+      spectral.sample_wavelengths(rng.uniform());
+      const double from_normal = i % 2 ? 85 + 5 * rng.uniform_double() : 90 * rng.uniform_double();
+      const double theta_deg = i % 4 < 2 ? from_normal : 180 - from_normal, theta = theta_deg * std::numbers::pi / 180;
+      const Vec3 wo{static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
+      const float side = wo.z > 0 ? 1.f : -1.f;
+      const SampledSpectrum back = spectral.bsdf().f(wo, {0, 0, side}, rng) * std::numbers::pi_v<float>;
+      const SampledSpectrum through = spectral.bsdf().f(wo, {0, 0, -side}, rng) * std::numbers::pi_v<float>;
+      for (int lane = 0; lane < spectral.lambda().count; ++lane) {
+        const double nm = spectral.lambda().nm[static_cast<size_t>(lane)];
+        const leaf::Shares exact = leaf::solve(model.at(nm), std::array{theta_deg})[0];
+        compare(back[lane], exact.subsurface, theta_deg, nm);
+        compare(through[lane], exact.transmitted, theta_deg, nm);
+      }
+    }
+    EXPECT_LT(sum / count, 5e-5) << specimen;
   }
 }
 

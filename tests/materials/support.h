@@ -74,6 +74,7 @@ class Ready {
 
   const Material& material() const { return *material_; }
   const SampledWavelengths& lambda() const { return lambda_; }
+  void sample_wavelengths(float u) { lambda_ = strategy_->sample(u); }
   const Bsdf& bsdf(Vec2 uv = {}) {
     arena_.reset();
     return *material_->evaluate({{}, {0, 0, 1}, Frame::around(Vec3{0, 0, 1}), uv}, lambda_, arena_);
