@@ -66,5 +66,23 @@ TEST(Architecture, ImageAndColourLibrariesStayInTheFilesThatNeedThem) {
   }
 }
 
+// A file that is compiled for instructions which a machine may lack must not bring inline functions that the linker
+// could take for other files.
+TEST(Architecture, KernelsForOtherInstructionsIncludeNothingWithFunctions) {
+  static const std::regex include(R"re(^\s*#include\s+(.+))re");
+  static const std::regex harmless(R"re(<c(stddef|stdint)>|<[a-z]mmintrin\.h>|"leaf/batch_(event|lanes|slots)\.h")re");
+  int includes = 0;
+  for (const char* file : {"batch_avx2.cpp", "batch_avx512.cpp", "batch_event.h", "batch_lanes.h", "batch_slots.h"}) {
+    std::ifstream in(std::string(FROND_SOURCE_DIR "/src/leaf/") + file);
+    std::smatch match;
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_search(line, match, include)) {
+        ++includes;
+        EXPECT_TRUE(std::regex_match(match[1].str(), harmless)) << file << ": " << line;
+      }
+  }
+  EXPECT_GE(includes, 8);
+}
+
 }  // namespace
 }  // namespace frond
