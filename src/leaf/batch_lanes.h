@@ -27,13 +27,16 @@ typedef float Floats __attribute__((vector_size(4 * kLanes)));
 typedef int32_t Ints __attribute__((vector_size(4 * kLanes)));  // masks too: -1 for true
 typedef uint32_t Bits __attribute__((vector_size(4 * kLanes)));
 
+/// From and to columns of Slots, aligned.
 template <class Register, class T>
 Register load(const T* from) {
-  return *reinterpret_cast<const Register*>(from);
+  Register value;
+  __builtin_memcpy(&value, __builtin_assume_aligned(from, sizeof(Register)), sizeof(Register));
+  return value;
 }
 template <class Register, class T>
 void store(T* to, Register value) {
-  *reinterpret_cast<Register*>(to) = value;
+  __builtin_memcpy(__builtin_assume_aligned(to, sizeof(Register)), &value, sizeof(Register));
 }
 
 inline Floats all(float x) { return Floats{} + x; }
