@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <ctime>
 
 #include "cli/commands.h"
 #include "cli/number_list.h"
@@ -18,7 +19,7 @@ struct TableOptions {
   std::vector<std::string> words;
   std::string specimen, method = "solve", wavelengths, angles = "0:180:1", output, rays = "1e6";
   uint64_t seed = 0;
-  int threads = 0;
+  int threads = 0, nodes = 0;
   bool equal_sides = false, quiet = false;
 };
 
@@ -85,6 +86,7 @@ leaf::TableRequest request_of(const TableOptions& options) {
   const int64_t rays = parse_count("--rays", options.rays, 1);
   if (rays > kMostRays) fail({}, "--rays goes up to {}, {} was given", kMostRays, rays);
   request.rays = static_cast<int>(rays);
+  request.nodes = options.nodes;
   check_wavelengths(request.wavelengths_nm);
   check_ascending(request.theta_deg);
   if (options.equal_sides) request.theta_deg = on_both_sides(request.theta_deg);
@@ -103,14 +105,17 @@ void write(const std::string& path, const std::string& text) {
 void make_table_file(const TableOptions& options) {
   if (options.output != "-") check_replaceable(options.output);  // now, not after the walks
   const leaf::TableRequest request = request_of(options);
+  const std::clock_t start = std::clock();
   leaf::Table table = leaf::make_table(request, ThreadPool(options.threads));
+  const double cpu_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   std::string header = leaf::describe(request);
   if (options.equal_sides) {
     table = leaf::mean_of_sides(table);
     header += "# mean of both sides\n";
   }
   write(options.output, leaf::to_csv(table, header));
-  Log(options.quiet).info(leaf::summary(request, options.output, table));
+  Log(options.quiet)
+      .info(leaf::summary(request, options.output, table) + fmt::format(", {:.2g} s of CPU", cpu_seconds));
 }
 
 }  // namespace
@@ -127,6 +132,10 @@ void add_table_command(CLI::App& app) {
   command->add_option("--wavelengths", o.wavelengths, "In nm: 608,551,455 or 360:830:5.")->required();
   command->add_option("--angles", o.angles, "Angles of incidence, degrees, above 90 on the abaxial side; 0:180:1.");
   command->add_option("--rays", o.rays, "Walks for each angle and wavelength; 1e6.");
+  command
+      ->add_option("--nodes", o.nodes,
+                   "Of the solution, for each segment of directions; by default as many as it needs.")
+      ->check(CLI::Range(2, 200));
   command->add_option("--seed", o.seed, "Seed of the walks.");
   command->add_option("--threads", o.threads, "Threads; all by default. The table does not depend on it.")
       ->check(CLI::Range(1, 1024));

@@ -61,7 +61,8 @@ std::vector<size_t> samples_of(size_t count) {
   return samples;
 }
 
-void fill_by_solving(Table& table, const TissueModel& model, const ThreadPool& pool) {
+void fill_by_solving(Table& table, const TissueModel& model, int asked_nodes, const ThreadPool& pool) {
+  const auto nodes = [&](const Tissue& tissue) { return asked_nodes > 0 ? asked_nodes : solver_nodes(tissue); };
   const size_t angles = table.theta_deg.size(), count = table.wavelengths_nm.size();
   const std::vector<size_t> judged = samples_of(count);
   std::vector<std::vector<Shares>> finer(judged.size());
@@ -69,11 +70,12 @@ void fill_by_solving(Table& table, const TissueModel& model, const ThreadPool& p
     const auto i = static_cast<size_t>(index);
     if (i < judged.size()) {
       const Tissue tissue = model.at(table.wavelengths_nm[judged[i]]);
-      finer[i] = solve(tissue, table.theta_deg, solver_nodes(tissue) * 3 / 2);
+      finer[i] = solve(tissue, table.theta_deg, (nodes(tissue) * 3 + 1) / 2);
       return;
     }
     const size_t w = i - judged.size();
-    const std::vector<Shares> column = solve(model.at(table.wavelengths_nm[w]), table.theta_deg);
+    const Tissue tissue = model.at(table.wavelengths_nm[w]);
+    const std::vector<Shares> column = solve(tissue, table.theta_deg, nodes(tissue));
     std::copy(column.begin(), column.end(), table.shares.begin() + static_cast<ptrdiff_t>(w * angles));
   });
   for (size_t i = 0; i < judged.size(); ++i)
@@ -112,7 +114,7 @@ Table make_table(const TableRequest& request, const ThreadPool& pool) {
   if (request.method == TableMethod::monte_carlo)
     fill_by_monte_carlo(table, model, request, pool);
   else
-    fill_by_solving(table, model, pool);
+    fill_by_solving(table, model, request.nodes, pool);
   return table;
 }
 

@@ -24,6 +24,7 @@ struct TableRequest {
   std::vector<double> theta_deg = even_steps(0, 180, 1);  ///< ascending, in [0, 180]
   TableMethod method = TableMethod::solve;
   int rays = 1'000'000;  ///< for each angle, Monte Carlo only
+  int nodes = 0;         ///< for each segment, solutions only; 0: `solver_nodes`
   uint64_t seed = 0;
 
   friend bool operator==(const TableRequest&, const TableRequest&) = default;

@@ -74,7 +74,8 @@ std::string describe(const TableRequest& request) {
   if (request.method == TableMethod::monte_carlo)
     text += fmt::format("# rays {}, seed {}, walk {}", request.rays, request.seed, kWalkVersion);
   else
-    text += fmt::format("# solver {}", kSolverVersion);
+    text +=
+        fmt::format("# solver {}{}", kSolverVersion, request.nodes > 0 ? fmt::format(", nodes {}", request.nodes) : "");
   return text + fmt::format(", constants {:016x}\n# wavelengths_nm {}\n# theta_deg {}\n", constants_hash(),
                             list_text(request.wavelengths_nm), list_text(request.theta_deg));
 }

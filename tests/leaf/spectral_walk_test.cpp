@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <numbers>
+#include <string>
 
 #include "leaf/specimens.h"
 #include "leaf/walk.h"
@@ -76,7 +78,11 @@ class Goniophotometer {
   int rays_ = 0;
 };
 
-constexpr int kRays = 100000;
+/// FROND_HERO_RAYS: for reports, which read the figures that the test records.
+int rays() {
+  const char* asked = std::getenv("FROND_HERO_RAYS");
+  return asked ? static_cast<int>(std::stod(asked)) : 100000;
+}
 
 FirstEvent first_event(RandomStream& rng) {
   const double r = std::sqrt(rng.uniform_double()), phi = 2 * std::numbers::pi * rng.uniform_double();
@@ -86,7 +92,7 @@ FirstEvent first_event(RandomStream& rng) {
 std::array<Goniophotometer, kLanes> measure_together(const Dispersive& leaf, const Vec3d& wo, Absorption absorption) {
   std::array<Goniophotometer, kLanes> result;
   RandomStream rng(1);
-  for (int i = 0; i < kRays; ++i) {
+  for (int left = rays(); left > 0; --left) {
     const SpectralWalkEnd end = walk(leaf.lanes(), rng.bits() % kLanes, wo, absorption, first_event(rng), rng);
     for (size_t lane = 0; lane < kLanes; ++lane)
       end.fate == Fate::absorbed ? result[lane].add_absorbed() : result[lane].add(end.wi, end.weight[lane]);
@@ -97,7 +103,7 @@ std::array<Goniophotometer, kLanes> measure_together(const Dispersive& leaf, con
 Goniophotometer measure_alone(const Tissue& tissue, const Vec3d& wo, Absorption absorption) {
   Goniophotometer result;
   RandomStream rng(2);
-  for (int i = 0; i < kRays; ++i) {
+  for (int left = rays(); left > 0; --left) {
     const WalkEnd end = walk(tissue, wo, absorption, rng);
     end.fate == Fate::absorbed ? result.add_absorbed() : result.add(end.wi, end.weight);
   }
@@ -113,6 +119,8 @@ TEST_P(SpectralWalk, FillsTheDetectorsAsWalksOfOneWavelengthDo) {
   const Vec3d wo = direction(theta_deg, 0.3);
   const auto together = measure_together(leaf, wo, absorption);
   const double limit = test::z_limit(kLanes * 18);
+  int all_compared = 0;
+  double all_squares = 0, largest = 0;
   for (size_t lane = 0; lane < kLanes; ++lane) {
     const Goniophotometer alone = measure_alone(leaf.tissue(lane), wo, absorption);
     int compared = 0;
@@ -122,10 +130,20 @@ TEST_P(SpectralWalk, FillsTheDetectorsAsWalksOfOneWavelengthDo) {
       ++compared;
       const double z = test::z_score(alone.bin(i), together[lane].bin(i));
       chi_square += z * z;
+      largest = std::max(largest, std::abs(z));
     }
     EXPECT_GT(compared, 15);
     EXPECT_LT(test::z_of_chi_square(chi_square, compared), limit) << "lane " << lane << ": " << chi_square;
+    all_compared += compared;
+    all_squares += chi_square;
   }
+  RecordProperty("leaf", specimen);
+  RecordProperty("absorption", absorption == Absorption::analog ? "analog" : "weighted");
+  RecordProperty("theta_deg", std::to_string(static_cast<int>(theta_deg)));
+  RecordProperty("rays", std::to_string(rays()));
+  RecordProperty("comparisons", std::to_string(all_compared));
+  RecordProperty("chi_square", std::to_string(all_squares));
+  RecordProperty("largest", std::to_string(largest));
 }
 
 INSTANTIATE_TEST_SUITE_P(Dispersion, SpectralWalk,
