@@ -19,6 +19,7 @@ void add_list_command(CLI::App& app);
 void add_describe_command(CLI::App& app);
 void add_table_command(CLI::App& app);
 void add_spectrophotometer_command(CLI::App& app);
+void add_goniophotometer_command(CLI::App& app);
 
 /// Runs the frond command. 0: done; 1: bad use or bad input, with a message on standard error.
 int run(int argc, const char* const* argv);

@@ -37,13 +37,15 @@ void write_chart(const std::string& path, int width, int height, const std::stri
   replace_file(path, {reinterpret_cast<const unsigned char*>(result.out.data()), result.out.size()});
 }
 
-std::string gnuplot_text(std::string_view text) {
+std::string gnuplot_text(std::string_view text, size_t room) {
+  size_t end = std::min(text.size(), room);
+  while (end < text.size() && end > 0 && (text[end] & 0xc0) == 0x80) --end;  // not within a UTF-8 character
   std::string quoted = "'";
-  for (const char c : text) {
+  for (const char c : text.substr(0, end)) {
     if (c == '\'') quoted += '\'';
     quoted += c == '\n' ? ' ' : c;
   }
-  return quoted + '\'';
+  return quoted + (end < text.size() ? "…'" : "'");
 }
 
 }  // namespace frond

@@ -18,7 +18,8 @@ void check_chart(const std::string& path);
 /// draws, `width` x `height` pixels, is put at `path`, whole or not at all. Throws InputError with gnuplot's own words.
 void write_chart(const std::string& path, int width, int height, const std::string& script);
 
-/// A text as a gnuplot script has it: in quotes within which nothing is special.
-std::string gnuplot_text(std::string_view text);
+/// A text as a gnuplot script has it: in quotes within which nothing is special; cut short where it has more bytes than
+/// there is room for.
+std::string gnuplot_text(std::string_view text, size_t room = 100);
 
 }  // namespace frond

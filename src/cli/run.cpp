@@ -19,6 +19,7 @@ int run(int argc, const char* const* argv) {
   add_describe_command(app);
   add_table_command(app);
   add_spectrophotometer_command(app);
+  add_goniophotometer_command(app);
   try {
     app.parse(argc, argv);
     return 0;

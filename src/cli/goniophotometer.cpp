@@ -1,0 +1,76 @@
+#include "instruments/goniophotometer.h"
+
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "cli/gnuplot.h"
+#include "cli/instrument.h"
+#include "cli/number_list.h"
+#include "cli/patch_charts.h"
+#include "cli/text_output.h"
+
+namespace frond {
+namespace {
+
+struct GoniophotometerOptions : InstrumentOptions {
+  std::string patches = "20x40", map, map_scale = "linear";
+};
+
+DetectorSphere sphere_of(const GoniophotometerOptions& o) {
+  const auto [thetas, phis] = parse_product("--patches", o.patches);
+  return {thetas, phis};
+}
+
+/// What would be refused in an hour is refused now.
+void check(const GoniophotometerOptions& o, const InstrumentBench& bench, const DetectorSphere& sphere) {
+  const ReadingCounts counts{bench.specimens().size(), bench.angles_deg().size(), bench.wavelengths_nm().size()};
+  if (!o.plot.empty()) check_plane_chart(counts, sphere);
+  if (!o.map.empty()) check_chart(o.map), check_map_chart(counts, sphere);
+  for (size_t i = 0; i < bench.size(); ++i) check_no_delta_lobe(bench.exposure(i));
+}
+
+std::vector<LabelledPatches> measure(const InstrumentBench& bench, const DetectorSphere& sphere, int64_t rays,
+                                     bool quiet) {
+  std::vector<LabelledPatches> readings;
+  InstrumentProgress progress(bench.size(), rays, quiet);
+  for (size_t i = 0; i < bench.size(); ++i) {
+    progress.start(i);
+    readings.push_back(
+        {bench.specimen(i).label(), measure_f(bench.exposure(i), sphere, rays, bench.pool(), std::ref(progress))});
+  }
+  return readings;
+}
+
+void draw(const std::string& path, const Chart& chart) { write_chart(path, chart.width, chart.height, chart.script); }
+
+void run_goniophotometer(const GoniophotometerOptions& o) {
+  const int64_t rays = parse_count("--rays", o.rays.empty() ? "1e6" : o.rays, 2);
+  const DetectorSphere sphere = sphere_of(o);
+  const InstrumentBench bench(o);
+  check(o, bench, sphere);
+  const auto readings = measure(bench, sphere, rays, o.quiet);
+  const auto notes = instrument_notes("goniophotometer", o, bench);
+  if (!o.csv.empty()) write_text(o.csv, patches_csv(notes, readings));
+  if (!o.json.empty()) write_text(o.json, patches_json(notes, readings));
+  if (!o.plot.empty()) draw(o.plot, plane_chart(readings));
+  if (!o.map.empty()) draw(o.map, map_chart(readings, o.map_scale == "log"));
+  if (o.csv != "-" && o.json != "-" && !o.quiet) write_text("-", patches_text(readings));
+}
+
+}  // namespace
+
+void add_goniophotometer_command(CLI::App& app) {
+  auto* command = app.add_subcommand("goniophotometer", "Measure a material's BRDF and BTDF over the whole sphere.");
+  auto o = std::make_shared<GoniophotometerOptions>();
+  add_instrument_options(*command, *o);
+  command->add_option("--rays", o->rays, "Rays for each reading; 1e6 by default.");
+  command->add_option("--patches", o->patches,
+                      "Detectors: THETAxPHI patches of equal angles over the whole sphere; 20x40 by default.");
+  command->add_option("--plot", o->plot, "Chart of f in the plane of incidence, .svg or .png.");
+  command->add_option("--map", o->map, "Polar maps of f over both hemispheres, .svg or .png.");
+  command->add_option("--map-scale", o->map_scale, "Colours of the map: linear (default) or log.")
+      ->check(CLI::IsMember({"linear", "log"}));
+  command->callback([o] { run_goniophotometer(*o); });
+}
+
+}  // namespace frond
