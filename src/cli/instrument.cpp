@@ -64,6 +64,9 @@ void add_instrument_options(CLI::App& command, InstrumentOptions& o) {
   command.add_option("--wavelengths,--wavelength", o.wavelengths, "Wavelengths in nm, 360 to 2500: a list or a range.")
       ->allow_extra_args(false)
       ->required();
+  command.add_flag(
+      "--rendered", o.as_rendered,
+      "As a renderer shows the material: light along wi, seen along wo, though the model call wo incident.");
   command.add_option("--csv", o.csv, "Write CSV to a file, or - for standard output.");
   command.add_option("--json", o.json, "Write JSON to a file, or - for standard output.");
   add_plugin_option(command, o.plugins);
@@ -76,7 +79,12 @@ void add_instrument_options(CLI::App& command, InstrumentOptions& o) {
 }
 
 InstrumentBench::InstrumentBench(const InstrumentOptions& o)
-    : pool_(o.threads), log_(o.quiet), seed_(o.seed), angles_deg_(angles_of(o)), wavelengths_nm_(wavelengths_of(o)) {
+    : pool_(o.threads),
+      log_(o.quiet),
+      seed_(o.seed),
+      as_rendered_(o.as_rendered),
+      angles_deg_(angles_of(o)),
+      wavelengths_nm_(wavelengths_of(o)) {
   check_outputs(o);
   std::vector<std::vector<std::string>> materials{o.material};
   for (const std::string& text : o.with) materials.push_back(words_of(text));
@@ -88,7 +96,10 @@ InstrumentBench::InstrumentBench(const InstrumentOptions& o)
 Exposure InstrumentBench::exposure(size_t i) const {
   const size_t wavelength = i % wavelengths_nm_.size(), angle = i / wavelengths_nm_.size() % angles_deg_.size();
   const Specimen& s = specimen(i);
-  return {s.at(wavelength), {angles_deg_[angle], wavelengths_nm_[wavelength]}, hash_key(seed_, hash_bytes(s.label()))};
+  return {s.at(wavelength),
+          {angles_deg_[angle], wavelengths_nm_[wavelength]},
+          hash_key(seed_, hash_bytes(s.label())),
+          as_rendered_};
 }
 
 struct InstrumentProgress::State {
@@ -114,8 +125,10 @@ std::vector<std::string> instrument_notes(const std::string& instrument, const I
   std::vector<std::string> notes{fmt::format("frond {} {}", FROND_VERSION, instrument)};
   for (const Specimen& s : bench.specimens()) notes.push_back("material: " + s.label());
   notes.push_back(fmt::format("seed: {}", options.seed));
-  notes.push_back(
-      "Light comes in along the direction that the material's model calls incident, whatever its \"incident\" says.");
+  notes.push_back(options.as_rendered
+                      ? "As rendered: light comes along wi and is seen along wo, whichever the model calls incident."
+                      : "Light comes in along the direction that the material's model calls incident, whatever its "
+                        "\"incident\" says.");
   const auto& angles = bench.angles_deg();
   if (std::find(angles.begin(), angles.end(), 90) != angles.end())
     notes.push_back(

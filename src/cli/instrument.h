@@ -20,7 +20,7 @@ struct InstrumentOptions {
   std::string rays, csv, json, plot, cache;
   uint64_t seed = 0;
   int threads = 0;
-  bool no_cache = false, quiet = false;
+  bool as_rendered = false, no_cache = false, quiet = false;
 };
 
 void add_instrument_options(CLI::App& command, InstrumentOptions& options);
@@ -48,6 +48,7 @@ class InstrumentBench {
   ThreadPool pool_;
   Log log_;
   uint64_t seed_;
+  bool as_rendered_;
   std::vector<double> angles_deg_, wavelengths_nm_;
   std::vector<Specimen> specimens_;
 };

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/sampling.h"
+
 namespace frond {
 
 Vec3 toward_light(const Beam& beam) {
@@ -31,6 +33,25 @@ const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
   const Bsdf* bsdf = material.evaluate(hit, OneWavelength(beam.lambda_nm).sample(0), arena);
   if (!bsdf) fail({}, "the material says that it has no surface there: nothing can be measured");
   return *bsdf;
+}
+
+void scatter_as_rendered(const Bsdf& bsdf, const Vec3& light, RandomStream& rng, std::span<Scattered> rays) {
+  for (Scattered& ray : rays) {
+    const float u = rng.uniform(), v = rng.uniform();
+    Vec3 seen = sample_cosine_hemisphere({u, v});
+    const bool front = rng.uniform() < 0.5f;
+    if (!front) seen.z = -seen.z;
+    const Lobes side = same_side(seen, light) ? Lobes::reflection : Lobes::transmission;
+    ray = {seen, side | Lobes::diffuse, {}};
+    if (seen.z != 0) ray.weight = bsdf.f(seen, light, rng) * (2 * kPi);
+  }
+}
+
+void check_as_rendered(const Exposure& exposure) {
+  if (!exposure.as_rendered) return;
+  Arena arena;
+  if (any(bsdf_of(exposure.material, exposure.beam, arena).flags() & Lobes::specular))
+    fail({}, "the material has a delta lobe, which can be measured along the model's own incident direction alone");
 }
 
 SampledWavelengths OneWavelength::sample(float) const {

@@ -19,6 +19,9 @@ struct Exposure {
   const Material& material;
   Beam beam;
   uint64_t seed = 0;
+  /// What a renderer shows of the specimen: light comes along the BSDF's wi and is seen along its wo, even where the
+  /// material's model calls wo incident.
+  bool as_rendered = false;
 };
 
 /// Throws InputError unless theta is in [0, 180] degrees and the wavelength a positive number.
@@ -29,6 +32,13 @@ void check_rays(int64_t rays);
 
 /// The BSDF in the middle of a flat specimen. Throws InputError where the material says that there is no surface.
 const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena);
+
+/// Light from the direction `light`, as a renderer shows it: rays leave in directions that are drawn by their cosine on
+/// either side and weighted by f. Not for delta lobes.
+void scatter_as_rendered(const Bsdf& bsdf, const Vec3& light, RandomStream& rng, std::span<Scattered> rays);
+
+/// Throws InputError where the exposure is as rendered and the material has a delta lobe, which f does not show.
+void check_as_rendered(const Exposure& exposure);
 
 /// One wavelength for every path: what a material is prepared for before an instrument measures it.
 class OneWavelength final : public WavelengthStrategy {

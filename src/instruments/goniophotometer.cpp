@@ -47,6 +47,7 @@ GoniophotometerReading measure_f(const Exposure& exposure, const DetectorSphere&
                                  const ThreadPool& pool, const RayProgress& progress) {
   check_beam(exposure.beam);
   check_rays(rays);
+  check_as_rendered(exposure);
   check_no_delta_lobe(exposure);
   GoniophotometerReading reading{exposure.beam, sphere, rays, {}};
   PatchTally tally{&sphere, std::vector<Moments>(sphere.size())};

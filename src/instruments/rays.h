@@ -24,6 +24,7 @@ class RayBlock {
   RayBlock(const Exposure& exposure, int64_t number)
       : bsdf_(bsdf_of(exposure.material, exposure.beam, arena_)),
         toward_light_(toward_light(exposure.beam)),
+        as_rendered_(exposure.as_rendered),
         rng_(hash_key(exposure.seed, std::bit_cast<uint64_t>(exposure.beam.theta_deg),
                       std::bit_cast<uint64_t>(exposure.beam.lambda_nm), number)) {}
   RayBlock(const RayBlock&) = delete;
@@ -31,7 +32,10 @@ class RayBlock {
 
   std::span<const Scattered> next(int64_t wanted) {
     const std::span batch = std::span(rays_).first(static_cast<size_t>(std::min<int64_t>(wanted, kBatch)));
-    bsdf_.scatter(toward_light_, rng_, batch);
+    if (as_rendered_)
+      scatter_as_rendered(bsdf_, toward_light_, rng_, batch);
+    else
+      bsdf_.scatter(toward_light_, rng_, batch);
     return batch;
   }
 
@@ -41,6 +45,7 @@ class RayBlock {
   Arena arena_;
   const Bsdf& bsdf_;
   Vec3 toward_light_;
+  bool as_rendered_;
   RandomStream rng_;
   std::array<Scattered, kBatch> rays_;
 };

@@ -79,9 +79,11 @@ SpectrophotometerReading measure_shares(const Exposure& exposure, const Dose& do
                                         const RayProgress& progress) {
   check_beam(exposure.beam);
   check_rays(dose.rays);
+  check_as_rendered(exposure);
   Arena arena;
   SpectrophotometerReading reading{.beam = exposure.beam};
-  reading.tells_surface = any(bsdf_of(exposure.material, exposure.beam, arena).flags() & Lobes::surface);
+  reading.tells_surface =
+      any(bsdf_of(exposure.material, exposure.beam, arena).flags() & Lobes::surface) && !exposure.as_rendered;
   ShareTally tally{.lit_side = toward_light(exposure.beam).z};
   for (int64_t end = first_round(dose);; end = next_round(reading, dose)) {
     shoot(exposure, reading.rays, end, tally, pool, progress);

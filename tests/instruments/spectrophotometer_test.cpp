@@ -211,5 +211,25 @@ TEST(Spectrophotometer, SaysSoWhenTheMaterialIsAtFault) {
   EXPECT_NE(error_of([&] { measure(Prepared(not_there, {}, 551).under(8), 100); }), "");
 }
 
+SpectrophotometerReading measure_as_rendered(const Prepared& specimen, double theta) {
+  Exposure exposure = specimen.under(theta);
+  exposure.as_rendered = true;
+  return measure(exposure, 200000);
+}
+
+TEST(Spectrophotometer, SeesWhatARendererShows) {
+  const double rate = sidak_level(kFalseAlarmRate, 6);
+  const Prepared sheet("diffusetransmission", {level("reflectance", 0.3), level("transmittance", 0.55)}, 1000);
+  EXPECT_GT(p_of(measure_as_rendered(sheet, 120).reflectance, 0.3), rate);
+  EXPECT_GT(p_of(measure_as_rendered(sheet, 120).transmittance, 0.55), rate);
+  // A leaf without mesophyll loses nothing, if what it calls incident is the light.
+  const ParsedParam clear = real("mesophyllfraction", 0);
+  const Prepared light("abm", {clear, word("incident", "light")}, 551), traced("abm", {clear}, 551);
+  for (const double theta : {5.0, 75.0}) {
+    EXPECT_GT(p_of(measure_as_rendered(light, theta).absorptance, 0), rate) << theta;
+    EXPECT_LT(p_of(measure_as_rendered(traced, theta).absorptance, 0), rate) << theta;
+  }
+}
+
 }  // namespace
 }  // namespace frond::test
