@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+
+#include "core/bsdf.h"
+#include "core/sampling.h"
+
+namespace frond {
+
+/// What a surface gives back of the light that meets one of its sides, lane by lane.
+struct SideShares {
+  SampledSpectrum reflected, transmitted;
+};
+
+/// Reflects and transmits light evenly into all directions, each side by shares of its own. Not reciprocal where the
+/// two sides transmit differently: the side of the direction that is called incident decides.
+class TwoSidedLambertianBsdf final : public Bsdf {
+ public:
+  /// Of light on the front (+z) and on the back; in each, the sum of both shares is 1 at most.
+  TwoSidedLambertianBsdf(const SideShares& front, const SideShares& back, bool from_light)
+      : sides_{front, back}, from_light_(from_light) {
+    for (const size_t side : {0u, 1u})
+      chances_[side] = chances(sides_[side].reflected, sides_[from_light ? 1 - side : side].transmitted);
+  }
+
+  Lobes flags() const override {
+    Lobes flags = from_light_ ? Lobes::diffuse | Lobes::from_light : Lobes::diffuse;
+    if (chances_[0].reflect > 0 || chances_[1].reflect > 0) flags = flags | Lobes::reflection;
+    if (chances_[0].transmit > 0 || chances_[1].transmit > 0) flags = flags | Lobes::transmission;
+    return flags;
+  }
+
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
+    const float side = wo.z * wi.z;
+    if (side == 0) return {};
+    const SideShares& lit = sides_[side_of(from_light_ ? wi : wo)];
+    return (side > 0 ? lit.reflected : lit.transmitted) * kInvPi;
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
+    const bool reflects = uc < chances_[side_of(wo)].reflect;
+    Vec3 wi = sample_cosine_hemisphere(u);
+    if ((wo.z < 0) == reflects) wi.z = -wi.z;
+    const float density = pdf(wo, wi);
+    if (density == 0) return {};
+    return BsdfSample{f(wo, wi, rng), wi, density,
+                      Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission)};
+  }
+
+  float pdf(const Vec3& wo, const Vec3& wi) const override {
+    const float side = wo.z * wi.z;
+    if (side == 0) return 0;
+    const Chances& c = chances_[side_of(wo)];
+    return (side > 0 ? c.reflect : c.transmit) * std::abs(wi.z) * kInvPi;
+  }
+
+ private:
+  static size_t side_of(const Vec3& w) { return w.z < 0 ? 1 : 0; }
+
+  /// What a path that arrives at a side does; both are kept, as 1 less a tiny one is 1.
+  struct Chances {
+    float reflect, transmit;
+  };
+  /// In proportion to the means over the lanes.
+  static Chances chances(const SampledSpectrum& reflected, const SampledSpectrum& transmitted) {
+    const float r = sum(reflected), t = sum(transmitted);
+    return r + t > 0 ? Chances{r / (r + t), t / (r + t)} : Chances{1, 0};
+  }
+  static float sum(const SampledSpectrum& s) { return s[0] + s[1] + s[2] + s[3]; }
+
+  std::array<SideShares, 2> sides_;
+  std::array<Chances, 2> chances_;
+  bool from_light_;
+};
+
+}  // namespace frond
