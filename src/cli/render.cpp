@@ -168,7 +168,7 @@ void add_render_command(CLI::App& app) {
       ->delimiter(',')
       ->expected(4);
   command->add_option("--wavelengths", o.wavelengths,
-                      "hero (also hero,lambdamin=400,lambdamax=700), or smpte for the paper's three.");
+                      "hero (also hero,lambdamin=400,lambdamax=700), meyer, or smpte for the paper's three.");
   command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model; may be given again.")
       ->allow_extra_args(false);
   add_plugin_option(*command, o.plugins);

@@ -46,6 +46,15 @@ TEST(Smpte, CarriesThePapersThreeWavelengths) {
   EXPECT_NE(find_color_space(smpte->film_space()), nullptr);
 }
 
+TEST(Smpte, TakesOtherWavelengthsInWhichWhiteIsWhiteToo) {
+  const auto smpte = make("smpte", {testing::number("float", "blue", {464.7}), testing::number("float", "red", {400})});
+  const SampledWavelengths lambda = smpte->sample(0);
+  EXPECT_THAT(smpte->fixed_nm(), ::testing::ElementsAre(400, 551, 464.7f));
+  EXPECT_EQ(smpte->range_nm().min, 400);
+  EXPECT_EQ(smpte->range_nm().max, 551);
+  for (const double c : smpte->sensor(unit_d65()->sample(lambda), lambda)) EXPECT_DOUBLE_EQ(c, 1);
+}
+
 TEST(Hero, DensityIsTheKnownOneOverTheVisible) {
   const auto hero = make("hero");
   for (const float u : {0.f, 0.1f, 0.2499f}) {
