@@ -162,7 +162,9 @@ Chart plane_chart(const std::vector<LabelledPatches>& readings) {
     for (const bool reflected : {true, false})
       script +=
           fmt::format("${}{} << EOD\n{}EOD\n", reflected ? 'r' : 't', i, plane_data(readings[i].reading, reflected));
-  script += "set multiplot\nset grid lc rgb '#d0d0d0' lw 0.5\nset xrange [-90:90]\nset xtics 30\nset lmargin 9\nset rmargin 3\nunset key\n";
+  script +=
+      "set multiplot\nset grid lc rgb '#d0d0d0' lw 0.5\nset xrange [-90:90]\nset xtics 30\nset lmargin 9\nset rmargin "
+      "3\nunset key\n";
   for (size_t column = 0; column < layout.angles.size(); ++column)
     script += panel(readings, layout, column, true) + panel(readings, layout, column, false);
   script += key(layout) + "unset multiplot\n";
