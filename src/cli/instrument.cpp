@@ -91,6 +91,17 @@ InstrumentBench::InstrumentBench(const InstrumentOptions& o)
   const Registry registry = load_registry(o.plugins);
   for (const auto& words : materials)
     specimens_.emplace_back(words, registry, wavelengths_nm_, pool_, log_, cache_directory(o.cache, o.no_cache));
+  check_exposures();
+}
+
+void InstrumentBench::check_exposures() const {
+  Arena arena;
+  for (size_t i = 0; i < size(); ++i) {
+    const Exposure e = exposure(i);
+    arena.reset();
+    bsdf_of(e.material, e.beam, arena);
+    check_as_rendered(e);
+  }
 }
 
 Exposure InstrumentBench::exposure(size_t i) const {

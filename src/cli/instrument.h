@@ -28,8 +28,8 @@ void add_instrument_options(CLI::App& command, InstrumentOptions& options);
 /// A bench with everything on it: made before the first ray is shot, so that what is wrong is told at once.
 class InstrumentBench {
  public:
-  /// Throws InputError for lists, names, parameters, angles and wavelengths that are wrong, and for outputs that cannot
-  /// be written.
+  /// Throws InputError for lists, names, parameters, angles and wavelengths that are wrong, for outputs that cannot
+  /// be written, and for materials that are not there or, as rendered, have a delta lobe.
   explicit InstrumentBench(const InstrumentOptions& options);
 
   const ThreadPool& pool() const { return pool_; }
@@ -45,6 +45,8 @@ class InstrumentBench {
   const Specimen& specimen(size_t i) const { return specimens_[i / (angles_deg_.size() * wavelengths_nm_.size())]; }
 
  private:
+  void check_exposures() const;
+
   ThreadPool pool_;
   Log log_;
   uint64_t seed_;
