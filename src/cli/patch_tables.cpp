@@ -10,14 +10,11 @@ namespace frond {
 namespace {
 
 constexpr const char* kNotes[] = {
-    "incidence_deg: from the front's normal to the light, whose azimuth is 0, degrees; above 90 the back (abaxial "
-    "side) "
-    "is lit.",
-    "Detectors: patches equal in theta (from the front's normal) and in phi, degrees; the first is centred on phi = 0, "
-    "the "
-    "light's side, and the mirror direction lies at phi = 180.",
-    "f_per_sr: BRDF (on the lit side) or BTDF, 1/sr: weight sum / (rays * projected solid angle); f_se: its standard "
-    "error; solid angles in sr; caught: rays that reached the patch; rays: rays of light shot."};
+    "incidence_deg: from the front's normal to the light, degrees; above 90 the back (abaxial side) is lit.",
+    ("Detectors: patches equal in theta (from the front's normal) and in phi (from the light's azimuth), degrees; the "
+     "first is centred on phi = 0, and the mirror direction lies at phi = 180."),
+    ("f_per_sr: BRDF (on the lit side) or BTDF, 1/sr: weight sum / (rays * projected solid angle); f_se: its standard "
+     "error; solid angles in sr; caught: rays that reached the patch; rays: rays of light shot.")};
 
 std::string_view kind_of(const GoniophotometerReading& r, const Patch& p) {
   return r.is_reflected(p) ? "BRDF" : "BTDF";

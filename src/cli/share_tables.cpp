@@ -30,8 +30,8 @@ std::optional<Estimate> value_of(const SpectrophotometerReading& r, const Column
 
 constexpr const char* kColumnNotes[] = {
     "theta_deg: from the front's normal to the light, degrees; above 90 the back (abaxial side) is lit.",
-    "Shares of the light, 0 to 1: R = Rs + Rd comes back on the lit side (Rs: at the first event, off the surface; Rd: "
-    "out of the body), T leaves by the other side, A = 1 - R - T is absorbed.",
+    ("Shares of the light, 0 to 1: R = Rs + Rd comes back on the lit side (Rs: at the first event, off the surface; "
+     "Rd: out of the body), T leaves by the other side, A = 1 - R - T is absorbed."),
     "Rs and Rd are blank where the material does not tell them apart. _se: standard error; rays: rays of light shot."};
 
 /// 0.04514 and 0.00021.

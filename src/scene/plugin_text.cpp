@@ -92,7 +92,8 @@ PluginText parse_plugin_text(const std::string& text, const Location& where) {
 }
 
 void set_params(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin) {
-  for (const auto& [name, value] : text.params) {
+  for (const auto& param : text.params) {
+    const std::string &name = param.first, &value = param.second;
     const auto declared =
         std::find_if(info.params.begin(), info.params.end(), [&](const Param& p) { return p.name == name; });
     if (declared == info.params.end()) {
