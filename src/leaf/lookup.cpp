@@ -9,17 +9,17 @@
 namespace frond::leaf {
 namespace {
 
-/// One side of the leaf at one wavelength.
+/// One side of the leaf in one column.
 class Side {
  public:
-  Side(const Table& table, size_t wavelength, bool abaxial) {
-    const bool mirrored = abaxial && !table.has_equal_sides();
+  Side(const std::vector<double>& theta_deg, std::span<const Shares> column, bool abaxial) {
+    const bool mirrored = abaxial && theta_deg.back() > 90;
     std::vector<double> theta, surface, subsurface, transmitted;
-    for (size_t k = 0; k < table.theta_deg.size(); ++k) {
-      const size_t i = mirrored ? table.theta_deg.size() - 1 - k : k;
-      const double from_normal = mirrored ? 180 - table.theta_deg[i] : table.theta_deg[i];
+    for (size_t k = 0; k < theta_deg.size(); ++k) {
+      const size_t i = mirrored ? theta_deg.size() - 1 - k : k;
+      const double from_normal = mirrored ? 180 - theta_deg[i] : theta_deg[i];
       if (from_normal > 90) break;
-      const Shares& s = table.at(wavelength, i);
+      const Shares& s = column[i];
       theta.push_back(from_normal);
       surface.push_back(s.surface);
       subsurface.push_back(s.subsurface);
@@ -47,18 +47,26 @@ Shares within_bounds(const Shares& s) {
 
 }  // namespace
 
-std::vector<TableLookup::Node> TableLookup::resample(const Table& table, size_t wavelength) {
-  std::vector<Node> nodes;
-  for (const bool abaxial : {false, true}) {
-    const Side side(table, wavelength, abaxial);
-    for (size_t i = 0; i <= kCells; ++i) {
-      const double x = static_cast<double>(i) / kCells;
+std::vector<TableLookup::Node> TableLookup::resample(const std::vector<double>& theta_deg,
+                                                     std::span<const Shares> column) {
+  std::vector<Node> nodes(kNodes);
+  for (size_t i = 0; i < kNodes; i += kCells + 1) {
+    const Side side(theta_deg, column, i > 0);
+    for (size_t k = 0; k <= kCells; ++k) {
+      const double x = static_cast<double>(k) / kCells;
       const Shares s = within_bounds(side.at(std::acos(x * x) * 180 / std::numbers::pi));
-      nodes.push_back(
-          {static_cast<float>(s.surface), static_cast<float>(s.subsurface), static_cast<float>(s.transmitted), 0});
+      nodes[i + k].v = {static_cast<float>(s.surface), static_cast<float>(s.subsurface),
+                        static_cast<float>(s.transmitted), 0};
     }
   }
   return nodes;
+}
+
+void TableLookup::add_columns(const std::vector<double>& theta_deg, std::span<const Shares> shares) {
+  for (size_t first = 0; first < shares.size(); first += theta_deg.size()) {
+    const std::vector<Node> nodes = resample(theta_deg, shares.subspan(first, theta_deg.size()));
+    columns_.insert(columns_.end(), nodes.begin(), nodes.end());
+  }
 }
 
 TableLookup TableLookup::for_lanes(const Table& table) {
@@ -66,60 +74,79 @@ TableLookup TableLookup::for_lanes(const Table& table) {
   TableLookup lookup;
   lookup.lanes_.resize(kNodes);
   for (size_t lane = 0; lane < table.wavelengths_nm.size(); ++lane) {
-    const std::vector<Node> nodes = resample(table, lane);
+    const size_t angles = table.theta_deg.size();
+    const std::vector<Node> nodes = resample(table.theta_deg, std::span(table.shares).subspan(lane * angles, angles));
     for (size_t i = 0; i < kNodes; ++i) {
-      lookup.lanes_[i].surface.v[lane] = nodes[i].surface;
-      lookup.lanes_[i].subsurface.v[lane] = nodes[i].subsurface;
-      lookup.lanes_[i].transmitted.v[lane] = nodes[i].transmitted;
+      lookup.lanes_[i].surface.v[lane] = nodes[i][0];
+      lookup.lanes_[i].subsurface.v[lane] = nodes[i][1];
+      lookup.lanes_[i].transmitted.v[lane] = nodes[i][2];
     }
   }
   return lookup;
 }
 
 TableLookup TableLookup::for_spectra(const Table& table) {
-  const size_t count = table.wavelengths_nm.size();
-  assert(count > 1);
   TableLookup lookup;
-  lookup.nm_.assign(table.wavelengths_nm.begin(), table.wavelengths_nm.end());
-  lookup.index_wavelengths();
-  lookup.spectra_.resize(kNodes * count);
-  for (size_t w = 0; w < count; ++w) {
-    const std::vector<Node> nodes = resample(table, w);
-    for (size_t i = 0; i < kNodes; ++i) lookup.spectra_[i * count + w] = nodes[i];
-  }
+  lookup.wavelengths_ = WavelengthAxis(table.wavelengths_nm);
+  lookup.add_columns(table.theta_deg, table.shares);
   return lookup;
 }
 
-/// Bins about as narrow as the closest wavelengths: then few steps are left from a bin's beginning.
-void TableLookup::index_wavelengths() {
-  constexpr float kMostBins = 1 << 16;
-  const float range = nm_.back() - nm_.front();
-  float narrowest = range;
-  for (size_t i = 1; i < nm_.size(); ++i) narrowest = std::min(narrowest, nm_[i] - nm_[i - 1]);
-  const float bins = narrowest > 0 ? std::min(std::ceil(range / narrowest), kMostBins) : kMostBins;
-  bins_per_nm_ = bins / range;
-  last_bin_ = bins - 1;
-  for (uint32_t bin = 0, below = 0; bin <= static_cast<uint32_t>(last_bin_); ++bin) {
-    const float begin = nm_[0] + static_cast<float>(bin) / bins_per_nm_;
-    while (below + 2 < nm_.size() && nm_[below + 1] <= begin) ++below;
-    first_in_bin_.push_back(below);
-  }
+TableLookup TableLookup::for_lanes(const DepthTable& table) {
+  assert(table.wavelengths_nm.size() <= kLanes);
+  TableLookup lookup;
+  lookup.depths_ = table.depths;
+  lookup.add_columns(table.theta_deg, table.shares);
+  return lookup;
 }
 
-SampledShares TableLookup::between_wavelengths(size_t node, float t, const SampledWavelengths& lambda) const {
+TableLookup TableLookup::for_spectra(const DepthTable& table) {
+  TableLookup lookup = for_lanes(table);
+  lookup.wavelengths_ = WavelengthAxis(table.wavelengths_nm);
+  return lookup;
+}
+
+TableSelection TableLookup::select(const SampledWavelengths& lambda) const {
+  TableSelection selection;
+  if (wavelengths_.empty()) return selection;
+  selection.lane_count = lambda.count;
+  selection.columns_per_lane = 2;
+  for (size_t lane = 0; lane < static_cast<size_t>(lambda.count); ++lane) {
+    const auto [below, t] = wavelengths_.cell(lambda.nm[lane]);
+    selection.lanes[lane] = {{below, below + 1}, {1 - t, t}};
+  }
+  return selection;
+}
+
+TableSelection TableLookup::select(const SampledWavelengths& lambda,
+                                   const std::array<double, kLanes>& optical_depth) const {
+  TableSelection selection;
+  selection.lane_count = lambda.count;
+  selection.columns_per_lane = wavelengths_.empty() ? 2 : 4;
+  const auto rows = static_cast<uint32_t>(depths_.depths().size());
+  for (size_t lane = 0; lane < static_cast<size_t>(lambda.count); ++lane) {
+    const AxisCell w =
+        wavelengths_.empty() ? AxisCell{static_cast<uint32_t>(lane), 0} : wavelengths_.cell(lambda.nm[lane]);
+    const AxisCell d = depths_.cell(optical_depth[lane]);
+    const uint32_t near = w.below * rows + d.below, far = near + rows;
+    const float s = 1 - w.t;
+    selection.lanes[lane] = {{near, near + 1, far, far + 1}, {s * (1 - d.t), s * d.t, w.t * (1 - d.t), w.t * d.t}};
+  }
+  return selection;
+}
+
+SampledShares TableLookup::sum_columns(size_t node, float t, const TableSelection& selection) const {
   SampledShares shares;
-  for (int lane = 0; lane < lambda.count; ++lane) {
-    const float nm = lambda.nm[static_cast<size_t>(lane)];
-    const size_t below = wavelength_below(nm);
-    const float s = std::clamp((nm - nm_[below]) / (nm_[below + 1] - nm_[below]), 0.f, 1.f);
-    const Node *a = &spectra_[node * nm_.size() + below], *b = a + nm_.size();
-    const auto bilinear = [&](float Node::*value) {
-      const float near = a[0].*value * (1 - s) + a[1].*value * s, far = b[0].*value * (1 - s) + b[1].*value * s;
-      return near * (1 - t) + far * t;
-    };
-    shares.surface[lane] = bilinear(&Node::surface);
-    shares.subsurface[lane] = bilinear(&Node::subsurface);
-    shares.transmitted[lane] = bilinear(&Node::transmitted);
+  for (int lane = 0; lane < selection.lane_count; ++lane) {
+    const TableSelection::Lane& at = selection.lanes[static_cast<size_t>(lane)];
+    Node sum;
+    for (size_t i = 0; i < static_cast<size_t>(selection.columns_per_lane); ++i) {
+      const Node* nodes = &columns_[at.column[i] * kNodes + node];
+      sum += nodes[0] * (at.weight[i] * (1 - t)) + nodes[1] * (at.weight[i] * t);
+    }
+    shares.surface[lane] = sum[0];
+    shares.subsurface[lane] = sum[1];
+    shares.transmitted[lane] = sum[2];
   }
   return shares;
 }

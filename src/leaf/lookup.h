@@ -3,13 +3,27 @@
 #include <cstdint>
 
 #include "core/spectrum.h"
+#include "leaf/depth_table.h"
 #include "leaf/table.h"
+#include "leaf/table_axes.h"
 
 namespace frond::leaf {
 
 /// Rs, Rd and T lane by lane.
 struct SampledShares {
   SampledSpectrum surface, subsurface, transmitted;
+};
+
+/// What of a table the lanes of a path look at: each a weighted sum of columns. Found once for a hit, whatever the
+/// number of directions.
+struct TableSelection {
+  struct Lane {
+    std::array<uint32_t, 4> column{};
+    std::array<float, 4> weight{};
+  };
+  std::array<Lane, kLanes> lanes;
+  int lane_count = 0;        ///< 0: the lanes are the table's wavelengths, one by one
+  int columns_per_lane = 0;  ///< at most 4
 };
 
 /// A table made ready for the render loop: linear between nodes that are even in sqrt |cos theta|, where they are dense
@@ -22,47 +36,43 @@ class TableLookup {
   static TableLookup for_lanes(const Table& table);
   /// Lanes are anywhere between the table's wavelengths, which are two at least, and ascend.
   static TableLookup for_spectra(const Table& table);
+  /// The same two for a leaf whose depth varies.
+  static TableLookup for_lanes(const DepthTable& table);
+  static TableLookup for_spectra(const DepthTable& table);
 
-  /// cos_theta in [-1, 1], of the traced ray's origin to the adaxial normal. Lanes not in use: undefined.
-  SampledShares operator()(float cos_theta, const SampledWavelengths& lambda) const {
+  TableSelection select(const SampledWavelengths& lambda) const;
+  /// With the leaf's optical depth in each lane.
+  TableSelection select(const SampledWavelengths& lambda, const std::array<double, kLanes>& optical_depth) const;
+
+  /// cos_theta in [-1, 1], of the incident direction to the adaxial normal. Lanes not in use: undefined.
+  SampledShares operator()(float cos_theta, const TableSelection& selection) const {
     const float x = std::sqrt(std::min(std::abs(cos_theta), 1.f)) * kCells;
     const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
     const float t = x - static_cast<float>(cell);
     const size_t node = (cos_theta < 0 ? kCells + 1 : 0) + cell;
-    if (nm_.empty()) return mix(lanes_[node], lanes_[node + 1], t);
-    return between_wavelengths(node, t, lambda);
+    if (selection.lane_count == 0) return mix(lanes_[node], lanes_[node + 1], t);
+    return sum_columns(node, t, selection);
   }
 
  private:
   static constexpr size_t kCells = 128;
   static constexpr size_t kNodes = 2 * (kCells + 1);  ///< adaxial side, then abaxial, each from grazing to the normal
 
-  /// One wavelength at one node, padded to a vector.
-  struct alignas(16) Node {
-    float surface, subsurface, transmitted, pad;
-  };
+  /// (Rs, Rd, T, 0): one column at one node.
+  using Node = SampledSpectrum;
 
-  /// [node] of one wavelength.
-  static std::vector<Node> resample(const Table& table, size_t wavelength);
+  static std::vector<Node> resample(const std::vector<double>& theta_deg, std::span<const Shares> column);
   static SampledShares mix(const SampledShares& a, const SampledShares& b, float t) {
     const float s = 1 - t;
     return {a.surface * s + b.surface * t, a.subsurface * s + b.subsurface * t, a.transmitted * s + b.transmitted * t};
   }
-  void index_wavelengths();
-  SampledShares between_wavelengths(size_t node, float t, const SampledWavelengths& lambda) const;
-  /// The wavelength below, or the first but one from the end.
-  size_t wavelength_below(float nm) const {
-    const auto bin = static_cast<size_t>(std::clamp((nm - nm_[0]) * bins_per_nm_, 0.f, last_bin_));
-    size_t below = first_in_bin_[bin];
-    while (below + 2 < nm_.size() && nm >= nm_[below + 1]) ++below;
-    return below;
-  }
+  void add_columns(const std::vector<double>& theta_deg, std::span<const Shares> shares);
+  SampledShares sum_columns(size_t node, float t, const TableSelection& selection) const;
 
-  std::vector<SampledShares> lanes_;    ///< [node]
-  std::vector<Node> spectra_;           ///< [node][wavelength]
-  std::vector<float> nm_;               ///< empty: lanes
-  std::vector<uint32_t> first_in_bin_;  ///< wavelength below the beginning of each of many even steps
-  float bins_per_nm_ = 0, last_bin_ = 0;
+  std::vector<SampledShares> lanes_;  ///< [node]
+  std::vector<Node> columns_;         ///< [wavelength][depth][node]
+  WavelengthAxis wavelengths_;        ///< empty: lanes are wavelengths
+  DepthAxis depths_;                  ///< empty: the depth does not vary
 };
 
 }  // namespace frond::leaf

@@ -217,33 +217,68 @@ int solver_nodes(const Tissue& tissue) {
   return least >= kSmooth && most <= kNarrow ? 6 : 12;
 }
 
-std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_deg, int nodes) {
-  const Chain chain(tissue, nodes);
-  const Prospects inside = mean_prospects(tissue, chain, 2 * nodes);
-  const AzimuthMean entrance(tissue.lobes[0][false][true]->exponent());
-  std::map<double, VectorXd> entrances;  // both epidermes are of one index: each angle serves both sides
-  const auto entering = [&](double mu) -> const VectorXd& {
-    VectorXd& row = entrances[mu];
-    if (row.size() == 0) row = spread(entrance, mu, chain.directions(kFirst));
-    return row;
-  };
-  std::vector<Shares> result;
-  for (const double theta : theta_deg) {
-    const bool above = theta <= 90;
-    const double from_normal = above ? theta : 180 - theta;
-    const double mu = from_normal == 90 ? 0 : std::cos(from_normal * std::numbers::pi / 180);
-    const Crossing surface = fresnel(mu, 1 / tissue.n_cuticle());
-    const Eigen::RowVector2d out =
-        entering(surface.cos_t).transpose() * (above ? inside.from_above : inside.from_below);
-    const double enters = 1 - surface.reflectance;
-    result.push_back(
-        {surface.reflectance, enters * out[above ? kAdaxial : kAbaxial], enters * out[above ? kAbaxial : kAdaxial]});
+namespace {
+
+/// All that does not depend on the depth.
+class LeafSolver {
+ public:
+  LeafSolver(const Tissue& tissue, std::span<const double> theta_deg, int nodes)
+      : chain_(tissue, nodes), places_(2 * nodes) {
+    const AzimuthMean lobe(tissue.lobes[0][false][true]->exponent());
+    std::map<double, size_t> known;  // both epidermes are of one index: each angle serves both sides
+    for (const double theta : theta_deg) {
+      const bool above = theta <= 90;
+      const double from_normal = above ? theta : 180 - theta;
+      const double mu = from_normal == 90 ? 0 : std::cos(from_normal * std::numbers::pi / 180);
+      const Crossing surface = fresnel(mu, 1 / tissue.n_cuticle());
+      const auto [row, is_new] = known.emplace(surface.cos_t, rows_.size());
+      if (is_new) rows_.push_back(spread(lobe, surface.cos_t, chain_.directions(kFirst)));
+      rays_.push_back({above, surface.reflectance, row->second});
+    }
   }
-  return result;
+
+  /// The tissue that it was made for, or one that differs in depth.
+  std::vector<Shares> solve(const Tissue& tissue) const {
+    const Prospects inside = mean_prospects(tissue, chain_, places_);
+    std::vector<Shares> result;
+    for (const auto& [above, reflectance, row] : rays_) {
+      const Eigen::RowVector2d out = rows_[row].transpose() * (above ? inside.from_above : inside.from_below);
+      const double enters = 1 - reflectance;
+      result.push_back(
+          {reflectance, enters * out[above ? kAdaxial : kAbaxial], enters * out[above ? kAbaxial : kAdaxial]});
+    }
+    return result;
+  }
+
+ private:
+  /// A ray that meets the leaf.
+  struct Ray {
+    bool above;
+    double reflectance;
+    size_t row;
+  };
+
+  Chain chain_;
+  int places_;
+  std::vector<VectorXd> rows_;  ///< where rays that enter go
+  std::vector<Ray> rays_;       ///< [angle]
+};
+
+}  // namespace
+
+std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_deg, int nodes) {
+  return LeafSolver(tissue, theta_deg, nodes).solve(tissue);
 }
 
 std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_deg) {
   return solve(tissue, theta_deg, solver_nodes(tissue));
+}
+
+std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg) {
+  const LeafSolver solver(tissues[0], theta_deg, solver_nodes(tissues[0]));
+  std::vector<std::vector<Shares>> result;
+  for (const Tissue& tissue : tissues) result.push_back(solver.solve(tissue));
+  return result;
 }
 
 }  // namespace frond::leaf

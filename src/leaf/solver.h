@@ -38,4 +38,7 @@ int solver_nodes(const Tissue& tissue);
 /// With `solver_nodes`.
 std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_deg);
 
+/// The same for tissues that differ in their optical depth alone, with less work: [tissue][angle].
+std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg);
+
 }  // namespace frond::leaf

@@ -11,4 +11,8 @@ namespace frond {
 /// below 8e-4, at the red edge; its mean is 5e-5.
 std::vector<double> table_wavelengths(const WavelengthStrategy& strategy);
 
+/// The same where the table has the optical depth for an axis, so that the refractive indices alone change with the
+/// wavelength: 40 nm apart.
+std::vector<double> index_wavelengths(const WavelengthStrategy& strategy);
+
 }  // namespace frond

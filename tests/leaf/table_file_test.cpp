@@ -138,7 +138,7 @@ TEST(TableLookup, FindsItsPlaceAmongUnevenWavelengths) {
   lambda.count = 1;
   for (float nm = 400; nm <= 700.5f; nm += 0.25f) {
     lambda.nm[0] = nm;
-    EXPECT_NEAR(lookup(1, lambda).surface[0], (nm - 400) / 1000, 1e-6) << nm;
+    EXPECT_NEAR(lookup(1, lookup.select(lambda)).surface[0], (nm - 400) / 1000, 1e-6) << nm;
   }
 }
 

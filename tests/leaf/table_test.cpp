@@ -253,7 +253,7 @@ TEST(TableLookup, InterpolatesWavelengths) {
   lambda.count = 4;
   lambda.nm = {500, 515, 520, 512};
   for (const size_t degree : {0u, 40u, 140u}) {
-    const SampledShares s = lookup(static_cast<float>(cos_degrees(static_cast<double>(degree))), lambda);
+    const SampledShares s = lookup(static_cast<float>(cos_degrees(static_cast<double>(degree))), lookup.select(lambda));
     const auto blend = [&](double part) {
       const Shares &a = table.at(1, degree), &b = table.at(2, degree);
       return Shares{a.surface + part * (b.surface - a.surface), a.subsurface + part * (b.subsurface - a.subsurface),

@@ -120,6 +120,19 @@ Albedo albedo(Ready& leaf, const Vec3& wo, int samples) {
   return result;
 }
 
+/// Mean weights of `scatter`, and of the lobes that are the surface's.
+std::array<Estimate, 2> scattered(Ready& leaf, const Vec3& incident) {
+  std::array<Estimate, 2> all_and_surface;
+  std::vector<Scattered> rays(40000);
+  RandomStream rng(7);
+  leaf.bsdf().scatter(incident, rng, rays);
+  for (const Scattered& ray : rays) {
+    all_and_surface[0].add(ray.weight[1]);
+    all_and_surface[1].add(any(ray.lobe & Lobes::surface) ? ray.weight[1] : 0);
+  }
+  return all_and_surface;
+}
+
 /// Of look-ups in tables: measured with the tables.
 constexpr double kLookupError = 1e-4;
 
@@ -222,6 +235,66 @@ TEST(LeafSimplified, SharesTheTableOfLeavesThatAreTheSame) {
   EXPECT_EQ(tables_made({{kSolve}, {kSolve, maize}, {kSolve, maize, wax}}), 2u);
 }
 
+TEST(LeafSimplified, IsWhereATextureSaysTheLeafOfThatValue) {
+  for (const char* wavelengths : {"smpte", "hero"}) {
+    Ready varied(
+        "leaf_simplified",
+        {texture("chlorophylla", {"1:2"}), texture("thickness", {"0.0001:0.0003"}), texture("cuticleaspect", {"1:7"})},
+        wavelengths);
+    Ready constant("leaf_simplified",
+                   {number("float", "chlorophylla", {1.5}), number("float", "thickness", {0.0002}),
+                    number("float", "cuticleaspect", {4})},
+                   wavelengths);
+    RandomStream rng(3);
+    for (const Vec3 wo : {Vec3{0, 0, 1}, normalize(Vec3{1, 0, 0.05f}), normalize(Vec3{1, 1, -1})})
+      for (const Vec3 wi : {normalize(Vec3{-1, 0.1f, 0.3f}), normalize(Vec3{0.1f, 0, -1})}) {
+        const SampledSpectrum f = varied.bsdf({0.5f, 0}).f(wo, wi, rng), g = constant.bsdf().f(wo, wi, rng);
+        for (int lane = 0; lane < varied.lambda().count; ++lane)
+          EXPECT_NEAR(f[lane], g[lane], 6e-4 + 1e-3 * double(g[lane])) << wavelengths;
+        const float p = varied.bsdf({0.5f, 0}).pdf(wo, wi), q = constant.bsdf().pdf(wo, wi);
+        EXPECT_NEAR(p, q, 2e-3 + 2e-3 * double(q)) << wavelengths;
+      }
+    EXPECT_NE(varied.bsdf({0, 0}).f({0, 0, 1}, {0, 0, -1}, rng), varied.bsdf({1, 0}).f({0, 0, 1}, {0, 0, -1}, rng));
+  }
+}
+
+TEST(LeafSimplified, TakesTexturesOfDepthAndSurfaceAlone) {
+  for (const char* name : {"epidermisaspect", "spongyaspect", "palisadeaspect"})
+    EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {texture(name, {"1:2"})}); }),
+                HasSubstr(fmt::format("takes no texture for \"{}\": every texel would need a table", name)));
+  EXPECT_THAT(error_of([] {
+                Ready("leaf_simplified", {texture("lignin", {"1:2"}), words("tablemethod", {"montecarlo"})});
+              }),
+              HasSubstr("are solved: leave \"tablemethod\" out"));
+}
+
+TEST(LeafSimplified, FromLightIsTheLeafTheOtherWayRound) {
+  for (const bool surface_direct : {true, false}) {
+    const ParsedParam direct = flag("surfacedirect", surface_direct);
+    Ready traced("leaf_simplified", {direct}), light("leaf_simplified", {direct, words("incident", {"light"})});
+    const Vec3 a = normalize(Vec3{0.1f, 0, 1}), b = normalize(Vec3{-2, 0.5f, 1}), c = normalize(Vec3{1, 0, -0.2f});
+    RandomStream rng(1);
+    for (const auto& [from, to] : {std::pair(a, b), {b, a}, {a, c}, {c, b}})
+      EXPECT_EQ(light.bsdf().f(from, to, rng), traced.bsdf().f(to, from, rng));
+    EXPECT_TRUE(any(light.bsdf().flags() & Lobes::from_light));
+    EXPECT_FALSE(any(traced.bsdf().flags() & Lobes::from_light));
+  }
+}
+
+/// Whichever way light goes, an instrument that sends it in at one angle gets the table's shares back.
+TEST(LeafSimplified, IsTheSameLeafToInstrumentsWhateverIsIncident) {
+  const Vec3 incident = normalize(Vec3{1, 0, -0.4f});
+  for (const bool surface_direct : {true, false}) {
+    const ParsedParam direct = flag("surfacedirect", surface_direct);
+    Ready traced("leaf_simplified", {direct}), light("leaf_simplified", {direct, words("incident", {"light"})});
+    const auto a = scattered(traced, incident), b = scattered(light, incident);
+    for (size_t i = 0; i < 2; ++i)
+      EXPECT_LT(std::abs(a[i].mean() - b[i].mean()),
+                z_limit(4) * std::hypot(a[i].standard_error(), b[i].standard_error()) + 1e-6)
+          << i << surface_direct;
+  }
+}
+
 TEST(LeafSimplified, ReflectsAllAtGrazing) {
   Ready leaf("leaf_simplified", {kSolve});
   const Albedo measured = albedo(leaf, {1, 0, 1e-7f}, 1000);
@@ -311,19 +384,6 @@ TEST(Abm, IsWhereATextureSaysTheLeafOfThatValue) {
     EXPECT_LT(length(s->wi - t->wi), 1e-4f) << key;
     EXPECT_NEAR(s->f[1], t->f[1], 1e-3f * t->f[1]) << key;
   }
-}
-
-/// Mean weights of `scatter`, and of the lobes that are the surface's.
-std::array<Estimate, 2> scattered(Ready& leaf, const Vec3& incident) {
-  std::array<Estimate, 2> all_and_surface;
-  std::vector<Scattered> rays(40000);
-  RandomStream rng(7);
-  leaf.bsdf().scatter(incident, rng, rays);
-  for (const Scattered& ray : rays) {
-    all_and_surface[0].add(ray.weight[1]);
-    all_and_surface[1].add(any(ray.lobe & Lobes::surface) ? ray.weight[1] : 0);
-  }
-  return all_and_surface;
 }
 
 TEST(Abm, IsTheSameLeafToInstrumentsWhateverIsIncident) {

@@ -18,13 +18,10 @@ inline float surface_lobe_pdf(const leaf::Lobe& lobe, const Vec3& wo, const Vec3
 inline Vec3 sample_surface_lobe(const leaf::Lobe& lobe, const Vec3& wo, Vec2 u, RandomStream& rng) {
   const Frame frame = Frame::around(Vec3{-wo.x, -wo.y, wo.z});
   for (;; u = {rng.uniform(), rng.uniform()}) {
-    const Vec2 disk = sample_disk(u);
-    const float r2 = disk.x * disk.x + disk.y * disk.y;
-    if (r2 == 0) continue;
-    const float cos_alpha = lobe.cos_from_uniform(1 - r2);
-    const float s = std::sqrt(std::max(0.f, 1 - cos_alpha * cos_alpha) / r2);
-    const Vec3 wi = normalize(frame.to_world({s * disk.x, s * disk.y, cos_alpha}));
-    if (wi.z * wo.z > 0) return wi;
+    const float cos_alpha = lobe.cos_from_uniform(1 - u.x), beta = 2 * kPi * u.y;
+    const float sin_alpha = std::sqrt(std::max(0.f, 1 - cos_alpha * cos_alpha));
+    const Vec3 wi = frame.to_world({sin_alpha * std::cos(beta), sin_alpha * std::sin(beta), cos_alpha});
+    if (wi.z * wo.z > 0) return normalize(wi);
   }
 }
 

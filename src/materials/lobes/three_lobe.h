@@ -3,133 +3,179 @@
 #include <limits>
 
 #include "core/bsdf.h"
-#include "core/sampling.h"
-#include "leaf/lobe.h"
 #include "leaf/lookup.h"
 #include "materials/lobes/active_lanes.h"
+#include "materials/lobes/surface_lobe.h"
 
 namespace frond {
+
+/// A leaf where it was hit, at the wavelengths of the path. What is pointed to outlives the BSDF.
+struct LeafHit {
+  const leaf::TableLookup* table;
+  leaf::TableSelection selection;  ///< the table's columns for this hit
+  const leaf::Lobe* surface;
+  SampledSpectrum active;  ///< 1 in active lanes, 0 elsewhere
+};
+
+/// How a leaf is asked.
+struct LeafManner {
+  /// False: `f` and `pdf` leave the surface lobe out, and `sample` returns it as if it were a delta lobe, so that light
+  /// sampling never sees it.
+  bool surface_direct = true;
+  bool from_light = false;  ///< wi, not wo, is the model's incident direction
+};
 
 /// A leaf as three lobes, each scaled by its share of the light (Baranoski and Rokne): the mirror direction spread by a
 /// power of the cosine (Rs), a cosine lobe on the side of incidence (Rd) and one on the other side (T).
 class ThreeLobeBsdf final : public Bsdf {
  public:
-  /// Everything given outlives the BSDF. surface_direct false: `f` and `pdf` leave the surface lobe out, and `sample`
-  /// returns it as if it were a delta lobe, so that light sampling never sees it.
-  ThreeLobeBsdf(const leaf::TableLookup& shares, const leaf::Lobe& surface, const SampledWavelengths& lambda,
-                bool surface_direct)
-      : table_(shares),
-        surface_(surface),
-        lambda_(lambda),
-        active_(lane_mask(lambda)),
-        surface_direct_(surface_direct) {}
+  ThreeLobeBsdf(const LeafHit& hit, const LeafManner& manner) : hit_(hit), manner_(manner) {}
 
   Lobes flags() const override {
-    const Lobes surface = Lobes::surface | (surface_direct_ ? Lobes::glossy : Lobes::glossy | Lobes::specular);
-    return Lobes::reflection | Lobes::transmission | Lobes::diffuse | surface;
+    const Lobes surface = Lobes::surface | (manner_.surface_direct ? Lobes::glossy : Lobes::glossy | Lobes::specular);
+    return Lobes::reflection | Lobes::transmission | Lobes::diffuse | surface | way_round();
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
-    return scatters(wo, wi) ? at(wo, wi).f : SampledSpectrum();
+    return scatters(wo, wi) ? leaf_f(wo, wi, spread(wo, wi)) : SampledSpectrum();
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
-    if (wo.z == 0) return {};
-    const Incidence& in = at(wo);
-    if (uc < in.surface) return sample_surface(in, wo, u, rng);
+    if (std::abs(wo.z) < kLeastCosine) return {};
+    const Choice& choice = choice_at(wo);
+    if (uc < choice.surface) return sample_surface(choice, wo, u, rng);
     Vec3 wi = sample_cosine_hemisphere(u);
-    const bool reflects = uc < in.surface + in.subsurface;
+    const bool reflects = uc < choice.surface + choice.subsurface;
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (!scatters(wo, wi)) return {};
-    const Value value = at(wo, wi);
-    if (value.pdf == 0) return {};  // black
-    return BsdfSample{value.f, wi, value.pdf, Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission)};
+    const float lobe = spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
+    if (density == 0) return {};  // black
+    return BsdfSample{leaf_f(wo, wi, lobe), wi, density,
+                      Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission)};
   }
 
-  float pdf(const Vec3& wo, const Vec3& wi) const override { return scatters(wo, wi) ? at(wo, wi).pdf : 0; }
+  float pdf(const Vec3& wo, const Vec3& wi) const override {
+    return scatters(wo, wi) ? leaf_pdf(wo, wi, spread(wo, wi)) : 0;
+  }
+
+  /// What the model says of its incident direction, whichever way round a path asks.
+  void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
+    const ThreeLobeBsdf traced(hit_, {manner_.surface_direct, false});
+    traced.Bsdf::scatter(incident, rng, rays);
+  }
 
  private:
-  /// What depends on wo alone.
-  struct Incidence {
+  static constexpr float kLeastCosine = 1e-20f;  // closer to the surface's plane than floats should be divided by
+
+  /// Probabilities of the lobes for one wo.
+  struct Choice {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
-    float surface, subsurface, transmitted;  ///< probabilities of the lobes
-    float scale;                             ///< of the surface lobe's density, for what the cut leaves
-    leaf::SampledShares shares;              ///< 0 in lanes that are not active
+    float surface, subsurface, transmitted;
   };
 
-  struct Value {
-    SampledSpectrum f;
-    float pdf;
+  /// What depends on the incident direction alone.
+  struct Incidence {
+    float cos_theta = std::numeric_limits<float>::quiet_NaN();
+    leaf::SampledShares shares;  ///< 0 in lanes that are not active
   };
 
   static bool scatters(const Vec3& wo, const Vec3& wi) {
-    constexpr float kLeastCosine = 1e-20f;  // closer to the surface's plane than floats should be divided by
-    return wo.z != 0 && std::abs(wi.z) >= kLeastCosine;
+    return std::abs(wo.z) >= kLeastCosine && std::abs(wi.z) >= kLeastCosine;
+  }
+  static float sum(const SampledSpectrum& s) { return (s[0] + s[1]) + (s[2] + s[3]); }
+
+  Lobes way_round() const { return manner_.from_light ? Lobes::from_light : Lobes::none; }
+
+  /// f, pdf and sample come in turn for one direction: looked up once.
+  const leaf::SampledShares& shares_at(float cos_theta) const {
+    if (incidence_.cos_theta == cos_theta) return incidence_.shares;
+    incidence_.cos_theta = cos_theta;
+    leaf::SampledShares& shares = incidence_.shares;
+    shares = (*hit_.table)(cos_theta, hit_.selection);
+    shares.surface *= hit_.active;
+    shares.subsurface *= hit_.active;
+    shares.transmitted *= hit_.active;
+    return shares;
   }
 
-  /// f, pdf and sample come in turn for one wo: looked up once.
-  const Incidence& at(const Vec3& wo) const {
-    if (incidence_.cos_theta == wo.z) return incidence_;
-    Incidence& in = incidence_;
-    in.cos_theta = wo.z;
-    in.shares = table_(wo.z, lambda_);
-    in.shares.surface *= active_;
-    in.shares.subsurface *= active_;
-    in.shares.transmitted *= active_;
-    const auto sum = [](const SampledSpectrum& s) { return s[0] + s[1] + s[2] + s[3]; };
-    const float surface = sum(in.shares.surface), subsurface = sum(in.shares.subsurface);
-    const float transmitted = sum(in.shares.transmitted), all = surface + subsurface + transmitted;
-    const float norm = all > 0 ? 1 / all : 0;
-    in.surface = surface * norm;
-    in.subsurface = subsurface * norm;
-    in.transmitted = transmitted * norm;
-    in.scale = static_cast<float>(1 / surface_.kept(std::abs(wo.z)));
-    return in;
+  const Choice& choice_at(const Vec3& wo) const {
+    if (choice_.cos_theta == wo.z) return choice_;
+    choice_.cos_theta = wo.z;
+    float surface = sum(shares_at(wo.z).surface), subsurface, transmitted;
+    if (manner_.from_light) {
+      // Light comes from everywhere: about the mean over a hemisphere, on either side.
+      constexpr float kMeanCosine = 2.f / 3;
+      const float mean = wo.z > 0 ? kMeanCosine : -kMeanCosine;
+      subsurface = sum(shares_at(mean).subsurface);
+      transmitted = sum(shares_at(-mean).transmitted);
+    } else {
+      subsurface = sum(shares_at(wo.z).subsurface);
+      transmitted = sum(shares_at(wo.z).transmitted);
+    }
+    const float all = surface + subsurface + transmitted, norm = all > 0 ? 1 / all : 0;
+    choice_.surface = surface * norm;
+    choice_.subsurface = subsurface * norm;
+    choice_.transmitted = transmitted * norm;
+    return choice_;
   }
 
-  /// Where wi scatters.
-  Value at(const Vec3& wo, const Vec3& wi) const {
-    const Incidence& in = at(wo);
-    const float cos_theta_i = std::abs(wi.z), cosine = cos_theta_i * kInvPi;
-    if (!same_side(wo, wi)) return {in.shares.transmitted * kInvPi, in.transmitted * cosine};
-    Value value{in.shares.subsurface * kInvPi, in.subsurface * cosine};
-    if (!surface_direct_) return value;
-    const float density = in.scale * static_cast<float>(surface_.density(dot(mirror(wo), wi)));
-    value.f += in.shares.surface * (density / cos_theta_i);
-    value.pdf += in.surface * density;
-    return value;
+  /// Of the surface lobe before its cut, 1/sr: the same both ways round. 0 where nobody asks for it.
+  float spread(const Vec3& wo, const Vec3& wi) const {
+    if (!manner_.surface_direct || !same_side(wo, wi)) return 0;
+    return static_cast<float>(hit_.surface->density(dot(Vec3{-wo.x, -wo.y, wo.z}, wi)));
   }
 
-  static Vec3 mirror(const Vec3& wo) { return {-wo.x, -wo.y, wo.z}; }
+  SampledSpectrum leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
+    const Vec3 &incident = manner_.from_light ? wi : wo, &leaving = manner_.from_light ? wo : wi;
+    const leaf::SampledShares& shares = shares_at(incident.z);
+    if (!same_side(wo, wi)) return shares.transmitted * kInvPi;
+    const SampledSpectrum body = shares.subsurface * kInvPi;
+    if (lobe == 0) return body;
+    return body + shares.surface * (lobe * made_good(incident.z) / std::abs(leaving.z));
+  }
 
-  std::optional<BsdfSample> sample_surface(const Incidence& in, const Vec3& wo, Vec2 u, RandomStream& rng) const {
-    const Frame frame = Frame::around(mirror(wo));
-    for (;; u = {rng.uniform(), rng.uniform()}) {
-      const Vec2 disk = sample_disk(u);
-      const float r2 = disk.x * disk.x + disk.y * disk.y;
-      if (r2 == 0) continue;
-      const float cos_alpha = surface_.cos_from_uniform(1 - r2);
-      const float s = std::sqrt(std::max(0.f, 1 - cos_alpha * cos_alpha) / r2);
-      const Vec3 wi = normalize(frame.to_world({s * disk.x, s * disk.y, cos_alpha}));
-      if (!same_side(wo, wi) || !scatters(wo, wi)) continue;
-      const BsdfSample sample = surface_sample(in, wo, wi);
-      if (sample.pdf > 0) return sample;  // not on the lobe's very edge
+  float leaf_pdf(const Vec3& wo, const Vec3& wi, float lobe) const {
+    const Choice& choice = choice_at(wo);
+    const float cosine = std::abs(wi.z) * kInvPi;
+    if (!same_side(wo, wi)) return choice.transmitted * cosine;
+    const float body = choice.subsurface * cosine;
+    return lobe == 0 ? body : body + choice.surface * lobe * made_good(wo.z);
+  }
+
+  /// What the cut at the surface makes of the lobe: a factor that makes its whole 1 again.
+  float made_good(float cos_theta) const {
+    if (made_good_at_ != cos_theta) {
+      made_good_at_ = cos_theta;
+      made_good_ = 1 / static_cast<float>(hit_.surface->kept(std::abs(cos_theta)));
+    }
+    return made_good_;
+  }
+
+  std::optional<BsdfSample> sample_surface(const Choice& choice, const Vec3& wo, Vec2 u, RandomStream& rng) const {
+    const Lobes lobe = Lobes::reflection | Lobes::glossy | Lobes::surface;
+    for (;;) {
+      const Vec3 wi = sample_surface_lobe(*hit_.surface, wo, u, rng);
+      if (scatters(wo, wi)) {
+        if (!manner_.surface_direct) return BsdfSample{as_delta(wo, wi), wi, choice.surface, lobe | Lobes::specular};
+        const float spread_here = spread(wo, wi), density = leaf_pdf(wo, wi, spread_here);
+        if (density > 0) return BsdfSample{leaf_f(wo, wi, spread_here), wi, density, lobe};  // not on its very edge
+      }
+      u = {rng.uniform(), rng.uniform()};
     }
   }
 
-  BsdfSample surface_sample(const Incidence& in, const Vec3& wo, const Vec3& wi) const {
-    const Lobes lobe = Lobes::reflection | Lobes::glossy | Lobes::surface;
-    if (!surface_direct_) return {in.shares.surface * (1 / std::abs(wi.z)), wi, in.surface, lobe | Lobes::specular};
-    const Value value = at(wo, wi);
-    return {value.f, wi, value.pdf, lobe};
+  /// f of the surface lobe where wi, drawn from it, counts as a delta lobe's only direction.
+  SampledSpectrum as_delta(const Vec3& wo, const Vec3& wi) const {
+    if (!manner_.from_light) return shares_at(wo.z).surface * (1 / std::abs(wi.z));
+    const float drawn = made_good(wo.z);
+    return shares_at(wi.z).surface * (made_good(wi.z) / (drawn * std::abs(wo.z)));
   }
 
-  const leaf::TableLookup& table_;
-  const leaf::Lobe& surface_;
-  SampledWavelengths lambda_;
-  SampledSpectrum active_;
-  bool surface_direct_;
+  LeafHit hit_;
+  LeafManner manner_;
   mutable Incidence incidence_;
+  mutable Choice choice_;
+  mutable float made_good_at_ = std::numeric_limits<float>::quiet_NaN(), made_good_ = 1;
 };
 
 }  // namespace frond

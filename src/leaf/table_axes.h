@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace frond::leaf {
+
+/// A place between two nodes of an axis.
+struct AxisCell {
+  uint32_t below;
+  float t;  ///< of the way to the next node, in [0, 1]
+};
+
+/// Wavelengths of a table, whatever their spacing.
+class WavelengthAxis {
+ public:
+  WavelengthAxis() = default;
+  /// Two at least, ascending.
+  explicit WavelengthAxis(const std::vector<double>& wavelengths_nm);
+
+  bool empty() const { return nm_.empty(); }
+  AxisCell cell(float nm) const {
+    const auto bin = static_cast<size_t>(std::clamp((nm - nm_[0]) * bins_per_nm_, 0.f, last_bin_));
+    uint32_t below = first_in_bin_[bin];
+    while (below + 2 < nm_.size() && nm >= nm_[below + 1]) ++below;
+    return {below, std::clamp((nm - nm_[below]) * per_width_[below], 0.f, 1.f)};
+  }
+
+ private:
+  std::vector<float> nm_, per_width_;   ///< of the cell that begins there
+  std::vector<uint32_t> first_in_bin_;  ///< wavelength below the beginning of each of many even steps
+  float bins_per_nm_ = 0, last_bin_ = 0;
+};
+
+/// Optical depths of a table, even in their logarithm, after 0 where they begin there.
+class DepthAxis {
+ public:
+  DepthAxis() = default;
+  /// From `least` to `most`, 0 <= least <= most, in steps of at most `step` of the natural logarithm.
+  DepthAxis(double least, double most, double step);
+
+  bool empty() const { return depths_.empty(); }
+  const std::vector<double>& depths() const { return depths_; }
+  AxisCell cell(double depth) const {
+    const auto d = static_cast<float>(depth);
+    if (d <= first_) return {0, zero_ == 0 ? 0.f : std::max(0.f, d / first_)};
+    const float x = std::min((std::log(d) - log_first_) * per_step_, last_);
+    const auto whole = std::min(static_cast<uint32_t>(x), static_cast<uint32_t>(last_) - 1);
+    return {zero_ + whole, x - static_cast<float>(whole)};
+  }
+
+ private:
+  std::vector<double> depths_;
+  float first_ = 0, log_first_ = 0, per_step_ = 0, last_ = 1;
+  uint32_t zero_ = 0;  ///< 1 where depth 0 is a node of its own
+};
+
+}  // namespace frond::leaf
