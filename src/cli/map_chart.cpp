@@ -24,7 +24,7 @@ constexpr const char* kPalette =
     "'#aadc32', 8 '#fde725')\n";
 
 /// Columns of cells in a patch, so that its outer edge is round.
-int cells_per_patch(const DetectorSphere& sphere) { return std::max(1, 120 / sphere.phis()); }
+int cells_per_patch(const DetectorSphere& sphere) { return std::max(1, 48 / sphere.phis()); }
 
 /// A line "x y f" for each corner of each cell, the cells' f at their first corner; the light comes from the left.
 std::string map_data(const GoniophotometerReading& r, bool reflected) {
@@ -59,11 +59,13 @@ Range range_of(const std::vector<LabelledPatches>& readings) {
   return range.largest > 0 ? range : Range{1e-6, 1};
 }
 
+/// A logarithmic scale spans a decade at least, so that a number stands at it. What is 0 has the darkest colour.
 std::string scale(const Range& range, bool logarithmic) {
+  constexpr double kLeastSpan = 11;
   std::string script = kPalette;
   if (logarithmic)
-    script += fmt::format("set logscale cb\nset cbrange [{}:{}]\n", std::min(range.smallest, range.largest / 1.01),
-                          range.largest);
+    script += fmt::format("set logscale cb\nset cbrange [{}:{}]\n",
+                          std::min(range.smallest, range.largest / kLeastSpan), range.largest);
   else
     script += fmt::format("set cbrange [0:{}]\n", range.largest);
   return script + "set cblabel 'f (sr⁻¹)'\n";

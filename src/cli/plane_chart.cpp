@@ -63,13 +63,13 @@ std::string plane_data(const GoniophotometerReading& r, bool reflected) {
 }
 
 double largest_in_plane(const std::vector<LabelledPatches>& readings, bool reflected) {
-  double largest = 1e-6;
+  double largest = 0;
   for (const auto& [material, r] : readings)
     for (const int column : {0, r.sphere.phis() / 2})
       for (int row = 0; row < r.sphere.thetas(); ++row)
         if (r.is_reflected(r.sphere.patch(row, column)) == reflected)
           largest = std::max(largest, r.f(r.sphere.index(row, column)).mean);
-  return largest;
+  return largest > 0 ? largest : 1;
 }
 
 std::string dash(size_t material) {

@@ -148,6 +148,14 @@ TEST_F(SpectrophotometerCommand, MaterialsTakeSpectraAndMaterials) {
   EXPECT_NEAR(reflectance({"mix", "materials=diffuse,diffuse"}), 0.5, 1e-6);
 }
 
+TEST_F(SpectrophotometerCommand, MeasuresPlugIns) {
+  const Outcome o = frond_command({"spectrophotometer", "wrong_warp", "--plugin", FROND_TEST_PLUGINS "/planted.so",
+                                   "--wavelengths", "551", "--rays", "1e4", "--csv", "-"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NEAR(parse_csv(o.out).number(0, "A"), 0.2, 1e-6);
+  EXPECT_THAT(measure({"--with", "wrong_warp", "--wavelengths", "551"}).err, HasSubstr("unknown material"));
+}
+
 TEST_F(SpectrophotometerCommand, RefusesTheImpossibleBeforeItMeasures) {
   EXPECT_THAT(refusal({"--wavelengths", "300"}), HasSubstr("360 to 2500 nm"));
   EXPECT_THAT(refusal({"--with", "diffuse reflectance=.5,.5,.5", "--wavelengths", "551,900"}),
