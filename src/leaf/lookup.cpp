@@ -14,7 +14,7 @@ class Side {
  public:
   Side(const std::vector<double>& theta_deg, std::span<const Shares> column, bool abaxial) {
     const bool mirrored = abaxial && theta_deg.back() > 90;
-    std::vector<double> theta, surface, subsurface, transmitted;
+    std::vector<double> theta, surface, subsurface, transmitted, all;
     for (size_t k = 0; k < theta_deg.size(); ++k) {
       const size_t i = mirrored ? theta_deg.size() - 1 - k : k;
       const double from_normal = mirrored ? 180 - theta_deg[i] : theta_deg[i];
@@ -24,26 +24,26 @@ class Side {
       surface.push_back(s.surface);
       subsurface.push_back(s.subsurface);
       transmitted.push_back(s.transmitted);
+      all.push_back(sum(s));
     }
     surface_.emplace(theta, std::move(surface));
     subsurface_.emplace(theta, std::move(subsurface));
     transmitted_.emplace(theta, std::move(transmitted));
+    all_.emplace(theta, std::move(all));
   }
 
-  /// theta_deg from this side's normal.
+  /// theta_deg from this side's normal. Absorption is interpolated as the shares are: none stays none.
   Shares at(double theta_deg) const {
-    return {(*surface_)(theta_deg), (*subsurface_)(theta_deg), (*transmitted_)(theta_deg)};
+    const Shares s{(*surface_)(theta_deg), (*subsurface_)(theta_deg), (*transmitted_)(theta_deg)};
+    const double all = sum(s), scale = all > 0 ? (*all_)(theta_deg) / all : 0;
+    return {s.surface * scale, s.subsurface * scale, s.transmitted * scale};
   }
 
  private:
-  std::optional<MonotoneCubic> surface_, subsurface_, transmitted_;
-};
+  static double sum(const Shares& s) { return s.surface + s.subsurface + s.transmitted; }
 
-/// Each share stays between its neighbours in the table; their sum may pass 1 by a little, and energy may not.
-Shares within_bounds(const Shares& s) {
-  const double scale = 1 / std::max(1.0, s.surface + s.subsurface + s.transmitted);
-  return {s.surface * scale, s.subsurface * scale, s.transmitted * scale};
-}
+  std::optional<MonotoneCubic> surface_, subsurface_, transmitted_, all_;
+};
 
 }  // namespace
 
@@ -54,7 +54,7 @@ std::vector<TableLookup::Node> TableLookup::resample(const std::vector<double>& 
     const Side side(theta_deg, column, i > 0);
     for (size_t k = 0; k <= kCells; ++k) {
       const double x = static_cast<double>(k) / kCells;
-      const Shares s = within_bounds(side.at(std::acos(x * x) * 180 / std::numbers::pi));
+      const Shares s = side.at(std::acos(x * x) * 180 / std::numbers::pi);
       nodes[i + k].v = {static_cast<float>(s.surface), static_cast<float>(s.subsurface),
                         static_cast<float>(s.transmitted), 0};
     }
