@@ -18,10 +18,12 @@ void add_difference_command(CLI::App& app);
 void add_list_command(CLI::App& app);
 void add_describe_command(CLI::App& app);
 void add_table_command(CLI::App& app);
+void add_conform_command(CLI::App& app);
 void add_spectrophotometer_command(CLI::App& app);
 void add_goniophotometer_command(CLI::App& app);
 
-/// Runs the frond command. 0: done; 1: bad use or bad input, with a message on standard error.
+/// Runs the frond command. 0: done; 1: bad use or bad input, with a message on standard error; 2: `conform` found a law
+/// broken.
 int run(int argc, const char* const* argv);
 
 }  // namespace frond

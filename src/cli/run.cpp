@@ -18,11 +18,14 @@ int run(int argc, const char* const* argv) {
   add_list_command(app);
   add_describe_command(app);
   add_table_command(app);
+  add_conform_command(app);
   add_spectrophotometer_command(app);
   add_goniophotometer_command(app);
   try {
     app.parse(argc, argv);
     return 0;
+  } catch (const CLI::RuntimeError& verdict) {  // a command's own exit code; it has said why
+    return verdict.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 1;
   } catch (const std::bad_alloc&) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,12 +10,7 @@
 
 namespace frond {
 
-std::string_view law_name(Law law) {
-  constexpr std::array<std::string_view, 12> kNames{"parameters",  "sampling",     "agreement", "normalisation",
-                                                    "energy",      "flags",        "values",    "lanes",
-                                                    "reciprocity", "unbiasedness", "streams",   "coverage"};
-  return kNames[static_cast<size_t>(law)];
-}
+std::string_view law_name(Law law) { return kLaws[static_cast<size_t>(law)].name; }
 
 Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims, const Effort& effort,
                  const std::string& where) {
@@ -45,11 +39,24 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
   return findings;
 }
 
-void judge(Findings& findings, double false_alarm_rate) {
+double judge(Findings& findings, double false_alarm_rate) {
   size_t tests = 0;
   for (const Finding& f : findings) tests += f.statistical ? 1 : 0;
   const double level = sidak_level(false_alarm_rate, tests);
   for (Finding& f : findings) f.passed = f.p_value >= level;
+  return level;
+}
+
+std::vector<LawSummary> summarise(std::span<const Finding> findings) {
+  std::vector<LawSummary> laws;
+  for (const LawInfo& law : kLaws) laws.push_back({law});
+  for (const Finding& f : findings) {
+    LawSummary& law = laws[static_cast<size_t>(f.law)];
+    ++law.tests;
+    law.failures += f.passed ? 0 : 1;
+    if (!law.worst || f.p_value < law.worst->p_value) law.worst = &f;
+  }
+  return laws;
 }
 
 std::set<Law> broken_laws(std::span<const Finding> findings) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -8,6 +10,7 @@
 #include <vector>
 
 #include "core/bsdf.h"
+#include "instruments/sphere.h"
 
 namespace frond {
 
@@ -29,7 +32,40 @@ enum class Law : uint8_t {
   streams,        ///< not exact: the noise of f is drawn from its stream, not from its directions
   coverage,       ///< `pdf` is positive wherever f is
 };
+
+/// A law as a report has it.
+struct LawInfo {
+  Law law;
+  std::string_view name, text;
+};
+
+/// In the order of the enumeration.
+inline constexpr std::array<LawInfo, 12> kLaws{{
+    {Law::parameters, "parameters", "every declared one is read and no other, and these values work"},
+    {Law::sampling, "sampling", "exact BSDFs: sample's directions follow pdf"},
+    {Law::agreement, "agreement", "exact BSDFs: a sample's f and pdf are those of f() and pdf()"},
+    {Law::normalisation, "normalisation", "pdf integrates to how often sample gives a direction"},
+    {Law::energy, "energy", "no more comes out than went in; as much, where lossless"},
+    {Law::flags, "flags", "what flags say of sides and lobes is so"},
+    {Law::values, "values", "all finite, none negative; nothing scatters at cos theta = 0"},
+    {Law::lanes, "lanes", "wavelengths that are not active hold 0"},
+    {Law::reciprocity, "reciprocity", "f(a, b) = f(b, a), where claimed"},
+    {Law::unbiasedness, "unbiasedness", "other BSDFs: sample's mean weights are the integrals of f |cos theta|"},
+    {Law::streams, "streams", "other BSDFs: the noise of f comes from its stream, not from directions"},
+    {Law::coverage, "coverage", "pdf is positive wherever f is"},
+}};
 std::string_view law_name(Law law);
+
+/// Where over the sphere of wi a law was looked at, for one wo: a number for each patch, and what it should be.
+struct SphereMap {
+  struct Patch {
+    SphereBox box;
+    double found = 0, expected = 0;
+  };
+  Vec3 wo;
+  std::string found, expected;  ///< what the numbers are; no `expected`: there is nothing to compare with
+  std::vector<Patch> patches;
+};
 
 /// The outcome of one test of one law.
 struct Finding {
@@ -38,7 +74,8 @@ struct Finding {
   std::string message;  ///< what was compared
   double p_value = 1;   ///< of a statistical test; 0 or 1 for any other
   bool statistical = false;
-  bool passed = true;  ///< set by `judge`
+  bool passed = true;                              ///< set by `judge`
+  std::shared_ptr<const SphereMap> map = nullptr;  ///< if Effort asks for maps and the law has directions
 };
 using Findings = std::vector<Finding>;
 
@@ -54,15 +91,25 @@ struct Effort {
   int samples = 20000;  ///< of `sample` for each direction
   std::vector<double> angles_deg = {0, 30, 60, 80, 89};
   uint64_t seed = 1;
+  bool maps = false;  ///< keep a SphereMap with each finding
 };
 
 /// Runs all laws that a BSDF can be asked about. `where` begins the text of each finding. `judge` comes after.
 Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims, const Effort& effort,
                  const std::string& where);
 
-/// Sets `passed`. `false_alarm_rate` is that of all the findings together: the chance that any law is said to be broken
-/// though all hold.
-void judge(Findings& findings, double false_alarm_rate);
+/// Sets `passed`, and returns the p-value below which a finding fails. `false_alarm_rate` is that of all the findings
+/// together: the chance that any law is said to be broken though all hold.
+double judge(Findings& findings, double false_alarm_rate);
+
+/// What all findings say of one law.
+struct LawSummary {
+  LawInfo law;
+  int tests = 0, failures = 0;
+  const Finding* worst = nullptr;  ///< that of the smallest p
+};
+/// One for each law, in the order of kLaws.
+std::vector<LawSummary> summarise(std::span<const Finding> findings);
 
 std::set<Law> broken_laws(std::span<const Finding> findings);
 /// A line for each finding that did not pass, up to 20.

@@ -20,6 +20,7 @@ Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const V
       lambda(wavelengths),
       wo(direction),
       where(asked_where),
+      maps(effort.maps),
       drawn(effort.samples),
       pilot(draw(effort.samples / kPilotShare, hash_key(effort.seed, 0))),
       samples(draw(effort.samples, hash_key(effort.seed, 1))),
@@ -27,6 +28,22 @@ Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const V
       bins(directions(pilot), std::min(effort.samples / (exact ? 256 : 512), exact ? 128 : 64)) {
   integrate_pdf();
   probe(hash_key(effort.seed, 2));
+}
+
+std::shared_ptr<const SphereMap> Series::map(std::string found_name, std::span<const double> found,
+                                             std::string expected_name, std::span<const double> expected) const {
+  if (!maps) return nullptr;
+  SphereMap result{wo, std::move(found_name), std::move(expected_name), {}};
+  for (size_t b = 0; b < bins.size(); ++b)
+    result.patches.push_back({bins.box(b), found[b], expected.empty() ? 0 : expected[b]});
+  return std::make_shared<SphereMap>(std::move(result));
+}
+
+std::shared_ptr<const SphereMap> Verdict::map_of_faults() const {
+  std::vector<double> share(asked_.size(), 0);
+  for (size_t b = 0; b < share.size(); ++b)
+    if (asked_[b] > 0) share[b] = std::min(1.0, faults_[b] / asked_[b]);
+  return series_->map("share of directions that break the law", share);
 }
 
 void Series::integrate_pdf() {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -44,12 +46,17 @@ struct Series {
   Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction, const Effort& effort,
          const std::string& asked_where);
 
+  /// For a finding: a pair of numbers for each bin. nullptr where nobody asked for maps. Without `expected` there is
+  /// nothing to compare with.
+  std::shared_ptr<const SphereMap> map(std::string found_name, std::span<const double> found,
+                                       std::string expected_name = {}, std::span<const double> expected = {}) const;
   double share(int64_t count) const { return static_cast<double>(count) / static_cast<double>(drawn); }
 
   const Bsdf& bsdf;
   const SampledWavelengths& lambda;
   Vec3 wo;
   std::string where;
+  bool maps;
   int64_t drawn;  ///< calls of `sample`
   /// Further samples, a quarter as many, that decide where the bins are and which of them can be tested: what is tested
   /// must not choose its own tests.
@@ -88,6 +95,34 @@ inline SampledSpectrum f_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, 
   return bsdf.f(wo, wi, stream);
 }
 
+/// Equal but for rounding.
+inline bool near(float a, float b) {
+  return std::abs(a - b) <= static_cast<float>(kRounding) * std::max(std::abs(a), std::abs(b));
+}
+
+inline bool near(const SampledSpectrum& a, const SampledSpectrum& b) {
+  return std::ranges::equal(a.v, b.v, [](float x, float y) { return near(x, y); });
+}
+
+inline bool is_proper(float x) { return std::isfinite(x) && x >= 0; }
+inline bool is_proper(const SampledSpectrum& s) {
+  return std::ranges::all_of(s.v, [](float x) { return is_proper(x); });
+}
+
+inline Finding statistical(Law law, const Series& s, double p_value, std::string message,
+                           std::shared_ptr<const SphereMap> map) {
+  Finding finding{.law = law, .where = s.where, .message = std::move(message), .p_value = p_value, .statistical = true};
+  finding.map = std::move(map);
+  return finding;
+}
+
+inline bool is_specular(const BsdfSample& sample) { return any(sample.flags & Lobes::specular); }
+
+inline double weight(const BsdfSample& sample, int lane) {
+  return static_cast<double>(sample.f[lane]) * std::abs(static_cast<double>(sample.wi.z)) /
+         static_cast<double>(sample.pdf);
+}
+
 // Laws of one series.
 void check_sampling(const Series& s, Findings& findings);
 void check_normalisation(const Series& s, Findings& findings);
@@ -108,18 +143,42 @@ void check_reciprocity(const Bsdf& bsdf, const std::string& where, const Effort&
 class Verdict {
  public:
   Verdict(Law law, const std::string& where) : finding_{.law = law, .where = where, .message = {}} {}
+  /// Of the directions of a series: for a map, it counts the faults in each bin.
+  Verdict(Law law, const Series& s) : Verdict(law, s.where) {
+    if (!s.maps) return;
+    series_ = &s;
+    asked_.assign(s.bins.size(), 0);
+    faults_.assign(s.bins.size(), 0);
+  }
 
   bool failed() const { return finding_.p_value == 0; }
+  /// What is expected from now on concerns this direction.
+  void at(const Vec3& wi) {
+    if (!series_) return;
+    bin_ = series_->bins.find(wi);
+    asked_[bin_] += 1;
+  }
   template <class... Args>
   void expect(bool holds, fmt::format_string<Args...> format, const Args&... args) {
-    if (holds || failed()) return;
+    if (holds) return;
+    if (series_) faults_[bin_] += 1;
+    if (failed()) return;
     finding_.p_value = 0;
     finding_.message = fmt::vformat(format, fmt::make_format_args(args...));
   }
-  const Finding& finding() const { return finding_; }
+  Finding finding() const {
+    Finding result = finding_;
+    if (series_ && failed()) result.map = map_of_faults();
+    return result;
+  }
 
  private:
+  std::shared_ptr<const SphereMap> map_of_faults() const;
+
   Finding finding_;
+  const Series* series_ = nullptr;
+  size_t bin_ = 0;
+  std::vector<double> asked_, faults_;
 };
 
 }  // namespace frond

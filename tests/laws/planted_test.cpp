@@ -15,12 +15,14 @@ using ::testing::IsEmpty;
 constexpr double kFalseAlarmRate = 1e-6;
 
 Findings findings(const MaterialInfo& info, const Claims& claims = {},
-                  const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455})) {
+                  const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455}),
+                  const Effort& effort = {}) {
   const Setup setup(wavelengths);
   PlainResolver resolver([](const std::string&) { return nullptr; });
   const auto sets = parameter_sweep(info, {});
-  Findings found = examine(info, std::span(sets).first(1),
-                           {.preparation = setup.preparation, .resolver = resolver, .claims = claims, .effort = {}});
+  Findings found =
+      examine(info, std::span(sets).first(1),
+              {.preparation = setup.preparation, .resolver = resolver, .claims = claims, .effort = effort});
   judge(found, kFalseAlarmRate);
   return found;
 }
@@ -136,6 +138,38 @@ TEST(Planted, NoiseMadeFromDirectionsBreaksStreams) {
 
 TEST(Planted, TransmissionThatIsNeverSampledBreaksCoverage) {
   EXPECT_THAT(broken<NeverSamplesTransmission>(), ElementsAre(Law::coverage));
+}
+
+// Maps.
+
+/// Of the directions of one law's worst finding.
+SphereMap map_of_worst(const MaterialInfo& info, Law law, const Claims& claims = {}) {
+  const Findings found = findings(info, claims, GivenWavelengths({608, 551, 455}), {.maps = true});
+  return *summarise(found)[static_cast<size_t>(law)].worst->map;
+}
+
+TEST(Maps, CountEveryDirectionOnce) {
+  const SphereMap map = map_of_worst(planted<GoodLambertian>("good"), Law::sampling);
+  double found = 0, expected = 0, solid_angle = 0;
+  for (const SphereMap::Patch& p : map.patches)
+    found += p.found, expected += p.expected, solid_angle += p.box.solid_angle();
+  EXPECT_EQ(found, Effort().samples);
+  EXPECT_NEAR(expected, found, 1e-6);
+  EXPECT_NEAR(solid_angle, 4 * kPi, 1e-5);
+}
+
+/// Uniform in place of cosine: 1 / (2 |cos theta|) as many as there should be. 6 standard errors in each of some 130
+/// patches.
+TEST(Maps, ShowWhereAWarpIsWrong) {
+  for (const SphereMap::Patch& p : map_of_worst(planted<WrongWarp>("warp"), Law::sampling).patches) {
+    const double ratio = 1 / std::abs(p.box.z0 + p.box.z1);
+    EXPECT_NEAR(p.found / p.expected, ratio, 6 * std::sqrt(ratio / p.expected));
+  }
+}
+
+TEST(Maps, ShowTheFactorOfAWrongWeight) {
+  for (const SphereMap::Patch& p : map_of_worst(planted<SampleOfAnotherF>("f"), Law::agreement).patches)
+    EXPECT_NEAR(p.found / p.expected, 1.01, 1e-4);
 }
 
 // Parameters.

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <ostream>
-#include <vector>
 
+#include "instruments/given_wavelengths.h"
 #include "instruments/material_conformance.h"
 
 namespace frond {
@@ -14,30 +13,6 @@ inline void PrintTo(Law law, std::ostream* out) { *out << law_name(law); }
 }  // namespace frond
 
 namespace frond::test {
-
-/// The same wavelengths for every path; some lanes may be retired, as an integrator retires them.
-class GivenWavelengths final : public WavelengthStrategy {
- public:
-  explicit GivenWavelengths(std::vector<float> nm, std::vector<int> retired = {}) : nm_(std::move(nm)) {
-    lambda_.count = static_cast<int>(nm_.size());
-    for (size_t i = 0; i < nm_.size(); ++i) {
-      lambda_.nm[i] = nm_[i];
-      lambda_.pdf[i] = 1;
-      lambda_.active[i] = true;
-    }
-    for (const int lane : retired) lambda_.active[static_cast<size_t>(lane)] = false;
-  }
-
-  SampledWavelengths sample(float) const override { return lambda_; }
-  Interval range_nm() const override { return {*std::ranges::min_element(nm_), *std::ranges::max_element(nm_)}; }
-  std::span<const float> fixed_nm() const override { return nm_; }
-  std::array<double, 3> sensor(const SampledSpectrum&, const SampledWavelengths&) const override { return {}; }
-  std::string_view film_space() const override { return "XYZ"; }
-
- private:
-  std::vector<float> nm_;
-  SampledWavelengths lambda_;
-};
 
 /// Four wavelengths spread evenly over the visible, at a random place for each path.
 class StratifiedWavelengths final : public WavelengthStrategy {

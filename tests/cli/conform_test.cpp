@@ -1,0 +1,125 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "instruments/conformance.h"
+#include "scene/image_file.h"
+#include "tests/cli/command.h"
+#include "tests/support/input_error.h"
+
+/// `frond conform`; that each law can fail, and none does for long, is tested in tests/laws.
+namespace frond {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+Outcome conform(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"conform", "--samples", "2000", "--angles", "0,60"});
+  return frond_command(std::move(arguments));
+}
+
+Outcome conform_planted(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--plugin", FROND_TEST_PLUGINS "/planted.so"});
+  return conform(std::move(arguments));
+}
+
+TEST(Conform, LawfulMaterialsPass) {
+  for (const std::vector<std::string>& material :
+       std::vector<std::vector<std::string>>{{"diffuse"},
+                                             {"diffuse", "reflectance=1", "--lossless"},
+                                             {"abm", "specimen=maize"},
+                                             {"mix", "materials=abm,diffuse"},
+                                             {"diffusetransmission", "--wavelengths", "400:700:50"}}) {
+    const Outcome o = conform(material);
+    EXPECT_EQ(o.code, 0) << o.out << o.err;
+    EXPECT_THAT(o.out, Not(HasSubstr("BROKEN")));
+  }
+}
+
+TEST(Conform, WhatDoesNotApplyIsNotAsked) {
+  EXPECT_THAT(conform({"diffuse"}).out,
+              AllOf(HasSubstr("holds      reciprocity"), HasSubstr("not asked  unbiasedness")));
+  EXPECT_THAT(conform({"abm"}).out, AllOf(HasSubstr("not asked  reciprocity"), HasSubstr("holds      unbiasedness")));
+}
+
+TEST(Conform, ABrokenLawIsNamedAndExitsWithTwo) {
+  const auto expect_broken = [](std::vector<std::string> material, const std::string& law) {
+    const Outcome o = conform_planted(std::move(material));
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_THAT(o.out, AllOf(HasSubstr("BROKEN     " + law), HasSubstr("\nBroken: " + law + ".\n")));
+    EXPECT_THAT(o.err, IsEmpty());
+  };
+  expect_broken({"wrong_warp"}, "sampling");
+  expect_broken({"wrong_weight"}, "agreement");
+  expect_broken({"wrong_pdf"}, "normalisation");
+  expect_broken({"misses_a_way_out"}, "unbiasedness");
+  expect_broken({"lost_energy", "--lossless"}, "energy");
+  expect_broken({"one_way", "--reciprocal"}, "reciprocity");
+  EXPECT_EQ(conform_planted({"good"}).code, 0);
+  EXPECT_EQ(conform_planted({"good_stochastic"}).code, 0);
+}
+
+/// At the end of its range `picky` throws: an exception of the shared object, which the sweep knows as InputError.
+TEST(Conform, ASweepPassesOverWhatAPluginRefuses) {
+  EXPECT_EQ(conform_planted({"picky", "--sweep"}).code, 0);
+  const Outcome refused = conform_planted({"picky", "level=0.95"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.out, AllOf(HasSubstr("BROKEN     parameters"), HasSubstr("picky wants less than 0.9")));
+}
+
+TEST(Conform, ASurfaceThatIsNotThereIsSaidToBe) {
+  const Outcome o = conform_planted({"not_there"});
+  EXPECT_EQ(o.code, 0);
+  EXPECT_THAT(o.out, HasSubstr("The surface is not there"));
+}
+
+TEST(Conform, JsonHasEveryLawAndFinding) {
+  const Outcome o = conform_planted({"wrong_warp", "--json", "-"});
+  const auto json = nlohmann::json::parse(o.out);
+  EXPECT_EQ(json["all_hold"], false);
+  EXPECT_EQ(json["laws"].size(), kLaws.size());
+  EXPECT_EQ(json["laws"]["sampling"]["verdict"], "broken");
+  EXPECT_EQ(json["laws"]["energy"]["verdict"], "holds");
+  EXPECT_EQ(json["laws"]["streams"]["verdict"], "not asked");
+  int failures = 0;
+  for (const auto& finding : json["findings"]) failures += finding["holds"] ? 0 : 1;
+  EXPECT_EQ(failures, json["laws"]["sampling"]["failures"]);
+}
+
+TEST(Conform, PicturesShowTheWorstFinding) {
+  const TestFolder folder("conform");
+  for (const char* material : {"wrong_warp", "lost_energy", "good"}) {
+    const std::string path = folder.name_of(std::string(material) + ".png");
+    EXPECT_THAT(conform_planted({material, "--picture", path}).err, IsEmpty());
+    EXPECT_EQ(read_image(path, {}).image.width, 1000);
+  }
+  const std::string svg = folder.name_of("a.svg");
+  EXPECT_EQ(conform_planted({"wrong_warp", "--picture", svg}).code, 2);
+  std::ifstream in(svg);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(text, AllOf(HasSubstr("sampling is broken"), HasSubstr("directions as pdf has them")));
+}
+
+TEST(Conform, BadUseExitsWithOne) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"difuse"},
+                                             {"diffuse", "reflectanc=1"},
+                                             {"diffuse", "reflectance"},
+                                             {"diffuse", "--wavelengths", "0"},
+                                             {"diffuse", "--picture", "picture.gif"},
+                                             {"diffuse", "--json", "/no/such/folder/a.json"}}) {
+    const Outcome o = conform(arguments);
+    EXPECT_EQ(o.code, 1) << ::testing::PrintToString(arguments);
+    EXPECT_THAT(o.err, Not(IsEmpty()));
+  }
+  EXPECT_EQ(frond_command({"conform", "diffuse", "--angles", "90"}).code, 1);
+  EXPECT_EQ(frond_command({"conform", "diffuse", "--samples", "10"}).code, 1);
+}
+
+}  // namespace
+}  // namespace frond
