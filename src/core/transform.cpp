@@ -8,7 +8,6 @@ namespace {
 
 using RowsDouble = Transform::RowsDouble;
 
-Vec3d to_double(const Vec3& v) { return {v.x, v.y, v.z}; }
 Vec3d column(const RowsDouble& m, size_t j) { return {m[0][j], m[1][j], m[2][j]}; }
 
 RowsDouble from_columns(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& origin) {

@@ -28,6 +28,9 @@ struct Vec3T {
 using Vec3 = Vec3T<float>;
 using Vec3d = Vec3T<double>;
 
+constexpr Vec3d to_double(const Vec3& v) { return {double(v.x), double(v.y), double(v.z)}; }
+constexpr Vec3 to_float(const Vec3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
 struct Vec2 {
   float x{}, y{};
   friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }

@@ -42,7 +42,10 @@ bool write_file(const std::filesystem::path& path, const std::string& text) {
     }
   }
   std::filesystem::rename(temporary, path, error);
-  return !error;
+  if (!error) return true;
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);
+  return false;
 }
 
 /// Evenly spaced numbers in short, others one by one.

@@ -9,9 +9,6 @@
 namespace frond {
 namespace {
 
-Vec3d to_double(const Vec3& v) { return {double(v.x), double(v.y), double(v.z)}; }
-Vec3 to_float(const Vec3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
-
 /// One patch: corners at (u, v) = (0,0), (1,0), (0,1), (1,1).
 struct Patch {
   std::array<Vec3d, 4> p;

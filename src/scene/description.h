@@ -32,7 +32,6 @@ struct ShapeDescription {
   ParsedPlugin plugin;
   Transform world_from_object;
   bool reverse_orientation = false;
-  bool transform_swaps_handedness = false;
   size_t material = 0;               ///< in SceneDescription::materials
   std::optional<size_t> area_light;  ///< in SceneDescription::area_lights
 };

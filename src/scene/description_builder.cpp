@@ -197,7 +197,7 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
          place(scene_.area_lights[*state_.area_light].where));
   auto& shapes = open_object_ ? scene_.objects[*open_object_].shapes : scene_.shapes;
   shapes.push_back({with_defaults(std::move(plugin), Target::shape), state_.transform, state_.reverse_orientation,
-                    state_.transform.swaps_handedness(), state_.material, state_.area_light});
+                    state_.material, state_.area_light});
 }
 
 void DescriptionBuilder::light(ParsedPlugin plugin) {

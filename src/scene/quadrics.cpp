@@ -9,9 +9,6 @@ namespace {
 
 constexpr double kTau = 2 * M_PI;
 
-Vec3d to_double(const Vec3& v) { return {double(v.x), double(v.y), double(v.z)}; }
-Vec3 to_float(const Vec3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
-
 /// Shared by shapes given in a space of their own: the transform, the side that is the front, the sweep angle.
 class Quadric : public AnalyticShape {
  public:

@@ -157,11 +157,9 @@ Shape "sphere")");
   ASSERT_TRUE(disk.area_light);
   EXPECT_EQ(s.area_lights[*disk.area_light].params[0].name, "L");
   EXPECT_TRUE(disk.reverse_orientation);
-  EXPECT_TRUE(disk.transform_swaps_handedness);
   EXPECT_EQ(sphere.material, 0u);
   EXPECT_FALSE(sphere.area_light);
   EXPECT_FALSE(sphere.reverse_orientation);
-  EXPECT_FALSE(sphere.transform_swaps_handedness);
 }
 
 TEST(Parser, ReverseOrientationTwiceIsNothing) {

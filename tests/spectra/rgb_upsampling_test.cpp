@@ -140,14 +140,6 @@ TEST(RgbAlbedo, ImpossibleColorsAreRefusedWhereTheyStand) {
               HasSubstr("brighter and purer than a surface can be"));
 }
 
-TEST(RgbUnbounded, IsLinearInItsScale) {
-  const ColorSpace& srgb = *find_color_space("srgb");
-  const SpectrumPtr a = rgb_unbounded(srgb, {0.1, 0.4, 0.2}, {}), b = rgb_unbounded(srgb, {10, 40, 20}, {});
-  for (float nm = 360; nm <= 830; nm += 10) ASSERT_NEAR(a->at(nm) * 100, b->at(nm), 1e-3f * b->max_value());
-  const Triple back = srgb.rgb_from_xyz * to_xyz(Product(*b, *unit_d65()));
-  EXPECT_LT(largest_difference(back, {10, 40, 20}), 40 * 3e-4);
-}
-
 TEST(RgbIlluminant, WhiteIsD65OfUnitLuminanceInEverySpace) {
   for (const ColorSpace& space : color_spaces()) {
     const SpectrumPtr s = rgb_illuminant(space, {1, 1, 1}, {});
