@@ -37,7 +37,8 @@ class Material {
   virtual ~Material() = default;
   /// Heavy work that depends on the wavelengths (tables) belongs here. Throws InputError.
   virtual void prepare(const Preparation&) {}
-  /// Thread-safe. The BSDF lives until the arena is reset; nullptr: the surface is not there.
+  /// Thread-safe. The BSDF lives until the arena is reset; nullptr: the surface is not there, and rays go straight on.
+  /// Shadow rays stop at it all the same, as in pbrt-v4: what lies behind is lit by scattered rays alone.
   virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
   /// Claims f(a, b) = f(b, a), and the laws hold it to that.
   virtual bool is_reciprocal() const { return false; }

@@ -116,24 +116,29 @@ class PathIntegrator final : public Integrator {
   PathResult trace(const World& world, const Ray& camera_ray, SampledWavelengths lambda,
                    PathContext& context) const override {
     Path path{.ray = camera_ray, .lambda = lambda, .result = {}};
-    for (int depth = 0;; ++depth) {
-      const VertexKey key{hash_key(context.key, uint64_t(depth))};
+    // Vertices are counted for their random numbers, scattering events for the depth: a surface that is not there makes
+    // the one without the other.
+    for (int vertex = 0, depth = 0; vertex - depth <= kMostPassed; ++vertex) {
+      const VertexKey key{hash_key(context.key, uint64_t(vertex))};
       SurfacePoint point;
       ++context.rays;
       if (!world.intersect(path.ray, key.value, point)) {
         add_environment(world, path);
         break;
       }
-      if (depth == 0) path.result.sees_leaf = point.material->is_leaf();
       if (point.light) add_emission(point, path);
-      if (depth >= max_depth_) break;
-
       context.arena.reset();
       const Bsdf* bsdf = point.material->evaluate(point.hit, path.lambda, context.arena);
-      if (!bsdf) break;
+      if (!bsdf) {
+        pass(point.hit, path);
+        continue;
+      }
+      if (depth == 0) path.result.sees_leaf = point.material->is_leaf();
+      if (depth >= max_depth_) break;
       const LocalBsdf local(*bsdf, point.hit, -path.ray.d);
       if (sample_lights_ && !selector_.empty()) add_sampled_light(world, point.hit, local, key, path, context);
       if (!scatter(point.hit, local, key, path, context) || ends(depth, key, path)) break;
+      ++depth;
     }
     return path.result;
   }
@@ -181,6 +186,14 @@ class PathIntegrator final : public Integrator {
     return {origin, hit.p + sample.wi * sample.distance - origin, 1 - 0x1p-13f};
   }
 
+  /// Straight on through a surface that is not there. Shadow rays stop at it, so no light sample competes with what
+  /// lies behind.
+  static void pass(const Hit& hit, Path& path) {
+    path.scatter_pdf = INFINITY;
+    path.previous = hit.p;
+    path.ray = {offset_origin(hit, path.ray.d), path.ray.d};
+  }
+
   /// Turns the path into the next direction. False where nothing is scattered.
   bool scatter(const Hit& hit, const LocalBsdf& bsdf, VertexKey key, Path& path, PathContext& context) const {
     const float uc = context.sampler.get1d();
@@ -212,6 +225,9 @@ class PathIntegrator final : public Integrator {
     if (lambda.count == 3) return 0.21222f * throughput[0] + 0.7013f * throughput[1] + 0.0865f * throughput[2];
     return mean(throughput, lambda);
   }
+
+  /// Surfaces that are not there, in one path: rounding might have a ray meet the same one for ever.
+  static constexpr int kMostPassed = 1000;
 
   int max_depth_;
   bool sample_lights_, select_by_power_, cut_off_attenuation_;

@@ -16,6 +16,7 @@ struct RenderSettings {
   int threads = 2;
   std::string wavelengths = "smpte";
   std::vector<MaterialSwap> swaps = {};
+  std::vector<const MaterialInfo*> materials = {};  ///< beside the built-in ones
 };
 
 /// Renders a scene that a test spells out.
@@ -23,7 +24,8 @@ inline Film render_text(const std::string& text, const RenderSettings& settings 
   const Log quiet(true);
   ThreadPool pool(settings.threads);
   const SceneDescription description = parse_scene_text(text, "test.pbrt", quiet);
-  const Registry registry = make_registry(builtin_materials(), builtin_integrators());
+  Registry registry = make_registry(builtin_materials(), builtin_integrators());
+  for (const MaterialInfo* info : settings.materials) registry.materials.add(*info);
   SceneOverrides overrides;
   overrides.wavelengths = settings.wavelengths;
   overrides.seed = settings.seed;
