@@ -49,6 +49,12 @@ Image linear_image(const Film& film, const Matrix3& to_output) {
   return image;
 }
 
+/// What the image's R, G and B are in, before any display transform.
+std::string linear_space(const OutputDetails& details) {
+  const std::string& space = details.color_space.empty() ? details.film_space : details.color_space;
+  return space == kXyzName ? "linear sRGB" : space;
+}
+
 }  // namespace
 
 void write_display_image(const std::string& path, const Image& image, std::string_view space,
@@ -67,12 +73,16 @@ ImageOutput::ImageOutput(std::string path, DisplayChoice display)
   check_writable(path_);
   if (is_exr(path_) && !(display_.display.empty() && display_.view.empty()))
     fail({}, "--display and --view are for .png and .jpg: {} holds linear values", path_);
-  if (!is_exr(path_)) colors_.check_display("linear sRGB", display_.display, display_.view);
+}
+
+void ImageOutput::check(const OutputDetails& details) const {
+  const std::string space = linear_space(details);
+  matrix_of(colors_, details.film_space, space);
+  if (!is_exr(path_)) colors_.check_display(space, display_.display, display_.view);
 }
 
 void ImageOutput::write(const Film& film, const OutputDetails& details) const {
-  std::string space = details.color_space.empty() ? details.film_space : details.color_space;
-  if (space == kXyzName) space = "linear sRGB";
+  const std::string space = linear_space(details);
   const FilmSettings& settings = film.settings();
   const Image image = linear_image(film, matrix_of(colors_, details.film_space, space));
   if (is_exr(path_))

@@ -28,8 +28,11 @@ void write_display_image(const std::string& path, const Image& image, std::strin
 /// Where a render goes. Made before rendering, so that what cannot be written is refused first.
 class ImageOutput {
  public:
-  /// Throws InputError when the path cannot be written or the display is unknown.
+  /// Throws InputError when the path cannot be written.
   ImageOutput(std::string path, DisplayChoice display);
+
+  /// Throws what `write` would throw for a display, a view or a colour space that OpenColorIO does not know.
+  void check(const OutputDetails& details) const;
 
   /// EXR: R G B, the variance of their means and the share of leaf, linear. PNG and JPEG: R G B through the display
   /// transform. Throws InputError when the image does not reach the disk.

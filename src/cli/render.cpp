@@ -20,6 +20,7 @@ namespace {
 struct RenderOptions {
   std::string scene, output, wavelengths, cache;
   std::vector<double> crop;
+  std::vector<int> pixels;
   std::vector<std::string> swaps, plugins;
   DisplayChoice display;
   int samples = 0, threads = 0;
@@ -35,18 +36,16 @@ MaterialSwap parse_swap(const std::string& text) {
   return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), {})};
 }
 
-/// x0 x1 y0 y1: pixels where all are whole numbers and one is above 1, fractions of the film otherwise.
-Crop crop_of(const std::vector<double>& v, const FilmSettings& film) {
-  const bool in_pixels = std::any_of(v.begin(), v.end(), [](double x) { return x > 1; });
-  const auto is_bad = [in_pixels](double x) { return !(x >= 0) || (in_pixels && x != std::floor(x)); };
-  if (std::any_of(v.begin(), v.end(), is_bad))
-    fail({}, "--crop takes x0,x1,y0,y1 as fractions of the film or as pixels, {} was given", fmt::join(v, ","));
-  const auto pixel = [in_pixels](double x, int size) {
-    return int(std::min(in_pixels ? x : std::ceil(x * size), double(size)));
-  };
-  const Crop crop{pixel(v[0], film.width), pixel(v[2], film.height), pixel(v[1], film.width), pixel(v[3], film.height)};
+/// What of the film the command line asks for; the scene's crop if it says nothing.
+Crop crop_of(const RenderOptions& o, const FilmSettings& film) {
+  if (o.crop.empty() && o.pixels.empty()) return film.crop;
+  const Crop crop = o.crop.empty() ? crop_of_pixels(o.pixels, film.width, film.height)
+                                   : crop_of_fractions(o.crop, film.width, film.height);
   if (crop.width() <= 0 || crop.height() <= 0)
-    fail({}, "--crop {} holds no pixel of the {} x {} film", fmt::join(v, ","), film.width, film.height);
+    fail({}, "{} holds no pixel of the {} x {} film: it takes x0,x1,y0,y1",
+         o.crop.empty() ? fmt::format("--pixels {}", fmt::join(o.pixels, ","))
+                        : fmt::format("--crop {}", fmt::join(o.crop, ",")),
+         film.width, film.height);
   return crop;
 }
 
@@ -106,7 +105,7 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   const Registry registry = load_registry(options.plugins);
   SceneOverrides overrides = overrides_of(options);
   FilmSettings film_settings = Scene::film_settings(description, registry);
-  if (!options.crop.empty()) film_settings.crop = crop_of(options.crop, film_settings);
+  film_settings.crop = crop_of(options, film_settings);
   if (options.quick) film_settings = halved(film_settings);
   // Refused now, not after an hour.
   const std::string output = options.output.empty() ? film_settings.filename : options.output;
@@ -116,6 +115,15 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   const Scene scene(description, registry, overrides, pool, log);
   const int samples = options.samples > 0 ? options.samples : scene.samples_per_pixel();
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const OutputDetails details{.film_space = std::string(scene.wavelengths().film_space()),
+                              .color_space = output_space(description),
+                              .attributes = {{"frond:version", FROND_VERSION},
+                                             {"frond:seed", std::to_string(scene.seed())},
+                                             {"frond:samples", std::to_string(samples)},
+                                             {"frond:wavelengths", scene.wavelengths_name()},
+                                             {"frond:scene_hash", fmt::format("{:016x}", description.content_hash)},
+                                             {"frond:command", command_line}}};
+  writer.check(details);
   const RenderJob job{
       scene, scene.camera(),   scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
       0,     uint64_t(samples)};
@@ -127,14 +135,7 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   if (const int64_t count = film.not_finite(); count > 0)
     log.warn({}, fmt::format("{} of {} samples were too bright for a number, or none at all, and count as black", count,
                              statistics.paths));
-  writer.write(film, {.film_space = std::string(scene.wavelengths().film_space()),
-                      .color_space = output_space(description),
-                      .attributes = {{"frond:version", FROND_VERSION},
-                                     {"frond:seed", std::to_string(scene.seed())},
-                                     {"frond:samples", std::to_string(samples)},
-                                     {"frond:wavelengths", scene.wavelengths_name()},
-                                     {"frond:scene_hash", fmt::format("{:016x}", description.content_hash)},
-                                     {"frond:command", command_line}}});
+  writer.write(film, details);
   if (!options.quiet || options.json)
     print_report({statistics, load_seconds, samples, film.foliar_ratio()}, output, options.json);
 }
@@ -146,6 +147,7 @@ std::string command_line_of(const RenderOptions& o) {
   if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
   if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
   if (!o.crop.empty()) line += fmt::format(" --crop {}", fmt::join(o.crop, ","));
+  if (!o.pixels.empty()) line += fmt::format(" --pixels {}", fmt::join(o.pixels, ","));
   for (const std::string& plugin : o.plugins) line += " --plugin " + std::filesystem::path(plugin).filename().string();
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
   if (o.quick) line += " --quick";
@@ -164,9 +166,12 @@ void add_render_command(CLI::App& app) {
   command->add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")
       ->check(CLI::Range(1, 1024));
   auto* seed = command->add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
-  command->add_option("--crop", o.crop, "x0,x1,y0,y1 of what to render, as fractions of the film or in pixels.")
-      ->delimiter(',')
-      ->expected(4);
+  auto* crop = command->add_option("--crop,--cropwindow", o.crop,
+                                   "x0,x1,y0,y1 of what to render, as fractions of the film; ends are rounded up.");
+  crop->delimiter(',')->expected(4)->check(CLI::Range(0.0, 1.0));
+  auto* pixels = command->add_option("--pixels,--pixelbounds", o.pixels,
+                                     "x0,x1,y0,y1 of what to render, in pixels; x1 and y1 are not in it.");
+  pixels->delimiter(',')->expected(4)->check(CLI::NonNegativeNumber)->excludes(crop);
   command->add_option("--wavelengths", o.wavelengths,
                       "hero (also hero,lambdamin=400,lambdamax=700), meyer, or smpte for the paper's three.");
   command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model; may be given again.")

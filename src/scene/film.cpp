@@ -71,7 +71,7 @@ constexpr Param kRgb[] = {
      .doc = "Clamps samples and so biases the image; none by default."},
 };
 
-Crop crop_of(const Params& p, int width, int height) {
+Crop crop_in(const Params& p, int width, int height) {
   const auto window = p.reals("cropwindow");
   const auto bounds = p.integers("pixelbounds");
   if (!window.empty() && !bounds.empty())
@@ -79,12 +79,11 @@ Crop crop_of(const Params& p, int width, int height) {
   Crop crop{0, 0, width, height};
   if (!window.empty()) {
     if (window.size() != 4) fail(p.where("cropwindow"), "\"cropwindow\" takes 4 values, {} given", window.size());
-    const auto at = [](double fraction, int size) { return int(std::ceil(fraction * size)); };
-    crop = {at(window[0], width), at(window[2], height), at(window[1], width), at(window[3], height)};
+    crop = crop_of_fractions(window, width, height);
   }
   if (!bounds.empty()) {
     if (bounds.size() != 4) fail(p.where("pixelbounds"), "\"pixelbounds\" takes 4 values, {} given", bounds.size());
-    crop = {std::max(bounds[0], 0), std::max(bounds[2], 0), std::min(bounds[1], width), std::min(bounds[3], height)};
+    crop = crop_of_pixels(bounds, width, height);
   }
   if (crop.width() <= 0 || crop.height() <= 0)
     fail(p.where(), "the crop holds no pixel of the {} x {} film", width, height);
@@ -95,7 +94,7 @@ FilmSettings make_rgb_film(const Params& p) {
   FilmSettings s;
   s.width = p.integer("xresolution");
   s.height = p.integer("yresolution");
-  s.crop = crop_of(p, s.width, s.height);
+  s.crop = crop_in(p, s.width, s.height);
   s.filename = p.string("filename");
   s.half = p.boolean("savefp16");
   s.exposure = p.real("exposuretime") * p.real("iso") / 100;
@@ -107,6 +106,15 @@ FilmSettings make_rgb_film(const Params& p) {
 }
 
 }  // namespace
+
+Crop crop_of_fractions(std::span<const double> window, int width, int height) {
+  const auto at = [](double fraction, int size) { return int(std::ceil(fraction * size)); };
+  return {at(window[0], width), at(window[2], height), at(window[1], width), at(window[3], height)};
+}
+
+Crop crop_of_pixels(std::span<const int> bounds, int width, int height) {
+  return {std::max(bounds[0], 0), std::max(bounds[2], 0), std::min(bounds[1], width), std::min(bounds[3], height)};
+}
 
 FilmSettings halved(FilmSettings s) {
   s.width = (s.width + 1) / 2;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,11 @@ struct Crop {
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
 };
+
+/// Pixels of a window x0 x1 y0 y1 that is given as fractions of a film, ends rounded up as in pbrt.
+Crop crop_of_fractions(std::span<const double> window, int width, int height);
+/// As far as it lies on the film.
+Crop crop_of_pixels(std::span<const int> bounds, int width, int height);
 
 /// What the scene says of the image.
 struct FilmSettings {

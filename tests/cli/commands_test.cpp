@@ -128,15 +128,28 @@ TEST_F(Commands, TheSameFileOnAnyNumberOfThreads) {
 
 TEST_F(Commands, ACropIsAPartOfTheWhole) {
   ASSERT_EQ(render({"-o", path("whole.exr"), "-q"}).code, 0);
-  ASSERT_EQ(render({"-o", path("part.exr"), "--crop", "6,18,4,8", "-q"}).code, 0);
+  ASSERT_EQ(render({"-o", path("part.exr"), "--pixels", "6,18,4,8", "-q"}).code, 0);
   const Image whole = read_image(path("whole.exr"), {}).image, part = read_image(path("part.exr"), {}).image;
   ASSERT_EQ(part.width, 12);
   ASSERT_EQ(part.height, 4);
   const size_t g = *whole.channel("G");
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 12; ++x) EXPECT_EQ(part.at(x, y, g), whole.at(x + 6, y + 4, g));
-  EXPECT_EQ(render({"-o", path("x.exr"), "--crop", "5,5,0,1"}).code, 1);
-  EXPECT_EQ(render({"-o", path("x.exr"), "--crop", "0,.5,0"}).code, 1);
+  ASSERT_EQ(render({"-o", path("fractions.exr"), "--crop", ".25,.75,.25,.5", "-q"}).code, 0);
+  EXPECT_EQ(read_image(path("fractions.exr"), {}).image.pixels, part.pixels);
+  ASSERT_EQ(render({"-o", path("corner.exr"), "--pixels", "0,1,0,1", "-q"}).code, 0);
+  EXPECT_EQ(read_image(path("corner.exr"), {}).image.width, 1);
+}
+
+TEST_F(Commands, ACropThatIsNoneIsRefused) {
+  for (const std::vector<std::string>& crop : std::vector<std::vector<std::string>>{{"--crop", "6,18,4,8"},
+                                                                                    {"--crop", "0,.5,0"},
+                                                                                    {"--crop", ".5,.5,0,1"},
+                                                                                    {"--pixels", "5,5,0,1"},
+                                                                                    {"--pixels", "0,.5,0,1"},
+                                                                                    {"--pixels", "30,40,0,1"}})
+    EXPECT_EQ(render({"-o", path("x.exr"), crop[0], crop[1]}).code, 1) << crop[1];
+  EXPECT_THAT(render({"-o", path("x.exr"), "--pixels", "5,5,0,1"}).err, HasSubstr("--pixels 5,5,0,1 holds no pixel"));
 }
 
 TEST_F(Commands, QuickIsSmallerAndCoarser) {
@@ -181,6 +194,24 @@ TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
   EXPECT_EQ(render({"-o", path("a.png"), "--display", "no such display", "--spp", "100000000"}).code, 1);
   EXPECT_EQ(render({"-o", path("a.exr"), "--wavelengths", "rgb", "--spp", "100000000"}).code, 1);
   EXPECT_EQ(files(), before);
+}
+
+/// It knows linear sRGB by that name and not how to get there from anywhere else.
+TEST_F(Commands, AnOpenColorIOConfigurationThatLacksTheFilmsSpaceIsRefusedBeforeRendering) {
+  folder_.write("small.ocio", R"(ocio_profile_version: 2
+roles: {default: linear sRGB}
+displays:
+  screen: [!<View> {name: plain, colorspace: linear sRGB}]
+colorspaces:
+  - !<ColorSpace> {name: linear sRGB}
+)");
+  setenv("OCIO", path("small.ocio").c_str(), 1);
+  const Outcome hero = render({"-o", path("a.png"), "-q"}),
+                smpte = render({"-o", path("b.png"), "--wavelengths", "smpte", "--spp", "100000000"});
+  unsetenv("OCIO");
+  EXPECT_EQ(hero.code, 0) << hero.err;
+  EXPECT_EQ(smpte.code, 1);
+  EXPECT_THAT(smpte.err, HasSubstr("aces_interchange"));
 }
 
 TEST_F(Commands, ErrorsInTheSceneNameTheirPlace) {
@@ -248,7 +279,7 @@ TEST_F(Commands, AFilmLargerThanMemoryIsRefused) {
   const Outcome o = frond_command({"render", path("vast.pbrt"), "-o", path("x.exr")});
   EXPECT_EQ(o.code, 1);
   EXPECT_THAT(o.err, HasSubstr("vast.pbrt:1:6: the film's 65536 x 65536 pixels need"));
-  EXPECT_EQ(frond_command({"render", path("vast.pbrt"), "-o", path("x.exr"), "--crop", "0,4,0,4", "--spp", "1"}).code,
+  EXPECT_EQ(frond_command({"render", path("vast.pbrt"), "-o", path("x.exr"), "--pixels", "0,4,0,4", "--spp", "1"}).code,
             0);
 }
 

@@ -22,3 +22,11 @@ set(plugin --plugin "${WORK_DIR}/plugin/soil.so")
 run("${frond}" describe ${plugin} soil)
 run("${frond}" conform ${plugin} soil --sweep --samples 2000)
 run("${frond}" render ${plugin} "${example}/scene.pbrt" -o "${WORK_DIR}/soil.png" --quick)
+
+# A limit on the size of files is told, and no half-written file is left.
+execute_process(COMMAND sh -c "ulimit -f 1; exec \"$0\" \"$@\"" "${frond}" render ${plugin} "${example}/scene.pbrt"
+                        -o "${WORK_DIR}/limited.exr" --quick
+                RESULT_VARIABLE result ERROR_VARIABLE message)
+if(NOT result EQUAL 1 OR NOT message MATCHES "limited.exr\": File too large" OR EXISTS "${WORK_DIR}/limited.exr")
+  message(FATAL_ERROR "past a limit on the size of files: ${result}\n${message}")
+endif()
