@@ -105,8 +105,37 @@ void add(const MaterialInfo& info, const std::string& operation, const Call& cal
       ->ArgsProduct({{0, 45, 80}, {1, 3, 4}});
 }
 
+/// What a path pays at a hit: the BSDF is made, with what it looks up, and sampled. Four wavelengths, anew for each
+/// path.
+void add_hit(const MaterialInfo& info) {
+  const auto run = [&info](benchmark::State& state) {
+    const double theta = static_cast<double>(state.range(0)) * std::numbers::pi / 180;
+    const Vec3 wo{static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
+    const test::StratifiedWavelengths wavelengths;
+    const test::Setup setup(wavelengths);
+    const auto material = make(info, setup.preparation);
+    const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .uv = {0.5f, 0.5f}};
+    const std::vector<Draw> all = draws();
+    Arena arena;
+    RandomStream rng(2);
+    size_t i = 0;
+    for (auto _ : state) {
+      const Draw& draw = all[i++ % all.size()];
+      arena.reset();
+      const Bsdf* bsdf = material->evaluate(hit, wavelengths.sample(draw.uc), arena);
+      benchmark::DoNotOptimize(bsdf->sample(wo, draw.u.x, {draw.u.y, draw.uc}, rng));
+    }
+  };
+  benchmark::RegisterBenchmark(("bsdf/" + std::string(info.name) + "/hit_and_sample").c_str(), run)
+      ->ArgName("theta")
+      ->Arg(0)
+      ->Arg(45)
+      ->Arg(80);
+}
+
 [[maybe_unused]] const bool kAdded = [] {
   for (const MaterialInfo* info : materials().all()) {
+    add_hit(*info);
     add(*info, "sample", [](const Bsdf& bsdf, const Vec3& wo, const Draw& draw, RandomStream& rng) {
       return bsdf.sample(wo, draw.uc, draw.u, rng);
     });

@@ -47,11 +47,12 @@ class ThreeLobeBsdf final : public Bsdf {
     Vec3 wi = sample_cosine_hemisphere(u);
     const bool reflects = uc < choice.surface + choice.subsurface;
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
-    if (!scatters(wo, wi)) return {};
-    const float lobe = spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
+    if (std::abs(wi.z) < kLeastCosine) return {};
+    if (reflects) return reflected(wo, wi, Lobes::reflection | Lobes::diffuse);
+    const float density = choice.transmitted * std::abs(wi.z) * kInvPi;
     if (density == 0) return {};  // black
-    return BsdfSample{leaf_f(wo, wi, lobe), wi, density,
-                      Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission)};
+    return BsdfSample{shares_at(manner_.from_light ? wi.z : wo.z).transmitted * kInvPi, wi, density,
+                      Lobes::transmission | Lobes::diffuse};
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
@@ -151,16 +152,20 @@ class ThreeLobeBsdf final : public Bsdf {
     return made_good_;
   }
 
+  /// Both on one side. Nothing where f is black.
+  std::optional<BsdfSample> reflected(const Vec3& wo, const Vec3& wi, Lobes from) const {
+    const float lobe = spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
+    if (density == 0) return {};
+    return BsdfSample{leaf_f(wo, wi, lobe), wi, density, from};
+  }
+
   std::optional<BsdfSample> sample_surface(const Choice& choice, const Vec3& wo, Vec2 u, RandomStream& rng) const {
-    const Lobes lobe = Lobes::reflection | Lobes::glossy | Lobes::surface;
-    for (;;) {
+    constexpr Lobes kLobe = Lobes::reflection | Lobes::glossy | Lobes::surface;
+    for (;; u = {rng.uniform(), rng.uniform()}) {
       const Vec3 wi = sample_surface_lobe(*hit_.surface, wo, u, rng);
-      if (scatters(wo, wi)) {
-        if (!manner_.surface_direct) return BsdfSample{as_delta(wo, wi), wi, choice.surface, lobe | Lobes::specular};
-        const float spread_here = spread(wo, wi), density = leaf_pdf(wo, wi, spread_here);
-        if (density > 0) return BsdfSample{leaf_f(wo, wi, spread_here), wi, density, lobe};  // not on its very edge
-      }
-      u = {rng.uniform(), rng.uniform()};
+      if (std::abs(wi.z) < kLeastCosine) continue;
+      if (!manner_.surface_direct) return BsdfSample{as_delta(wo, wi), wi, choice.surface, kLobe | Lobes::specular};
+      if (const auto sample = reflected(wo, wi, kLobe)) return sample;  // else on the lobe's very edge
     }
   }
 
