@@ -71,7 +71,7 @@ std::string conform_text(const ConformReport& r) {
       "the chance that any is called broken is {:.2g}: a test fails below p = {:.2g}.\n\n",
       r.material, fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "), r.effort.samples,
       r.effort.seed, counted(r.findings.size(), "test"), r.false_alarm_rate, r.level);
-  if (!is_there(r)) text += "The surface is not there: there is no BSDF to ask.\n\n";
+  if (r.all_hold() && !is_there(r)) text += "The surface is not there: there is no BSDF to ask.\n\n";
   text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", "", "law", "", "worst p", "");
   for (const LawSummary& law : summarise(r.findings)) {
     text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", verdict(law), law.law.name, tests_text(law),

@@ -70,6 +70,7 @@ TEST(Conform, ASweepPassesOverWhatAPluginRefuses) {
   const Outcome refused = conform_planted({"picky", "level=0.95"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.out, AllOf(HasSubstr("BROKEN     parameters"), HasSubstr("picky wants less than 0.9")));
+  EXPECT_THAT(refused.out, Not(HasSubstr("not there")));
 }
 
 TEST(Conform, ASurfaceThatIsNotThereIsSaidToBe) {
