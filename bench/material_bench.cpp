@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "cli/plugins.h"
+#include "instruments/given_wavelengths.h"
 #include "instruments/sweep.h"
 #include "tests/laws/setup.h"
 
@@ -61,7 +62,7 @@ class Ready {
     return {430, 500, 570, 640};
   }
 
-  test::GivenWavelengths wavelengths_;
+  GivenWavelengths wavelengths_;
   test::Setup setup_;
   std::unique_ptr<Material> material_;
   Arena arena_;
