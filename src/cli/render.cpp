@@ -67,6 +67,12 @@ struct Report {
   double foliar_ratio;
 };
 
+/// Counts by depth, as far as there are any.
+std::vector<uint64_t> counts(std::span<const uint64_t> by_depth) {
+  while (!by_depth.empty() && by_depth.back() == 0) by_depth = by_depth.first(by_depth.size() - 1);
+  return {by_depth.begin(), by_depth.end()};
+}
+
 void print_report(const Report& r, const std::string& output, bool json) {
   const RenderStatistics& s = r.statistics;
   const double per_path = s.cpu_seconds / double(s.paths) * 1e6, rays_per_path = double(s.rays) / double(s.paths);
@@ -80,7 +86,9 @@ void print_report(const Report& r, const std::string& output, bool json) {
                                    {"rays", s.rays},
                                    {"cpu_us_per_path", per_path},
                                    {"rays_per_path", rays_per_path},
-                                   {"foliar_ratio", r.foliar_ratio}};
+                                   {"foliar_ratio", r.foliar_ratio},
+                                   {"paths_escaped_by_depth", counts(s.ends.escaped)},
+                                   {"paths_absorbed_by_depth", counts(s.ends.absorbed)}};
     fmt::print("{}\n", j.dump(2));
     return;
   }

@@ -17,6 +17,8 @@ struct PathContext {
 struct PathResult {
   SampledSpectrum radiance;
   bool sees_leaf = false;  ///< the first thing the path meets is a leaf
+  int scatterings = 0;     ///< how often the path was scattered
+  bool escaped = false;    ///< it left the scene; else it was absorbed or cut off
 };
 
 /// Radiance along camera rays.

@@ -124,6 +124,7 @@ class PathIntegrator final : public Integrator {
       ++context.rays;
       if (!world.intersect(path.ray, key.value, point)) {
         add_environment(world, path);
+        path.result.escaped = true;
         break;
       }
       if (point.light) add_emission(point, path);
@@ -138,7 +139,7 @@ class PathIntegrator final : public Integrator {
       const LocalBsdf local(*bsdf, point.hit, -path.ray.d);
       if (sample_lights_ && !selector_.empty()) add_sampled_light(world, point.hit, local, key, path, context);
       if (!scatter(point.hit, local, key, path, context) || ends(depth, key, path)) break;
-      ++depth;
+      path.result.scatterings = ++depth;
     }
     return path.result;
   }

@@ -33,10 +33,12 @@ class Clock {
 struct Worker {
   std::unique_ptr<Sampler> sampler;
   Arena arena;
+  uint64_t rays = 0;
+  PathEnds ends;
 };
 
-/// Renders one sample of one pixel; returns the rays it took.
-uint64_t render_sample(const RenderJob& job, Film& film, Worker& worker, int x, int y, uint64_t index) {
+/// Renders one sample of one pixel.
+void render_sample(const RenderJob& job, Film& film, Worker& worker, int x, int y, uint64_t index) {
   Sampler& sampler = *worker.sampler;
   sampler.start(x, y, index);
   const SampledWavelengths lambda = job.wavelengths.sample(sampler.get1d());
@@ -46,7 +48,8 @@ uint64_t render_sample(const RenderJob& job, Film& film, Worker& worker, int x, 
   PathContext context{sampler, sample_key(job.seed, x, y, index), worker.arena};
   const PathResult path = job.integrator.trace(job.world, ray, lambda, context);
   film.add(x, y, job.wavelengths.sensor(path.radiance, lambda), double(weight), path.sees_leaf);
-  return context.rays;
+  worker.rays += context.rays;
+  worker.ends.add(path);
 }
 
 struct Tiles {
@@ -74,13 +77,15 @@ RenderStatistics render(const RenderJob& job, Film& film, const ThreadPool& pool
   int64_t done = 0;
   pool.for_each(tiles.count(), [&](int64_t i, int thread) {
     const Crop tile = tiles.at(i);
-    uint64_t rays = 0;
+    Worker& worker = workers[size_t(thread)];
+    worker.rays = 0;
+    worker.ends = {};
     for (int y = tile.y0; y < tile.y1; ++y)
       for (int x = tile.x0; x < tile.x1; ++x)
-        for (uint64_t s = 0; s < job.samples; ++s)
-          rays += render_sample(job, film, workers[size_t(thread)], x, y, job.first_sample + s);
+        for (uint64_t s = 0; s < job.samples; ++s) render_sample(job, film, worker, x, y, job.first_sample + s);
     const std::lock_guard lock(mutex);
-    total.rays += rays;
+    total.rays += worker.rays;
+    total.ends += worker.ends;
     total.paths += uint64_t(tile.width()) * uint64_t(tile.height()) * job.samples;
     clock.stop(total);
     if (progress) progress(double(++done) / double(tiles.count()), total);

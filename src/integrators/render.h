@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <functional>
 
 #include "core/camera.h"
@@ -23,9 +25,25 @@ struct RenderJob {
   uint64_t first_sample, samples;  ///< of each pixel
 };
 
+/// How paths ended after so many scattering events; from kDepths - 1 on together in the last one.
+struct PathEnds {
+  static constexpr size_t kDepths = 64;
+  std::array<uint64_t, kDepths> escaped{}, absorbed{};  ///< left the scene; were absorbed or cut off
+
+  void add(const PathResult& path) {
+    const size_t depth = std::min(size_t(path.scatterings), kDepths - 1);
+    ++(path.escaped ? escaped : absorbed)[depth];
+  }
+  PathEnds& operator+=(const PathEnds& other) {
+    for (size_t i = 0; i < kDepths; ++i) escaped[i] += other.escaped[i], absorbed[i] += other.absorbed[i];
+    return *this;
+  }
+};
+
 struct RenderStatistics {
   uint64_t paths = 0, rays = 0;
   double wall_seconds = 0, cpu_seconds = 0;
+  PathEnds ends;
 };
 
 /// What has been done so far, told from one thread at a time.

@@ -236,5 +236,30 @@ TEST(Path, HeroAndFixedWavelengthsAgreeOnGrey) {
   EXPECT_LT(error, 0.01 * y);
 }
 
+TEST(Path, CountsHowPathsEnd) {
+  const std::string light = R"(LightSource "infinite" "spectrum L" "stdillum-D65"
+)";
+  const std::string half = R"(Material "diffusetransmission" "spectrum reflectance" [360 .25 2500 .25]
+"spectrum transmittance" [360 .25 2500 .25]
+)";
+  const std::string black = R"(Material "diffuse" "spectrum reflectance" [360 0 2500 0]
+)";
+  const std::string below = "Translate 0 0 -1\n";
+  RenderStatistics s;
+  const RenderSettings settings{.statistics = &s};
+  constexpr uint64_t kPaths = 4 * 4 * 16;
+
+  render_text(looking_down(light), settings);
+  EXPECT_EQ(s.ends.escaped[0], kPaths);
+  render_text(looking_down(light + black + kPlane), settings);
+  EXPECT_EQ(s.ends.absorbed[0], kPaths);
+  render_text(looking_down(light + kGrey + kPlane), settings);
+  EXPECT_EQ(s.ends.escaped[1], kPaths);
+  // What goes through the sheet ends on the black plane beneath it, which is wide but not endless.
+  render_text(looking_down(light + half + kPlane + below + black + kPlane), settings);
+  EXPECT_EQ(s.ends.escaped[1] + s.ends.absorbed[1], kPaths);
+  EXPECT_NEAR(double(s.ends.absorbed[1]), kPaths / 2.0, kSigmas * std::sqrt(kPaths / 4.0));
+}
+
 }  // namespace
 }  // namespace frond

@@ -17,6 +17,7 @@ struct RenderSettings {
   std::string wavelengths = "smpte";
   std::vector<MaterialSwap> swaps = {};
   std::vector<const MaterialInfo*> materials = {};  ///< beside the built-in ones
+  RenderStatistics* statistics = nullptr;           ///< filled in where given
 };
 
 /// Renders a scene that a test spells out.
@@ -32,9 +33,11 @@ inline Film render_text(const std::string& text, const RenderSettings& settings 
   overrides.swaps = settings.swaps;
   const Scene scene(description, registry, overrides, pool, quiet);
   Film film(Scene::film_settings(description, registry));
-  render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
-          0, uint64_t(settings.samples)},
-         film, pool, {});
+  const RenderStatistics statistics =
+      render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(),
+              scene.seed(), 0, uint64_t(settings.samples)},
+             film, pool, {});
+  if (settings.statistics) *settings.statistics = statistics;
   return film;
 }
 
