@@ -57,7 +57,9 @@ Directions directions_in(double n, std::span<const Segment> parts, std::span<con
     const double ratio2 = part.n * part.n / (n * n), width = part.to - part.from;
     for (const auto& [x, w] : rule) {
       const double mu_own = part.to - x * width;
-      mu.push_back(std::sqrt(1 - ratio2 * (1 - mu_own * mu_own)));
+      // 1 - ratio2 (1 - mu_own^2), but for grazing directions between almost equal indices, where that leaves no
+      // digits.
+      mu.push_back(std::sqrt((n - part.n) * (n + part.n) + part.n * part.n * mu_own * mu_own) / n);
       weight.push_back(w * width * ratio2 * mu_own / mu.back());
     }
   }
@@ -114,12 +116,20 @@ class Chain {
     return kernels_[key] = matrix;
   }
 
+  /// Nodes at which both interfaces of a medium reflect everything, and change no direction.
+  Index held_for_ever(size_t medium) const {
+    const bool smooth = !tissue_.lobes[medium - 1][true][false] && !tissue_.lobes[medium][false][false];
+    return smooth ? std::max(Index{0}, count(medium) - std::max(count(medium - 1), count(medium + 1))) : 0;
+  }
+
   MatrixXd make_branch(size_t medium, bool up, bool refracts) {
     const size_t to = refracts ? next(medium, up) : medium;
     if (to < kFirst || to > kLast) return {};
     const Lobe* lobe = tissue_.lobes[up ? medium - 1 : medium][up][refracts];
     const VectorXd r = reflectance(medium, up);
-    const VectorXd chance = refracts ? VectorXd(VectorXd::Ones(r.size()) - r) : r;
+    VectorXd chance = refracts ? VectorXd(VectorXd::Ones(r.size()) - r) : r;
+    // Nothing would ever end a ray there. None gets there, but the system needs a solution for it too.
+    if (!refracts) chance.tail(held_for_ever(medium)).setZero();
     // A node without a counterpart in the next medium is past the critical angle and never gets there.
     const Index common = std::min(count(medium), count(to));
     MatrixXd matrix = MatrixXd::Zero(count(medium), count(to));

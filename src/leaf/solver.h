@@ -8,7 +8,7 @@
 namespace frond::leaf {
 
 /// Increase with any change that may change results: tables on disk are kept by it.
-inline constexpr int kSolverVersion = 2;
+inline constexpr int kSolverVersion = 3;
 
 /// What becomes of light that meets the leaf at one angle: shares of 1. The rest is absorbed.
 struct Shares {
