@@ -66,16 +66,17 @@ class Batch {
   /// A medium that can hold a ray for ever.
   struct Trap {
     int32_t state_down, state_up;
-    float sin_theta;  ///< beyond it neither interface lets any light through
+    float sin_theta;  ///< beyond it, or within rounding of it, neither interface lets any light through
   };
   static std::vector<Trap> find_traps(const Tissue& tissue) {
+    constexpr double kRounding = 1e-6;  // of the sine's square
     std::vector<Trap> traps;
     for (size_t medium = 1; medium < Tissue::kBeneath; ++medium) {
       const bool smooth = !tissue.lobes[medium - 1][1][0] && !tissue.lobes[medium][0][0];
       const double critical = std::max(tissue.n[medium - 1], tissue.n[medium + 1]) / tissue.n[medium];
       const auto interface = static_cast<int32_t>(medium);
       if (smooth && tissue.optical_depth[medium] == 0 && critical < 1)
-        traps.push_back({2 * interface, 2 * interface - 1, static_cast<float>(critical)});
+        traps.push_back({2 * interface, 2 * interface - 1, static_cast<float>(critical - kRounding / critical)});
     }
     return traps;
   }
