@@ -192,6 +192,7 @@ Table parse_table(std::string_view text, const std::string& name) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   Location here{std::make_shared<const std::string>(name), 1, 1};
+  if (text.find('\0') != text.npos) fail(here, "this is no text: a leaf's table is a CSV file");
   std::optional<Header> header;
   std::vector<Spectrum> spectra;
   std::map<double, size_t> known;
@@ -208,8 +209,8 @@ Table parse_table(std::string_view text, const std::string& name) {
       header.emplace(split(line, here));
   }
   if (spectra.empty())
-    fail(here, "the table is empty: {} is expected, then a row for each angle and wavelength",
-         header ? "a row" : "a line with the names of the columns");
+    fail(here, "the table is empty: {}a row for each angle and wavelength is expected",
+         header ? "" : "a line with the names of the columns and then ");
   Table table = assemble(spectra, header->has_errors());
   table.error = error;
   return table;

@@ -83,8 +83,13 @@ TEST(TableFile, RefusesBadRowsByLine) {
 }
 
 TEST(TableFile, RefusesBadColumns) {
-  EXPECT_THAT(refusal(""), HasSubstr("the table is empty: a line with the names of the columns is expected"));
-  EXPECT_THAT(refusal("# nothing\n\n" + kColumns), StartsWith("leaf.csv:4:1: the table is empty: a row is expected"));
+  EXPECT_THAT(refusal(""), HasSubstr("the table is empty: a line with the names of the columns and then a row"));
+  EXPECT_THAT(refusal("# nothing\n\n" + kColumns),
+              StartsWith("leaf.csv:4:1: the table is empty: a row for each angle"));
+  EXPECT_THAT(refusal(std::string("\x7f"
+                                  "ELF\0",
+                                  5)),
+              HasSubstr("this is no text"));
   EXPECT_THAT(refusal("theta,wavelength_nm,Rs,Rd,T\n"), HasSubstr("no column \"theta\" in a leaf's table"));
   EXPECT_THAT(refusal("theta_deg,wavelength,Rs,Rd,T\n"), HasSubstr("did you mean \"wavelength_nm\"?"));
   EXPECT_THAT(refusal("theta_deg,wavelength_nm,Rs,Rd\n"), HasSubstr("there is no column \"T\"; a leaf's table has"));
