@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "instruments/statistics.h"
+#include "leaf/solver.h"
+#include "leaf/walk.h"
+#include "tests/stability/comparison.h"
+
+namespace frond::stability {
+
+/// Shares of the light from one angle, each with its error.
+struct MeasuredShares {
+  Moments surface = {}, subsurface = {}, transmitted = {}, all = {};
+
+  void add(leaf::Fate fate, double weight);
+};
+
+/// Unit vector toward the light. At 90 degrees rounding leaves it a trifle above the horizon.
+Vec3d toward(double theta_deg);
+
+MeasuredShares walk_many(const leaf::Tissue& tissue, double theta_deg, leaf::Absorption absorption, int rays);
+MeasuredShares walk_many_in_batch(const leaf::Tissue& tissue, double theta_deg, leaf::Absorption absorption, int rays);
+
+/// Light that a leaf at one wavelength gets, and what truly becomes of it.
+struct Lit {
+  std::vector<double> theta_deg;
+  std::vector<leaf::Shares> truth;
+};
+
+/// By the solver with twice its nodes.
+Lit solved_finely(const leaf::Tissue& tissue, const std::vector<double>& theta_deg);
+
+void add_shares(Comparison& comparison, const MeasuredShares& measured, const leaf::Shares& truth);
+void add_shares(Comparison& comparison, const leaf::Shares& value, const leaf::Shares& truth);
+
+/// Fills in the cells of everything that works on a tissue: walks and the solver.
+void compare_tissue_methods(Row& row, const leaf::Tissue& tissue, const Lit& lit, double solver_bound);
+
+}  // namespace frond::stability

@@ -1,0 +1,134 @@
+#include "tests/stability/page.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace frond::stability {
+namespace {
+
+constexpr std::string_view kHowToRead = R"(# Where methods fail
+
+`scripts/stability` writes this page, from what it finds; `frond_stability`, one of the tests, fails where a method does
+anything else than what is expected of it. There is no surprise in what follows: nothing that is no number, nothing
+negative, nothing endless, no value that was clamped without a word.
+
+Rows are cases with the expected behaviour beside them, columns are methods. A cell says what a method did:
+
+| | |
+|---|---|
+| exact, se 2e-3 | agrees with the truth within 5 of its standard errors; the largest of them |
+| exact | agrees to rounding in double precision |
+| error 5e-5 | a method without noise: its largest error, within what is expected |
+| error below 1e-6 | an error of which the digits would tell more of the compiler than of the method |
+| holds | all that is expected was looked at and is so |
+| refused: ... | refused, with this message |
+| - | not for this method |
+
+Numbers are rounded up to 1, 2 or 5 times a power of ten. The truth is a closed form where there is one, else the solver
+with twice the nodes that it takes by itself. A sound method is further off than 5 standard errors with probability
+6e-7; outcomes so rare that few rays meet them are given 10 rays more. Seeds are fixed: the page is the same each time.
+
+)";
+
+constexpr std::array<MethodName, kMethods> kNames{{
+    {"walk", "`leaf::walk`, one ray at a time, analog absorption"},
+    {"weighted walk", "`leaf::walk`, weighted absorption"},
+    {"batched walk", "`leaf::walk_batch`, single precision, analog and weighted"},
+    {"spectral walk", "`leaf::walk` for four wavelengths at once"},
+    {"spectral f", "`leaf::estimate_body_f` for four wavelengths at once, integrated over all directions"},
+    {"solver", "`leaf::solve`"},
+    {"abm", "material `abm`: `sample`, `f` and `pdf`"},
+    {"simplified", "material `leaf_simplified`, its table solved"},
+    {"simplified, walked", "material `leaf_simplified`, its table by 1000 walks for each degree"},
+    {"table file", "material `leaf_simplified` with `tablefile`"},
+    {"spectrophotometer", "`measure_shares`, as `frond spectrophotometer` calls it, of `abm`"},
+    {"goniophotometer", "`measure_f` and its sphere of detectors, as `frond goniophotometer` calls them"},
+    {"path, abm", "the path integrator, rendering a scene with `abm`"},
+    {"path, weighted abm", "the same with `abm` in its weighted mode"},
+    {"path, simplified", "the same with `leaf_simplified`"},
+}};
+
+/// What Markdown would take for its own.
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '|' || c == '<' || c == '*' || c == '_' || c == '~') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+std::string markdown_row(const std::vector<std::string>& fields) {
+  std::string line = "|";
+  for (const std::string& field : fields) line += fmt::format(" {} |", escaped(field));
+  return line + "\n";
+}
+
+std::string cell_text(const Row& row, Method method) {
+  const auto cell = row.cells.find(method);
+  if (cell == row.cells.end()) return "-";
+  return (cell->second.is_surprise ? "SURPRISE: " : "") + cell->second.text;
+}
+
+std::string to_markdown(const Theme& theme) {
+  std::vector<std::string> heads{"case", "expected"};
+  for (const Method m : theme.methods()) heads.emplace_back(describe(m).name);
+  std::string text = fmt::format("## {}\n\n{}\n\n{}", theme.title, theme.text, markdown_row(heads));
+  text += markdown_row(std::vector<std::string>(heads.size(), "---"));
+  for (const Row& row : theme.rows) {
+    std::vector<std::string> fields{row.name, row.expected};
+    for (const Method m : theme.methods()) fields.push_back(cell_text(row, m));
+    text += markdown_row(fields);
+  }
+  return text;
+}
+
+/// Calls act(theme, row, method, cell).
+template <class Act>
+void for_each_cell(const std::vector<Theme>& themes, const Act& act) {
+  for (const Theme& theme : themes)
+    for (const Row& row : theme.rows)
+      for (const auto& [method, cell] : row.cells) act(theme, row, method, cell);
+}
+
+}  // namespace
+
+const MethodName& describe(Method method) { return kNames[static_cast<size_t>(method)]; }
+
+std::vector<Method> Theme::methods() const {
+  std::map<Method, bool> met;
+  for (const Row& row : rows)
+    for (const auto& [method, cell] : row.cells) met[method] = true;
+  std::vector<Method> result;
+  for (const auto& [method, is_met] : met) result.push_back(method);
+  return result;
+}
+
+std::vector<std::string> surprises(const std::vector<Theme>& themes) {
+  std::vector<std::string> lines;
+  for_each_cell(themes, [&](const Theme& theme, const Row& row, Method method, const Cell& cell) {
+    if (cell.is_surprise)
+      lines.push_back(fmt::format("{}: {}: {}: expected \"{}\", found \"{}\"", theme.title, row.name,
+                                  describe(method).name, row.expected, cell.text));
+  });
+  return lines;
+}
+
+std::string to_text(const std::vector<Theme>& themes) {
+  std::string text;
+  for_each_cell(themes, [&](const Theme& theme, const Row& row, Method method, const Cell&) {
+    fmt::format_to(std::back_inserter(text), "{}: {}: {}: {}\n", theme.title, row.name, describe(method).name,
+                   cell_text(row, method));
+  });
+  return text;
+}
+
+std::string to_markdown(const std::vector<Theme>& themes) {
+  std::string text = std::string(kHowToRead) + "| column | |\n|---|---|\n";
+  for (const auto& [name, doc] : kNames) text += fmt::format("| {} | {} |\n", name, doc);
+  for (const Theme& theme : themes) text += "\n" + to_markdown(theme);
+  return text;
+}
+
+}  // namespace frond::stability

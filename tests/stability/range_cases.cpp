@@ -1,0 +1,182 @@
+#include <limits>
+
+#include "leaf/specimens.h"
+#include "materials/leaf_params.h"
+#include "tests/stability/cases.h"
+#include "tests/stability/specimen.h"
+
+namespace frond::stability {
+namespace {
+
+using leaf::find_specimen;
+using leaf::TissueParams;
+using test::words;
+using testing::number;
+
+struct Number {
+  double TissueParams::*member;
+  std::string_view name;
+};
+constexpr Number kNumbers[] = {
+    {&TissueParams::thickness_m, "thickness"},        {&TissueParams::mesophyll_fraction, "mesophyllfraction"},
+    {&TissueParams::chlorophyll_a, "chlorophylla"},   {&TissueParams::chlorophyll_b, "chlorophyllb"},
+    {&TissueParams::carotenoids, "carotenoids"},      {&TissueParams::protein, "protein"},
+    {&TissueParams::cellulose, "cellulose"},          {&TissueParams::lignin, "lignin"},
+    {&TissueParams::cuticle_aspect, "cuticleaspect"}, {&TissueParams::epidermis_aspect, "epidermisaspect"},
+    {&TissueParams::spongy_aspect, "spongyaspect"},   {&TissueParams::palisade_aspect, "palisadeaspect"},
+};
+
+const Param& declared(std::string_view name) {
+  return *std::ranges::find_if(kLeafParams, [&](const Param& p) { return p.name == name; });
+}
+
+/// Bounds on the errors of the solver and of looking up its table.
+struct Bounds {
+  double solver = 1e-5, table = 5e-4;
+};
+
+void add_leaf(Theme& theme, std::string name, const TissueParams& params, double nm, Bounds bounds) {
+  const leaf::TissueModel model(params);
+  const leaf::Tissue tissue = model.at(nm);
+  const Lit lit = solved_finely(tissue, {10, 75, 140});
+  Row& row = theme.add(std::move(name), fmt::format("exact; solver within {}, table within {}",
+                                                    rounded_up(bounds.solver), rounded_up(bounds.table)));
+  compare_tissue_methods(row, tissue, lit, bounds.solver);
+  compare_material_methods(row, {params, nm}, lit, bounds.table);
+}
+
+bool is_aspect(std::string_view name) { return name.ends_with("aspect"); }
+
+/// Where the number matters most.
+double telling_nm(std::string_view name) {
+  if (name == "protein" || name == "cellulose" || name == "lignin") return 2100;
+  return is_aspect(name) ? 800 : 551;
+}
+
+std::string value_text(const Param& p, double value) {
+  return fmt::format("{} {:g}{}{}", p.name, value, p.unit.empty() ? "" : " ", p.unit);
+}
+
+void add_value(Theme& theme, const Number& n, double value, Bounds bounds = {}) {
+  TissueParams params = find_specimen("soybean")->params;
+  params.*n.member = value;
+  add_leaf(theme, value_text(declared(n.name), value), params, telling_nm(n.name), bounds);
+}
+
+void add_aspects(Theme& theme, std::string_view specimen, double cuticle, double cells, Bounds bounds) {
+  TissueParams params = find_specimen(specimen)->params;
+  params.cuticle_aspect = cuticle;
+  params.epidermis_aspect = params.spongy_aspect = params.palisade_aspect = cells;
+  add_leaf(theme, fmt::format("{}, cuticle {:g}, all cells {:g}", specimen, cuticle, cells), params, 800, bounds);
+}
+
+/// One number given to both leaf materials.
+void add_refusal(Theme& theme, std::string_view name, double value, const std::string& part) {
+  Row& row = theme.add(fmt::format("{} {:g}", name, value), expect_refusal(part));
+  const auto give_to = [&](std::string_view material) {
+    return refusal(part, [&] { Specimen(material, {number("float", std::string(name), {value})}, 551); });
+  };
+  row.add(Method::abm, give_to("abm")).add(Method::simplified, give_to("leaf_simplified"));
+}
+
+/// Each number in its turn: the last message stands for all, unless one is a surprise.
+Cell refuses_all(std::string_view material, double value, const std::string& part) {
+  Cell cell;
+  for (const Number& n : kNumbers)
+    if (!cell.is_surprise)
+      cell = refusal(part, [&] { Specimen(material, {number("float", std::string(n.name), {value})}, 551); });
+  return cell;
+}
+
+void add_no_number(Theme& theme, double value) {
+  const std::string part = fmt::format("has the value {}, finite numbers are needed", value);
+  theme.add(fmt::format("each of these numbers {}", value), expect_refusal(part))
+      .add(Method::abm, refuses_all("abm", value, part))
+      .add(Method::simplified, refuses_all("leaf_simplified", value, part));
+}
+
+/// One that leaves the range somewhere.
+void add_texture(Theme& theme) {
+  const std::string part = "has values from 3 to 300, outside the range 0 to 100 kg/m^3";
+  const auto give_to = [&](std::string_view material) {
+    return refusal(part, [&] { Specimen(material, {test::texture("chlorophylla", {"3:300"})}, 551); });
+  };
+  theme.add("chlorophylla by a texture from 3 to 300", expect_refusal(part))
+      .add(Method::abm, give_to("abm"))
+      .add(Method::simplified, give_to("leaf_simplified"));
+}
+
+std::string range_text(const Param& p) {
+  return fmt::format("outside its range {} to {}{}{}", p.range.min, p.range.max, p.unit.empty() ? "" : " ", p.unit);
+}
+
+/// The nearest that is wrong, as people would type it.
+double just_below(const Interval& range) { return range.min == 0 ? -1e-9 : range.min * 0.999; }
+double just_above(const Interval& range) { return range.max * 1.001; }
+
+void add_oblateness(Theme& theme, double oblateness) {
+  constexpr double kNm = 551;
+  const leaf::TissueModel model(find_specimen("soybean")->params);
+  const Lit lit = solved_finely(model.at(kNm), {0, 75, 89.9, 140});
+  Specimen simplified("leaf_simplified", {number("float", "oblateness", {oblateness}), words("tablemethod", {"solve"})},
+                      kNm);
+  Comparison comparison(5e-4);
+  for (size_t i = 0; i < lit.theta_deg.size(); ++i) {
+    constexpr int kSamples = 20000;
+    const MeasuredShares measured = sample_many(simplified.bsdf(), toward_in_float(lit.theta_deg[i]), kSamples);
+    const leaf::Shares& truth = lit.truth[i];
+    comparison.add("R + T", measured.all.estimate(), truth.surface + truth.subsurface + truth.transmitted, kSamples);
+    comparison.add("T", measured.transmitted.estimate(), truth.transmitted, kSamples);
+  }
+  theme.add(fmt::format("oblateness {:g} of the surface lobe", oblateness), "R + T and T as without it, within 5e-4")
+      .add(Method::simplified, comparison.cell());
+}
+
+}  // namespace
+
+Theme ends_of_ranges() {
+  Theme theme{
+      "Numbers of the leaf at the ends of their ranges",
+      "Rs, Rd and T at 10, 75 and 140 degrees against the solver with twice its nodes, where the number matters: "
+      "pigments at 551, fibres at 2100, aspect ratios at 800 nm. All others are the soybean's, or the maize's "
+      "where it says so."};
+  for (const Number& n : kNumbers) {
+    if (is_aspect(n.name)) continue;
+    const Interval range = declared(n.name).range;
+    add_value(theme, n, range.min);
+    if (range.min == 0) add_value(theme, n, 1e-12);
+    add_value(theme, n, range.max);
+  }
+  for (const double cuticle : {0.0, 0.2, 5.0, 1000.0}) add_value(theme, kNumbers[8], cuticle);
+  for (const Number& n : {kNumbers[9], kNumbers[10], kNumbers[11]})
+    for (const double aspect : {0.0, 100.0}) add_value(theme, n, aspect, {aspect == 0 ? 5e-4 : 1e-5, 2e-3});
+  for (const char* specimen : {"soybean", "maize"}) {
+    add_aspects(theme, specimen, 0, 0, {5e-4, 1e-3});
+    add_aspects(theme, specimen, 1000, 100, {1e-5, 5e-3});
+  }
+  for (const double oblateness : {0.0, 0.2, 5.0, 1000.0}) add_oblateness(theme, oblateness);
+  return theme;
+}
+
+Theme outside_ranges() {
+  Theme theme{"Numbers of the leaf outside their ranges",
+              "The nearest numbers beyond each end, and such as are none, given to both leaf materials."};
+  for (const Number& n : kNumbers) {
+    const Param& p = declared(n.name);
+    add_refusal(theme, n.name, just_below(p.range), range_text(p));
+    add_refusal(theme, n.name, just_above(p.range), range_text(p));
+  }
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), kInfinite, -kInfinite})
+    add_no_number(theme, value);
+  add_texture(theme);
+  for (const double oblateness : {-0.5, 1001.0}) {
+    const std::string part = "outside its range 0 to 1000";
+    theme.add(fmt::format("oblateness {}", oblateness), expect_refusal(part))
+        .add(Method::simplified,
+             refusal(part, [&] { Specimen("leaf_simplified", {number("float", "oblateness", {oblateness})}, 551); }));
+  }
+  return theme;
+}
+
+}  // namespace frond::stability

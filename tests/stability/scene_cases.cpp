@@ -1,0 +1,165 @@
+#include <cmath>
+#include <numbers>
+
+#include "tests/stability/cases.h"
+#include "tests/stability/comparison.h"
+#include "tests/support/render_text.h"
+
+namespace frond::stability {
+namespace {
+
+using testing::channel_mean;
+using testing::render_text;
+
+constexpr double kDegree = std::numbers::pi / 180;
+const std::string kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n";
+
+std::string triple(double x, double y, double z) { return fmt::format("{:.9g} {:.9g} {:.9g}", x, y, z); }
+
+/// A sheet of leaf about `place`, filling a film that looks down on it from 30 degrees off its normal.
+struct Sheet {
+  std::string material;
+  std::string world = kSky;
+  double half_width = 1, place = 0;
+  std::string normals = "";
+  std::string more = "";  ///< shapes beside it, in its own coordinates
+  std::string integrator = "\"integer maxdepth\" 8";
+
+  std::string text() const {
+    const double w = half_width, eye_x = place + 2 * w, eye_z = place + 3 * w;
+    return fmt::format(R"(LookAt {} {}  0 1 0
+Camera "orthographic" "float screenwindow" [{} {} {} {}]
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+Sampler "independent"
+PixelFilter "box"
+Integrator "path" {}
+WorldBegin
+{}Material {}
+Translate {}
+Rotate 10 1 2 0
+{}
+Shape "trianglemesh" "point3 P" [{} {} {} {}] "integer indices" [0 1 2  0 2 3] {}
+)",
+                       triple(eye_x, place, eye_z), triple(place, place, place), -w / 4, w / 4, -w / 4, w / 4,
+                       integrator, world, material, triple(place, place, place), more, triple(-w, -w, 0),
+                       triple(w, -w, 0), triple(w, w, 0), triple(-w, w, 0), normals);
+  }
+};
+
+/// Vertex normals that all lean by an angle toward +x.
+std::string leaning(double deg) {
+  return fmt::format("\"normal N\" [{0} {0} {0} {0}]", triple(std::sin(deg * kDegree), 0, std::cos(deg * kDegree)));
+}
+
+std::string distant_light(const std::string& from) {
+  return fmt::format(
+      "LightSource \"distant\" \"point3 from\" [{}] \"point3 to\" [0 0 0] \"spectrum L\" \"stdillum-D65\"\n", from);
+}
+
+const std::string kAbm = "\"abm\"", kWeighted = "\"abm\" \"string mode\" \"weighted\"";
+const std::string kSimplified = "\"leaf_simplified\" \"string tablemethod\" \"solve\"";
+
+struct Leaf {
+  Method method;
+  std::string material;
+};
+const Leaf kLeaves[] = {
+    {Method::path_abm, kAbm}, {Method::path_weighted, kWeighted}, {Method::path_simplified, kSimplified}};
+
+/// A row with a cell for each leaf; cell_of(leaf) makes it.
+template <class CellOf>
+void add_leaves(Theme& theme, std::string name, std::string expected, const CellOf& cell_of) {
+  Row& row = theme.add(std::move(name), std::move(expected));
+  for (const Leaf& leaf : kLeaves) row.add(leaf.method, cell_of(leaf));
+}
+
+Estimate estimate_of(const Film& film, size_t channel) {
+  const auto [mean, error] = channel_mean(film, channel);
+  return {mean, error * error};
+}
+
+constexpr int kSamples = 64;
+constexpr int64_t kPaths = 64 * kSamples;
+
+Cell furnace(const Leaf& leaf, bool direct) {
+  const Sheet sheet{.material = leaf.material + " \"float mesophyllfraction\" 0",
+                    .integrator = fmt::format("\"integer maxdepth\" 2 \"bool sampledirect\" {}", direct)};
+  const Film film = render_text(sheet.text(), {.samples = kSamples});
+  Comparison comparison(2e-4);
+  comparison.require(film.not_finite() == 0, "a sample is no number");
+  for (size_t c = 0; c < 3; ++c) comparison.add("radiance", estimate_of(film, c), 1, kPaths);
+  return comparison.cell();
+}
+
+/// Shading normals that lean by an angle, by which no more light may come back than there is.
+Cell bent(const Leaf& leaf, double lean_deg) {
+  const Sheet sheet{.material = leaf.material + " \"float mesophyllfraction\" 0", .normals = leaning(lean_deg)};
+  const Film film = render_text(sheet.text(), {.samples = kSamples});
+  Comparison comparison;
+  comparison.require(film.not_finite() == 0, "a sample is no number");
+  for (size_t c = 0; c < 3; ++c) {
+    const Estimate e = estimate_of(film, c);
+    comparison.require(e.mean > 0 && e.mean <= 1 + kMostStandardErrors * e.standard_error() + 10.0 / kPaths,
+                       fmt::format("the radiance is {:.3g}", e.mean));
+  }
+  return comparison.cell();
+}
+
+/// Light from so many degrees over the geometric plane. The sheet is turned back, so that it lies in that plane.
+Cell blocked(const Leaf& leaf, double elevation_deg, double lean_deg) {
+  const double e = elevation_deg * kDegree;
+  const Sheet sheet{.material = leaf.material,
+                    .world = distant_light(triple(std::cos(e), 0, std::sin(e))) + "Rotate -10 1 2 0\n",
+                    .normals = leaning(lean_deg)};
+  const Film film = render_text(sheet.text(), {.samples = 16});
+  Comparison comparison;
+  comparison.require(film.not_finite() == 0, "a sample is no number");
+  for (size_t c = 0; c < 3; ++c) comparison.add("radiance", channel_mean(film, c).mean, 0);
+  return comparison.cell();
+}
+
+Film render_at(const Leaf& leaf, double place) {
+  const Sheet sheet{.material = leaf.material,
+                    .world = kSky + distant_light(".3 -.4 1"),
+                    .half_width = 4096,
+                    .place = place,
+                    .more = "Shape \"disk\" \"float height\" -512 \"float radius\" 9000\n"};
+  return render_text(sheet.text(), {.samples = 4 * kSamples});
+}
+
+Cell far_away(const Leaf& leaf, double place) {
+  const Film near = render_at(leaf, 0), far = render_at(leaf, place);
+  Comparison comparison;
+  comparison.require(far.not_finite() == 0, "a sample is no number");
+  for (size_t c = 0; c < 3; ++c) {
+    const Estimate a = estimate_of(near, c), b = estimate_of(far, c);
+    comparison.add("radiance", Estimate{b.mean, a.variance + b.variance}, a.mean, 4 * kPaths);
+  }
+  return comparison.cell();
+}
+
+}  // namespace
+
+Theme scenes() {
+  Theme theme{
+      "Scenes",
+      "Means of pictures of 8 x 8 pixels at 608, 551 and 455 nm. A sheet of soybean leaf, tilted; \"no absorption\" "
+      "is a mesophyll fraction of 0. The far scenes have a second sheet 512 units under the first and a sun."};
+  for (const bool direct : {false, true})
+    add_leaves(theme,
+               fmt::format("no absorption, under a sky of 1, {}", direct ? "light sampled" : "light met by chance"),
+               "radiance 1, table within 2e-4", [&](const Leaf& leaf) { return furnace(leaf, direct); });
+  for (const double lean_deg : {45.0, 80.0, 89.9, 90.0, 135.0, 180.0})
+    add_leaves(theme, fmt::format("no absorption, under a sky of 1, shading normals lean by {:g} degrees", lean_deg),
+               "radiance above 0, at most 1", [&](const Leaf& leaf) { return bent(leaf, lean_deg); });
+  add_leaves(theme, "light 10 degrees under the surface, shading normals lean 60 degrees towards it", "radiance 0",
+             [](const Leaf& leaf) { return blocked(leaf, -10, 60); });
+  add_leaves(theme, "light 10 degrees above the surface, shading normals lean 40 degrees away from it", "radiance 0",
+             [](const Leaf& leaf) { return blocked(leaf, 10, -40); });
+  for (const double place : {1e5, 1e7})
+    add_leaves(theme, fmt::format("a sheet 8192 units wide, {} units from the origin", rounded_up(place)),
+               "as at the origin", [&](const Leaf& leaf) { return far_away(leaf, place); });
+  return theme;
+}
+
+}  // namespace frond::stability

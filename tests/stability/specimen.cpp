@@ -1,0 +1,149 @@
+#include "tests/stability/specimen.h"
+
+#include "instruments/spectrophotometer.h"
+
+namespace frond::stability {
+
+using leaf::Fate;
+using leaf::Shares;
+using leaf::TissueParams;
+using test::flag;
+using test::words;
+using testing::number;
+
+namespace {
+
+constexpr int kSamples = 4000, kTableWalks = 1000;
+constexpr int64_t kInstrumentRays = 50000;
+
+Fate fate_of(const Vec3& wo, const BsdfSample& sample) {
+  if (!same_side(wo, sample.wi)) return Fate::transmitted;
+  return any(sample.flags & Lobes::surface) ? Fate::surface : Fate::reflected;
+}
+
+Parameters with(Parameters params, Parameters more) {
+  params.insert(params.end(), more.begin(), more.end());
+  return params;
+}
+
+Cell sampled(Specimen& specimen, const Lit& lit) {
+  Comparison comparison;
+  for (size_t i = 0; i < lit.theta_deg.size(); ++i)
+    add_shares(comparison, sample_many(specimen.bsdf(), toward_in_float(lit.theta_deg[i]), kSamples), lit.truth[i]);
+  return comparison.cell();
+}
+
+Cell measured(const Specimen& specimen, const Lit& lit) {
+  Comparison comparison;
+  for (size_t i = 0; i < lit.theta_deg.size(); ++i) {
+    const Beam beam{lit.theta_deg[i], specimen.lambda_nm()};
+    const auto reading = measure_shares({specimen.material(), beam}, {kInstrumentRays}, specimen.pool());
+    comparison.add("Rs", reading.surface, lit.truth[i].surface, kInstrumentRays);
+    comparison.add("Rd", reading.subsurface, lit.truth[i].subsurface, kInstrumentRays);
+    comparison.add("T", reading.transmittance, lit.truth[i].transmitted, kInstrumentRays);
+  }
+  return comparison.cell();
+}
+
+Cell looked_up(Specimen& specimen, const Lit& lit, double bound) {
+  Comparison comparison(bound);
+  for (size_t i = 0; i < lit.theta_deg.size(); ++i)
+    add_shares(comparison, read_off(specimen.bsdf(), toward_in_float(lit.theta_deg[i])), lit.truth[i]);
+  return comparison.cell();
+}
+
+/// A table's own noise: `rays` walks at each angle, of which the neighbours take part in a look-up.
+Cell looked_up_in_walked(Specimen& specimen, const Lit& lit, double bound) {
+  Comparison comparison(bound);
+  const auto add = [&](std::string_view what, double value, double truth) {
+    const double variance = std::max(0.0, truth * (1 - truth)) / kTableWalks;
+    comparison.add(what, Estimate{value, variance}, truth, kTableWalks);
+  };
+  for (size_t i = 0; i < lit.theta_deg.size(); ++i) {
+    const Shares value = read_off(specimen.bsdf(), toward_in_float(lit.theta_deg[i]));
+    add("Rs", value.surface, lit.truth[i].surface);
+    add("Rd", value.subsurface, lit.truth[i].subsurface);
+    add("T", value.transmitted, lit.truth[i].transmitted);
+  }
+  return comparison.cell();
+}
+
+}  // namespace
+
+Parameters words_for(const TissueParams& leaf) {
+  const auto real = [](std::string name, double value) { return number("float", std::move(name), {value}); };
+  return {words("specimen", {leaf.structure == leaf::Structure::bifacial ? "soybean" : "maize"}),
+          flag("sieve", leaf.sieve_and_detour),
+          real("thickness", leaf.thickness_m),
+          real("mesophyllfraction", leaf.mesophyll_fraction),
+          real("chlorophylla", leaf.chlorophyll_a),
+          real("chlorophyllb", leaf.chlorophyll_b),
+          real("carotenoids", leaf.carotenoids),
+          real("protein", leaf.protein),
+          real("cellulose", leaf.cellulose),
+          real("lignin", leaf.lignin),
+          real("cuticleaspect", leaf.cuticle_aspect),
+          real("epidermisaspect", leaf.epidermis_aspect),
+          real("spongyaspect", leaf.spongy_aspect),
+          real("palisadeaspect", leaf.palisade_aspect)};
+}
+
+Specimen::Specimen(std::string_view material, Parameters params, double lambda_nm) : lambda_nm_(lambda_nm) {
+  test::Resolver resolver;
+  const MaterialInfo& info = test::material_info(material);
+  material_ = info.make(Params(info, {std::string(material), {}, std::move(params)}, resolver));
+  const OneWavelength strategy(lambda_nm);
+  material_->prepare({strategy, pool_, Log(true), {}});
+}
+
+const Bsdf& Specimen::bsdf() {
+  arena_.reset();
+  return bsdf_of(*material_, {0, lambda_nm_}, arena_);
+}
+
+Vec3 toward_in_float(double theta_deg) {
+  const Vec3d w = toward(theta_deg);
+  return {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)};
+}
+
+Shares read_off(const Bsdf& simplified, const Vec3& wo) {
+  RandomStream rng(1);
+  const Vec3 ahead{0, 0, wo.z < 0 ? -1.f : 1.f};
+  Shares shares;
+  shares.subsurface = double(simplified.f(wo, ahead, rng)[0]) * std::numbers::pi;
+  shares.transmitted = double(simplified.f(wo, -ahead, rng)[0]) * std::numbers::pi;
+  const auto s = simplified.sample(wo, 0, {0.3f, 0.4f}, rng);
+  if (s && any(s->flags & Lobes::surface)) shares.surface = double(s->f[0]) * double(std::abs(s->wi.z));
+  return shares;
+}
+
+MeasuredShares sample_many(const Bsdf& bsdf, const Vec3& wo, int samples) {
+  MeasuredShares measured;
+  RandomStream rng(5);
+  for (int i = 0; i < samples; ++i) {
+    const float uc = rng.uniform(), u = rng.uniform();
+    const auto s = bsdf.sample(wo, uc, {u, rng.uniform()}, rng);
+    if (s)
+      measured.add(fate_of(wo, *s), double(s->f[0] * std::abs(s->wi.z) / s->pdf));
+    else
+      measured.add(Fate::absorbed, 0);
+  }
+  return measured;
+}
+
+void compare_material_methods(Row& row, const LeafInScene& leaf, const Lit& lit, double table_bound) {
+  const Parameters params = with(words_for(leaf.leaf), leaf.pigments);
+  Specimen abm("abm", params, leaf.lambda_nm);
+  row.add(Method::abm, sampled(abm, lit));
+  row.add(Method::spectrophotometer, measured(abm, lit));
+  Specimen solved("leaf_simplified", with(params, {words("tablemethod", {"solve"}), flag("surfacedirect", false)}),
+                  leaf.lambda_nm);
+  row.add(Method::simplified, looked_up(solved, lit, table_bound));
+  Specimen walked("leaf_simplified",
+                  with(params, {words("tablemethod", {"montecarlo"}), flag("surfacedirect", false),
+                                number("integer", "tablerays", {kTableWalks})}),
+                  leaf.lambda_nm);
+  row.add(Method::simplified_walked, looked_up_in_walked(walked, lit, table_bound));
+}
+
+}  // namespace frond::stability
