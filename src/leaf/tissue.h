@@ -16,7 +16,9 @@ struct LeafLobes {
 };
 
 /// A leaf at one wavelength, as a ray meets it. Interfaces 0 to 5 count from the adaxial side. Medium i lies above
-/// interface i: 0 is the air over the leaf, 6 the air under it. The lobes belong to the TissueModel that made it.
+/// interface i: 0 is the air over the leaf, 6 the air under it, both of index 1; the epidermes, media 1 and 5, are
+/// alike, and so are both parts of a mesophyll in which the air space moves. The lobes belong to the TissueModel that
+/// made it.
 struct Tissue {
   static constexpr size_t kInterfaces = 6, kMedia = 7, kBeneath = 6;
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "tests/cli/command.h"
+#include "tests/cli/instrument_command.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"
 
@@ -13,24 +13,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-class GoniophotometerCommand : public ::testing::Test {
+class GoniophotometerCommand : public InstrumentCommand {
  protected:
-  Outcome measure(std::vector<std::string> more) const {
-    std::vector<std::string> arguments{"goniophotometer", "abm", "specimen=soybean", "--no-cache"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return frond_command(arguments);
-  }
-  /// What is wrong is told before rays are shot that would take days.
-  std::string refusal(std::vector<std::string> more) const {
-    more.insert(more.end(), {"--rays", "1e15"});
-    const Outcome o = measure(more);
-    EXPECT_EQ(o.code, 1) << ::testing::PrintToString(more);
-    EXPECT_THAT(o.out, IsEmpty());
-    return o.err;
-  }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-
-  TestFolder folder_{"goniophotometer"};
+  GoniophotometerCommand() : InstrumentCommand("goniophotometer") {}
 };
 
 TEST_F(GoniophotometerCommand, WritesEachDetectorWithItsSolidAngleAndError) {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command.h"
+#include "tests/cli/instrument_command.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"
 
@@ -16,24 +16,9 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-class SpectrophotometerCommand : public ::testing::Test {
+class SpectrophotometerCommand : public InstrumentCommand {
  protected:
-  Outcome measure(std::vector<std::string> more) const {
-    std::vector<std::string> arguments{"spectrophotometer", "abm", "specimen=soybean", "--no-cache"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return frond_command(arguments);
-  }
-  /// What is wrong is told before rays are shot that would take days.
-  std::string refusal(std::vector<std::string> more) const {
-    more.insert(more.end(), {"--rays", "1e15"});
-    const Outcome o = measure(more);
-    EXPECT_EQ(o.code, 1) << ::testing::PrintToString(more);
-    EXPECT_THAT(o.out, IsEmpty());
-    return o.err;
-  }
-  std::string path(const std::string& name) const { return folder_.name_of(name); }
-
-  TestFolder folder_{"spectrophotometer"};
+  SpectrophotometerCommand() : InstrumentCommand("spectrophotometer") {}
 };
 
 TEST_F(SpectrophotometerCommand, WritesCsvWithUnitsAndErrors) {

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/commands.h"
 #include "leaf/specimens.h"
 #include "leaf/table_file.h"
+#include "tests/cli/command.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -13,19 +13,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-struct Outcome {
-  int code;
-  std::string out, err;
-};
-
 Outcome table_command(std::vector<std::string> arguments) {
-  std::vector<const char*> argv{"frond", "table"};
-  for (const std::string& a : arguments) argv.push_back(a.c_str());
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  const int code = run(int(argv.size()), argv.data());
-  std::fflush(stdout);
-  return {code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
+  arguments.insert(arguments.begin(), "table");
+  return frond_command(arguments);
 }
 
 TEST(TableCommand, WritesTheTableOfALeaf) {
