@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/linear_image.h"
 #include "cli/output.h"
+#include "cli/smpte_luminance.h"
 #include "instruments/image_error.h"
 
 namespace frond {
@@ -19,9 +20,8 @@ struct DifferenceOptions {
   bool json = false;
 };
 
-/// Luminance of SMPTE-C (white D65 at 0.3127, 0.3290).
 float luminance(const Image& image, int x, int y) {
-  return 0.2124f * image.at(x, y, 0) + 0.7011f * image.at(x, y, 1) + 0.0866f * image.at(x, y, 2);
+  return smpte_luminance(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2));
 }
 
 std::vector<float> channel_of(const Image& image, size_t channel) {

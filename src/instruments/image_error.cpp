@@ -10,9 +10,9 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-double ImageError::bias() const { return std::sqrt(std::max(0.0, bias_squared.value)); }
+double ImageError::bias() const { return bias_squared.root(); }
 
-double ImageError::bias_upper() const { return std::sqrt(std::max(0.0, bias_squared.value + bias_squared.half_width)); }
+double ImageError::bias_upper() const { return bias_squared.root_at(kZ95); }
 
 ImageError image_error(std::span<const float> a1, std::span<const float> a2, std::span<const float> b1,
                        std::span<const float> b2, std::span<const float> use) {
@@ -35,7 +35,7 @@ ImageError image_error(std::span<const float> a1, std::span<const float> a2, std
   if (n == 0) return e;
   e.rms = std::sqrt(total / n);
   e.rms_clipped = std::sqrt(clipped / n);
-  e.bias_squared = {product / n, 1.96 * std::sqrt(std::max(0.0, product_variance)) / n};
+  e.bias_squared = {product / n, std::sqrt(std::max(0.0, product_variance)) / n};
   e.noise = std::sqrt(std::max(0.0, total / n - std::max(0.0, e.bias_squared.value)));
   e.noise_a = std::sqrt(gap_a / n) / 2;
   e.noise_b = std::sqrt(gap_b / n) / 2;

@@ -45,6 +45,8 @@ Estimate Moments::estimate() const {
 
 double normal_upper_tail(double z) { return std::isinf(z) ? (z < 0) : cdf(complement(boost::math::normal(), z)); }
 
+double normal_upper_quantile(double p) { return quantile(complement(boost::math::normal(), p)); }
+
 double equality_p(const Estimate& a, const Estimate& b, double slack) {
   Estimate difference{-b.mean, b.variance, -b.third_cumulant};
   return std::min(1.0, 2 * normal_upper_tail(std::abs(normal_score(difference += a, slack))));

@@ -56,6 +56,9 @@ class Moments {
 /// P(Z >= z) of a standard normal variable.
 double normal_upper_tail(double z);
 
+/// The z with P(Z >= z) = `p`.
+double normal_upper_quantile(double p);
+
 /// Two-sided p-value of "the two have equal expectations", by a z-test with the skewness taken out (Hall 1992, "On the
 /// Removal of Skewness by Transformation"): means of Monte Carlo weights are far from normal where it matters, in the
 /// tails. A difference of up to `slack`, for rounding, counts as none. NaN on either side gives 0.
