@@ -182,7 +182,9 @@ void add_render_command(CLI::App& app) {
   pixels->delimiter(',')->expected(4)->check(CLI::NonNegativeNumber)->excludes(crop);
   command->add_option("--wavelengths", o.wavelengths,
                       "hero (also hero,lambdamin=400,lambdamax=700), meyer, or smpte for the paper's three.");
-  command->add_option("--swap", o.swaps, "MATERIAL=PLUGIN[,parameter=value...]: another model; may be given again.")
+  command
+      ->add_option("--swap", o.swaps,
+                   "MATERIAL=PLUGIN[,parameter=value...]: another model; \"*=PLUGIN\": for every leaf.")
       ->allow_extra_args(false);
   add_plugin_option(*command, o.plugins);
   command->add_option("--display", o.display.display, "Display of PNG and JPEG output; sRGB by default.");

@@ -145,6 +145,11 @@ size_t pixels_that_fit(const Crop& crop, const Location& where) {
 Film::Film(const FilmSettings& settings, const Location& where)
     : settings_(settings), pixels_(pixels_that_fit(settings.crop, where)) {}
 
+void Film::restore(std::span<const Pixel> pixels) {
+  assert(pixels.size() == pixels_.size());
+  pixels_.assign(pixels.begin(), pixels.end());
+}
+
 size_t Film::index(int x, int y) const {
   const Crop& c = settings_.crop;
   assert(x >= c.x0 && x < c.x1 && y >= c.y0 && y < c.y1);

@@ -57,6 +57,10 @@ class Film {
   void add(int x, int y, std::array<double, 3> sensor, double weight, bool leaf);
 
   const FilmSettings& settings() const { return settings_; }
+  /// All sums, row by row: what a render has to keep to be continued later.
+  std::span<const Pixel> pixels() const { return pixels_; }
+  /// Goes on from sums that `pixels` gave of a film of the same size.
+  void restore(std::span<const Pixel> pixels);
   const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
   /// Mean sensor response.
   std::array<double, 3> mean(int x, int y) const;

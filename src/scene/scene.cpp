@@ -45,9 +45,26 @@ void apply_swap(const MaterialSwap& swap, const MaterialInfo& info, ParsedPlugin
   plugin.name = swap.to.name;
 }
 
+bool is_mixture(const MaterialInfo& info) {
+  return std::any_of(info.params.begin(), info.params.end(),
+                     [](const Param& p) { return p.kind == ParamKind::material; });
+}
+
+void apply_swap_to_leaves(SceneDescription& description, const MaterialSwap& swap, const Registry& registry,
+                          const Log& log) {
+  const MaterialInfo& info = registry.materials.get(swap.to.name, {});
+  const auto leaves = Scene::leaf_materials(description, registry);
+  if (leaves.empty()) fail({}, "swap: none of the scene's materials is a leaf");
+  for (const size_t i : leaves) apply_swap(swap, info, description.materials[i].plugin, log);
+}
+
 void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
                  const Log& log) {
   for (const MaterialSwap& swap : swaps) {
+    if (swap.from == "*") {
+      apply_swap_to_leaves(description, swap, registry, log);
+      continue;
+    }
     const MaterialInfo& info = registry.materials.get(swap.to.name, {});
     std::vector<std::string_view> names;
     bool found = false;
@@ -59,6 +76,17 @@ void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>&
     }
     if (!found) fail({}, "swap: the scene has no material \"{}\"{}", swap.from, suggestion(swap.from, names));
   }
+}
+
+/// The strategy, of the command line or else the scene's options.
+std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
+                                                     const Registry& registry) {
+  NoResolver resolver;
+  const PluginText choice = parse_plugin_text(text, where);
+  const WavelengthsInfo& info = registry.wavelengths.get(choice.name, where);
+  ParsedPlugin plugin{choice.name, where, {}};
+  set_params(choice, info, where, plugin);
+  return info.make(Params(info, plugin, resolver));
 }
 
 }  // namespace
@@ -119,11 +147,7 @@ class SceneBuilder {
     scene_.wavelengths_name_ = text;
     seed_ = overrides_.seed;
     if (!seed_ && p.given("seed")) seed_ = uint64_t(p.integer("seed"));
-    const PluginText choice = parse_plugin_text(text, where);
-    const WavelengthsInfo& info = registry_.wavelengths.get(choice.name, where);
-    ParsedPlugin plugin{choice.name, where, {}};
-    set_params(choice, info, where, plugin);
-    scene_.wavelengths_ = info.make(Params(info, plugin, resolver));
+    scene_.wavelengths_ = make_wavelengths(text, where, registry_);
   }
 
   void build_view(SceneResolver& resolver) {
@@ -281,6 +305,18 @@ FilmSettings Scene::film_settings(const SceneDescription& description, const Reg
   NoResolver resolver;
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
   return info.make(Params(info, description.film, resolver));
+}
+
+std::vector<size_t> Scene::leaf_materials(const SceneDescription& description, const Registry& registry) {
+  const auto wavelengths = make_wavelengths("smpte", {}, registry);  // what is a leaf does not hang on them
+  SceneResolver resolver(description, registry, *wavelengths);
+  std::vector<size_t> leaves;
+  for (size_t i = 0; i < description.materials.size(); ++i) {
+    const ParsedPlugin& plugin = description.materials[i].plugin;
+    const MaterialInfo& info = registry.materials.get(plugin.name, plugin.where);
+    if (!is_mixture(info) && resolver.material(i)->is_leaf()) leaves.push_back(i);
+  }
+  return leaves;
 }
 
 Scene::Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,

@@ -15,7 +15,7 @@ namespace frond {
 
 /// Puts one material in place of another.
 struct MaterialSwap {
-  std::string from;  ///< name of a named material, or of a plugin
+  std::string from;  ///< name of a named material, or of a plugin; "*": every leaf
   PluginText to;
 };
 
@@ -33,6 +33,10 @@ class Scene final : public World {
  public:
   /// What the scene says of its image, at its full size; throws InputError.
   static FilmSettings film_settings(const SceneDescription& description, const Registry& registry);
+
+  /// Which of the description's materials are leaves (Material::is_leaf), by place. A mixture of others is none: its
+  /// parts stand for themselves. Throws InputError.
+  static std::vector<size_t> leaf_materials(const SceneDescription& description, const Registry& registry);
 
   /// Throws InputError.
   Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,

@@ -166,6 +166,8 @@ TEST_F(Commands, SwapChangesTheModelByOneWord) {
       0);
   const Outcome o = render({"-o", path("s.exr"), "--swap", "thing=diffusetransmission", "-q"});
   ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "*=abm"}).err,
+              HasSubstr("none of the scene's materials is a leaf"));
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thin=diffuse"}).err, HasSubstr("did you mean \"thing\"?"));
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing=difuse"}).err, HasSubstr("did you mean \"diffuse\"?"));
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing"}).err, HasSubstr("MATERIAL=PLUGIN"));
