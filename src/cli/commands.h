@@ -13,6 +13,7 @@ Registry builtin_registry();
 
 // One file for each subcommand: adds itself to the command line, and runs when chosen.
 void add_render_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_difference_command(CLI::App& app);
 void add_list_command(CLI::App& app);

@@ -13,6 +13,7 @@ int run(int argc, const char* const* argv) {
   app.set_version_flag("--version", "frond " FROND_VERSION);
   app.require_subcommand(1);
   add_render_command(app);
+  add_compare_command(app);
   add_convert_command(app);
   add_difference_command(app);
   add_list_command(app);

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string_view>
+
+namespace frond::compare {
+
+// The files of src/cli/compare/page, put into the program by CMake.
+extern const std::string_view page_html, page_css, viewer_js;
+
+}  // namespace frond::compare

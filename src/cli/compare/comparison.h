@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "cli/compare/candidate.h"
+#include "cli/compare/paired_render.h"
+#include "cli/compare/picture.h"
+#include "instruments/convergence.h"
+#include "instruments/render_error.h"
+
+namespace frond::compare {
+
+/// What errors are told of: the three channels, all three together (their mean square), and luminance.
+enum Channel : size_t { kRed, kGreen, kBlue, kRgb, kLuminance, kChannels };
+inline constexpr std::array<const char*, kChannels> kChannelNames{"red", "green", "blue", "rgb", "luminance"};
+
+/// Which pixels: all, or those that see a leaf.
+enum Region : size_t { kAll, kLeaf, kRegions };
+inline constexpr std::array<const char*, kRegions> kRegionNames{"all", "leaf"};
+
+using ErrorTable = std::array<std::array<RenderError, kChannels>, kRegions>;
+
+/// One candidate after so many samples a pixel.
+struct Rung {
+  uint64_t samples = 0;
+  RenderCost cost;  ///< of one render
+  ErrorTable errors = {};
+  double flip = 0;  ///< mean FLIP of one render against the reference
+};
+
+/// A candidate in the paper's manner (paper_manner.h), timed alone.
+struct PaperTiming {
+  std::string text;
+  double cpu_seconds_per_sample = 0;
+};
+
+/// What was measured of one candidate.
+struct Subject {
+  Candidate candidate;
+  std::string wavelengths;
+  double setup_cpu_seconds = 0;
+  std::vector<Rung> rungs = {};
+  std::optional<PaperTiming> paper = {};
+  Picture early = {}, late = {};  ///< one render at `Comparison::early_samples`; the mean of both after the last rung
+
+  /// Bias is that of the last rung, where noise hides the least of it.
+  Convergence convergence(Region region, Channel channel) const;
+};
+
+struct Reference {
+  Candidate candidate;
+  uint64_t samples = 0;                                           ///< of each of two renders
+  uint64_t cached_samples = 0;                                    ///< of these, from the cache
+  RenderCost cost;                                                ///< of one render
+  std::array<std::array<MeanSquare, kChannels>, kRegions> noise;  ///< of the mean of the two
+  double flip = 0;  ///< between the two: twice the noise of what candidates are compared with
+  Picture picture;
+};
+
+/// What the user wants to know.
+struct Request {
+  std::optional<double> rms = {};                    ///< error to meet, over all three channels and all pixels
+  std::optional<std::array<double, 3>> target = {};  ///< RMS of red, green and blue for speed-up (c)
+  double exposure_stops = 0;
+};
+
+/// Everything that a report tells.
+struct Comparison {
+  std::string scene, command, machine;
+  int width = 0, height = 0;
+  double foliar_ratio = 0;
+  std::vector<std::string> leaves;
+  Request request;
+  Reference reference;
+  std::vector<Subject> subjects;
+  uint64_t early_samples = 0;
+  double wall_seconds = 0, cpu_seconds = 0;
+};
+
+}  // namespace frond::compare

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "cli/compare/comparison.h"
+
+namespace frond::compare {
+
+/// What is drawn against CPU time.
+enum class Measure : uint8_t { rms_all, rms_leaf, flip };
+
+/// The most candidates that one chart can tell apart.
+inline constexpr size_t kMostCurves = 8;
+
+/// A gnuplot script: error against CPU time, both logarithmic, one curve for each candidate with 95 % intervals, the
+/// Pareto frontier behind them; RMS charts show each candidate's bias and from when on noise is below it.
+std::string curves_chart(const Comparison& comparison, Measure measure);
+
+}  // namespace frond::compare

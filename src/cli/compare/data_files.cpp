@@ -1,0 +1,144 @@
+#include "cli/compare/data_files.h"
+
+#include <nlohmann/json.hpp>
+
+#include "cli/compare/speed_up.h"
+#include "cli/compare/verdict.h"
+#include "cli/text_output.h"
+
+namespace frond::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kNotes =
+    "# One render of so many samples per pixel: its time, and how far it is from what the reference converges to.\n"
+    "# Linear SMPTE-C; rgb: root of the mean square of red, green and blue; leaf: pixels that see a leaf.\n"
+    "# rms = bias and noise; rms_clipped: of pictures clipped to [0, 1]; _low, _high: 95 % intervals; flip: mean "
+    "FLIP.\n";
+
+struct Column {
+  const char* name;
+  MeanSquare RenderError::*value;
+};
+constexpr std::array<Column, 4> kColumns{{{"rms", &RenderError::total},
+                                          {"rms_clipped", &RenderError::clipped},
+                                          {"noise", &RenderError::noise},
+                                          {"bias", &RenderError::bias}}};
+
+template <class Each>
+void for_each_error(const Rung& rung, const Each& each) {
+  for (size_t region = 0; region < kRegions; ++region)
+    for (size_t c = 0; c < kChannels; ++c) each(kRegionNames[region], kChannelNames[c], rung.errors[region][c]);
+}
+
+Json interval(const MeanSquare& m) {
+  return {{"value", m.root()}, {"low", m.root_at(-kZ95)}, {"high", m.root_at(kZ95)}};
+}
+
+Json rung_json(const Rung& rung) {
+  Json json{{"samples", rung.samples},
+            {"cpu_seconds", rung.cost.cpu_seconds},
+            {"wall_seconds", rung.cost.wall_seconds},
+            {"rays", rung.cost.rays},
+            {"flip", rung.flip}};
+  for_each_error(rung, [&json](const char* region, const char* channel, const RenderError& e) {
+    for (const Column& column : kColumns) json[region][channel][column.name] = interval(e.*column.value);
+  });
+  return json;
+}
+
+Json ratio_json(const std::optional<Ratio>& r) {
+  if (!r) return nullptr;
+  constexpr std::array kKinds{"measured", "extrapolated", "not reached", "baseline not there"};
+  Json json{{"kind", kKinds[size_t(r->kind)]}};
+  if (r->value > 0) json["value"] = r->value;
+  return json;
+}
+
+Json speed_up_json(const SpeedUps& s) {
+  return {{"a_equal_samples", s.equal_samples},
+          {"b_paper", s.paper ? Json(*s.paper) : Json()},
+          {"c_equal_error", ratio_json(s.equal_error)},
+          {"c_equal_error_at_1.5_bias", ratio_json(s.equal_error_at_bias)},
+          {"d_equal_noise", s.equal_noise}};
+}
+
+Json effort_json(const std::optional<Effort>& e) {
+  if (!e) return nullptr;
+  return {{"samples", e->samples}, {"cpu_seconds", e->seconds}, {"measured", e->measured}};
+}
+
+Json subject_json(const Comparison& c, size_t i) {
+  const Subject& s = c.subjects[i];
+  Json json{{"label", s.candidate.label},
+            {"candidate", s.candidate.text},
+            {"wavelengths", s.wavelengths},
+            {"setup_cpu_seconds", s.setup_cpu_seconds}};
+  for (size_t region = 0; region < kRegions; ++region)
+    json["plateau"][kRegionNames[region]] = effort_json(s.convergence(Region(region), kRgb).until_plateau());
+  json["speed_up"] = speed_up_json(speed_ups(c, i));
+  if (s.paper) json["paper_manner"] = s.paper->text;
+  if (c.request.rms) {
+    const auto effort = s.convergence(kAll, kRgb).until_rms(*c.request.rms, simultaneous_z(c));
+    json["meets_rms"] = effort_json(effort);
+  }
+  for (const Rung& rung : s.rungs) json["rungs"].push_back(rung_json(rung));
+  return json;
+}
+
+Json reference_json(const Reference& r) {
+  Json json{{"candidate", r.candidate.text},
+            {"renders", 2},
+            {"samples", r.samples},
+            {"samples_from_cache", r.cached_samples},
+            {"cpu_seconds", 2 * r.cost.cpu_seconds},
+            {"flip_between_its_two_renders", r.flip}};
+  for (size_t region = 0; region < kRegions; ++region)
+    for (size_t c = 0; c < kChannels; ++c)
+      json["noise"][kRegionNames[region]][kChannelNames[c]] = interval(r.noise[region][c]);
+  return json;
+}
+
+}  // namespace
+
+std::string comparison_csv(const Comparison& c) {
+  std::string csv = fmt::format("# {}\n# frond {}\n{}", c.command, FROND_VERSION, kNotes);
+  csv += "candidate,samples,cpu_seconds,wall_seconds,flip,region,channel";
+  for (const Column& column : kColumns) csv += fmt::format(",{0},{0}_low,{0}_high", column.name);
+  csv += '\n';
+  for (const Subject& s : c.subjects)
+    for (const Rung& r : s.rungs)
+      for_each_error(r, [&](const char* region, const char* channel, const RenderError& e) {
+        csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{},{}", csv_field(s.candidate.label), r.samples,
+                           r.cost.cpu_seconds, r.cost.wall_seconds, r.flip, region, channel);
+        for (const Column& column : kColumns) {
+          const MeanSquare& m = e.*column.value;
+          csv += fmt::format(",{:.6g},{:.6g},{:.6g}", m.root(), m.root_at(-kZ95), m.root_at(kZ95));
+        }
+        csv += '\n';
+      });
+  return csv;
+}
+
+std::string comparison_json(const Comparison& c) {
+  Json json{{"command", c.command},
+            {"version", FROND_VERSION},
+            {"machine", c.machine},
+            {"scene", c.scene},
+            {"width", c.width},
+            {"height", c.height},
+            {"foliar_ratio", c.foliar_ratio},
+            {"leaf_materials", c.leaves},
+            {"wall_seconds", c.wall_seconds},
+            {"cpu_seconds", c.cpu_seconds},
+            {"exposure_stops", c.request.exposure_stops},
+            {"verdict", verdict(c)},
+            {"reference", reference_json(c.reference)}};
+  if (c.request.rms) json["rms_requested"] = *c.request.rms;
+  if (c.request.target) json["rms_target"] = *c.request.target;
+  for (size_t i = 0; i < c.subjects.size(); ++i) json["candidates"].push_back(subject_json(c, i));
+  return json.dump(1) + '\n';
+}
+
+}  // namespace frond::compare

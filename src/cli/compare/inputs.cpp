@@ -1,0 +1,52 @@
+#include "cli/compare/inputs.h"
+
+#include <cstdlib>
+
+#include "core/random.h"
+#include "scene/file_bytes.h"
+#include "scene/plugin_library.h"
+
+namespace frond::compare {
+namespace {
+
+void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::vector<std::filesystem::path>& files) {
+  for (const ParsedParam& p : plugin.params) {
+    const auto* words = std::get_if<std::vector<std::string>>(&p.values);
+    if (!words) continue;
+    for (const std::string& word : *words) {
+      const std::filesystem::path path = scene.resolve(word, p.value_where);
+      std::error_code error;
+      if (std::filesystem::is_regular_file(path, error)) files.push_back(path);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> input_files(const SceneDescription& scene) {
+  std::vector<std::filesystem::path> files;
+  for (const ParsedPlugin* plugin : {&scene.camera, &scene.film, &scene.sampler, &scene.integrator, &scene.filter})
+    add_files(*plugin, scene, files);
+  for (const auto& t : scene.textures) add_files(t.plugin, scene, files);
+  for (const auto& m : scene.materials) add_files(m.plugin, scene, files);
+  for (const auto& a : scene.area_lights) add_files(a, scene, files);
+  for (const auto& s : scene.shapes) add_files(s.plugin, scene, files);
+  for (const auto& l : scene.lights) add_files(l.plugin, scene, files);
+  for (const auto& o : scene.objects)
+    for (const auto& s : o.shapes) add_files(s.plugin, scene, files);
+  return files;
+}
+
+std::vector<std::filesystem::path> program_files(std::span<const std::string> plugins) {
+  std::vector<std::filesystem::path> files{std::filesystem::read_symlink("/proc/self/exe")};
+  if (const char* folders = std::getenv("FROND_PLUGIN_PATH"))
+    for (const auto& file : plugins_in(folders)) files.push_back(file);
+  files.insert(files.end(), plugins.begin(), plugins.end());
+  return files;
+}
+
+uint64_t hash_file(const std::filesystem::path& path, uint64_t seed) {
+  return hash_bytes(read_file_bytes(path, {}), seed);
+}
+
+}  // namespace frond::compare

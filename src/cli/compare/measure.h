@@ -1,0 +1,22 @@
+#pragma once
+
+#include "cli/compare/comparison.h"
+#include "cli/compare/study.h"
+
+namespace frond::compare {
+
+struct Plan {
+  Candidate reference;
+  std::vector<Candidate> candidates;
+  uint64_t top_samples = 256;         ///< a power of two: the ladder is 1, 2, 4 ... up to it
+  uint64_t reference_samples = 2048;  ///< of each of its two renders
+  std::filesystem::path cache = {};
+  bool quiet = false;
+};
+
+/// Renders the reference, then every candidate up the ladder, rung by rung so that whatever else the machine does falls
+/// on all alike. Throws InputError, before anything is rendered, for a candidate that the scene cannot take.
+Comparison measure(const Study& study, const Plan& plan, const Request& request, const ThreadPool& pool,
+                   const Log& log);
+
+}  // namespace frond::compare

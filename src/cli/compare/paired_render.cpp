@@ -1,0 +1,46 @@
+#include "cli/compare/paired_render.h"
+
+#include <ctime>
+
+namespace frond::compare {
+namespace {
+
+double cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
+}
+
+}  // namespace
+
+PairedRender::PairedRender(const Study& study, const Candidate& candidate, uint64_t first_seed, uint64_t second_seed)
+    : setup_cpu_seconds_(cpu_seconds()),
+      scene_(study.scene(candidate)),
+      seeds_{first_seed, second_seed},
+      films_{Film(study.film()), Film(study.film())} {
+  setup_cpu_seconds_ = cpu_seconds() - setup_cpu_seconds_;
+  for (size_t i = 0; i < 2; ++i) samplers_[i] = study.sampler(*scene_, seeds_[i]);
+}
+
+void PairedRender::advance_to(uint64_t samples, const ThreadPool& pool, const Progress& progress) {
+  if (samples <= samples_) return;
+  for (size_t i = 0; i < 2; ++i) {
+    const RenderJob job{
+        *scene_,   scene_->camera(), scene_->integrator(), scene_->wavelengths(), scene_->filter(), *samplers_[i],
+        seeds_[i], samples_,         samples - samples_};
+    const RenderStatistics s = render(job, films_[i], pool, progress);
+    cost_.wall_seconds += s.wall_seconds / 2;
+    cost_.cpu_seconds += s.cpu_seconds / 2;
+    cost_.rays += double(s.rays) / 2;
+  }
+  samples_ = samples;
+}
+
+void PairedRender::restore(std::array<std::span<const Film::Pixel>, 2> films, uint64_t samples,
+                           const RenderCost& cost) {
+  for (size_t i = 0; i < 2; ++i) films_[i].restore(films[i]);
+  samples_ = samples;
+  cost_ = cost;
+}
+
+}  // namespace frond::compare

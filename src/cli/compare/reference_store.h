@@ -1,0 +1,24 @@
+#pragma once
+
+#include "cli/compare/paired_render.h"
+
+namespace frond::compare {
+
+/// Keeps renders on disk, with all that is needed to continue them. A file that is damaged, or of something else,
+/// counts as none.
+class ReferenceStore {
+ public:
+  /// `folder` empty: nothing is kept. `identity` of all that decides the pixels.
+  ReferenceStore(const std::filesystem::path& folder, uint64_t identity, const Log& log);
+
+  void load(PairedRender& render) const;
+  /// A folder that does not take it costs a warning.
+  void save(const PairedRender& render) const;
+
+ private:
+  std::filesystem::path path_;  ///< empty: nothing is kept
+  uint64_t identity_;
+  const Log& log_;
+};
+
+}  // namespace frond::compare

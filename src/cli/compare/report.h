@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+
+#include "cli/compare/comparison.h"
+
+namespace frond::compare {
+
+/// Refuses, by InputError, a folder that cannot be made or written to, and a machine without gnuplot. Makes the folder.
+void check_report_folder(const std::filesystem::path& folder);
+
+/// Writes index.html, which needs nothing beside it, the charts as SVG and PNG, and the data as CSV and JSON.
+void write_report(const std::filesystem::path& folder, const Comparison& comparison);
+
+}  // namespace frond::compare

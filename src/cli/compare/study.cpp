@@ -1,0 +1,96 @@
+#include "cli/compare/study.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/compare/inputs.h"
+#include "cli/plugins.h"
+#include "core/random.h"
+#include "scene/parser.h"
+#include "scene/resolver.h"
+
+namespace frond::compare {
+namespace {
+
+ParsedParam numbers(const char* type, const char* name, std::vector<double> values) {
+  return {type, name, {}, {}, std::move(values)};
+}
+
+/// The same picture, or the same part of it, with `size` pixels along the longer side.
+void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
+  const double scale = double(size) / std::max(s.crop.width(), s.crop.height());
+  const auto scaled = [scale](int pixels) { return std::max(1.0, std::round(pixels * scale)); };
+  std::erase_if(film.params, [](const ParsedParam& p) {
+    return p.name == "xresolution" || p.name == "yresolution" || p.name == "cropwindow" || p.name == "pixelbounds";
+  });
+  film.params.push_back(numbers("integer", "xresolution", {scaled(s.width)}));
+  film.params.push_back(numbers("integer", "yresolution", {scaled(s.height)}));
+  if (s.crop.width() == s.width && s.crop.height() == s.height) return;
+  const auto at = [scale](int pixel) { return std::round(pixel * scale); };
+  film.params.push_back(numbers(
+      "integer", "pixelbounds",
+      {at(s.crop.x0), at(s.crop.x0) + scaled(s.crop.width()), at(s.crop.y0), at(s.crop.y0) + scaled(s.crop.height())}));
+}
+
+std::string name_of(const MaterialDescription& m) { return m.name.empty() ? m.plugin.name : m.name; }
+
+std::vector<std::string> leaf_names(const SceneDescription& description, const Registry& registry) {
+  std::vector<std::string> names;
+  for (const size_t i : Scene::leaf_materials(description, registry))
+    if (const std::string name = name_of(description.materials[i]); std::ranges::find(names, name) == names.end())
+      names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
+Study::Study(const StudyOptions& options, ThreadPool& pool, const Log& log)
+    : options_(options),
+      pool_(pool),
+      log_(log),
+      registry_(load_registry(options.plugins)),
+      description_(parse_scene(options.scene, log)) {
+  resize(description_.film, Scene::film_settings(description_, registry_), options.size);
+  film_ = Scene::film_settings(description_, registry_);
+  leaves_ = options.leaves.empty() ? leaf_names(description_, registry_) : options.leaves;
+  if (leaves_.empty()) fail({}, "{}: none of the materials is a leaf; --leaf names the one to replace", options.scene);
+  if (options.leaves.empty()) swaps_.push_back({"*", {}});
+  for (const std::string& leaf : options.leaves) swaps_.push_back({leaf, {}});
+}
+
+SceneDescription Study::description_with(const Candidate& candidate) const {
+  SceneDescription description = description_;
+  if (!candidate.integrator) return description;
+  const PluginText& text = *candidate.integrator;
+  if (description.integrator.name != text.name) description.integrator = {text.name, {}, {}};
+  set_params(text, registry_.integrators.get(text.name, {}), {}, description.integrator);
+  return description;
+}
+
+std::unique_ptr<Scene> Study::scene(const Candidate& candidate) const {
+  SceneOverrides overrides;
+  overrides.wavelengths = candidate.wavelengths.empty() ? options_.wavelengths : candidate.wavelengths;
+  overrides.seed = options_.seed;
+  overrides.swaps = swaps_;
+  for (MaterialSwap& swap : overrides.swaps) swap.to = candidate.material;
+  overrides.cache_dir = options_.cache;
+  return std::make_unique<Scene>(description_with(candidate), registry_, overrides, pool_, log_);
+}
+
+std::unique_ptr<Sampler> Study::sampler(const Scene& scene, uint64_t seed) const {
+  SceneResolver resolver(description_, registry_, scene.wavelengths());
+  const SamplerInfo& info = registry_.samplers.get(description_.sampler.name, description_.sampler.where);
+  return info.make(Params(info, description_.sampler, resolver), seed);
+}
+
+uint64_t Study::identity(const Candidate& candidate) const {
+  std::string choices =
+      fmt::format("{} {} {} {} {}", candidate.text, options_.wavelengths, film_.width, film_.height, seed());
+  for (const std::string& leaf : options_.leaves) choices += '\n' + leaf;
+  uint64_t hash = hash_bytes(choices, description_.content_hash);
+  for (const auto& file : input_files(description_)) hash = hash_file(file, hash);
+  for (const auto& file : program_files(options_.plugins)) hash = hash_file(file, hash);
+  return hash;
+}
+
+}  // namespace frond::compare

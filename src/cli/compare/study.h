@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+
+#include "cli/compare/candidate.h"
+#include "scene/scene.h"
+
+namespace frond::compare {
+
+/// What decides the pictures beside the candidates.
+struct StudyOptions {
+  std::string scene = {}, wavelengths = {};  ///< wavelengths: a PluginText; empty: the scene's
+  std::vector<std::string> leaves = {};      ///< names of the materials that candidates replace; empty: every leaf
+  std::vector<std::string> plugins = {};
+  std::optional<uint64_t> seed = {};  ///< 0 by default
+  int size = 256;                     ///< pixels of the picture's longer side
+  std::filesystem::path cache = {};
+};
+
+/// One scene, in which one leaf model stands for another.
+class Study {
+ public:
+  /// Throws InputError.
+  Study(const StudyOptions& options, ThreadPool& pool, const Log& log);
+
+  /// With the candidate in place of the leaves. Throws InputError.
+  std::unique_ptr<Scene> scene(const Candidate& candidate) const;
+  /// The scene's sampler, with a seed of its own.
+  std::unique_ptr<Sampler> sampler(const Scene& scene, uint64_t seed) const;
+
+  /// From which those of all renders are made.
+  uint64_t seed() const { return options_.seed.value_or(0); }
+  const FilmSettings& film() const { return film_; }
+  /// Names of the materials that candidates replace.
+  const std::vector<std::string>& leaves() const { return leaves_; }
+  /// The scene's integrator, by name.
+  const std::string& integrator() const { return description_.integrator.name; }
+  const Registry& registry() const { return registry_; }
+  /// A hash of all that decides the pixels of this candidate: the program, its plug-ins, the scene with the files that
+  /// it names, size, wavelengths, seed. Another hash may be the same pixels, the same hash is.
+  uint64_t identity(const Candidate& candidate) const;
+
+ private:
+  SceneDescription description_with(const Candidate& candidate) const;
+
+  StudyOptions options_;
+  ThreadPool& pool_;
+  const Log& log_;
+  Registry registry_;
+  SceneDescription description_;
+  FilmSettings film_;
+  std::vector<std::string> leaves_;
+  std::vector<MaterialSwap> swaps_;  ///< without what they put in
+};
+
+}  // namespace frond::compare

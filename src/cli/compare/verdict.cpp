@@ -1,0 +1,92 @@
+#include "cli/compare/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "instruments/statistics.h"
+
+namespace frond::compare {
+namespace {
+
+constexpr double kRisk = 0.05;
+
+const std::string& label(const Comparison& c, size_t subject) { return c.subjects[subject].candidate.label; }
+
+double cost_of(const Offer& offer) {
+  return offer.effort ? offer.effort->seconds : std::numeric_limits<double>::infinity();
+}
+
+std::string effort_text(const Effort& e) {
+  return fmt::format("{:.0f} sample{} per pixel, {:.3g} s of CPU{}", std::ceil(e.samples), e.samples > 1 ? "s" : "",
+                     e.seconds, e.measured ? "" : " by extrapolation");
+}
+
+std::string answer(const Comparison& c, double rms) {
+  const auto all = offers(c, rms, simultaneous_z(c));
+  const Offer& best = all.front();
+  if (!best.effort) {
+    const auto least = std::ranges::min_element(
+        c.subjects, {}, [](const Subject& s) { return s.convergence(kAll, kRgb).bias().root_at(kZ95); });
+    return fmt::format(
+        "None of the candidates meets an RMS of {:g} with 95 % confidence: the bias of {}, the least, may be up to "
+        "{:.2g}.",
+        rms, least->candidate.label, least->convergence(kAll, kRgb).bias().root_at(simultaneous_z(c)));
+  }
+  std::string text = fmt::format("{} is enough for an RMS of {:g}, with 95 % confidence: {}", label(c, best.subject),
+                                 rms, effort_text(*best.effort));
+  for (const Offer& other : all) {
+    if (other.subject == best.subject) continue;
+    text += other.effort ? fmt::format("; {} takes {:.3g} s", label(c, other.subject), other.effort->seconds)
+                         : fmt::format("; {} never gets there", label(c, other.subject));
+  }
+  return text + '.';
+}
+
+std::string overview(const Comparison& c) {
+  std::string text;
+  for (const Reign& reign : reigns(c)) {
+    const Subject& s = c.subjects[reign.subject];
+    const auto effort = s.convergence(kAll, kRgb).until_rms(reign.rms_to);
+    const std::string price = effort ? fmt::format(" ({})", effort_text(*effort)) : "";
+    text += text.empty()
+                ? fmt::format("{} is the cheapest down to an RMS of {:.2g}{}", s.candidate.label, reign.rms_to, price)
+                : fmt::format("; from there {} down to {:.2g}{}", s.candidate.label, reign.rms_to, price);
+  }
+  return text + '.';
+}
+
+}  // namespace
+
+std::vector<Offer> offers(const Comparison& c, double rms, double z) {
+  std::vector<Offer> all;
+  for (size_t i = 0; i < c.subjects.size(); ++i)
+    all.push_back({i, c.subjects[i].convergence(kAll, kRgb).until_rms(rms, z)});
+  std::ranges::stable_sort(all, {}, cost_of);
+  return all;
+}
+
+double simultaneous_z(const Comparison& c) { return normal_upper_quantile(sidak_level(kRisk, 2 * c.subjects.size())); }
+
+std::vector<Reign> reigns(const Comparison& c) {
+  double largest = std::numeric_limits<double>::infinity(), smallest = largest;
+  for (const Subject& s : c.subjects) {
+    largest = std::min(largest, s.rungs.front().errors[kAll][kRgb].total.root());
+    smallest = std::min(smallest, s.rungs.back().errors[kAll][kRgb].total.root());
+  }
+  std::vector<Reign> result;
+  if (!(smallest > 0)) return result;
+  constexpr int kSteps = 400;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double rms = largest * std::pow(smallest / largest, double(i) / kSteps);
+    const Offer best = offers(c, rms, 0).front();
+    if (!best.effort) break;
+    if (result.empty() || result.back().subject != best.subject) result.push_back({best.subject, rms, rms});
+    result.back().rms_to = rms;
+  }
+  return result;
+}
+
+std::string verdict(const Comparison& c) { return c.request.rms ? answer(c, *c.request.rms) : overview(c); }
+
+}  // namespace frond::compare

@@ -1,0 +1,97 @@
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "cli/compare/reference_store.h"
+#include "tests/cli/compare_scene.h"
+#include "tests/support/input_error.h"
+
+namespace frond::compare {
+namespace {
+
+struct Setting {
+  TestFolder folder{"reference"};
+  Log quiet{true};
+  mutable ThreadPool pool{2};
+  Candidate walk = parse_candidate("abm");
+  Study study{
+      {.scene = folder.write("scene.pbrt", kLeafScene).string(), .wavelengths = "smpte", .size = 16}, pool, quiet};
+
+  PairedRender render() const { return {study, walk, 1, 2}; }
+  ReferenceStore store() const { return {folder.name_of("cache"), study.identity(walk), quiet}; }
+};
+
+bool same_bits(const PairedRender& a, const PairedRender& b) {
+  for (const size_t half : {size_t{0}, size_t{1}}) {
+    const auto x = a.film(half).pixels(), y = b.film(half).pixels();
+    if (x.size() != y.size() || std::memcmp(x.data(), y.data(), x.size_bytes()) != 0) return false;
+  }
+  return true;
+}
+
+TEST(PairedRender, ContinuedIsTheSameAsAtOnce) {
+  const Setting s;
+  PairedRender steps = s.render(), at_once = s.render();
+  for (const uint64_t samples : {1, 2, 5}) steps.advance_to(samples, s.pool, {});
+  at_once.advance_to(5, s.pool, {});
+  EXPECT_TRUE(same_bits(steps, at_once));
+}
+
+TEST(ReferenceStore, WhatIsKeptCanBeContinued) {
+  const Setting s;
+  PairedRender first = s.render(), second = s.render(), at_once = s.render();
+  first.advance_to(2, s.pool, {});
+  s.store().save(first);
+  s.store().load(second);
+  EXPECT_EQ(second.samples(), 2u);
+  EXPECT_EQ(second.cost().cpu_seconds, first.cost().cpu_seconds);
+  second.advance_to(4, s.pool, {});
+  at_once.advance_to(4, s.pool, {});
+  EXPECT_TRUE(same_bits(second, at_once));
+}
+
+TEST(ReferenceStore, DamagedFilesCountAsNone) {
+  const Setting s;
+  PairedRender first = s.render(), second = s.render();
+  first.advance_to(1, s.pool, {});
+  s.store().save(first);
+  const auto file = std::filesystem::directory_iterator(s.folder.name_of("cache"))->path();
+  std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(1000).put('x');
+  s.store().load(second);
+  EXPECT_EQ(second.samples(), 0u);
+  std::filesystem::resize_file(file, 100);
+  s.store().load(second);
+  EXPECT_EQ(second.samples(), 0u);
+}
+
+TEST(Study, ItsIdentityHangsOnEverythingThatDecidesThePixels) {
+  const Setting s;
+  const auto identity = [&](StudyOptions options, const char* candidate = "abm") {
+    return Study(options, s.pool, s.quiet).identity(parse_candidate(candidate));
+  };
+  const StudyOptions base{.scene = s.folder.name_of("scene.pbrt"), .wavelengths = "smpte", .size = 16};
+  EXPECT_EQ(identity(base), s.study.identity(s.walk));
+  StudyOptions other = base;
+  other.size = 17;
+  EXPECT_NE(identity(other), identity(base));
+  other = base, other.seed = 1;
+  EXPECT_NE(identity(other), identity(base));
+  EXPECT_NE(identity(base, "abm,mode=weighted"), identity(base));
+  s.folder.write("scene.pbrt", std::string(kLeafScene) + "# another\n");
+  EXPECT_NE(identity(base), s.study.identity(s.walk));
+}
+
+TEST(Study, TakesTheWholePictureOrItsPartToSize) {
+  const Setting s;
+  EXPECT_EQ(s.study.film().width, 16);
+  EXPECT_EQ(s.study.film().height, 8);
+  std::string text(kLeafScene);
+  text.replace(text.find("Film \"rgb\""), 10, "Film \"rgb\" \"integer pixelbounds\" [32 64 0 32]");
+  const Study part({.scene = s.folder.write("part.pbrt", text).string(), .size = 16}, s.pool, s.quiet);
+  EXPECT_EQ(part.film().width, 32);
+  EXPECT_EQ(part.film().crop.x0, 16);
+  EXPECT_EQ(part.film().crop.width(), 16);
+}
+
+}  // namespace
+}  // namespace frond::compare
