@@ -8,7 +8,7 @@
 namespace frond::leaf {
 
 /// Increase with any change that may change results: tables on disk are kept by it.
-inline constexpr int kSolverVersion = 3;
+inline constexpr int kSolverVersion = 4;
 
 /// What becomes of light that meets the leaf at one angle: shares of 1. The rest is absorbed.
 struct Shares {
@@ -21,12 +21,8 @@ struct Shares {
 
 /// Shares for light at theta degrees from +z, each in [0, 180] (above 90 the abaxial side is lit), without noise.
 ///
-/// Averaged over azimuth, what an event of the walk does depends on the ray's direction through mu = |cos theta| alone,
-/// so the walk is a Markov chain on (medium, up or down, mu). mu is discretised by composite Gauss quadrature in
-/// k = n sin theta, which refraction keeps: one set of nodes serves all media, and unperturbed refraction stays on it.
-/// Segments end at the critical angles and are graded towards grazing; in each, the cosine in the medium where the
-/// segment ends at grazing is the variable, so that Fresnel's square-root kink is smooth. What awaits a ray in each
-/// state solves a block-tridiagonal linear system, medium by medium.
+/// Averaged over azimuth, what an event of the walk does depends on the ray's direction through mu = |cos theta| alone:
+/// this is mode 0 of the chain of leaf/chain.h.
 ///
 /// `nodes` per segment, and twice as many places of a unifacial leaf's air space.
 std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_deg, int nodes);
