@@ -107,32 +107,12 @@ TableLookup TableLookup::for_spectra(const DepthTable& table) {
 }
 
 TableSelection TableLookup::select(const SampledWavelengths& lambda) const {
-  TableSelection selection;
-  if (wavelengths_.empty()) return selection;
-  selection.lane_count = lambda.count;
-  selection.columns_per_lane = 2;
-  for (size_t lane = 0; lane < static_cast<size_t>(lambda.count); ++lane) {
-    const auto [below, t] = wavelengths_.cell(lambda.nm[lane]);
-    selection.lanes[lane] = {{below, below + 1}, {1 - t, t}};
-  }
-  return selection;
+  return wavelengths_.empty() ? TableSelection() : select_columns(wavelengths_, lambda);
 }
 
 TableSelection TableLookup::select(const SampledWavelengths& lambda,
                                    const std::array<double, kLanes>& optical_depth) const {
-  TableSelection selection;
-  selection.lane_count = lambda.count;
-  selection.columns_per_lane = wavelengths_.empty() ? 2 : 4;
-  const auto rows = static_cast<uint32_t>(depths_.depths().size());
-  for (size_t lane = 0; lane < static_cast<size_t>(lambda.count); ++lane) {
-    const AxisCell w =
-        wavelengths_.empty() ? AxisCell{static_cast<uint32_t>(lane), 0} : wavelengths_.cell(lambda.nm[lane]);
-    const AxisCell d = depths_.cell(optical_depth[lane]);
-    const uint32_t near = w.below * rows + d.below, far = near + rows;
-    const float s = 1 - w.t;
-    selection.lanes[lane] = {{near, near + 1, far, far + 1}, {s * (1 - d.t), s * d.t, w.t * (1 - d.t), w.t * d.t}};
-  }
-  return selection;
+  return select_columns(wavelengths_, depths_, lambda, optical_depth);
 }
 
 SampledShares TableLookup::sum_columns(size_t node, float t, const TableSelection& selection) const {

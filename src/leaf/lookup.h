@@ -14,18 +14,6 @@ struct SampledShares {
   SampledSpectrum surface, subsurface, transmitted;
 };
 
-/// What of a table the lanes of a path look at: each a weighted sum of columns. Found once for a hit, whatever the
-/// number of directions.
-struct TableSelection {
-  struct Lane {
-    std::array<uint32_t, 4> column{};
-    std::array<float, 4> weight{};
-  };
-  std::array<Lane, kLanes> lanes;
-  int lane_count = 0;        ///< 0: the lanes are the table's wavelengths, one by one
-  int columns_per_lane = 0;  ///< at most 4
-};
-
 /// A table made ready for the render loop: linear between nodes that are even in sqrt |cos theta|, where they are dense
 /// toward grazing and need no arc cosine. The table's angles are carried over to the nodes by cubic interpolation, each
 /// side by its own: those up to 90 degrees and those from there on. Where these do not reach, the nearest holds.

@@ -44,4 +44,33 @@ DepthAxis::DepthAxis(double least, double most, double step) {
   last_ = static_cast<float>(steps);
 }
 
+TableSelection select_columns(const WavelengthAxis& wavelengths, const DepthAxis& depths,
+                              const SampledWavelengths& lambda, const std::array<double, kLanes>& optical_depth) {
+  TableSelection selection;
+  selection.lane_count = lambda.count;
+  selection.columns_per_lane = wavelengths.empty() ? 2 : 4;
+  const auto rows = static_cast<uint32_t>(depths.depths().size());
+  for (size_t lane = 0; lane < static_cast<size_t>(lambda.count); ++lane) {
+    const AxisCell w =
+        wavelengths.empty() ? AxisCell{static_cast<uint32_t>(lane), 0} : wavelengths.cell(lambda.nm[lane]);
+    const AxisCell d = depths.cell(optical_depth[lane]);
+    const uint32_t near = w.below * rows + d.below, far = near + rows;
+    const float s = 1 - w.t;
+    selection.lanes[lane] = {{near, near + 1, far, far + 1}, {s * (1 - d.t), s * d.t, w.t * (1 - d.t), w.t * d.t}};
+  }
+  return selection;
+}
+
+TableSelection select_columns(const WavelengthAxis& wavelengths, const SampledWavelengths& lambda) {
+  TableSelection selection;
+  selection.lane_count = lambda.count;
+  selection.columns_per_lane = wavelengths.empty() ? 1 : 2;
+  for (size_t lane = 0; lane < static_cast<size_t>(lambda.count); ++lane) {
+    const auto [below, t] =
+        wavelengths.empty() ? AxisCell{static_cast<uint32_t>(lane), 0} : wavelengths.cell(lambda.nm[lane]);
+    selection.lanes[lane] = {{below, below + 1}, {1 - t, t}};
+  }
+  return selection;
+}
+
 }  // namespace frond::leaf

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
+
+#include "core/spectrum.h"
 
 namespace frond::leaf {
 
@@ -56,5 +59,23 @@ class DepthAxis {
   float first_ = 0, log_first_ = 0, per_step_ = 0, last_ = 1;
   uint32_t zero_ = 0;  ///< 1 where depth 0 is a node of its own
 };
+
+/// What of a table the lanes of a path look at: each a weighted sum of columns. Found once for a hit, whatever the
+/// number of directions.
+struct TableSelection {
+  struct Lane {
+    std::array<uint32_t, 4> column{};
+    std::array<float, 4> weight{};
+  };
+  std::array<Lane, kLanes> lanes;
+  int lane_count = 0;        ///< 0: the lanes are the table's wavelengths, one by one
+  int columns_per_lane = 0;  ///< at most 4
+};
+
+/// Of a table of columns [wavelength][depth]; an empty axis of wavelengths: the lanes are they, one by one.
+TableSelection select_columns(const WavelengthAxis& wavelengths, const DepthAxis& depths,
+                              const SampledWavelengths& lambda, const std::array<double, kLanes>& optical_depth);
+/// Of a table of columns [wavelength].
+TableSelection select_columns(const WavelengthAxis& wavelengths, const SampledWavelengths& lambda);
 
 }  // namespace frond::leaf

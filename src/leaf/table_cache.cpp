@@ -1,14 +1,12 @@
 #include "leaf/table_cache.h"
 
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <bit>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 
 #include "core/random.h"
+#include "leaf/cache_file.h"
 #include "leaf/constants.h"
 #include "leaf/table_file.h"
 #include "leaf/walk.h"
@@ -18,37 +16,8 @@ namespace {
 
 std::string_view method_name(TableMethod method) { return method == TableMethod::monte_carlo ? "montecarlo" : "solve"; }
 
-constexpr std::string_view kChecksum = "# checksum ";
+}  // namespace
 
-std::string checksum_line(std::string_view text) { return fmt::format("{}{:016x}\n", kChecksum, hash_bytes(text)); }
-
-std::string read_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Never leaves half a file under the final name.
-bool write_file(const std::filesystem::path& path, const std::string& text) {
-  std::error_code error;
-  std::filesystem::create_directories(path.parent_path(), error);
-  const auto temporary = std::filesystem::path(path) += fmt::format(".{}.tmp", getpid());
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) {
-      std::filesystem::remove(temporary, error);
-      return false;
-    }
-  }
-  std::filesystem::rename(temporary, path, error);
-  if (!error) return true;
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
-  return false;
-}
-
-/// Evenly spaced numbers in short, others one by one.
 std::string list_text(const std::vector<double>& values) {
   if (values.size() > 2) {
     const double step = values[1] - values[0];
@@ -58,22 +27,24 @@ std::string list_text(const std::vector<double>& values) {
   return fmt::format("{}", fmt::join(values, ","));
 }
 
-}  // namespace
-
-std::string describe(const TableRequest& request) {
-  const TissueParams& p = request.params;
+std::string describe(const TissueParams& p) {
   std::string text = fmt::format(
-      "# leaf table of {}\n# structure {}, thickness {} m, mesophyll fraction {}\n"
+      "# structure {}, thickness {} m, mesophyll fraction {}\n"
       "# kg/m3: chlorophyll a {}, b {}, carotenoids {}, protein {}, cellulose {}, lignin {}\n"
       "# aspect ratios: cuticle {}, epidermis {}, spongy {}, palisade {}; sieve and detour {}\n",
-      method_name(request.method), p.structure == Structure::bifacial ? "bifacial" : "unifacial", p.thickness_m,
-      p.mesophyll_fraction, p.chlorophyll_a, p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose, p.lignin,
-      p.cuticle_aspect, p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.sieve_and_detour);
+      p.structure == Structure::bifacial ? "bifacial" : "unifacial", p.thickness_m, p.mesophyll_fraction,
+      p.chlorophyll_a, p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose, p.lignin, p.cuticle_aspect,
+      p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.sieve_and_detour);
   for (const Pigment& pigment : p.pigments) {
     uint64_t curve = 0;
     for (const double x : pigment.specific_absorption) curve = hash_key(curve, std::bit_cast<uint64_t>(x));
     text += fmt::format("# pigment {} kg/m3, absorption {:016x}\n", pigment.concentration, curve);
   }
+  return text;
+}
+
+std::string describe(const TableRequest& request) {
+  std::string text = fmt::format("# leaf table of {}\n{}", method_name(request.method), describe(request.params));
   if (request.method == TableMethod::monte_carlo)
     text += fmt::format("# rays {}, seed {}, walk {}", request.rays, request.seed, kWalkVersion);
   else
@@ -91,16 +62,12 @@ std::string summary(const TableRequest& request, std::string_view name, const Ta
                      table.error);
 }
 
-std::string seal(const Table& table, std::string_view header) {
-  const std::string text = to_csv(table, header);
-  return text + checksum_line(text);
-}
+std::string seal(const Table& table, std::string_view header) { return with_checksum(to_csv(table, header)); }
 
 bool unseal(std::string_view text, std::string_view header, Table& table) {
-  const size_t body = text.rfind(kChecksum);
-  if (body == std::string_view::npos || text.substr(body) != checksum_line(text.substr(0, body))) return false;
-  if (!text.starts_with(header)) return false;
-  table = parse_table(text.substr(0, body), "cache");
+  const std::string_view body = without_checksum(text);
+  if (body.empty() || !body.starts_with(header)) return false;
+  table = parse_table(body, "cache");
   return true;
 }
 

@@ -16,6 +16,11 @@ Table cached_table(const TableRequest& request, std::string_view name, const Thr
 /// code.
 std::string describe(const TableRequest& request);
 
+/// A leaf's part of that.
+std::string describe(const TissueParams& params);
+/// Evenly spaced numbers in short, others one by one.
+std::string list_text(const std::vector<double>& values);
+
 /// One line for people: what the table holds and how good it is.
 std::string summary(const TableRequest& request, std::string_view name, const Table& table);
 

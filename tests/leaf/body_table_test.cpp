@@ -1,0 +1,177 @@
+#include "leaf/body_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/random.h"
+#include "leaf/body_cache.h"
+#include "leaf/quadrature.h"
+#include "leaf/solver.h"
+#include "leaf/specimens.h"
+
+namespace frond::leaf {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+BodyRequest request_of(std::string_view specimen, double tolerance, std::vector<double> wavelengths = {608, 551, 455}) {
+  return {.params = find_specimen(specimen)->params, .wavelengths_nm = std::move(wavelengths), .tolerance = tolerance};
+}
+
+SampledWavelengths lanes_of(const std::vector<double>& nm) {
+  SampledWavelengths lambda;
+  for (const double x : nm) {
+    const auto i = static_cast<size_t>(lambda.count++);
+    lambda.nm[i] = static_cast<float>(x);
+    lambda.pdf[i] = 1;
+    lambda.active[i] = true;
+  }
+  return lambda;
+}
+
+double cosine(double sine) { return std::sqrt(1 - sine * sine); }
+
+/// Largest difference of pi f between what a table gives and modes solved at the same directions, at random sines and
+/// azimuths.
+double largest_error(const BodyTable& table, const Tissue& tissue, const BodyTable::Selection& selection, int lane) {
+  RandomStream rng(3);
+  std::vector<double> sines;
+  for (int i = 0; i < 24; ++i) sines.push_back(std::sqrt(rng.uniform_double()) * 0.9999);
+  const BodyModes exact = solve_modes(tissue, sines, 1e-7, mode_nodes(tissue));
+  double largest = 0;
+  for (size_t i = 0; i < sines.size(); ++i)
+    for (size_t o = 0; o < sines.size(); ++o)
+      for (const bool below : {false, true})
+        for (const bool crosses : {false, true}) {
+          const double phi = kPi * rng.uniform_double();
+          double sum = 0, m = 0;
+          for (const BodyModes::Grid& h : exact.series(below, crosses))
+            sum += h[i * sines.size() + o] * std::cos(m++ * phi);
+          const auto node = [&](size_t k) { return table.nodes(static_cast<float>(sines[k])); };
+          const float looked_up = table.series(below, crosses, node(i), node(o), static_cast<float>(std::cos(phi)),
+                                               selection.columns)[lane];
+          const double scale = kPi * passage(tissue, cosine(sines[i]), cosine(sines[o]));
+          largest = std::max(largest, scale * std::abs(sum - static_cast<double>(looked_up)));
+        }
+  return largest;
+}
+
+TEST(BodyTable, StaysWithinItsTolerance) {
+  const ThreadPool pool(2);
+  for (const Specimen& specimen : kSpecimens)
+    for (const double tolerance : {1e-2, 5e-4, 1e-4}) {
+      const BodyRequest request = request_of(specimen.name, tolerance);
+      const BodySpectrum spectrum = make_body_spectrum(request, pool);
+      EXPECT_LT(spectrum.error, tolerance);
+      const BodyTable table(request, spectrum, false);
+      const auto selection = table.select(lanes_of(request.wavelengths_nm));
+      const TissueModel model(request.params);
+      for (size_t lane = 0; lane < request.wavelengths_nm.size(); ++lane)
+        EXPECT_LT(largest_error(table, model.at(request.wavelengths_nm[lane]), selection, static_cast<int>(lane)),
+                  tolerance)
+            << specimen.name << " at " << request.wavelengths_nm[lane] << " nm";
+    }
+}
+
+TEST(BodyTable, IsSmall) {
+  const ThreadPool pool(2);
+  const BodyRequest request = request_of("soybean", 5e-4);
+  EXPECT_LT(BodyTable(request, make_body_spectrum(request, pool), false).bytes(), size_t{64 * 1024});
+}
+
+/// At mean angles, the whole of what is looked up is the solver's.
+TEST(BodyTable, HoldsTheSolversEnergy) {
+  constexpr double kTolerance = 5e-4;
+  const ThreadPool pool(2);
+  for (const Specimen& specimen : kSpecimens) {
+    const BodyRequest request = request_of(specimen.name, kTolerance, {455, 800});
+    const BodyTable table(request, make_body_spectrum(request, pool), false);
+    const auto selection = table.select(lanes_of(request.wavelengths_nm));
+    const TissueModel model(request.params);
+    for (const double theta : {0.0, 17.0, 33.0, 51.0, 70.0, 82.0, 89.0})
+      for (const bool below : {false, true})
+        for (int lane = 0; lane < 2; ++lane) {
+          const Tissue tissue = model.at(request.wavelengths_nm[static_cast<size_t>(lane)]);
+          const Shares expected = solve(tissue, std::array{below ? 180 - theta : theta})[0];
+          const auto nodes = table.nodes(static_cast<float>(std::sin(theta * kPi / 180)));
+          const auto share = [&](bool crosses) {
+            return (1 - expected.surface) *
+                   static_cast<double>(table.share(below, crosses, nodes, selection.columns)[lane]);
+          };
+          EXPECT_NEAR(share(false), expected.subsurface, kTolerance / 4) << theta;
+          EXPECT_NEAR(share(true), expected.transmitted, kTolerance / 4) << theta;
+        }
+  }
+}
+
+TEST(BodyTable, LiesBetweenWavelengths) {
+  const ThreadPool pool(2);
+  std::vector<double> grid;
+  for (double nm = 540; nm <= 560; nm += 2.5) grid.push_back(nm);
+  const BodyRequest request = request_of("soybean", 1e-3, grid);
+  const BodyTable table(request, make_body_spectrum(request, pool), true);
+  const std::vector<double> wanted{541.2, 550, 553.7, 559.9};
+  const auto selection = table.select(lanes_of(wanted));
+  const TissueModel model(request.params);
+  for (size_t lane = 0; lane < wanted.size(); ++lane) {
+    const Tissue tissue = model.at(wanted[lane]);
+    EXPECT_NEAR(selection.index[static_cast<int>(lane)], tissue.n_cuticle(), 1e-4);
+    EXPECT_LT(largest_error(table, tissue, selection, static_cast<int>(lane)), 1e-3) << wanted[lane];
+  }
+}
+
+TEST(BodyTable, LiesBetweenDepths) {
+  const ThreadPool pool(2);
+  BodyRequest request = request_of("soybean", 5e-4, {608, 551});
+  request.depths = DepthAxis(0.1, 0.4, 0.1);
+  const BodyTable table(request, make_body_spectrum(request, pool), false);
+  const auto selection = table.select(lanes_of(request.wavelengths_nm), {0.17, 0.323});
+  const TissueModel model(request.params);
+  EXPECT_LT(largest_error(table, model.at(608, 0.17, model.lobes()), selection, 0), 1e-3);
+  EXPECT_LT(largest_error(table, model.at(551, 0.323, model.lobes()), selection, 1), 1e-3);
+}
+
+TEST(BodyTable, NeverGivesLessThanNothing) {
+  const ThreadPool pool(2);
+  const BodyRequest request = request_of("soybean", 0.1);
+  const BodyTable table(request, make_body_spectrum(request, pool), false);
+  const auto selection = table.select(lanes_of(request.wavelengths_nm));
+  for (float a = 0; a <= 1; a += 0.1f)
+    for (float b = 0; b <= 1; b += 0.1f)
+      for (float c = -1; c <= 1; c += 0.25f)
+        for (const bool below : {false, true})
+          for (const bool crosses : {false, true}) {
+            const SampledSpectrum s =
+                table.series(below, crosses, table.nodes(a), table.nodes(b), c, selection.columns);
+            for (int lane = 0; lane < 3; ++lane) EXPECT_GE(s[lane], 0);
+          }
+}
+
+TEST(BodySpectrum, ComesBackFromItsFile) {
+  const BodyRequest request = request_of("maize", 1e-3, {551});
+  const std::string header = describe(request);
+  const BodySpectrum made = make_body_spectrum(request, ThreadPool(2));
+  const std::string text = to_text(made, header);
+  BodySpectrum read;
+  ASSERT_TRUE(parse_body_spectrum(text, header, read));
+  EXPECT_EQ(read.cells, made.cells);
+  EXPECT_EQ(read.index, made.index);
+  EXPECT_EQ(read.error, made.error);
+  for (const bool below : {false, true})
+    for (const bool crosses : {false, true})
+      EXPECT_EQ(read.modes[0].series(below, crosses), made.modes[0].series(below, crosses));
+  EXPECT_FALSE(parse_body_spectrum(text, describe(request_of("soybean", 1e-3, {551})), read)) << "another leaf's";
+  EXPECT_FALSE(parse_body_spectrum(text.substr(0, text.size() / 2), header, read)) << "half a file";
+  EXPECT_FALSE(parse_body_spectrum(text + "1", header, read)) << "more than there was";
+}
+
+TEST(BodySpectrum, DoesNotDependOnThreads) {
+  const BodyRequest request = request_of("soybean", 1e-2, {455, 551, 680});
+  EXPECT_EQ(to_text(make_body_spectrum(request, ThreadPool(1)), ""),
+            to_text(make_body_spectrum(request, ThreadPool(3)), ""));
+}
+
+}  // namespace
+}  // namespace frond::leaf
