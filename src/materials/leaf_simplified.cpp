@@ -147,31 +147,12 @@ class LeafSimplified final : public Material {
     const std::vector<double> wavelengths = index_wavelengths(preparation.wavelengths);
     const leaf::DepthTable table =
         leaf::make_depth_table(leaf::TissueModel(request_.params), request_.theta_deg, wavelengths,
-                               depth_axis(preparation.wavelengths), preparation.pool);
+                               depth_axis(leaf_.depth(), preparation.wavelengths, kDepthStep), preparation.pool);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} depths x {} angles, solve, {:.2g} s",
                                      leaf_.specimen(), wavelengths.size(), table.depths.depths().size(),
                                      table.theta_deg.size(), seconds.count()));
     return fixed ? leaf::TableLookup::for_lanes(table) : leaf::TableLookup::for_spectra(table);
-  }
-
-  /// All depths that the textures can give at the wavelengths.
-  leaf::DepthAxis depth_axis(const WavelengthStrategy& strategy) const {
-    Interval all{std::numeric_limits<double>::infinity(), 0};
-    const auto include = [&](double nm) {
-      const Interval range = leaf_.depth().range(nm);
-      all = {std::min(all.min, range.min), std::max(all.max, range.max)};
-    };
-    if (!strategy.fixed_nm().empty()) {
-      for (const double nm : fixed_wavelengths(strategy)) include(nm);
-    } else {
-      // Linear between the nodes of the absorption's grid: extremes lie there or at the ends.
-      const Interval range = strategy.range_nm();
-      include(range.min), include(range.max);
-      for (size_t i = 0; i < leaf::kAbsorptionGrid.size(); ++i)
-        if (range.contains(leaf::kAbsorptionGrid.nm(i))) include(leaf::kAbsorptionGrid.nm(i));
-    }
-    return {all.min, all.max, kDepthStep};
   }
 
   void take_file(const Params& p) {

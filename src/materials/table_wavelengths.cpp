@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "leaf/absorption.h"
 #include "leaf/constants.h"
 
 namespace frond {
@@ -24,5 +26,21 @@ std::vector<double> wavelengths(const WavelengthStrategy& strategy, double step_
 std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) { return wavelengths(strategy, 2.5); }
 
 std::vector<double> index_wavelengths(const WavelengthStrategy& strategy) { return wavelengths(strategy, 40); }
+
+leaf::DepthAxis depth_axis(const leaf::DepthMap& depth, const WavelengthStrategy& strategy, double step) {
+  Interval all{std::numeric_limits<double>::infinity(), 0};
+  const auto include = [&](double nm) {
+    const Interval range = depth.range(nm);
+    all = {std::min(all.min, range.min), std::max(all.max, range.max)};
+  };
+  for (const float nm : strategy.fixed_nm()) include(static_cast<double>(nm));
+  if (!strategy.fixed_nm().empty()) return {all.min, all.max, step};
+  // Linear between the nodes of the absorption's grid: extremes lie there or at the ends.
+  const Interval range = strategy.range_nm();
+  include(range.min), include(range.max);
+  for (size_t i = 0; i < leaf::kAbsorptionGrid.size(); ++i)
+    if (range.contains(leaf::kAbsorptionGrid.nm(i))) include(leaf::kAbsorptionGrid.nm(i));
+  return {all.min, all.max, step};
+}
 
 }  // namespace frond

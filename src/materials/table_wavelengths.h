@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "core/wavelengths.h"
+#include "leaf/depth_map.h"
+#include "leaf/table_axes.h"
 
 namespace frond {
 
@@ -14,5 +16,8 @@ std::vector<double> table_wavelengths(const WavelengthStrategy& strategy);
 /// The same where the table has the optical depth for an axis, so that the refractive indices alone change with the
 /// wavelength: 40 nm apart.
 std::vector<double> index_wavelengths(const WavelengthStrategy& strategy);
+
+/// All depths that a leaf's textures can give at these wavelengths, in steps of at most `step` of their logarithm.
+leaf::DepthAxis depth_axis(const leaf::DepthMap& depth, const WavelengthStrategy& strategy, double step);
 
 }  // namespace frond

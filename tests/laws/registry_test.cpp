@@ -48,8 +48,8 @@ ParsedParam given(const std::string& type, const std::string& name, T value) {
 }
 
 /// Tables that are quick to make: the laws hold for what is in them, be it as noisy as it may.
-const SweepOptions kSweep{
-    .pinned = {given("string", "tablemethod", std::string("montecarlo")), given("integer", "tablerays", 100.0)}};
+const SweepOptions kSweep{.pinned = {given("string", "tablemethod", std::string("montecarlo")),
+                                     given("integer", "tablerays", 100.0), given("float", "tolerance", 0.02)}};
 
 /// Runs the laws and fails the test where one is broken.
 Findings expect_lawful(const MaterialInfo& info, std::span<const ParameterSet> sets,
@@ -112,6 +112,8 @@ TEST(Lossless, LeavesWithoutMesophyllReturnAllLight) {
       expect_lossless("abm", {nothing_absorbs, given("string", "specimen", specimen), given("string", "mode", mode)});
   for (const std::string incident : {"traced", "light"})
     expect_lossless("leaf_lambert", {nothing_absorbs, given("string", "incident", incident)});
+  for (const std::string specimen : {"soybean", "maize"})
+    expect_lossless("leaf_solved", {nothing_absorbs, given("string", "specimen", specimen)});
   for (const std::string method : {"montecarlo", "solve"})
     expect_lossless("leaf_simplified",
                     {nothing_absorbs, given("string", "tablemethod", method), given("integer", "tablerays", 100.0)});
@@ -122,6 +124,13 @@ TEST(Abm, ObeysWithManySamplesWhereLittleIsAbsorbed) {
   for (const std::string specimen : {"soybean", "maize"}) {
     const ParameterSet set{specimen, {"abm", {}, {given("string", "specimen", specimen)}}};
     expect_lawful(material("abm"), {&set, 1}, GivenWavelengths({800}), {.samples = 300000, .angles_deg = {40}});
+  }
+}
+
+TEST(LeafSolved, ObeysWithManySamplesWhereLittleIsAbsorbed) {
+  for (const std::string specimen : {"soybean", "maize"}) {
+    const ParameterSet set{specimen, {"leaf_solved", {}, {given("string", "specimen", specimen)}}};
+    expect_lawful(material("leaf_solved"), {&set, 1}, GivenWavelengths({800}), {.samples = 300000, .angles_deg = {40}});
   }
 }
 

@@ -1,0 +1,101 @@
+#include "core/material.h"
+#include "leaf/body_cache.h"
+#include "leaf/body_table.h"
+#include "materials/leaf_params.h"
+#include "materials/lobes/active_lanes.h"
+#include "materials/lobes/solved_bsdf.h"
+#include "materials/table_wavelengths.h"
+
+namespace frond {
+namespace {
+
+constexpr Param kOwn[] = {
+    {.name = "tolerance",
+     .kind = ParamKind::real,
+     .default_value = 5e-4,
+     .range = {1e-5, 0.1},
+     .doc = "Largest error of pi f that the table may have, where white paper has 1: what missing modes and "
+            "interpolation between angles leave out."},
+};
+constexpr auto kLeafSolved = with_leaf_params(kOwn);
+
+/// Step of the natural logarithm of tables over depth: linear interpolation leaves errors of pi f below 1e-3.
+constexpr double kDepthStep = 0.15;
+
+/// The walk of `abm`, solved beforehand: its BSDF without its noise.
+class LeafSolved final : public Material {
+ public:
+  explicit LeafSolved(const Params& p)
+      : leaf_(p),
+        varies_(!leaf_.depth().is_constant()),
+        surface_texture_(leaf_.cuticle_aspect()),
+        surface_(leaf_.tissue().cuticle_aspect),
+        tolerance_(p.real("tolerance")) {
+    refuse_textures(p);
+  }
+
+  void prepare(const Preparation& preparation) override {
+    leaf_.check_wavelengths(preparation.wavelengths);
+    const leaf::BodyRequest request = request_for(preparation.wavelengths);
+    const bool vary = preparation.wavelengths.fixed_nm().empty();
+    const auto make = [&] {
+      const leaf::BodySpectrum spectrum = leaf::cached_body_spectrum(request, leaf_.specimen(), preparation.pool,
+                                                                     preparation.log, preparation.cache_dir);
+      leaf::BodyTable table(request, spectrum, vary);
+      preparation.log.info(fmt::format("leaf modes: {}, {} kB in memory", leaf_.specimen(), table.bytes() / 1024));
+      return table;
+    };
+    const std::string key = (vary ? "varying wavelengths\n" : "fixed wavelengths\n") + describe(request);
+    SharedWork alone;
+    table_ = (preparation.shared ? *preparation.shared : alone).get<leaf::BodyTable>(key, make);
+  }
+
+  const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
+    const leaf::BodyTable::Selection selection =
+        varies_ ? table_->select(lambda, leaf_.depth().at(hit.uv, lambda)) : table_->select(lambda);
+    const leaf::Lobe* surface =
+        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.uv))) : &surface_;
+    return arena.make<SolvedBsdf>(SolvedHit{table_.get(), selection, surface, lane_mask(lambda), leaf_.from_light()});
+  }
+
+  bool is_leaf() const override { return true; }
+
+ private:
+  /// Everything but depth and surface would need a table for every texel.
+  void refuse_textures(const Params& p) const {
+    struct Refused {
+      std::string_view name;
+      const LeafParams::Aspect& texture;
+    };
+    for (const auto& [name, texture] :
+         {Refused{"epidermisaspect", leaf_.epidermis_aspect()}, Refused{"spongyaspect", leaf_.spongy_aspect()},
+          Refused{"palisadeaspect", leaf_.palisade_aspect()}})
+      if (texture)
+        fail(p.where(name), "leaf_solved takes no texture for \"{}\": every texel would need a table; abm takes one",
+             name);
+  }
+
+  leaf::BodyRequest request_for(const WavelengthStrategy& wavelengths) const {
+    leaf::BodyRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance_};
+    request.params.cuticle_aspect = 0;  // of no concern to light inside: leaves with other cuticles share the table
+    request.wavelengths_nm = varies_ ? index_wavelengths(wavelengths) : table_wavelengths(wavelengths);
+    if (varies_) request.depths = depth_axis(leaf_.depth(), wavelengths, kDepthStep);
+    return request;
+  }
+
+  LeafParams leaf_;
+  bool varies_;                         ///< the depth does, from place to place
+  LeafParams::Aspect surface_texture_;  ///< nullptr: surface_
+  leaf::TabulatedLobe surface_;
+  double tolerance_;
+  std::shared_ptr<const leaf::BodyTable> table_;
+};
+
+}  // namespace
+
+extern const MaterialInfo leaf_solved_material{
+    {"material", "leaf_solved", "Leaf by the solution of its random walk: what abm converges to, without its noise.",
+     "docs/solved_leaf.md; the walk: Baranoski and Rokne 1997; Baranoski 2006; Baranoski and Eng 2007", kLeafSolved},
+    make_material<LeafSolved>};
+
+}  // namespace frond
