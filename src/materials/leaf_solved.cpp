@@ -19,7 +19,7 @@ constexpr Param kOwn[] = {
 };
 constexpr auto kLeafSolved = with_leaf_params(kOwn);
 
-/// Step of the natural logarithm of tables over depth: linear interpolation leaves errors of pi f below 1e-3.
+/// Step of the natural logarithm of tables over depth: linear interpolation leaves errors of pi f below 3e-4.
 constexpr double kDepthStep = 0.15;
 
 /// The walk of `abm`, solved beforehand: its BSDF without its noise.
