@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/linear_image.h"
 #include "cli/output.h"
+#include "cli/spectral_image.h"
 
 namespace frond {
 namespace {
@@ -11,15 +12,21 @@ struct ConvertOptions {
   std::vector<std::string> inputs;
   std::string output;
   DisplayChoice display;
+  std::vector<double> bands_nm;
   double exposure = 0;
 };
+
+LinearImage read(const std::string& path, const std::vector<double>& bands_nm) {
+  if (bands_nm.empty()) return read_linear(path);
+  return {path, "linear sRGB", false_color_image(read_image(path, {}), path, bands_nm), {}};
+}
 
 void convert(const ConvertOptions& options) {
   check_writable(options.output);
   const ColorManager colors;
-  LinearImage mean = read_linear(options.inputs[0]);
+  LinearImage mean = read(options.inputs[0], options.bands_nm);
   for (size_t i = 1; i < options.inputs.size(); ++i) {
-    const LinearImage next = read_linear(options.inputs[i]);
+    const LinearImage next = read(options.inputs[i], options.bands_nm);
     check_same_size(mean, next);
     if (next.space != mean.space)
       fail({}, "{} is in {}, {} in {}: only images of one colour space are averaged", mean.path, mean.space, next.path,
@@ -41,6 +48,10 @@ void add_convert_command(CLI::App& app) {
   auto o = std::make_shared<ConvertOptions>();
   command->add_option("images", o->inputs, "EXR files of one size and colour space.")->required();
   command->add_option("-o,--output", o->output, "Image: .png, .jpg or .exr.")->required();
+  auto* bands = command->add_option("--bands", o->bands_nm,
+                                    "Wavelengths (nm) of three bands to show as red, green and blue, such as "
+                                    "850,650,550; a white in equal-energy light is 1.");
+  bands->delimiter(',')->expected(3);
   command->add_option("--exposure", o->exposure, "Stops.");
   command->add_option("--display", o->display.display, "Display of PNG and JPEG output; sRGB by default.");
   command->add_option("--view", o->display.view, "View of that display.");

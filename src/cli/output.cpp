@@ -1,5 +1,6 @@
 #include "cli/output.h"
 
+#include "cli/spectral_image.h"
 #include "core/error.h"
 #include "scene/image_file.h"
 #include "spectra/matrix3.h"
@@ -32,8 +33,7 @@ Triple variance_after(const Matrix3& m, const std::array<double, 6>& c) {
 float held(double value, double largest) { return float(std::clamp(value, -largest, largest)); }
 
 Image linear_image(const Film& film, const Matrix3& to_output) {
-  constexpr double kLargestHalf = 65504;
-  const double largest = film.settings().half ? kLargestHalf : double(std::numeric_limits<float>::max());
+  const double largest = film.settings().largest_value();
   const Crop& crop = film.settings().crop;
   Image image(crop.width(), crop.height(), {"R", "G", "B", "variance.R", "variance.G", "variance.B", "leaf"});
   for (int y = 0; y < image.height; ++y)
@@ -76,21 +76,46 @@ ImageOutput::ImageOutput(std::string path, DisplayChoice display)
 }
 
 void ImageOutput::check(const OutputDetails& details) const {
+  if (details.film_space.empty()) {
+    check_holds_bands();
+    return;
+  }
   const std::string space = linear_space(details);
   matrix_of(colors_, details.film_space, space);
   if (!is_exr(path_)) colors_.check_display(space, display_.display, display_.view);
 }
 
+void ImageOutput::check_holds_bands() const {
+  if (!is_exr(path_))
+    fail({}, "{}: bands are no picture, and go to an .exr file; frond convert --bands makes a picture of three of them",
+         path_);
+}
+
 void ImageOutput::write(const Film& film, const OutputDetails& details) const {
+  if (details.film_space.empty()) {
+    write_bands(film, details);
+    return;
+  }
   const std::string space = linear_space(details);
-  const FilmSettings& settings = film.settings();
   const Image image = linear_image(film, matrix_of(colors_, details.film_space, space));
   if (is_exr(path_))
-    write_image(path_, image,
-                {space, details.attributes, settings.crop.x0, settings.crop.y0, settings.width, settings.height},
-                settings.half ? ExrDepth::half : ExrDepth::single);
+    write_exr(film, image, space, details.attributes);
   else
     write_display_image(path_, image, space, colors_, display_, details.attributes);
+}
+
+void ImageOutput::write_bands(const Film& film, const OutputDetails& details) const {
+  check_holds_bands();
+  auto attributes = spectral_attributes(details.bands);
+  attributes.insert(details.attributes.begin(), details.attributes.end());
+  write_exr(film, spectral_image(film, details.bands), preview_space(details.bands), attributes);
+}
+
+void ImageOutput::write_exr(const Film& film, const Image& image, const std::string& space,
+                            const std::map<std::string, std::string>& attributes) const {
+  const FilmSettings& settings = film.settings();
+  write_image(path_, image, {space, attributes, settings.crop.x0, settings.crop.y0, settings.width, settings.height},
+              settings.half ? ExrDepth::half : ExrDepth::single);
 }
 
 }  // namespace frond

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include "core/wavelengths.h"
 #include "scene/film.h"
 #include "scene/image_file.h"
 #include "spectra/color_management.h"
@@ -15,7 +16,8 @@ struct DisplayChoice {
 };
 
 struct OutputDetails {
-  std::string film_space;   ///< of the film's channels
+  std::string film_space;   ///< of the film's channels; empty: they are bands
+  std::vector<Band> bands;  ///< of a film of bands
   std::string color_space;  ///< what the scene asks for, by linear name; empty: the film's own, linear sRGB for XYZ
   std::map<std::string, std::string> attributes;
 };
@@ -31,14 +33,20 @@ class ImageOutput {
   /// Throws InputError when the path cannot be written.
   ImageOutput(std::string path, DisplayChoice display);
 
-  /// Throws what `write` would throw for a display, a view or a colour space that OpenColorIO does not know.
+  /// Throws what `write` would throw for a display, a view or a colour space that OpenColorIO does not know, and for
+  /// bands in a PNG or JPEG.
   void check(const OutputDetails& details) const;
 
-  /// EXR: R G B, the variance of their means and the share of leaf, linear. PNG and JPEG: R G B through the display
-  /// transform. Throws InputError when the image does not reach the disk.
+  /// EXR: R G B, the variance of their means and the share of leaf, linear; or bands (spectral_image.h). PNG and JPEG:
+  /// R G B through the display transform. Throws InputError when the image does not reach the disk.
   void write(const Film& film, const OutputDetails& details) const;
 
  private:
+  void check_holds_bands() const;
+  void write_bands(const Film& film, const OutputDetails& details) const;
+  void write_exr(const Film& film, const Image& image, const std::string& space,
+                 const std::map<std::string, std::string>& attributes) const;
+
   std::string path_;
   DisplayChoice display_;
   ColorManager colors_;

@@ -105,6 +105,14 @@ std::string output_space(const SceneDescription& description) {
   return std::string(color_space(description.color_space, description.color_space_where).linear_name);
 }
 
+/// Samples see a few bands each.
+void check_samples(uint64_t samples, size_t bands) {
+  const size_t needed = (bands + kLanes - 1) / kLanes;
+  if (samples < needed)
+    fail({}, "{} bands need {} samples per pixel at least, each of which sees {}: {} were asked for", bands, needed,
+         kLanes, samples);
+}
+
 void render_scene(const RenderOptions& options, const std::string& command_line) {
   const auto start = std::chrono::steady_clock::now();
   const Log log(options.quiet);
@@ -119,11 +127,12 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   const std::string output = options.output.empty() ? film_settings.filename : options.output;
   const ImageOutput writer(output, options.display);
 
-  Film film(film_settings, description.film.where);
   const Scene scene(description, registry, overrides, pool, log);
   const int samples = options.samples > 0 ? options.samples : scene.samples_per_pixel();
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto bands = scene.wavelengths().bands();
   const OutputDetails details{.film_space = std::string(scene.wavelengths().film_space()),
+                              .bands = {bands.begin(), bands.end()},
                               .color_space = output_space(description),
                               .attributes = {{"frond:version", FROND_VERSION},
                                              {"frond:seed", std::to_string(scene.seed())},
@@ -132,6 +141,8 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
                                              {"frond:scene_hash", fmt::format("{:016x}", description.content_hash)},
                                              {"frond:command", command_line}}};
   writer.check(details);
+  check_samples(uint64_t(samples), bands.size());
+  Film film(film_settings, description.film.where, bands.size());
   const RenderJob job{
       scene, scene.camera(),   scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
       0,     uint64_t(samples)};
@@ -181,7 +192,8 @@ void add_render_command(CLI::App& app) {
                                      "x0,x1,y0,y1 of what to render, in pixels; x1 and y1 are not in it.");
   pixels->delimiter(',')->expected(4)->check(CLI::NonNegativeNumber)->excludes(crop);
   command->add_option("--wavelengths", o.wavelengths,
-                      "hero (also hero,lambdamin=400,lambdamax=700), meyer, or smpte for the paper's three.");
+                      "hero (also hero,lambdamin=400,lambdamax=700), meyer, smpte for the paper's three, or "
+                      "bands,wavelengths=450,550,850 (also bands,lambdamin=400,lambdamax=1000,step=10).");
   command
       ->add_option("--swap", o.swaps,
                    "MATERIAL=PLUGIN[,parameter=value...]: another model; \"*=PLUGIN\": for every leaf.")

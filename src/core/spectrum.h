@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
 namespace frond {
@@ -50,9 +51,10 @@ struct Interval {
 /// and the integrator retires a lane whose throughput has fallen to zero, so that nobody works for it.
 struct SampledWavelengths {
   std::array<float, kLanes> nm{};
-  std::array<float, kLanes> pdf{};  ///< density per nm; 1 for wavelengths that are fixed
+  std::array<float, kLanes> pdf{};  ///< density per nm, of bands over their response; 1 for wavelengths that are fixed
   std::array<bool, kLanes> active{};
-  int count = 0;  ///< lanes in use
+  int count = 0;                        ///< lanes in use
+  std::array<uint16_t, kLanes> band{};  ///< of the strategy, where it has bands
 
   bool is_active(int lane) const { return active[static_cast<size_t>(lane)]; }
   void retire_black_lanes(const SampledSpectrum& throughput) {

@@ -63,8 +63,8 @@ SampledWavelengths OneWavelength::sample(float) const {
   return lambda;
 }
 
-std::array<double, 3> OneWavelength::sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const {
-  return {double(radiance[0]), double(radiance[0]), double(radiance[0])};
+SensorResponse OneWavelength::sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const {
+  return std::array{double(radiance[0]), double(radiance[0]), double(radiance[0])};
 }
 
 }  // namespace frond

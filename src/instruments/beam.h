@@ -49,7 +49,7 @@ class OneWavelength final : public WavelengthStrategy {
   Interval range_nm() const override { return {double(nm_), double(nm_)}; }
   std::span<const float> fixed_nm() const override { return {&nm_, 1}; }
   /// An instrument has no film: all channels are the radiance itself.
-  std::array<double, 3> sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const override;
+  SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const override;
   std::string_view film_space() const override { return "XYZ"; }
 
  private:

@@ -26,7 +26,7 @@ class GivenWavelengths final : public WavelengthStrategy {
   SampledWavelengths sample(float) const override { return lambda_; }
   Interval range_nm() const override { return {*std::ranges::min_element(nm_), *std::ranges::max_element(nm_)}; }
   std::span<const float> fixed_nm() const override { return nm_; }
-  std::array<double, 3> sensor(const SampledSpectrum&, const SampledWavelengths&) const override { return {}; }
+  SensorResponse sensor(const SampledSpectrum&, const SampledWavelengths&) const override { return {}; }
   std::string_view film_space() const override { return "XYZ"; }
 
  private:

@@ -41,7 +41,7 @@ struct Worker {
 void render_sample(const RenderJob& job, Film& film, Worker& worker, int x, int y, uint64_t index) {
   Sampler& sampler = *worker.sampler;
   sampler.start(x, y, index);
-  const SampledWavelengths lambda = job.wavelengths.sample(sampler.get1d());
+  const SampledWavelengths lambda = job.wavelengths.sample_in_turn(index, sampler.get1d());
   const auto [offset, weight] = job.filter.sample(sampler.get2d());
   const Vec2 film_point{float(x) + 0.5f + offset.x, float(y) + 0.5f + offset.y};
   const Ray ray = job.camera.ray(film_point, job.camera.uses_lens() ? sampler.get2d() : Vec2{});

@@ -10,10 +10,11 @@
 namespace frond {
 namespace {
 
+std::vector<double> to_vector(std::span<const float> nm) { return {nm.begin(), nm.end()}; }
+
 /// Whole multiples of the step, as far as leaves are known; the range lies between them.
-std::vector<double> wavelengths(const WavelengthStrategy& strategy, double step_nm) {
-  if (const auto fixed = strategy.fixed_nm(); !fixed.empty()) return {fixed.begin(), fixed.end()};
-  const Interval range = strategy.range_nm(), known = leaf::kConstantsRange_nm;
+std::vector<double> even_wavelengths(const Interval& range, double step_nm) {
+  const Interval known = leaf::kConstantsRange_nm;
   std::vector<double> grid;
   const auto first = static_cast<int>(std::floor(range.min / step_nm));
   const auto last = std::max(first + 1, static_cast<int>(std::ceil(range.max / step_nm)));
@@ -23,9 +24,16 @@ std::vector<double> wavelengths(const WavelengthStrategy& strategy, double step_
 
 }  // namespace
 
-std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) { return wavelengths(strategy, 2.5); }
+std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) {
+  if (!strategy.fixed_nm().empty()) return to_vector(strategy.fixed_nm());
+  if (!strategy.listed_nm().empty()) return to_vector(strategy.listed_nm());
+  return even_wavelengths(strategy.range_nm(), 2.5);
+}
 
-std::vector<double> index_wavelengths(const WavelengthStrategy& strategy) { return wavelengths(strategy, 40); }
+std::vector<double> index_wavelengths(const WavelengthStrategy& strategy) {
+  if (!strategy.fixed_nm().empty()) return to_vector(strategy.fixed_nm());
+  return even_wavelengths(strategy.range_nm(), 40);
+}
 
 leaf::DepthAxis depth_axis(const leaf::DepthMap& depth, const WavelengthStrategy& strategy, double step) {
   Interval all{std::numeric_limits<double>::infinity(), 0};

@@ -129,21 +129,26 @@ extern const FilmInfo rgb_film{{"film", "rgb", "Three colour channels.", "pbrt-v
 namespace {
 
 /// Linux promises memory that is not there, and ends the program when it comes to use it.
-size_t pixels_that_fit(const Crop& crop, const Location& where) {
-  constexpr double kImageBytes = 64;  // of the picture that is made of a pixel in the end, and its file
+size_t pixels_that_fit(const Crop& crop, size_t bands, const Location& where) {
+  constexpr double kImageBytes = 64,
+                   kBandBytes = 48;  // of the picture that is made of a pixel in the end, and its file
   const double count = double(crop.width()) * double(crop.height()),
-               bytes = count * (sizeof(Film::Pixel) + kImageBytes);
+               bytes = count * (sizeof(Film::Pixel) + kImageBytes + double(bands) * kBandBytes);
   const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
   if (bytes > memory)
-    fail(where, "the film's {} x {} pixels need {:.1f} GB of memory, this machine has {:.1f} GB: --crop renders a part",
-         crop.width(), crop.height(), bytes * 1e-9, memory * 1e-9);
+    fail(where,
+         "the film's {} x {} pixels{} need {:.1f} GB of memory, this machine has {:.1f} GB: --crop renders a part",
+         crop.width(), crop.height(), bands > 0 ? fmt::format(" of {} bands", bands) : "", bytes * 1e-9, memory * 1e-9);
   return size_t(count);
 }
 
 }  // namespace
 
-Film::Film(const FilmSettings& settings, const Location& where)
-    : settings_(settings), pixels_(pixels_that_fit(settings.crop, where)) {}
+Film::Film(const FilmSettings& settings, const Location& where, size_t bands)
+    : settings_(settings),
+      band_count_(bands),
+      pixels_(pixels_that_fit(settings.crop, bands, where)),
+      bands_(pixels_.size() * bands) {}
 
 void Film::restore(std::span<const Pixel> pixels) {
   assert(pixels.size() == pixels_.size());
@@ -156,21 +161,49 @@ size_t Film::index(int x, int y) const {
   return size_t(y - c.y0) * size_t(c.width()) + size_t(x - c.x0);
 }
 
-void Film::add(int x, int y, std::array<double, 3> sensor, double weight, bool leaf) {
-  Pixel& pixel = pixels_[index(x, y)];
-  if (!std::isfinite(sensor[0] + sensor[1] + sensor[2])) {
-    sensor = {};
+void Film::add(int x, int y, SensorResponse sensor, double weight, bool leaf) {
+  const size_t at = index(x, y);
+  Pixel& pixel = pixels_[at];
+  if (!std::isfinite(sensor[0] + sensor[1] + sensor[2] + sensor[3])) {
+    sensor.value = {};
     ++pixel.not_finite;
   }
-  const double largest = std::max({sensor[0], sensor[1], sensor[2]}) * settings_.exposure;
+  const double largest = std::max({sensor[0], sensor[1], sensor[2], sensor[3]}) * settings_.exposure;
   const double scale =
       weight * settings_.exposure * (largest > settings_.max_component ? settings_.max_component / largest : 1);
-  for (double& value : sensor) value *= scale;
-  for (size_t c = 0; c < 3; ++c) pixel.sum[c] += sensor[c];
-  for (size_t k = 0; k < 6; ++k) pixel.products[k] += sensor[kPairs[k][0]] * sensor[kPairs[k][1]];
+  for (double& value : sensor.value) value *= scale;
+  if (band_count_ == 0)
+    add_color(pixel, sensor);
+  else
+    add_bands(at, sensor);
   pixel.weight += weight;
   pixel.leaf += leaf ? 1 : 0;
   ++pixel.samples;
+}
+
+void Film::add_color(Pixel& pixel, const SensorResponse& sensor) {
+  for (size_t c = 0; c < 3; ++c) pixel.sum[c] += sensor[c];
+  for (size_t k = 0; k < 6; ++k) pixel.products[k] += sensor[kPairs[k][0]] * sensor[kPairs[k][1]];
+}
+
+void Film::add_bands(size_t pixel, const SensorResponse& sensor) {
+  for (size_t i = 0; i < size_t(sensor.count); ++i) {
+    assert(sensor.channel[i] < band_count_);
+    BandSums& band = bands_[pixel * band_count_ + sensor.channel[i]];
+    band.sum += sensor[i];
+    band.square += sensor[i] * sensor[i];
+    ++band.samples;
+  }
+}
+
+Film::BandMean Film::band_mean(int x, int y, size_t band) const {
+  const Pixel& p = pixel(x, y);
+  const BandSums& b = bands_[index(x, y) * band_count_ + band];
+  if (b.samples == 0 || p.weight == 0) return {};
+  // Few samples see a band, and filter weights may be negative: those of all samples say what one weighs.
+  const double n = double(b.samples), weight = n * p.weight / double(p.samples);
+  const double spread = b.samples < 2 ? 0 : std::max(b.square - b.sum * b.sum / n, 0.0);
+  return {b.sum / weight, spread * n / (std::max(n - 1, 1.0) * weight * weight), b.samples};
 }
 
 std::array<double, 3> Film::mean(int x, int y) const {

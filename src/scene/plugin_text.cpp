@@ -84,6 +84,10 @@ PluginText parse_plugin_text(const std::string& text, const Location& where) {
   if (result.name.empty()) fail(where, "a plugin's name and parameters look like NAME,parameter=value: {}", text);
   for (size_t i = 1; i < parts.size(); ++i) {
     const size_t equals = parts[i].find('=');
+    if (equals == std::string::npos && !parts[i].empty() && !result.params.empty()) {
+      result.params.back().second += ',' + parts[i];  // a list goes on
+      continue;
+    }
     if (equals == std::string::npos || equals == 0 || equals + 1 == parts[i].size())
       fail(where, "a parameter looks like name=value: \"{}\" in {}", parts[i], text);
     result.params.emplace_back(parts[i].substr(0, equals), parts[i].substr(equals + 1));

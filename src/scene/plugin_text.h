@@ -8,7 +8,8 @@
 
 namespace frond {
 
-/// A plugin with parameters in one word of a command line: `hero`, or `hero,lambdamin=400,lambdamax=700`.
+/// A plugin with parameters in one word of a command line: `hero`, `hero,lambdamin=400,lambdamax=700`, or
+/// `bands,wavelengths=450,550,670`: what has no name of its own goes on with the list before it.
 struct PluginText {
   std::string name;
   std::vector<std::pair<std::string, std::string>> params;

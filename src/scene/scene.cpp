@@ -22,14 +22,22 @@ constexpr Param kOptionParams[] = {
 };
 constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
 
-/// Binding that needs no look-up of anything in the scene.
-class NoResolver final : public ParamResolver {
+/// Binding of what can refer to files, but to nothing else of the scene.
+class OptionResolver final : public ParamResolver {
+ public:
+  explicit OptionResolver(const SceneDescription& description) : description_(description) {}
+
+ private:
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
   std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
   std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
   SpectrumPtr spectrum(const ParsedParam& p, bool) override { none(p.where); }
-  std::filesystem::path file(const std::string&, const Location& w) override { none(w); }
+  std::filesystem::path file(const std::string& name, const Location& w) override {
+    return description_.resolve(name, w);
+  }
   [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
+
+  const SceneDescription& description_;
 };
 
 /// What the new material does not know of the old one's parameters is left out, with a warning: the two describe the
@@ -80,8 +88,8 @@ void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>&
 
 /// The strategy, of the command line or else the scene's options.
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
-                                                     const Registry& registry) {
-  NoResolver resolver;
+                                                     const SceneDescription& description, const Registry& registry) {
+  OptionResolver resolver(description);
   const PluginText choice = parse_plugin_text(text, where);
   const WavelengthsInfo& info = registry.wavelengths.get(choice.name, where);
   ParsedPlugin plugin{choice.name, where, {}};
@@ -139,7 +147,7 @@ class SceneBuilder {
   }
 
   void build_options() {
-    NoResolver resolver;
+    OptionResolver resolver(description_);
     const Params p(kOptions, {"Option", {}, description_.options}, resolver);
     const bool from_scene = overrides_.wavelengths.empty();
     const Location where = from_scene ? p.where("wavelengths") : Location{};
@@ -147,7 +155,7 @@ class SceneBuilder {
     scene_.wavelengths_name_ = text;
     seed_ = overrides_.seed;
     if (!seed_ && p.given("seed")) seed_ = uint64_t(p.integer("seed"));
-    scene_.wavelengths_ = make_wavelengths(text, where, registry_);
+    scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
   }
 
   void build_view(SceneResolver& resolver) {
@@ -302,13 +310,14 @@ class SceneBuilder {
 };
 
 FilmSettings Scene::film_settings(const SceneDescription& description, const Registry& registry) {
-  NoResolver resolver;
+  OptionResolver resolver(description);
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
   return info.make(Params(info, description.film, resolver));
 }
 
 std::vector<size_t> Scene::leaf_materials(const SceneDescription& description, const Registry& registry) {
-  const auto wavelengths = make_wavelengths("smpte", {}, registry);  // what is a leaf does not hang on them
+  const auto wavelengths =
+      make_wavelengths("smpte", {}, description, registry);  // what is a leaf does not hang on them
   SceneResolver resolver(description, registry, *wavelengths);
   std::vector<size_t> leaves;
   for (size_t i = 0; i < description.materials.size(); ++i) {

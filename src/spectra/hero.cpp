@@ -76,7 +76,7 @@ class Hero final : public WavelengthStrategy {
   }
   Interval range_nm() const override { return density_.range_nm(); }
   std::span<const float> fixed_nm() const override { return {}; }
-  Triple sensor(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const override {
+  SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const override {
     Triple xyz{};
     for (size_t i = 0; i < kLanes; ++i) {
       const Triple bar = cie_xyz(double(lambda.nm[i]));

@@ -58,7 +58,7 @@ class Meyer final : public WavelengthStrategy {
   SampledWavelengths sample(float) const override { return lambda_; }
   Interval range_nm() const override { return {double(lambda_.nm.front()), double(lambda_.nm.back())}; }
   std::span<const float> fixed_nm() const override { return lambda_.nm; }
-  Triple sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const override {
+  SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const override {
     Triple xyz{};
     for (size_t i = 0; i < kLanes; ++i)
       for (size_t c = 0; c < 3; ++c) xyz[c] += double(radiance.v[i]) * quadrature_.xyz[i][c];
@@ -68,7 +68,7 @@ class Meyer final : public WavelengthStrategy {
 
  private:
   void keep_d65() {
-    const Triple ours = sensor(unit_d65()->sample(lambda_), lambda_), exact = to_xyz(*unit_d65());
+    const Triple ours = sensor(unit_d65()->sample(lambda_), lambda_).color(), exact = to_xyz(*unit_d65());
     for (Triple& xyz : quadrature_.xyz)
       for (size_t c = 0; c < 3; ++c) xyz[c] *= exact[c] / ours[c];
   }

@@ -38,7 +38,7 @@ class Smpte final : public WavelengthStrategy {
     return {double(*min), double(*max)};
   }
   std::span<const float> fixed_nm() const override { return nm_; }
-  Triple sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const override {
+  SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths&) const override {
     Triple rgb;
     for (size_t i = 0; i < 3; ++i) rgb[i] = double(radiance.v[i]) * per_radiance_[i];
     return rgb;

@@ -29,7 +29,7 @@ class StratifiedWavelengths final : public WavelengthStrategy {
   }
   Interval range_nm() const override { return {400, 700}; }
   std::span<const float> fixed_nm() const override { return {}; }
-  std::array<double, 3> sensor(const SampledSpectrum&, const SampledWavelengths&) const override { return {}; }
+  SensorResponse sensor(const SampledSpectrum&, const SampledWavelengths&) const override { return {}; }
   std::string_view film_space() const override { return "XYZ"; }
 };
 

@@ -102,6 +102,16 @@ TEST(LeafLambert, InterpolatesWhereWavelengthsVary) {
   }
 }
 
+TEST(LeafLambert, IsExactAtTheWavelengthsOfAList) {
+  Ready leaf("leaf_lambert", {}, "bands");
+  for (int lane = 0; lane < 4; ++lane) {
+    const double nm = double(leaf.lambda().nm[static_cast<size_t>(lane)]);
+    const Pair mean = diffuse_mean(leaf::find_specimen("soybean")->params, nm, true);
+    EXPECT_NEAR(share(leaf, kDown, kDown, lane), mean.reflected, 2e-5) << nm;
+    EXPECT_NEAR(share(leaf, kDown, kUp, lane), mean.transmitted, 2e-5) << nm;
+  }
+}
+
 TEST(LeafLambert, RefusesTexturesByName) {
   EXPECT_THAT(error_of([] { Ready("leaf_lambert", {texture("chlorophylla", {"3:30"})}); }),
               HasSubstr("leaf_lambert takes no textures"));

@@ -24,7 +24,7 @@ Triple response(const WavelengthStrategy& meyer, int lane) {
   const SampledWavelengths lambda = meyer.sample(0.5f);
   SampledSpectrum unit;
   unit[lane] = 1;
-  return kOpponent * meyer.sensor(unit, lambda);
+  return kOpponent * meyer.sensor(unit, lambda).color();
 }
 
 // As they are quoted from the paper, whose weights are per 101 nm. Its sums were coarser than these integrals: by steps
@@ -60,7 +60,7 @@ Triple by_quadrature(const WavelengthStrategy& meyer, int degree) {
   const SampledWavelengths lambda = meyer.sample(0.5f);
   SampledSpectrum radiance;
   for (size_t i = 0; i < 4; ++i) radiance.v[i] = static_cast<float>(power(double(lambda.nm[i]), degree));
-  return kOpponent * meyer.sensor(radiance, lambda);
+  return kOpponent * meyer.sensor(radiance, lambda).color();
 }
 
 TEST(Meyer, IntegratesPolynomialsUpToTheDegreeOfEachAxis) {
@@ -79,7 +79,7 @@ TEST(Meyer, KeepsTheColorOfD65WhereItIsAsked) {
   const Triple white = to_xyz(*unit_d65());
   const auto seen = [](const WavelengthStrategy& meyer) {
     const SampledWavelengths lambda = meyer.sample(0);
-    return meyer.sensor(unit_d65()->sample(lambda), lambda);
+    return meyer.sensor(unit_d65()->sample(lambda), lambda).color();
   };
   const Triple kept = seen(*make_meyer("D65")), published = seen(*make_meyer("published"));
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(kept[c], white[c], 1e-12);

@@ -30,7 +30,7 @@ std::unique_ptr<WavelengthStrategy> make_hero(double min_nm, double max_nm) {
 TEST(Smpte, WhiteUnderD65IsWhite) {
   const auto smpte = make("smpte");
   const SampledWavelengths lambda = smpte->sample(0.3f);
-  const Triple rgb = smpte->sensor(unit_d65()->sample(lambda), lambda);
+  const Triple rgb = smpte->sensor(unit_d65()->sample(lambda), lambda).color();
   for (const double c : rgb) EXPECT_DOUBLE_EQ(c, 1);
 }
 
@@ -52,7 +52,7 @@ TEST(Smpte, TakesOtherWavelengthsInWhichWhiteIsWhiteToo) {
   EXPECT_THAT(smpte->fixed_nm(), ::testing::ElementsAre(400, 551, 464.7f));
   EXPECT_EQ(smpte->range_nm().min, 400);
   EXPECT_EQ(smpte->range_nm().max, 551);
-  for (const double c : smpte->sensor(unit_d65()->sample(lambda), lambda)) EXPECT_DOUBLE_EQ(c, 1);
+  for (const double c : smpte->sensor(unit_d65()->sample(lambda), lambda).color()) EXPECT_DOUBLE_EQ(c, 1);
 }
 
 TEST(Hero, DensityIsTheKnownOneOverTheVisible) {
@@ -100,7 +100,7 @@ Estimated estimate(const WavelengthStrategy& strategy, const Spectrum& s, int n)
   Triple sum{}, square{};
   for (int k = 0; k < n; ++k) {
     const SampledWavelengths lambda = strategy.sample(rng.uniform());
-    const Triple xyz = strategy.sensor(s.sample(lambda), lambda);
+    const Triple xyz = strategy.sensor(s.sample(lambda), lambda).color();
     for (size_t c = 0; c < 3; ++c) sum[c] += xyz[c], square[c] += xyz[c] * xyz[c];
   }
   Estimated e;

@@ -1,0 +1,138 @@
+#include "cli/spectral_image.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "spectra/analytic.h"
+#include "spectra/band_preview.h"
+#include "spectra/cie.h"
+#include "spectra/color_space.h"
+
+namespace frond {
+namespace {
+
+constexpr std::string_view kPrefix = "S0.", kUnit = "nm";
+
+/// "551,000000nm"
+std::string wavelength_text(double nm) {
+  std::string text = fmt::format("{:.6f}", nm);
+  std::ranges::replace(text, '.', ',');
+  return text.append(kUnit);
+}
+
+/// A response as the layout writes spectra, between its points: "450nm:0.5;451nm:0.75;"
+std::string sensitivity_text(const Spectrum& response) {
+  constexpr int kPoints = 256;
+  const Interval range = response.range_nm();
+  std::string text;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double nm = std::lerp(range.min, range.max, double(i) / kPoints);
+    text += fmt::format("{:.6g}nm:{:.6g};", nm, response.at(static_cast<float>(nm)));
+  }
+  return text;
+}
+
+void add_preview(const Film& film, std::span<const Triple> xyz, Image& image, size_t first_channel) {
+  const Matrix3& to_rgb = find_color_space("srgb")->rgb_from_xyz;
+  const Crop& crop = film.settings().crop;
+  const double largest = film.settings().largest_value();
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      Triple sum{};
+      for (size_t b = 0; b < xyz.size(); ++b)
+        for (size_t c = 0; c < 3; ++c) sum[c] += xyz[b][c] * film.band_mean(crop.x0 + x, crop.y0 + y, b).mean;
+      const Triple rgb = to_rgb * sum;
+      for (size_t c = 0; c < 3; ++c) image.at(x, y, first_channel + c) = float(std::clamp(rgb[c], -largest, largest));
+    }
+}
+
+/// Of the image's channels, the spectral ones.
+struct SpectralChannel {
+  double nm;
+  size_t index;
+};
+std::vector<SpectralChannel> spectral_channels(const Image& image) {
+  std::vector<SpectralChannel> channels;
+  for (size_t i = 0; i < image.channels.size(); ++i)
+    if (const auto nm = wavelength_of_channel(image.channels[i])) channels.push_back({*nm, i});
+  std::ranges::sort(channels, {}, &SpectralChannel::nm);
+  return channels;
+}
+
+size_t nearest_channel(const std::vector<SpectralChannel>& channels, double nm, const std::string& path) {
+  constexpr double kFarthest_nm = 10;
+  const auto distance = [nm](const SpectralChannel& c) { return std::abs(c.nm - nm); };
+  const auto nearest = std::ranges::min_element(channels, {}, distance);
+  if (distance(*nearest) <= kFarthest_nm) return nearest->index;
+  std::vector<double> all;
+  for (const SpectralChannel& c : channels) all.push_back(c.nm);
+  fail({}, "{} has no band within {} nm of {} nm; its bands are at {} nm", path, kFarthest_nm, nm,
+       fmt::join(all, ", "));
+}
+
+}  // namespace
+
+std::string spectral_channel(double nm) { return std::string(kPrefix) + wavelength_text(nm); }
+
+std::optional<double> wavelength_of_channel(const std::string& name) {
+  if (!name.starts_with(kPrefix) || !name.ends_with(kUnit)) return {};
+  std::string number = name.substr(kPrefix.size(), name.size() - kPrefix.size() - kUnit.size());
+  std::ranges::replace(number, ',', '.');
+  double nm = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), nm);
+  if (error != std::errc() || end != number.data() + number.size()) return {};
+  return nm;
+}
+
+Image spectral_image(const Film& film, std::span<const Band> bands) {
+  std::vector<std::string> channels;
+  for (const Band& band : bands) channels.push_back(spectral_channel(band.nm));
+  for (const Band& band : bands) channels.push_back("variance." + wavelength_text(band.nm));
+  channels.push_back("leaf");
+  const std::vector<Triple> xyz = xyz_of_bands(bands);
+  if (!xyz.empty()) channels.insert(channels.end(), {"R", "G", "B"});
+
+  const Crop& crop = film.settings().crop;
+  const double largest = film.settings().largest_value();
+  Image image(crop.width(), crop.height(), std::move(channels));
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      for (size_t b = 0; b < bands.size(); ++b) {
+        const Film::BandMean m = film.band_mean(crop.x0 + x, crop.y0 + y, b);
+        image.at(x, y, b) = float(std::clamp(m.mean, -largest, largest));
+        image.at(x, y, bands.size() + b) = float(std::min(m.variance, largest));
+      }
+      image.at(x, y, 2 * bands.size()) = float(film.leaf_fraction(crop.x0 + x, crop.y0 + y));
+    }
+  if (!xyz.empty()) add_preview(film, xyz, image, 2 * bands.size() + 1);
+  return image;
+}
+
+std::string preview_space(std::span<const Band> bands) {
+  return xyz_of_bands(bands).empty() ? std::string() : std::string(find_color_space("srgb")->linear_name);
+}
+
+std::map<std::string, std::string> spectral_attributes(std::span<const Band> bands) {
+  std::map<std::string, std::string> text{{"spectralLayoutVersion", "1.0"}, {"emissiveUnits", "W.m^-2.sr^-1"}};
+  for (const Band& band : bands)
+    if (band.response) text[spectral_channel(band.nm)] = sensitivity_text(*band.response);
+  return text;
+}
+
+Image false_color_image(const ImageFile& file, const std::string& path, std::span<const double> nm) {
+  const auto channels = spectral_channels(file.image);
+  if (channels.empty()) fail({}, "{} has no bands: frond render --wavelengths bands makes images that do", path);
+  const auto per_radiance = float(photometric(ConstantSpectrum(1)));
+  Image image(file.image.width, file.image.height, {"R", "G", "B"});
+  for (size_t c = 0; c < 3; ++c) {
+    const size_t channel = nearest_channel(channels, nm[c], path);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) image.at(x, y, c) = file.image.at(x, y, channel) * per_radiance;
+  }
+  return image;
+}
+
+}  // namespace frond

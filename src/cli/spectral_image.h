@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "core/wavelengths.h"
+#include "scene/film.h"
+#include "scene/image_file.h"
+
+namespace frond {
+
+/// Name of a channel of radiance in the layout of Fichet, Pacanowski and Wilkie 2021, "An OpenEXR Layout for Spectral
+/// Images": S0.551,000000nm.
+std::string spectral_channel(double nm);
+/// The wavelength (nm) that such a name says; nothing for other names, and for other units than nm.
+std::optional<double> wavelength_of_channel(const std::string& name);
+
+/// A film of bands in that layout: radiance by wavelength, its variance as variance.551,000000nm, `leaf`, and, where
+/// the bands cover the visible, linear sRGB as R G B for programs that know no spectra.
+Image spectral_image(const Film& film, std::span<const Band> bands);
+/// Colour space of those R G B; empty: there are none.
+std::string preview_space(std::span<const Band> bands);
+/// What the layout asks of the header: its version, units, and each channel's sensitivity where it has one.
+std::map<std::string, std::string> spectral_attributes(std::span<const Band> bands);
+
+/// Three bands of an image of that layout as R G B: those nearest to `nm`, scaled so that a white surface in
+/// equal-energy light of luminance 1 is 1. Throws InputError that lists the bands where none lies within 10 nm.
+Image false_color_image(const ImageFile& file, const std::string& path, std::span<const double> nm);
+
+}  // namespace frond

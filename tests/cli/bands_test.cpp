@@ -1,0 +1,172 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "cli/spectral_image.h"
+#include "scene/image_file.h"
+#include "tests/cli/command.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(SpectralChannels, AreNamedAfterTheLayout) {
+  EXPECT_EQ(spectral_channel(551), "S0.551,000000nm");
+  EXPECT_EQ(spectral_channel(1032.25), "S0.1032,250000nm");
+  EXPECT_EQ(wavelength_of_channel("S0.1032,250000nm"), 1032.25);
+  EXPECT_EQ(wavelength_of_channel("S0.551nm"), 551);
+  for (const char* other : {"R", "S1.551,000000nm", "variance.551,000000nm", "S0.nm", "S0.5x1nm", "S0.551"})
+    EXPECT_FALSE(wavelength_of_channel(other)) << other;
+}
+
+/// A plate that fills the view and reflects half at 900 nm and 0.1 below 700, in equal-energy light from everywhere.
+class BandCommands : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("SOURCE_DATE_EPOCH", "0", 1);
+    folder_.write("scene.pbrt", R"(
+LookAt 0 0 1  0 0 0  0 1 0
+Camera "orthographic"
+Film "rgb" "integer xresolution" 6 "integer yresolution" 4
+Sampler "paddedsobol" "integer pixelsamples" 16
+Integrator "path" "integer maxdepth" 2 "bool sampledirect" false
+WorldBegin
+LightSource "infinite" "spectrum L" [300 1 2500 1]
+Material "diffuse" "spectrum reflectance" [300 0.1 700 0.1 900 0.5 2500 0.5]
+Shape "disk" "float radius" 9
+)");
+    folder_.write("nir.spd", "840 0  850 1  950 1  960 0");
+  }
+  std::string path(const std::string& name) const { return folder_.name_of(name); }
+  Outcome render(const std::string& wavelengths, const std::string& output, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"render", path("scene.pbrt"), "--no-cache",    "-q",
+                                       "-o",     path(output),       "--wavelengths", wavelengths};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return frond_command(arguments);
+  }
+  /// Radiance of a white plate in this light.
+  static double white() { return 1 / 106.856895; }  // over the integral of ybar
+
+  TestFolder folder_{"bands"};
+};
+
+TEST_F(BandCommands, GiveOneChannelForEachBandAndReadBack) {
+  const Outcome o = render("bands,wavelengths=450,551,640,800,900,2200", "a.exr");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const ImageFile file = read_image(path("a.exr"), {});
+  for (const auto& [nm, reflectance] : {std::pair{450., 0.1}, {551., 0.1}, {800., 0.3}, {900., 0.5}, {2200., 0.5}}) {
+    const auto channel = file.image.channel(spectral_channel(nm));
+    ASSERT_TRUE(channel) << nm;
+    // Every scattered ray meets the sky: nothing is left to chance.
+    for (int x = 0; x < 6; ++x) EXPECT_NEAR(double(file.image.at(x, 1, *channel)) / white(), reflectance, 1e-4) << nm;
+    EXPECT_TRUE(file.image.channel("variance." + spectral_channel(nm).substr(3)));
+  }
+  EXPECT_TRUE(file.image.channel("leaf"));
+  EXPECT_EQ(file.header.text.at("spectralLayoutVersion"), "1.0");
+  EXPECT_EQ(file.header.text.at("emissiveUnits"), "W.m^-2.sr^-1");
+  EXPECT_EQ(file.header.text.at("frond:wavelengths"), "bands,wavelengths=450,551,640,800,900,2200");
+}
+
+TEST_F(BandCommands, ShowColorsWhereTheBandsCoverTheVisible) {
+  ASSERT_EQ(render("bands,wavelengths=450,550,650,700", "a.exr").code, 0);
+  const ImageFile visible = read_image(path("a.exr"), {});
+  EXPECT_EQ(visible.header.color_space, "linear sRGB");
+  // A flat spectrum of 0.1 under equal-energy light, whose luminance is 0.1.
+  double luminance = 0;
+  for (const auto& [name, weight] : {std::pair{"R", 0.2126}, {"G", 0.7152}, {"B", 0.0722}})
+    luminance += weight * double(visible.image.at(0, 0, visible.image.channel(name).value()));
+  EXPECT_NEAR(luminance, 0.1, 1e-3);
+  ASSERT_EQ(render("bands,wavelengths=800,850,900,950,1000", "b.exr").code, 0);
+  EXPECT_FALSE(read_image(path("b.exr"), {}).image.channel("R"));
+}
+
+TEST_F(BandCommands, TakeASensorsResponsesAndWriteThem) {
+  const Outcome o = render("bands,responses=" + path("nir.spd"), "a.exr", {"--spp", "64"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  const ImageFile file = read_image(path("a.exr"), {});
+  const auto channel = file.image.channel(spectral_channel(900));
+  ASSERT_TRUE(channel) << ::testing::PrintToString(file.image.channels);
+  EXPECT_THAT(file.header.text.at(spectral_channel(900)), HasSubstr("900nm:1;"));
+  // The mean of the reflectance, linear from 0.38 at 840 nm to 0.5 at 900, under the trapezium: by Simpson's rule
+  // 0.4845.
+  double sum = 0, area = 0;
+  for (double nm = 840.05; nm < 960; nm += 0.1) {
+    const double s = std::clamp(std::min(nm - 840, 960 - nm) / 10, 0.0, 1.0);
+    sum += s * std::min(0.1 + (nm - 700) * 0.002, 0.5), area += s;
+  }
+  double mean = 0, error = 0;
+  const auto variance = file.image.channel("variance.900,000000nm").value();
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 6; ++x)
+      mean += double(file.image.at(x, y, *channel)), error += double(file.image.at(x, y, variance));
+  // 5 standard errors: one false alarm in 1.7 million seeds, and this one is fixed.
+  EXPECT_NEAR(mean / 24 / white(), sum / area, 5 * std::sqrt(error) / 24 / white());
+}
+
+TEST_F(BandCommands, AreNoPictureUntilThreeAreChosen) {
+  const Outcome png = render("bands,wavelengths=650,551,900", "a.png");
+  EXPECT_EQ(png.code, 1);
+  EXPECT_THAT(png.err, HasSubstr("frond convert --bands"));
+  ASSERT_EQ(render("bands,wavelengths=650,551,900", "a.exr").code, 0);
+  const auto convert = [&](const std::string& bands, const std::string& to) {
+    return frond_command({"convert", path("a.exr"), "--bands", bands, "-o", path(to)});
+  };
+  ASSERT_EQ(convert("899,650,551", "b.exr").code, 0);
+  const ImageFile shown = read_image(path("b.exr"), {});
+  EXPECT_NEAR(shown.image.at(0, 0, shown.image.channel("R").value()), 0.5f, 1e-4);
+  EXPECT_NEAR(shown.image.at(0, 0, shown.image.channel("G").value()), 0.1f, 1e-4);
+  EXPECT_EQ(convert("899,650,551", "b.png").code, 0);
+  EXPECT_THAT(convert("800,650,551", "c.png").err, HasSubstr("no band within 10 nm of 800 nm"));
+  EXPECT_THAT(convert("800,650", "c.png").code, 1);
+  EXPECT_EQ(frond_command({"convert", path("b.exr"), "--bands", "899,650,551", "-o", path("d.png")}).code, 1);
+}
+
+TEST_F(BandCommands, NeedSamplesEnoughToSeeEachBand) {
+  const Outcome o = render("bands,lambdamin=400,lambdamax=500,step=1", "a.exr", {"--spp", "25"});
+  EXPECT_EQ(o.code, 1);
+  EXPECT_THAT(o.err, HasSubstr("101 bands need 26 samples"));
+  EXPECT_EQ(render("bands,lambdamin=400,lambdamax=500,step=1", "a.exr", {"--spp", "26"}).code, 0);
+}
+
+TEST_F(BandCommands, NameDataThatEndTooSoon) {
+  folder_.write("d65.pbrt", R"(WorldBegin LightSource "infinite" "spectrum L" "stdillum-D65")");
+  const Outcome o =
+      frond_command({"render", path("d65.pbrt"), "-o", path("a.exr"), "--wavelengths", "bands,wavelengths=551,900"});
+  EXPECT_EQ(o.code, 1);
+  EXPECT_THAT(o.err, HasSubstr("is known from 360 to 830 nm, the render needs 551 to 900 nm"));
+}
+
+TEST_F(BandCommands, GiveLeavesTheSameValuesWhetherWavelengthsAreFixedOrInTurn) {
+  folder_.write("leaf.pbrt", R"(
+LookAt 0 0 1  0 0 0  0 1 0
+Camera "orthographic"
+Film "rgb" "integer xresolution" 2 "integer yresolution" 2
+WorldBegin
+LightSource "infinite" "spectrum L" [300 1 2500 1]
+Material "leaf_lambert"
+Shape "disk" "float radius" 9
+)");
+  const auto leaf = [&](const std::string& bands, const std::string& to) {
+    const Outcome o = frond_command({"render", path("leaf.pbrt"), "--no-cache", "-q", "--spp", "1024", "-o", path(to),
+                                     "--wavelengths", "bands,wavelengths=" + bands});
+    EXPECT_EQ(o.code, 0) << o.err;
+    const ImageFile file = read_image(path(to), {});
+    const auto at = [&](const std::string& name) {
+      return double(file.image.at(0, 0, file.image.channel(name).value()));
+    };
+    return std::pair{at(spectral_channel(711.3)), at("variance.711,300000nm")};
+  };
+  const auto [fixed, fixed_variance] = leaf("551,711.3", "a.exr");
+  const auto [in_turn, in_turn_variance] = leaf("500,551,600,711.3,800,1300", "b.exr");
+  // 5 standard errors: one false alarm in 1.7 million seeds, and this one is fixed.
+  EXPECT_NEAR(fixed, in_turn, 5 * std::sqrt(fixed_variance + in_turn_variance));
+}
+
+}  // namespace
+}  // namespace frond

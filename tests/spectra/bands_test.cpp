@@ -1,0 +1,214 @@
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/random.h"
+#include "spectra/analytic.h"
+#include "spectra/band_preview.h"
+#include "spectra/cie.h"
+#include "spectra/registry.h"
+#include "spectra/tabulated.h"
+#include "tests/support/bind.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::number;
+namespace fs = std::filesystem;
+
+/// Finds files under their own name.
+class OnlyFiles final : public ParamResolver {
+ public:
+  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
+  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
+  std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
+  SpectrumPtr spectrum(const ParsedParam& p, bool) override { none(p.where); }
+  fs::path file(const std::string& name, const Location&) override { return name; }
+
+ private:
+  [[noreturn]] static void none(const Location& where) { fail(where, "this test resolves files alone"); }
+};
+
+std::unique_ptr<WavelengthStrategy> make_bands(std::vector<ParsedParam> params) {
+  OnlyFiles resolver;
+  const WavelengthsInfo& info = PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("bands", {});
+  return info.make(Params(info, {"bands", {}, std::move(params)}, resolver));
+}
+
+std::unique_ptr<WavelengthStrategy> at(std::vector<double> nm) {
+  return make_bands({number("float", "wavelengths", std::move(nm))});
+}
+
+std::vector<double> wavelengths_of(const WavelengthStrategy& strategy) {
+  std::vector<double> nm;
+  for (const Band& band : strategy.bands()) nm.push_back(band.nm);
+  return nm;
+}
+
+TEST(Bands, AreTheWavelengthsAskedForInAscendingOrder) {
+  EXPECT_THAT(wavelengths_of(*at({850, 450, 2200})), ElementsAre(450, 850, 2200));
+  EXPECT_THAT(wavelengths_of(*make_bands({number("float", "lambdamin", {450}), number("float", "lambdamax", {475}),
+                                          number("float", "step", {12.5})})),
+              ElementsAre(450, 462.5, 475));
+  EXPECT_EQ(make_bands({})->bands().size(), 31u);
+  EXPECT_EQ(at({850, 450})->range_nm().min, 450);
+  EXPECT_EQ(at({850, 450})->range_nm().max, 850);
+}
+
+TEST(Bands, WhatContradictsItselfIsRefused) {
+  EXPECT_THAT(error_of([] { at({500, 500}); }), HasSubstr("two bands at 500 nm"));
+  EXPECT_THAT(error_of([] { at({2600}); }), HasSubstr("outside its range 300 to 2500 nm"));
+  EXPECT_THAT(error_of([] {
+                make_bands({number("float", "wavelengths", {500}), number("float", "step", {5})});
+              }),
+              HasSubstr("\"step\" is for evenly spaced wavelengths"));
+  EXPECT_THAT(error_of([] { make_bands({number("float", "lambdamin", {800})}); }), HasSubstr("below \"lambdamin\""));
+}
+
+TEST(Bands, FourAtMostAreTheSameForEveryPath) {
+  const auto bands = at({450, 550, 650, 850});
+  EXPECT_THAT(bands->fixed_nm(), ElementsAre(450, 550, 650, 850));
+  for (const uint64_t index : {0u, 1u, 7u})
+    EXPECT_THAT(bands->sample_in_turn(index, 0.7f).nm, ElementsAre(450, 550, 650, 850));
+  EXPECT_TRUE(at({450, 550, 650, 750, 850})->fixed_nm().empty());
+  EXPECT_EQ(at({450, 550, 650, 750, 850})->listed_nm().size(), 5u);
+}
+
+TEST(Bands, MoreAreDealtOutInTurn) {
+  for (const size_t count : {5u, 6u, 7u, 8u, 31u}) {
+    std::vector<double> nm;
+    for (size_t i = 0; i < count; ++i) nm.push_back(400 + 10 * double(i));
+    const auto bands = at(nm);
+    std::vector<int> seen(count);
+    for (uint64_t index = 0; index < count; ++index) {
+      const SampledWavelengths lambda = bands->sample_in_turn(index, 0.3f);
+      ASSERT_EQ(lambda.count, 4);
+      for (size_t lane = 0; lane < 4; ++lane) {
+        ++seen[lambda.band[lane]];
+        EXPECT_EQ(double(lambda.nm[lane]), nm[lambda.band[lane]]);
+      }
+    }
+    EXPECT_THAT(seen, ::testing::Each(4)) << count;
+  }
+}
+
+TEST(Bands, ByChanceEveryBandIsAsLikely) {
+  for (const size_t count : {5u, 6u, 8u}) {
+    std::vector<double> nm;
+    for (size_t i = 0; i < count; ++i) nm.push_back(400 + 10 * double(i));
+    const auto bands = at(nm);
+    std::vector<int> seen(count);
+    for (size_t i = 0; i < 10 * count; ++i)
+      for (const uint16_t band : bands->sample((static_cast<float>(i) + 0.5f) / (10 * static_cast<float>(count))).band)
+        ++seen[band];
+    EXPECT_THAT(seen, ::testing::Each(40)) << count;
+  }
+}
+
+TEST(Bands, LanesFeedTheirOwnChannels) {
+  const auto bands = at({400, 500, 600, 700, 800, 900});
+  const SampledWavelengths lambda = bands->sample_in_turn(1, 0);
+  SampledSpectrum radiance;
+  for (int i = 0; i < 4; ++i) radiance[i] = float(i + 1);
+  const SensorResponse r = bands->sensor(radiance, lambda);
+  EXPECT_EQ(r.count, 4);
+  EXPECT_THAT(r.channel, ElementsAre(4, 5, 0, 1));
+  EXPECT_THAT(r.value, ElementsAre(1, 2, 3, 4));
+}
+
+class Responses : public ::testing::Test {
+ protected:
+  Responses() : folder_(fs::temp_directory_path() / fmt::format("frond_bands_{}", getpid())) {
+    fs::create_directory(folder_);
+  }
+  ~Responses() override { fs::remove_all(folder_); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  static std::unique_ptr<WavelengthStrategy> make(std::vector<std::string> files) {
+    return make_bands({{"string", "responses", {}, {}, std::move(files)}});
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Responses, AreSampledWithinTheirSupport) {
+  const auto bands = make({write("a.spd", "300 0  500 0  510 1  530 1  550 0  2000 0")});
+  ASSERT_EQ(bands->bands().size(), 1u);
+  EXPECT_TRUE(bands->fixed_nm().empty());
+  EXPECT_TRUE(bands->listed_nm().empty());
+  EXPECT_NEAR(bands->range_nm().min, 500, 1.7);
+  EXPECT_NEAR(bands->range_nm().max, 550, 1.7);
+  EXPECT_NEAR(bands->bands()[0].nm, 18300.0 / 35, 1e-3);  // of a trapezium
+  for (float u = 0; u < 1; u += 0.01f)
+    EXPECT_TRUE(bands->range_nm().contains(double(bands->sample_in_turn(0, u).nm[0])));
+}
+
+/// Mean response of each band to a spectrum, over evenly spaced u, and its exact value.
+TEST_F(Responses, FindTheMeanRadianceUnderEachResponse) {
+  const auto bands =
+      make({write("a.spd", "400 0  450 1  500 0"), write("b.spd", "420 0.2  700 0.9"), write("c.spd", "600 1  601 1"),
+            write("d.spd", "500 0 800 1 801 0"), write("e.spd", "650.25 0 650.5 1 650.75 0 900 0")});
+  ASSERT_EQ(bands->bands().size(), 5u);
+  const auto light = std::make_shared<BlackbodySpectrum>(3000);
+  constexpr int kSamples = 20000;
+  std::vector<double> sum(5), count(5);
+  for (int i = 0; i < kSamples; ++i) {
+    // Golden steps, so that what comes in turn and u have nothing to do with each other.
+    const float u = static_cast<float>(std::fmod(i * 0.6180339887498949, 1));
+    const SampledWavelengths lambda = bands->sample_in_turn(uint64_t(i), u);
+    const SensorResponse r = bands->sensor(light->sample(lambda), lambda);
+    for (size_t k = 0; k < size_t(r.count); ++k) sum[r.channel[k]] += r.value[k], ++count[r.channel[k]];
+  }
+  for (size_t b = 0; b < 5; ++b) {
+    const Band& band = bands->bands()[b];
+    double weighted = 0, area = 0;
+    for (double nm = 400.0005; nm < 900; nm += 0.001) {
+      const double s = nm > band.response->range_nm().min && nm < band.response->range_nm().max
+                           ? double(band.response->at(float(nm)))
+                           : 0;
+      weighted += s * double(light->at(float(nm)));
+      area += s;
+    }
+    EXPECT_EQ(count[b], kSamples * 4 / 5);
+    EXPECT_NEAR(sum[b] / count[b] / (weighted / area), 1, 2e-3) << band.nm;
+  }
+}
+
+TEST_F(Responses, ThatAreNothingAreRefused) {
+  EXPECT_THAT(error_of([&] { make({write("a.spd", "400 0  500 0")}); }), HasSubstr("0 at every wavelength"));
+  EXPECT_THAT(error_of([&] {
+                make({write("a.spd", "400 0 410 1 420 0"), write("b.spd", "400 0 410 1 420 0")});
+              }),
+              HasSubstr("two bands at 410 nm"));
+  EXPECT_THAT(error_of([&] { make({(folder_ / "none.spd").string()}); }), HasSubstr("cannot read spectrum file"));
+}
+
+TEST(BandPreview, IsTheColorOfTheSpectrumBetweenTheBands) {
+  const auto bands = make_bands(
+      {number("float", "lambdamin", {360}), number("float", "lambdamax", {830}), number("float", "step", {5})});
+  const std::vector<Triple> weights = xyz_of_bands(bands->bands());
+  ASSERT_EQ(weights.size(), 95u);
+  Triple xyz{};
+  for (size_t b = 0; b < weights.size(); ++b)
+    for (size_t c = 0; c < 3; ++c)
+      xyz[c] += weights[b][c] * double(unit_d65()->at(static_cast<float>(bands->bands()[b].nm)));
+  const Triple exact = to_xyz(*unit_d65());  // D65 is linear between steps of 5 nm
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(xyz[c], exact[c], 1e-5);
+}
+
+TEST(BandPreview, NeedsTheVisible) {
+  EXPECT_THAT(xyz_of_bands(at({450, 550, 650})->bands()), IsEmpty());
+  EXPECT_THAT(xyz_of_bands(at({550, 600, 650, 850})->bands()), IsEmpty());
+  EXPECT_EQ(xyz_of_bands(at({450, 550, 650, 850})->bands()).size(), 4u);
+}
+
+}  // namespace
+}  // namespace frond
