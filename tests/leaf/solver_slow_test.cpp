@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cstdlib>
 #include <mutex>
 #include <numbers>
@@ -44,15 +45,17 @@ double standard_error(double sum, double sum2, int64_t rays) {
   return std::sqrt((mean(sum2, rays) - m * m) / static_cast<double>(rays));
 }
 
-/// `batches` batches from number `first` on, each with rays of its own.
+/// `batches` batches from number `first` on, each with rays of its own, which no other angle and leaf shares: their
+/// errors would go the same way.
 Sums walk_many(const Tissue& tissue, double theta_deg, int64_t first, int64_t batches, const ThreadPool& pool) {
+  const uint64_t key = hash_key(std::bit_cast<uint64_t>(theta_deg), std::bit_cast<uint64_t>(tissue.optical_depth[2]));
   const double theta = theta_deg * std::numbers::pi / 180;
   const Vec3d wo{std::sin(theta), 0, std::cos(theta)};
   Sums all;
   std::mutex mutex;
   pool.for_each(batches, [&](int64_t i, int) {
     std::array<BatchRay, kBatch> batch;
-    walk_batch(tissue, wo, Absorption::weighted, 11, batch, static_cast<uint64_t>((first + i) * kBatch));
+    walk_batch(tissue, wo, Absorption::weighted, key, batch, static_cast<uint64_t>((first + i) * kBatch));
     Sums sums;
     sums.add(batch);
     const std::lock_guard lock(mutex);
