@@ -104,6 +104,14 @@ TEST_F(CompareCommand, ReplacesTheLeavesThatAreNamed) {
   EXPECT_THAT(compare({"--materials", "abm", "--leaf", "blad"}, scene).err, HasSubstr("did you mean \"blade\"?"));
 }
 
+TEST_F(CompareCommand, ALeafThatNobodySeesIsNoError) {
+  std::string scene(kLeafScene);
+  scene.replace(scene.find("NamedMaterial \"blade\"\n"), 0, "Translate 0 -5 0\n");
+  const Outcome o = compare({"--materials", "abm"}, scene);
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(file("index.html"), HasSubstr("There is nothing to draw"));
+}
+
 TEST_F(CompareCommand, BadRequestsAreRefused) {
   EXPECT_THAT(compare({"--materials", "leaf"}).err, HasSubstr("unknown material \"leaf\""));
   EXPECT_THAT(compare({"--materials", "abm,mood=weighted"}).err, HasSubstr("did you mean \"mode\"?"));

@@ -100,6 +100,12 @@ std::vector<PairedRender> prepared(const Study& study, const std::vector<Candida
   return renders;
 }
 
+void warn_of_lost_samples(const PairedRender& render, const Candidate& candidate, const Log& log) {
+  if (const int64_t count = render.film(0).not_finite() + render.film(1).not_finite(); count > 0)
+    log.warn({}, fmt::format("{}: {} samples were too bright for a number, or none at all, and count as black",
+                             candidate.label, count));
+}
+
 void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& bench, const ThreadPool& pool,
            const Log& log, Comparison& result) {
   for (uint64_t samples = 1; samples <= plan.top_samples; samples *= 2) {
@@ -116,7 +122,10 @@ void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& be
                            r.cost.cpu_seconds, r.errors[kAll][kRgb].total.root(), r.flip));
     }
   }
-  for (size_t i = 0; i < renders.size(); ++i) result.subjects[i].late = bench.pictures(renders[i]).mean();
+  for (size_t i = 0; i < renders.size(); ++i) {
+    result.subjects[i].late = bench.pictures(renders[i]).mean();
+    warn_of_lost_samples(renders[i], plan.candidates[i], log);
+  }
 }
 
 /// A sample's CPU time hardly hangs on how many there are.
@@ -146,6 +155,7 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request,
   result.reference.candidate = plan.reference;
   const ReferenceStore store(plan.cache, study.identity(plan.reference), log);
   render_reference(reference_render, store, plan, pool, result.reference);
+  warn_of_lost_samples(reference_render, plan.reference, log);
   const Bench bench(reference_render, request.exposure_stops);
   bench.describe_reference(result.reference);
   result.width = result.reference.picture.width, result.height = result.reference.picture.height;

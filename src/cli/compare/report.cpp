@@ -24,19 +24,25 @@ struct Chart {
 };
 constexpr std::array<Chart, 3> kCharts{
     {{"rms", Measure::rms_all}, {"rms-leaf", Measure::rms_leaf}, {"flip", Measure::flip}}};
-constexpr int kChartWidth = 900, kChartHeight = 640;
+
+/// Below the axes the key takes a line for each candidate.
+constexpr int kChartWidth = 900, kAxesHeight = 560, kKeyLine = 20;
 
 std::string path_in(const std::filesystem::path& folder, const std::string& name) { return (folder / name).string(); }
 
 void write_charts(const std::filesystem::path& folder, const Comparison& c) {
+  const int height = kAxesHeight + kKeyLine * int(c.subjects.size() + 1);
   for (const Chart& chart : kCharts) {
+    if (!has_curves(c, chart.measure)) continue;
     const std::string script = curves_chart(c, chart.measure);
     for (const char* extension : {".svg", ".png"})
-      write_chart(path_in(folder, chart.name + std::string(extension)), kChartWidth, kChartHeight, script);
+      write_chart(path_in(folder, chart.name + std::string(extension)), kChartWidth, height, script);
   }
 }
 
-std::string embedded_chart(const std::filesystem::path& folder, const Chart& chart, const char* description) {
+std::string embedded_chart(const std::filesystem::path& folder, const Comparison& c, const Chart& chart,
+                           const char* description) {
+  if (!has_curves(c, chart.measure)) return "<p>There is nothing to draw: no error was seen.</p>";
   const std::string svg = read_file_bytes(path_in(folder, chart.name + std::string(".svg")), {});
   return fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">", html_text(description),
                      base64({reinterpret_cast<const unsigned char*>(svg.data()), svg.size()}));
@@ -126,9 +132,9 @@ std::string page(const std::filesystem::path& folder, const Comparison& c) {
                  {"css", std::string(page_css)},
                  {"verdict", html_text(verdict(c))},
                  {"setting", setting(c)},
-                 {"chart_rms_all", embedded_chart(folder, kCharts[0], "RMS error against CPU time, all pixels")},
-                 {"chart_rms_leaf", embedded_chart(folder, kCharts[1], "RMS error against CPU time, leaf pixels")},
-                 {"chart_flip", embedded_chart(folder, kCharts[2], "FLIP against CPU time")},
+                 {"chart_rms_all", embedded_chart(folder, c, kCharts[0], "RMS error against CPU time, all pixels")},
+                 {"chart_rms_leaf", embedded_chart(folder, c, kCharts[1], "RMS error against CPU time, leaf pixels")},
+                 {"chart_flip", embedded_chart(folder, c, kCharts[2], "FLIP against CPU time")},
                  {"caption_rms", caption_rms(c)},
                  {"caption_flip", caption_flip(c)},
                  {"tables", tables_html(c)},

@@ -20,7 +20,7 @@
   const pictures = data.pictures.map(p => ({ name: p.name, rgb: decode(p.rgb) }));
 
   const state = { a: 0, b: Math.min(1, pictures.length - 1), mode: 'wipe', wipe: 0.5, showB: false,
-    exposure: data.exposure, zoom: Math.max(1, Math.min(8, Math.round(640 / width))), scale: -4 };
+    exposure: data.exposure, zoom: Math.max(1, Math.min(8, Math.round(640 / width))), scale: 0 };
 
   // Linear SMPTE-C to the codes of an sRGB display (IEC 61966-2-1).
   const m = data.srgb_from_smpte;
@@ -54,6 +54,15 @@
     }
     return out;
   }
+
+  // The scale at which all but the largest fiftieth of the first and last picture's differences fits.
+  function fittingScale() {
+    const a = pictures[0].rgb, b = pictures[pictures.length - 1].rgb;
+    const gaps = Float32Array.from({ length: width * height }, (_, i) => Math.abs(luminance(a, i) - luminance(b, i))).sort();
+    const large = gaps[Math.floor(0.98 * gaps.length)];
+    return Math.min(0, Math.max(-9, Math.ceil(2 * 3 * Math.log10(large || 1)) / 2));
+  }
+  state.scale = fittingScale();
 
   const view = $('view'), context = view.getContext('2d');
   const scratch = document.createElement('canvas');
