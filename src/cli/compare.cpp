@@ -24,7 +24,7 @@ using compare::StudyOptions;
 
 /// The analog walk's expectation with far less noise.
 constexpr const char* kReference = "abm,mode=weighted";
-constexpr const char* kCandidates = "abm;abm,mode=weighted;leaf_simplified";
+constexpr const char* kCandidates = "abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert";
 
 struct CompareOptions {
   std::string scene, output, reference, cache, wavelengths, target;
