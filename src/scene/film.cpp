@@ -151,7 +151,7 @@ Film::Film(const FilmSettings& settings, const Location& where, size_t bands)
       bands_(pixels_.size() * bands) {}
 
 void Film::restore(std::span<const Pixel> pixels) {
-  assert(pixels.size() == pixels_.size());
+  assert(pixels.size() == pixels_.size() && band_count_ == 0);
   pixels_.assign(pixels.begin(), pixels.end());
 }
 

@@ -63,9 +63,9 @@ class Film {
   void add(int x, int y, SensorResponse sensor, double weight, bool leaf);
 
   const FilmSettings& settings() const { return settings_; }
-  /// All sums, row by row: what a render has to keep to be continued later.
+  /// All sums of a film of colours, row by row: what a render has to keep to be continued later.
   std::span<const Pixel> pixels() const { return pixels_; }
-  /// Goes on from sums that `pixels` gave of a film of the same size.
+  /// Goes on from sums that `pixels` gave of a film of the same size, both of colours.
   void restore(std::span<const Pixel> pixels);
   const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
   /// Mean sensor response, of a film of colours.
