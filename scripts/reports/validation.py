@@ -110,7 +110,8 @@ set yrange [0:1]
 set y2range [1:0]
 set ytics 0.2 nomirror
 set y2tics 0.2
-set key outside bottom center horizontal nobox maxrows 2
+set key at screen 0.5,0.015 bottom center horizontal nobox maxrows 2
+set bmargin 7
 plot {', '.join(plots)}
 """, (900, 640))
 
@@ -222,7 +223,7 @@ Each row compares two ways to the same figures: the sum of squared differences i
 number of comparisons (its own standard deviation is the root of twice that number).
 
 Hero wavelengths: four wavelengths whose indices differ far more than any leaf's (cuticle 1.3 to 1.7) on one walk, in
-detectors all over the sphere, against walks of one wavelength.
+detectors all over the sphere, against walks of one wavelength; "wide" is soybean with lobes of exponent 0.
 """)
     report.add(table(["comparison", "effort", "comparisons", "chi-square", "largest, in standard errors"], body))
 
@@ -324,7 +325,7 @@ render shows of it (`frond spectrophotometer --rendered`: light along wi, detect
 
 def pictures(report):
     body = []
-    spp = 16 if report.quick else 256
+    spp = 8 if report.quick else 32
     for scene in ("front", "back", "ambient"):
         halves = []
         for incident in ("traced", "light"):
