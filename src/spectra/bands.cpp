@@ -86,12 +86,13 @@ class Bands final : public WavelengthStrategy {
     return sample_in_turn(static_cast<uint64_t>(turn), static_cast<float>(turn - std::floor(turn)));
   }
 
+  /// The lanes lie a quarter of the bands apart: what is common to them is then noise of brightness, not of colour.
   SampledWavelengths sample_in_turn(uint64_t index, float u) const override {
-    const size_t lanes = std::min<size_t>(bands_.size(), kLanes), first = index * lanes % bands_.size();
+    const size_t count = bands_.size(), lanes = std::min<size_t>(count, kLanes);
     SampledWavelengths lambda;
     lambda.count = static_cast<int>(lanes);
     for (size_t i = 0; i < lanes; ++i) {
-      const size_t band = (first + i) % bands_.size();
+      const size_t band = count <= kLanes ? i : (index + i * count / kLanes) % count;
       lambda.band[i] = static_cast<uint16_t>(band);
       lambda.active[i] = true;
       const auto [nm, weight] =

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include "core/random.h"
 #include "spectra/analytic.h"
@@ -98,6 +99,20 @@ TEST(Bands, MoreAreDealtOutInTurn) {
   }
 }
 
+TEST(Bands, AreAllSeenByAQuarterAsManySamples) {
+  for (const size_t count : {5u, 6u, 7u, 8u, 9u, 31u}) {
+    std::vector<double> nm;
+    for (size_t i = 0; i < count; ++i) nm.push_back(400 + 10 * double(i));
+    const auto bands = at(nm);
+    for (const uint64_t first : {0u, 3u, 17u}) {
+      std::set<uint16_t> seen;
+      for (uint64_t i = 0; i < (count + 3) / 4; ++i)
+        for (const uint16_t band : bands->sample_in_turn(first + i, 0).band) seen.insert(band);
+      EXPECT_EQ(seen.size(), count) << first;
+    }
+  }
+}
+
 TEST(Bands, ByChanceEveryBandIsAsLikely) {
   for (const size_t count : {5u, 6u, 8u}) {
     std::vector<double> nm;
@@ -118,7 +133,7 @@ TEST(Bands, LanesFeedTheirOwnChannels) {
   for (int i = 0; i < 4; ++i) radiance[i] = float(i + 1);
   const SensorResponse r = bands->sensor(radiance, lambda);
   EXPECT_EQ(r.count, 4);
-  EXPECT_THAT(r.channel, ElementsAre(4, 5, 0, 1));
+  EXPECT_THAT(r.channel, ElementsAre(1, 2, 4, 5));
   EXPECT_THAT(r.value, ElementsAre(1, 2, 3, 4));
 }
 

@@ -19,8 +19,6 @@ PairedRender::PairedRender(const Study& study, const Candidate& candidate, uint6
       seeds_{first_seed, second_seed},
       films_{Film(study.film()), Film(study.film())} {
   setup_cpu_seconds_ = cpu_seconds() - setup_cpu_seconds_;
-  if (!scene_->wavelengths().bands().empty())
-    fail({}, "frond compare measures colours: \"{}\" makes bands", scene_->wavelengths_name());
   for (size_t i = 0; i < 2; ++i) samplers_[i] = study.sampler(*scene_, seeds_[i]);
 }
 
