@@ -12,7 +12,7 @@
 #include "cli/compare/tables.h"
 #include "cli/compare/verdict.h"
 #include "cli/plugins.h"
-#include "cli/words.h"
+#include "scene/words.h"
 
 namespace frond {
 namespace {

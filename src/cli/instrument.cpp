@@ -11,7 +11,7 @@
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/text_output.h"
-#include "cli/words.h"
+#include "scene/words.h"
 
 namespace frond {
 namespace {

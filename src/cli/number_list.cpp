@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "cli/words.h"
 #include "core/error.h"
+#include "scene/words.h"
 
 namespace frond {
 namespace {

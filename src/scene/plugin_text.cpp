@@ -4,17 +4,10 @@
 #include <cstdlib>
 #include <optional>
 
+#include "scene/words.h"
+
 namespace frond {
 namespace {
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  size_t start = 0;
-  for (size_t end; (end = text.find(separator, start)) != std::string::npos; start = end + 1)
-    parts.push_back(text.substr(start, end - start));
-  parts.push_back(text.substr(start));
-  return parts;
-}
 
 std::optional<double> number(const std::string& text) {
   char* end = nullptr;

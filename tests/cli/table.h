@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/words.h"
+#include "scene/words.h"
 
 namespace frond {
 

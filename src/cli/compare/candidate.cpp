@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cli/words.h"
+#include "scene/words.h"
 
 namespace frond::compare {
 namespace {
