@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "cli/plugins.h"
+#include "core/sampling.h"
 #include "instruments/given_wavelengths.h"
 #include "instruments/sweep.h"
 #include "tests/laws/setup.h"
@@ -72,6 +73,7 @@ class Ready {
 /// What varies from call to call, drawn beforehand.
 struct Draw {
   Vec3 wi;  ///< uniform over the sphere
+  Vec3 wo;  ///< on either side, by its cosine
   float uc;
   Vec2 u;
 };
@@ -84,6 +86,8 @@ std::vector<Draw> draws() {
     draw.wi = {r * std::cos(phi), r * std::sin(phi), z};
     draw.uc = rng.uniform();
     draw.u = {rng.uniform(), rng.uniform()};
+    draw.wo = sample_cosine_hemisphere({rng.uniform(), rng.uniform()});
+    if (rng.uniform() < 0.5f) draw.wo.z = -draw.wo.z;
   }
   return all;
 }
@@ -104,6 +108,25 @@ void add(const MaterialInfo& info, const std::string& operation, const Call& cal
   benchmark::RegisterBenchmark(name.c_str(), run)
       ->ArgNames({"theta", "wavelengths"})
       ->ArgsProduct({{0, 45, 80}, {1, 3, 4}});
+}
+
+/// `sample` for paths that arrive from everywhere, each from another direction.
+void add_sample_from_everywhere(const MaterialInfo& info) {
+  const auto run = [&info](benchmark::State& state) {
+    const Bsdf& bsdf = Ready::get(info, state.range(0)).bsdf();
+    const std::vector<Draw> all = draws();
+    RandomStream rng(2);
+    size_t i = 0;
+    for (auto _ : state) {
+      const Draw& draw = all[i++ % all.size()];
+      benchmark::DoNotOptimize(bsdf.sample(draw.wo, draw.uc, draw.u, rng));
+    }
+  };
+  benchmark::RegisterBenchmark(("bsdf/" + std::string(info.name) + "/sample_from_everywhere").c_str(), run)
+      ->ArgName("wavelengths")
+      ->Arg(1)
+      ->Arg(3)
+      ->Arg(4);
 }
 
 /// What a path pays at a hit: the BSDF is made, with what it looks up, and sampled. Four wavelengths, anew for each
@@ -137,6 +160,7 @@ void add_hit(const MaterialInfo& info) {
 [[maybe_unused]] const bool kAdded = [] {
   for (const MaterialInfo* info : materials().all()) {
     add_hit(*info);
+    add_sample_from_everywhere(*info);
     add(*info, "sample", [](const Bsdf& bsdf, const Vec3& wo, const Draw& draw, RandomStream& rng) {
       return bsdf.sample(wo, draw.uc, draw.u, rng);
     });
