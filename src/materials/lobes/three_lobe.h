@@ -48,7 +48,7 @@ class ThreeLobeBsdf final : public Bsdf {
     const bool reflects = uc < choice.surface + choice.subsurface;
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};
-    if (reflects) return reflected(wo, wi, Lobes::reflection | Lobes::diffuse);
+    if (reflects) return reflected(wo, wi, spread(wo, wi), Lobes::reflection | Lobes::diffuse);
     const float density = choice.transmitted * std::abs(wi.z) * kInvPi;
     if (density == 0) return {};  // black
     return BsdfSample{shares_at(manner_.from_light ? wi.z : wo.z).transmitted * kInvPi, wi, density,
@@ -153,20 +153,24 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
   /// Both on one side. Nothing where f is black.
-  std::optional<BsdfSample> reflected(const Vec3& wo, const Vec3& wi, Lobes from) const {
-    const float lobe = spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
+  std::optional<BsdfSample> reflected(const Vec3& wo, const Vec3& wi, float lobe, Lobes from) const {
+    const float density = leaf_pdf(wo, wi, lobe);
     if (density == 0) return {};
     return BsdfSample{leaf_f(wo, wi, lobe), wi, density, from};
   }
 
   std::optional<BsdfSample> sample_surface(const Choice& choice, const Vec3& wo, Vec2 u, RandomStream& rng) const {
     constexpr Lobes kLobe = Lobes::reflection | Lobes::glossy | Lobes::surface;
+    Vec3 wi;
+    float lobe;
     for (;; u = {rng.uniform(), rng.uniform()}) {
-      const Vec3 wi = sample_surface_lobe(*hit_.surface, wo, u, rng);
-      if (std::abs(wi.z) < kLeastCosine) continue;
-      if (!manner_.surface_direct) return BsdfSample{as_delta(wo, wi), wi, choice.surface, kLobe | Lobes::specular};
-      if (const auto sample = reflected(wo, wi, kLobe)) return sample;  // else on the lobe's very edge
+      wi = sample_surface_lobe(*hit_.surface, wo, u, rng);
+      lobe = spread(wo, wi);
+      const bool on_the_edge = manner_.surface_direct && lobe == 0;
+      if (std::abs(wi.z) >= kLeastCosine && !on_the_edge) break;
     }
+    if (!manner_.surface_direct) return BsdfSample{as_delta(wo, wi), wi, choice.surface, kLobe | Lobes::specular};
+    return reflected(wo, wi, lobe, kLobe);
   }
 
   /// f of the surface lobe where wi, drawn from it, counts as a delta lobe's only direction.
