@@ -357,7 +357,8 @@ def weaknesses(report):
 ## What the models get wrong
 
 - **Blue from below.** The abaxial side reflects {at(plain, 450, 172, 0):.3f} at 450 nm; the measured adaxial sides
-  {lopex[450]['R_mean']:.3f} (LOPEX93 has no abaxial ones). A ray that enters from below meets the air space behind the epidermis, which reflects it before any pigment does, whatever the wavelength.
+  {lopex[450]['R_mean']:.3f} (LOPEX93 has no abaxial ones). A ray that enters from below meets
+  the air space behind the epidermis, which reflects it before any pigment does, whatever the wavelength.
 - **No sieve effect, no detours in plain Beer's law.** Pigments stand in chloroplasts, not spread evenly, and light goes
   round about between cells. The switch puts cos(cos θ) in place of cos θ: a formula that fits, not a path length. Steep
   ways then absorb more and flat ones less. For soybean lit from above it comes nearer to the measured leaves at most

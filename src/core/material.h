@@ -29,6 +29,12 @@ struct Preparation {
   const Log& log;
   std::filesystem::path cache_dir;  ///< empty: keep nothing on disk
   SharedWork* shared = nullptr;     ///< what the scene's materials may have in common; nullptr: each works alone
+
+  /// As SharedWork::get.
+  template <class T, class Make>
+  std::shared_ptr<const T> share(const std::string& key, const Make& make) const {
+    return shared ? shared->get<T>(key, make) : std::make_shared<const T>(make());
+  }
 };
 
 /// Textures and parameters in, a BSDF for one hit out.

@@ -126,6 +126,8 @@ Params::Found Params::find(std::string_view name) const {
 
 bool Params::given(std::string_view name) const { return find(name).parsed != nullptr; }
 
+std::string_view Params::plugin() const { return info_.name; }
+
 Location Params::where(std::string_view name) const {
   for (const ParsedParam& p : parsed_.params)
     if (p.name == name) return p.value_where;

@@ -124,6 +124,7 @@ class Params {
   /// Where the parameter stands, or the directive if it is not given: for a plugin's own errors.
   Location where(std::string_view name) const;
   const Location& where() const { return parsed_.where; }
+  std::string_view plugin() const;  ///< the plugin's name
   /// Declared parameters that nothing has read: a defect of the plugin, found by a test.
   std::vector<std::string_view> unread() const;
 

@@ -68,6 +68,18 @@ void LeafParams::read_pigments(const Params& p, Varying& varying) {
   }
 }
 
+void LeafParams::refuse_wall_textures(const Params& p) const {
+  struct Wall {
+    std::string_view name;
+    const Aspect& texture;
+  };
+  for (const auto& [name, texture] : {Wall{"epidermisaspect", epidermis_aspect()},
+                                      Wall{"spongyaspect", spongy_aspect()}, Wall{"palisadeaspect", palisade_aspect()}})
+    if (texture)
+      fail(p.where(name), "{} takes no texture for \"{}\": every texel would need a table; abm takes one", p.plugin(),
+           name);
+}
+
 void LeafParams::check_wavelengths(const WavelengthStrategy& wavelengths) const {
   check_range(leaf::kConstantsRange_nm, wavelengths, where_, "leaf optics");
   for (const auto& [file, range_nm] : pigment_data_) check_range(range_nm, wavelengths, pigments_where_, file);

@@ -113,6 +113,10 @@ class LeafParams {
   bool from_light() const { return from_light_; }  ///< "incident" is "light"
   std::string specimen() const { return specimen_; }
 
+  /// Throws InputError where a texture says how the walls inside spread light, for materials whose tables hold for one
+  /// tissue. The cuticle shapes the surface alone.
+  void refuse_wall_textures(const Params& p) const;
+
   /// Throws InputError where the optical constants or a pigment's data do not reach the wavelengths.
   void check_wavelengths(const WavelengthStrategy& wavelengths) const;
 

@@ -97,11 +97,13 @@ class LeafSimplified final : public Material {
     for (const auto& [name, where] : std::exchange(unused_, {}))
       preparation.log.warn(where, fmt::format("\"{}\" has no effect beside \"tablefile\"", name));
     if (!file_.empty())
-      lookup_ = shared(preparation, "leaf table file " + file_.string(), [&] { return read_lookup(preparation); });
+      lookup_ = preparation.share<leaf::TableLookup>("leaf table file " + file_.string(),
+                                                     [&] { return read_lookup(preparation); });
     else if (varies_)
       lookup_ = std::make_shared<const leaf::TableLookup>(depth_lookup(preparation));
     else
-      lookup_ = shared(preparation, key_of_request(preparation), [&] { return made_lookup(preparation); });
+      lookup_ =
+          preparation.share<leaf::TableLookup>(key_of_request(preparation), [&] { return made_lookup(preparation); });
   }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
@@ -115,29 +117,12 @@ class LeafSimplified final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
-  /// Everything but depth and surface would need a table for every texel.
   void refuse_textures(const Params& p) const {
-    struct Refused {
-      std::string_view name;
-      const LeafParams::Aspect& texture;
-    };
-    for (const auto& [name, texture] :
-         {Refused{"epidermisaspect", leaf_.epidermis_aspect()}, Refused{"spongyaspect", leaf_.spongy_aspect()},
-          Refused{"palisadeaspect", leaf_.palisade_aspect()}})
-      if (texture)
-        fail(p.where(name),
-             "leaf_simplified takes no texture for \"{}\": every texel would need a table; abm takes one", name);
+    leaf_.refuse_wall_textures(p);
     if (varies_ && request_.method == leaf::TableMethod::monte_carlo)
       fail(p.where("tablemethod"),
            "tables of leaves whose chemistry or thickness varies are solved: leave "
            "\"tablemethod\" out");
-  }
-
-  template <class Make>
-  static std::shared_ptr<const leaf::TableLookup> shared(const Preparation& preparation, const std::string& key,
-                                                         const Make& make) {
-    SharedWork alone;
-    return (preparation.shared ? *preparation.shared : alone).get<leaf::TableLookup>(key, make);
   }
 
   leaf::TableLookup depth_lookup(const Preparation& preparation) const {

@@ -31,7 +31,7 @@ class LeafSolved final : public Material {
         surface_texture_(leaf_.cuticle_aspect()),
         surface_(leaf_.tissue().cuticle_aspect),
         tolerance_(p.real("tolerance")) {
-    refuse_textures(p);
+    leaf_.refuse_wall_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {
@@ -46,8 +46,7 @@ class LeafSolved final : public Material {
       return table;
     };
     const std::string key = (vary ? "varying wavelengths\n" : "fixed wavelengths\n") + describe(request);
-    SharedWork alone;
-    table_ = (preparation.shared ? *preparation.shared : alone).get<leaf::BodyTable>(key, make);
+    table_ = preparation.share<leaf::BodyTable>(key, make);
   }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
@@ -61,20 +60,6 @@ class LeafSolved final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
-  /// Everything but depth and surface would need a table for every texel.
-  void refuse_textures(const Params& p) const {
-    struct Refused {
-      std::string_view name;
-      const LeafParams::Aspect& texture;
-    };
-    for (const auto& [name, texture] :
-         {Refused{"epidermisaspect", leaf_.epidermis_aspect()}, Refused{"spongyaspect", leaf_.spongy_aspect()},
-          Refused{"palisadeaspect", leaf_.palisade_aspect()}})
-      if (texture)
-        fail(p.where(name), "leaf_solved takes no texture for \"{}\": every texel would need a table; abm takes one",
-             name);
-  }
-
   leaf::BodyRequest request_for(const WavelengthStrategy& wavelengths) const {
     leaf::BodyRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance_};
     request.params.cuticle_aspect = 0;  // of no concern to light inside: leaves with other cuticles share the table

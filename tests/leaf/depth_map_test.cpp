@@ -4,20 +4,12 @@
 
 #include "leaf/specimens.h"
 #include "leaf/tissue.h"
+#include "tests/support/ramp.h"
 
 namespace frond::leaf {
 namespace {
 
-/// `low` + u (high - low).
-class Ramp final : public FloatTexture {
- public:
-  Ramp(float low, float high) : low_(low), high_(high) {}
-  float evaluate(Vec2 uv) const override { return low_ + uv.x * (high_ - low_); }
-  Interval range() const override { return {double(low_), double(high_)}; }
-
- private:
-  float low_, high_;
-};
+using test::Ramp;
 
 SampledWavelengths wavelengths() {
   SampledWavelengths lambda;

@@ -5,19 +5,9 @@
 #include "spectra/registry.h"
 #include "spectra/tabulated.h"
 #include "tests/support/bind.h"
+#include "tests/support/ramp.h"
 
 namespace frond::test {
-
-/// From `low` at u = 0 to `high` at u = 1.
-class Ramp final : public FloatTexture {
- public:
-  Ramp(float low, float high) : low_(low), high_(high) {}
-  float evaluate(Vec2 uv) const override { return low_ + uv.x * (high_ - low_); }
-  Interval range() const override { return {double(std::min(low_, high_)), double(std::max(low_, high_))}; }
-
- private:
-  float low_, high_;
-};
 
 /// Spectra are the numbers given; any material's name is that of a built-in material with its defaults; a float texture
 /// "0.5:2" is the ramp between these numbers.
