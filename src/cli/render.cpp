@@ -18,7 +18,7 @@ namespace frond {
 namespace {
 
 struct RenderOptions {
-  std::string scene, output, wavelengths, cache;
+  std::string scene, output, wavelengths, integrator, cache;
   std::vector<double> crop;
   std::vector<int> pixels;
   std::vector<std::string> swaps, plugins;
@@ -52,6 +52,7 @@ Crop crop_of(const RenderOptions& o, const FilmSettings& film) {
 SceneOverrides overrides_of(const RenderOptions& options) {
   SceneOverrides overrides;
   overrides.wavelengths = options.wavelengths;
+  if (!options.integrator.empty()) overrides.integrator = parse_plugin_text(options.integrator, {});
   if (options.seed_given) overrides.seed = options.seed;
   for (const std::string& swap : options.swaps) overrides.swaps.push_back(parse_swap(swap));
   overrides.cache_dir = cache_directory(options.cache, options.no_cache);
@@ -165,6 +166,7 @@ std::string command_line_of(const RenderOptions& o) {
   if (o.samples > 0) line += fmt::format(" --spp {}", o.samples);
   if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
   if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
+  if (!o.integrator.empty()) line += " --integrator " + o.integrator;
   if (!o.crop.empty()) line += fmt::format(" --crop {}", fmt::join(o.crop, ","));
   if (!o.pixels.empty()) line += fmt::format(" --pixels {}", fmt::join(o.pixels, ","));
   for (const std::string& plugin : o.plugins) line += " --plugin " + std::filesystem::path(plugin).filename().string();
@@ -194,6 +196,8 @@ void add_render_command(CLI::App& app) {
   command->add_option("--wavelengths", o.wavelengths,
                       "hero (also hero,lambdamin=400,lambdamax=700), meyer, smpte for the paper's three, or "
                       "bands,wavelengths=450,550,850 (also bands,lambdamin=400,lambdamax=1000,step=10).");
+  command->add_option("--integrator", o.integrator,
+                      "PLUGIN[,parameter=value...]; one of the scene's kind keeps the scene's other parameters.");
   command
       ->add_option("--swap", o.swaps,
                    "MATERIAL=PLUGIN[,parameter=value...]: another model; \"*=PLUGIN\": for every leaf.")

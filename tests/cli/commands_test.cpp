@@ -186,6 +186,29 @@ TEST_F(Commands, WavelengthsTakeParameters) {
               HasSubstr("scene.pbrt:7:37: \"L\" is known from 360 to 830 nm, the render needs 360 to 1000 nm"));
 }
 
+/// From within a closed sphere that takes half of the light each time.
+TEST_F(Commands, AnIntegratorOfTheScenesKindKeepsItsOtherParameters) {
+  folder_.write("scene.pbrt", R"(
+Film "rgb" "integer xresolution" 4 "integer yresolution" 4
+Integrator "path" "integer maxdepth" 2
+WorldBegin
+LightSource "infinite"
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+Shape "sphere"
+)");
+  const auto ends = [&](const char* integrator) {
+    const Outcome o = render({"-o", path("a.exr"), "--spp", "1", "--json", "-q", "--integrator", integrator});
+    return nlohmann::json::parse(o.out)["paths_absorbed_by_depth"].get<std::vector<int>>();
+  };
+  EXPECT_EQ(ends("path,termination=attenuation,cutoff=0.1"), (std::vector{0, 0, 16}));
+  EXPECT_EQ(ends("path,termination=attenuation,cutoff=0.4"), (std::vector{0, 16}));
+  EXPECT_EQ(ends("path,maxdepth=3,termination=attenuation"), (std::vector{0, 0, 0, 16}));
+  EXPECT_EQ(read_image(path("a.exr"), {}).header.text.at("frond:command"),
+            "frond render scene.pbrt --spp 1 --integrator path,maxdepth=3,termination=attenuation");
+  EXPECT_THAT(render({"-o", path("x.exr"), "--integrator", "path,cut=1"}).err, HasSubstr("has no parameter \"cut\""));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--integrator", "pat"}).err, HasSubstr("did you mean \"path\"?"));
+}
+
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
   const auto before = files();
   for (const std::string& output : {path("no/such/folder.exr"), path("picture.xyz"), folder_.name_of(".")}) {

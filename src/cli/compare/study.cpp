@@ -58,23 +58,15 @@ Study::Study(const StudyOptions& options, ThreadPool& pool, const Log& log)
   for (const std::string& leaf : options.leaves) swaps_.push_back({leaf, {}});
 }
 
-SceneDescription Study::description_with(const Candidate& candidate) const {
-  SceneDescription description = description_;
-  if (!candidate.integrator) return description;
-  const PluginText& text = *candidate.integrator;
-  if (description.integrator.name != text.name) description.integrator = {text.name, {}, {}};
-  set_params(text, registry_.integrators.get(text.name, {}), {}, description.integrator);
-  return description;
-}
-
 std::unique_ptr<Scene> Study::scene(const Candidate& candidate) const {
   SceneOverrides overrides;
   overrides.wavelengths = candidate.wavelengths.empty() ? options_.wavelengths : candidate.wavelengths;
+  overrides.integrator = candidate.integrator;
   overrides.seed = options_.seed;
   overrides.swaps = swaps_;
   for (MaterialSwap& swap : overrides.swaps) swap.to = candidate.material;
   overrides.cache_dir = options_.cache;
-  auto scene = std::make_unique<Scene>(description_with(candidate), registry_, overrides, pool_, log_);
+  auto scene = std::make_unique<Scene>(description_, registry_, overrides, pool_, log_);
   if (!scene->wavelengths().bands().empty())
     fail({}, "wavelengths \"{}\" give bands: pictures of colours are what can be compared", scene->wavelengths_name());
   return scene;

@@ -41,8 +41,6 @@ class Study {
   uint64_t identity(const Candidate& candidate) const;
 
  private:
-  SceneDescription description_with(const Candidate& candidate) const;
-
   StudyOptions options_;
   ThreadPool& pool_;
   const Log& log_;
