@@ -30,7 +30,13 @@ constexpr Param kOwn[] = {
      .kind = ParamKind::integer,
      .default_value = 1000000,
      .range = {1, 1e9},
-     .doc = "Walks for each degree of incidence."},
+     .doc = "Walks for each angle of incidence."},
+    {.name = "tablestep",
+     .kind = ParamKind::real,
+     .default_value = 1.0,
+     .unit = "degrees",
+     .range = {0.1, 90},
+     .doc = "Between the table's angles of incidence, at most: the widest step that divides 90 degrees."},
     {.name = "tablefile",
      .kind = ParamKind::string,
      .doc = "A file with the leaf's reflectance and transmittance, made by frond table or measured "
@@ -43,7 +49,7 @@ constexpr std::string_view kOfTissue[] = {
     "thickness",       "mesophyllfraction", "chlorophylla", "chlorophyllb", "carotenoids",
     "protein",         "cellulose",         "lignin",       "pigments",     "pigmentconcentrations",
     "epidermisaspect", "palisadeaspect",    "spongyaspect", "sieve",        "tablemethod",
-    "tablerays"};
+    "tablerays",       "tablestep"};
 
 /// Step of the natural logarithm of tables over depth. With `index_wavelengths` errors stay below 4e-4, their mean
 /// below 3e-5.
@@ -54,9 +60,14 @@ std::vector<double> fixed_wavelengths(const WavelengthStrategy& strategy) {
   return {fixed.begin(), fixed.end()};
 }
 
-/// A leaf that is the same seen from below needs one side.
-std::vector<double> table_angles(const leaf::TissueParams& params) {
-  return leaf::even_steps(0, params.structure == leaf::Structure::unifacial ? 90 : 180, 1);
+/// Even, 90 degrees among them. A leaf that is the same seen from below needs one side.
+std::vector<double> table_angles(const leaf::TissueParams& params, double most_step_deg) {
+  constexpr double kRounding = 1e-6;  // of a step that is meant to divide 90
+  const int steps = static_cast<int>(std::ceil(90 / most_step_deg - kRounding));
+  std::vector<double> theta_deg;
+  for (int i = 0; i <= (params.structure == leaf::Structure::unifacial ? steps : 2 * steps); ++i)
+    theta_deg.push_back(90.0 * i / steps);
+  return theta_deg;
 }
 
 leaf::TableLookup lookup_of(const leaf::Table& table, const WavelengthStrategy& strategy) {
@@ -84,7 +95,7 @@ class LeafSimplified final : public Material {
         surface_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
         manner_{p.boolean("surfacedirect"), leaf_.from_light()} {
     request_.params = leaf_.tissue();
-    request_.theta_deg = table_angles(request_.params);
+    request_.theta_deg = table_angles(request_.params, p.real("tablestep"));
     if (p.string("tablemethod") == "montecarlo") request_.method = leaf::TableMethod::monte_carlo;
     request_.rays = p.integer("tablerays");
     if (p.given("tablefile"))

@@ -244,6 +244,61 @@ TEST(TableLookup, IsRightBetweenDegreesAndAtGrazing) {
   }
 }
 
+/// Of shares that are looked up.
+struct LookupError {
+  double largest = 0, squares = 0;
+  int count = 0;
+
+  void add(float found, double exact) {
+    const double error = std::abs(static_cast<double>(found) - exact);
+    largest = std::max(largest, error), squares += error * error, ++count;
+  }
+  double rms() const { return std::sqrt(squares / count); }
+};
+
+/// Rs, Rd, T over angles that are even in degrees, both sides, three wavelengths.
+std::array<LookupError, 3> lookup_errors(const std::string& specimen, double step_deg) {
+  TableRequest request = request_of(specimen, TableMethod::solve);
+  request.theta_deg = even_steps(0, 180, step_deg);
+  const TableLookup lookup = TableLookup::for_lanes(make_table(request, ThreadPool(2)));
+  const TissueModel model(request.params);
+  const std::vector<double> angles = even_steps(0.125, 179.9, 0.25);
+  std::array<LookupError, 3> errors;
+  for (int lane = 0; lane < 3; ++lane) {
+    const auto exact = solve(model.at(request.wavelengths_nm[static_cast<size_t>(lane)]), angles);
+    for (size_t i = 0; i < angles.size(); ++i) {
+      const SampledShares s = lookup(static_cast<float>(cos_degrees(angles[i])), {});
+      errors[0].add(s.surface[lane], exact[i].surface);
+      errors[1].add(s.subsurface[lane], exact[i].subsurface);
+      errors[2].add(s.transmitted[lane], exact[i].transmitted);
+    }
+  }
+  return errors;
+}
+
+/// Figures of docs/table_format.md, rounded up to two digits.
+TEST(TableLookup, IsAsFarOffForEachStepAsStated) {
+  struct {
+    std::string specimen;
+    double step_deg;
+    std::array<double, 3> largest, rms;
+  } const kStated[] = {{"soybean", 1, {4.8e-5, 3.2e-5, 6.3e-6}, {1.4e-5, 1.2e-5, 1.5e-6}},
+                       {"soybean", 5, {6.9e-3, 2.7e-3, 9.2e-4}, {1.2e-3, 3.3e-4, 1.1e-4}},
+                       {"soybean", 15, {7.4e-2, 2.6e-2, 9.8e-3}, {2.1e-2, 4.9e-3, 2.0e-3}},
+                       {"maize", 1, {4.8e-5, 4.3e-6, 4.8e-6}, {1.4e-5, 1.3e-6, 1.5e-6}},
+                       {"maize", 5, {6.9e-3, 6.3e-4, 5.3e-4}, {1.2e-3, 7.9e-5, 6.0e-5}},
+                       {"maize", 15, {7.4e-2, 6.4e-3, 5.5e-3}, {2.2e-2, 1.3e-3, 1.1e-3}}};
+  for (const auto& [specimen, step_deg, largest, rms] : kStated) {
+    const auto errors = lookup_errors(specimen, step_deg);
+    for (size_t i = 0; i < errors.size(); ++i) {
+      const std::string what = fmt::format("{}, {} degrees, share {}", specimen, step_deg, i);
+      EXPECT_LE(errors[i].largest, largest[i]) << what;
+      EXPECT_LE(errors[i].rms(), rms[i]) << what;
+      EXPECT_GE(errors[i].rms(), rms[i] * 0.9) << what << ": the page says too much";
+    }
+  }
+}
+
 TEST(TableLookup, InterpolatesWavelengths) {
   TableRequest request = request_of("maize", TableMethod::solve);
   request.wavelengths_nm = {500, 510, 520};

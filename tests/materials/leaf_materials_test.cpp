@@ -258,6 +258,27 @@ TEST(LeafSimplified, IsWhereATextureSaysTheLeafOfThatValue) {
   }
 }
 
+TEST(LeafSimplified, TablesHaveTheStepThatIsAsked) {
+  const auto with_step = [](double degrees) {
+    return Ready("leaf_simplified", {kSolve, number("float", "tablestep", {degrees})});
+  };
+  Ready plain("leaf_simplified", {kSolve}), one = with_step(1), coarse = with_step(30), uneven = with_step(40);
+  RandomStream rng(1);
+  for (int degrees = 0; degrees <= 180; degrees += 5) {
+    const float theta = static_cast<float>(degrees * std::numbers::pi / 180);
+    const Vec3 wo{std::sin(theta), 0, std::cos(theta)}, wi = normalize(Vec3{0, 1, 1});
+    const SampledSpectrum f = plain.bsdf().f(wo, wi, rng), rough = coarse.bsdf().f(wo, wi, rng);
+    EXPECT_EQ(one.bsdf().f(wo, wi, rng), f);
+    EXPECT_EQ(uneven.bsdf().f(wo, wi, rng), rough);
+    if (degrees == 90) continue;
+    for (int lane = 0; lane < 3; ++lane)
+      if (degrees % 30 == 0)
+        EXPECT_NEAR(rough[lane], f[lane], 2e-4f * f[lane]) << degrees;
+      else
+        EXPECT_NE(rough[lane], f[lane]) << degrees;
+  }
+}
+
 TEST(LeafSimplified, TakesTexturesOfDepthAndSurfaceAlone) {
   for (const char* name : {"epidermisaspect", "spongyaspect", "palisadeaspect"})
     EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {texture(name, {"1:2"})}); }),
