@@ -14,6 +14,7 @@ namespace {
 
 struct GoniophotometerOptions : InstrumentOptions {
   std::string patches = "20x40", map, map_scale = "linear";
+  bool integrate = false;
 };
 
 DetectorSphere sphere_of(const GoniophotometerOptions& o) {
@@ -29,14 +30,17 @@ void check(const GoniophotometerOptions& o, const InstrumentBench& bench, const 
   for (size_t i = 0; i < bench.size(); ++i) check_no_delta_lobe(bench.exposure(i));
 }
 
-std::vector<LabelledPatches> measure(const InstrumentBench& bench, const DetectorSphere& sphere, int64_t rays,
-                                     bool quiet) {
+std::vector<LabelledPatches> measure(const GoniophotometerOptions& o, const InstrumentBench& bench,
+                                     const DetectorSphere& sphere, int64_t rays) {
   std::vector<LabelledPatches> readings;
-  InstrumentProgress progress(bench.size(), rays, quiet);
+  InstrumentProgress progress(bench.size(), rays, o.quiet);
   for (size_t i = 0; i < bench.size(); ++i) {
     progress.start(i);
+    const Exposure exposure = bench.exposure(i);
     readings.push_back(
-        {bench.specimen(i).label(), measure_f(bench.exposure(i), sphere, rays, bench.pool(), std::ref(progress))});
+        {bench.specimen(i).label(), o.integrate && has_exact_f(exposure)
+                                        ? integrate_f(exposure, sphere, bench.pool())
+                                        : measure_f(exposure, sphere, rays, bench.pool(), std::ref(progress))});
   }
   return readings;
 }
@@ -48,7 +52,7 @@ void run_goniophotometer(const GoniophotometerOptions& o) {
   const DetectorSphere sphere = sphere_of(o);
   const InstrumentBench bench(o);
   check(o, bench, sphere);
-  const auto readings = measure(bench, sphere, rays, o.quiet);
+  const auto readings = measure(o, bench, sphere, rays);
   const auto notes = instrument_notes("goniophotometer", o, bench);
   if (!o.csv.empty()) write_text(o.csv, patches_csv(notes, readings));
   if (!o.json.empty()) write_text(o.json, patches_json(notes, readings));
@@ -66,6 +70,9 @@ void add_goniophotometer_command(CLI::App& app) {
   command->add_option("--rays", o->rays, "Rays for each reading; 1e6 by default.");
   command->add_option("--patches", o->patches,
                       "Detectors: THETAxPHI patches of equal angles over the whole sphere; 20x40 by default.");
+  command->add_flag(
+      "--integrate", o->integrate,
+      "Integrate f over each patch, without noise, where it is no random estimate; shoot rays elsewhere.");
   command->add_option("--plot", o->plot, "Chart of f in the plane of incidence, .svg or .png.");
   command->add_option("--map", o->map, "Polar maps of f over both hemispheres, .svg or .png.");
   command->add_option("--map-scale", o->map_scale, "Colours of the map: linear (default) or log.")

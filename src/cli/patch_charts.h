@@ -16,7 +16,8 @@ struct ReadingCounts {
 };
 
 /// f in the plane of incidence, as in Figures 1 and 4 of Baranoski and Rokne: BRDF above, BTDF below, a column for each
-/// angle of incidence, a colour for each wavelength, a dash for each material; bars of one standard error.
+/// angle of incidence, a colour for each wavelength, a dash for each material; bars of one standard error. Where f of a
+/// material was integrated, its curve alone is a line, and measured ones are points about it.
 Chart plane_chart(const std::vector<LabelledPatches>& readings);
 /// Throws InputError where that chart cannot be read, or where no patch is centred across from the light.
 void check_plane_chart(const ReadingCounts& counts, const DetectorSphere& sphere);

@@ -14,39 +14,31 @@ constexpr const char* kNotes[] = {
     ("Detectors: patches equal in theta (from the front's normal) and in phi (from the light's azimuth), degrees; the "
      "first is centred on phi = 0, and the mirror direction lies at phi = 180."),
     ("f_per_sr: BRDF (on the lit side) or BTDF, 1/sr: weight sum / (rays * projected solid angle); f_se: its standard "
-     "error; solid angles in sr; caught: rays that reached the patch; rays: rays of light shot.")};
+     "error; solid angles in sr; caught: rays that reached the patch; rays: rays of light shot, 0 where f was "
+     "integrated over the patches, without noise.")};
 
 std::string_view kind_of(const GoniophotometerReading& r, const Patch& p) {
   return r.is_reflected(p) ? "BRDF" : "BTDF";
 }
 
-/// Of the light reflected or transmitted.
-struct Side {
-  Estimate share;
-  size_t brightest = 0;  ///< patch
-};
-
-Side side_of(const GoniophotometerReading& r, bool reflected) {
-  Side side;
-  Moments caught;
+/// Where f is largest among the patches of one kind.
+size_t brightest(const GoniophotometerReading& r, bool reflected) {
+  size_t patch = 0;
   double largest = -1;
-  for (size_t i = 0; i < r.sphere.size(); ++i) {
-    if (r.is_reflected(r.sphere.patch(i)) != reflected) continue;
-    caught.add(r.caught[i]);
-    if (const double f = r.f(i).mean; f > largest) largest = f, side.brightest = i;
-  }
-  caught.add_zeros(r.rays - caught.count());
-  side.share = caught.estimate();
-  return side;
+  for (size_t i = 0; i < r.sphere.size(); ++i)
+    if (const double f = r.f(i).mean; r.is_reflected(r.sphere.patch(i)) == reflected && f > largest)
+      largest = f, patch = i;
+  return patch;
 }
 
 std::string side_text(const GoniophotometerReading& r, bool reflected) {
-  const Side side = side_of(r, reflected);
-  const Estimate f = r.f(side.brightest);
-  const Patch p = r.sphere.patch(side.brightest);
+  const Estimate share = r.share(reflected);
+  const size_t patch = brightest(r, reflected);
+  const Estimate f = r.f(patch);
+  const Patch p = r.sphere.patch(patch);
   return fmt::format("  {} {:.5f} +- {:.5f}; {} up to {:.5f} +- {:.5f} per sr, at theta {:g}, phi {:g} degrees\n",
-                     reflected ? "R" : "T", side.share.mean, side.share.standard_error(), reflected ? "BRDF" : "BTDF",
-                     f.mean, f.standard_error(), p.theta_deg(), p.phi_deg());
+                     reflected ? "R" : "T", share.mean, share.standard_error(), reflected ? "BRDF" : "BTDF", f.mean,
+                     f.standard_error(), p.theta_deg(), p.phi_deg());
 }
 
 }  // namespace
@@ -69,7 +61,7 @@ std::string patches_csv(const std::vector<std::string>& notes, const std::vector
           "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.9g},{:.9g},{},{:.9g},{:.4g},{},{},{}\n",
           r.beam.theta_deg, r.beam.lambda_nm, p.theta_min_deg, p.theta_max_deg, p.theta_deg(), p.phi_min_deg,
           p.phi_max_deg, p.phi_deg(), p.solid_angle, p.projected_solid_angle, kind_of(r, p), f.mean, f.standard_error(),
-          r.caught[i].count(), r.rays, label);
+          r.count(i), r.rays, label);
     }
   }
   return csv;
@@ -94,7 +86,7 @@ std::string patches_json(const std::vector<std::string>& notes, const std::vecto
                          {"kind", kind_of(r, p)},
                          {"f_per_sr", f.mean},
                          {"f_se", f.standard_error()},
-                         {"caught", r.caught[i].count()}});
+                         {"caught", r.count(i)}});
     }
     json["readings"].push_back({{"material", material},
                                 {"incidence_deg", r.beam.theta_deg},
@@ -110,8 +102,9 @@ std::string patches_json(const std::vector<std::string>& notes, const std::vecto
 std::string patches_text(const std::vector<LabelledPatches>& readings) {
   std::string text;
   for (const auto& [material, r] : readings) {
-    text += fmt::format("{}, {:g} degrees, {:g} nm, {} rays, {} x {} patches\n", material, r.beam.theta_deg,
-                        r.beam.lambda_nm, r.rays, r.sphere.thetas(), r.sphere.phis());
+    const std::string how = r.is_integrated() ? "integrated" : fmt::format("{} rays", r.rays);
+    text += fmt::format("{}, {:g} degrees, {:g} nm, {}, {} x {} patches\n", material, r.beam.theta_deg,
+                        r.beam.lambda_nm, how, r.sphere.thetas(), r.sphere.phis());
     text += side_text(r, true) + side_text(r, false);
   }
   return text;

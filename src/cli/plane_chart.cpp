@@ -30,7 +30,8 @@ struct Layout {
   explicit Layout(const std::vector<LabelledPatches>& r)
       : materials(distinct<std::string>(r, [](const auto& x) { return x.material; })),
         angles(distinct<double>(r, [](const auto& x) { return x.reading.beam.theta_deg; })),
-        wavelengths(distinct<double>(r, [](const auto& x) { return x.reading.beam.lambda_nm; })) {}
+        wavelengths(distinct<double>(r, [](const auto& x) { return x.reading.beam.lambda_nm; })),
+        some_integrated(std::ranges::any_of(r, [](const auto& x) { return x.reading.is_integrated(); })) {}
 
   /// Wavelengths and what the vertical lines are stand side by side, materials under them.
   int upper_key_height() const { return kKeyLine * static_cast<int>(std::max<size_t>(wavelengths.size(), 2)); }
@@ -41,6 +42,7 @@ struct Layout {
 
   std::vector<std::string> materials;
   std::vector<double> angles, wavelengths;
+  bool some_integrated;  ///< curves without noise: what rays have measured are points and bars about them
 };
 
 /// A line "angle f se" for each patch in the plane of incidence. The angle is from the normal of that side, negative on
@@ -82,13 +84,21 @@ int point(size_t material) {
   return kPoints[material % kPoints.size()];
 }
 
-std::string curve(size_t reading, bool reflected, size_t wavelength, size_t material) {
+std::string curve(const LabelledPatches& measured, const Layout& layout, size_t reading, bool reflected) {
+  const size_t material = place(layout.materials, measured.material);
+  const bool exact = measured.reading.is_integrated();
   const std::string data = fmt::format("${}{}", reflected ? 'r' : 't', reading),
-                    color = fmt::format("lc rgb '{}'", kSeriesColors[wavelength]);
-  return fmt::format(
-      "{0} using 1:2 with lines {1} lw 1.5 dt {2} notitle, {0} using 1:2 with points {1} pt {3} ps 0.6 notitle, "
-      "{0} using 1:($2 - $3):(0):(2 * $3) with vectors nohead {1} lw 1.5 notitle, ",
-      data, color, dash(material), point(material));
+                    color = fmt::format("lc rgb '{}'",
+                                        kSeriesColors[place(layout.wavelengths, measured.reading.beam.lambda_nm)]);
+  std::string script;
+  if (exact || !layout.some_integrated)
+    script += fmt::format("{} using 1:2 with lines {} lw 1.5 dt {} notitle, ", data, color, dash(material));
+  if (!exact)
+    script += fmt::format(
+        "{0} using 1:2 with points {1} pt {2} ps 0.6 notitle, "
+        "{0} using 1:($2 - $3):(0):(2 * $3) with vectors nohead {1} lw 1.5 notitle, ",
+        data, color, point(material));
+  return script;
 }
 
 std::string panel(const std::vector<LabelledPatches>& readings, const Layout& layout, size_t column, bool reflected) {
@@ -106,12 +116,8 @@ std::string panel(const std::vector<LabelledPatches>& readings, const Layout& la
     script += fmt::format("set arrow from {0}, graph 0 to {0}, graph 1 nohead lc rgb '#808080' dt 3\n", -from_normal);
   script += fmt::format("set arrow from {0}, graph 0 to {0}, graph 1 nohead lc rgb '#808080'\n", from_normal);
   script += "plot ";
-  for (size_t i = 0; i < readings.size(); ++i) {
-    const Beam& beam = readings[i].reading.beam;
-    if (beam.theta_deg == theta)
-      script +=
-          curve(i, reflected, place(layout.wavelengths, beam.lambda_nm), place(layout.materials, readings[i].material));
-  }
+  for (size_t i = 0; i < readings.size(); ++i)
+    if (readings[i].reading.beam.theta_deg == theta) script += curve(readings[i], layout, i, reflected);
   return script + "NaN notitle\n";
 }
 
@@ -129,19 +135,28 @@ std::string key_block(const Layout& layout, double left, int top, const std::vec
   return script + "NaN notitle\n";
 }
 
-std::string key(const Layout& layout) {
-  std::vector<std::string> colors, dashes;
+/// How a material is drawn, for the key.
+std::string stroke(const Layout& layout, const std::vector<LabelledPatches>& readings, size_t material) {
+  const auto& reading = std::ranges::find(readings, layout.materials[material], &LabelledPatches::material)->reading;
+  const std::string line = fmt::format("lw 1.5 dt {}", dash(material)),
+                    mark = fmt::format("pt {} ps 0.6", point(material));
+  if (reading.is_integrated()) return "lines lc rgb '#404040' " + line;
+  if (layout.some_integrated) return "points lc rgb '#404040' " + mark;
+  return "linespoints lc rgb '#404040' " + line + " " + mark;
+}
+
+std::string key(const Layout& layout, const std::vector<LabelledPatches>& readings) {
+  std::vector<std::string> colors, strokes;
   for (size_t i = 0; i < layout.wavelengths.size(); ++i)
     colors.push_back(fmt::format("lines lc rgb '{}' lw 2 title '{:g} nm'", kSeriesColors[i], layout.wavelengths[i]));
   for (size_t i = 0; i < layout.materials.size(); ++i)
-    dashes.push_back(fmt::format("linespoints lc rgb '#404040' lw 1.5 dt {} pt {} ps 0.6 title {}", dash(i), point(i),
-                                 gnuplot_text(layout.materials[i])));
+    strokes.push_back(stroke(layout, readings, i) + " title " + gnuplot_text(layout.materials[i]));
   const int upper = layout.upper_key_height() + layout.lower_key_height();
   return kNoAxes + key_block(layout, 0.05, upper, colors) +
          key_block(layout, 0.35, upper,
                    {"lines lc rgb '#808080' dt 3 title 'toward the light'",
                     "lines lc rgb '#808080' title 'mirror direction, or straight on'"}) +
-         key_block(layout, 0.05, layout.lower_key_height(), dashes);
+         key_block(layout, 0.05, layout.lower_key_height(), strokes);
 }
 
 }  // namespace
@@ -167,7 +182,7 @@ Chart plane_chart(const std::vector<LabelledPatches>& readings) {
       "3\nunset key\n";
   for (size_t column = 0; column < layout.angles.size(); ++column)
     script += panel(readings, layout, column, true) + panel(readings, layout, column, false);
-  script += key(layout) + "unset multiplot\n";
+  script += key(layout, readings) + "unset multiplot\n";
   return {layout.width(), layout.height(), script};
 }
 

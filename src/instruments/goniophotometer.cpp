@@ -1,6 +1,10 @@
 #include "instruments/goniophotometer.h"
 
+#include <cassert>
 #include <cmath>
+#include <numbers>
+
+#include "instruments/cubature.h"
 
 namespace frond {
 namespace {
@@ -25,19 +29,76 @@ void check_weights(const GoniophotometerReading& reading) {
            reading.beam.theta_deg, reading.beam.lambda_nm);
 }
 
+SphereBox box_of(const Patch& p) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  return {std::cos(p.theta_max_deg * kDegree), std::cos(p.theta_min_deg * kDegree), p.phi_min_deg * kDegree,
+          p.phi_max_deg * kDegree};
+}
+
+/// f |cos theta| of a material whose f is exact, for one thread at a time.
+class ShareDensity {
+ public:
+  explicit ShareDensity(const Exposure& exposure)
+      : bsdf_(bsdf_of(exposure.material, exposure.beam, arena_)),
+        light_(toward_light(exposure.beam)),
+        detector_is_wo_(exposure.as_rendered || any(bsdf_.flags() & Lobes::from_light)) {}
+
+  double operator()(const Vec3& detector) const {
+    RandomStream unused(0);
+    const SampledSpectrum f = detector_is_wo_ ? bsdf_.f(detector, light_, unused) : bsdf_.f(light_, detector, unused);
+    return static_cast<double>(f[0] * std::abs(detector.z));
+  }
+
+ private:
+  Arena arena_;
+  const Bsdf& bsdf_;
+  Vec3 light_;
+  bool detector_is_wo_;
+};
+
+/// Those of the directions that lie in the box, with their azimuths as the box counts them.
+std::vector<SpherePoint> points_in(const SphereBox& box, std::span<const SpherePoint> points) {
+  std::vector<SpherePoint> result;
+  for (SpherePoint p : points) {
+    if (p.phi >= box.phi1) p.phi -= 2 * std::numbers::pi;
+    if (p.cos_theta >= box.z0 && p.cos_theta < box.z1 && p.phi >= box.phi0) result.push_back(p);
+  }
+  return result;
+}
+
+Lobes flags_of(const Exposure& exposure) {
+  Arena arena;
+  return bsdf_of(exposure.material, exposure.beam, arena).flags();
+}
+
 }  // namespace
 
 Estimate GoniophotometerReading::f(size_t patch) const {
+  const double scale = 1 / sphere.patch(patch).projected_solid_angle;
+  if (is_integrated()) return {integral[patch] * scale, 0, 0};
   Moments all = caught[patch];
   all.add_zeros(rays - all.count());
   const Estimate share = all.estimate();
-  const double scale = 1 / sphere.patch(patch).projected_solid_angle;
   return {share.mean * scale, share.variance * scale * scale, share.third_cumulant * scale * scale * scale};
 }
 
+Estimate GoniophotometerReading::share(bool reflected) const {
+  double integrated = 0;
+  Moments all;
+  for (size_t i = 0; i < sphere.size(); ++i) {
+    if (is_reflected(sphere.patch(i)) != reflected) continue;
+    if (is_integrated())
+      integrated += integral[i];
+    else
+      all.add(caught[i]);
+  }
+  if (is_integrated()) return {integrated, 0, 0};
+  all.add_zeros(rays - all.count());
+  return all.estimate();
+}
+
 void check_no_delta_lobe(const Exposure& exposure) {
-  Arena arena;
-  if (any(bsdf_of(exposure.material, exposure.beam, arena).flags() & Lobes::specular))
+  if (any(flags_of(exposure) & Lobes::specular))
     fail({},
          "the material has a delta lobe, whose f no detector of finite size can measure; frond spectrophotometer "
          "measures its share of the light");
@@ -49,11 +110,32 @@ GoniophotometerReading measure_f(const Exposure& exposure, const DetectorSphere&
   check_rays(rays);
   check_as_rendered(exposure);
   check_no_delta_lobe(exposure);
-  GoniophotometerReading reading{exposure.beam, sphere, rays, {}};
+  GoniophotometerReading reading{exposure.beam, sphere, rays, {}, {}};
   PatchTally tally{&sphere, std::vector<Moments>(sphere.size())};
   shoot(exposure, 0, rays, tally, pool, progress);
   reading.caught = std::move(tally.caught);
   check_weights(reading);
+  return reading;
+}
+
+bool has_exact_f(const Exposure& exposure) { return !any(flags_of(exposure) & Lobes::stochastic); }
+
+GoniophotometerReading integrate_f(const Exposure& exposure, const DetectorSphere& sphere, const ThreadPool& pool) {
+  assert(has_exact_f(exposure));
+  check_beam(exposure.beam);
+  check_no_delta_lobe(exposure);
+  const Vec3 light = toward_light(exposure.beam);
+  const std::array peaks{SpherePoint({-light.x, -light.y, light.z}), SpherePoint(-light)};
+  GoniophotometerReading reading{exposure.beam, sphere, 0, {}, std::vector<double>(sphere.size())};
+  pool.for_each(sphere.thetas(), [&](int64_t row, int) {
+    const ShareDensity density(exposure);
+    for (int column = 0; column < sphere.phis(); ++column) {
+      const size_t i = sphere.index(static_cast<int>(row), column);
+      const SphereBox box = box_of(sphere.patch(i));
+      constexpr double kNegligible = 1e-12;
+      reading.integral[i] = total(integrate(box, std::ref(density), kNegligible, points_in(box, peaks)));
+    }
+  });
   return reading;
 }
 

@@ -10,13 +10,19 @@ namespace frond {
 struct GoniophotometerReading {
   Beam beam;
   DetectorSphere sphere;
-  int64_t rays = 0;
-  std::vector<Moments> caught;  ///< weights of the rays in each patch
+  int64_t rays = 0;              ///< 0: no ray was shot, f was integrated
+  std::vector<Moments> caught;   ///< weights of the rays in each patch; empty where f was integrated
+  std::vector<double> integral;  ///< of f |cos theta| over each patch; empty where rays were shot
 
+  bool is_integrated() const { return rays == 0; }
+  /// Rays that reached the patch.
+  int64_t count(size_t patch) const { return is_integrated() ? 0 : caught[patch].count(); }
   /// BRDF (on the lit side) or BTDF in 1/sr, mean over the patch: weight sum / (rays * projected solid angle). The
   /// error of a patch that no ray has reached is 0: its f is below about 3 / (rays * projected solid angle).
   Estimate f(size_t patch) const;
   bool is_reflected(const Patch& patch) const { return (patch.theta_deg() < 90) == (beam.theta_deg <= 90); }
+  /// Share of the light that is reflected, or transmitted.
+  Estimate share(bool reflected) const;
 };
 
 /// Throws InputError where the material has a delta lobe: all of its light would fall into one patch and "f" would be
@@ -28,5 +34,12 @@ void check_no_delta_lobe(const Exposure& exposure);
 /// 2 rays, a beam out of range, a delta lobe, and weights that are not numbers.
 GoniophotometerReading measure_f(const Exposure& exposure, const DetectorSphere& sphere, int64_t rays,
                                  const ThreadPool& pool, const RayProgress& progress = {});
+
+/// Whether `integrate_f` can take the place of rays: f is no random estimate.
+bool has_exact_f(const Exposure& exposure);
+
+/// The same without noise: f integrated over each patch, with a relative error below 1e-4 where the density is smooth.
+/// For materials whose f is exact.
+GoniophotometerReading integrate_f(const Exposure& exposure, const DetectorSphere& sphere, const ThreadPool& pool);
 
 }  // namespace frond

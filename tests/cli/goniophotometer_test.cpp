@@ -81,6 +81,23 @@ TEST_F(GoniophotometerCommand, DrawsCurvesAndMaps) {
   EXPECT_THAT(bytes_of(path("b.png")), HasSubstr("PNG"));
 }
 
+TEST_F(GoniophotometerCommand, IntegratesWhatIsNoEstimate) {
+  const Outcome o = measure({"--with", "leaf_solved", "--integrate", "--angle", "30", "--wavelengths", "551", "--rays",
+                             "1e4", "--csv", path("a.csv"), "--plot", path("a.svg")});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("abm specimen=soybean, 30 degrees, 551 nm, 10000 rays, 20 x 40 patches\n"));
+  EXPECT_THAT(o.out, HasSubstr("leaf_solved, 30 degrees, 551 nm, integrated, 20 x 40 patches\n"));
+  EXPECT_THAT(bytes_of(path("a.svg")), HasSubstr("leaf_solved"));
+  const CsvTable csv = parse_csv(bytes_of(path("a.csv")));
+  ASSERT_EQ(csv.rows.size(), 1600u);
+  EXPECT_EQ(csv.number(0, "rays"), 10000);
+  for (size_t i = 800; i < csv.rows.size(); ++i) {
+    EXPECT_EQ(csv.number(i, "rays"), 0);
+    EXPECT_EQ(csv.number(i, "f_se"), 0);
+    EXPECT_GT(csv.number(i, "f_per_sr"), 0);
+  }
+}
+
 TEST_F(GoniophotometerCommand, RefusesTheImpossibleBeforeItMeasures) {
   EXPECT_THAT(refusal({"--with", "leaf_simplified surfacedirect=false tablemethod=solve", "--wavelengths", "551"}),
               HasSubstr("delta lobe"));

@@ -77,28 +77,17 @@ SphereBox box_of(const Patch& p) {
           p.phi_max_deg * kDegree};
 }
 
-/// Integral of f |cos theta| of a BSDF with a closed form over a patch.
-double share_of(const Patch& patch, const Bsdf& bsdf, const Vec3& incident) {
-  const auto density = [&](const Vec3& w) {
-    RandomStream unused(0);
-    return double(bsdf.f(incident, w, unused)[0] * std::abs(w.z));
-  };
-  return total(integrate(box_of(patch), density, 1e-8));
-}
-
 /// Chi-square test of what the detectors caught against the integrals of f. All rays weigh the same.
 void expect_agreement(const Prepared& specimen, double theta, const DetectorSphere& sphere, int64_t rays) {
   const Exposure exposure = specimen.under(theta);
   const auto reading = measure_f(exposure, sphere, rays, kPool);
-  Arena arena;
-  const Bsdf& bsdf = bsdf_of(exposure.material, exposure.beam, arena);
+  const auto exact = integrate_f(exposure, sphere, kPool);
   std::vector<double> observed, expected;
   double weight = 0;
   for (size_t i = 0; i < sphere.size(); ++i) {
-    const double share = share_of(sphere.patch(i), bsdf, toward_light(exposure.beam));
-    weight += share;
-    observed.push_back(double(reading.caught[i].count()));
-    expected.push_back(share * double(rays));
+    weight += exact.integral[i];
+    observed.push_back(double(reading.count(i)));
+    expected.push_back(exact.integral[i] * double(rays));
   }
   double absorbed = double(rays);
   for (size_t i = 0; i < sphere.size(); ++i) {
@@ -150,6 +139,50 @@ TEST(Goniophotometer, AgreesWithTheWalksOwnF) {
   }
 }
 
+TEST(Goniophotometer, IntegratesALambertianSurface) {
+  const Prepared sheet("diffusetransmission", {level("reflectance", 0.3), level("transmittance", 0.55)}, 1000);
+  for (const double theta : {0.0, 45.0, 150.0}) {
+    const auto reading = integrate_f(sheet.under(theta), DetectorSphere(20, 40), kPool);
+    EXPECT_TRUE(reading.is_integrated());
+    for (size_t i = 0; i < reading.sphere.size(); ++i) {
+      const bool reflected = reading.is_reflected(reading.sphere.patch(i));
+      EXPECT_NEAR(reading.f(i).mean, (reflected ? 0.3 : 0.55) / std::numbers::pi, 1e-6);
+      EXPECT_EQ(reading.f(i).variance, 0);
+    }
+    EXPECT_NEAR(reading.share(true).mean, 0.3, 1e-6);
+    EXPECT_NEAR(reading.share(false).mean, 0.55, 1e-6);
+  }
+}
+
+// Every narrow lobe is found, and where the light meets the model the other way round, it is turned.
+TEST(Goniophotometer, IntegratesWhatTheSolverKnows) {
+  for (const char* incident : {"traced", "light"})
+    for (const double theta : {0.0, 30.0, 80.0, 100.0}) {
+      const Prepared leaf("leaf_simplified", {word("incident", incident), real("oblateness", 1000)}, 551);
+      const auto reading = integrate_f(leaf.under(theta), DetectorSphere(20, 40), kPool);
+      const auto shares = measure_shares(leaf.under(theta), {.rays = 300000}, kPool);
+      EXPECT_GT(equality_p({reading.share(true).mean, 0, 0}, shares.reflectance, 1e-4), kFalseAlarmRate) << theta;
+      EXPECT_GT(equality_p({reading.share(false).mean, 0, 0}, shares.transmittance, 1e-4), kFalseAlarmRate) << theta;
+    }
+}
+
+TEST(Goniophotometer, IntegratesAsRendered) {
+  const Prepared leaf("leaf_solved", {}, 551);
+  Exposure exposure = leaf.under(60);
+  const auto model = integrate_f(exposure, DetectorSphere(6, 6), kPool);
+  exposure.as_rendered = true;
+  const auto rendered = integrate_f(exposure, DetectorSphere(6, 6), kPool);
+  const auto rays = measure_f(exposure, DetectorSphere(6, 6), 300000, kPool);
+  for (size_t i = 0; i < rays.sphere.size(); ++i)
+    EXPECT_GT(equality_p(rays.f(i), rendered.f(i), 1e-5), sidak_level(kFalseAlarmRate, rays.sphere.size())) << i;
+  EXPECT_NE(model.f(0).mean, rendered.f(0).mean);
+}
+
+TEST(Goniophotometer, KnowsWhichFIsExact) {
+  EXPECT_TRUE(has_exact_f(Prepared("leaf_solved", {}, 551).under(30)));
+  EXPECT_FALSE(has_exact_f(Prepared("abm", {}, 551).under(30)));
+}
+
 TEST(Goniophotometer, PatchesAddUpToWhatTheSpectrophotometerMeasures) {
   const Prepared leaf("abm", {word("mode", "weighted")}, 551);
   const auto patches = measure_f(leaf.under(120), DetectorSphere(20, 40), 100000, kPool);
@@ -161,6 +194,8 @@ TEST(Goniophotometer, PatchesAddUpToWhatTheSpectrophotometerMeasures) {
   }
   EXPECT_NEAR(reflected, shares.reflectance.mean, 1e-12);
   EXPECT_NEAR(transmitted, shares.transmittance.mean, 1e-12);
+  EXPECT_NEAR(patches.share(true).mean, reflected, 1e-12);
+  EXPECT_NEAR(patches.share(false).standard_error(), shares.transmittance.standard_error(), 1e-12);
 }
 
 TEST(Goniophotometer, StandardErrorsAreThoseOfRepeatedMeasurements) {
@@ -194,6 +229,8 @@ TEST(Goniophotometer, TheSameBitsOnAnyNumberOfThreads) {
 
 TEST(Goniophotometer, RefusesADeltaLobe) {
   const Prepared coated(planted<GoodCoatedDiffuse>("coated"), {}, 551);
+  EXPECT_NE(error_of([&] { integrate_f(coated.under(30), DetectorSphere(20, 40), kPool); }).find("delta lobe"),
+            std::string::npos);
   EXPECT_NE(error_of([&] { measure_f(coated.under(30), DetectorSphere(20, 40), 100, kPool); }).find("delta lobe"),
             std::string::npos);
   const Prepared sheet("diffuse", {}, 551);
