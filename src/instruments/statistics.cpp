@@ -69,7 +69,7 @@ double binomial_p(int64_t successes, int64_t trials, double low, double high) {
   return std::min(1.0, 2 * std::min(below, above));
 }
 
-double chi_square_p(std::span<const double> observed, std::span<const double> expected) {
+ChiSquare chi_square(std::span<const double> observed, std::span<const double> expected) {
   assert(observed.size() == expected.size());
   struct Class {
     double observed = 0, expected = 0;
@@ -77,19 +77,20 @@ double chi_square_p(std::span<const double> observed, std::span<const double> ex
   std::vector<Class> classes;
   Class open;
   for (size_t i = 0; i < observed.size(); ++i) {
-    if (!std::isfinite(expected[i])) return 0;
+    if (!std::isfinite(expected[i])) return {.p = 0};
     open.observed += observed[i];
     open.expected += expected[i];
     if (open.expected < 5) continue;
     classes.push_back(open);
     open = {};
   }
-  if (classes.size() < 2) return 1;
+  if (classes.size() < 2) return {};
   classes.back().observed += open.observed;
   classes.back().expected += open.expected;
-  double statistic = 0;
-  for (const Class& c : classes) statistic += (c.observed - c.expected) * (c.observed - c.expected) / c.expected;
-  return cdf(complement(boost::math::chi_squared(static_cast<double>(classes.size() - 1)), statistic));
+  ChiSquare result{.freedom = static_cast<int>(classes.size()) - 1};
+  for (const Class& c : classes) result.statistic += (c.observed - c.expected) * (c.observed - c.expected) / c.expected;
+  result.p = cdf(complement(boost::math::chi_squared(result.freedom), result.statistic));
+  return result;
 }
 
 double sidak_level(double rate, size_t tests) {

@@ -71,9 +71,19 @@ double at_most_p(const Estimate& a, double bound, double slack);
 /// of the most favourable one.
 double binomial_p(int64_t successes, int64_t trials, double low, double high);
 
-/// Pearson's chi-square test of counts against expectations. Classes are pooled, in their order, until each expects at
-/// least 5 (Cochran 1954). 1 where fewer than two classes are left: nothing can be told.
-double chi_square_p(std::span<const double> observed, std::span<const double> expected);
+/// Pearson's chi-square test of counts against expectations.
+struct ChiSquare {
+  double statistic = 0;
+  int freedom = 0;  ///< degrees of it: classes - 1
+  double p = 1;     ///< chance of so large a statistic or a larger one
+};
+
+/// Classes are pooled, in their order, until each expects at least 5 (Cochran 1954). p is 1 where fewer than two are
+/// left: nothing can be told; 0 where an expectation is no number.
+ChiSquare chi_square(std::span<const double> observed, std::span<const double> expected);
+inline double chi_square_p(std::span<const double> observed, std::span<const double> expected) {
+  return chi_square(observed, expected).p;
+}
 
 /// Level of each of `tests` tests such that all of them together raise a false alarm at most at `rate` (Sidak 1967).
 double sidak_level(double rate, size_t tests);
