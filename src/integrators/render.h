@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <numeric>
 
 #include "core/camera.h"
 #include "core/filter.h"
@@ -33,6 +34,11 @@ struct PathEnds {
   void add(const PathResult& path) {
     const size_t depth = std::min(size_t(path.scatterings), kDepths - 1);
     ++(path.escaped ? escaped : absorbed)[depth];
+  }
+  /// Paths that went on after so many scattering events, below kDepths.
+  uint64_t alive_after(size_t events) const {
+    return std::accumulate(escaped.begin() + events, escaped.end(), uint64_t{0}) +
+           std::accumulate(absorbed.begin() + events, absorbed.end(), uint64_t{0});
   }
   PathEnds& operator+=(const PathEnds& other) {
     for (size_t i = 0; i < kDepths; ++i) escaped[i] += other.escaped[i], absorbed[i] += other.absorbed[i];

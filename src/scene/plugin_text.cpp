@@ -103,4 +103,9 @@ void set_params(const PluginText& text, const PluginInfo& info, const Location& 
   }
 }
 
+void override_plugin(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin) {
+  if (plugin.name != text.name) plugin = {text.name, where, {}};
+  set_params(text, info, where, plugin);
+}
+
 }  // namespace frond

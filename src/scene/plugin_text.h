@@ -24,4 +24,8 @@ PluginText parse_plugin_text(const std::string& text, const Location& where);
 /// unknown names and for values of the wrong type.
 void set_params(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin);
 
+/// Makes `plugin` what the text names: one of the same name keeps the parameters that the text does not have. Throws
+/// as set_params does.
+void override_plugin(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin);
+
 }  // namespace frond

@@ -86,11 +86,6 @@ void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>&
   }
 }
 
-void apply_integrator(const PluginText& text, const Registry& registry, ParsedPlugin& integrator) {
-  if (integrator.name != text.name) integrator = {text.name, {}, {}};
-  set_params(text, registry.integrators.get(text.name, {}), {}, integrator);
-}
-
 /// The strategy, of the command line or else the scene's options.
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
                                                      const SceneDescription& description, const Registry& registry) {
@@ -113,7 +108,8 @@ class SceneBuilder {
 
   void build() {
     apply_swaps(description_, overrides_.swaps, registry_, log_);
-    if (overrides_.integrator) apply_integrator(*overrides_.integrator, registry_, description_.integrator);
+    if (const auto& text = overrides_.integrator)
+      override_plugin(*text, registry_.integrators.get(text->name, {}), {}, description_.integrator);
     build_options();
     SceneResolver resolver(description_, registry_, *scene_.wavelengths_);
     check_declarations(resolver);

@@ -62,6 +62,14 @@ TEST_F(CompareCommand, MeasuresEveryCandidateOnEveryRung) {
       EXPECT_GT(rung["leaf"]["green"]["noise"]["value"], 0);
     }
   }
+  const auto &abm = j["candidates"][0]["paper_manner"], &simplified = j["candidates"][1]["paper_manner"];
+  EXPECT_EQ(abm["cutoff"], 0.01);
+  EXPECT_EQ(abm["ratio_is_the_baselines"], true);
+  EXPECT_EQ(simplified["tree_depth"], abm["tree_depth"]);
+  EXPECT_THAT(std::string(simplified["candidate"]),
+              AllOf(HasSubstr("oblateness=2,surfacedirect=false@integrator=path,termination=attenuation,cutoff="),
+                    HasSubstr(",maxdepth=" + std::to_string(int(abm["tree_depth"])))));
+  EXPECT_GT(simplified["cpu_seconds_per_sample"], 0);
   const std::string csv = file("compare.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 6 + 2 * 3 * 2 * 5);
 }

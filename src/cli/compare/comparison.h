@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "cli/compare/candidate.h"
+#include "cli/compare/cutoff.h"
 #include "cli/compare/paired_render.h"
 #include "cli/compare/picture.h"
 #include "instruments/convergence.h"
@@ -31,7 +32,9 @@ struct Rung {
 
 /// A candidate in the paper's manner (paper_manner.h), timed alone.
 struct PaperTiming {
-  std::string text;
+  Candidate candidate;
+  size_t depth;  ///< where the trees end
+  CutoffFit end;
   double cpu_seconds_per_sample = 0;
 };
 

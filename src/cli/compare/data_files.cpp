@@ -64,6 +64,16 @@ Json speed_up_json(const SpeedUps& s) {
           {"d_equal_noise", s.equal_noise}};
 }
 
+Json paper_json(const PaperTiming& p) {
+  return {{"candidate", p.candidate.text},
+          {"cpu_seconds_per_sample", p.cpu_seconds_per_sample},
+          {"tree_depth", p.depth},
+          {"cutoff", p.end.cutoff},
+          {"unshot_rays", p.end.rays.unshot},
+          {"shot_rays", p.end.rays.shot},
+          {"ratio_is_the_baselines", p.end.equal}};
+}
+
 Json effort_json(const std::optional<Effort>& e) {
   if (!e) return nullptr;
   return {{"samples", e->samples}, {"cpu_seconds", e->seconds}, {"measured", e->measured}};
@@ -78,7 +88,7 @@ Json subject_json(const Comparison& c, size_t i) {
   for (size_t region = 0; region < kRegions; ++region)
     json["plateau"][kRegionNames[region]] = effort_json(s.convergence(Region(region), kRgb).until_plateau());
   json["speed_up"] = speed_up_json(speed_ups(c, i));
-  if (s.paper) json["paper_manner"] = s.paper->text;
+  if (s.paper) json["paper_manner"] = paper_json(*s.paper);
   if (c.request.rms) {
     const auto effort = s.convergence(kAll, kRgb).until_rms(*c.request.rms, simultaneous_z(c));
     json["meets_rms"] = effort_json(effort);

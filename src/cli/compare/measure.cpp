@@ -132,14 +132,15 @@ void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& be
 constexpr uint64_t kTimingSamples = 8;
 
 void time_in_the_papers_manner(const Study& study, const Plan& plan, const ThreadPool& pool, Comparison& result) {
-  for (Subject& subject : result.subjects) {
-    const auto candidate = in_the_papers_manner(subject.candidate, study);
-    if (!candidate) continue;
-    PairedRender render = pair_of(study, *candidate, kTimingSeed);
-    const uint64_t samples = std::min(kTimingSamples, plan.top_samples);
-    render.advance_to(samples, pool, {});
-    subject.paper = PaperTiming{candidate->text, render.cost().cpu_seconds / double(samples)};
-  }
+  const uint64_t samples = std::min(kTimingSamples, plan.top_samples);
+  const PaperManner manner(study, plan.candidates.front(), samples, pool);
+  std::vector<std::pair<PaperTiming*, PairedRender>> renders;
+  for (Subject& subject : result.subjects)
+    if ((subject.paper = manner.of(subject.candidate)))
+      renders.emplace_back(&*subject.paper, pair_of(study, subject.paper->candidate, kTimingSeed));
+  for (uint64_t n = 1; n <= samples; ++n)
+    for (auto& [timing, render] : renders) render.advance_to(n, pool, {});
+  for (auto& [timing, render] : renders) timing->cpu_seconds_per_sample = render.cost().cpu_seconds / double(samples);
 }
 
 }  // namespace

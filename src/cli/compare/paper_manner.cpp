@@ -20,20 +20,78 @@ std::string text_of(const PluginText& plugin) {
   return text;
 }
 
-}  // namespace
+std::string text_of(const Candidate& c) {
+  return text_of(c.material) + (c.wavelengths.empty() ? "" : "@wavelengths=" + c.wavelengths) +
+         "@integrator=" + text_of(*c.integrator);
+}
 
-std::optional<Candidate> in_the_papers_manner(const Candidate& candidate, const Study& study) {
-  Candidate c = candidate;
-  if (!c.integrator) c.integrator = PluginText{study.integrator(), {}};
+/// Ended by attenuation; the cutoff and the depth are yet to be said. Nothing where its integrator does not know them.
+std::optional<Candidate> ended_by_attenuation(Candidate c, const Study& study) {
+  if (!c.integrator) c.integrator = PluginText{study.integrator_name(), {}};
   const IntegratorInfo& integrator = study.registry().integrators.get(c.integrator->name, {});
-  if (!declares(integrator, "termination") || !declares(integrator, "cutoff")) return {};
+  for (const char* needed : {"termination", "cutoff", "maxdepth"})
+    if (!declares(integrator, needed)) return {};
   set(*c.integrator, "termination", "attenuation");
-  set(*c.integrator, "cutoff", "0.01");
   if (declares(study.registry().materials.get(c.material.name, {}), "surfacedirect"))
     set(c.material, "surfacedirect", "false");
-  c.text = text_of(c.material) + (c.wavelengths.empty() ? "" : "@wavelengths=" + c.wavelengths) +
-           "@integrator=" + text_of(*c.integrator);
   return c;
+}
+
+PluginText with_end(PluginText integrator, double cutoff, size_t depth) {
+  set(integrator, "cutoff", fmt::format("{:.3g}", cutoff));
+  set(integrator, "maxdepth", std::to_string(depth));
+  return integrator;
+}
+
+/// Renders a candidate with one cutoff after another.
+class Pilot {
+ public:
+  Pilot(const Study& study, const Candidate& candidate, uint64_t samples, const ThreadPool& pool)
+      : study_(study),
+        pool_(pool),
+        samples_(samples),
+        integrator_(*candidate.integrator),
+        scene_(study.scene(candidate)),
+        sampler_(study.sampler(*scene_, study.seed())) {}
+
+  PathEnds ends_with(double cutoff) const {
+    const auto integrator = study_.integrator(*scene_, with_end(integrator_, cutoff, PathEnds::kDepths - 1));
+    Film film(study_.film(), {}, scene_->wavelengths().bands().size());
+    const RenderJob job{*scene_,          scene_->camera(), *integrator,   scene_->wavelengths(),
+                        scene_->filter(), *sampler_,        study_.seed(), 0,
+                        samples_};
+    return render(job, film, pool_, {}).ends;
+  }
+
+ private:
+  const Study& study_;
+  const ThreadPool& pool_;
+  uint64_t samples_;
+  PluginText integrator_;
+  std::unique_ptr<Scene> scene_;
+  std::unique_ptr<Sampler> sampler_;
+};
+
+}  // namespace
+
+PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples, const ThreadPool& pool)
+    : study_(study), pool_(pool), pilot_samples_(pilot_samples) {
+  const auto candidate = ended_by_attenuation(baseline, study);
+  if (!candidate) return;
+  const PathEnds ends = Pilot(study, *candidate, pilot_samples, pool).ends_with(kPaperCutoff);
+  depth_ = depth_of_trees(ends);
+  target_ = unshot_after(ends, depth_);
+}
+
+std::optional<PaperTiming> PaperManner::of(const Candidate& candidate) const {
+  auto c = ended_by_attenuation(candidate, study_);
+  if (!c || depth_ == 0) return {};
+  const Pilot pilot(study_, *c, pilot_samples_, pool_);
+  const CutoffFit end =
+      fit_cutoff(target_, [&](double cutoff) { return unshot_after(pilot.ends_with(cutoff), depth_); });
+  c->integrator = with_end(*c->integrator, end.cutoff, depth_);
+  c->text = text_of(*c);
+  return PaperTiming{*c, depth_, end};
 }
 
 }  // namespace frond::compare

@@ -2,12 +2,28 @@
 
 #include <optional>
 
+#include "cli/compare/comparison.h"
 #include "cli/compare/study.h"
 
 namespace frond::compare {
 
-/// The candidate as Baranoski and Rokne render: light sampling does not see a surface lobe, and a path ends when the
-/// luminance of its attenuation falls below 0.01. Nothing where the scene's integrator has no such end.
-std::optional<Candidate> in_the_papers_manner(const Candidate& candidate, const Study& study);
+/// Renders as Baranoski and Rokne do. Light sampling does not see a surface lobe. A path ends when the luminance of its
+/// attenuation falls below a cutoff: 0.01 for the baseline, whose trees end at the depth where fewer than 1e-4 of the
+/// rays shot wait to be shot. Those of the others end there too, and their cutoff is such that the same ratio is left.
+class PaperManner {
+ public:
+  /// How paths end is told by pilots of so many samples a pixel.
+  PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples, const ThreadPool& pool);
+
+  /// What to time. Nothing where the scene's integrator, or the candidate's own, has no such end.
+  std::optional<PaperTiming> of(const Candidate& candidate) const;
+
+ private:
+  const Study& study_;
+  const ThreadPool& pool_;
+  uint64_t pilot_samples_;
+  size_t depth_ = 0;
+  Unshot target_ = {};  ///< what the baseline leaves there
+};
 
 }  // namespace frond::compare

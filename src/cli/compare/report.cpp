@@ -103,7 +103,7 @@ std::string provenance(const Comparison& c) {
       false);
   for (const Subject& s : c.subjects) {
     add(s.candidate.label, fmt::format("{} with wavelengths {}", s.candidate.text, s.wavelengths), true);
-    if (s.paper) add(s.candidate.label + " (b)", s.paper->text, true);
+    if (s.paper) add(s.candidate.label + " (b)", s.paper->candidate.text, true);
   }
   return list + "</dl>";
 }

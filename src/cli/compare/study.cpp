@@ -78,6 +78,16 @@ std::unique_ptr<Sampler> Study::sampler(const Scene& scene, uint64_t seed) const
   return info.make(Params(info, description_.sampler, resolver), seed);
 }
 
+std::unique_ptr<Integrator> Study::integrator(const Scene& scene, const PluginText& over) const {
+  SceneResolver resolver(description_, registry_, scene.wavelengths());
+  const IntegratorInfo& info = registry_.integrators.get(over.name, {});
+  ParsedPlugin plugin = description_.integrator;
+  override_plugin(over, info, {}, plugin);
+  auto integrator = info.make(Params(info, plugin, resolver));
+  integrator->prepare(scene);
+  return integrator;
+}
+
 uint64_t Study::identity(const Candidate& candidate) const {
   std::string choices =
       fmt::format("{} {} {} {} {}", candidate.text, options_.wavelengths, film_.width, film_.height, seed());

@@ -28,13 +28,16 @@ class Study {
   /// The scene's sampler, with a seed of its own.
   std::unique_ptr<Sampler> sampler(const Scene& scene, uint64_t seed) const;
 
+  /// The scene's integrator with these over it.
+  std::unique_ptr<Integrator> integrator(const Scene& scene, const PluginText& over) const;
+
   /// From which those of all renders are made.
   uint64_t seed() const { return options_.seed.value_or(0); }
   const FilmSettings& film() const { return film_; }
   /// Names of the materials that candidates replace.
   const std::vector<std::string>& leaves() const { return leaves_; }
   /// The scene's integrator, by name.
-  const std::string& integrator() const { return description_.integrator.name; }
+  const std::string& integrator_name() const { return description_.integrator.name; }
   const Registry& registry() const { return registry_; }
   /// A hash of all that decides the pixels of this candidate: the program, its plug-ins, the scene with the files that
   /// it names, size, wavelengths, seed. Another hash may be the same pixels, the same hash is.

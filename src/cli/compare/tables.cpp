@@ -92,6 +92,25 @@ std::string speed_row(const Comparison& c, size_t i) {
          cell(ratio_text(v.equal_error_at_bias)) + cell(ratio_text(v.equal_noise)) + "</tr>\n";
 }
 
+std::string cutoff_text(const Subject& s) {
+  const CutoffFit& end = s.paper->end;
+  const std::string text = fmt::format("{:.2g} for {}", end.cutoff, html_text(s.candidate.label));
+  return end.equal ? text : fmt::format("{} (which leaves {:.1e}: none leaves the same)", text, end.rays.ratio());
+}
+
+/// What stands behind (b); nothing where the scene's integrator cannot render so.
+std::string paper_note(const Comparison& c) {
+  std::vector<std::string> cutoffs;
+  for (const Subject& s : c.subjects)
+    if (s.paper) cutoffs.push_back(cutoff_text(s));
+  if (cutoffs.empty() || !c.subjects.front().paper) return "";
+  const PaperTiming& baseline = *c.subjects.front().paper;
+  return fmt::format(
+      "(b): light sampling does not see the surface lobe, and a path ends when the luminance of its attenuation falls "
+      "below a cutoff, such that at tree depth {} all leave the same ratio of rays unshot to shot, {:.1e}: {}. ",
+      baseline.depth, baseline.end.rays.ratio(), fmt::join(cutoffs, ", "));
+}
+
 std::string speed_table(const Comparison& c) {
   std::string rows;
   for (size_t i = 0; i < c.subjects.size(); ++i) rows += speed_row(c, i);
@@ -104,11 +123,10 @@ std::string speed_table(const Comparison& c) {
             "(a) equal<br>samples", "(b) paper’s<br>manner", "(c) equal<br>error", "(c) at 1.5<br>× bias",
             "(d) equal<br>noise"}),
       rows,
-      fmt::format("Speed-up: CPU time of {} over the candidate’s. (b): with light sampling that does not see the "
-                  "surface lobe, and paths that end when the luminance of their attenuation is below 0.01. (c): until "
-                  "all three channels are down to {}; and until the RMS of all is 1.5 times the candidate’s bias. (d): "
-                  "at the same variance. Tables from the cache cost little to make ready.",
-                  html_text(c.subjects.front().candidate.label), target));
+      fmt::format("Speed-up: CPU time of {} over the candidate’s. {}(c): until all three channels are down to {}; and "
+                  "until the RMS of all is 1.5 times the candidate’s bias. (d): at the same variance. Tables from the "
+                  "cache cost little to make ready.",
+                  html_text(c.subjects.front().candidate.label), paper_note(c), target));
 }
 
 std::string offer_table(const Comparison& c) {
