@@ -129,15 +129,34 @@ void add_sample_from_everywhere(const MaterialInfo& info) {
       ->Arg(4);
 }
 
+/// A material that is ready for paths with wavelengths of their own.
+class ReadyForEach {
+ public:
+  explicit ReadyForEach(const MaterialInfo& info) : setup_(wavelengths_), material_(make(info, setup_.preparation)) {}
+  const WavelengthStrategy& wavelengths() const { return wavelengths_; }
+  const Material& material() const { return *material_; }
+
+  /// Made once for each material.
+  static const ReadyForEach& get(const MaterialInfo& info) {
+    static std::map<const MaterialInfo*, std::unique_ptr<ReadyForEach>> all;
+    auto& entry = all[&info];
+    if (!entry) entry = std::make_unique<ReadyForEach>(info);
+    return *entry;
+  }
+
+ private:
+  test::StratifiedWavelengths wavelengths_;
+  test::Setup setup_;
+  std::unique_ptr<Material> material_;
+};
+
 /// What a path pays at a hit: the BSDF is made, with what it looks up, and sampled. Four wavelengths, anew for each
 /// path.
 void add_hit(const MaterialInfo& info) {
   const auto run = [&info](benchmark::State& state) {
     const double theta = static_cast<double>(state.range(0)) * std::numbers::pi / 180;
     const Vec3 wo{static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
-    const test::StratifiedWavelengths wavelengths;
-    const test::Setup setup(wavelengths);
-    const auto material = make(info, setup.preparation);
+    const ReadyForEach& ready = ReadyForEach::get(info);
     const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .uv = {0.5f, 0.5f}};
     const std::vector<Draw> all = draws();
     Arena arena;
@@ -146,7 +165,7 @@ void add_hit(const MaterialInfo& info) {
     for (auto _ : state) {
       const Draw& draw = all[i++ % all.size()];
       arena.reset();
-      const Bsdf* bsdf = material->evaluate(hit, wavelengths.sample(draw.uc), arena);
+      const Bsdf* bsdf = ready.material().evaluate(hit, ready.wavelengths().sample(draw.uc), arena);
       benchmark::DoNotOptimize(bsdf->sample(wo, draw.u.x, {draw.u.y, draw.uc}, rng));
     }
   };

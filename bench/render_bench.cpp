@@ -78,7 +78,7 @@ void render_paths(benchmark::State& state, const std::string& file, const std::v
   RenderStatistics total;
   for (auto _ : state) {
     Film film(loaded.film_settings);
-    const RenderStatistics s = render(loaded.job(loaded.scene, 16), film, loaded.pool, {});
+    const RenderStatistics s = render(loaded.job(loaded.scene, 4), film, loaded.pool, {});
     total.paths += s.paths, total.rays += s.rays, total.cpu_seconds += s.cpu_seconds;
     state.counters["foliar_ratio"] = film.foliar_ratio();
   }

@@ -30,22 +30,23 @@ double excess(double a1, double a2, double r1, double r2) {
 
 double clip(double x) { return std::clamp(x, 0.0, 1.0); }
 
+constexpr MeanSquare RenderError::*kParts[] = {&RenderError::total, &RenderError::clipped, &RenderError::noise,
+                                               &RenderError::bias, &RenderError::reference_noise};
+
 void scale(RenderError& e, double factor) {
-  for (MeanSquare* m : {&e.total, &e.clipped, &e.noise, &e.bias, &e.reference_noise}) {
-    m->value *= factor;
-    m->standard_error *= factor;
+  for (const auto part : kParts) {
+    (e.*part).value *= factor;
+    (e.*part).standard_error *= factor;
   }
 }
 
 }  // namespace
 
 RenderError& RenderError::operator+=(const RenderError& other) {
-  const auto add = [](MeanSquare& to, const MeanSquare& more) {
-    to.value += more.value;
-    to.standard_error += more.standard_error;
-  };
-  add(total, other.total), add(clipped, other.clipped), add(noise, other.noise), add(bias, other.bias);
-  add(reference_noise, other.reference_noise);
+  for (const auto part : kParts) {
+    (this->*part).value += (other.*part).value;
+    (this->*part).standard_error += (other.*part).standard_error;
+  }
   return *this;
 }
 
@@ -70,6 +71,16 @@ RenderError mean_of(std::span<const RenderError> channels) {
   for (const RenderError& e : channels) sum += e;
   if (!channels.empty()) scale(sum, 1 / static_cast<double>(channels.size()));
   return sum;
+}
+
+RenderError mean_of_independent(std::span<const RenderError> repeats) {
+  RenderError mean = mean_of(repeats);
+  for (const auto part : kParts) {
+    double squares = 0;
+    for (const RenderError& e : repeats) squares += square((e.*part).standard_error);
+    if (!repeats.empty()) (mean.*part).standard_error = std::sqrt(squares) / static_cast<double>(repeats.size());
+  }
+  return mean;
 }
 
 }  // namespace frond

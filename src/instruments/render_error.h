@@ -29,4 +29,7 @@ RenderError render_error(const RenderPair& renders, const RenderPair& reference,
 /// Of several channels together, each with the same weight. Their errors may hang together in any way.
 RenderError mean_of(std::span<const RenderError> channels);
 
+/// Of the same thing measured several times, renders and reference anew each time.
+RenderError mean_of_independent(std::span<const RenderError> repeats);
+
 }  // namespace frond

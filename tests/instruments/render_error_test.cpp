@@ -72,5 +72,13 @@ TEST(RenderError, ChannelsTogetherAreTheirMean) {
   EXPECT_DOUBLE_EQ(mean.noise.standard_error, 0.2);  // as if they always erred together
 }
 
+TEST(RenderError, RepeatsAverageTheirErrors) {
+  RenderError a, b;
+  a.bias = {1, 0.3}, b.bias = {3, 0.4};
+  const RenderError mean = mean_of_independent(std::array{a, b});
+  EXPECT_DOUBLE_EQ(mean.bias.value, 2);
+  EXPECT_DOUBLE_EQ(mean.bias.standard_error, 0.25);
+}
+
 }  // namespace
 }  // namespace frond

@@ -1,0 +1,25 @@
+#include <benchmark/benchmark.h>
+
+#include "cli/compare/machine.h"
+
+namespace {
+
+#ifdef __clang__
+constexpr const char* kCompiler = __VERSION__;
+#else
+constexpr const char* kCompiler = "g++ " __VERSION__;
+#endif
+
+}  // namespace
+
+/// Google Benchmark's own main, and beside its figures what they were made with.
+int main(int argc, char** argv) {
+  benchmark::AddCustomContext("frond_version", FROND_VERSION);
+  benchmark::AddCustomContext("compiler", kCompiler);
+  benchmark::AddCustomContext("compiler_flags", FROND_BENCH_FLAGS);
+  benchmark::AddCustomContext("machine", frond::compare::machine_description());
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

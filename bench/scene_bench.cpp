@@ -1,0 +1,118 @@
+#include <benchmark/benchmark.h>
+
+#include "bench/scene_study.h"
+#include "integrators/render.h"
+
+/// The leaf models in whole scenes: what a sample costs, and how far off the picture is that it goes into
+/// (docs/benchmarks.md says what each counter means). Names stay from release to release.
+namespace frond {
+namespace {
+
+constexpr const char* kBaseline = "abm";
+
+SceneStudy& study_of(const std::string& scene) {
+  static std::map<std::string, std::unique_ptr<SceneStudy>> all;
+  auto& study = all[scene];
+  if (!study) study = std::make_unique<SceneStudy>(scene);
+  return *study;
+}
+
+/// A render on one thread that goes on by one sample for each pixel at a time.
+class Meter {
+ public:
+  Meter(SceneStudy& study, const std::string& material) : scene_(study.scene(material)), film_(study.film()), pool_(1) {
+    add_sample();  // whose memory is new
+    paths_ = cpu_seconds_ = 0;
+  }
+
+  void add_sample() {
+    const RenderJob job{scene_,
+                        scene_.camera(),
+                        scene_.integrator(),
+                        scene_.wavelengths(),
+                        scene_.filter(),
+                        scene_.sampler(),
+                        scene_.seed(),
+                        samples_++,
+                        1};
+    const RenderStatistics s = render(job, film_, pool_, {});
+    paths_ += double(s.paths), cpu_seconds_ += s.cpu_seconds;
+  }
+  double seconds_per_path() const { return cpu_seconds_ / paths_; }
+
+ private:
+  const Scene& scene_;
+  Film film_;
+  ThreadPool pool_;
+  uint64_t samples_ = 0;
+  double paths_ = 0, cpu_seconds_ = 0;
+};
+
+/// With the standard error beside it.
+void tell(benchmark::State& state, const std::string& name, double value, double standard_error) {
+  state.counters[name] = value;
+  state.counters[name + "_se"] = standard_error;
+}
+
+/// Variance times time of a pixel's samples: what it takes to be done with the noise.
+double effort(const Accuracy& accuracy, const Meter& meter) {
+  return accuracy.mean.noise.value * double(SceneStudy::kSamples) * meter.seconds_per_path();
+}
+
+void tell_errors(benchmark::State& state, const Accuracy& accuracy) {
+  constexpr std::array<const char*, 3> kNames{"red", "green", "blue"};
+  for (size_t c = 0; c < kNames.size(); ++c) {
+    const auto& [total, bias] = std::pair{accuracy.channels[c].total, accuracy.channels[c].bias};
+    tell(state, std::string("rms_") + kNames[c], total.root(), total.standard_error / (2 * total.root()));
+    tell(state, std::string("bias2_") + kNames[c], bias.value, bias.standard_error);
+  }
+  tell(state, "variance", accuracy.mean.noise.value, accuracy.mean.noise.standard_error);
+}
+
+/// Both render a sample in turn, each as often the first as the second: whatever else the machine does falls on both.
+/// The baseline's is not timed.
+void render_in_turn(benchmark::State& state, Meter& own, Meter& baseline) {
+  bool first = true;
+  for (auto _ : state) {
+    state.PauseTiming();
+    if (!first) baseline.add_sample();
+    state.ResumeTiming();
+    own.add_sample();
+    state.PauseTiming();
+    if (first) baseline.add_sample();
+    first = !first;
+    state.ResumeTiming();
+  }
+}
+
+struct Subject {
+  std::string material;
+  bool is_leaf;  ///< stands for a leaf, so that its error means something
+};
+
+void measure(benchmark::State& state, const std::string& scene, const Subject& subject) {
+  SceneStudy& study = study_of(scene);
+  Meter own(study, subject.material), baseline(study, kBaseline);
+  render_in_turn(state, own, baseline);
+  state.counters["us_per_path"] = own.seconds_per_path() * 1e6;
+  state.counters["speedup"] = baseline.seconds_per_path() / own.seconds_per_path();
+  if (!subject.is_leaf) return;
+  const Accuracy& accuracy = study.accuracy(subject.material);
+  tell_errors(state, accuracy);
+  const double own_effort = effort(accuracy, own);
+  state.counters["efficiency"] = 1 / own_effort;
+  state.counters["speedup_equal_noise"] = effort(study.accuracy(kBaseline), baseline) / own_effort;
+}
+
+[[maybe_unused]] const bool kAdded = [] {
+  for (const char* scene : {"soybean-front", "soybean-back", "soybean-ambient", "hundred-leaves"})
+    for (const Subject& subject : {Subject{"abm", true}, Subject{"leaf_simplified", true}, Subject{"leaf_solved", true},
+                                   Subject{"leaf_lambert", true}, Subject{"diffusetransmission", false}}) {
+      const std::string name = "scene/" + std::string(scene) + "/" + subject.material;
+      benchmark::RegisterBenchmark(name.c_str(), measure, std::string(scene), subject)->Unit(benchmark::kMillisecond);
+    }
+  return true;
+}();
+
+}  // namespace
+}  // namespace frond

@@ -1,0 +1,85 @@
+#include "bench/scene_study.h"
+
+#include <cstdlib>
+
+#include "cli/compare/reference_store.h"
+#include "core/random.h"
+
+namespace frond {
+namespace {
+
+using compare::PairedRender;
+
+std::filesystem::path cache() {
+  const char* folder = std::getenv("FROND_BENCH_CACHE");
+  return folder ? folder : "";
+}
+
+compare::StudyOptions options(const std::string& name) {
+  return {.scene = FROND_SOURCE_DIR "/scenes/" + name + "/scene.pbrt",
+          .wavelengths = "smpte",
+          .size = SceneStudy::kPixels,
+          .cache = cache()};
+}
+
+std::array<compare::Picture, 2> pictures_of(const PairedRender& render, const ColorManager& colors) {
+  const std::string_view space = render.scene().wavelengths().film_space();
+  return {compare::picture_of(render.film(0), space, colors), compare::picture_of(render.film(1), space, colors)};
+}
+
+}  // namespace
+
+SceneStudy::SceneStudy(const std::string& name) : log_(true), study_(options(name), pool_, log_) {}
+
+const Scene& SceneStudy::scene(const std::string& material) {
+  auto& scene = scenes_[material];
+  if (!scene) scene = study_.scene(compare::parse_candidate(material));
+  return *scene;
+}
+
+const Accuracy& SceneStudy::accuracy(const std::string& material) {
+  if (const auto known = accuracies_.find(material); known != accuracies_.end()) return known->second;
+  return accuracies_.emplace(material, measure(material)).first->second;
+}
+
+Accuracy SceneStudy::measure(const std::string& material) {
+  const std::vector<Pictures> candidate = render(material, kCandidateSeed, kSamples);
+  Accuracy a;
+  for (size_t c = 0; c < a.channels.size(); ++c) {
+    std::array<RenderError, kRepeats> repeats;
+    for (size_t i = 0; i < kRepeats; ++i) {
+      const Pictures &pair = candidate[i], &truth = reference()[i];
+      repeats[i] =
+          render_error({pair[0].channels[c], pair[1].channels[c]}, {truth[0].channels[c], truth[1].channels[c]});
+    }
+    a.channels[c] = mean_of_independent(repeats);
+  }
+  a.mean = mean_of(a.channels);
+  return a;
+}
+
+const std::vector<SceneStudy::Pictures>& SceneStudy::reference() {
+  if (reference_.empty()) reference_ = render(kReference, kReferenceSeed, kReferenceSamples);
+  return reference_;
+}
+
+std::vector<SceneStudy::Pictures> SceneStudy::render(const std::string& material, SeedUse use, uint64_t samples) const {
+  const compare::Candidate candidate = compare::parse_candidate(material);
+  const uint64_t identity = study_.identity(candidate);
+  const ColorManager colors;
+  std::vector<Pictures> result;
+  for (uint64_t repeat = 0; repeat < kRepeats; ++repeat) {
+    const auto seed = [&](uint64_t half) { return hash_key(study_.seed(), uint64_t{use} + half, repeat); };
+    PairedRender render(study_, candidate, seed(0), seed(1));
+    const compare::ReferenceStore store(cache(), hash_key(identity, uint64_t{use}, repeat), log_);
+    store.load(render);
+    if (render.samples() < samples) {
+      render.advance_to(samples, pool_, {});
+      store.save(render);
+    }
+    result.push_back(pictures_of(render, colors));
+  }
+  return result;
+}
+
+}  // namespace frond

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "cli/compare/picture.h"
+#include "cli/compare/study.h"
+#include "instruments/render_error.h"
+
+namespace frond {
+
+/// How far one render is from what the reference converges to.
+struct Accuracy {
+  std::array<RenderError, 3> channels;  ///< red, green and blue of linear SMPTE-C
+  RenderError mean;                     ///< of the three
+};
+
+/// A scene at a small size and at the wavelengths 608, 551 and 455 nm, in which one leaf model stands for another. What
+/// it is asked for is made once.
+class SceneStudy {
+ public:
+  static constexpr int kPixels = 64;                              ///< of the picture's longer side
+  static constexpr uint64_t kSamples = 32;                        ///< of each pixel, where errors are told
+  static constexpr const char* kReference = "abm,mode=weighted";  ///< the analog walk's expectation, with less noise
+  static constexpr uint64_t kReferenceSamples = 4 * kSamples;
+  static constexpr size_t kRepeats = 4;  ///< of two renders of each, so that few bright pixels do not decide
+
+  /// `name`: of a folder in scenes/.
+  explicit SceneStudy(const std::string& name);
+
+  /// `material` in place of every leaf.
+  const Scene& scene(const std::string& material);
+  const FilmSettings& film() const { return study_.film(); }
+  /// After `kSamples` samples a pixel. Films are kept in the folder FROND_BENCH_CACHE, if that is set, for other
+  /// processes of this program.
+  const Accuracy& accuracy(const std::string& material);
+
+ private:
+  /// No candidate shares a seed with the reference.
+  enum SeedUse : uint64_t { kCandidateSeed = 1, kReferenceSeed = 3 };
+  using Pictures = std::array<compare::Picture, 2>;
+
+  Accuracy measure(const std::string& material);
+  const std::vector<Pictures>& reference();
+  std::vector<Pictures> render(const std::string& material, SeedUse use, uint64_t samples) const;
+
+  ThreadPool pool_;
+  Log log_;
+  compare::Study study_;
+  std::map<std::string, std::unique_ptr<Scene>> scenes_;
+  std::map<std::string, Accuracy> accuracies_;
+  std::vector<Pictures> reference_;
+};
+
+}  // namespace frond
