@@ -3,17 +3,23 @@
 #include <ctime>
 
 #include "cli/commands.h"
+#include "cli/leaf_words.h"
 #include "cli/number_list.h"
 #include "core/parallel.h"
+#include "leaf/body_cache.h"
+#include "leaf/body_file.h"
+#include "leaf/body_table.h"
 #include "leaf/constants.h"
 #include "leaf/table_cache.h"
 #include "leaf/table_file.h"
 #include "materials/leaf_params.h"
+#include "materials/registry.h"
 #include "scene/atomic_file.h"
-#include "scene/plugin_text.h"
 
 namespace frond {
 namespace {
+
+constexpr std::string_view kSimplified = "leaf_simplified", kSolved = "leaf_solved";
 
 struct TableOptions {
   std::vector<std::string> words;
@@ -21,32 +27,21 @@ struct TableOptions {
   uint64_t seed = 0;
   int threads = 0, nodes = 0;
   bool equal_sides = false, quiet = false;
+
+  /// The material whose table it is: the first word, if it is no parameter.
+  std::string_view material() const {
+    const bool named = !words.empty() && (words[0] == kSimplified || words[0] == kSolved);
+    return named ? std::string_view(words[0]) : kSimplified;
+  }
+  /// What makes the leaf.
+  std::vector<std::string> leaf() const {
+    std::vector<std::string> result(words.begin() + (!words.empty() && words[0] == material()), words.end());
+    if (!specimen.empty()) result.push_back("specimen=" + specimen);
+    return result;
+  }
 };
 
 constexpr PluginInfo kLeaf{"leaf", "leaf", "", "", kLeafParams};
-
-/// A leaf on the command line is made of numbers and words alone.
-class NoReferences final : public ParamResolver {
- public:
-  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { refuse(); }
-  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location&) override { refuse(); }
-  std::shared_ptr<Material> material(const std::string&, const Location&) override { refuse(); }
-  SpectrumPtr spectrum(const ParsedParam&, bool) override { refuse(); }
-  std::filesystem::path file(const std::string& name, const Location&) override { return name; }
-
- private:
-  [[noreturn]] static void refuse() { fail({}, "a leaf's table is made for one leaf: numbers alone, no textures"); }
-};
-
-leaf::TissueParams tissue_of(const TableOptions& options) {
-  std::string text = "leaf";
-  for (const std::string& word : options.words) text += "," + word;
-  if (!options.specimen.empty()) text += ",specimen=" + options.specimen;
-  ParsedPlugin plugin{"leaf", {}, {}};
-  set_params(parse_plugin_text(text, {}), kLeaf, {}, plugin);
-  NoReferences none;
-  return LeafParams(Params(kLeaf, plugin, none)).tissue();
-}
 
 void check_ascending(const std::vector<double>& theta_deg) {
   for (size_t i = 0; i < theta_deg.size(); ++i) {
@@ -77,7 +72,7 @@ void check_wavelengths(std::vector<double> wavelengths_nm) {
 }
 
 leaf::TableRequest request_of(const TableOptions& options) {
-  leaf::TableRequest request{.params = tissue_of(options),
+  leaf::TableRequest request{.params = LeafParams(leaf_from_words(kLeaf, options.leaf())).tissue(),
                              .wavelengths_nm = parse_numbers("--wavelengths", options.wavelengths),
                              .theta_deg = parse_numbers("--angles", options.angles),
                              .seed = options.seed};
@@ -102,12 +97,13 @@ void write(const std::string& path, const std::string& text) {
   replace_file(path, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
 }
 
-void make_table_file(const TableOptions& options) {
-  if (options.output != "-") check_replaceable(options.output);  // now, not after the walks
+double cpu_seconds_since(std::clock_t start) { return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
+
+void make_shares_file(const TableOptions& options) {
   const leaf::TableRequest request = request_of(options);
   const std::clock_t start = std::clock();
   leaf::Table table = leaf::make_table(request, ThreadPool(options.threads));
-  const double cpu_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const double cpu_seconds = cpu_seconds_since(start);
   std::string header = leaf::describe(request);
   if (options.equal_sides) {
     table = leaf::mean_of_sides(table);
@@ -118,14 +114,54 @@ void make_table_file(const TableOptions& options) {
       .info(leaf::summary(request, options.output, table) + fmt::format(", {:.2g} s of CPU", cpu_seconds));
 }
 
+leaf::BodyRequest modes_request_of(const TableOptions& options) {
+  const MaterialInfo& info = PluginTable<MaterialInfo>("material", builtin_materials()).get(kSolved, {});
+  const Params params = leaf_from_words(info, options.leaf());
+  if (params.given("tablefile")) fail({}, "a table is made of a leaf, not of a \"tablefile\"");
+  leaf::BodyRequest request{.params = LeafParams(params).tissue(),
+                            .wavelengths_nm = parse_numbers("--wavelengths", options.wavelengths),
+                            .tolerance = params.real("tolerance")};
+  check_wavelengths(request.wavelengths_nm);
+  return request;
+}
+
+void make_modes_file(const TableOptions& options) {
+  const leaf::BodyRequest request = modes_request_of(options);
+  const std::clock_t start = std::clock();
+  const leaf::BodySpectrum spectrum = leaf::make_body_spectrum(request, ThreadPool(options.threads));
+  const double cpu_seconds = cpu_seconds_since(start);
+  write(options.output, leaf::to_text(request, spectrum, leaf::describe(request)));
+  const size_t bytes = leaf::BodyTable(request, spectrum, false).bytes();
+  Log(options.quiet)
+      .info(leaf::summary(request, options.output, spectrum) +
+            fmt::format(", {} kB in a render, {:.2g} s of CPU", (bytes + 512) / 1024, cpu_seconds));
+}
+
+/// Options that say nothing of a table of modes.
+void check_modes_options(const CLI::App& command) {
+  for (const char* name : {"--method", "--angles", "--rays", "--nodes", "--seed", "--equalsides"})
+    if (command.count(name) > 0)
+      fail({}, "{} is for tables of {}; those of {} follow from its \"tolerance\"", name, kSimplified, kSolved);
+}
+
+void make_table_file(const TableOptions& options, const CLI::App& command) {
+  if (options.output != "-") check_replaceable(options.output);  // now, not after the walks
+  if (options.material() == kSimplified) return make_shares_file(options);
+  check_modes_options(command);
+  make_modes_file(options);
+}
+
 }  // namespace
 
 void add_table_command(CLI::App& app) {
   auto options = std::make_shared<TableOptions>();
   TableOptions& o = *options;
   auto* command =
-      app.add_subcommand("table", "Write a leaf's reflectance and transmittance by angle and wavelength as CSV.");
-  command->add_option("leaf", o.words, "The leaf: name=value ..., as leaf_simplified takes them (frond describe).");
+      app.add_subcommand("table", "Write the table that a leaf material looks up, as a file that it can read.");
+  command->add_option(
+      "leaf", o.words,
+      "[MATERIAL] name=value ...: leaf_simplified (default), R and T by angle and wavelength as CSV, or "
+      "leaf_solved, the modes of its BSDF; and the leaf, as they take it (frond describe).");
   command->add_option("--specimen", o.specimen, "A leaf from the literature; soybean by default.");
   command->add_option("--method", o.method, "solve: without noise. montecarlo: random walks, as published.")
       ->check(CLI::IsMember({"solve", "montecarlo"}));
@@ -142,7 +178,7 @@ void add_table_command(CLI::App& app) {
   command->add_flag("--equalsides", o.equal_sides, "The mean of both sides, on angles up to 90.");
   command->add_option("-o,--output", o.output, "The table's file; - for standard output.")->required();
   command->add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");
-  command->callback([options] { make_table_file(*options); });
+  command->callback([options, command] { make_table_file(*options, *command); });
 }
 
 }  // namespace frond

@@ -16,10 +16,7 @@ BodySpectrum cached_body_spectrum(const BodyRequest& request, std::string_view n
 /// Everything that a spectrum depends on, as comments of its file.
 std::string describe(const BodyRequest& request);
 
-/// The file: `header` and the grid's size as comments, the index of each wavelength, and a line for each row of each
-/// mode, which says column, lit side and way out before the numbers of the row (docs/solved_leaf.md).
-std::string to_text(const BodySpectrum& spectrum, std::string_view header);
-/// What `to_text` wrote under the same header; false if it is anything else.
-bool parse_body_spectrum(std::string_view text, std::string_view header, BodySpectrum& spectrum);
+/// One line for people: what the spectrum holds and how good it is.
+std::string summary(const BodyRequest& request, std::string_view name, const BodySpectrum& spectrum);
 
 }  // namespace frond::leaf

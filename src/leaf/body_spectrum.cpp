@@ -75,7 +75,7 @@ BodySpectrum make_body_spectrum(const BodyRequest& request, const ThreadPool& po
   const TissueModel model(request.params);
   const std::vector<Tissue> tissues = tissues_of(request, model);
   BodySpectrum spectrum;
-  for (const double nm : request.wavelengths_nm) spectrum.index.push_back(model.at(nm).n_cuticle());
+  for (const Tissue& tissue : tissues) spectrum.index.push_back(tissue.n_cuticle());
   spectrum.cells = cells_for(request.tolerance, tissues);
   spectrum.modes.resize(tissues.size());
   const std::vector<double> sines = grid_sines(spectrum.cells);

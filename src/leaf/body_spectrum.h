@@ -21,7 +21,7 @@ struct BodyRequest {
 /// one beyond on either side, so that the ends are like the middle.
 struct BodySpectrum {
   int cells = 0;
-  std::vector<double> index = {};     ///< of the cuticle, by wavelength
+  std::vector<double> index = {};     ///< of the cuticle, by column
   std::vector<BodyModes> modes = {};  ///< columns: [wavelength], or [wavelength][depth]
   /// Estimate of the largest error of pi f that interpolation between the sines leaves. At most the tolerance, but
   /// where that would take more than kMostCells.

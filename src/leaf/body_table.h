@@ -63,7 +63,7 @@ class BodyTable {
   Part make_part(const BodySpectrum& spectrum, bool from_below, bool crosses) const;
   void add_shares(Part& part) const;
   Selection with_index(const TableSelection& columns) const;
-  double index_of(size_t column) const { return index_[column * index_.size() / columns_]; }
+  double index_of(size_t column) const { return index_[column]; }
   Patch patch(const Nodes& incident, const Nodes& leaving) const;
   FourModes sum_patch(const Part& part, const Patch& patch, size_t column, size_t block) const;
   float sum_modes(const Part& part, const Patch& patch, const TableSelection::Lane& lane, size_t columns,
@@ -71,7 +71,7 @@ class BodyTable {
 
   int cells_;
   size_t columns_;
-  std::vector<double> index_;   ///< [wavelength]
+  std::vector<double> index_;   ///< [column]
   WavelengthAxis wavelengths_;  ///< empty: lanes are wavelengths
   DepthAxis depths_;            ///< empty: the depth does not vary
   std::array<std::array<Part, 2>, 2> parts_;

@@ -154,9 +154,4 @@ Table at_wavelengths(const Table& table, const std::vector<double>& wavelengths_
   return result;
 }
 
-Interval wavelength_range(const Table& table) {
-  const auto [least, most] = std::ranges::minmax(table.wavelengths_nm);
-  return {least, most};
-}
-
 }  // namespace frond::leaf

@@ -54,7 +54,4 @@ Table mean_of_sides(const Table& table);
 /// Linear between the wavelengths of `table`, in any order, and within their range; a single one stands for all.
 Table at_wavelengths(const Table& table, const std::vector<double>& wavelengths_nm);
 
-/// Shortest and longest wavelength.
-Interval wavelength_range(const Table& table);
-
 }  // namespace frond::leaf

@@ -5,8 +5,8 @@
 #include "leaf/table_file.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/three_lobe.h"
+#include "materials/table_file_param.h"
 #include "materials/table_wavelengths.h"
-#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -44,21 +44,11 @@ constexpr Param kOwn[] = {
 };
 constexpr auto kLeafSimplified = with_leaf_params(kOwn);
 
-/// What says nothing where a file holds the table; the cuticle still shapes the surface lobe.
-constexpr std::string_view kOfTissue[] = {
-    "thickness",       "mesophyllfraction", "chlorophylla", "chlorophyllb", "carotenoids",
-    "protein",         "cellulose",         "lignin",       "pigments",     "pigmentconcentrations",
-    "epidermisaspect", "palisadeaspect",    "spongyaspect", "sieve",        "tablemethod",
-    "tablerays",       "tablestep"};
+constexpr std::string_view kOfTable[] = {"tablemethod", "tablerays", "tablestep"};
 
 /// Step of the natural logarithm of tables over depth. With `index_wavelengths` errors stay below 4e-4, their mean
 /// below 3e-5.
 constexpr double kDepthStep = 0.1;
-
-std::vector<double> fixed_wavelengths(const WavelengthStrategy& strategy) {
-  const auto fixed = strategy.fixed_nm();
-  return {fixed.begin(), fixed.end()};
-}
 
 /// Even, 90 degrees among them. A leaf that is the same seen from below needs one side.
 std::vector<double> table_angles(const leaf::TissueParams& params, double most_step_deg) {
@@ -74,18 +64,6 @@ leaf::TableLookup lookup_of(const leaf::Table& table, const WavelengthStrategy& 
   return strategy.fixed_nm().empty() ? leaf::TableLookup::for_spectra(table) : leaf::TableLookup::for_lanes(table);
 }
 
-/// A file's table as the render needs it. One wavelength alone stands for all.
-leaf::TableLookup file_lookup(const leaf::Table& table, const std::string& name, const Location& where,
-                              const WavelengthStrategy& strategy) {
-  const Interval range = leaf::wavelength_range(table), needed = strategy.range_nm();
-  const bool grey = table.wavelengths_nm.size() == 1;
-  if (!grey) check_range(range, strategy, where, name);
-  std::vector<double> wavelengths = fixed_wavelengths(strategy);
-  if (wavelengths.empty()) wavelengths = grey ? std::vector{needed.min, needed.max + 1} : table.wavelengths_nm;
-  if (strategy.fixed_nm().empty()) std::ranges::sort(wavelengths);
-  return lookup_of(leaf::at_wavelengths(table, wavelengths), strategy);
-}
-
 class LeafSimplified final : public Material {
  public:
   explicit LeafSimplified(const Params& p)
@@ -93,22 +71,19 @@ class LeafSimplified final : public Material {
         varies_(!leaf_.depth().is_constant() && !p.given("tablefile")),
         surface_texture_(p.given("oblateness") ? nullptr : leaf_.cuticle_aspect()),
         surface_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
-        manner_{p.boolean("surfacedirect"), leaf_.from_light()} {
+        manner_{p.boolean("surfacedirect"), leaf_.from_light()},
+        file_(p, kOfTable) {
     request_.params = leaf_.tissue();
     request_.theta_deg = table_angles(request_.params, p.real("tablestep"));
     if (p.string("tablemethod") == "montecarlo") request_.method = leaf::TableMethod::monte_carlo;
     request_.rays = p.integer("tablerays");
-    if (p.given("tablefile"))
-      take_file(p);
-    else
-      refuse_textures(p);
+    if (!file_.is_given()) refuse_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {
-    for (const auto& [name, where] : std::exchange(unused_, {}))
-      preparation.log.warn(where, fmt::format("\"{}\" has no effect beside \"tablefile\"", name));
-    if (!file_.empty())
-      lookup_ = preparation.share<leaf::TableLookup>("leaf table file " + file_.string(),
+    file_.warn(preparation.log);
+    if (file_.is_given())
+      lookup_ = preparation.share<leaf::TableLookup>("leaf table file " + file_.path().string(),
                                                      [&] { return read_lookup(preparation); });
     else if (varies_)
       lookup_ = std::make_shared<const leaf::TableLookup>(depth_lookup(preparation));
@@ -151,13 +126,6 @@ class LeafSimplified final : public Material {
     return fixed ? leaf::TableLookup::for_lanes(table) : leaf::TableLookup::for_spectra(table);
   }
 
-  void take_file(const Params& p) {
-    file_ = p.file("tablefile");
-    where_ = p.where("tablefile");
-    for (const std::string_view name : kOfTissue)
-      if (p.given(name)) unused_.push_back({name, p.where(name)});
-  }
-
   leaf::TableRequest request_for(const WavelengthStrategy& wavelengths) const {
     leaf::TableRequest request = request_;
     request.wavelengths_nm = table_wavelengths(wavelengths);
@@ -177,28 +145,23 @@ class LeafSimplified final : public Material {
   }
 
   leaf::TableLookup read_lookup(const Preparation& preparation) const {
-    const leaf::Table table = leaf::read_table(file_, where_);
-    preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} angles{}", file_.string(),
+    const leaf::Table table = leaf::read_table(file_.path(), file_.where());
+    preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} angles{}", file_.path().string(),
                                      table.wavelengths_nm.size(), table.theta_deg.size(),
                                      table.has_equal_sides() ? ", both sides the same" : ""));
-    return file_lookup(table, file_.string(), where_, preparation.wavelengths);
+    return lookup_of(leaf::at_wavelengths(table, file_wavelengths(table.wavelengths_nm, preparation.wavelengths,
+                                                                  file_.where(), file_.path().string())),
+                     preparation.wavelengths);
   }
 
-  struct Unused {
-    std::string_view name;
-    Location where;
-  };
-
   LeafParams leaf_;
-  bool varies_;                 ///< the depth does, from place to place
-  Location where_;              ///< of the file
-  std::filesystem::path file_;  ///< empty: the table is made
-  std::vector<Unused> unused_;
+  bool varies_;  ///< the depth does, from place to place
   leaf::TableRequest request_;
   std::shared_ptr<const leaf::TableLookup> lookup_;
   LeafParams::Aspect surface_texture_;  ///< nullptr: surface_
   leaf::TabulatedLobe surface_;
   LeafManner manner_;
+  TableFileParam file_;
 };
 
 }  // namespace

@@ -1,9 +1,11 @@
 #include "core/material.h"
 #include "leaf/body_cache.h"
+#include "leaf/body_file.h"
 #include "leaf/body_table.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/solved_bsdf.h"
+#include "materials/table_file_param.h"
 #include "materials/table_wavelengths.h"
 
 namespace frond {
@@ -16,8 +18,15 @@ constexpr Param kOwn[] = {
      .range = {1e-5, 0.1},
      .doc = "Largest error of pi f that the table may have, where white paper has 1: what missing modes and "
             "interpolation between angles leave out."},
+    {.name = "tablefile",
+     .kind = ParamKind::string,
+     .doc =
+         "A file with the leaf's modes, made by frond table leaf_solved (docs/table_format.md), in place of all that "
+         "is said of its tissue."},
 };
 constexpr auto kLeafSolved = with_leaf_params(kOwn);
+
+constexpr std::string_view kOfTable[] = {"tolerance"};
 
 /// Step of the natural logarithm of tables over depth: linear interpolation leaves errors of pi f below 3e-4.
 constexpr double kDepthStep = 0.15;
@@ -27,14 +36,35 @@ class LeafSolved final : public Material {
  public:
   explicit LeafSolved(const Params& p)
       : leaf_(p),
-        varies_(!leaf_.depth().is_constant()),
+        varies_(!leaf_.depth().is_constant() && !p.given("tablefile")),
         surface_texture_(leaf_.cuticle_aspect()),
         surface_(leaf_.tissue().cuticle_aspect),
-        tolerance_(p.real("tolerance")) {
-    leaf_.refuse_wall_textures(p);
+        tolerance_(p.real("tolerance")),
+        file_(p, kOfTable) {
+    if (!file_.is_given()) leaf_.refuse_wall_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {
+    file_.warn(preparation.log);
+    if (file_.is_given())
+      table_ = preparation.share<leaf::BodyTable>("leaf modes file " + file_.path().string(),
+                                                  [&] { return read_table(preparation); });
+    else
+      make_table(preparation);
+  }
+
+  const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
+    const leaf::BodyTable::Selection selection =
+        varies_ ? table_->select(lambda, leaf_.depth().at(hit.uv, lambda)) : table_->select(lambda);
+    const leaf::Lobe* surface =
+        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.uv))) : &surface_;
+    return arena.make<SolvedBsdf>(SolvedHit{table_.get(), selection, surface, lane_mask(lambda), leaf_.from_light()});
+  }
+
+  bool is_leaf() const override { return true; }
+
+ private:
+  void make_table(const Preparation& preparation) {
     leaf_.check_wavelengths(preparation.wavelengths);
     const leaf::BodyRequest request = request_for(preparation.wavelengths);
     const bool vary = preparation.wavelengths.fixed_nm().empty();
@@ -49,17 +79,20 @@ class LeafSolved final : public Material {
     table_ = preparation.share<leaf::BodyTable>(key, make);
   }
 
-  const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    const leaf::BodyTable::Selection selection =
-        varies_ ? table_->select(lambda, leaf_.depth().at(hit.uv, lambda)) : table_->select(lambda);
-    const leaf::Lobe* surface =
-        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.uv))) : &surface_;
-    return arena.make<SolvedBsdf>(SolvedHit{table_.get(), selection, surface, lane_mask(lambda), leaf_.from_light()});
+  leaf::BodyTable read_table(const Preparation& preparation) const {
+    const std::string name = file_.path().string();
+    const leaf::BodyFile file = leaf::read_body_file(file_.path(), file_.where());
+    const leaf::BodyRequest request{
+        .params = {},
+        .wavelengths_nm = file_wavelengths(file.wavelengths_nm(), preparation.wavelengths, file_.where(), name),
+        .tolerance = 0};
+    const leaf::BodySpectrum spectrum = leaf::at_wavelengths(file, request.wavelengths_nm);
+    leaf::BodyTable table(request, spectrum, preparation.wavelengths.fixed_nm().empty());
+    preparation.log.info(fmt::format("leaf modes: {}, {} wavelengths x {} cells, {} kB in memory", name,
+                                     file.columns.size(), spectrum.cells, table.bytes() / 1024));
+    return table;
   }
 
-  bool is_leaf() const override { return true; }
-
- private:
   leaf::BodyRequest request_for(const WavelengthStrategy& wavelengths) const {
     leaf::BodyRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance_};
     request.params.cuticle_aspect = 0;  // of no concern to light inside: leaves with other cuticles share the table
@@ -73,6 +106,7 @@ class LeafSolved final : public Material {
   LeafParams::Aspect surface_texture_;  ///< nullptr: surface_
   leaf::TabulatedLobe surface_;
   double tolerance_;
+  TableFileParam file_;
   std::shared_ptr<const leaf::BodyTable> table_;
 };
 

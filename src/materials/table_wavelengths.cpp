@@ -6,6 +6,7 @@
 
 #include "leaf/absorption.h"
 #include "leaf/constants.h"
+#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -28,6 +29,16 @@ std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) {
   if (!strategy.fixed_nm().empty()) return to_vector(strategy.fixed_nm());
   if (!strategy.listed_nm().empty()) return to_vector(strategy.listed_nm());
   return even_wavelengths(strategy.range_nm(), 2.5);
+}
+
+std::vector<double> file_wavelengths(std::vector<double> in_file_nm, const WavelengthStrategy& strategy,
+                                     const Location& where, std::string_view name) {
+  const bool grey = in_file_nm.size() == 1;
+  std::ranges::sort(in_file_nm);
+  if (!grey) check_range({in_file_nm.front(), in_file_nm.back()}, strategy, where, name);
+  if (!strategy.fixed_nm().empty()) return to_vector(strategy.fixed_nm());
+  const Interval needed = strategy.range_nm();
+  return grey ? std::vector{needed.min, needed.max + 1} : in_file_nm;
 }
 
 std::vector<double> index_wavelengths(const WavelengthStrategy& strategy) {

@@ -55,6 +55,37 @@ TEST(TableCommand, FoldsBothSidesIntoOne) {
   EXPECT_DOUBLE_EQ(folded.at(0, 1).transmitted, (both.at(0, 1).transmitted + both.at(0, 5).transmitted) / 2);
 }
 
+TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
+  const TestFolder folder("modes");
+  const std::string path = folder.name_of("maize.modes"), red = "608,551,455";
+  const Outcome o =
+      table_command({"leaf_solved", "specimen=maize", "tolerance=2e-3", "--wavelengths", red, "-o", path});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("3 wavelengths x "));
+  EXPECT_THAT(o.err, HasSubstr("kB in a render"));
+  const auto measured = [&](const std::string& way) {
+    return frond_command({"goniophotometer", "leaf_solved", "specimen=maize", way, "--integrate", "--no-cache",
+                          "--angles", "30,120", "--wavelengths", red, "--patches", "4x6", "-q", "--csv", "-"})
+        .out;
+  };
+  const auto figures = [](const std::string& csv) { return csv.substr(csv.find("incidence_deg,")); };
+  const auto without_name = [&](const std::string& way) {
+    std::string text = figures(measured(way));
+    for (size_t at; (at = text.find(" " + way)) != text.npos;) text.erase(at, way.size() + 1);
+    return text;
+  };
+  EXPECT_EQ(without_name("tablefile=" + path), without_name("tolerance=2e-3"));
+}
+
+TEST(TableCommand, RefusesOptionsThatModesDoNotHave) {
+  for (const char* option : {"--rays", "--nodes", "--seed"})
+    EXPECT_THAT(table_command({"leaf_solved", "--wavelengths", "551", "-o", "-", option, "7"}).err,
+                HasSubstr(std::string(option) + " is for tables of leaf_simplified"));
+  EXPECT_THAT(table_command({"leaf_solved", "tablefile=a", "--wavelengths", "551", "-o", "-"}).err,
+              HasSubstr("not of a \"tablefile\""));
+  EXPECT_THAT(table_command({"leaf_lambert", "--wavelengths", "551", "-o", "-"}).err, HasSubstr("name=value"));
+}
+
 TEST(TableCommand, RefusesWhatItCannotDo) {
   struct {
     std::vector<std::string> arguments;

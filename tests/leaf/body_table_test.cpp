@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "leaf/body_cache.h"
+#include "leaf/body_file.h"
 #include "leaf/quadrature.h"
 #include "leaf/solver.h"
 #include "leaf/specimens.h"
@@ -149,28 +149,10 @@ TEST(BodyTable, NeverGivesLessThanNothing) {
           }
 }
 
-TEST(BodySpectrum, ComesBackFromItsFile) {
-  const BodyRequest request = request_of("maize", 1e-3, {551});
-  const std::string header = describe(request);
-  const BodySpectrum made = make_body_spectrum(request, ThreadPool(2));
-  const std::string text = to_text(made, header);
-  BodySpectrum read;
-  ASSERT_TRUE(parse_body_spectrum(text, header, read));
-  EXPECT_EQ(read.cells, made.cells);
-  EXPECT_EQ(read.index, made.index);
-  EXPECT_EQ(read.error, made.error);
-  for (const bool below : {false, true})
-    for (const bool crosses : {false, true})
-      EXPECT_EQ(read.modes[0].series(below, crosses), made.modes[0].series(below, crosses));
-  EXPECT_FALSE(parse_body_spectrum(text, describe(request_of("soybean", 1e-3, {551})), read)) << "another leaf's";
-  EXPECT_FALSE(parse_body_spectrum(text.substr(0, text.size() / 2), header, read)) << "half a file";
-  EXPECT_FALSE(parse_body_spectrum(text + "1", header, read)) << "more than there was";
-}
-
 TEST(BodySpectrum, DoesNotDependOnThreads) {
   const BodyRequest request = request_of("soybean", 1e-2, {455, 551, 680});
-  EXPECT_EQ(to_text(make_body_spectrum(request, ThreadPool(1)), ""),
-            to_text(make_body_spectrum(request, ThreadPool(3)), ""));
+  EXPECT_EQ(to_text(request, make_body_spectrum(request, ThreadPool(1)), ""),
+            to_text(request, make_body_spectrum(request, ThreadPool(3)), ""));
 }
 
 }  // namespace

@@ -109,6 +109,34 @@ TEST(LeafSolved, FollowsTexturesOfChemistryThicknessAndCuticle) {
   }
 }
 
+TEST(LeafSolved, TakesItsModesFromAFile) {
+  const TestFolder folder("leaf_modes");
+  // pi f of light that comes back is 0.1 times what the surface makes of it, and of light that crosses 0.2 times.
+  const auto column = [](double nm) {
+    std::string text = fmt::format("wavelength_nm {} index 1.5 depth 0\n", nm);
+    for (const char* side : {"adaxial", "abaxial"})
+      for (const double h : {0.1, 0.2 * nm / 500})
+        text += fmt::format("{} {} modes 1\n{h} {h} {h}\n{h} {h} {h}\n{h} {h} {h}\n", side,
+                            h == 0.1 ? "reflected" : "transmitted", fmt::arg("h", h / std::numbers::pi));
+    return text;
+  };
+  const auto file = [&](const std::string& columns) {
+    return words("tablefile", {folder.write("t.modes", "cells 1\nerror 0\n" + columns)});
+  };
+  RandomStream rng(1);
+  const Vec3 down{0, 0, -1};
+  const float passage = 0.96f * 0.96f, expected = passage * 0.2f / kPi;
+  Ready grey("leaf_solved", {file(column(500))});
+  for (int lane = 0; lane < 3; ++lane) EXPECT_NEAR(grey.bsdf().f(-down, down, rng)[lane], expected, 1e-6f);
+  Ready spectral("leaf_solved", {file(column(900) + column(300))}, "hero");
+  for (int lane = 0; lane < 4; ++lane)
+    EXPECT_NEAR(spectral.bsdf().f(-down, down, rng)[lane],
+                expected * spectral.lambda().nm[static_cast<size_t>(lane)] / 500, 1e-6f);
+  EXPECT_THAT(error_of([&] { Ready("leaf_solved", {file(column(500) + column(600))}); }),
+              HasSubstr("is known from 500 to 600 nm, the render needs 455 to 608 nm"));
+  EXPECT_THAT(error_of([&] { Ready("leaf_solved", {file("wavelength 551")}); }), HasSubstr("t.modes:3:12: 2 words"));
+}
+
 TEST(LeafSolved, RefusesTexturesOfCells) {
   for (const char* name : {"epidermisaspect", "spongyaspect", "palisadeaspect"})
     EXPECT_THAT(error_of([&] { Ready("leaf_solved", {texture(name, {"1:2"})}); }),
