@@ -1,0 +1,142 @@
+"""The renders behind docs/paper.md, each kept as a file so that a run that was broken off can go on."""
+
+import dataclasses
+import json
+import pathlib
+import re
+import subprocess
+
+from convergence import Ends
+from tools import FROND, ROOT, frond, rows, run
+
+FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"  # OpenImageIO 2.5 does not look for a font below its folder
+
+
+@dataclasses.dataclass(frozen=True)
+class Set:
+    """One of the paper's three settings and what Table 2 says of it."""
+
+    name: str
+    title: str
+    order: str
+    figure: int
+    graph: int
+    foliar_percent: float
+    rms: tuple  # red, green, blue
+    speed_up: float
+    stops: int  # by which our pictures are raised; leaves are dark where white in the light is 1
+
+    def scene(self):
+        return ROOT / "scenes" / f"soybean-{self.name}" / "scene.pbrt"
+
+
+SETS = [
+    Set("front", "front lit", "1st", 5, 8, 24.97, (0.009, 0.009, 0.012), 5.14, 2),
+    Set("back", "back lit", "2nd", 6, 9, 19.42, (0.011, 0.014, 0.010), 4.47, 1),
+    Set("ambient", "ambient light", "3rd", 7, 10, 37.61, (0.020, 0.016, 0.012), 9.77, 0),
+]
+MODELS = ["abm", "leaf_simplified"]
+# By label, which frond compare's data go by.
+CANDIDATES = {
+    "abm": "abm",
+    "leaf_simplified": "leaf_simplified",
+    "published": "leaf_simplified,surfacedirect=false",
+    "leaf_solved": "leaf_solved",
+    "leaf_lambert": "leaf_lambert",
+    "weighted": "abm,mode=weighted",
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Setting:
+    """How much is rendered: arguments of frond compare and of frond render, and samples per pixel."""
+
+    compare: tuple
+    picture: tuple
+    picture_samples: int  # of each of the two halves
+    ends: tuple
+    ends_samples: int
+    table_rays: int
+
+
+FULL = Setting(("--reference-spp", 512), (), 200, (), 16, 10**6)
+QUICK = Setting(("--quick",), ("--quick",), 8, ("--quick",), 4, 10**4)
+# Says nothing about leaves, but goes through everything.
+SMOKE = Setting(("--size", 16, "--spp", 2, "--reference-spp", 2), ("--pixels", "240,272,240,272"), 1,
+                ("--pixels", "192,320,192,320"), 1, 100)
+
+
+class Runs:
+    def __init__(self, setting, folder, threads, keep):
+        self.setting, self.folder, self.keep = setting, pathlib.Path(folder), keep
+        self.threads = ("--threads", threads) if threads else ()
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def kept(self, name, measure):
+        """The JSON of that name, measured unless a run before this one left it."""
+        path = self.folder / f"{name}.json"
+        if not (self.keep and path.exists()):
+            print(name, flush=True)
+            path.write_text(measure())
+        return json.loads(path.read_text())
+
+    def table(self, method):
+        """The paper's table of soybean, every degree from 0 to 180 at its three wavelengths: the shares and the CPU time."""
+
+        def measure():
+            done = subprocess.run([FROND, "table", "--method", method, "--rays", str(self.setting.table_rays), "--wavelengths",
+                                   "608,551,455", *map(str, self.threads), "-o", "-"], capture_output=True, text=True, check=True)
+            shares = [r[share] for r in rows(done.stdout) for share in ("Rs", "Rd", "T")]
+            return json.dumps({"cpu_seconds": float(re.search(r"([\d.e+-]+) s of CPU", done.stderr)[1]), "shares": shares})
+
+        return self.kept(f"table-{method}", measure)
+
+    def comparison(self, s):
+        def measure():
+            report = self.folder / f"compare-{s.name}"
+            materials = ";".join(f"{label}:{text}" for label, text in CANDIDATES.items())
+            frond("compare", s.scene(), "-o", report, "--materials", materials, "--wavelengths", "smpte", "--target", s.name,
+                  *self.setting.compare, *self.threads, "-q")
+            return (report / "compare.json").read_text()
+
+        return self.kept(f"comparison-{s.name}", measure)
+
+    def ends(self, s, model, cutoff):
+        """How paths end that are cut off at that attenuation; 0: never."""
+        integrator = f"path,termination=attenuation,cutoff={cutoff:.3g},maxdepth=63"
+        name = f"ends-{s.name}-{model}-{cutoff:.3g}"
+        report = self.kept(name, lambda: frond(
+            "render", s.scene(), "--wavelengths", "smpte", "--swap", f"leaf={model}", "--integrator", integrator, "--spp",
+            self.setting.ends_samples, *self.setting.ends, *self.threads, "-o", self.folder / "ends.exr", "--json", "-q"))
+        return Ends.of(report)
+
+    def half(self, s, model, half):
+        return self.folder / f"{s.name}-{model}-{half}.exr"
+
+    def pictures(self, s):
+        """What the two halves of each model's picture report, {model: [first, second]}; their mean is the picture."""
+        reports = {model: [] for model in MODELS}
+        for half in (1, 2):
+            for model in MODELS:  # in turn: whatever else the machine does falls on both
+                reports[model].append(self.kept(f"{s.name}-{model}-{half}", lambda: frond(
+                    "render", s.scene(), "--wavelengths", "smpte", "--swap", f"leaf={model}", "--spp",
+                    self.setting.picture_samples, "--seed", half, *self.setting.picture, *self.threads, "-o",
+                    self.half(s, model, half), "--json", "-q")))
+        return reports
+
+    def difference(self, s):
+        """Of the two models' pictures, noise and bias told apart."""
+        halves = [self.half(s, model, half) for model in MODELS for half in (1, 2)]
+        return json.loads(frond("difference", *halves, "--json"))
+
+    def sheet(self, path):
+        """Figures 5 to 7: a row for each set, a column for each model."""
+        words = []
+        for s in SETS:
+            for letter, model in zip("ab", MODELS):
+                picture = self.folder / f"{s.name}-{model}.png"
+                frond("convert", self.half(s, model, 1), self.half(s, model, 2), "--exposure", s.stops, "-o", picture)
+                label = f"{s.figure}{letter}  {s.title}, {model}, exposure +{s.stops}"
+                words += [picture, f"--text:x=12:y=30:size=20:shadow=2:font={FONT}", label]
+        path.parent.mkdir(parents=True, exist_ok=True)
+        run("oiiotool", *words, "--mosaic:pad=8", "2x3", "--compression", "jpeg:84", "-o", path)
