@@ -23,8 +23,10 @@ class Light {
   virtual bool is_delta() const = 0;
   /// Photometric power up to a factor common to all lights of a scene of the given radius: how often to choose it.
   virtual double power(float scene_radius) const = 0;
+  /// Spectrum of what it gives off, up to a factor; of an image's, that of its white.
+  virtual const Spectrum& emission() const = 0;
   /// Wavelengths (nm) for which the emission is known.
-  virtual Interval range_nm() const = 0;
+  Interval range_nm() const { return emission().range_nm(); }
 
   /// Place in the scene's list of lights.
   int index() const { return index_; }

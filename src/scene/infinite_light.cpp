@@ -30,7 +30,7 @@ class ConstantEnvironment final : public EnvironmentLight {
     constexpr double pi = std::numbers::pi;
     return 4 * pi * pi * double(radius) * double(radius) * double(scale_) * photometric(*spectrum_);
   }
-  Interval range_nm() const override { return spectrum_->range_nm(); }
+  const Spectrum& emission() const override { return *spectrum_; }
 
  private:
   static constexpr float kUniformPdf = 0.25f * kInvPi;
@@ -80,7 +80,7 @@ class ImageEnvironment final : public EnvironmentLight {
     constexpr double pi = std::numbers::pi;
     return 4 * pi * pi * double(radius) * double(radius) * mean_luminance_;
   }
-  Interval range_nm() const override { return white_->range_nm(); }
+  const Spectrum& emission() const override { return *white_; }
 
  private:
   static constexpr float kPerSphere = 0.25f * kInvPi;

@@ -41,7 +41,7 @@ class DistantLight final : public Light {
   double power(float r) const override {
     return photometric(*spectrum_) * double(scale_) * kPiD * double(r) * double(r);
   }
-  Interval range_nm() const override { return spectrum_->range_nm(); }
+  const Spectrum& emission() const override { return *spectrum_; }
 
  private:
   SpectrumPtr spectrum_;
@@ -63,7 +63,7 @@ class PointLight final : public Light {
   }
   bool is_delta() const override { return true; }
   double power(float) const override { return photometric(*spectrum_) * double(scale_) * 4 * kPiD; }
-  Interval range_nm() const override { return spectrum_->range_nm(); }
+  const Spectrum& emission() const override { return *spectrum_; }
 
  private:
   SpectrumPtr spectrum_;
@@ -96,7 +96,7 @@ class SpotLight final : public Light {
   }
   bool is_delta() const override { return true; }
   double power(float) const override { return photometric(*spectrum_) * double(scale_) * solid_angle(); }
-  Interval range_nm() const override { return spectrum_->range_nm(); }
+  const Spectrum& emission() const override { return *spectrum_; }
 
  private:
   double solid_angle() const { return 2 * kPiD * ((1 - double(cos_inner_)) + double(cos_inner_ - cos_outer_) / 2); }
@@ -141,7 +141,7 @@ class DiffuseAreaLight final : public AreaLight {
   double power(float) const override {
     return photometric(*spectrum_) * double(scale_) * kPiD * surface_.area() * sides();
   }
-  Interval range_nm() const override { return spectrum_->range_nm(); }
+  const Spectrum& emission() const override { return *spectrum_; }
 
  private:
   double sides() const { return two_sided_ ? 2 : 1; }
