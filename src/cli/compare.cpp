@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/compare/curves_chart.h"
+#include "cli/compare/curve_style.h"
 #include "cli/compare/machine.h"
 #include "cli/compare/measure.h"
 #include "cli/compare/report.h"

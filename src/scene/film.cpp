@@ -150,9 +150,10 @@ Film::Film(const FilmSettings& settings, const Location& where, size_t bands)
       pixels_(pixels_that_fit(settings.crop, bands, where)),
       bands_(pixels_.size() * bands) {}
 
-void Film::restore(std::span<const Pixel> pixels) {
-  assert(pixels.size() == pixels_.size() && band_count_ == 0);
+void Film::restore(std::span<const Pixel> pixels, std::span<const BandSums> band_sums) {
+  assert(pixels.size() == pixels_.size() && band_sums.size() == bands_.size());
   pixels_.assign(pixels.begin(), pixels.end());
+  bands_.assign(band_sums.begin(), band_sums.end());
 }
 
 size_t Film::index(int x, int y) const {

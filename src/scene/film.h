@@ -53,6 +53,11 @@ class Film {
     int64_t samples = 0;
     int64_t not_finite = 0;  ///< of these samples
   };
+  /// Of those samples of a pixel that saw a band.
+  struct BandSums {
+    double sum = 0, square = 0;
+    int64_t samples = 0;
+  };
 
   /// `bands`: how many; 0 for a film of colours. Throws InputError, with the place of the directive, if the pixels need
   /// more memory than the machine has.
@@ -63,10 +68,12 @@ class Film {
   void add(int x, int y, SensorResponse sensor, double weight, bool leaf);
 
   const FilmSettings& settings() const { return settings_; }
-  /// All sums of a film of colours, row by row: what a render has to keep to be continued later.
+  /// All sums, row by row: what a render has to keep to be continued later.
   std::span<const Pixel> pixels() const { return pixels_; }
-  /// Goes on from sums that `pixels` gave of a film of the same size, both of colours.
-  void restore(std::span<const Pixel> pixels);
+  /// For each pixel in turn, those of its bands; nothing of a film of colours.
+  std::span<const BandSums> band_sums() const { return bands_; }
+  /// Goes on from sums that `pixels` and `band_sums` gave of a film of the same size and bands.
+  void restore(std::span<const Pixel> pixels, std::span<const BandSums> band_sums);
   const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
   /// Mean sensor response, of a film of colours.
   std::array<double, 3> mean(int x, int y) const;
@@ -87,12 +94,6 @@ class Film {
   int64_t not_finite() const;
 
  private:
-  /// Sums over the samples of a pixel that saw a band.
-  struct BandSums {
-    double sum = 0, square = 0;
-    int64_t samples = 0;
-  };
-
   size_t index(int x, int y) const;
   static void add_color(Pixel& pixel, const SensorResponse& sensor);
   void add_bands(size_t pixel, const SensorResponse& sensor);

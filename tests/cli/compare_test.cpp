@@ -124,7 +124,8 @@ TEST_F(CompareCommand, BadRequestsAreRefused) {
   EXPECT_THAT(compare({"--materials", "leaf"}).err, HasSubstr("unknown material \"leaf\""));
   EXPECT_THAT(compare({"--materials", "abm,mood=weighted"}).err, HasSubstr("did you mean \"mode\"?"));
   EXPECT_THAT(compare({"--target", "0.1,0.2"}).err, HasSubstr("--target takes the RMS of red, green and blue"));
-  EXPECT_THAT(compare({"--materials", "abm@wavelengths=bands"}).err, HasSubstr("\"bands\" give bands"));
+  EXPECT_THAT(compare({"--materials", "abm@wavelengths=bands"}).err,
+              HasSubstr("its wavelengths \"bands\" give other channels than the reference's \"smpte\""));
   std::string scene(kLeafScene);
   scene.replace(scene.find("leaf_simplified"), 15, "diffuse");
   scene.replace(scene.find("\"string specimen\" \"soybean\""), 27, "");

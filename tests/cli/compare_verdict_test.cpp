@@ -15,8 +15,7 @@ Subject subject(const std::string& label, double seconds, double variance, doubl
   for (uint64_t n = 1; n <= 16; n *= 2) {
     Rung rung{.samples = n, .cost = {seconds * double(n), seconds * double(n), 0}};
     const double noise = variance / double(n);
-    for (auto& region : rung.errors)
-      for (RenderError& e : region) e = {{noise + bias * bias, 0}, {}, {noise, 0}, {bias * bias, 0}, {}};
+    for (auto& region : rung.errors) region.assign(5, {{noise + bias * bias, 0}, {}, {noise, 0}, {bias * bias, 0}, {}});
     s.rungs.push_back(rung);
   }
   return s;

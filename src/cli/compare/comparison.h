@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "cli/compare/candidate.h"
+#include "cli/compare/channels.h"
 #include "cli/compare/cutoff.h"
 #include "cli/compare/paired_render.h"
 #include "cli/compare/picture.h"
@@ -12,22 +13,19 @@
 
 namespace frond::compare {
 
-/// What errors are told of: the three channels, all three together (their mean square), and luminance.
-enum Channel : size_t { kRed, kGreen, kBlue, kRgb, kLuminance, kChannels };
-inline constexpr std::array<const char*, kChannels> kChannelNames{"red", "green", "blue", "rgb", "luminance"};
-
 /// Which pixels: all, or those that see a leaf.
 enum Region : size_t { kAll, kLeaf, kRegions };
 inline constexpr std::array<const char*, kRegions> kRegionNames{"all", "leaf"};
 
-using ErrorTable = std::array<std::array<RenderError, kChannels>, kRegions>;
+/// By region and place in a ChannelList.
+using ErrorTable = std::array<std::vector<RenderError>, kRegions>;
 
 /// One candidate after so many samples a pixel.
 struct Rung {
   uint64_t samples = 0;
   RenderCost cost;  ///< of one render
   ErrorTable errors = {};
-  double flip = 0;  ///< mean FLIP of one render against the reference
+  std::optional<double> flip = {};  ///< mean FLIP of one render against the reference; none of bands
 };
 
 /// A candidate in the paper's manner (paper_manner.h), timed alone.
@@ -45,25 +43,25 @@ struct Subject {
   double setup_cpu_seconds = 0;
   std::vector<Rung> rungs = {};
   std::optional<PaperTiming> paper = {};
-  Picture early = {}, late = {};  ///< one render at `Comparison::early_samples`; the mean of both after the last rung
+  Picture early = {}, late = {};  ///< as shown: one render at `Comparison::early_samples`; both after the last rung
 
   /// Bias is that of the last rung, where noise hides the least of it.
-  Convergence convergence(Region region, Channel channel) const;
+  Convergence convergence(Region region, size_t channel = kTogether) const;
 };
 
 struct Reference {
   Candidate candidate;
-  uint64_t samples = 0;                                           ///< of each of two renders
-  uint64_t cached_samples = 0;                                    ///< of these, from the cache
-  RenderCost cost;                                                ///< of one render
-  std::array<std::array<MeanSquare, kChannels>, kRegions> noise;  ///< of the mean of the two
-  double flip = 0;  ///< between the two: twice the noise of what candidates are compared with
-  Picture picture;
+  uint64_t samples = 0;                                      ///< of each of two renders
+  uint64_t cached_samples = 0;                               ///< of these, from the cache
+  RenderCost cost;                                           ///< of one render
+  std::array<std::vector<MeanSquare>, kRegions> noise = {};  ///< of the mean of the two, by place in the ChannelList
+  std::optional<double> flip = {};  ///< between the two: twice the noise of what candidates are compared with
+  Picture picture = {};             ///< as shown
 };
 
 /// What the user wants to know.
 struct Request {
-  std::optional<double> rms = {};                    ///< error to meet, over all three channels and all pixels
+  std::optional<double> rms = {};                    ///< error to meet, over all channels and all pixels
   std::optional<std::array<double, 3>> target = {};  ///< RMS of red, green and blue for speed-up (c)
   double exposure_stops = 0;
 };
@@ -72,6 +70,7 @@ struct Request {
 struct Comparison {
   std::string scene, command, machine;
   int width = 0, height = 0;
+  ChannelList channels;
   double foliar_ratio = 0;
   std::vector<std::string> leaves;
   Request request;

@@ -7,9 +7,6 @@ namespace frond::compare {
 /// What is drawn against CPU time.
 enum class Measure : uint8_t { rms_all, rms_leaf, flip };
 
-/// The most candidates that one chart can tell apart.
-inline constexpr size_t kMostCurves = 8;
-
 /// Whether any candidate made an error that a logarithmic axis can show.
 bool has_curves(const Comparison& comparison, Measure measure);
 

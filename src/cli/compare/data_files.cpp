@@ -11,11 +11,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kNotes =
-    "# One render of so many samples per pixel: its time, and how far it is from what the reference converges to.\n"
-    "# Linear SMPTE-C; rgb: root of the mean square of red, green and blue; leaf: pixels that see a leaf.\n"
-    "# rms = bias and noise; rms_clipped: of pictures clipped to [0, 1]; _low, _high: 95 % intervals; flip: mean "
-    "FLIP.\n";
+std::string notes(const ChannelList& channels) {
+  return fmt::format(
+      "# One render of so many samples per pixel: its time, and how far it is from what the reference converges to.\n"
+      "# Unit: {}; {}: root of the mean square of all the film's channels; leaf: pixels that see a leaf.\n"
+      "# rms = bias and noise; rms_clipped: of pictures clipped to [0, 1]; _low, _high: 95 % intervals; flip: mean "
+      "FLIP{}.\n",
+      channels.unit, channels.names[kTogether], channels.are_bands() ? ", none of bands" : "");
+}
 
 struct Column {
   const char* name;
@@ -26,23 +29,24 @@ constexpr std::array<Column, 4> kColumns{{{"rms", &RenderError::total},
                                           {"noise", &RenderError::noise},
                                           {"bias", &RenderError::bias}}};
 
-template <class Each>
-void for_each_error(const Rung& rung, const Each& each) {
+/// What is known by region and channel, one by one.
+template <class Table, class Each>
+void for_each_entry(const ChannelList& channels, const Table& table, const Each& each) {
   for (size_t region = 0; region < kRegions; ++region)
-    for (size_t c = 0; c < kChannels; ++c) each(kRegionNames[region], kChannelNames[c], rung.errors[region][c]);
+    for (size_t c = 0; c < channels.names.size(); ++c) each(kRegionNames[region], channels.names[c], table[region][c]);
 }
 
 Json interval(const MeanSquare& m) {
   return {{"value", m.root()}, {"low", m.root_at(-kZ95)}, {"high", m.root_at(kZ95)}};
 }
 
-Json rung_json(const Rung& rung) {
+Json rung_json(const ChannelList& channels, const Rung& rung) {
   Json json{{"samples", rung.samples},
             {"cpu_seconds", rung.cost.cpu_seconds},
             {"wall_seconds", rung.cost.wall_seconds},
-            {"rays", rung.cost.rays},
-            {"flip", rung.flip}};
-  for_each_error(rung, [&json](const char* region, const char* channel, const RenderError& e) {
+            {"rays", rung.cost.rays}};
+  if (rung.flip) json["flip"] = *rung.flip;
+  for_each_entry(channels, rung.errors, [&json](const char* region, const std::string& channel, const RenderError& e) {
     for (const Column& column : kColumns) json[region][channel][column.name] = interval(e.*column.value);
   });
   return json;
@@ -86,42 +90,43 @@ Json subject_json(const Comparison& c, size_t i) {
             {"wavelengths", s.wavelengths},
             {"setup_cpu_seconds", s.setup_cpu_seconds}};
   for (size_t region = 0; region < kRegions; ++region)
-    json["plateau"][kRegionNames[region]] = effort_json(s.convergence(Region(region), kRgb).until_plateau());
+    json["plateau"][kRegionNames[region]] = effort_json(s.convergence(Region(region)).until_plateau());
   json["speed_up"] = speed_up_json(speed_ups(c, i));
   if (s.paper) json["paper_manner"] = paper_json(*s.paper);
   if (c.request.rms) {
-    const auto effort = s.convergence(kAll, kRgb).until_rms(*c.request.rms, simultaneous_z(c));
+    const auto effort = s.convergence(kAll).until_rms(*c.request.rms, simultaneous_z(c));
     json["meets_rms"] = effort_json(effort);
   }
-  for (const Rung& rung : s.rungs) json["rungs"].push_back(rung_json(rung));
+  for (const Rung& rung : s.rungs) json["rungs"].push_back(rung_json(c.channels, rung));
   return json;
 }
 
-Json reference_json(const Reference& r) {
+Json reference_json(const ChannelList& channels, const Reference& r) {
   Json json{{"candidate", r.candidate.text},
             {"renders", 2},
             {"samples", r.samples},
             {"samples_from_cache", r.cached_samples},
-            {"cpu_seconds", 2 * r.cost.cpu_seconds},
-            {"flip_between_its_two_renders", r.flip}};
-  for (size_t region = 0; region < kRegions; ++region)
-    for (size_t c = 0; c < kChannels; ++c)
-      json["noise"][kRegionNames[region]][kChannelNames[c]] = interval(r.noise[region][c]);
+            {"cpu_seconds", 2 * r.cost.cpu_seconds}};
+  if (r.flip) json["flip_between_its_two_renders"] = *r.flip;
+  for_each_entry(channels, r.noise, [&json](const char* region, const std::string& channel, const MeanSquare& noise) {
+    json["noise"][region][channel] = interval(noise);
+  });
   return json;
 }
 
 }  // namespace
 
 std::string comparison_csv(const Comparison& c) {
-  std::string csv = fmt::format("# {}\n# frond {}\n{}", c.command, FROND_VERSION, kNotes);
+  std::string csv = fmt::format("# {}\n# frond {}\n", c.command, FROND_VERSION);
+  csv += notes(c.channels);
   csv += "candidate,samples,cpu_seconds,wall_seconds,flip,region,channel";
   for (const Column& column : kColumns) csv += fmt::format(",{0},{0}_low,{0}_high", column.name);
   csv += '\n';
   for (const Subject& s : c.subjects)
     for (const Rung& r : s.rungs)
-      for_each_error(r, [&](const char* region, const char* channel, const RenderError& e) {
-        csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{},{}", csv_field(s.candidate.label), r.samples,
-                           r.cost.cpu_seconds, r.cost.wall_seconds, r.flip, region, channel);
+      for_each_entry(c.channels, r.errors, [&](const char* region, const std::string& channel, const RenderError& e) {
+        csv += fmt::format("{},{},{:.6g},{:.6g},{},{},{}", csv_field(s.candidate.label), r.samples, r.cost.cpu_seconds,
+                           r.cost.wall_seconds, r.flip ? fmt::format("{:.6g}", *r.flip) : "", region, channel);
         for (const Column& column : kColumns) {
           const MeanSquare& m = e.*column.value;
           csv += fmt::format(",{:.6g},{:.6g},{:.6g}", m.root(), m.root_at(-kZ95), m.root_at(kZ95));
@@ -139,12 +144,15 @@ std::string comparison_json(const Comparison& c) {
             {"width", c.width},
             {"height", c.height},
             {"foliar_ratio", c.foliar_ratio},
+            {"unit", c.channels.unit},
+            {"channels", c.channels.names},
             {"leaf_materials", c.leaves},
             {"wall_seconds", c.wall_seconds},
             {"cpu_seconds", c.cpu_seconds},
             {"exposure_stops", c.request.exposure_stops},
             {"verdict", verdict(c)},
-            {"reference", reference_json(c.reference)}};
+            {"reference", reference_json(c.channels, c.reference)}};
+  for (const Band& band : c.channels.bands) json["band_nm"].push_back(band.nm);
   if (c.request.rms) json["rms_requested"] = *c.request.rms;
   if (c.request.target) json["rms_target"] = *c.request.target;
   for (size_t i = 0; i < c.subjects.size(); ++i) json["candidates"].push_back(subject_json(c, i));

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "cli/compare/paper_manner.h"
+#include "cli/compare/picture.h"
 #include "cli/compare/reference_store.h"
 #include "cli/progress.h"
 #include "core/random.h"
@@ -20,22 +21,15 @@ PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use
 }
 
 /// The two renders of a method as pictures.
-struct PicturePair {
-  std::array<Picture, 2> half;
+using PicturePair = std::array<Picture, 2>;
 
-  PicturePair(const PairedRender& render, const ColorManager& colors)
-      : half{picture_of(render.film(0), render.scene().wavelengths().film_space(), colors),
-             picture_of(render.film(1), render.scene().wavelengths().film_space(), colors)} {}
-  RenderPair channel(size_t c) const { return {half[0].channels[c], half[1].channels[c]}; }
-  Picture mean() const { return mean_of(half[0], half[1]); }
-};
-
-std::array<RenderError, kChannels> errors_of(const PicturePair& renders, const PicturePair& reference,
-                                             std::span<const float> use) {
-  std::array<RenderError, kChannels> errors;
-  for (size_t c = 0; c < 3; ++c) errors[c] = render_error(renders.channel(c), reference.channel(c), use);
-  errors[kRgb] = frond::mean_of(std::span(errors).first(3));
-  errors[kLuminance] = render_error(renders.channel(3), reference.channel(3), use);
+std::vector<RenderError> errors_of(const PicturePair& renders, const PicturePair& reference, size_t film_channels,
+                                   std::span<const float> use) {
+  std::vector<RenderError> errors(kFirst);
+  for (size_t c = 0; c < renders[0].channels.size(); ++c)
+    errors.push_back(render_error({renders[0].channels[c], renders[1].channels[c]},
+                                  {reference[0].channels[c], reference[1].channels[c]}, use));
+  errors[kTogether] = frond::mean_of(std::span(errors).subspan(kFirst, film_channels));
   return errors;
 }
 
@@ -43,46 +37,60 @@ std::array<RenderError, kChannels> errors_of(const PicturePair& renders, const P
 class Bench {
  public:
   Bench(const PairedRender& reference, double exposure_stops)
-      : reference_(reference, colors_),
+      : channels_(channels_of(reference.scene())),
+        reference_(pictures(reference)),
         leaf_(leaf_mask(reference.film(0))),
         exposure_stops_(exposure_stops),
-        shown_(display_image(reference_.mean(), exposure_stops, colors_)) {}
+        display_(display(shown_mean(reference_))) {}
 
   Rung rung(const PairedRender& render) const {
-    const PicturePair pictures(render, colors_);
-    return {render.samples(), render.cost(), errors(pictures), flip(pictures.half[0])};
+    const PicturePair pair = pictures(render);
+    return {render.samples(), render.cost(), errors(pair), flip(display_, pair[0])};
   }
-  PicturePair pictures(const PairedRender& render) const { return {render, colors_}; }
+  Picture shown_first(const PairedRender& render) const { return shown(pictures(render)[0], channels_); }
+  Picture shown_mean(const PairedRender& render) const { return shown_mean(pictures(render)); }
 
-  void describe_reference(Reference& r) const {
+  Reference described(const Candidate& candidate, const PairedRender& render) const {
+    Reference r{.candidate = candidate, .samples = render.samples(), .cost = render.cost()};
     const ErrorTable table = errors(reference_);
     for (size_t region = 0; region < kRegions; ++region)
-      for (size_t c = 0; c < kChannels; ++c) r.noise[region][c] = table[region][c].reference_noise;
-    r.flip = mean_flip(display_image(reference_.half[0], exposure_stops_, colors_),
-                       display_image(reference_.half[1], exposure_stops_, colors_));
-    r.picture = reference_.mean();
+      for (const RenderError& e : table[region]) r.noise[region].push_back(e.reference_noise);
+    r.flip = flip(display(shown(reference_[0], channels_)), reference_[1]);
+    r.picture = shown_mean(reference_);
+    return r;
   }
+  const ChannelList& channels() const { return channels_; }
 
  private:
-  ErrorTable errors(const PicturePair& pictures) const {
-    return {errors_of(pictures, reference_, {}), errors_of(pictures, reference_, leaf_)};
+  PicturePair pictures(const PairedRender& render) const {
+    return {picture_of(render.film(0), render.scene(), channels_, colors_),
+            picture_of(render.film(1), render.scene(), channels_, colors_)};
   }
-  double flip(const Picture& picture) const {
-    return mean_flip(shown_, display_image(picture, exposure_stops_, colors_));
+  Picture shown_mean(const PicturePair& pair) const { return shown(mean_of(pair[0], pair[1]), channels_); }
+  ErrorTable errors(const PicturePair& pictures) const {
+    const size_t count = channels_.film_channels();
+    return {errors_of(pictures, reference_, count, {}), errors_of(pictures, reference_, count, leaf_)};
+  }
+  DisplayImage display(const Picture& shown) const { return display_image(shown, exposure_stops_, colors_); }
+  /// The eye has no say in bands.
+  std::optional<double> flip(const DisplayImage& reference, const Picture& picture) const {
+    if (channels_.are_bands()) return {};
+    return mean_flip(reference, display(shown(picture, channels_)));
   }
 
   ColorManager colors_;
+  ChannelList channels_;
   PicturePair reference_;
   std::vector<float> leaf_;
   double exposure_stops_;
-  DisplayImage shown_;
+  DisplayImage display_;  ///< the reference's
 };
 
-/// Kept on disk from time to time: what was rendered is not lost when the program is ended.
-void render_reference(PairedRender& render, const ReferenceStore& store, const Plan& plan, const ThreadPool& pool,
-                      Reference& reference) {
+/// Kept on disk from time to time: what was rendered is not lost when the program is ended. Returns how many samples
+/// came from there.
+uint64_t render_reference(PairedRender& render, const ReferenceStore& store, const Plan& plan, const ThreadPool& pool) {
   store.load(render);
-  reference.cached_samples = render.samples();
+  const uint64_t cached = render.samples();
   constexpr uint64_t kFirstStep = 256;
   while (render.samples() < plan.reference_samples) {
     const uint64_t next = std::min(plan.reference_samples, std::max(kFirstStep, 2 * render.samples()));
@@ -90,13 +98,34 @@ void render_reference(PairedRender& render, const ReferenceStore& store, const P
     render.advance_to(next, pool, std::ref(line));
     store.save(render);
   }
-  reference.samples = render.samples();
-  reference.cost = render.cost();
+  return cached;
 }
 
-std::vector<PairedRender> prepared(const Study& study, const std::vector<Candidate>& candidates) {
+/// With fewer samples there are bands that no path has carried.
+uint64_t first_rung(const Scene& scene) { return std::bit_ceil(samples_for_all_channels(scene)); }
+
+void check_channels(const PairedRender& render, const Candidate& candidate, const PairedRender& reference) {
+  if (same_channels(channels_of(render.scene()), channels_of(reference.scene()))) return;
+  fail({}, "{}: its wavelengths \"{}\" give other channels than the reference's \"{}\": only like can be compared",
+       candidate.label, render.scene().wavelengths_name(), reference.scene().wavelengths_name());
+}
+
+void check_request(const Request& request, const Plan& plan, const Scene& scene) {
+  if (request.target && !scene.wavelengths().bands().empty())
+    fail({}, "--target is an RMS of red, green and blue, wavelengths \"{}\" give bands: --rms is of all channels",
+         scene.wavelengths_name());
+  if (const uint64_t first = first_rung(scene); std::min(plan.top_samples, plan.reference_samples) < first)
+    fail({}, "wavelengths \"{}\" show each band once in {} samples: --spp and --reference-spp are that at least",
+         scene.wavelengths_name(), first);
+}
+
+std::vector<PairedRender> prepared(const Study& study, const std::vector<Candidate>& candidates,
+                                   const PairedRender& reference) {
   std::vector<PairedRender> renders;
-  for (const Candidate& c : candidates) renders.push_back(pair_of(study, c, kCandidateSeed));
+  for (const Candidate& c : candidates) {
+    renders.push_back(pair_of(study, c, kCandidateSeed));
+    check_channels(renders.back(), c, reference);
+  }
   return renders;
 }
 
@@ -108,7 +137,7 @@ void warn_of_lost_samples(const PairedRender& render, const Candidate& candidate
 
 void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& bench, const ThreadPool& pool,
            const Log& log, Comparison& result) {
-  for (uint64_t samples = 1; samples <= plan.top_samples; samples *= 2) {
+  for (uint64_t samples = first_rung(renders.front().scene()); samples <= plan.top_samples; samples *= 2) {
     for (size_t i = 0; i < renders.size(); ++i) {
       {
         ProgressLine line(plan.quiet);
@@ -116,14 +145,15 @@ void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& be
       }
       Subject& subject = result.subjects[i];
       subject.rungs.push_back(bench.rung(renders[i]));
-      if (samples == result.early_samples) subject.early = bench.pictures(renders[i]).half[0];
+      if (samples == result.early_samples) subject.early = bench.shown_first(renders[i]);
       const Rung& r = subject.rungs.back();
-      log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {:.5f}, FLIP {:.4f}", subject.candidate.label, samples,
-                           r.cost.cpu_seconds, r.errors[kAll][kRgb].total.root(), r.flip));
+      log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {:.5f}{}", subject.candidate.label, samples,
+                           r.cost.cpu_seconds, r.errors[kAll][kTogether].total.root(),
+                           r.flip ? fmt::format(", FLIP {:.4f}", *r.flip) : ""));
     }
   }
   for (size_t i = 0; i < renders.size(); ++i) {
-    result.subjects[i].late = bench.pictures(renders[i]).mean();
+    result.subjects[i].late = bench.shown_mean(renders[i]);
     warn_of_lost_samples(renders[i], plan.candidates[i], log);
   }
 }
@@ -150,20 +180,22 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request,
   Comparison result;
   result.request = request;
   result.leaves = study.leaves();
-  result.early_samples = std::bit_floor(std::max<uint64_t>(1, plan.top_samples / 16));
-  auto renders = prepared(study, plan.candidates);
   PairedRender reference_render = pair_of(study, plan.reference, kReferenceSeed);
-  result.reference.candidate = plan.reference;
+  check_request(request, plan, reference_render.scene());
+  auto renders = prepared(study, plan.candidates, reference_render);
+  result.early_samples = std::max(first_rung(reference_render.scene()), plan.top_samples / 16);
   const ReferenceStore store(plan.cache, study.identity(plan.reference), log);
-  render_reference(reference_render, store, plan, pool, result.reference);
+  const uint64_t cached = render_reference(reference_render, store, plan, pool);
   warn_of_lost_samples(reference_render, plan.reference, log);
   const Bench bench(reference_render, request.exposure_stops);
-  bench.describe_reference(result.reference);
+  result.channels = bench.channels();
+  result.reference = bench.described(plan.reference, reference_render);
+  result.reference.cached_samples = cached;
   result.width = result.reference.picture.width, result.height = result.reference.picture.height;
   result.foliar_ratio = reference_render.film(0).foliar_ratio();
   log.info(fmt::format("reference {}: 2 x {} samples ({} from the cache), its own noise RMS {:.5f}, taken out below",
-                       plan.reference.text, result.reference.samples, result.reference.cached_samples,
-                       result.reference.noise[kAll][kRgb].root()));
+                       plan.reference.text, result.reference.samples, cached,
+                       result.reference.noise[kAll][kTogether].root()));
   for (size_t i = 0; i < renders.size(); ++i)
     result.subjects.push_back({.candidate = plan.candidates[i],
                                .wavelengths = renders[i].scene().wavelengths_name(),

@@ -8,7 +8,7 @@ namespace frond::compare {
 struct Plan {
   Candidate reference;
   std::vector<Candidate> candidates;
-  uint64_t top_samples = 256;         ///< a power of two: the ladder is 1, 2, 4 ... up to it
+  uint64_t top_samples = 256;  ///< a power of two: the ladder is 1, 2, 4 ... up to it, of bands from where all are seen
   uint64_t reference_samples = 2048;  ///< of each of its two renders
   std::filesystem::path cache = {};
   bool quiet = false;

@@ -11,13 +11,17 @@ double cpu_seconds() {
   return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
 }
 
+Film film_of(const Study& study, const Scene& scene) {
+  return Film(study.film(), {}, scene.wavelengths().bands().size());
+}
+
 }  // namespace
 
 PairedRender::PairedRender(const Study& study, const Candidate& candidate, uint64_t first_seed, uint64_t second_seed)
     : setup_cpu_seconds_(cpu_seconds()),
       scene_(study.scene(candidate)),
       seeds_{first_seed, second_seed},
-      films_{Film(study.film()), Film(study.film())} {
+      films_{film_of(study, *scene_), film_of(study, *scene_)} {
   setup_cpu_seconds_ = cpu_seconds() - setup_cpu_seconds_;
   for (size_t i = 0; i < 2; ++i) samplers_[i] = study.sampler(*scene_, seeds_[i]);
 }
@@ -36,9 +40,8 @@ void PairedRender::advance_to(uint64_t samples, const ThreadPool& pool, const Pr
   samples_ = samples;
 }
 
-void PairedRender::restore(std::array<std::span<const Film::Pixel>, 2> films, uint64_t samples,
-                           const RenderCost& cost) {
-  for (size_t i = 0; i < 2; ++i) films_[i].restore(films[i]);
+void PairedRender::restore(const std::array<FilmSums, 2>& films, uint64_t samples, const RenderCost& cost) {
+  for (size_t i = 0; i < 2; ++i) films_[i].restore(films[i].pixels, films[i].bands);
   samples_ = samples;
   cost_ = cost;
 }

@@ -10,6 +10,12 @@ struct RenderCost {
   double wall_seconds = 0, cpu_seconds = 0, rays = 0;
 };
 
+/// What a film has summed up.
+struct FilmSums {
+  std::vector<Film::Pixel> pixels;
+  std::vector<Film::BandSums> bands;
+};
+
 /// Two renders of one picture with seeds of their own, which tell noise from bias. They can be continued to more
 /// samples at any time, and then hold the very sums of a render that had all of them at once.
 class PairedRender {
@@ -19,7 +25,7 @@ class PairedRender {
   /// Up to so many samples a pixel; nothing where there are as many.
   void advance_to(uint64_t samples, const ThreadPool& pool, const Progress& progress);
   /// Goes on from what was kept of these two renders.
-  void restore(std::array<std::span<const Film::Pixel>, 2> films, uint64_t samples, const RenderCost& cost);
+  void restore(const std::array<FilmSums, 2>& films, uint64_t samples, const RenderCost& cost);
 
   uint64_t samples() const { return samples_; }
   const RenderCost& cost() const { return cost_; }

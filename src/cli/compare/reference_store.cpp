@@ -10,46 +10,73 @@
 namespace frond::compare {
 namespace {
 
-static_assert(std::is_trivially_copyable_v<Film::Pixel>);
+static_assert(std::is_trivially_copyable_v<Film::Pixel> && std::is_trivially_copyable_v<Film::BandSums>);
 
-/// The file: this, the pixels of the first film, of the second, and a hash of all that. In the machine's own order of
-/// bytes: it is a cache of this machine.
+/// The file: this, the pixels and bands of the first film, of the second, and a hash of all that. In the machine's own
+/// order of bytes: it is a cache of this machine.
 struct Header {
   char magic[16] = "frond reference";
   uint64_t identity = 0, samples = 0, pixels = 0, pixel_bytes = sizeof(Film::Pixel);
+  uint64_t bands = 0, band_bytes = sizeof(Film::BandSums);
   RenderCost cost;
 };
 static_assert(std::is_trivially_copyable_v<Header>);
 
+Header header_of(const PairedRender& render, uint64_t identity) {
+  return {.identity = identity,
+          .samples = render.samples(),
+          .pixels = render.film(0).pixels().size(),
+          .bands = render.film(0).band_sums().size(),
+          .cost = render.cost()};
+}
+
+template <class Sums>
+void append(std::string& bytes, std::span<const Sums> sums) {
+  bytes.append(reinterpret_cast<const char*>(sums.data()), sums.size_bytes());
+}
+
+/// Takes them off the front of `bytes`.
+template <class Sums>
+std::vector<Sums> take(std::string_view& bytes, size_t count) {
+  std::vector<Sums> sums(count);
+  if (count > 0) std::memcpy(sums.data(), bytes.data(), count * sizeof(Sums));
+  bytes.remove_prefix(count * sizeof(Sums));
+  return sums;
+}
+
 std::string encode(const PairedRender& render, uint64_t identity) {
-  const Header header{.identity = identity,
-                      .samples = render.samples(),
-                      .pixels = render.film(0).pixels().size(),
-                      .cost = render.cost()};
+  const Header header = header_of(render, identity);
   std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
   for (const size_t half : {size_t{0}, size_t{1}}) {
-    const auto pixels = render.film(half).pixels();
-    bytes.append(reinterpret_cast<const char*>(pixels.data()), pixels.size_bytes());
+    append(bytes, render.film(half).pixels());
+    append(bytes, render.film(half).band_sums());
   }
   const uint64_t hash = hash_bytes(bytes);
   return bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
 }
 
-bool decode(const std::string& bytes, uint64_t identity, PairedRender& render) {
-  Header header, expected;
-  const size_t pixels = render.film(0).pixels().size(), film_bytes = pixels * sizeof(Film::Pixel);
-  const size_t body = sizeof header + 2 * film_bytes;
+bool like(const Header& a, const Header& b) {
+  return std::memcmp(a.magic, b.magic, sizeof a.magic) == 0 && a.identity == b.identity && a.pixels == b.pixels &&
+         a.pixel_bytes == b.pixel_bytes && a.bands == b.bands && a.band_bytes == b.band_bytes;
+}
+
+bool decode(std::string_view bytes, uint64_t identity, PairedRender& render) {
+  const Header expected = header_of(render, identity);
+  const size_t body =
+      sizeof expected + 2 * (expected.pixels * expected.pixel_bytes + expected.bands * expected.band_bytes);
+  Header header;
   uint64_t hash = 0;
   if (bytes.size() != body + sizeof hash) return false;
   std::memcpy(&header, bytes.data(), sizeof header);
   std::memcpy(&hash, bytes.data() + body, sizeof hash);
-  if (std::memcmp(header.magic, expected.magic, sizeof header.magic) != 0 || header.identity != identity ||
-      header.pixels != pixels || header.pixel_bytes != sizeof(Film::Pixel) || hash != hash_bytes({bytes.data(), body}))
-    return false;
-  std::array<std::vector<Film::Pixel>, 2> films{std::vector<Film::Pixel>(pixels), std::vector<Film::Pixel>(pixels)};
-  for (size_t i = 0; i < 2; ++i)
-    std::memcpy(films[i].data(), bytes.data() + sizeof header + i * film_bytes, film_bytes);
-  render.restore({films[0], films[1]}, header.samples, header.cost);
+  if (!like(header, expected) || hash != hash_bytes(bytes.substr(0, body))) return false;
+  bytes.remove_prefix(sizeof header);
+  std::array<FilmSums, 2> films;
+  for (FilmSums& film : films) {
+    film.pixels = take<Film::Pixel>(bytes, expected.pixels);
+    film.bands = take<Film::BandSums>(bytes, expected.bands);
+  }
+  render.restore(films, header.samples, header.cost);
   return true;
 }
 

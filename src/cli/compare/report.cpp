@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/compare/assets.h"
-#include "cli/compare/curves_chart.h"
+#include "cli/compare/charts.h"
 #include "cli/compare/data_files.h"
 #include "cli/compare/html.h"
 #include "cli/compare/tables.h"
@@ -18,34 +18,28 @@
 namespace frond::compare {
 namespace {
 
-struct Chart {
-  const char* name;
-  Measure measure;
-};
-constexpr std::array<Chart, 3> kCharts{
-    {{"rms", Measure::rms_all}, {"rms-leaf", Measure::rms_leaf}, {"flip", Measure::flip}}};
-
-/// Below the axes the key takes a line for each candidate.
-constexpr int kChartWidth = 900, kAxesHeight = 560, kKeyLine = 20;
-
 std::string path_in(const std::filesystem::path& folder, const std::string& name) { return (folder / name).string(); }
 
-void write_charts(const std::filesystem::path& folder, const Comparison& c) {
-  const int height = kAxesHeight + kKeyLine * int(c.subjects.size() + 1);
-  for (const Chart& chart : kCharts) {
-    if (!has_curves(c, chart.measure)) continue;
-    const std::string script = curves_chart(c, chart.measure);
-    for (const char* extension : {".svg", ".png"})
-      write_chart(path_in(folder, chart.name + std::string(extension)), kChartWidth, height, script);
-  }
+void write_charts(const std::filesystem::path& folder, const std::vector<Chart>& charts) {
+  for (const Chart& chart : charts)
+    if (!chart.script.empty())
+      for (const char* extension : {".svg", ".png"})
+        write_chart(path_in(folder, chart.name + extension), chart.width, chart.height, chart.script);
 }
 
-std::string embedded_chart(const std::filesystem::path& folder, const Comparison& c, const Chart& chart,
-                           const char* description) {
-  if (!has_curves(c, chart.measure)) return "<p>There is nothing to draw: no error was seen.</p>";
-  const std::string svg = read_file_bytes(path_in(folder, chart.name + std::string(".svg")), {});
-  return fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">", html_text(description),
-                     base64({reinterpret_cast<const unsigned char*>(svg.data()), svg.size()}));
+std::string figure(const std::filesystem::path& folder, const Chart& chart) {
+  if (chart.script.empty()) return "<p>There is nothing to draw: no error was seen.</p>\n";
+  const std::string svg = read_file_bytes(path_in(folder, chart.name + ".svg"), {});
+  return fmt::format(
+      "<figure><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"><figcaption>{}</figcaption></figure>\n",
+      html_text(chart.description), base64({reinterpret_cast<const unsigned char*>(svg.data()), svg.size()}),
+      html_text(chart.caption));
+}
+
+std::string figures(const std::filesystem::path& folder, const std::vector<Chart>& charts) {
+  std::string html;
+  for (const Chart& chart : charts) html += figure(folder, chart);
+  return html;
 }
 
 nlohmann::ordered_json picture_json(const std::string& name, const Picture& picture) {
@@ -80,11 +74,17 @@ std::string viewer_data(const Comparison& c) {
 
 std::string setting(const Comparison& c) {
   return html_text(fmt::format(
-      "{}×{} pixels, leaves in {:.1f} % of the view, {}. Reference: {}, two renders of {} samples; its own noise, an "
-      "RMS "
-      "of {:.2g}, is taken out of all figures.",
-      c.width, c.height, 100 * c.foliar_ratio, fmt::format("materials replaced: {}", fmt::join(c.leaves, ", ")),
-      c.reference.candidate.text, c.reference.samples, c.reference.noise[kAll][kRgb].root()));
+      "{}×{} pixels, leaves in {:.1f} % of the view, materials replaced: {}. Reference: {}, two renders of {} samples; "
+      "its own noise, an RMS of {:.2g}, is taken out of all figures.",
+      c.width, c.height, 100 * c.foliar_ratio, fmt::join(c.leaves, ", "), c.reference.candidate.text,
+      c.reference.samples, c.reference.noise[kAll][kTogether].root()));
+}
+
+std::string values_note(const ChannelList& channels) {
+  if (channels.are_bands())
+    return html_text(fmt::format("Pictures of {} bands: {}. Values are those of the pictures.", channels.bands.size(),
+                                 channels.how_shown));
+  return "Values are linear SMPTE-C; 1 is a white diffuse surface in the light.";
 }
 
 std::string provenance(const Comparison& c) {
@@ -108,39 +108,17 @@ std::string provenance(const Comparison& c) {
   return list + "</dl>";
 }
 
-std::string caption_rms(const Comparison& c) {
-  return html_text(fmt::format(
-      "One point for each doubling of samples per pixel, from 1 to {}; bars are 95 % intervals. Error is against what "
-      "the "
-      "reference converges to: its noise, {:.2g}, is taken out. A cross and the dotted line after it: from there on "
-      "noise is below the candidate’s bias, and more samples help little. A curve without one has no bias that could "
-      "be "
-      "told from none.",
-      c.subjects.front().rungs.back().samples, c.reference.noise[kAll][kRgb].root()));
-}
-
-std::string caption_flip(const Comparison& c) {
-  return html_text(fmt::format(
-      "What a person would see who flips between a render and the reference (Andersson et al. 2020, 67 pixels per "
-      "degree, exposure {:+g} stops); 0: nothing, 1: all. The reference’s two renders differ by {:.2g}.",
-      c.request.exposure_stops, c.reference.flip));
-}
-
-std::string page(const std::filesystem::path& folder, const Comparison& c) {
-  return filled(page_html,
-                {{"title", html_text("Leaf models compared: " + c.scene)},
-                 {"css", std::string(page_css)},
-                 {"verdict", html_text(verdict(c))},
-                 {"setting", setting(c)},
-                 {"chart_rms_all", embedded_chart(folder, c, kCharts[0], "RMS error against CPU time, all pixels")},
-                 {"chart_rms_leaf", embedded_chart(folder, c, kCharts[1], "RMS error against CPU time, leaf pixels")},
-                 {"chart_flip", embedded_chart(folder, c, kCharts[2], "FLIP against CPU time")},
-                 {"caption_rms", caption_rms(c)},
-                 {"caption_flip", caption_flip(c)},
-                 {"tables", tables_html(c)},
-                 {"provenance", provenance(c)},
-                 {"data", viewer_data(c)},
-                 {"js", std::string(viewer_js)}});
+std::string page(const std::filesystem::path& folder, const Comparison& c, const std::vector<Chart>& charts) {
+  return filled(page_html, {{"title", html_text("Leaf models compared: " + c.scene)},
+                            {"css", std::string(page_css)},
+                            {"verdict", html_text(verdict(c))},
+                            {"setting", setting(c)},
+                            {"values", values_note(c.channels)},
+                            {"charts", figures(folder, charts)},
+                            {"tables", tables_html(c)},
+                            {"provenance", provenance(c)},
+                            {"data", viewer_data(c)},
+                            {"js", std::string(viewer_js)}});
 }
 
 }  // namespace
@@ -153,10 +131,11 @@ void check_report_folder(const std::filesystem::path& folder) {
 }
 
 void write_report(const std::filesystem::path& folder, const Comparison& c) {
-  write_charts(folder, c);
+  const std::vector<Chart> charts = charts_of(c);
+  write_charts(folder, charts);
   write_text(path_in(folder, "compare.csv"), comparison_csv(c));
   write_text(path_in(folder, "compare.json"), comparison_json(c));
-  write_text(path_in(folder, "index.html"), page(folder, c));
+  write_text(path_in(folder, "index.html"), page(folder, c, charts));
 }
 
 }  // namespace frond::compare

@@ -9,7 +9,7 @@ namespace {
 std::optional<Effort> until_all(const Subject& s, const std::array<double, 3>& target) {
   Effort all{0, 0, true};
   for (size_t c = 0; c < 3; ++c) {
-    const auto effort = s.convergence(kAll, Channel(c)).until_rms(target[c]);
+    const auto effort = s.convergence(kAll, kFirst + c).until_rms(target[c]);
     if (!effort) return {};
     all.measured = all.measured && effort->measured;
     all.samples = std::max(all.samples, effort->samples);
@@ -26,10 +26,10 @@ Ratio ratio(const std::optional<Effort>& baseline, const std::optional<Effort>& 
 }
 
 std::optional<Ratio> at_bias(const Subject& baseline, const Subject& candidate) {
-  const Convergence own = candidate.convergence(kAll, kRgb);
+  const Convergence own = candidate.convergence(kAll);
   if (!own.until_plateau()) return {};
   const double rms = 1.5 * own.bias().root();
-  return ratio(baseline.convergence(kAll, kRgb).until_rms(rms), own.until_rms(rms));
+  return ratio(baseline.convergence(kAll).until_rms(rms), own.until_rms(rms));
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ SpeedUps speed_ups(const Comparison& comparison, size_t subject) {
   const Rung &b = baseline.rungs.back(), &c = candidate.rungs.back();
   SpeedUps s{};
   s.equal_samples = b.cost.cpu_seconds / c.cost.cpu_seconds;
-  const double noise_ratio = b.errors[kAll][kRgb].noise.value / c.errors[kAll][kRgb].noise.value;
+  const double noise_ratio = b.errors[kAll][kTogether].noise.value / c.errors[kAll][kTogether].noise.value;
   s.equal_noise = s.equal_samples * noise_ratio;
   if (baseline.paper && candidate.paper)
     s.paper = baseline.paper->cpu_seconds_per_sample / candidate.paper->cpu_seconds_per_sample;

@@ -66,10 +66,7 @@ std::unique_ptr<Scene> Study::scene(const Candidate& candidate) const {
   overrides.swaps = swaps_;
   for (MaterialSwap& swap : overrides.swaps) swap.to = candidate.material;
   overrides.cache_dir = options_.cache;
-  auto scene = std::make_unique<Scene>(description_, registry_, overrides, pool_, log_);
-  if (!scene->wavelengths().bands().empty())
-    fail({}, "wavelengths \"{}\" give bands: pictures of colours are what can be compared", scene->wavelengths_name());
-  return scene;
+  return std::make_unique<Scene>(description_, registry_, overrides, pool_, log_);
 }
 
 std::unique_ptr<Sampler> Study::sampler(const Scene& scene, uint64_t seed) const {

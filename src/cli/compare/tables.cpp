@@ -2,63 +2,14 @@
 
 #include <algorithm>
 
+#include "cli/compare/error_tables.h"
 #include "cli/compare/html.h"
+#include "cli/compare/html_table.h"
 #include "cli/compare/speed_up.h"
 #include "cli/compare/verdict.h"
 
 namespace frond::compare {
 namespace {
-
-std::string cell(const std::string& text) { return "<td>" + text + "</td>"; }
-
-std::string head(std::initializer_list<const char*> titles) {
-  std::string row = "<thead><tr>";
-  for (const char* t : titles) row += fmt::format("<th scope=\"col\">{}</th>", t);
-  return row + "</tr></thead>";
-}
-
-std::string table(const std::string& title, const std::string& header, const std::string& rows,
-                  const std::string& note) {
-  return fmt::format(
-      "<h3>{}</h3>\n<div class=\"scroll\"><table>{}<tbody>\n{}</tbody></table></div>\n<p class=\"note\">{}</p>\n",
-      title, header, rows, note);
-}
-
-/// Red, green and blue.
-template <class Value>
-std::string triple(const Value& value) {
-  return fmt::format("{:.4f} {:.4f} {:.4f}", value(0), value(1), value(2));
-}
-
-/// The value, and the upper end of its interval.
-std::string bounded(const MeanSquare& m) { return fmt::format("{:.4f} (≤ {:.4f})", m.root(), m.root_at(kZ95)); }
-
-std::string error_row(const Subject& s, Region region) {
-  const Rung& r = s.rungs.back();
-  const auto& e = r.errors[region];
-  std::string row = "<tr>" + cell(html_text(s.candidate.label)) +
-                    cell(triple([&](size_t c) { return e[c].clipped.root(); })) +
-                    cell(triple([&](size_t c) { return e[c].total.root(); })) +
-                    cell(triple([&](size_t c) { return e[c].noise.root(); })) +
-                    cell(triple([&](size_t c) { return e[c].bias.root(); })) +
-                    cell(triple([&](size_t c) { return e[c].bias.root_at(kZ95); })) +
-                    cell(bounded(e[kLuminance].bias)) + cell(fmt::format("{:.4f}", e[kLuminance].total.root()));
-  return row + (region == kAll ? cell(fmt::format("{:.4f}", r.flip)) : "") + "</tr>\n";
-}
-
-std::string error_table(const Comparison& c, Region region) {
-  std::string rows;
-  for (const Subject& s : c.subjects) rows += error_row(s, region);
-  const uint64_t samples = c.subjects.front().rungs.back().samples;
-  auto header = head({"candidate", "RMS, clipped<br>R G B", "RMS<br>R G B", "noise<br>R G B", "bias<br>R G B",
-                      "bias ≤ (95 %)<br>R G B", "bias<br>luminance", "RMS<br>luminance"});
-  if (region == kAll) header.insert(header.find("</tr>"), "<th scope=\"col\">FLIP</th>");
-  return table(
-      fmt::format("Error of one render of {} samples per pixel, {} pixels", samples, region == kAll ? "all" : "leaf"),
-      header, rows,
-      "Linear SMPTE-C. The paper’s RMS is that of clipped pictures, of two renders that are both noisy; here the "
-      "reference’s noise is taken out. Bias is what no number of samples takes away.");
-}
 
 std::string ratio_text(double r) { return fmt::format("{:.2f}×", r); }
 
@@ -77,7 +28,7 @@ std::string ratio_text(const std::optional<Ratio>& r) {
 }
 
 std::string plateau_text(const Subject& s) {
-  const auto plateau = s.convergence(kAll, kRgb).until_plateau();
+  const auto plateau = s.convergence(kAll).until_plateau();
   return plateau ? fmt::format("{:.3g} s, {:.0f} samples", plateau->seconds, plateau->samples) : "none found";
 }
 
@@ -145,25 +96,24 @@ std::string offer_table(const Comparison& c) {
 
 }  // namespace
 
-std::string tables_html(const Comparison& c) {
-  return offer_table(c) + error_table(c, kAll) + error_table(c, kLeaf) + speed_table(c);
-}
+std::string tables_html(const Comparison& c) { return offer_table(c) + error_tables(c) + speed_table(c); }
 
 std::string summary_text(const Comparison& c) {
   size_t width = 10;
   for (const Subject& s : c.subjects) width = std::max(width, s.candidate.label.size());
   std::string text =
-      fmt::format("{:<{}}  CPU s/sample  bias (95 %)           noise of {:<5}    FLIP  (a)    (c*)   (d)\n",
+      fmt::format("{:<{}}  CPU s/sample  bias (95 %)                   noise of {:<5}  FLIP    (a)    (c*)   (d)\n",
                   "candidate", width, c.subjects.front().rungs.back().samples);
   for (size_t i = 0; i < c.subjects.size(); ++i) {
     const Subject& s = c.subjects[i];
     const Rung& r = s.rungs.back();
-    const RenderError& e = r.errors[kAll][kRgb];
+    const RenderError& e = r.errors[kAll][kTogether];
     const SpeedUps v = speed_ups(c, i);
     const bool told = v.equal_error_at_bias && v.equal_error_at_bias->value > 0;
-    text += fmt::format("{:<{}}  {:<12.3g}  {:.5f} ({:.5f} to {:.5f})  {:.5f}  {:.4f}  {:<5.2f}  {:<5}  {:.2f}\n",
+    text += fmt::format("{:<{}}  {:<12.3g}  {:.5f} ({:.5f} to {:.5f})  {:<14.5f}  {:<6}  {:<5.2f}  {:<5}  {:.2f}\n",
                         s.candidate.label, width, r.cost.cpu_seconds / double(r.samples), e.bias.root(),
-                        e.bias.root_at(-kZ95), e.bias.root_at(kZ95), e.noise.root(), r.flip, v.equal_samples,
+                        e.bias.root_at(-kZ95), e.bias.root_at(kZ95), e.noise.root(),
+                        r.flip ? fmt::format("{:.4f}", *r.flip) : "-", v.equal_samples,
                         told ? fmt::format("{:.2f}", v.equal_error_at_bias->value) : "-", v.equal_noise);
   }
   return text +

@@ -27,11 +27,11 @@ std::string answer(const Comparison& c, double rms) {
   const Offer& best = all.front();
   if (!best.effort) {
     const auto least = std::ranges::min_element(
-        c.subjects, {}, [](const Subject& s) { return s.convergence(kAll, kRgb).bias().root_at(kZ95); });
+        c.subjects, {}, [](const Subject& s) { return s.convergence(kAll).bias().root_at(kZ95); });
     return fmt::format(
         "None of the candidates meets an RMS of {:g} with 95 % confidence: the bias of {}, the least, may be up to "
         "{:.2g}.",
-        rms, least->candidate.label, least->convergence(kAll, kRgb).bias().root_at(simultaneous_z(c)));
+        rms, least->candidate.label, least->convergence(kAll).bias().root_at(simultaneous_z(c)));
   }
   std::string text = fmt::format("{} is enough for an RMS of {:g}, with 95 % confidence: {}", label(c, best.subject),
                                  rms, effort_text(*best.effort));
@@ -47,7 +47,7 @@ std::string overview(const Comparison& c) {
   std::string text;
   for (const Reign& reign : reigns(c)) {
     const Subject& s = c.subjects[reign.subject];
-    const auto effort = s.convergence(kAll, kRgb).until_rms(reign.rms_to);
+    const auto effort = s.convergence(kAll).until_rms(reign.rms_to);
     const std::string price = effort ? fmt::format(" ({})", effort_text(*effort)) : "";
     text += text.empty()
                 ? fmt::format("{} is the cheapest down to an RMS of {:.2g}{}", s.candidate.label, reign.rms_to, price)
@@ -60,8 +60,7 @@ std::string overview(const Comparison& c) {
 
 std::vector<Offer> offers(const Comparison& c, double rms, double z) {
   std::vector<Offer> all;
-  for (size_t i = 0; i < c.subjects.size(); ++i)
-    all.push_back({i, c.subjects[i].convergence(kAll, kRgb).until_rms(rms, z)});
+  for (size_t i = 0; i < c.subjects.size(); ++i) all.push_back({i, c.subjects[i].convergence(kAll).until_rms(rms, z)});
   std::ranges::stable_sort(all, {}, cost_of);
   return all;
 }
@@ -71,8 +70,8 @@ double simultaneous_z(const Comparison& c) { return normal_upper_quantile(sidak_
 std::vector<Reign> reigns(const Comparison& c) {
   double largest = std::numeric_limits<double>::infinity(), smallest = largest;
   for (const Subject& s : c.subjects) {
-    largest = std::min(largest, s.rungs.front().errors[kAll][kRgb].total.root());
-    smallest = std::min(smallest, s.rungs.back().errors[kAll][kRgb].total.root());
+    largest = std::min(largest, s.rungs.front().errors[kAll][kTogether].total.root());
+    smallest = std::min(smallest, s.rungs.back().errors[kAll][kTogether].total.root());
   }
   std::vector<Reign> result;
   if (!(smallest > 0)) return result;
