@@ -5,6 +5,7 @@
 
 #include "tests/instruments/patch_comparison.h"
 #include "tests/instruments/specimen.h"
+#include "tests/support/slow.h"
 
 /// What leaf_solved says of a leaf against walks of abm, by the goniophotometer: all directions out, in single
 /// precision and in great number. f is integrated over each patch, so that nothing but the walks' noise is left.
@@ -18,11 +19,6 @@ struct Setting {
 
 void PrintTo(const Setting& s, std::ostream* out) {
   *out << s.specimen << " at " << s.theta_deg << " degrees, " << s.lambda_nm << " nm";
-}
-
-bool slow_tests() {
-  const char* wish = std::getenv("FROND_SLOW_TESTS");
-  return wish && std::string_view(wish) == "1";
 }
 
 /// FROND_PATCH_RAYS in place of 1e8, or of 1e6 where tests are to be quick.

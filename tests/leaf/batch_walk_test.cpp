@@ -5,7 +5,6 @@
 #include <bit>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <cstdlib>
 #include <numbers>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "leaf/specimens.h"
 #include "tests/leaf/plain_walk.h"
 #include "tests/leaf/statistics.h"
+#include "tests/support/slow.h"
 
 namespace frond::leaf {
 namespace {
@@ -20,11 +20,6 @@ namespace {
 using test::Estimate;
 using test::kFalseAlarm;
 using test::PlainWalk;
-
-bool slow_tests() {
-  const char* value = std::getenv("FROND_SLOW_TESTS");
-  return value && std::string_view(value) == "1";
-}
 
 Vec3d incidence(double theta_deg) {
   const double theta = theta_deg * std::numbers::pi / 180;

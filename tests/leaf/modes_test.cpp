@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <numbers>
 
 #include "leaf/azimuth.h"
@@ -11,6 +10,7 @@
 #include "leaf/specimens.h"
 #include "leaf/walk.h"
 #include "tests/leaf/statistics.h"
+#include "tests/support/slow.h"
 
 namespace frond::leaf {
 namespace {
@@ -99,11 +99,6 @@ TEST(BodyModes, ModeZeroHoldsTheSolversEnergy) {
 Vec3d direction(double theta_deg, double phi, bool below) {
   const double theta = radians(theta_deg), z = std::cos(theta);
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), below ? -z : z};
-}
-
-bool slow_tests() {
-  const char* wish = std::getenv("FROND_SLOW_TESTS");
-  return wish && std::string_view(wish) == "1";
 }
 
 // In the plane of incidence and out of it, both sides: unbiased estimates of so many walks each that their means are

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cstdlib>
 #include <mutex>
 #include <numbers>
 
@@ -10,6 +9,7 @@
 #include "leaf/solver.h"
 #include "leaf/specimens.h"
 #include "leaf/table.h"
+#include "tests/support/slow.h"
 
 /// The solution against weighted walks in great number: minutes on all cores, so only where FROND_SLOW_TESTS is 1.
 namespace frond::leaf {
@@ -87,8 +87,7 @@ struct Case {
 class SolverAgainstWalks : public testing::TestWithParam<Case> {
  protected:
   void SetUp() override {
-    const char* slow = std::getenv("FROND_SLOW_TESTS");
-    if (!slow || std::string(slow) != "1") GTEST_SKIP() << "takes minutes; FROND_SLOW_TESTS=1 runs it";
+    if (!slow_tests()) GTEST_SKIP() << "takes minutes; FROND_SLOW_TESTS=1 runs it";
   }
   /// No side and no angle is favoured: over all cases the differences even out.
   static void TearDownTestSuite() {

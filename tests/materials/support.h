@@ -65,6 +65,10 @@ class Ready {
   const Material& material() const { return *material_; }
   const SampledWavelengths& lambda() const { return lambda_; }
   void sample_wavelengths(float u) { lambda_ = strategy_->sample(u); }
+  /// As if those before `first` carried no light any more.
+  void retire_lanes(int first) {
+    for (int lane = 0; lane < first; ++lane) lambda_.active[static_cast<size_t>(lane)] = false;
+  }
   const Bsdf& bsdf(Vec2 uv = {}) {
     arena_.reset();
     return *material_->evaluate({{}, {0, 0, 1}, Frame::around(Vec3{0, 0, 1}), uv}, lambda_, arena_);
