@@ -23,8 +23,10 @@ compare::StudyOptions options(const std::string& name) {
 }
 
 std::array<compare::Picture, 2> pictures_of(const PairedRender& render, const ColorManager& colors) {
-  const std::string_view space = render.scene().wavelengths().film_space();
-  return {compare::picture_of(render.film(0), space, colors), compare::picture_of(render.film(1), space, colors)};
+  const Scene& scene = render.scene();
+  const compare::ChannelList channels = compare::channels_of(scene);
+  return {compare::picture_of(render.film(0), scene, channels, colors),
+          compare::picture_of(render.film(1), scene, channels, colors)};
 }
 
 }  // namespace
