@@ -3,6 +3,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "cli/compare/cache_limit.h"
 #include "core/random.h"
 #include "scene/atomic_file.h"
 #include "scene/file_bytes.h"
@@ -90,7 +91,9 @@ ReferenceStore::ReferenceStore(const std::filesystem::path& folder, uint64_t ide
 void ReferenceStore::load(PairedRender& render) const {
   std::error_code error;  // a cache that cannot be looked into is none
   if (path_.empty() || !std::filesystem::is_regular_file(path_, error)) return;
-  if (!decode(read_file_bytes(path_, {}), identity_, render))
+  if (decode(read_file_bytes(path_, {}), identity_, render))
+    mark_as_used(path_);
+  else
     log_.warn({}, fmt::format("{} is damaged: the reference is rendered anew", path_.string()));
 }
 
@@ -100,6 +103,7 @@ void ReferenceStore::save(const PairedRender& render) const {
   try {
     std::filesystem::create_directories(path_.parent_path());
     replace_file(path_, {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
+    limit_references(path_, kMostCachedBytes, log_);
   } catch (const std::exception& error) {
     log_.warn({}, fmt::format("the reference is not kept for next time: {}", error.what()));
   }

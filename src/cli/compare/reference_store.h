@@ -5,7 +5,7 @@
 namespace frond::compare {
 
 /// Keeps renders on disk, with all that is needed to continue them. A file that is damaged, or of something else,
-/// counts as none.
+/// counts as none. Files that lie unused for longest make room for new ones (cache_limit.h).
 class ReferenceStore {
  public:
   /// `folder` empty: nothing is kept. `identity` of all that decides the pixels.
