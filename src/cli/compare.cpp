@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <bit>
 #include <chrono>
 #include <ctime>
 
@@ -31,7 +30,8 @@ struct CompareOptions {
   std::vector<std::string> materials{kCandidates}, leaves, plugins;
   int size = 0, samples = 0, reference_samples = 0, threads = 0;
   uint64_t seed = 0;
-  double rms = 0, exposure = 0;
+  double exposure = 0;
+  std::vector<double> rms;
   bool quick = false, quiet = false, no_cache = false, seed_given = false;
 };
 
@@ -48,7 +48,7 @@ Plan plan_of(const CompareOptions& o) {
   if (plan.candidates.size() > compare::kMostCurves)
     fail({}, "{} candidates are more than the {} that a chart can tell apart", plan.candidates.size(),
          compare::kMostCurves);
-  plan.top_samples = o.samples > 0 ? std::bit_floor(uint64_t(o.samples)) : setting.samples;
+  plan.top_samples = o.samples > 0 ? uint64_t(o.samples) : setting.samples;
   plan.reference_samples = o.reference_samples > 0 ? uint64_t(o.reference_samples) : setting.reference_samples;
   plan.cache = cache_directory(o.cache, o.no_cache);
   plan.quiet = o.quiet;
@@ -70,8 +70,7 @@ std::array<double, 3> target_of(const std::string& text) {
 }
 
 Request request_of(const CompareOptions& o) {
-  Request request{.exposure_stops = o.exposure};
-  if (o.rms > 0) request.rms = o.rms;
+  Request request{.rms = o.rms, .exposure_stops = o.exposure};
   if (!o.target.empty()) request.target = target_of(o.target);
   return request;
 }
@@ -97,7 +96,8 @@ std::string command_line_of(const CompareOptions& o) {
   for (const std::string& leaf : o.leaves) add("--leaf", leaf);
   for (const std::string& plugin : o.plugins) add("--plugin", plugin);
   add_number("--size", o.size), add_number("--spp", o.samples), add_number("--reference-spp", o.reference_samples);
-  add_number("--rms", o.rms), add_number("--exposure", o.exposure);
+  for (const double rms : o.rms) add_number("--rms", rms);
+  add_number("--exposure", o.exposure);
   if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
   return line + (o.quick ? " --quick" : "");
 }
@@ -139,7 +139,9 @@ void add_options(CLI::App& command, CompareOptions& o) {
       ->default_str(kCandidates);
   command.add_option("--reference", o.reference, "Candidate that counts as right, once converged.")
       ->default_val(kReference);
-  command.add_option("--rms", o.rms, "Name the cheapest candidate with this RMS error.")->check(CLI::PositiveNumber);
+  command.add_option("--rms", o.rms, "Name the cheapest candidate with this RMS error; may be given again.")
+      ->check(CLI::PositiveNumber)
+      ->allow_extra_args(false);
   command.add_option("--target", o.target,
                      "RMS of red, green and blue for speed-up (c): numbers, or front, back, "
                      "ambient for the paper's.");
@@ -147,7 +149,7 @@ void add_options(CLI::App& command, CompareOptions& o) {
       ->allow_extra_args(false);
   command.add_option("--wavelengths", o.wavelengths, "In place of the scene's; smpte for the paper's three.");
   command.add_option("--size", o.size, "Pixels of the longer side; 256 by default.")->check(CLI::Range(1, 65536));
-  command.add_option("--spp", o.samples, "Samples per pixel of the last rung, a power of two; 256 by default.")
+  command.add_option("--spp", o.samples, "Samples per pixel of the last rung; 256 by default.")
       ->check(CLI::Range(1, 1 << 24));
   command
       .add_option("--reference-spp", o.reference_samples,

@@ -6,9 +6,10 @@
 
 namespace frond {
 
-/// Eight colours that people of any colour vision tell apart (Okabe and Ito 2008), darkest first.
+/// Eight colours that people of any colour vision tell apart (Okabe and Ito 2008), darkest first; their yellow, too faint
+/// on paper, gives way to a grey.
 inline constexpr std::array<std::string_view, 8> kSeriesColors{"#000000", "#0072b2", "#d55e00", "#009e73",
-                                                               "#cc79a7", "#e69f00", "#56b4e9", "#f0e442"};
+                                                               "#cc79a7", "#e69f00", "#56b4e9", "#999999"};
 
 /// Refuses, by InputError, a chart that cannot be made: a name that does not end in .svg or .png, a folder that does
 /// not take it, no gnuplot.

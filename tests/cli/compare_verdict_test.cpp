@@ -31,22 +31,28 @@ Comparison two() {
 
 TEST(Verdict, NamesTheCheapestThatIsGoodEnough) {
   Comparison c = two();
-  c.request.rms = 0.05;  // 0.0025 = 0.0001 + 0.02 / n
+  c.request.rms = {0.05};  // 0.0025 = 0.0001 + 0.02 / n
   EXPECT_THAT(verdict(c), HasSubstr("fast is enough for an RMS of 0.05, with 95 % confidence: 9 samples per pixel"));
   EXPECT_THAT(verdict(c), HasSubstr("; slow takes 32 s"));
 }
 
 TEST(Verdict, DoesNotNameTheCheapOneThatIsBiased) {
   Comparison c = two();
-  c.request.rms = 0.009;
+  c.request.rms = {0.009};
   EXPECT_THAT(verdict(c), HasSubstr("slow is enough for an RMS of 0.009"));
   EXPECT_THAT(verdict(c), HasSubstr("by extrapolation; fast never gets there"));
+}
+
+TEST(Verdict, AnswersEachQuestion) {
+  Comparison c = two();
+  c.request.rms = {0.05, 0.009};
+  EXPECT_THAT(verdict(c), HasSubstr("takes 32 s.\nslow is enough for an RMS of 0.009"));
 }
 
 TEST(Verdict, SaysWhenNothingMeetsIt) {
   Comparison c = two();
   c.subjects.erase(c.subjects.begin());
-  c.request.rms = 0.009;
+  c.request.rms = {0.009};
   EXPECT_THAT(verdict(c), HasSubstr("None of the candidates meets an RMS of 0.009"));
 }
 
@@ -55,7 +61,7 @@ TEST(Verdict, UncertainBiasIsHeldAgainstACandidate) {
   c.subjects.erase(c.subjects.begin());
   for (auto& region : c.subjects[0].rungs.back().errors)
     for (RenderError& e : region) e.bias.standard_error = 0.0001;
-  c.request.rms = 0.014;
+  c.request.rms = {0.014};
   // Two bounds at 95 % together: 1 - sqrt(0.95) above each, 1.95 standard errors.
   EXPECT_NEAR(simultaneous_z(c), 1.955, 0.001);
   EXPECT_FALSE(offers(c, 0.014, simultaneous_z(c))[0].effort);

@@ -61,7 +61,7 @@ struct Reference {
 
 /// What the user wants to know.
 struct Request {
-  std::optional<double> rms = {};                    ///< error to meet, over all channels and all pixels
+  std::vector<double> rms = {};                      ///< errors to meet, over all channels and all pixels
   std::optional<std::array<double, 3>> target = {};  ///< RMS of red, green and blue for speed-up (c)
   double exposure_stops = 0;
 };

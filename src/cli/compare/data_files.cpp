@@ -93,10 +93,9 @@ Json subject_json(const Comparison& c, size_t i) {
     json["plateau"][kRegionNames[region]] = effort_json(s.convergence(Region(region)).until_plateau());
   json["speed_up"] = speed_up_json(speed_ups(c, i));
   if (s.paper) json["paper_manner"] = paper_json(*s.paper);
-  if (c.request.rms) {
-    const auto effort = s.convergence(kAll).until_rms(*c.request.rms, simultaneous_z(c));
-    json["meets_rms"] = effort_json(effort);
-  }
+  for (const double rms : c.request.rms)
+    json["meets_rms"].push_back(
+        {{"rms", rms}, {"effort", effort_json(s.convergence(kAll).until_rms(rms, simultaneous_z(c)))}});
   for (const Rung& rung : s.rungs) json["rungs"].push_back(rung_json(c.channels, rung));
   return json;
 }
@@ -153,7 +152,7 @@ std::string comparison_json(const Comparison& c) {
             {"verdict", verdict(c)},
             {"reference", reference_json(c.channels, c.reference)}};
   for (const Band& band : c.channels.bands) json["band_nm"].push_back(band.nm);
-  if (c.request.rms) json["rms_requested"] = *c.request.rms;
+  if (!c.request.rms.empty()) json["rms_requested"] = c.request.rms;
   if (c.request.target) json["rms_target"] = *c.request.target;
   for (size_t i = 0; i < c.subjects.size(); ++i) json["candidates"].push_back(subject_json(c, i));
   return json.dump(1) + '\n';

@@ -135,23 +135,38 @@ void warn_of_lost_samples(const PairedRender& render, const Candidate& candidate
                              candidate.label, count));
 }
 
+/// Doublings, and the last rung that was asked for.
+std::vector<uint64_t> ladder(uint64_t first, uint64_t top) {
+  std::vector<uint64_t> rungs;
+  for (uint64_t samples = first; samples < top; samples *= 2) rungs.push_back(samples);
+  rungs.push_back(top);
+  return rungs;
+}
+
+void step_to(uint64_t samples, PairedRender& render, const Plan& plan, const Bench& bench, const ThreadPool& pool,
+             const Log& log, Subject& subject) {
+  {
+    ProgressLine line(plan.quiet);
+    render.advance_to(samples, pool, std::ref(line));
+  }
+  subject.rungs.push_back(bench.rung(render));
+  const Rung& r = subject.rungs.back();
+  log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {:.5f}{}", subject.candidate.label, samples,
+                       r.cost.cpu_seconds, r.errors[kAll][kTogether].total.root(),
+                       r.flip ? fmt::format(", FLIP {:.4f}", *r.flip) : ""));
+}
+
 void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& bench, const ThreadPool& pool,
            const Log& log, Comparison& result) {
-  for (uint64_t samples = first_rung(renders.front().scene()); samples <= plan.top_samples; samples *= 2) {
+  const auto rungs = ladder(first_rung(renders.front().scene()), plan.top_samples);
+  // An early picture has about a sixteenth of the samples of the last.
+  result.early_samples = rungs[rungs.size() > 5 ? rungs.size() - 5 : 0];
+  for (const uint64_t samples : rungs)
     for (size_t i = 0; i < renders.size(); ++i) {
-      {
-        ProgressLine line(plan.quiet);
-        renders[i].advance_to(samples, pool, std::ref(line));
-      }
       Subject& subject = result.subjects[i];
-      subject.rungs.push_back(bench.rung(renders[i]));
+      step_to(samples, renders[i], plan, bench, pool, log, subject);
       if (samples == result.early_samples) subject.early = bench.shown_first(renders[i]);
-      const Rung& r = subject.rungs.back();
-      log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {:.5f}{}", subject.candidate.label, samples,
-                           r.cost.cpu_seconds, r.errors[kAll][kTogether].total.root(),
-                           r.flip ? fmt::format(", FLIP {:.4f}", *r.flip) : ""));
     }
-  }
   for (size_t i = 0; i < renders.size(); ++i) {
     result.subjects[i].late = bench.shown_mean(renders[i]);
     warn_of_lost_samples(renders[i], plan.candidates[i], log);
@@ -183,7 +198,6 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request,
   PairedRender reference_render = pair_of(study, plan.reference, kReferenceSeed);
   check_request(request, plan, reference_render.scene());
   auto renders = prepared(study, plan.candidates, reference_render);
-  result.early_samples = std::max(first_rung(reference_render.scene()), plan.top_samples / 16);
   const ReferenceStore store(plan.cache, study.identity(plan.reference), log);
   const uint64_t cached = render_reference(reference_render, store, plan, pool);
   warn_of_lost_samples(reference_render, plan.reference, log);

@@ -8,7 +8,8 @@ namespace frond::compare {
 struct Plan {
   Candidate reference;
   std::vector<Candidate> candidates;
-  uint64_t top_samples = 256;  ///< a power of two: the ladder is 1, 2, 4 ... up to it, of bands from where all are seen
+  /// The ladder is 1, 2, 4 ... and this; of bands, from where a pixel has seen all of them.
+  uint64_t top_samples = 256;
   uint64_t reference_samples = 2048;  ///< of each of its two renders
   std::filesystem::path cache = {};
   bool quiet = false;

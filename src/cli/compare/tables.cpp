@@ -80,23 +80,28 @@ std::string speed_table(const Comparison& c) {
                   html_text(c.subjects.front().candidate.label), paper_note(c), target));
 }
 
-std::string offer_table(const Comparison& c) {
-  if (!c.request.rms) return "";
+std::string offer_table(const Comparison& c, double rms) {
   std::string rows;
-  for (const Offer& o : offers(c, *c.request.rms, simultaneous_z(c)))
+  for (const Offer& o : offers(c, rms, simultaneous_z(c)))
     rows +=
         "<tr>" + cell(html_text(c.subjects[o.subject].candidate.label)) +
         (o.effort ? cell(fmt::format("{:.0f}", std::ceil(o.effort->samples))) +
                         cell(fmt::format("{:.3g}{}", o.effort->seconds, o.effort->measured ? "" : " (extrapolated)"))
                   : cell("never") + cell("–")) +
         "</tr>\n";
-  return table(fmt::format("An RMS of {:g}", *c.request.rms), head({"candidate", "samples per pixel", "CPU s"}), rows,
+  return table(fmt::format("An RMS of {:g}", rms), head({"candidate", "samples per pixel", "CPU s"}), rows,
                "With bias and noise taken at the upper ends of intervals that hold all together with 95 % confidence.");
+}
+
+std::string offer_tables(const Comparison& c) {
+  std::string html;
+  for (const double rms : c.request.rms) html += offer_table(c, rms);
+  return html;
 }
 
 }  // namespace
 
-std::string tables_html(const Comparison& c) { return offer_table(c) + error_tables(c) + speed_table(c); }
+std::string tables_html(const Comparison& c) { return offer_tables(c) + error_tables(c) + speed_table(c); }
 
 std::string summary_text(const Comparison& c) {
   size_t width = 10;

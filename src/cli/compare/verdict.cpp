@@ -86,6 +86,11 @@ std::vector<Reign> reigns(const Comparison& c) {
   return result;
 }
 
-std::string verdict(const Comparison& c) { return c.request.rms ? answer(c, *c.request.rms) : overview(c); }
+std::string verdict(const Comparison& c) {
+  if (c.request.rms.empty()) return overview(c);
+  std::string text;
+  for (const double rms : c.request.rms) text += (text.empty() ? "" : "\n") + answer(c, rms);
+  return text;
+}
 
 }  // namespace frond::compare

@@ -27,7 +27,7 @@ struct Reign {
 /// was measured.
 std::vector<Reign> reigns(const Comparison& comparison);
 
-/// In a sentence or two: the answer to `Request::rms`, or which candidate to take down to which error.
+/// The answer to each `Request::rms`, a line for each, or which candidate to take down to which error.
 std::string verdict(const Comparison& comparison);
 
 }  // namespace frond::compare
