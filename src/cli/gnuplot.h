@@ -6,8 +6,8 @@
 
 namespace frond {
 
-/// Eight colours that people of any colour vision tell apart (Okabe and Ito 2008), darkest first; their yellow, too faint
-/// on paper, gives way to a grey.
+/// Eight colours that people of any colour vision tell apart (Okabe and Ito 2008), darkest first; their yellow, too
+/// faint on paper, gives way to a grey.
 inline constexpr std::array<std::string_view, 8> kSeriesColors{"#000000", "#0072b2", "#d55e00", "#009e73",
                                                                "#cc79a7", "#e69f00", "#56b4e9", "#999999"};
 
