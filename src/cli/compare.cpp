@@ -8,7 +8,7 @@
 #include "cli/compare/machine.h"
 #include "cli/compare/measure.h"
 #include "cli/compare/report.h"
-#include "cli/compare/tables.h"
+#include "cli/compare/summary.h"
 #include "cli/compare/verdict.h"
 #include "cli/plugins.h"
 #include "scene/words.h"

@@ -148,6 +148,10 @@ TEST_F(CompareCommand, TheReportRunsInABrowser) {
   EXPECT_THAT(dom->out,
               AllOf(HasSubstr("data-ready=\"5\""), HasSubstr("data-mode=\"difference\" aria-pressed=\"true\""),
                     HasSubstr("legend shown"), HasSubstr("luminance A minus B")));
+  for (const auto& [link, width] : std::map<std::string, int>{{"#mode=side&zoom=3", 2 * 16 * 3 + 8},
+                                                              {"#mode=wipe&zoom=2", 16 * 2},
+                                                              {"#mode=flip&zoom=8&exposure=2", 16 * 8}})
+    EXPECT_THAT(run("--dump-dom", url + link)->out, HasSubstr(fmt::format("width=\"{}\"", width))) << link;
   const std::string screenshot = folder_.name_of("screen.png");
   run("--screenshot=" + screenshot, url);
   EXPECT_EQ(read_file_bytes(screenshot, {}).substr(1, 3), "PNG");

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "cli/compare/curves_chart.h"
+#include "cli/compare/figures.h"
 #include "cli/compare/speed_up.h"
 #include "cli/compare/verdict.h"
 
@@ -102,9 +103,16 @@ TEST(SpeedUp, SaysWhereAnErrorIsNotReached) {
   EXPECT_EQ(speed_ups(c, 1).equal_error->kind, Ratio::Kind::baseline_not_there);
 }
 
+TEST(Figures, AreWrittenWithoutExponents) {
+  EXPECT_EQ(figures(1234.5, 3), "1230");
+  EXPECT_EQ(figures(199.6, 2), "200");
+  EXPECT_EQ(figures(0.017856, 3), "0.0179");
+  EXPECT_EQ(figures(0, 3), "0");
+}
+
 TEST(CurvesChart, MarksTheBiasOfTheBiased) {
   const std::string script = curves_chart(two(), Measure::rms_all);
-  EXPECT_THAT(script, HasSubstr("'fast: bias 0.01, noise below it from 2e+02 s'"));
+  EXPECT_THAT(script, HasSubstr("'fast: bias 0.01, noise below it from 200 s'"));
   EXPECT_THAT(script, HasSubstr("title 'slow'"));
 }
 

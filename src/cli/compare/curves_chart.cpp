@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/compare/curve_style.h"
+#include "cli/compare/figures.h"
 #include "cli/gnuplot.h"
 
 namespace frond::compare {
@@ -77,8 +78,8 @@ std::optional<Plateau> plateau_of(const Subject& subject, Measure measure) {
 
 std::string title(const Subject& subject, const std::optional<Plateau>& plateau) {
   if (!plateau) return subject.candidate.label;
-  return fmt::format("{}: bias {:.2g}, noise below it from {:.2g} s", subject.candidate.label, plateau->bias,
-                     plateau->seconds);
+  return fmt::format("{}: bias {:.2g}, noise below it from {} s", subject.candidate.label, plateau->bias,
+                     figures(plateau->seconds, 2));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cli/compare/figures.h"
 #include "instruments/statistics.h"
 
 namespace frond::compare {
@@ -18,8 +19,8 @@ double cost_of(const Offer& offer) {
 }
 
 std::string effort_text(const Effort& e) {
-  return fmt::format("{:.0f} sample{} per pixel, {:.3g} s of CPU{}", std::ceil(e.samples), e.samples > 1 ? "s" : "",
-                     e.seconds, e.measured ? "" : " by extrapolation");
+  return fmt::format("{:.0f} sample{} per pixel, {} s of CPU{}", std::ceil(e.samples), e.samples > 1 ? "s" : "",
+                     figures(e.seconds, 3), e.measured ? "" : " by extrapolation");
 }
 
 std::string answer(const Comparison& c, double rms) {
@@ -37,7 +38,7 @@ std::string answer(const Comparison& c, double rms) {
                                  rms, effort_text(*best.effort));
   for (const Offer& other : all) {
     if (other.subject == best.subject) continue;
-    text += other.effort ? fmt::format("; {} takes {:.3g} s", label(c, other.subject), other.effort->seconds)
+    text += other.effort ? fmt::format("; {} takes {} s", label(c, other.subject), figures(other.effort->seconds, 3))
                          : fmt::format("; {} never gets there", label(c, other.subject));
   }
   return text + '.';

@@ -20,7 +20,7 @@
   const pictures = data.pictures.map(p => ({ name: p.name, rgb: decode(p.rgb) }));
 
   const state = { a: 0, b: Math.min(1, pictures.length - 1), mode: 'wipe', wipe: 0.5, showB: false,
-    exposure: data.exposure, zoom: Math.max(1, Math.min(8, Math.round(640 / width))), scale: 0 };
+    exposure: data.exposure, zoom: 1, zoomIsChosen: false, scale: 0 };
 
   // Linear SMPTE-C to the codes of an sRGB display (IEC 61966-2-1).
   const m = data.srgb_from_smpte;
@@ -84,6 +84,7 @@
     context.fillStyle = '#fff';
     context.fillText(text, left + 6, 22);
   }
+  const kGap = 8;  // between two pictures side by side
   const painters = {
     wipe(a, b, w, h) {
       const x = Math.round(state.wipe * w);
@@ -99,14 +100,21 @@
     },
     side(a, b, w) {
       stamp(shown(a), 0);
-      stamp(shown(b), w + 8);
-      tag('A', 0, 'left'), tag('B', w + 8, 'left');
+      stamp(shown(b), w + kGap);
+      tag('A', 0, 'left'), tag('B', w + kGap, 'left');
     },
     difference(a, b) { stamp(difference(a, b), 0); },
   };
+  // The largest zoom at which nothing has to be scrolled, until somebody chooses one.
+  function fitZoom() {
+    if (state.zoomIsChosen) return;
+    const room = $('stage').clientWidth - 16, shown = state.mode === 'side' ? 2 : 1;
+    const across = Math.floor((room - (shown - 1) * kGap) / (shown * width)), down = Math.floor(768 / height);
+    state.zoom = $('zoom').value = Math.max(1, Math.min(8, across, down));
+  }
   function paint() {
     const w = width * state.zoom, h = height * state.zoom;
-    view.width = state.mode === 'side' ? 2 * w + 8 : w, view.height = h;
+    view.width = state.mode === 'side' ? 2 * w + kGap : w, view.height = h;
     painters[state.mode](pictures[state.a], pictures[state.b], w, h);
     $('difference-legend').classList.toggle('shown', state.mode === 'difference');
     $('exposure-value').textContent = (state.exposure > 0 ? '+' : '') + state.exposure + ' stops';
@@ -128,12 +136,17 @@
   }
   for (const id of ['exposure', 'zoom', 'scale']) {
     $(id).value = state[id];
-    $(id).oninput = e => { state[id] = +e.target.value; paint(); };
+    $(id).oninput = e => {
+      state[id] = +e.target.value;
+      if (id === 'zoom') state.zoomIsChosen = true;
+      paint();
+    };
   }
   const buttons = [...document.querySelectorAll('[data-mode]')];
   function choose(mode) {
     state.mode = mode;
     for (const button of buttons) button.setAttribute('aria-pressed', button.dataset.mode === mode);
+    fitZoom();
     paint();
   }
   for (const button of buttons) button.onclick = () => choose(button.dataset.mode);
@@ -149,7 +162,7 @@
   view.onpointermove = e => {
     const box = view.getBoundingClientRect(), x = e.clientX - box.left;
     if (state.mode === 'wipe') state.wipe = Math.min(1, Math.max(0, x / box.width)), paint();
-    const column = Math.floor(x / state.zoom), gap = width + 8 / state.zoom;
+    const column = Math.floor(x / state.zoom), gap = width + kGap / state.zoom;
     read(state.mode === 'side' && column >= width ? Math.floor(x / state.zoom - gap) : column,
       Math.floor((e.clientY - box.top) / state.zoom));
   };
@@ -163,6 +176,7 @@
   for (const [key, value] of new URLSearchParams(location.hash.slice(1))) {
     if (key === 'mode' && value in painters) state.mode = value;
     if (['a', 'b'].includes(key) && +value in pictures) state[key] = +value, $(key).value = value;
+    if (key === 'zoom') state.zoomIsChosen = true;
     if (['zoom', 'exposure', 'scale'].includes(key) && Number.isFinite(+value)) state[key] = +value, $(key).value = value;
   }
   choose(state.mode);
