@@ -1,0 +1,1 @@
+"""Runs the benchmarks and compares two runs of them (docs/benchmarks.md)."""

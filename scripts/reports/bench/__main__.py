@@ -1,0 +1,87 @@
+"""scripts/bench"""
+
+import argparse
+import dataclasses
+import json
+import pathlib
+import sys
+
+from tools import ROOT
+
+from . import page, results, session, tables, text
+from .comparison import Comparison
+
+DOCUMENT = ROOT / "docs" / "benchmarks.md"
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="scripts/bench", description="Runs the benchmarks, or compares two runs.")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--compare", nargs=2, metavar=("A.json", "B.json"), help="a page that compares two runs")
+    what.add_argument("--commits", nargs=2, metavar=("A", "B"),
+                      help="build two commits, run both in turn and compare; . is the sources as they are")
+    what.add_argument("--write-docs", metavar="RUN.json", help="put the run's figures into docs/benchmarks.md")
+    parser.add_argument("-o", "--output", type=pathlib.Path,
+                        help="JSON of a run, page of a comparison, folder of --commits (all in build/bench by default)")
+    parser.add_argument("--quick", action="store_true", help="fewer benchmarks and rounds: under two minutes")
+    parser.add_argument("--filter", metavar="RE", help="benchmarks whose names match")
+    parser.add_argument("--repetitions", type=int, metavar="N", help="rounds, each a process: 12, with --quick 5")
+    parser.add_argument("--fail-on-regression", type=float, metavar="PCT",
+                        help="end with 2 if a benchmark is slower by as many per cent, or a picture another one")
+    return parser.parse_args()
+
+
+def setting_of(options):
+    chosen = {"filter": options.filter, "rounds": options.repetitions}
+    if options.repetitions is not None and options.repetitions < 1:
+        raise SystemExit("--repetitions: one at least")
+    base = session.QUICK if options.quick else session.Setting()
+    return dataclasses.replace(base, **{k: v for k, v in chosen.items() if v is not None})
+
+
+def write(path, content):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(path.name + ".part")
+    beside.write_text(content, encoding="utf-8")
+    beside.replace(path)
+    print(f"Written: {path}")
+
+
+def run_one(options):
+    [document] = session.measure([session.Program()], setting_of(options))
+    write(options.output or session.WORKTREES / "run.json", json.dumps(document, indent=1))
+    print(tables.figures(results.Run(document)))
+
+
+def run_commits(options):
+    folder = options.output or session.WORKTREES
+    documents = session.measure([session.Program(c) for c in options.commits], setting_of(options))
+    for name, document in zip("ab", documents):
+        write(folder / f"{name}.json", json.dumps(document, indent=1))
+    return compare(*map(results.Run, documents), folder / "page.html", options.fail_on_regression)
+
+
+def compare(a, b, path, fail_on_regression):
+    comparison = Comparison(a, b)
+    write(path, page.html(comparison))
+    print(text.summary(comparison))
+    if fail_on_regression is None:
+        return 0
+    return 2 if comparison.slower(fail_on_regression / 100) or comparison.changed_figures() else 0
+
+
+def main():
+    options = arguments()
+    if options.commits:
+        return run_commits(options)
+    if options.compare:
+        return compare(*map(results.read, options.compare), options.output or session.WORKTREES / "page.html",
+                       options.fail_on_regression)
+    if options.write_docs:
+        write(DOCUMENT, tables.put_into(DOCUMENT.read_text(encoding="utf-8"), results.read(options.write_docs)))
+        return 0
+    return run_one(options)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
