@@ -56,17 +56,19 @@ void tell(benchmark::State& state, const std::string& name, double value, double
 
 /// Variance times time of a pixel's samples: what it takes to be done with the noise.
 double effort(const Accuracy& accuracy, const Meter& meter) {
-  return accuracy.mean.noise.value * double(SceneStudy::kSamples) * meter.seconds_per_path();
+  return accuracy.noise.value * double(SceneStudy::kSamples) * meter.seconds_per_path();
 }
 
 void tell_errors(benchmark::State& state, const Accuracy& accuracy) {
   constexpr std::array<const char*, 3> kNames{"red", "green", "blue"};
   for (size_t c = 0; c < kNames.size(); ++c) {
-    const auto& [total, bias] = std::pair{accuracy.channels[c].total, accuracy.channels[c].bias};
-    tell(state, std::string("rms_") + kNames[c], total.root(), total.standard_error / (2 * total.root()));
-    tell(state, std::string("bias2_") + kNames[c], bias.value, bias.standard_error);
+    const auto& [error, offset] = accuracy.channels[c];
+    const std::string channel = std::string("_") + kNames[c];
+    tell(state, "rms" + channel, error.total.root(), error.total.standard_error / (2 * error.total.root()));
+    tell(state, "bias2" + channel, error.bias.value, error.bias.standard_error);
+    tell(state, "offset" + channel, offset.mean, offset.standard_error());
   }
-  tell(state, "variance", accuracy.mean.noise.value, accuracy.mean.noise.standard_error);
+  tell(state, "variance", accuracy.noise.value, accuracy.noise.standard_error);
 }
 
 /// Both render a sample in turn, each as often the first as the second: whatever else the machine does falls on both.

@@ -29,6 +29,31 @@ std::array<compare::Picture, 2> pictures_of(const PairedRender& render, const Co
           compare::picture_of(render.film(1), scene, channels, colors)};
 }
 
+/// The difference's variance is that of the mean of two renders and of that of the reference's two.
+Estimate offset_of(const RenderPair& renders, const RenderPair& reference, const RenderError& error) {
+  const double pixels = double(renders.first.size());
+  return {image_error(renders.first, renders.second, reference.first, reference.second).mean_difference,
+          (error.noise.value / 2 + error.reference_noise.value) / pixels};
+}
+
+RenderPair channel_of(const std::array<compare::Picture, 2>& pair, size_t c) {
+  return {pair[0].channels[c], pair[1].channels[c]};
+}
+
+/// Of one channel, mean of the repeats.
+ChannelAccuracy accuracy_of(std::span<const std::array<compare::Picture, 2>> candidate,
+                            std::span<const std::array<compare::Picture, 2>> reference, size_t c) {
+  std::vector<RenderError> errors;
+  Estimate sum;
+  for (size_t i = 0; i < candidate.size(); ++i) {
+    const RenderPair renders = channel_of(candidate[i], c), truth = channel_of(reference[i], c);
+    errors.push_back(render_error(renders, truth));
+    sum += offset_of(renders, truth, errors.back());
+  }
+  const double repeats = double(candidate.size());
+  return {mean_of_independent(errors), {sum.mean / repeats, sum.variance / (repeats * repeats)}};
+}
+
 }  // namespace
 
 SceneStudy::SceneStudy(const std::string& name) : log_(true), study_(options(name), pool_, log_) {}
@@ -47,16 +72,8 @@ const Accuracy& SceneStudy::accuracy(const std::string& material) {
 Accuracy SceneStudy::measure(const std::string& material) {
   const std::vector<Pictures> candidate = render(material, kCandidateSeed, kSamples);
   Accuracy a;
-  for (size_t c = 0; c < a.channels.size(); ++c) {
-    std::array<RenderError, kRepeats> repeats;
-    for (size_t i = 0; i < kRepeats; ++i) {
-      const Pictures &pair = candidate[i], &truth = reference()[i];
-      repeats[i] =
-          render_error({pair[0].channels[c], pair[1].channels[c]}, {truth[0].channels[c], truth[1].channels[c]});
-    }
-    a.channels[c] = mean_of_independent(repeats);
-  }
-  a.mean = mean_of(a.channels);
+  for (size_t c = 0; c < a.channels.size(); ++c) a.channels[c] = accuracy_of(candidate, reference(), c);
+  a.noise = mean_of(std::array{a.channels[0].error, a.channels[1].error, a.channels[2].error}).noise;
   return a;
 }
 

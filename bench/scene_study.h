@@ -7,13 +7,19 @@
 #include "cli/compare/picture.h"
 #include "cli/compare/study.h"
 #include "instruments/render_error.h"
+#include "instruments/statistics.h"
 
 namespace frond {
 
-/// How far one render is from what the reference converges to.
+/// How far one render is from what the reference converges to, in one channel.
+struct ChannelAccuracy {
+  RenderError error;
+  Estimate offset;  ///< mean over the pixels of render minus reference: a change of brightness shows here first
+};
+
 struct Accuracy {
-  std::array<RenderError, 3> channels;  ///< red, green and blue of linear SMPTE-C
-  RenderError mean;                     ///< of the three
+  std::array<ChannelAccuracy, 3> channels;  ///< red, green and blue of linear SMPTE-C
+  MeanSquare noise;                         ///< mean of the three
 };
 
 /// A scene at a small size and at the wavelengths 608, 551 and 455 nm, in which one leaf model stands for another. What

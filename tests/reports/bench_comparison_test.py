@@ -126,7 +126,7 @@ class Pictures(unittest.TestCase):
     def test_the_same_to_the_last_digit(self):
         marks = self.marks(runs.pictures(0.01), runs.pictures(0.01))
         self.assertEqual(set(marks.values()), {"same"})
-        self.assertEqual(len(marks), 7)
+        self.assertEqual(len(marks), 10)
 
     def test_other_noise_is_within_errors(self):
         marks = self.marks(runs.pictures(0.01), runs.pictures(0.0101))

@@ -89,7 +89,8 @@ def derived(comparison, name, counter, unit):
 TIMED = {"speedup": ("speed-up", 1), "speedup_equal_noise": ("at equal noise", 1),
          "efficiency": ("efficiency, 10⁹/s", 1e9)}
 ERRORS = {f"rms_{c}": (f"RMS {c}, 10⁻³", 1e-3) for c in CHANNELS} | {
-    f"bias2_{c}": (f"bias² {c}, 10⁻⁶", 1e-6) for c in CHANNELS} | {"variance": ("variance, 10⁻⁶", 1e-6)}
+    f"bias2_{c}": (f"bias² {c}, 10⁻⁶", 1e-6) for c in CHANNELS} | {
+    f"offset_{c}": (f"offset {c}, 10⁻³", 1e-3) for c in CHANNELS} | {"variance": ("variance, 10⁻⁶", 1e-6)}
 
 
 def scene_section(comparison):
