@@ -120,7 +120,8 @@ leaf::BodyRequest modes_request_of(const TableOptions& options) {
   if (params.given("tablefile")) fail({}, "a table is made of a leaf, not of a \"tablefile\"");
   leaf::BodyRequest request{.params = LeafParams(params).tissue(),
                             .wavelengths_nm = parse_numbers("--wavelengths", options.wavelengths),
-                            .tolerance = params.real("tolerance")};
+                            .tolerance = params.real("tolerance"),
+                            .nodes = options.nodes};
   check_wavelengths(request.wavelengths_nm);
   return request;
 }
@@ -139,7 +140,7 @@ void make_modes_file(const TableOptions& options) {
 
 /// Options that say nothing of a table of modes.
 void check_modes_options(const CLI::App& command) {
-  for (const char* name : {"--method", "--angles", "--rays", "--nodes", "--seed", "--equalsides"})
+  for (const char* name : {"--method", "--angles", "--rays", "--seed", "--equalsides"})
     if (command.count(name) > 0)
       fail({}, "{} is for tables of {}; those of {} follow from its \"tolerance\"", name, kSimplified, kSolved);
 }

@@ -40,6 +40,7 @@ std::string describe(const BodyRequest& request) {
       fmt::format("# leaf modes (docs/table_format.md)\n{}# solver {}, modes {}, constants {:016x}, tolerance {}\n",
                   describe(request.params), kSolverVersion, kModesVersion, constants_hash(), request.tolerance);
   text += fmt::format("# wavelengths_nm {}\n", list_text(request.wavelengths_nm));
+  if (request.nodes > 0) text += fmt::format("# nodes {}\n", request.nodes);
   if (!request.depths.empty()) text += fmt::format("# depths {}\n", fmt::join(request.depths.depths(), ","));
   return text;
 }

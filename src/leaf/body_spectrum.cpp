@@ -53,13 +53,18 @@ std::vector<Tissue> tissues_of(const BodyRequest& request, const TissueModel& mo
   return tissues;
 }
 
+BodyModes solve(const BodyRequest& request, const Tissue& tissue, int cells) {
+  const int nodes = request.nodes > 0 ? request.nodes : mode_nodes(tissue);
+  return solve_modes(tissue, grid_sines(cells), request.tolerance, nodes);
+}
+
 /// Cells that leave half of the tolerance to missing modes: the error goes by their fourth power.
-int cells_for(double tolerance, const std::vector<Tissue>& tissues) {
+int cells_for(const BodyRequest& request, const std::vector<Tissue>& tissues) {
   constexpr int kFirstTry = 8, kLeast = 4;
   // Where least is absorbed, f is largest.
   const Tissue& tissue = *std::ranges::min_element(tissues, {}, [](const Tissue& t) { return t.optical_depth[2]; });
-  const BodyModes modes = solve_modes(tissue, grid_sines(kFirstTry), tolerance, mode_nodes(tissue));
-  const double wish = kFirstTry * std::pow(2 * interpolation_error(modes, tissue) / tolerance, 0.25);
+  const BodyModes modes = solve(request, tissue, kFirstTry);
+  const double wish = kFirstTry * std::pow(2 * interpolation_error(modes, tissue) / request.tolerance, 0.25);
   return static_cast<int>(std::clamp<double>(std::ceil(wish), kLeast, kMostCells));
 }
 
@@ -76,13 +81,12 @@ BodySpectrum make_body_spectrum(const BodyRequest& request, const ThreadPool& po
   const std::vector<Tissue> tissues = tissues_of(request, model);
   BodySpectrum spectrum;
   for (const Tissue& tissue : tissues) spectrum.index.push_back(tissue.n_cuticle());
-  spectrum.cells = cells_for(request.tolerance, tissues);
+  spectrum.cells = cells_for(request, tissues);
   spectrum.modes.resize(tissues.size());
-  const std::vector<double> sines = grid_sines(spectrum.cells);
   std::vector<double> errors(tissues.size());
   pool.for_each(static_cast<int64_t>(tissues.size()), [&](int64_t index, int) {
     const auto i = static_cast<size_t>(index);
-    spectrum.modes[i] = solve_modes(tissues[i], sines, request.tolerance, mode_nodes(tissues[i]));
+    spectrum.modes[i] = solve(request, tissues[i], spectrum.cells);
     errors[i] = interpolation_error(spectrum.modes[i], tissues[i]);
   });
   spectrum.error = *std::ranges::max_element(errors);

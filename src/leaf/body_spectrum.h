@@ -15,6 +15,7 @@ struct BodyRequest {
   std::vector<double> wavelengths_nm;
   DepthAxis depths = {};  ///< empty: the leaf's own
   double tolerance;       ///< of pi f: see solve_modes
+  int nodes = 0;          ///< per segment; 0: as many as mode_nodes says
 };
 
 /// BodyModes of one leaf, on a grid even in the sines of both angles for cubic interpolation: `cells` in [0, 1], and

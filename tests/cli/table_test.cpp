@@ -75,10 +75,12 @@ TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
     return text;
   };
   EXPECT_EQ(without_name("tablefile=" + path), without_name("tolerance=2e-3"));
+  const Outcome finer = table_command({"leaf_solved", "--nodes", "6", "--wavelengths", red, "-o", "-"});
+  EXPECT_THAT(finer.out, HasSubstr("# nodes 6\n"));
 }
 
 TEST(TableCommand, RefusesOptionsThatModesDoNotHave) {
-  for (const char* option : {"--rays", "--nodes", "--seed"})
+  for (const char* option : {"--rays", "--seed"})
     EXPECT_THAT(table_command({"leaf_solved", "--wavelengths", "551", "-o", "-", option, "7"}).err,
                 HasSubstr(std::string(option) + " is for tables of leaf_simplified"));
   EXPECT_THAT(table_command({"leaf_solved", "tablefile=a", "--wavelengths", "551", "-o", "-"}).err,
