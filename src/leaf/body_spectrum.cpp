@@ -58,14 +58,18 @@ BodyModes solve(const BodyRequest& request, const Tissue& tissue, int cells) {
   return solve_modes(tissue, grid_sines(cells), request.tolerance, nodes);
 }
 
-/// Cells that leave half of the tolerance to missing modes: the error goes by their fourth power.
-int cells_for(const BodyRequest& request, const std::vector<Tissue>& tissues) {
-  constexpr int kFirstTry = 8, kLeast = 4;
-  // Where least is absorbed, f is largest.
-  const Tissue& tissue = *std::ranges::min_element(tissues, {}, [](const Tissue& t) { return t.optical_depth[2]; });
-  const BodyModes modes = solve(request, tissue, kFirstTry);
-  const double wish = kFirstTry * std::pow(2 * interpolation_error(modes, tissue) / request.tolerance, 0.25);
+/// Cells that leave half of the tolerance to missing modes, where `cells` leave `error`: it goes by their fourth power.
+int cells_for(double tolerance, int cells, double error) {
+  constexpr int kLeast = 4;
+  const double wish = cells * std::pow(2 * error / tolerance, 0.25);
   return static_cast<int>(std::clamp<double>(std::ceil(wish), kLeast, kMostCells));
+}
+
+/// By the leaf that absorbs least: there f is largest.
+int first_guess(const BodyRequest& request, const std::vector<Tissue>& tissues) {
+  constexpr int kCells = 8;
+  const Tissue& tissue = *std::ranges::min_element(tissues, {}, [](const Tissue& t) { return t.optical_depth[2]; });
+  return cells_for(request.tolerance, kCells, interpolation_error(solve(request, tissue, kCells), tissue));
 }
 
 }  // namespace
@@ -79,18 +83,20 @@ std::vector<double> grid_sines(int cells) {
 BodySpectrum make_body_spectrum(const BodyRequest& request, const ThreadPool& pool) {
   const TissueModel model(request.params);
   const std::vector<Tissue> tissues = tissues_of(request, model);
-  BodySpectrum spectrum;
+  BodySpectrum spectrum{.cells = first_guess(request, tissues)};
   for (const Tissue& tissue : tissues) spectrum.index.push_back(tissue.n_cuticle());
-  spectrum.cells = cells_for(request, tissues);
   spectrum.modes.resize(tissues.size());
   std::vector<double> errors(tissues.size());
-  pool.for_each(static_cast<int64_t>(tissues.size()), [&](int64_t index, int) {
-    const auto i = static_cast<size_t>(index);
-    spectrum.modes[i] = solve(request, tissues[i], spectrum.cells);
-    errors[i] = interpolation_error(spectrum.modes[i], tissues[i]);
-  });
-  spectrum.error = *std::ranges::max_element(errors);
-  return spectrum;
+  for (;;) {
+    pool.for_each(static_cast<int64_t>(tissues.size()), [&](int64_t index, int) {
+      const auto i = static_cast<size_t>(index);
+      spectrum.modes[i] = solve(request, tissues[i], spectrum.cells);
+      errors[i] = interpolation_error(spectrum.modes[i], tissues[i]);
+    });
+    spectrum.error = *std::ranges::max_element(errors);
+    if (spectrum.error <= request.tolerance / 2 || spectrum.cells == kMostCells) return spectrum;
+    spectrum.cells = std::max(spectrum.cells + 1, cells_for(request.tolerance, spectrum.cells, spectrum.error));
+  }
 }
 
 }  // namespace frond::leaf

@@ -75,6 +75,11 @@ TEST(BodyTable, StaysWithinItsTolerance) {
     }
 }
 
+TEST(BodySpectrum, LeavesHalfOfItsToleranceToMissingModesAtEveryWavelength) {
+  const BodyRequest request = request_of("soybean", 5e-4, {551, 800, 1450, 1940, 2500});
+  EXPECT_LE(make_body_spectrum(request, ThreadPool(2)).error, request.tolerance / 2);
+}
+
 TEST(BodyTable, IsSmall) {
   const ThreadPool pool(2);
   const BodyRequest request = request_of("soybean", 5e-4);
