@@ -128,26 +128,30 @@ extern const FilmInfo rgb_film{{"film", "rgb", "Three colour channels.", "pbrt-v
 
 namespace {
 
-/// Linux promises memory that is not there, and ends the program when it comes to use it.
-size_t pixels_that_fit(const Crop& crop, size_t bands, const Location& where) {
-  constexpr double kImageBytes = 64,
-                   kBandBytes = 48;  // of the picture that is made of a pixel in the end, and its file
-  const double count = double(crop.width()) * double(crop.height()),
-               bytes = count * (sizeof(Film::Pixel) + kImageBytes + double(bands) * kBandBytes);
-  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  if (bytes > memory)
-    fail(where,
-         "the film's {} x {} pixels{} need {:.1f} GB of memory, this machine has {:.1f} GB: --crop renders a part",
-         crop.width(), crop.height(), bands > 0 ? fmt::format(" of {} bands", bands) : "", bytes * 1e-9, memory * 1e-9);
-  return size_t(count);
+size_t pixels_that_fit(const FilmSettings& settings, size_t bands, const Location& where) {
+  check_memory(settings, bands, 1, where, "--crop renders a part");
+  return size_t(settings.crop.width()) * size_t(settings.crop.height());
 }
 
 }  // namespace
 
+void check_memory(const FilmSettings& settings, size_t bands, size_t films, const Location& where,
+                  std::string_view advice) {
+  constexpr double kImageBytes = 64,
+                   kBandBytes = 48;  // of the picture that is made of a pixel in the end, and its file
+  const double count = double(settings.crop.width()) * double(settings.crop.height()) * double(films),
+               bytes = count * (sizeof(Film::Pixel) + kImageBytes + double(bands) * kBandBytes);
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (bytes <= memory) return;
+  fail(where, "{} {} x {} pixels{} need {:.1f} GB of memory, this machine has {:.1f} GB: {}",
+       films > 1 ? fmt::format("{} films of", films) : "the film's", settings.crop.width(), settings.crop.height(),
+       bands > 0 ? fmt::format(" of {} bands", bands) : "", bytes * 1e-9, memory * 1e-9, advice);
+}
+
 Film::Film(const FilmSettings& settings, const Location& where, size_t bands)
     : settings_(settings),
       band_count_(bands),
-      pixels_(pixels_that_fit(settings.crop, bands, where)),
+      pixels_(pixels_that_fit(settings, bands, where)),
       bands_(pixels_.size() * bands) {}
 
 void Film::restore(std::span<const Pixel> pixels, std::span<const BandSums> band_sums) {

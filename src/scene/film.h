@@ -35,6 +35,11 @@ struct FilmSettings {
   double largest_value() const { return half ? 65504 : double(std::numeric_limits<float>::max()); }
 };
 
+/// Refuses, by InputError at `where`, so many films and the pictures that are made of them where this machine has not
+/// the memory: Linux promises it, and ends the program when it comes to use it. `advice` ends the message.
+void check_memory(const FilmSettings& settings, size_t bands, size_t films, const Location& where,
+                  std::string_view advice);
+
 /// The same picture at half the resolution; the crop keeps a pixel at least.
 FilmSettings halved(FilmSettings settings);
 

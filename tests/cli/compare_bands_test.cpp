@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -129,6 +130,17 @@ TEST_F(CompareBands, AreMeasuredOnceAllOfThemAreSeen) {
   EXPECT_EQ(rungs[0]["samples"], 4);
   for (const auto& [band, error] : rungs[0]["leaf"].items()) EXPECT_GT(error["noise"]["value"], 0) << band;
   EXPECT_THAT(compare({"--wavelengths", "bands,step=10"}).err, HasSubstr("show each band once in 8 samples"));
+}
+
+/// Each film alone would fit.
+TEST_F(CompareBands, RefuseMoreThanTheMachineHolds) {
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)), bands = 301, bytes_a_band = 48;
+  const double size = std::sqrt(2 * 0.3 * memory / (bands * bytes_a_band));  // the picture is twice as wide as high
+  const Outcome o =
+      frond_command({"compare", folder_.write("scene.pbrt", kLeafScene).string(), "-o", folder_.name_of("report"),
+                     "--no-cache", "--materials", "abm,leaf_lambert", "--wavelengths",
+                     "bands,lambdamin=400,lambdamax=700,step=1", "--size", fmt::format("{:.0f}", size)});
+  EXPECT_THAT(o.err, AllOf(HasSubstr("6 films of"), HasSubstr("--size takes fewer pixels")));
 }
 
 TEST_F(CompareBands, RefuseWhatIsForColours) {

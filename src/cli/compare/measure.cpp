@@ -15,9 +15,9 @@ namespace {
 /// No candidate shares a seed with the reference, or a part of its noise would look like agreement.
 enum SeedUse : uint64_t { kCandidateSeed = 1, kReferenceSeed = 3, kTimingSeed = 5 };
 
-PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use) {
+PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use, size_t pairs = 1) {
   const uint64_t base = study.seed();
-  return {study, candidate, hash_key(base, uint64_t{use}), hash_key(base, uint64_t{use} + 1)};
+  return {study, candidate, hash_key(base, uint64_t{use}), hash_key(base, uint64_t{use} + 1), pairs};
 }
 
 /// The two renders of a method as pictures.
@@ -195,7 +195,7 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request,
   Comparison result;
   result.request = request;
   result.leaves = study.leaves();
-  PairedRender reference_render = pair_of(study, plan.reference, kReferenceSeed);
+  PairedRender reference_render = pair_of(study, plan.reference, kReferenceSeed, plan.candidates.size() + 1);
   check_request(request, plan, reference_render.scene());
   auto renders = prepared(study, plan.candidates, reference_render);
   const ReferenceStore store(plan.cache, study.identity(plan.reference), log);

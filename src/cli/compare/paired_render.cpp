@@ -11,17 +11,20 @@ double cpu_seconds() {
   return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
 }
 
-Film film_of(const Study& study, const Scene& scene) {
-  return Film(study.film(), {}, scene.wavelengths().bands().size());
+Film film_of(const Study& study, const Scene& scene, size_t films) {
+  const size_t bands = scene.wavelengths().bands().size();
+  check_memory(study.film(), bands, films, {}, "--size takes fewer pixels");
+  return Film(study.film(), {}, bands);
 }
 
 }  // namespace
 
-PairedRender::PairedRender(const Study& study, const Candidate& candidate, uint64_t first_seed, uint64_t second_seed)
+PairedRender::PairedRender(const Study& study, const Candidate& candidate, uint64_t first_seed, uint64_t second_seed,
+                           size_t pairs)
     : setup_cpu_seconds_(cpu_seconds()),
       scene_(study.scene(candidate)),
       seeds_{first_seed, second_seed},
-      films_{film_of(study, *scene_), film_of(study, *scene_)} {
+      films_{film_of(study, *scene_, 2 * pairs), film_of(study, *scene_, 2 * pairs)} {
   setup_cpu_seconds_ = cpu_seconds() - setup_cpu_seconds_;
   for (size_t i = 0; i < 2; ++i) samplers_[i] = study.sampler(*scene_, seeds_[i]);
 }

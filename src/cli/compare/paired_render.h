@@ -20,7 +20,9 @@ struct FilmSums {
 /// samples at any time, and then hold the very sums of a render that had all of them at once.
 class PairedRender {
  public:
-  PairedRender(const Study& study, const Candidate& candidate, uint64_t first_seed, uint64_t second_seed);
+  /// Throws InputError where this machine has no room for the films of `pairs` such pairs.
+  PairedRender(const Study& study, const Candidate& candidate, uint64_t first_seed, uint64_t second_seed,
+               size_t pairs = 1);
 
   /// Up to so many samples a pixel; nothing where there are as many.
   void advance_to(uint64_t samples, const ThreadPool& pool, const Progress& progress);
