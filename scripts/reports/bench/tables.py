@@ -55,7 +55,7 @@ def scenes(run):
             _, scene, leaf = name.split("/")
             baseline = run.counters.get(f"scene/{scene}/abm", {})
             body.append([scene, f"`{leaf}`", *costs(counters), *errors(counters, baseline)])
-    head = ["scene", "leaf", "µs a path", "speed-up", "at equal noise", "efficiency", "RMS·10³ red", "green", "blue",
+    head = ["scene", "leaf", "µs a path", "speed-up", "at equal noise", "efficiency, 10⁹/s", "RMS·10³ red", "green", "blue",
             "bias·10³ red", "green", "blue"]
     return table(head, body) if body else ""
 
@@ -71,7 +71,7 @@ def errors(counters, baseline):
     both = math.hypot(own, relative_error(baseline)) if counters is not baseline else 0
     efficiency, reach = mean_and_reach(counters["efficiency"], own)
     return [plus_minus(*mean_and_reach(counters["speedup_equal_noise"], both)),
-            f"{plus_minus(efficiency / 1e6, reach / 1e6)} M",
+            plus_minus(efficiency / 1e9, reach / 1e9),
             *(f(counters, c) for f in (rms, bias) for c in ("red", "green", "blue"))]
 
 
@@ -98,6 +98,7 @@ def put_into(page, run):
     """The page with this run's figures between its two marks."""
     before, rest = page.split(BEGIN)
     context = run.context
-    made = (f"{context['machine']}; {context['compiler']}, `{context['compiler_flags'].strip()}`; commit "
-            f"{context['commit']}; {context['rounds']} rounds of {context['repetitions']} repetitions.")
+    made = (f"{context['machine']}; {context['compiler']}, `{context['compiler_flags'].strip()}`; frond "
+            f"{context['frond_version']}, {context['date'][:10]}; {context['rounds']} rounds of {context['repetitions']} "
+            f"repetitions; the machine's load was up to {max(context['load_avg']):.0f}.")
     return f"{before}{BEGIN}\n\n{made}\n\n{figures(run)}\n{END}{rest.split(END)[1]}"
