@@ -86,30 +86,38 @@ def derived(comparison, name, counter, unit):
 
 
 # Of the counters, what stands over their columns and the unit there.
-TIMED = {"speedup": ("speed-up", 1), "speedup_equal_noise": ("at equal noise", 1),
-         "efficiency": ("efficiency, 10⁹/s", 1e9)}
-ERRORS = {f"rms_{c}": (f"RMS {c}, 10⁻³", 1e-3) for c in CHANNELS} | {
-    f"bias2_{c}": (f"bias² {c}, 10⁻⁶", 1e-6) for c in CHANNELS} | {
-    f"offset_{c}": (f"offset {c}, 10⁻³", 1e-3) for c in CHANNELS} | {"variance": ("variance, 10⁻⁶", 1e-6)}
+TIMED = {"us_per_path": ("µs a path", 1), "speedup": ("speed-up", 1),
+         "speedup_equal_noise": ("speed-up at equal noise", 1), "efficiency": ("efficiency, 10⁹/s", 1e9)}
+ERRORS = {f"{kind}_{c}": (f"{word} {c}, {power}", unit) for kind, word, power, unit in (
+    ("offset", "offset", "10⁻³", 1e-3), ("rms", "RMS", "10⁻³", 1e-3), ("bias2", "bias²", "10⁻⁶", 1e-6))
+    for c in CHANNELS} | {"variance": ("variance, 10⁻⁶", 1e-6)}
 
 
-def scene_section(comparison):
-    names = sorted({f.name for f in comparison.figures}, key=comparison.names.index)
-    if not names:
-        return ""
-    figures = {(f.name, f.counter): f for f in comparison.figures}
-    head = ["scene", "leaf", *(words for words, _ in (TIMED | ERRORS).values())]
+def scene_table(names, columns, content):
     rows = []
     for name in names:
         _, scene, leaf = name.split("/")
         rows.append(("", [cell(escape(scene)), cell(f"<code>{escape(leaf)}</code>"),
-                          *(derived(comparison, name, c, unit) for c, (_, unit) in TIMED.items()),
-                          *(figure(figures[name, c], unit) for c, (_, unit) in ERRORS.items())]))
+                          *(content(name, counter, unit) for counter, (_, unit) in columns.items())]))
+    head = ["scene", "leaf", *(words for words, _ in columns.values())]
     classes = ' class="names"'
-    return f"""<section><h2>Scenes: cost and error</h2>
+    return f'<div class="scroll">{table(head, rows, classes)}</div>'
+
+
+def scene_sections(comparison):
+    figures = {(f.name, f.counter): f for f in comparison.figures}
+    timed = [name for name in comparison.names if name.startswith("scene/")]
+    judged = [name for name in timed if (name, "variance") in figures]
+    if not judged:
+        return ""
+    return f"""<section><h2>Scenes: cost</h2>
+{scene_table(timed, TIMED, lambda *column: derived(comparison, *column))}
+</section>
+<section><h2>Scenes: error</h2>
 <p class="note">One figure where A and B have the same to the last digit, else A → B; <span class="changed">bold</span>
 where they differ by more than their standard errors explain.</p>
-<div class="scroll">{table(head, rows, classes)}</div></section>"""
+{scene_table(judged, ERRORS, lambda name, counter, unit: figure(figures[name, counter], unit))}
+</section>"""
 
 
 def method(comparison):
@@ -119,7 +127,7 @@ def method(comparison):
 other work disturbed least. {how}. The test is Student's t on logarithms, corrected for the number of benchmarks (Holm
 1979): two runs of one program are marked anywhere with a probability of {FALSE_ALARMS:.0%}. Another layout of the same
 code can move a benchmark of nanoseconds by some per cent; that is a true change of the time, and means nothing.</p>
-<p>RMS, bias² and variance come from renders of fixed seeds: the same code gives the same digits. Where they differ,
+<p>Offset, RMS, bias² and variance come from renders of fixed seeds: the same code gives the same digits. Where they differ,
 they are held against their standard errors, with a chance of {FALSE_ALARMS:.0%} for a false alarm among all of them.
 docs/benchmarks.md says what each counter means.</p>"""
 
@@ -129,7 +137,7 @@ def html(comparison):
         "title": escape(f"Benchmarks: {comparison.b.label} against {comparison.a.label}"),
         "css": "\n".join(path.read_text(encoding="utf-8") for path in STYLES),
         "verdict": escape(verdict(comparison)), "warnings": warning_list(comparison), "runs": runs(comparison),
-        "families": family_table(comparison), "times": time_table(comparison), "scenes": scene_section(comparison),
+        "families": family_table(comparison), "times": time_table(comparison), "scenes": scene_sections(comparison),
         "method": method(comparison), "alarms": f"with a false-alarm rate of {FALSE_ALARMS:.0%}",
     }
     page = (HERE / "page.html").read_text(encoding="utf-8")
