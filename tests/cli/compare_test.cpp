@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/child_process.h"
@@ -68,7 +69,7 @@ TEST_F(CompareCommand, MeasuresEveryCandidateOnEveryRung) {
   EXPECT_EQ(simplified["tree_depth"], abm["tree_depth"]);
   EXPECT_THAT(std::string(simplified["candidate"]),
               AllOf(HasSubstr("oblateness=2,surfacedirect=false@integrator=path,termination=attenuation,cutoff="),
-                    HasSubstr(",maxdepth=" + std::to_string(int(abm["tree_depth"])))));
+                    HasSubstr(",maxdepth=" + fmt::format("{:.0f}", std::ceil(double(abm["tree_depth"]))))));
   EXPECT_GT(simplified["cpu_seconds_per_sample"], 0);
   const std::string csv = file("compare.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 6 + 2 * 3 * 2 * 5);

@@ -31,7 +31,7 @@ struct Rung {
 /// A candidate in the paper's manner (paper_manner.h), timed alone.
 struct PaperTiming {
   Candidate candidate;
-  size_t depth;  ///< where the trees end
+  double depth;  ///< where the trees end
   CutoffFit end;
   double cpu_seconds_per_sample = 0;
 };

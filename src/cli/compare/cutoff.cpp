@@ -7,23 +7,27 @@
 namespace frond::compare {
 namespace {
 
-constexpr double kUnshotRatio = 1e-4;
+const double kLogUnshot = std::log(1e-4);
 constexpr double kSmallest = 1e-6, kLargest = 0.5, kStep = 4;
 constexpr int kMostTries = 8;
 
-/// Half a ray more, as none has no logarithm.
-double padded(const Unshot& rays) { return double(rays.unshot) + 0.5; }
+/// The logarithm of the ratio after a whole number of events, and what its error follows from.
+struct Count {
+  double log_ratio, unshot;
 
-/// Logarithm of one ratio over the other: above 0 where too many rays are left, and the cutoff is too small.
-double miss(const Unshot& rays, const Unshot& target) {
-  return std::log(padded(rays) / double(rays.shot)) - std::log(padded(target) / double(target.shot));
+  Count(const PathEnds& ends, size_t events) : unshot(double(ends.alive_after(events)) + 0.5) {
+    double shot = 0;
+    for (size_t i = 0; i < events; ++i) shot += double(ends.alive_after(i));
+    log_ratio = std::log(unshot / shot);
+  }
+};
+
+/// Of (1 - t) log a + t log b, where b counts some of those that a counts.
+double variance(const Count& a, const Count& b, double t) {
+  return ((1 - t) * (1 - t) + 2 * t * (1 - t)) / a.unshot + t * t / b.unshot;
 }
 
-double standard_error(const Unshot& rays, const Unshot& target) {
-  return std::sqrt(1 / padded(rays) + 1 / padded(target));
-}
-
-/// A cutoff, and the logarithms of it and of what it misses by.
+/// A cutoff, and the logarithms of it and of what it leaves over what was asked for: above 0 it is too small.
 struct Try {
   double cutoff, log_cutoff, miss;
 };
@@ -54,31 +58,37 @@ class Bracket {
 
 }  // namespace
 
-Unshot unshot_after(const PathEnds& ends, size_t events) {
-  Unshot rays{ends.alive_after(events), 0};
-  for (size_t i = 0; i < events; ++i) rays.shot += ends.alive_after(i);
-  return rays;
+UnshotRatio unshot_ratio(const PathEnds& ends, double events) {
+  const auto whole = size_t(events);
+  const double t = events - double(whole);
+  const Count a(ends, whole);
+  if (t == 0) return {std::exp(a.log_ratio), 1 / std::sqrt(a.unshot)};
+  const Count b(ends, whole + 1);
+  return {std::exp(std::lerp(a.log_ratio, b.log_ratio, t)), std::sqrt(variance(a, b, t))};
 }
 
-size_t depth_of_trees(const PathEnds& ends) {
-  size_t events = 1;
-  while (events < PathEnds::kDepths - 1 && unshot_after(ends, events).ratio() >= kUnshotRatio) ++events;
-  return events;
+double depth_of_trees(const PathEnds& ends) {
+  size_t last = 1;  // where the ratio is below for the first time, or no ray is left
+  while (last < PathEnds::kDepths - 1 && ends.alive_after(last) > 0 && Count(ends, last).log_ratio >= kLogUnshot)
+    ++last;
+  if (last == 1) return 1;
+  const double before = Count(ends, last - 1).log_ratio, after = Count(ends, last).log_ratio;
+  return double(last) - 1 + std::clamp((before - kLogUnshot) / (before - after), 0.0, 1.0);
 }
 
-CutoffFit fit_cutoff(const Unshot& target, const std::function<Unshot(double)>& rays_at) {
+CutoffFit fit_cutoff(const UnshotRatio& target, const std::function<UnshotRatio(double)>& left_by) {
   CutoffFit best{};
   double smallest_miss = INFINITY;
   Bracket bracket;
   std::optional<double> cutoff = kPaperCutoff;
   for (int i = 0; i < kMostTries && cutoff && !best.equal; ++i) {
-    const Unshot rays = rays_at(*cutoff);
-    const double missed = miss(rays, target);
-    if (std::abs(missed) < smallest_miss) {
-      smallest_miss = std::abs(missed);
-      best = {*cutoff, rays, smallest_miss <= standard_error(rays, target)};
+    const UnshotRatio left = left_by(*cutoff);
+    const double miss = std::log(left.value / target.value);
+    if (std::abs(miss) < smallest_miss) {
+      smallest_miss = std::abs(miss);
+      best = {*cutoff, left, smallest_miss <= std::hypot(left.relative_error, target.relative_error)};
     }
-    bracket.add(*cutoff, missed);
+    bracket.add(*cutoff, miss);
     cutoff = bracket.next();
   }
   return best;

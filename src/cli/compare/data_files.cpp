@@ -73,8 +73,8 @@ Json paper_json(const PaperTiming& p) {
           {"cpu_seconds_per_sample", p.cpu_seconds_per_sample},
           {"tree_depth", p.depth},
           {"cutoff", p.end.cutoff},
-          {"unshot_rays", p.end.rays.unshot},
-          {"shot_rays", p.end.rays.shot},
+          {"unshot_per_shot", p.end.left.value},
+          {"unshot_relative_error", p.end.left.relative_error},
           {"ratio_is_the_baselines", p.end.equal}};
 }
 

@@ -1,6 +1,7 @@
 #include "cli/compare/paper_manner.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace frond::compare {
 namespace {
@@ -37,9 +38,9 @@ std::optional<Candidate> ended_by_attenuation(Candidate c, const Study& study) {
   return c;
 }
 
-PluginText with_end(PluginText integrator, double cutoff, size_t depth) {
+PluginText with_end(PluginText integrator, double cutoff, double depth) {
   set(integrator, "cutoff", fmt::format("{:.3g}", cutoff));
-  set(integrator, "maxdepth", std::to_string(depth));
+  set(integrator, "maxdepth", fmt::format("{:.0f}", std::ceil(depth)));
   return integrator;
 }
 
@@ -80,7 +81,7 @@ PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t
   if (!candidate) return;
   const PathEnds ends = Pilot(study, *candidate, pilot_samples, pool).ends_with(kPaperCutoff);
   depth_ = depth_of_trees(ends);
-  target_ = unshot_after(ends, depth_);
+  target_ = unshot_ratio(ends, depth_);
 }
 
 std::optional<PaperTiming> PaperManner::of(const Candidate& candidate) const {
@@ -88,7 +89,7 @@ std::optional<PaperTiming> PaperManner::of(const Candidate& candidate) const {
   if (!c || depth_ == 0) return {};
   const Pilot pilot(study_, *c, pilot_samples_, pool_);
   const CutoffFit end =
-      fit_cutoff(target_, [&](double cutoff) { return unshot_after(pilot.ends_with(cutoff), depth_); });
+      fit_cutoff(target_, [&](double cutoff) { return unshot_ratio(pilot.ends_with(cutoff), depth_); });
   c->integrator = with_end(*c->integrator, end.cutoff, depth_);
   c->text = text_of(*c);
   return PaperTiming{*c, depth_, end};

@@ -8,8 +8,8 @@
 namespace frond::compare {
 
 /// Renders as Baranoski and Rokne do. Light sampling does not see a surface lobe. A path ends when the luminance of its
-/// attenuation falls below a cutoff: 0.01 for the baseline, whose trees end at the depth where fewer than 1e-4 of the
-/// rays shot wait to be shot. Those of the others end there too, and their cutoff is such that the same ratio is left.
+/// attenuation falls below a cutoff: 0.01 for the baseline, whose trees end at the depth where 1e-4 is left of unshot
+/// to shot rays. Those of the others end there too, and their cutoff is such that the same is left.
 class PaperManner {
  public:
   /// How paths end is told by pilots of so many samples a pixel.
@@ -22,8 +22,8 @@ class PaperManner {
   const Study& study_;
   const ThreadPool& pool_;
   uint64_t pilot_samples_;
-  size_t depth_ = 0;
-  Unshot target_ = {};  ///< what the baseline leaves there
+  double depth_ = 0;
+  UnshotRatio target_ = {};  ///< what the baseline leaves there
 };
 
 }  // namespace frond::compare

@@ -47,7 +47,7 @@ std::string speed_row(const Comparison& c, size_t i) {
 std::string cutoff_text(const Subject& s) {
   const CutoffFit& end = s.paper->end;
   const std::string text = fmt::format("{:.2g} for {}", end.cutoff, html_text(s.candidate.label));
-  return end.equal ? text : fmt::format("{} (which leaves {:.1e}: none leaves the same)", text, end.rays.ratio());
+  return end.equal ? text : fmt::format("{} (which leaves {:.1e}: none leaves the same)", text, end.left.value);
 }
 
 /// What stands behind (b); nothing where the scene's integrator cannot render so.
@@ -59,8 +59,8 @@ std::string paper_note(const Comparison& c) {
   const PaperTiming& baseline = *c.subjects.front().paper;
   return fmt::format(
       "(b): light sampling does not see the surface lobe, and a path ends when the luminance of its attenuation falls "
-      "below a cutoff, such that at tree depth {} all leave the same ratio of rays unshot to shot, {:.1e}: {}. ",
-      baseline.depth, baseline.end.rays.ratio(), fmt::join(cutoffs, ", "));
+      "below a cutoff, such that at tree depth {:.1f} all leave the same ratio of rays unshot to shot, {:.1e}: {}. ",
+      baseline.depth, baseline.end.left.value, fmt::join(cutoffs, ", "));
 }
 
 std::string speed_table(const Comparison& c) {
