@@ -36,6 +36,7 @@ SETS = [
     Set("ambient", "ambient light", "3rd", 7, 10, 37.61, (0.020, 0.016, 0.012), 9.77, 0),
 ]
 MODELS = ["abm", "leaf_simplified"]
+CHANNELS = ("red", "green", "blue")
 # By label, which frond compare's data go by.
 CANDIDATES = {
     "abm": "abm",
@@ -45,6 +46,15 @@ CANDIDATES = {
     "leaf_lambert": "leaf_lambert",
     "weighted": "abm,mode=weighted",
 }
+
+
+def candidate(comparison, label):
+    return next(c for c in comparison["candidates"] if c["label"] == label)
+
+
+def last_errors(comparison, label):
+    """By channel, of all pixels, on the last rung."""
+    return candidate(comparison, label)["rungs"][-1]["all"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,7 +69,7 @@ class Setting:
     table_rays: int
 
 
-FULL = Setting(("--reference-spp", 512), (), 200, (), 16, 10**6)
+FULL = Setting(("--reference-spp", 512), ("--quick",), 200, (), 16, 10**6)
 QUICK = Setting(("--quick",), ("--quick",), 8, ("--quick",), 4, 10**4)
 # Says nothing about leaves, but goes through everything.
 SMOKE = Setting(("--size", 16, "--spp", 2, "--reference-spp", 2), ("--pixels", "240,272,240,272"), 1,
@@ -84,10 +94,12 @@ class Runs:
         """The paper's table of soybean, every degree from 0 to 180 at its three wavelengths: the shares and the CPU time."""
 
         def measure():
-            done = subprocess.run([FROND, "table", "--method", method, "--rays", str(self.setting.table_rays), "--wavelengths",
-                                   "608,551,455", *map(str, self.threads), "-o", "-"], capture_output=True, text=True, check=True)
+            words = [FROND, "table", "--method", method, "--rays", self.setting.table_rays, "--wavelengths", "608,551,455",
+                     *self.threads, "-o", "-"]
+            done = subprocess.run(list(map(str, words)), capture_output=True, text=True, check=True)
             shares = [r[share] for r in rows(done.stdout) for share in ("Rs", "Rd", "T")]
-            return json.dumps({"cpu_seconds": float(re.search(r"([\d.e+-]+) s of CPU", done.stderr)[1]), "shares": shares})
+            seconds = float(re.search(r"([\d.e+-]+) s of CPU", done.stderr)[1])
+            return json.dumps({"cpu_seconds": seconds, "shares": shares})
 
         return self.kept(f"table-{method}", measure)
 

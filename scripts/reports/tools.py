@@ -72,6 +72,10 @@ def table(head, body):
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in body]) + "\n"
 
 
+def thousands(count):
+    return f"{count:,}"
+
+
 def machine():
     """What the figures were measured on."""
     model = "unknown processor"
