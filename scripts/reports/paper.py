@@ -64,9 +64,9 @@ ELSEWHERE = """
 
 
 def page(runs, images, measured, tables, command):
-    front = measured["front"]["comparison"]
-    used = sum(m["comparison"]["cpu_seconds"] + sum(r["cpu_seconds"] for p in m["pictures"].values() for r in p)
-               for m in measured.values())
+    commands = "\n".join(measured["front"][part]["command"].replace(f"{ROOT}/", "") for part in ("comparison", "manner"))
+    used = sum(m["comparison"]["cpu_seconds"] + m["manner"]["cpu_seconds"] +
+               sum(r["cpu_seconds"] for halves in m["pictures"].values() for r in halves) for m in measured.values())
     return f"""# The paper's experiments
 
 G. V. G. Baranoski and J. G. Rokne, "A Simplified Model for Light Interaction with Plant Tissue": what it evaluates, its
@@ -84,7 +84,7 @@ Made by `{command}` from what it measured, in {used / 60:.0f} minutes of CPU, on
 The comparisons were made by
 
 ```
-{front['command'].replace(f'{ROOT}/', '')}
+{commands}
 ```
 
 and the same for the other scenes, with their own `--target`.
@@ -93,9 +93,9 @@ and the same for the other scenes, with their own `--target`.
 
 def measure(runs):
     """{set: what was measured of it}, one experiment after the other."""
-    measured = {s.name: {"comparison": runs.comparison(s)} for s in SETS}
+    measured = {s.name: {"comparison": runs.comparison(s), "manner": runs.manner(s)} for s in SETS}
     for s in SETS:
-        measured[s.name]["ends"] = curves_of(runs, s, measured[s.name]["comparison"])
+        measured[s.name]["ends"] = curves_of(runs, s, measured[s.name]["manner"])
     for s in SETS:
         measured[s.name]["pictures"] = runs.pictures(s)
         measured[s.name]["difference"] = runs.difference(s)

@@ -15,13 +15,9 @@ CURVES = (
 )
 
 
-def solved_cutoff(comparison):
-    return candidate(comparison, "leaf_simplified")["paper_manner"]["cutoff"]
-
-
-def curves_of(runs, s, comparison):
-    """[(title, how it is drawn, Ends)]"""
-    solved = solved_cutoff(comparison)
+def curves_of(runs, s, manner):
+    """[(title, how it is drawn, Ends)]; `manner`: the comparison that solved the cutoff."""
+    solved = candidate(manner, "leaf_simplified")["paper_manner"]["cutoff"]
     return [(title, how, runs.ends(s, model, solved if cutoff is None else cutoff)) for title, model, cutoff, how in CURVES]
 
 
@@ -48,7 +44,7 @@ def convergence_chart(path, measured):
 
 def depth_rows(measured):
     for s in SETS:
-        manner = {label: candidate(measured[s.name]["comparison"], label)["paper_manner"]
+        manner = {label: candidate(measured[s.name]["manner"], label)["paper_manner"]
                   for label in ("abm", "leaf_simplified")}
         end = manner["abm"]["tree_depth"]
         solved = f"{manner['leaf_simplified']['cutoff']:.2g}, solved"
@@ -89,7 +85,8 @@ whole ones, and the cutoff of the simplified model is solved so that the same is
 {table(("set", "model", "cutoff", "depth where 10⁻⁴ is left", "unshot / shot at the depth of (b)", "absorbed or cut off by then"),
        depth_rows(measured))}
 The paper finds that the simplified model converges faster in all three sets. Here 10⁻⁴ is left, with `abm` and with
-`leaf_simplified`, both cut off at 0.01, at these depths: {depths(measured)}. The shapes differ more than the depths.
+`leaf_simplified`, both cut off at 0.01, at these depths: {depths(measured)}.
+The shapes differ more than the depths.
 `abm` kills a path at a leaf, with the probability that all three wavelengths are absorbed, so its curve falls from the first
 event on. `leaf_simplified` kills none: it attenuates a path, goes on with it after the first event whatever the leaf, and
 cuts it off later, once the product of two or three reflectances is below the cutoff. Which is down to 10⁻⁴ first

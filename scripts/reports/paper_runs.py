@@ -37,15 +37,8 @@ SETS = [
 ]
 MODELS = ["abm", "leaf_simplified"]
 CHANNELS = ("red", "green", "blue")
-# By label, which frond compare's data go by.
-CANDIDATES = {
-    "abm": "abm",
-    "leaf_simplified": "leaf_simplified",
-    "published": "leaf_simplified,surfacedirect=false",
-    "leaf_solved": "leaf_solved",
-    "leaf_lambert": "leaf_lambert",
-    "weighted": "abm,mode=weighted",
-}
+CANDIDATES = ["abm", "leaf_simplified", "leaf_solved", "leaf_lambert", "abm,mode=weighted"]
+PUBLISHED = "leaf_simplified,surfacedirect=false"  # the paper's rule for shadow rays
 
 
 def candidate(comparison, label):
@@ -62,6 +55,7 @@ class Setting:
     """How much is rendered: arguments of frond compare and of frond render, and samples per pixel."""
 
     compare: tuple
+    manner: tuple
     picture: tuple
     picture_samples: int  # of each of the two halves
     ends: tuple
@@ -69,10 +63,10 @@ class Setting:
     table_rays: int
 
 
-FULL = Setting(("--reference-spp", 512), ("--quick",), 200, (), 16, 10**6)
-QUICK = Setting(("--quick",), ("--quick",), 8, ("--quick",), 4, 10**4)
+FULL = Setting((), ("--spp", 8, "--reference-spp", 1), ("--quick",), 200, (), 16, 10**6)
+QUICK = Setting(("--quick",), ("--size", 128, "--spp", 8, "--reference-spp", 1), ("--quick",), 8, ("--quick",), 4, 10**4)
 # Says nothing about leaves, but goes through everything.
-SMOKE = Setting(("--size", 16, "--spp", 2, "--reference-spp", 2), ("--pixels", "240,272,240,272"), 1,
+SMOKE = Setting(("--size", 16, "--spp", 2, "--reference-spp", 2), ("--size", 16, "--spp", 2, "--reference-spp", 1), ("--pixels", "240,272,240,272"), 1,
                 ("--pixels", "192,320,192,320"), 1, 100)
 
 
@@ -103,15 +97,22 @@ class Runs:
 
         return self.kept(f"table-{method}", measure)
 
-    def comparison(self, s):
+    def compared(self, name, s, candidates, arguments):
         def measure():
-            report = self.folder / f"compare-{s.name}"
-            materials = ";".join(f"{label}:{text}" for label, text in CANDIDATES.items())
-            frond("compare", s.scene(), "-o", report, "--materials", materials, "--wavelengths", "smpte", "--target", s.name,
-                  *self.setting.compare, *self.threads, "-q")
+            report = self.folder / f"{name}-{s.name}-report"
+            frond("compare", s.scene(), "-o", report, "--materials", ";".join(candidates), "--wavelengths", "smpte", "--target",
+                  s.name, *arguments, *self.threads, "-q")
             return (report / "compare.json").read_text()
 
-        return self.kept(f"comparison-{s.name}", measure)
+        return self.kept(f"{name}-{s.name}", measure)
+
+    def comparison(self, s):
+        return self.compared("comparison", s, CANDIDATES, self.setting.compare)
+
+    def manner(self, s):
+        """In the paper's manner, which takes few samples to time; a comparison of its own for the candidate that has more
+        noise than all the others together."""
+        return self.compared("manner", s, CANDIDATES + [PUBLISHED], self.setting.manner)
 
     def ends(self, s, model, cutoff):
         """How paths end that are cut off at that attenuation; 0: never."""
