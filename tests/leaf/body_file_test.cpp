@@ -89,8 +89,10 @@ TEST(BodyFile, NamesWhatIsWrongAndWhere) {
       {"0.02 0.02\n", "0.02\n", "leaf.modes:7:6: 2 words in place of the 3 numbers of mode 0"},
       {mode_of(0.02), mode_of(0.5), "leaf.modes:5:1: of light that enters the adaxial side at 0.0 degrees"},
   };
-  for (const auto& [what, by, message] : kCases)
-    EXPECT_THAT(error_of([&] { parse_body_file(replaced(sound, what, by), "leaf.modes"); }), HasSubstr(message));
+  for (const auto& [what, by, message] : kCases) {
+    const std::string text = replaced(sound, what, by);
+    EXPECT_THAT(error_of([&] { parse_body_file(text, "leaf.modes"); }), HasSubstr(message));
+  }
   EXPECT_THAT(error_of([&] { parse_body_file(sound.substr(0, sound.size() - 15), "leaf.modes"); }),
               HasSubstr("the file ends where the 3 numbers of mode 0"));
   EXPECT_THAT(error_of([&] { parse_body_file("", "leaf.modes"); }), HasSubstr("the file ends where cells N should"));
