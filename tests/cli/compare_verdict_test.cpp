@@ -66,7 +66,17 @@ TEST(Verdict, UncertainBiasIsHeldAgainstACandidate) {
   // Two bounds at 95 % together: 1 - sqrt(0.95) above each, 1.95 standard errors.
   EXPECT_NEAR(simultaneous_z(c), 1.955, 0.001);
   EXPECT_FALSE(offers(c, 0.014, simultaneous_z(c))[0].effort);
+  EXPECT_FALSE(offers(c, 0.014, simultaneous_z(c))[0].never);
+  EXPECT_TRUE(offers(c, 0.0001, 0)[0].never);
   EXPECT_TRUE(offers(c, 0.014, 0)[0].effort);
+}
+
+TEST(Verdict, AFewPerCentChangeNoReign) {
+  Comparison c;
+  c.subjects = {subject("a", 1, 0.02, 0), subject("b", 0.99, 0.0201, 0)};
+  for (Rung& rung : c.subjects[1].rungs)
+    if (rung.samples == 4) rung.cost.cpu_seconds *= 1.02;
+  EXPECT_EQ(reigns(c).size(), 1u);
 }
 
 TEST(Verdict, ReignsChangeWhereBiasIsReached) {

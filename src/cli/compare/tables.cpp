@@ -116,10 +116,12 @@ std::string offer_table(const Comparison& c, double rms) {
         (o.effort
              ? cell(fmt::format("{:.0f}", std::ceil(o.effort->samples))) +
                    cell(fmt::format("{}{}", figures(o.effort->seconds, 3), o.effort->measured ? "" : " (extrapolated)"))
-             : cell("never") + cell("–")) +
+             : cell(o.never ? "never" : "not known") + cell("–")) +
         "</tr>\n";
   return table(fmt::format("An RMS of {:g}", rms), head({"candidate", "samples per pixel", "CPU s"}), rows,
-               "With bias and noise taken at the upper ends of intervals that hold all together with 95 % confidence.");
+               "With bias and noise taken at the upper ends of intervals that hold all together with 95 % confidence. "
+               "Not known: "
+               "the error lies within the interval of the bias.");
 }
 
 std::string offer_tables(const Comparison& c) {

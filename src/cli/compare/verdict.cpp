@@ -23,6 +23,13 @@ std::string effort_text(const Effort& e) {
                      figures(e.seconds, 3), e.measured ? "" : " by extrapolation");
 }
 
+/// Times of one program differ by some per cent: who is as cheap as the best as far as can be told need not give way.
+bool holds(const std::vector<Offer>& all, size_t subject) {
+  constexpr double kMargin = 1.05;
+  const auto own = std::ranges::find(all, subject, &Offer::subject);
+  return cost_of(*own) <= kMargin * cost_of(all.front());
+}
+
 std::string answer(const Comparison& c, double rms) {
   const auto all = offers(c, rms, simultaneous_z(c));
   const Offer& best = all.front();
@@ -38,8 +45,10 @@ std::string answer(const Comparison& c, double rms) {
                                  rms, effort_text(*best.effort));
   for (const Offer& other : all) {
     if (other.subject == best.subject) continue;
-    text += other.effort ? fmt::format("; {} takes {} s", label(c, other.subject), figures(other.effort->seconds, 3))
-                         : fmt::format("; {} never gets there", label(c, other.subject));
+    text += "; " + label(c, other.subject);
+    text += other.effort  ? fmt::format(" takes {} s", figures(other.effort->seconds, 3))
+            : other.never ? " never gets there"
+                          : " may not get there: its bias is not known that well";
   }
   return text + '.';
 }
@@ -61,7 +70,10 @@ std::string overview(const Comparison& c) {
 
 std::vector<Offer> offers(const Comparison& c, double rms, double z) {
   std::vector<Offer> all;
-  for (size_t i = 0; i < c.subjects.size(); ++i) all.push_back({i, c.subjects[i].convergence(kAll).until_rms(rms, z)});
+  for (size_t i = 0; i < c.subjects.size(); ++i) {
+    const Convergence convergence = c.subjects[i].convergence(kAll);
+    all.push_back({i, convergence.until_rms(rms, z), convergence.bias().root_at(-z) > rms});
+  }
   std::ranges::stable_sort(all, {}, cost_of);
   return all;
 }
@@ -79,9 +91,9 @@ std::vector<Reign> reigns(const Comparison& c) {
   constexpr int kSteps = 400;
   for (int i = 0; i <= kSteps; ++i) {
     const double rms = largest * std::pow(smallest / largest, double(i) / kSteps);
-    const Offer best = offers(c, rms, 0).front();
-    if (!best.effort) break;
-    if (result.empty() || result.back().subject != best.subject) result.push_back({best.subject, rms, rms});
+    const auto all = offers(c, rms, 0);
+    if (!all.front().effort) break;
+    if (result.empty() || !holds(all, result.back().subject)) result.push_back({all.front().subject, rms, rms});
     result.back().rms_to = rms;
   }
   return result;

@@ -8,16 +8,18 @@ namespace frond::compare {
 struct Offer {
   size_t subject;
   std::optional<Effort> effort;  ///< nothing: its bias alone may be too large
+  bool never;                    ///< its bias is too large, as sure as the effort would be enough
 };
 
 /// What every candidate needs to bring the RMS over all channels and pixels down to `rms`, the cheapest first, those
-/// that never do last. `z`: how many standard errors larger bias and noise are taken to be.
+/// of which that is not known, or known to be wrong, last. `z`: how many standard errors larger bias and noise are
+/// taken to be.
 std::vector<Offer> offers(const Comparison& comparison, double rms, double z);
 
 /// Standard errors to add so that all bounds of all candidates hold together with 95 % confidence.
 double simultaneous_z(const Comparison& comparison);
 
-/// From `rms_from` down to `rms_to` this candidate is the cheapest.
+/// From `rms_from` down to `rms_to` no candidate is cheaper by 5 %.
 struct Reign {
   size_t subject;
   double rms_from, rms_to;
