@@ -108,7 +108,7 @@ std::string table_2(const Comparison& c) {
       rows, kTable2Note);
 }
 
-std::string offer_table(const Comparison& c, double rms) {
+std::string offer_table(const Comparison& c, double rms, const char* note) {
   std::string rows;
   for (const Offer& o : offers(c, rms, simultaneous_z(c)))
     rows +=
@@ -118,15 +118,17 @@ std::string offer_table(const Comparison& c, double rms) {
                    cell(fmt::format("{}{}", figures(o.effort->seconds, 3), o.effort->measured ? "" : " (extrapolated)"))
              : cell(o.never ? "never" : "not known") + cell("–")) +
         "</tr>\n";
-  return table(fmt::format("An RMS of {:g}", rms), head({"candidate", "samples per pixel", "CPU s"}), rows,
-               "With bias and noise taken at the upper ends of intervals that hold all together with 95 % confidence. "
-               "Not known: "
-               "the error lies within the interval of the bias.");
+  return table(fmt::format("An RMS of {:g}", rms), head({"candidate", "samples per pixel", "CPU s"}), rows, note);
 }
+
+constexpr const char* kOffersNote =
+    "With bias and noise taken at the upper ends of intervals that hold all together with 95 % confidence. Not known: "
+    "the "
+    "error lies within the interval of the bias.";
 
 std::string offer_tables(const Comparison& c) {
   std::string html;
-  for (const double rms : c.request.rms) html += offer_table(c, rms);
+  for (const double rms : c.request.rms) html += offer_table(c, rms, rms == c.request.rms.back() ? kOffersNote : "");
   return html;
 }
 

@@ -20,7 +20,7 @@
   const pictures = data.pictures.map(p => ({ name: p.name, rgb: decode(p.rgb) }));
 
   const state = { a: 0, b: Math.min(1, pictures.length - 1), mode: 'wipe', wipe: 0.5, showB: false,
-    exposure: data.exposure, zoom: 1, zoomIsChosen: false, scale: 0 };
+    exposure: data.exposure, zoom: 1, zoomIsChosen: false, scale: 0, scaleIsChosen: false };
 
   // Linear SMPTE-C to the codes of an sRGB display (IEC 61966-2-1).
   const m = data.srgb_from_smpte;
@@ -55,14 +55,14 @@
     return out;
   }
 
-  // The scale at which all but the largest fiftieth of the first and last picture's differences fits.
-  function fittingScale() {
-    const a = pictures[0].rgb, b = pictures[pictures.length - 1].rgb;
-    const gaps = Float32Array.from({ length: width * height }, (_, i) => Math.abs(luminance(a, i) - luminance(b, i))).sort();
+  // The scale at which all but the largest fiftieth of the differences fits, until somebody chooses one.
+  function fitScale(a, b) {
+    if (state.scaleIsChosen) return;
+    const gaps = Float32Array.from({ length: width * height },
+      (_, i) => Math.abs(luminance(a.rgb, i) - luminance(b.rgb, i))).sort();
     const large = gaps[Math.floor(0.98 * gaps.length)];
-    return Math.min(0, Math.max(-9, Math.ceil(2 * 3 * Math.log10(large || 1)) / 2));
+    state.scale = $('scale').value = Math.min(0, Math.max(-9, Math.ceil(2 * 3 * Math.log10(large || 1)) / 2));
   }
-  state.scale = fittingScale();
 
   const view = $('view'), context = view.getContext('2d');
   const scratch = document.createElement('canvas');
@@ -103,7 +103,7 @@
       stamp(shown(b), w + kGap);
       tag('A', 0, 'left'), tag('B', w + kGap, 'left');
     },
-    difference(a, b) { stamp(difference(a, b), 0); },
+    difference(a, b) { fitScale(a, b), stamp(difference(a, b), 0); },
   };
   // The largest zoom at which nothing has to be scrolled, until somebody chooses one.
   function fitZoom() {
@@ -138,7 +138,7 @@
     $(id).value = state[id];
     $(id).oninput = e => {
       state[id] = +e.target.value;
-      if (id === 'zoom') state.zoomIsChosen = true;
+      state[id + 'IsChosen'] = true;
       paint();
     };
   }
@@ -176,8 +176,8 @@
   for (const [key, value] of new URLSearchParams(location.hash.slice(1))) {
     if (key === 'mode' && value in painters) state.mode = value;
     if (['a', 'b'].includes(key) && +value in pictures) state[key] = +value, $(key).value = value;
-    if (key === 'zoom') state.zoomIsChosen = true;
-    if (['zoom', 'exposure', 'scale'].includes(key) && Number.isFinite(+value)) state[key] = +value, $(key).value = value;
+    if (['zoom', 'exposure', 'scale'].includes(key) && Number.isFinite(+value))
+      state[key] = +value, state[key + 'IsChosen'] = true, $(key).value = value;
   }
   choose(state.mode);
   read(width >> 1, height >> 1);
