@@ -19,9 +19,6 @@ constexpr Param kOwn[] = {
 };
 constexpr auto kAbm = with_leaf_params(kOwn);
 
-/// Closer than this to the surface's plane, a direction counts as in it.
-constexpr float kLeastCosine = 1e-20f;
-
 Vec3d in_double(const Vec3& w) { return normalize(Vec3d{w.x, w.y, w.z}); }
 Vec3 in_float(const Vec3d& w) { return {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}; }
 
@@ -42,7 +39,8 @@ struct LeafLanes {
 /// Walks through the leaf, one for all the wavelengths of a path.
 class AbmBsdf : public Bsdf {
  public:
-  AbmBsdf(const LeafLanes& lanes, leaf::Absorption absorption) : lanes_(lanes), absorption_(absorption) {}
+  AbmBsdf(const LeafLanes& lanes, leaf::Absorption absorption)
+      : lanes_(lanes), absorption_(absorption), surface_(is_empty() ? nullptr : &tissue().surface_lobe()) {}
 
   Lobes flags() const override {
     return Lobes::reflection | Lobes::transmission | Lobes::diffuse | Lobes::glossy | Lobes::surface |
@@ -61,9 +59,9 @@ class AbmBsdf : public Bsdf {
   /// Exact for the surface at one of the wavelengths, a cosine lobe on each side for all that has been inside.
   float pdf(const Vec3& wo, const Vec3& wi) const override {
     if (wo.z == 0 || std::abs(wi.z) < kLeastCosine || lanes_.count == 0) return 0;
-    const float surface = surface_share(wo);
-    float density = (1 - surface) / 2 * std::abs(wi.z) * kInvPi;
-    if (same_side(wo, wi)) density += surface * surface_lobe_pdf(tissue().surface_lobe(), wo, wi);
+    const float share = surface_share(wo);
+    float density = (1 - share) / 2 * std::abs(wi.z) * kInvPi;
+    if (same_side(wo, wi)) density += share * surface_.pdf(wo, wi);
     return density;
   }
 
@@ -92,6 +90,7 @@ class AbmBsdf : public Bsdf {
     return std::min(static_cast<float>(leaf::surface_reflectance(tissue(), wo.z)), 0.95f);
   }
 
+  const SurfaceLobe& surface() const { return surface_; }
   const Tissue& tissue() const { return *lanes_.tissues[0]; }
   bool is_empty() const { return lanes_.count == 0; }
 
@@ -131,6 +130,7 @@ class AbmBsdf : public Bsdf {
 
   LeafLanes lanes_;
   leaf::Absorption absorption_;
+  SurfaceLobe surface_;
 };
 
 /// The same leaf, whose incident light comes along wi: a walk from there tells how much leaves along wo. Walks do not
@@ -145,9 +145,9 @@ class AbmFromLightBsdf final : public AbmBsdf {
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
     if (wo.z == 0 || is_empty()) return {};
-    const float surface = surface_share(wo), reflected = (1 + surface) / 2;
-    const bool off_surface = uc < surface, reflects = uc < reflected;
-    Vec3 wi = off_surface ? sample_surface_lobe(tissue().surface_lobe(), wo, u, rng) : sample_cosine_hemisphere(u);
+    const float share = surface_share(wo), reflected = (1 + share) / 2;
+    const bool off_surface = uc < share, reflects = uc < reflected;
+    Vec3 wi = off_surface ? surface().sample(wo, u, rng).wi : sample_cosine_hemisphere(u);
     if (!off_surface && (wo.z > 0) != reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};
     const Lobes side = reflects ? Lobes::reflection : Lobes::transmission;

@@ -22,7 +22,7 @@ struct SolvedHit {
 /// the light that goes these ways.
 class SolvedBsdf final : public Bsdf {
  public:
-  explicit SolvedBsdf(const SolvedHit& hit) : hit_(hit) {}
+  explicit SolvedBsdf(const SolvedHit& hit) : hit_(hit), surface_(hit.surface) {}
 
   Lobes flags() const override {
     const Lobes way_round = hit_.from_light ? Lobes::from_light : Lobes::none;
@@ -30,17 +30,17 @@ class SolvedBsdf final : public Bsdf {
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
-    return scatters(wo, wi) ? leaf_f(wo, wi, spread(wo, wi)) : SampledSpectrum();
+    return leaf_scatters(wo, wi) ? leaf_f(wo, wi, surface_.spread(wo, wi)) : SampledSpectrum();
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
     if (std::abs(wo.z) < kLeastCosine) return {};
     const Choice& choice = choice_at(wo);
     const bool off_surface = uc < choice.surface, reflects = uc < choice.surface + choice.reflected;
-    Vec3 wi = off_surface ? sample_surface_lobe(*hit_.surface, wo, u, rng) : sample_cosine_hemisphere(u);
+    Vec3 wi = off_surface ? surface_.sample(wo, u, rng).wi : sample_cosine_hemisphere(u);
     if (!off_surface && (wo.z < 0) == reflects) wi.z = -wi.z;
-    if (!scatters(wo, wi)) return {};
-    const float lobe = spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
+    if (!leaf_scatters(wo, wi)) return {};
+    const float lobe = surface_.spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
     if (density == 0) return {};  // black
     const Lobes side = reflects ? Lobes::reflection : Lobes::transmission;
     return BsdfSample{leaf_f(wo, wi, lobe), wi, density,
@@ -48,7 +48,7 @@ class SolvedBsdf final : public Bsdf {
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
-    return scatters(wo, wi) ? leaf_pdf(wo, wi, spread(wo, wi)) : 0;
+    return leaf_scatters(wo, wi) ? leaf_pdf(wo, wi, surface_.spread(wo, wi)) : 0;
   }
 
   /// What the model says of its incident direction, whichever way round a path asks.
@@ -60,8 +60,6 @@ class SolvedBsdf final : public Bsdf {
   }
 
  private:
-  static constexpr float kLeastCosine = 1e-20f;  // closer to the surface's plane than floats should be divided by
-
   /// Probabilities of the lobes for one wo.
   struct Choice {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
@@ -82,9 +80,6 @@ class SolvedBsdf final : public Bsdf {
     SampledSpectrum reflectance, cos_inside;
   };
 
-  static bool scatters(const Vec3& wo, const Vec3& wi) {
-    return std::abs(wo.z) >= kLeastCosine && std::abs(wi.z) >= kLeastCosine;
-  }
   static float sine(const Vec3& w) { return std::min(std::sqrt(w.x * w.x + w.y * w.y), 1.f); }
   static float sum(const SampledSpectrum& s) { return (s[0] + s[1]) + (s[2] + s[3]); }
 
@@ -137,17 +132,11 @@ class SolvedBsdf final : public Bsdf {
     return choice_;
   }
 
-  /// Of the surface lobe before its cut, 1/sr: the same both ways round.
-  float spread(const Vec3& wo, const Vec3& wi) const {
-    if (!same_side(wo, wi)) return 0;
-    return static_cast<float>(hit_.surface->density(dot(Vec3{-wo.x, -wo.y, wo.z}, wi)));
-  }
-
   SampledSpectrum leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
     const Vec3 &incident = hit_.from_light ? wi : wo, &leaving = hit_.from_light ? wo : wi;
     const Incidence& in = incidence_at(incident);
     SampledSpectrum result = body_f(in, incident, leaving);
-    if (lobe > 0) result += in.reflectance * (lobe * made_good(incident.z) / std::abs(leaving.z));
+    if (lobe > 0) result += in.reflectance * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
     return result;
   }
 
@@ -167,22 +156,13 @@ class SolvedBsdf final : public Bsdf {
     const float cosine = std::abs(wi.z) * kInvPi;
     if (!same_side(wo, wi)) return choice.transmitted * cosine;
     const float body = choice.reflected * cosine;
-    return lobe == 0 ? body : body + choice.surface * lobe * made_good(wo.z);
-  }
-
-  /// What the cut at the surface makes of the lobe: a factor that makes its whole 1 again.
-  float made_good(float cos_theta) const {
-    if (made_good_at_ != cos_theta) {
-      made_good_at_ = cos_theta;
-      made_good_ = 1 / static_cast<float>(hit_.surface->kept(std::abs(cos_theta)));
-    }
-    return made_good_;
+    return lobe == 0 ? body : body + choice.surface * lobe * surface_.made_good(wo.z);
   }
 
   SolvedHit hit_;
+  SurfaceLobe surface_;
   mutable Incidence incidence_;
   mutable Choice choice_;
-  mutable float made_good_at_ = std::numeric_limits<float>::quiet_NaN(), made_good_ = 1;
 };
 
 }  // namespace frond

@@ -1,38 +1,79 @@
 #pragma once
 
+#include <limits>
+
+#include "core/random.h"
 #include "core/sampling.h"
 #include "core/vec.h"
 #include "leaf/lobe.h"
 
 namespace frond {
 
-/// The lobe about the mirror direction that a leaf's surface reflects into, cut off at the surface.
+/// Closer than this to a leaf's plane, directions scatter nothing: floats should not be divided by less.
+inline constexpr float kLeastCosine = 1e-20f;
 
-/// 1/sr; 0 on the other side.
-inline float surface_lobe_pdf(const leaf::Lobe& lobe, const Vec3& wo, const Vec3& wi) {
-  if (wo.z * wi.z <= 0) return 0;
-  const Vec3 mirror{-wo.x, -wo.y, wo.z};
-  return static_cast<float>(lobe.density(dot(mirror, wi)) / lobe.kept(std::abs(wo.z)));
+inline bool leaf_scatters(const Vec3& wo, const Vec3& wi) {
+  return std::abs(wo.z) >= kLeastCosine && std::abs(wi.z) >= kLeastCosine;
 }
 
-/// (cos, sin) of 2 pi u, u in [0, 1], to 1e-6: by Taylor series of half the angle, quicker than a call.
+/// (cos, sin) of 2 pi u, u in [0, 1]: by Taylor series of half the angle, to 1e-6, quicker than a call; of unit length,
+/// by a Newton step.
 inline Vec2 unit_circle(float u) {
   const float a = kPi * (u - 0.5f), a2 = a * a;
   const float s =
       a * (1 + a2 * (-1.f / 6 + a2 * (1.f / 120 + a2 * (-1.f / 5040 + a2 * (1.f / 362880 - a2 * (1.f / 39916800))))));
   const float c = 1 + a2 * (-1.f / 2 + a2 * (1.f / 24 + a2 * (-1.f / 720 + a2 * (1.f / 40320 - a2 * (1.f / 3628800)))));
-  return {2 * s * s - 1, -2 * s * c};
+  const Vec2 d{2 * s * s - 1, -2 * s * c};
+  return d * (1.5f - 0.5f * (d.x * d.x + d.y * d.y));
 }
 
-inline Vec3 sample_surface_lobe(const leaf::Lobe& lobe, const Vec3& wo, Vec2 u, RandomStream& rng) {
-  const Frame frame = Frame::around(Vec3{-wo.x, -wo.y, wo.z});
-  for (;; u = {rng.uniform(), rng.uniform()}) {
-    const float cos_alpha = lobe.cos_from_uniform(1 - u.x);
-    const float sin_alpha = std::sqrt(std::max(0.f, 1 - cos_alpha * cos_alpha));
-    const Vec2 d = unit_circle(u.y);
-    const Vec3 wi = frame.to_world({sin_alpha * d.x, sin_alpha * d.y, cos_alpha});
-    if (wi.z * wo.z > 0) return wi * (1.5f - 0.5f * dot(wi, wi));  // a Newton step to unit length
+/// The lobe about the mirror direction that a leaf's surface reflects into: a power of the cosine, cut off at the
+/// surface, what is left scaled so that its whole is 1. The part of a BSDF that is the surface's own is
+/// F spread(wo, wi) made_good(incident) / |cos theta| of the direction of leaving.
+class SurfaceLobe {
+ public:
+  /// Not owned; nullptr where nobody will ask.
+  explicit SurfaceLobe(const leaf::Lobe* lobe) : lobe_(lobe) {}
+
+  /// Before its cut, 1/sr: the same both ways round. 0 where the directions are not on one side.
+  float spread(const Vec3& wo, const Vec3& wi) const {
+    return wo.z * wi.z > 0 ? static_cast<float>(lobe_->density(dot(mirror(wo), wi))) : 0;
   }
-}
+
+  /// What makes good the cut, by the cosine of the direction that is mirrored.
+  float made_good(float cos_theta) const {
+    if (made_good_at_ != cos_theta) {
+      made_good_at_ = cos_theta;
+      made_good_ = 1 / static_cast<float>(lobe_->kept(std::abs(cos_theta)));
+    }
+    return made_good_;
+  }
+
+  /// Of `sample`, 1/sr.
+  float pdf(const Vec3& wo, const Vec3& wi) const { return spread(wo, wi) * made_good(wo.z); }
+
+  struct Sample {
+    Vec3 wi;
+    float spread;  ///< of wi
+  };
+  /// The first try takes `u`; where the cut refuses it, others follow by numbers that are cheaper to make.
+  Sample sample(const Vec3& wo, Vec2 u, RandomStream& rng) const {
+    const Frame frame = Frame::around(mirror(wo));
+    const float side = std::copysign(1.f, wo.z);
+    float cos_alpha = lobe_->cos_from_uniform(1 - u.x);
+    for (;; cos_alpha = static_cast<float>(lobe_->sample_cos(rng.uniform_double(), rng)), u.y = rng.uniform()) {
+      const float sin_alpha = std::sqrt(std::max(0.f, 1 - cos_alpha * cos_alpha));
+      const Vec2 d = unit_circle(u.y);
+      const Vec3 wi = frame.to_world({sin_alpha * d.x, sin_alpha * d.y, cos_alpha});
+      if (side * wi.z >= kLeastCosine) return {wi, static_cast<float>(lobe_->density(static_cast<double>(cos_alpha)))};
+    }
+  }
+
+ private:
+  static Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
+
+  const leaf::Lobe* lobe_;
+  mutable float made_good_at_ = std::numeric_limits<float>::quiet_NaN(), made_good_ = 1;  ///< asked in turn for one
+};
 
 }  // namespace frond

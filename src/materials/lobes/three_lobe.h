@@ -29,7 +29,7 @@ struct LeafManner {
 /// power of the cosine (Rs), a cosine lobe on the side of incidence (Rd) and one on the other side (T).
 class ThreeLobeBsdf final : public Bsdf {
  public:
-  ThreeLobeBsdf(const LeafHit& hit, const LeafManner& manner) : hit_(hit), manner_(manner) {}
+  ThreeLobeBsdf(const LeafHit& hit, const LeafManner& manner) : hit_(hit), manner_(manner), surface_(hit.surface) {}
 
   Lobes flags() const override {
     const Lobes surface = Lobes::surface | (manner_.surface_direct ? Lobes::glossy : Lobes::glossy | Lobes::specular);
@@ -37,7 +37,7 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
-    return scatters(wo, wi) ? leaf_f(wo, wi, spread(wo, wi)) : SampledSpectrum();
+    return leaf_scatters(wo, wi) ? leaf_f(wo, wi, spread(wo, wi)) : SampledSpectrum();
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
@@ -56,7 +56,7 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
-    return scatters(wo, wi) ? leaf_pdf(wo, wi, spread(wo, wi)) : 0;
+    return leaf_scatters(wo, wi) ? leaf_pdf(wo, wi, spread(wo, wi)) : 0;
   }
 
   /// What the model says of its incident direction, whichever way round a path asks.
@@ -66,8 +66,6 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
  private:
-  static constexpr float kLeastCosine = 1e-20f;  // closer to the surface's plane than floats should be divided by
-
   /// Probabilities of the lobes for one wo.
   struct Choice {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
@@ -80,9 +78,6 @@ class ThreeLobeBsdf final : public Bsdf {
     leaf::SampledShares shares;  ///< 0 in lanes that are not active
   };
 
-  static bool scatters(const Vec3& wo, const Vec3& wi) {
-    return std::abs(wo.z) >= kLeastCosine && std::abs(wi.z) >= kLeastCosine;
-  }
   static float sum(const SampledSpectrum& s) { return (s[0] + s[1]) + (s[2] + s[3]); }
 
   Lobes way_round() const { return manner_.from_light ? Lobes::from_light : Lobes::none; }
@@ -120,11 +115,8 @@ class ThreeLobeBsdf final : public Bsdf {
     return choice_;
   }
 
-  /// Of the surface lobe before its cut, 1/sr: the same both ways round. 0 where nobody asks for it.
-  float spread(const Vec3& wo, const Vec3& wi) const {
-    if (!manner_.surface_direct || !same_side(wo, wi)) return 0;
-    return static_cast<float>(hit_.surface->density(dot(Vec3{-wo.x, -wo.y, wo.z}, wi)));
-  }
+  /// Of the surface lobe; 0 where `f` leaves it out.
+  float spread(const Vec3& wo, const Vec3& wi) const { return manner_.surface_direct ? surface_.spread(wo, wi) : 0; }
 
   SampledSpectrum leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
     const Vec3 &incident = manner_.from_light ? wi : wo, &leaving = manner_.from_light ? wo : wi;
@@ -132,7 +124,7 @@ class ThreeLobeBsdf final : public Bsdf {
     if (!same_side(wo, wi)) return shares.transmitted * kInvPi;
     const SampledSpectrum body = shares.subsurface * kInvPi;
     if (lobe == 0) return body;
-    return body + shares.surface * (lobe * made_good(incident.z) / std::abs(leaving.z));
+    return body + shares.surface * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
   }
 
   float leaf_pdf(const Vec3& wo, const Vec3& wi, float lobe) const {
@@ -140,16 +132,7 @@ class ThreeLobeBsdf final : public Bsdf {
     const float cosine = std::abs(wi.z) * kInvPi;
     if (!same_side(wo, wi)) return choice.transmitted * cosine;
     const float body = choice.subsurface * cosine;
-    return lobe == 0 ? body : body + choice.surface * lobe * made_good(wo.z);
-  }
-
-  /// What the cut at the surface makes of the lobe: a factor that makes its whole 1 again.
-  float made_good(float cos_theta) const {
-    if (made_good_at_ != cos_theta) {
-      made_good_at_ = cos_theta;
-      made_good_ = 1 / static_cast<float>(hit_.surface->kept(std::abs(cos_theta)));
-    }
-    return made_good_;
+    return lobe == 0 ? body : body + choice.surface * lobe * surface_.made_good(wo.z);
   }
 
   /// Both on one side. Nothing where f is black.
@@ -161,14 +144,7 @@ class ThreeLobeBsdf final : public Bsdf {
 
   std::optional<BsdfSample> sample_surface(const Choice& choice, const Vec3& wo, Vec2 u, RandomStream& rng) const {
     constexpr Lobes kLobe = Lobes::reflection | Lobes::glossy | Lobes::surface;
-    Vec3 wi;
-    float lobe;
-    for (;; u = {rng.uniform(), rng.uniform()}) {
-      wi = sample_surface_lobe(*hit_.surface, wo, u, rng);
-      lobe = spread(wo, wi);
-      const bool on_the_edge = manner_.surface_direct && lobe == 0;
-      if (std::abs(wi.z) >= kLeastCosine && !on_the_edge) break;
-    }
+    const auto [wi, lobe] = surface_.sample(wo, u, rng);
     if (!manner_.surface_direct) return BsdfSample{as_delta(wo, wi), wi, choice.surface, kLobe | Lobes::specular};
     return reflected(wo, wi, lobe, kLobe);
   }
@@ -176,15 +152,15 @@ class ThreeLobeBsdf final : public Bsdf {
   /// f of the surface lobe where wi, drawn from it, counts as a delta lobe's only direction.
   SampledSpectrum as_delta(const Vec3& wo, const Vec3& wi) const {
     if (!manner_.from_light) return shares_at(wo.z).surface * (1 / std::abs(wi.z));
-    const float drawn = made_good(wo.z);
-    return shares_at(wi.z).surface * (made_good(wi.z) / (drawn * std::abs(wo.z)));
+    const float drawn = surface_.made_good(wo.z);
+    return shares_at(wi.z).surface * (surface_.made_good(wi.z) / (drawn * std::abs(wo.z)));
   }
 
   LeafHit hit_;
   LeafManner manner_;
+  SurfaceLobe surface_;
   mutable Incidence incidence_;
   mutable Choice choice_;
-  mutable float made_good_at_ = std::numeric_limits<float>::quiet_NaN(), made_good_ = 1;
 };
 
 }  // namespace frond
