@@ -155,9 +155,8 @@ void check_energy(const BodyFile& file, size_t column) {
   for (const bool below : {false, true})
     for (int i = 0; i <= all.cells; ++i) {
       const double sine = static_cast<double>(i) / all.cells;
-      double sum = 0;
-      for (const bool crosses : {false, true})
-        sum += static_cast<double>(table.share(below, crosses, table.nodes(static_cast<float>(sine)), first)[0]);
+      const BodyTable::Ways ways = table.ways(below, table.nodes(static_cast<float>(sine)), SampledSpectrum(1), first);
+      const double sum = static_cast<double>(ways.back + ways.across);
       if (sum > 1 + kRule + 2 * all.error)
         fail(file.columns[column].where,
              "of light that enters the {} side at {:.1f} degrees {:.4f} leaves the leaf: more than there was",

@@ -1,12 +1,9 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <string>
 #include <vector>
 
-#include "core/spectrum.h"
-#include "leaf/body_spectrum.h"
+#include "leaf/series_table.h"
 
 namespace frond::leaf {
 
@@ -26,55 +23,40 @@ class BodyTable {
   Selection select(const SampledWavelengths& lambda) const;
   /// With the leaf's optical depth in each lane, of a request with depths.
   Selection select(const SampledWavelengths& lambda, const std::array<double, kLanes>& optical_depth) const;
+  /// Whether `select` gives the same for all paths.
+  bool lanes_are_columns() const { return wavelengths_.empty() && depths_.empty(); }
 
-  /// The four nodes around a sine in [0, 1].
-  struct Nodes {
-    size_t first;
-    std::array<float, 4> weight;
-  };
-  Nodes nodes(float sine) const;
+  using Nodes = SineNodes;
+  /// Around a sine in [0, 1].
+  Nodes nodes(float sine) const { return {sine, cells_}; }
 
   /// The sum over modes of BodyModes, lane by lane. Where interpolation and missing modes leave less than nothing: 0.
   SampledSpectrum series(bool from_below, bool crosses, const Nodes& incident, const Nodes& leaving, float cos_phi,
-                         const TableSelection& columns) const;
-  /// Of the light that came in through the surface, what comes back or crosses.
-  SampledSpectrum share(bool from_below, bool crosses, const Nodes& incident, const TableSelection& columns) const;
+                         const TableSelection& columns) const {
+    const SeriesTable& table = series_[from_below][crosses];
+    return lanes_are_columns() ? table.at(incident, leaving, cos_phi) : table.at(incident, leaving, cos_phi, columns);
+  }
+
+  /// Shares of light that came in through the surface.
+  struct Ways {
+    float back, across;
+    float across_to;  ///< where it met the other side: crosses to this one
+  };
+  /// Sums over the lanes of `light`, which has come in, times these shares.
+  Ways ways(bool from_below, const Nodes& incident, const SampledSpectrum& light, const TableSelection& columns) const;
 
   size_t bytes() const;
 
  private:
-  /// Four modes of one node in one column, in one register.
-  using FourModes = float __attribute__((vector_size(16)));
-  static constexpr size_t kMostBlocks = 16;
-  using Modes = std::array<FourModes, kMostBlocks>;
-  /// For one side lit and one way out.
-  struct Part {
-    size_t blocks;                  ///< of four modes
-    std::vector<FourModes> values;  ///< [incident node][leaving node][column][block]
-    std::vector<float> shares;      ///< [incident node][column]
-  };
-  /// Sixteen nodes around a pair of sines.
-  struct Patch {
-    size_t first;                                ///< node
-    std::array<std::array<float, 4>, 4> weight;  ///< [incident][leaving]
-  };
-
-  size_t side() const { return static_cast<size_t>(cells_) + 3; }
-  Part make_part(const BodySpectrum& spectrum, bool from_below, bool crosses) const;
-  void add_shares(Part& part) const;
+  void add_ways(const BodySpectrum& spectrum);
   Selection with_index(const TableSelection& columns) const;
-  double index_of(size_t column) const { return index_[column]; }
-  Patch patch(const Nodes& incident, const Nodes& leaving) const;
-  FourModes sum_patch(const Part& part, const Patch& patch, size_t column, size_t block) const;
-  float sum_modes(const Part& part, const Patch& patch, const TableSelection::Lane& lane, size_t columns,
-                  const Modes& cosines) const;
 
-  int cells_;
-  size_t columns_;
-  std::vector<double> index_;   ///< [column]
+  size_t cells_;
+  std::vector<float> index_;    ///< of the cuticle, by column
   WavelengthAxis wavelengths_;  ///< empty: lanes are wavelengths
   DepthAxis depths_;            ///< empty: the depth does not vary
-  std::array<std::array<Part, 2>, 2> parts_;
+  std::array<std::array<SeriesTable, 2>, 2> series_;
+  std::array<std::vector<Float4>, 2> ways_;  ///< [column][incident node]: as Ways has them
 };
 
 }  // namespace frond::leaf

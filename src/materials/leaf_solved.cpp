@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "core/material.h"
 #include "leaf/body_cache.h"
 #include "leaf/body_file.h"
@@ -31,6 +33,9 @@ constexpr std::string_view kOfTable[] = {"tolerance"};
 /// Step of the natural logarithm of tables over depth: linear interpolation leaves errors of pi f below 3e-4.
 constexpr double kDepthStep = 0.15;
 
+/// Of pi f, what a look-up may leave out of a file's modes.
+constexpr double kFileTolerance = 1e-4;
+
 /// The walk of `abm`, solved beforehand: its BSDF without its noise.
 class LeafSolved final : public Material {
  public:
@@ -51,19 +56,26 @@ class LeafSolved final : public Material {
                                                   [&] { return read_table(preparation); });
     else
       make_table(preparation);
+    if (table_->lanes_are_columns()) fixed_ = table_->select(preparation.wavelengths.sample(0));
   }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    const leaf::BodyTable::Selection selection =
-        varies_ ? table_->select(lambda, leaf_.depth().at(hit.uv, lambda)) : table_->select(lambda);
     const leaf::Lobe* surface =
         surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.uv))) : &surface_;
-    return arena.make<SolvedBsdf>(SolvedHit{table_.get(), selection, surface, lane_mask(lambda), leaf_.from_light()});
+    return arena.make<SolvedBsdf>(
+        SolvedHit{table_.get(), selection(hit, lambda, arena), surface, lane_mask(lambda), leaf_.from_light()});
   }
 
   bool is_leaf() const override { return true; }
 
  private:
+  using Selection = leaf::BodyTable::Selection;
+
+  const Selection* selection(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const {
+    if (varies_) return arena.make<Selection>(table_->select(lambda, leaf_.depth().at(hit.uv, lambda)));
+    return fixed_ ? &*fixed_ : arena.make<Selection>(table_->select(lambda));
+  }
+
   void make_table(const Preparation& preparation) {
     leaf_.check_wavelengths(preparation.wavelengths);
     const leaf::BodyRequest request = request_for(preparation.wavelengths);
@@ -85,7 +97,7 @@ class LeafSolved final : public Material {
     const leaf::BodyRequest request{
         .params = {},
         .wavelengths_nm = file_wavelengths(file.wavelengths_nm(), preparation.wavelengths, file_.where(), name),
-        .tolerance = 0};
+        .tolerance = kFileTolerance};
     const leaf::BodySpectrum spectrum = leaf::at_wavelengths(file, request.wavelengths_nm);
     leaf::BodyTable table(request, spectrum, preparation.wavelengths.fixed_nm().empty());
     preparation.log.info(fmt::format("leaf modes: {}, {} wavelengths x {} cells, {} kB in memory", name,
@@ -108,6 +120,7 @@ class LeafSolved final : public Material {
   double tolerance_;
   TableFileParam file_;
   std::shared_ptr<const leaf::BodyTable> table_;
+  std::optional<Selection> fixed_;  ///< of all hits, where it is the same for all
 };
 
 }  // namespace

@@ -101,12 +101,13 @@ TEST(BodyTable, HoldsTheSolversEnergy) {
           const Tissue tissue = model.at(request.wavelengths_nm[static_cast<size_t>(lane)]);
           const Shares expected = solve(tissue, std::array{below ? 180 - theta : theta})[0];
           const auto nodes = table.nodes(static_cast<float>(std::sin(theta * kPi / 180)));
-          const auto share = [&](bool crosses) {
-            return (1 - expected.surface) *
-                   static_cast<double>(table.share(below, crosses, nodes, selection.columns)[lane]);
-          };
-          EXPECT_NEAR(share(false), expected.subsurface, kTolerance / 4) << theta;
-          EXPECT_NEAR(share(true), expected.transmitted, kTolerance / 4) << theta;
+          SampledSpectrum light;
+          light[lane] = static_cast<float>(1 - expected.surface);
+          const BodyTable::Ways ways = table.ways(below, nodes, light, selection.columns);
+          const BodyTable::Ways other = table.ways(!below, nodes, light, selection.columns);
+          EXPECT_NEAR(static_cast<double>(ways.back), expected.subsurface, kTolerance / 4) << theta;
+          EXPECT_NEAR(static_cast<double>(ways.across), expected.transmitted, kTolerance / 4) << theta;
+          EXPECT_EQ(other.across_to, ways.across);
         }
   }
 }
@@ -124,6 +125,25 @@ TEST(BodyTable, LiesBetweenWavelengths) {
     const Tissue tissue = model.at(wanted[lane]);
     EXPECT_NEAR(selection.index[static_cast<int>(lane)], tissue.n_cuticle(), 1e-4);
     EXPECT_LT(largest_error(table, tissue, selection, static_cast<int>(lane)), 1e-3) << wanted[lane];
+  }
+}
+
+/// 189 wavelengths as mixtures of a few functions, at wavelengths all over the spectrum.
+TEST(BodyTable, IsSmallAndRightOverTheSpectrum) {
+  constexpr double kTolerance = 1e-3;
+  const ThreadPool pool(2);
+  std::vector<double> grid;
+  for (double nm = 360; nm <= 830; nm += 2.5) grid.push_back(nm);
+  for (const Specimen& specimen : kSpecimens) {
+    const BodyRequest request = request_of(specimen.name, kTolerance, grid);
+    const BodyTable table(request, make_body_spectrum(request, pool), true);
+    EXPECT_LT(table.bytes(), size_t{256 * 1024});
+    const std::vector<double> wanted{362.5, 450, 550, 675};
+    const auto selection = table.select(lanes_of(wanted));
+    const TissueModel model(request.params);
+    for (size_t lane = 0; lane < wanted.size(); ++lane)
+      EXPECT_LT(largest_error(table, model.at(wanted[lane]), selection, static_cast<int>(lane)), kTolerance)
+          << specimen.name << " at " << wanted[lane];
   }
 }
 

@@ -11,7 +11,7 @@ namespace frond {
 /// A solved leaf where it was hit, at the wavelengths of the path. What is pointed to outlives the BSDF.
 struct SolvedHit {
   const leaf::BodyTable* table;
-  leaf::BodyTable::Selection selection;
+  const leaf::BodyTable::Selection* selection;
   const leaf::Lobe* surface;
   SampledSpectrum active;  ///< 1 in active lanes, 0 elsewhere
   bool from_light;         ///< wi, not wo, is the model's incident direction
@@ -36,15 +36,16 @@ class SolvedBsdf final : public Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
     if (std::abs(wo.z) < kLeastCosine) return {};
     const Choice& choice = choice_at(wo);
-    const bool off_surface = uc < choice.surface, reflects = uc < choice.surface + choice.reflected;
-    Vec3 wi = off_surface ? surface_.sample(wo, u, rng).wi : sample_cosine_hemisphere(u);
-    if (!off_surface && (wo.z < 0) == reflects) wi.z = -wi.z;
-    if (!leaf_scatters(wo, wi)) return {};
-    const float lobe = surface_.spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
-    if (density == 0) return {};  // black
-    const Lobes side = reflects ? Lobes::reflection : Lobes::transmission;
-    return BsdfSample{leaf_f(wo, wi, lobe), wi, density,
-                      side | (off_surface ? Lobes::glossy | Lobes::surface : Lobes::diffuse)};
+    if (uc < choice.surface) {
+      const auto [wi, lobe] = surface_.sample(wo, u, rng);
+      return sampled(wo, wi, lobe, Lobes::reflection | Lobes::glossy | Lobes::surface);
+    }
+    const bool reflects = uc < choice.surface + choice.reflected;
+    Vec3 wi = sample_cosine_hemisphere(u);
+    if ((wo.z < 0) == reflects) wi.z = -wi.z;
+    if (std::abs(wi.z) < kLeastCosine) return {};
+    return sampled(wo, wi, surface_.spread(wo, wi),
+                   Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission));
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
@@ -70,30 +71,26 @@ class SolvedBsdf final : public Bsdf {
   struct Incidence {
     Vec3 direction{std::numeric_limits<float>::quiet_NaN(), 0, 0};
     float sine;
-    leaf::BodyTable::Nodes nodes;
+    leaf::SineNodes nodes;
     SampledSpectrum reflectance;  ///< of the surface; 0 in lanes that are not active
     SampledSpectrum enters;       ///< 1 - reflectance, likewise
   };
 
-  /// The way out through the surface of light that leaves at some cosine: (1 - F) / mu'.
+  /// Light of some direction outside at the surface, where it always finds a way through.
   struct Passage {
-    SampledSpectrum reflectance, cos_inside;
+    Float4 through;      ///< 1 - F, Fresnel
+    Float4 over_cosine;  ///< the same over the cosine inside
   };
 
-  static float sine(const Vec3& w) { return std::min(std::sqrt(w.x * w.x + w.y * w.y), 1.f); }
-  static float sum(const SampledSpectrum& s) { return (s[0] + s[1]) + (s[2] + s[3]); }
+  static float sine2(const Vec3& w) { return std::min(w.x * w.x + w.y * w.y, 1.f); }
 
-  /// Fresnel's formulae for light that comes from outside, where it always finds a way in.
-  Passage passage(float cosine, float sine2) const {
-    Passage p;
-    for (size_t i = 0; i < kLanes; ++i) {
-      const float n = hit_.selection.index.v[i];
-      const float inside = std::sqrt(1 - sine2 / (n * n));
-      const float s = (cosine - n * inside) / (cosine + n * inside), q = (n * cosine - inside) / (n * cosine + inside);
-      p.reflectance.v[i] = (s * s + q * q) / 2;
-      p.cos_inside.v[i] = inside;
-    }
-    return p;
+  /// With n cos theta' = q: (1 - F) = 2 q cos theta (1 / (cos theta + q)^2 + n^2 / (n^2 cos theta + q)^2).
+  Passage passage(const Vec3& w) const {
+    const float cosine = std::abs(w.z);
+    const Float4 n = to_float4(hit_.selection->index), n2 = n * n, q = square_root(n2 - sine2(w));
+    const Float4 s = cosine + q, p = n2 * cosine + q, both = s * p;
+    const Float4 part = 2 * cosine * (p * p + n2 * (s * s)) / (both * both);
+    return {q * part, n * part};
   }
 
   /// f, pdf and sample come in turn for one direction: looked up once.
@@ -101,15 +98,13 @@ class SolvedBsdf final : public Bsdf {
     Incidence& in = incidence_;
     if (in.direction == incident) return in;
     in.direction = incident;
-    in.sine = sine(incident);
+    in.sine = std::sqrt(sine2(incident));
     in.nodes = hit_.table->nodes(in.sine);
-    in.reflectance = hit_.active * passage(std::abs(incident.z), in.sine * in.sine).reflectance;
-    for (size_t i = 0; i < kLanes; ++i) in.enters.v[i] = hit_.active.v[i] - in.reflectance.v[i];
+    const Float4 active = to_float4(hit_.active);
+    const Float4 enters = active * passage(incident).through;
+    in.enters = to_spectrum(enters);
+    in.reflectance = to_spectrum(active - enters);
     return in;
-  }
-
-  SampledSpectrum share(const Incidence& in, bool from_below, bool crosses) const {
-    return in.enters * hit_.table->share(from_below, crosses, in.nodes, hit_.selection.columns);
   }
 
   /// Each way keeps a little, so that no direction is left without density.
@@ -117,10 +112,9 @@ class SolvedBsdf final : public Bsdf {
     if (choice_.cos_theta == wo.z) return choice_;
     choice_.cos_theta = wo.z;
     const Incidence& in = incidence_at(wo);
-    const bool below = wo.z < 0;
-    const float surface = sum(in.reflectance);
-    float reflected = sum(share(in, below, false)),
-          transmitted = sum(share(in, hit_.from_light ? !below : below, true));
+    const auto ways = hit_.table->ways(wo.z < 0, in.nodes, in.enters, hit_.selection->columns);
+    const float surface = sum(to_float4(in.reflectance));
+    float reflected = ways.back, transmitted = hit_.from_light ? ways.across_to : ways.across;
     constexpr float kLeastPart = 0.01f;
     const float least = kLeastPart * (surface + reflected + transmitted);
     reflected = std::max(reflected, least);
@@ -132,6 +126,13 @@ class SolvedBsdf final : public Bsdf {
     return choice_;
   }
 
+  /// Nothing where f is black.
+  std::optional<BsdfSample> sampled(const Vec3& wo, const Vec3& wi, float lobe, Lobes from) const {
+    const float density = leaf_pdf(wo, wi, lobe);
+    if (density == 0) return {};
+    return BsdfSample{leaf_f(wo, wi, lobe), wi, density, from};
+  }
+
   SampledSpectrum leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
     const Vec3 &incident = hit_.from_light ? wi : wo, &leaving = hit_.from_light ? wo : wi;
     const Incidence& in = incidence_at(incident);
@@ -141,14 +142,12 @@ class SolvedBsdf final : public Bsdf {
   }
 
   SampledSpectrum body_f(const Incidence& in, const Vec3& incident, const Vec3& leaving) const {
-    const float sine_o = sine(leaving), both = in.sine * sine_o;
+    const float sine_o = std::sqrt(sine2(leaving)), both = in.sine * sine_o;
     const float cos_phi =
         both > 0 ? std::clamp(-(incident.x * leaving.x + incident.y * leaving.y) / both, -1.f, 1.f) : 1;
-    const Passage out = passage(std::abs(leaving.z), sine_o * sine_o);
-    SampledSpectrum f = in.enters * hit_.table->series(incident.z < 0, !same_side(incident, leaving), in.nodes,
-                                                       hit_.table->nodes(sine_o), cos_phi, hit_.selection.columns);
-    for (size_t i = 0; i < kLanes; ++i) f.v[i] *= (1 - out.reflectance.v[i]) / out.cos_inside.v[i];
-    return f;
+    const SampledSpectrum series = hit_.table->series(incident.z < 0, !same_side(incident, leaving), in.nodes,
+                                                      hit_.table->nodes(sine_o), cos_phi, hit_.selection->columns);
+    return to_spectrum(to_float4(in.enters * series) * passage(leaving).over_cosine);
   }
 
   float leaf_pdf(const Vec3& wo, const Vec3& wi, float lobe) const {
