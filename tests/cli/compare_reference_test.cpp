@@ -41,7 +41,7 @@ bool same_bits(const PairedRender& a, const PairedRender& b) {
 TEST(PairedRender, ContinuedIsTheSameAsAtOnce) {
   const Setting s;
   PairedRender steps = s.render(), at_once = s.render();
-  for (const uint64_t samples : {1, 2, 5}) steps.advance_to(samples, s.pool, {});
+  for (const uint64_t samples : {1u, 2u, 5u}) steps.advance_to(samples, s.pool, {});
   at_once.advance_to(5, s.pool, {});
   EXPECT_TRUE(same_bits(steps, at_once));
 }
