@@ -93,7 +93,11 @@ class TwoSidedSpectra {
 class LeafLambert final : public Material {
  public:
   explicit LeafLambert(const Params& p) : leaf_(p), incidences_(incidences(p)) {
-    if (!leaf_.is_constant()) fail(p.where(), "leaf_lambert takes no textures: abm does");
+    if (!leaf_.is_constant())
+      fail(p.where(),
+           "leaf_lambert takes no textures: its numbers are the whole leaf's; leaf_simplified and leaf_solved take "
+           "them for "
+           "chemistry, thickness and cuticle, abm for everything");
   }
 
   void prepare(const Preparation& preparation) override {

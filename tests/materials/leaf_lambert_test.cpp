@@ -114,7 +114,7 @@ TEST(LeafLambert, IsExactAtTheWavelengthsOfAList) {
 
 TEST(LeafLambert, RefusesTexturesByName) {
   EXPECT_THAT(error_of([] { Ready("leaf_lambert", {texture("chlorophylla", {"3:30"})}); }),
-              HasSubstr("leaf_lambert takes no textures"));
+              HasSubstr("leaf_lambert takes no textures: its numbers are the whole leaf's"));
   EXPECT_EQ(error_of([] { Ready("leaf_lambert", {texture("chlorophylla", {"3:3"})}); }), "");
 }
 
