@@ -125,14 +125,15 @@ class Walker {
     return true;
   }
 
-  /// One event. False where the ray is absorbed.
+  /// One event. False where the ray is absorbed, or never leaves: between two interfaces that mirror it and let nothing
+  /// through it goes to and fro until it is absorbed, in a clear medium for ever.
   template <class Connect>
   bool step(const Connect& connect) {
     if (!pass_medium()) return false;
     const Crossings crossings = ahead();
     const bool refracts = rng_.uniform_double() >= crossings[hero_].reflectance;
     scatter(refracts, crossings, sample_disk(rng_), connect);
-    return true;
+    return total_mirrors_ < 2;
   }
 
   /// Once the ray is out: what belongs to the path is the direction outside, in place of the last one drawn inside.
@@ -218,6 +219,7 @@ class Walker {
       for (Vec3d& v : v_) v.z = -v.z;
       up_ = !up_;
     }
+    total_mirrors_ = !lobe && !refracts && crossings[hero_].cos_t == 0 ? total_mirrors_ + 1 : 0;
     if (!lobe) return;
     connect(*lobe);
     spread(*lobe, p);
@@ -243,6 +245,7 @@ class Walker {
   Draw last_;
   double above_ = 0;  ///< share of the mesophyll that lies above the air space, where that moves
   size_t hero_, medium_;
+  int total_mirrors_ = 0;  ///< total reflections in a row that kept the angle
   Absorption absorption_;
   bool up_;
 };

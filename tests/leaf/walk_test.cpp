@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 
+#include "leaf/batch_walk.h"
 #include "leaf/fresnel.h"
 #include "leaf/specimens.h"
 #include "tests/leaf/statistics.h"
@@ -102,6 +103,26 @@ TEST(Walk, SurfaceReflectsFresnelsShareOnBothSides) {
                : (std::pow(std::sin(i - t) / std::sin(i + t), 2) + std::pow(std::tan(i - t) / std::tan(i + t), 2)) / 2;
     EXPECT_NEAR(surface_reflectance(tissue, std::cos(i)), fresnel, 1e-12) << theta;
     EXPECT_LT(std::abs(m.surface.mean() - fresnel), limit * m.surface.standard_error()) << theta;
+  }
+}
+
+// In an antidermal wall of a higher index than both its neighbours, light past both critical angles goes to and fro.
+TEST(Walk, LightTrappedForEverEndsAsAbsorbed) {
+  constexpr int kRays = 20000;
+  const TissueModel model(find_specimen("soybean")->params);
+  Tissue tissue = model.at(800);
+  tissue.n = {1, 1.3, 1.4, 1, 1.6, 1.3, 1};
+  std::vector<BatchRay> batch(kRays);
+  walk_batch(tissue, incidence(120), Absorption::analog, 5, batch);
+  Estimate reflected, transmitted;
+  for (const BatchRay& ray : batch) {
+    reflected.add(ray.fate == Fate::reflected);
+    transmitted.add(ray.fate == Fate::transmitted);
+  }
+  for (const Absorption absorption : {Absorption::analog, Absorption::weighted}) {
+    const Measured m = measure(tissue, 120, absorption, kRays);
+    EXPECT_LT(std::abs(z_score(m.reflected, reflected)), test::z_limit(4));
+    EXPECT_LT(std::abs(z_score(m.transmitted, transmitted)), test::z_limit(4));
   }
 }
 
