@@ -29,7 +29,8 @@ def pictures(runs, images, measured):
 
 {samples} samples per pixel, {thousands(pixels)} pixels; left the ABM, right the simplified model. The plants, the light and
 the view are ours: the paper does not describe its own. What is matched is what it states: a soybean leaf, which side is lit,
-ambient light alone in the third set, and the foliar ratio, the share of pixels that see a leaf.
+ambient light alone in the third set, and the foliar ratio, the share of pixels that see a leaf. Pictures are raised by
+{', '.join(str(s.stops) for s in SETS)} stops.
 
 {table(("set", "light", "foliar ratio, paper", "ours", "CPU, `abm`", "CPU, `leaf_simplified`"), body)}
 The paper gives one time, 95 minutes of CPU on an SGI R10000 for its Figure 7b; it does not say at how many pixels.
@@ -43,11 +44,12 @@ def leaf_table(runs, tables):
     return f"""
 ## The table of reflectances and transmittances
 
-The paper samples it: {runs.setting.table_rays:.0e} rays at each degree from 0° to 180°, three wavelengths, 14.5 kB. So sampled
-it takes {sampled['cpu_seconds']:.2g} s of CPU here; solved, as all the figures on this page have it, {solved['cpu_seconds']:.2g} s.
-The two are {rms:.1e} apart (RMS of Rs, Rd and T; {max(apart):.1e} at most), which is the noise of sampling. A render holds
-12.4 kB of it: 258 angles, even in the root of the cosine, of 48 bytes. What sampling, solving and coarser steps cost in
-accuracy: [validation.md](validation.md#the-table-solved-against-sampled), [table_format.md](table_format.md).
+The paper samples it: 10⁶ rays at each degree from 0° to 180°, three wavelengths, 14.5 kB. Sampled with
+{thousands(runs.setting.table_rays)} rays it takes {sampled['cpu_seconds']:.2g} s of CPU here; solved, as for this page,
+{solved['cpu_seconds']:.2g} s. The two are {rms:.1e} apart (RMS of Rs, Rd and T; {max(apart):.1e} at most), which is the noise of
+sampling. A render holds 12.4 kB of it: 258 angles, even in the root of the cosine, of 48 bytes. What sampling, solving and
+coarser steps cost in accuracy: [validation.md](validation.md#the-table-solved-against-sampled),
+[table_format.md](table_format.md).
 """
 
 

@@ -63,7 +63,7 @@ class Setting:
     table_rays: int
 
 
-FULL = Setting((), ("--spp", 8, "--reference-spp", 1), ("--quick",), 200, (), 16, 10**6)
+FULL = Setting((), ("--spp", 8, "--reference-spp", 1), ("--quick",), 200, (), 8, 10**6)
 QUICK = Setting(("--quick",), ("--size", 128, "--spp", 8, "--reference-spp", 1), ("--quick",), 8, ("--quick",), 4, 10**4)
 # Says nothing about leaves, but goes through everything.
 SMOKE = Setting(("--size", 16, "--spp", 2, "--reference-spp", 2), ("--size", 16, "--spp", 2, "--reference-spp", 1), ("--pixels", "240,272,240,272"), 1,
@@ -149,7 +149,6 @@ class Runs:
             for letter, model in zip("ab", MODELS):
                 picture = self.folder / f"{s.name}-{model}.png"
                 frond("convert", self.half(s, model, 1), self.half(s, model, 2), "--exposure", s.stops, "-o", picture)
-                label = f"{s.figure}{letter}  {s.title}, {model}, exposure +{s.stops}"
-                words += [picture, f"--text:x=12:y=30:size=20:shadow=2:font={FONT}", label]
+                words += [picture, f"--text:x=8:y=20:size=15:shadow=2:font={FONT}", f"{s.figure}{letter}  {model}"]
         path.parent.mkdir(parents=True, exist_ok=True)
-        run("oiiotool", *words, "--mosaic:pad=8", "2x3", "--compression", "jpeg:84", "-o", path)
+        run("oiiotool", *words, "--mosaic:pad=8", "2x3", "--compression", "jpeg:90", "-o", path)

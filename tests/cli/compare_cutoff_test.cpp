@@ -98,6 +98,17 @@ TEST(FitCutoff, FindsThatOfAPowerLaw) {
     }
 }
 
+/// A wall that reflects 0.015 stands behind the leaves: a larger cutoff takes all paths that met it, of what was shot
+/// as well, and the ratio is the same again at 0.023.
+TEST(FitCutoff, DoesNotStepOverAnAnswerThatIsNear) {
+  const auto with_wall = [](double cutoff) {
+    return UnshotRatio{1.6e-4 * std::pow(cutoff / 0.01, -1) * (cutoff > 0.015 ? 1.5 : 1), 0.05};
+  };
+  const CutoffFit fit = fit_cutoff({1.15e-4, 0.05}, with_wall);
+  EXPECT_TRUE(fit.equal);
+  EXPECT_LT(fit.cutoff, 0.015);
+}
+
 TEST(FitCutoff, SaysWhereNoneIsRight) {
   const auto indifferent = [](double) { return UnshotRatio{5e-4, 0.05}; };
   const CutoffFit many = fit_cutoff({1e-4, 0.05}, indifferent);

@@ -8,7 +8,7 @@ namespace frond::compare {
 namespace {
 
 const double kLogUnshot = std::log(1e-4);
-constexpr double kSmallest = 1e-6, kLargest = 0.5, kStep = 4;
+constexpr double kSmallest = 1e-6, kLargest = 0.5, kMostStep = 4;
 constexpr int kMostTries = 8;
 
 /// The logarithm of the ratio after a whole number of events, and what its error follows from.
@@ -39,21 +39,30 @@ double between(const Try& low, const Try& high) {
   return std::exp(std::lerp(low.log_cutoff, high.log_cutoff, t));
 }
 
-/// What has been tried: the last cutoffs that were too small and too large.
-class Bracket {
+/// From one cutoff to the next, no farther than the ratio's fall asks for: it jumps where many paths have the same
+/// attenuation, and what lies beyond a jump may be another answer.
+class Search {
  public:
-  void add(double cutoff, double miss) { (miss > 0 ? low_ : high_) = Try{cutoff, std::log(cutoff), miss}; }
+  void add(double cutoff, double miss) {
+    const Try last{cutoff, std::log(cutoff), miss};
+    // How steeply the ratio falls with the cutoff; as its inverse where nothing else is known.
+    if (last_ && last_->cutoff != cutoff)
+      steepness_ = std::max(0.1, (last_->miss - miss) / (last.log_cutoff - last_->log_cutoff));
+    last_ = last;
+    (miss > 0 ? low_ : high_) = last;
+  }
 
   /// The cutoff to try next; nothing where there is none left.
   std::optional<double> next() const {
     if (low_ && high_) return between(*low_, *high_);
-    const double farther = low_ ? low_->cutoff * kStep : high_->cutoff / kStep;
-    if (farther >= kLargest * kStep || farther <= kSmallest / kStep) return {};
-    return std::clamp(farther, kSmallest, kLargest);
+    const double most = std::log(kMostStep), step = std::clamp(last_->miss / steepness_, -most, most);
+    const double cutoff = std::clamp(std::exp(last_->log_cutoff + step), kSmallest, kLargest);
+    return cutoff == last_->cutoff ? std::optional<double>() : cutoff;
   }
 
  private:
-  std::optional<Try> low_, high_;
+  std::optional<Try> low_, high_, last_;  // too small a cutoff, too large a one
+  double steepness_ = 1;
 };
 
 }  // namespace
@@ -79,7 +88,7 @@ double depth_of_trees(const PathEnds& ends) {
 CutoffFit fit_cutoff(const UnshotRatio& target, const std::function<UnshotRatio(double)>& left_by) {
   CutoffFit best{};
   double smallest_miss = INFINITY;
-  Bracket bracket;
+  Search search;
   std::optional<double> cutoff = kPaperCutoff;
   for (int i = 0; i < kMostTries && cutoff && !best.equal; ++i) {
     const UnshotRatio left = left_by(*cutoff);
@@ -88,8 +97,8 @@ CutoffFit fit_cutoff(const UnshotRatio& target, const std::function<UnshotRatio(
       smallest_miss = std::abs(miss);
       best = {*cutoff, left, smallest_miss <= std::hypot(left.relative_error, target.relative_error)};
     }
-    bracket.add(*cutoff, miss);
-    cutoff = bracket.next();
+    search.add(*cutoff, miss);
+    cutoff = search.next();
   }
   return best;
 }
