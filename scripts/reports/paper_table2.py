@@ -119,7 +119,7 @@ def differences(measured):
     return f"""
 ## Where ours and the paper's differ, and why
 
-**At equal samples, (a) and (b), we gain next to nothing; the paper gained 4 to 10 times.** That is because the walk is cheap
+**At equal samples, (a) and (b), we gain little or nothing; the paper gained 4 to 10 times.** That is because the walk is cheap
 here: even `leaf_lambert`, which looks up two numbers, is but {lowest:.2f} to {highest:.2f} times as fast, (a). And a killed
 path shoots no more rays, while an attenuated one goes on: more rays, each of which costs less. Rays a path, shadow rays
 included, and CPU time a ray, all of the render in it, in the pictures above:
