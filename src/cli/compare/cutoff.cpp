@@ -8,8 +8,9 @@ namespace frond::compare {
 namespace {
 
 const double kLogUnshot = std::log(1e-4);
-constexpr double kSmallest = 1e-6, kLargest = 0.5, kMostStep = 4;
-constexpr int kMostTries = 8;
+constexpr double kSmallest = 1e-6, kLargest = 0.5;
+const double kFirstStep = std::log(1.1);
+constexpr int kSmallSteps = 4, kMostTries = 16;
 
 /// The logarithm of the ratio after a whole number of events, and what its error follows from.
 struct Count {
@@ -39,30 +40,28 @@ double between(const Try& low, const Try& high) {
   return std::exp(std::lerp(low.log_cutoff, high.log_cutoff, t));
 }
 
-/// From one cutoff to the next, no farther than the ratio's fall asks for: it jumps where many paths have the same
-/// attenuation, and what lies beyond a jump may be another answer.
+/// Away from the first cutoff by small steps that grow: the ratio jumps where many paths have the same attenuation, and
+/// what lies beyond a jump may be another answer.
 class Search {
  public:
   void add(double cutoff, double miss) {
-    const Try last{cutoff, std::log(cutoff), miss};
-    // How steeply the ratio falls with the cutoff; as its inverse where nothing else is known.
-    if (last_ && last_->cutoff != cutoff)
-      steepness_ = std::max(0.1, (last_->miss - miss) / (last.log_cutoff - last_->log_cutoff));
-    last_ = last;
-    (miss > 0 ? low_ : high_) = last;
+    last_ = {cutoff, std::log(cutoff), miss};
+    (miss > 0 ? low_ : high_) = last_;
+    ++tries_;
   }
 
   /// The cutoff to try next; nothing where there is none left.
   std::optional<double> next() const {
     if (low_ && high_) return between(*low_, *high_);
-    const double most = std::log(kMostStep), step = std::clamp(last_->miss / steepness_, -most, most);
-    const double cutoff = std::clamp(std::exp(last_->log_cutoff + step), kSmallest, kLargest);
-    return cutoff == last_->cutoff ? std::optional<double>() : cutoff;
+    const double step = std::copysign(std::ldexp(kFirstStep, std::max(0, tries_ - kSmallSteps)), last_.miss);
+    const double cutoff = std::clamp(std::exp(last_.log_cutoff + step), kSmallest, kLargest);
+    return cutoff == last_.cutoff ? std::optional<double>() : cutoff;
   }
 
  private:
-  std::optional<Try> low_, high_, last_;  // too small a cutoff, too large a one
-  double steepness_ = 1;
+  std::optional<Try> low_, high_;  // too small a cutoff, too large a one
+  Try last_ = {};
+  int tries_ = 0;
 };
 
 }  // namespace
