@@ -19,7 +19,7 @@ constexpr Param kOwn[] = {
      .default_value = 5e-4,
      .range = {1e-5, 0.1},
      .doc = "Largest error of pi f that the table may have, where white paper has 1: what missing modes and "
-            "interpolation between angles leave out."},
+            "interpolation between angles leave out. Of a file's modes, what looking them up may add."},
     {.name = "tablefile",
      .kind = ParamKind::string,
      .doc =
@@ -28,13 +28,8 @@ constexpr Param kOwn[] = {
 };
 constexpr auto kLeafSolved = with_leaf_params(kOwn);
 
-constexpr std::string_view kOfTable[] = {"tolerance"};
-
 /// Step of the natural logarithm of tables over depth: linear interpolation leaves errors of pi f below 3e-4.
 constexpr double kDepthStep = 0.15;
-
-/// Of pi f, what a look-up may leave out of a file's modes.
-constexpr double kFileTolerance = 1e-4;
 
 /// The walk of `abm`, solved beforehand: its BSDF without its noise.
 class LeafSolved final : public Material {
@@ -45,15 +40,16 @@ class LeafSolved final : public Material {
         surface_texture_(leaf_.cuticle_aspect()),
         surface_(leaf_.tissue().cuticle_aspect),
         tolerance_(p.real("tolerance")),
-        file_(p, kOfTable) {
+        file_(p, {}) {
     if (!file_.is_given()) leaf_.refuse_wall_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {
     file_.warn(preparation.log);
     if (file_.is_given())
-      table_ = preparation.share<leaf::BodyTable>("leaf modes file " + file_.path().string(),
-                                                  [&] { return read_table(preparation); });
+      table_ =
+          preparation.share<leaf::BodyTable>(fmt::format("leaf modes file {} {}", tolerance_, file_.path().string()),
+                                             [&] { return read_table(preparation); });
     else
       make_table(preparation);
     if (table_->lanes_are_columns()) fixed_ = table_->select(preparation.wavelengths.sample(0));
@@ -97,7 +93,7 @@ class LeafSolved final : public Material {
     const leaf::BodyRequest request{
         .params = {},
         .wavelengths_nm = file_wavelengths(file.wavelengths_nm(), preparation.wavelengths, file_.where(), name),
-        .tolerance = kFileTolerance};
+        .tolerance = tolerance_};
     const leaf::BodySpectrum spectrum = leaf::at_wavelengths(file, request.wavelengths_nm);
     leaf::BodyTable table(request, spectrum, preparation.wavelengths.fixed_nm().empty());
     preparation.log.info(fmt::format("leaf modes: {}, {} wavelengths x {} cells, {} kB in memory", name,

@@ -57,14 +57,13 @@ TEST(TableCommand, FoldsBothSidesIntoOne) {
 
 TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
   const TestFolder folder("modes");
-  const std::string path = folder.name_of("maize.modes"), red = "608,551,455";
-  const Outcome o =
-      table_command({"leaf_solved", "specimen=maize", "tolerance=2e-3", "--wavelengths", red, "-o", path});
+  const std::string path = folder.name_of("maize.modes"), red = "608,551,455", coarse = "tolerance=2e-3";
+  const Outcome o = table_command({"leaf_solved", "specimen=maize", coarse, "--wavelengths", red, "-o", path});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.err, HasSubstr("3 wavelengths x "));
   EXPECT_THAT(o.err, HasSubstr("kB in a render"));
   const auto measured = [&](const std::string& way) {
-    return frond_command({"goniophotometer", "leaf_solved", "specimen=maize", way, "--integrate", "--no-cache",
+    return frond_command({"goniophotometer", "leaf_solved", "specimen=maize", coarse, way, "--integrate", "--no-cache",
                           "--angles", "30,120", "--wavelengths", red, "--patches", "4x6", "-q", "--csv", "-"})
         .out;
   };
@@ -74,7 +73,7 @@ TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
     for (size_t at; (at = text.find(" " + way)) != text.npos;) text.erase(at, way.size() + 1);
     return text;
   };
-  EXPECT_EQ(without_name("tablefile=" + path), without_name("tolerance=2e-3"));
+  EXPECT_EQ(without_name("tablefile=" + path), without_name("incident=traced"));
   const Outcome finer = table_command({"leaf_solved", "--nodes", "6", "--wavelengths", red, "-o", "-"});
   EXPECT_THAT(finer.out, HasSubstr("# nodes 6\n"));
 }
