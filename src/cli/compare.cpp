@@ -2,6 +2,7 @@
 #include <chrono>
 #include <ctime>
 
+#include "cli/choose/choice_report.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/compare/curve_style.h"
@@ -107,6 +108,23 @@ std::string scene_name(const std::filesystem::path& scene) {
   return (folder.empty() ? scene.filename() : folder / scene.filename()).string();
 }
 
+/// What `frond render` would choose for leaves that ask for this error; "" where wavelengths have no colours.
+std::string leaf_by_leaf(double rms, const std::string& wavelengths, const compare::Study& study, const Plan& plan,
+                         ThreadPool& pool, const Log& log) {
+  SceneDescription description = study.description();
+  const PluginText open{"leaf", {{"model", "auto"}, {"maxrms", fmt::format("{}", rms)}}};
+  apply_swaps(description, study.swaps_to(open), study.registry(), Log(true));
+  SceneOverrides overrides;
+  overrides.wavelengths = wavelengths;
+  overrides.seed = study.seed();
+  overrides.cache_dir = plan.cache;
+  const choose::Subject subject{description, study.registry(), overrides, study.film(), plan.top_samples};
+  const auto chosen = choose::choose_models(subject, choose::standard_ladder(study.registry()), pool, Log(true));
+  if (!chosen) return {};
+  log.info(choose::choice_text(chosen->choice));
+  return choose::choice_sentence(chosen->choice);
+}
+
 void run_compare(const CompareOptions& o) {
   const auto start = std::chrono::steady_clock::now();
   const Log log(o.quiet);
@@ -116,6 +134,9 @@ void run_compare(const CompareOptions& o) {
   ThreadPool pool(o.threads);
   const compare::Study study(study_options(o, plan), pool, log);
   Comparison result = compare::measure(study, plan, request, pool, log);
+  for (const double rms : request.rms)
+    result.leaf_by_leaf +=
+        (result.leaf_by_leaf.empty() ? "" : "\n") + leaf_by_leaf(rms, o.wavelengths, study, plan, pool, log);
   result.scene = scene_name(o.scene);
   result.command = command_line_of(o);
   result.machine = compare::machine_description();

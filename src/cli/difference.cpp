@@ -77,6 +77,7 @@ void add_errors(nlohmann::ordered_json& j, const std::string& prefix, const std:
     };
     put("rms", e.rms), put("rms_clipped", e.rms_clipped), put("noise", e.noise), put("bias", e.bias());
     put("bias_upper", e.bias_upper()), put("mean_difference", e.mean_difference);
+    put("bias_squared", e.bias_squared.value), put("bias_squared_error", e.bias_squared.standard_error);
     put("noise_a", e.noise_a), put("noise_b", e.noise_b);
   }
 }

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/choose/choice_report.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/output.h"
@@ -25,7 +26,7 @@ struct RenderOptions {
   DisplayChoice display;
   int samples = 0, threads = 0;
   uint64_t seed = 0;
-  bool seed_given = false, quick = false, json = false, quiet = false, no_cache = false;
+  bool seed_given = false, quick = false, json = false, quiet = false, no_cache = false, pilot = false;
 };
 
 /// "leaf=abm" or "leaf=abm,mode=analog".
@@ -34,6 +35,12 @@ MaterialSwap parse_swap(const std::string& text) {
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     fail({}, "--swap takes MATERIAL=PLUGIN[,parameter=value...], \"{}\" was given", text);
   return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), {})};
+}
+
+std::vector<MaterialSwap> swaps_of(const RenderOptions& options) {
+  std::vector<MaterialSwap> swaps;
+  for (const std::string& swap : options.swaps) swaps.push_back(parse_swap(swap));
+  return swaps;
 }
 
 /// What of the film the command line asks for; the scene's crop if it says nothing.
@@ -54,7 +61,6 @@ SceneOverrides overrides_of(const RenderOptions& options) {
   overrides.wavelengths = options.wavelengths;
   if (!options.integrator.empty()) overrides.integrator = parse_plugin_text(options.integrator, {});
   if (options.seed_given) overrides.seed = options.seed;
-  for (const std::string& swap : options.swaps) overrides.swaps.push_back(parse_swap(swap));
   overrides.cache_dir = cache_directory(options.cache, options.no_cache);
   overrides.quick = options.quick;
   return overrides;
@@ -66,6 +72,7 @@ struct Report {
   double load_seconds;
   int samples;
   double foliar_ratio;
+  std::optional<choose::Choice> choice;
 };
 
 /// Counts by depth, as far as there are any.
@@ -78,18 +85,19 @@ void print_report(const Report& r, const std::string& output, bool json) {
   const RenderStatistics& s = r.statistics;
   const double per_path = s.cpu_seconds / double(s.paths) * 1e6, rays_per_path = double(s.rays) / double(s.paths);
   if (json) {
-    const nlohmann::ordered_json j{{"output", output},
-                                   {"samples_per_pixel", r.samples},
-                                   {"load_seconds", r.load_seconds},
-                                   {"wall_seconds", s.wall_seconds},
-                                   {"cpu_seconds", s.cpu_seconds},
-                                   {"paths", s.paths},
-                                   {"rays", s.rays},
-                                   {"cpu_us_per_path", per_path},
-                                   {"rays_per_path", rays_per_path},
-                                   {"foliar_ratio", r.foliar_ratio},
-                                   {"paths_escaped_by_depth", counts(s.ends.escaped)},
-                                   {"paths_absorbed_by_depth", counts(s.ends.absorbed)}};
+    nlohmann::ordered_json j{{"output", output},
+                             {"samples_per_pixel", r.samples},
+                             {"load_seconds", r.load_seconds},
+                             {"wall_seconds", s.wall_seconds},
+                             {"cpu_seconds", s.cpu_seconds},
+                             {"paths", s.paths},
+                             {"rays", s.rays},
+                             {"cpu_us_per_path", per_path},
+                             {"rays_per_path", rays_per_path},
+                             {"foliar_ratio", r.foliar_ratio},
+                             {"paths_escaped_by_depth", counts(s.ends.escaped)},
+                             {"paths_absorbed_by_depth", counts(s.ends.absorbed)}};
+    if (r.choice) j["choice"] = nlohmann::ordered_json::parse(choose::choice_json(*r.choice));
     fmt::print("{}\n", j.dump(2));
     return;
   }
@@ -100,9 +108,11 @@ void print_report(const Report& r, const std::string& output, bool json) {
   fmt::print(stderr, "foliar ratio {:.2f} %\n", 100 * r.foliar_ratio);
 }
 
-/// A ColorSpace directive decides the image's space too; without one the wavelength strategy's own serves.
-std::string output_space(const SceneDescription& description) {
-  if (!description.color_space_where.file) return {};
+/// A ColorSpace directive decides the image's space too; without one the wavelength strategy's own serves, where that
+/// was not chosen: what is chosen shall not change the space.
+std::string output_space(const SceneDescription& description, const std::optional<choose::Choice>& choice) {
+  const bool chosen = choice && !choice->answers.front().is_leaf;
+  if (!description.color_space_where.file) return chosen ? "linear sRGB" : "";
   return std::string(color_space(description.color_space, description.color_space_where).linear_name);
 }
 
@@ -114,12 +124,33 @@ void check_samples(uint64_t samples, size_t bands) {
          kLanes, samples);
 }
 
+/// Writes what is chosen into the description and the overrides.
+std::optional<choose::Choice> choose_models(const RenderOptions& options, const FilmSettings& film,
+                                            const Registry& registry, SceneDescription& description,
+                                            SceneOverrides& overrides, ThreadPool& pool, const Log& log) {
+  const choose::Subject subject{description, registry, overrides, film, uint64_t(options.samples)};
+  auto chosen = choose::choose_models(subject, choose::standard_ladder(registry), pool, log);
+  if (!chosen) return {};
+  log.info(choose::choice_text(chosen->choice));
+  if (const std::string warning = choose::choice_warning(chosen->choice); !warning.empty()) log.warn({}, warning);
+  description = std::move(chosen->description);
+  overrides.wavelengths = chosen->wavelengths;
+  return chosen->choice;
+}
+
+/// In place of a render. People have it in the log.
+void print_choice(const std::optional<choose::Choice>& choice, bool json) {
+  if (!choice) fail({}, "--pilot: the scene leaves no leaf's model open: Material \"leaf\" does, or --swap \"*=leaf\"");
+  if (json) fmt::print("{}\n", nlohmann::ordered_json::parse(choose::choice_json(*choice)).dump(2));
+}
+
 void render_scene(const RenderOptions& options, const std::string& command_line) {
-  const auto start = std::chrono::steady_clock::now();
+  auto start = std::chrono::steady_clock::now();
   const Log log(options.quiet);
   ThreadPool pool(options.threads);
-  const SceneDescription description = parse_scene(options.scene, log);
+  SceneDescription description = parse_scene(options.scene, log);
   const Registry registry = load_registry(options.plugins);
+  apply_swaps(description, swaps_of(options), registry, log);
   SceneOverrides overrides = overrides_of(options);
   FilmSettings film_settings = Scene::film_settings(description, registry);
   film_settings.crop = crop_of(options, film_settings);
@@ -128,19 +159,23 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   const std::string output = options.output.empty() ? film_settings.filename : options.output;
   const ImageOutput writer(output, options.display);
 
+  const auto choice = choose_models(options, film_settings, registry, description, overrides, pool, log);
+  if (options.pilot) return print_choice(choice, options.json);
+  if (choice) start = std::chrono::steady_clock::now();  // its time is told apart
   const Scene scene(description, registry, overrides, pool, log);
   const int samples = options.samples > 0 ? options.samples : scene.samples_per_pixel();
   const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const auto bands = scene.wavelengths().bands();
-  const OutputDetails details{.film_space = std::string(scene.wavelengths().film_space()),
-                              .bands = {bands.begin(), bands.end()},
-                              .color_space = output_space(description),
-                              .attributes = {{"frond:version", FROND_VERSION},
-                                             {"frond:seed", std::to_string(scene.seed())},
-                                             {"frond:samples", std::to_string(samples)},
-                                             {"frond:wavelengths", scene.wavelengths_name()},
-                                             {"frond:scene_hash", fmt::format("{:016x}", description.content_hash)},
-                                             {"frond:command", command_line}}};
+  OutputDetails details{.film_space = std::string(scene.wavelengths().film_space()),
+                        .bands = {bands.begin(), bands.end()},
+                        .color_space = output_space(description, choice),
+                        .attributes = {{"frond:version", FROND_VERSION},
+                                       {"frond:seed", std::to_string(scene.seed())},
+                                       {"frond:samples", std::to_string(samples)},
+                                       {"frond:wavelengths", scene.wavelengths_name()},
+                                       {"frond:scene_hash", fmt::format("{:016x}", description.content_hash)},
+                                       {"frond:command", command_line}}};
+  if (choice) details.attributes.merge(choose::choice_attributes(*choice));
   writer.check(details);
   check_samples(uint64_t(samples), bands.size());
   Film film(film_settings, description.film.where, bands.size());
@@ -157,7 +192,7 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
                              statistics.paths));
   writer.write(film, details);
   if (!options.quiet || options.json)
-    print_report({statistics, load_seconds, samples, film.foliar_ratio()}, output, options.json);
+    print_report({statistics, load_seconds, samples, film.foliar_ratio(), choice}, output, options.json);
 }
 
 /// What of the command decides the pixels: threads, paths and what is printed do not belong in a file's header.
@@ -208,6 +243,7 @@ void add_render_command(CLI::App& app) {
   command->add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.");
   command->add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
   command->add_flag("--quick", o.quick, "A first look: half the resolution, a sixteenth of the samples.");
+  command->add_flag("--pilot", o.pilot, "Choose the models of open leaves, say which, and render nothing.");
   command->add_flag("--json", o.json, "Print the statistics as JSON on standard output.");
   command->add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");
   command->callback([options, seed] {

@@ -128,6 +128,16 @@ bool Params::given(std::string_view name) const { return find(name).parsed != nu
 
 std::string_view Params::plugin() const { return info_.name; }
 
+Params Params::forwarded(const PluginInfo& to, const std::vector<ParsedParam>& more) const {
+  ParsedPlugin plugin{std::string(to.name), parsed_.where, more};
+  for (const Param& p : to.params) {
+    const auto declared = std::ranges::find(info_.params, p.name, &Param::name);
+    if (declared == info_.params.end()) continue;
+    if (const ParsedParam* parsed = find(p.name).parsed) plugin.params.push_back(*parsed);
+  }
+  return {to, plugin, resolver_};
+}
+
 Location Params::where(std::string_view name) const {
   for (const ParsedParam& p : parsed_.params)
     if (p.name == name) return p.value_where;

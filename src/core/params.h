@@ -125,6 +125,9 @@ class Params {
   Location where(std::string_view name) const;
   const Location& where() const { return parsed_.where; }
   std::string_view plugin() const;  ///< the plugin's name
+  /// Those that another plugin declares too, with `more` of its own, for a plugin that makes that one. They count as
+  /// read.
+  Params forwarded(const PluginInfo& to, const std::vector<ParsedParam>& more = {}) const;
   /// Declared parameters that nothing has read: a defect of the plugin, found by a test.
   std::vector<std::string_view> unread() const;
 

@@ -40,6 +40,18 @@ std::optional<Effort> Convergence::until_rms(double rms, double z) const {
   return until_noise(rms * rms - std::max(0.0, bias_.value + z * bias_.standard_error), z);
 }
 
+double Convergence::noise_after(double samples) const {
+  const ConvergencePoint *first = &points_.front(), *last = &points_.back();
+  if (samples <= first->samples) return first->noise.value * first->samples / samples;
+  for (size_t i = 1; i < points_.size(); ++i) {
+    const ConvergencePoint &a = points_[i - 1], &b = points_[i];
+    if (samples > b.samples || a.noise.value <= 0 || b.noise.value <= 0) continue;
+    const double t = std::log(samples / a.samples) / std::log(b.samples / a.samples);
+    return a.noise.value * std::pow(b.noise.value / a.noise.value, t);
+  }
+  return last->noise.value * last->samples / samples;
+}
+
 std::optional<Effort> Convergence::until_plateau() const {
   if (bias_.value <= kZ95 * bias_.standard_error) return {};
   return until_noise(bias_.value);

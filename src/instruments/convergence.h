@@ -36,6 +36,9 @@ class Convergence {
   /// none with 97.5 % confidence.
   std::optional<Effort> until_plateau() const;
 
+  /// Mean square of one render's noise after so many samples; before the first point and after the last as 1 / samples.
+  double noise_after(double samples) const;
+
   const MeanSquare& bias() const { return bias_; }
   std::span<const ConvergencePoint> points() const { return points_; }
 

@@ -17,6 +17,12 @@ double hall_transform(double t, double skewness) {
   return t + a * t * t + a * a * t * t * t / 3 + skewness / 6;
 }
 
+/// Hall's cubic is a whole cube but for a constant: its inverse is in closed form.
+double inverse_hall_transform(double score, double skewness) {
+  const double a = skewness / 3, t = score - skewness / 6;
+  return std::abs(a) < 1e-9 ? t : (std::cbrt(1 + 3 * a * t) - 1) / a;
+}
+
 /// A standard normal variable, about, if nothing but chance and up to `slack` makes the difference.
 double normal_score(const Estimate& difference, double slack) {
   if (!std::isfinite(difference.mean) || !std::isfinite(difference.variance))
@@ -50,6 +56,13 @@ double normal_upper_quantile(double p) { return quantile(complement(boost::math:
 double equality_p(const Estimate& a, const Estimate& b, double slack) {
   Estimate difference{-b.mean, b.variance, -b.third_cumulant};
   return std::min(1.0, 2 * normal_upper_tail(std::abs(normal_score(difference += a, slack))));
+}
+
+ConfidenceInterval confidence_interval(const Estimate& a, double z) {
+  const double se = a.standard_error();
+  if (se == 0) return {a.mean, a.mean};
+  const double skewness = a.third_cumulant / (se * se * se);
+  return {a.mean - se * inverse_hall_transform(z, skewness), a.mean - se * inverse_hall_transform(-z, skewness)};
 }
 
 double at_most_p(const Estimate& a, double bound, double slack) {

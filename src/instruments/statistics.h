@@ -64,6 +64,13 @@ double normal_upper_quantile(double p);
 /// tails. A difference of up to `slack`, for rounding, counts as none. NaN on either side gives 0.
 double equality_p(const Estimate& a, const Estimate& b, double slack);
 
+/// Where the expectation lies: each end is exceeded with the probability that a standard normal variable exceeds `z`,
+/// by the same test.
+struct ConfidenceInterval {
+  double low, high;
+};
+ConfidenceInterval confidence_interval(const Estimate& a, double z);
+
 /// One-sided p-value of "the expectation is at most `bound`", by the same test.
 double at_most_p(const Estimate& a, double bound, double slack);
 

@@ -37,15 +37,21 @@ struct Worker {
   PathEnds ends;
 };
 
+PixelPlace place_of(const RenderJob& job, const Crop& crop, int x, int y) {
+  if (job.places.empty()) return {x, y};
+  return job.places[size_t(y - crop.y0) * size_t(crop.width()) + size_t(x - crop.x0)];
+}
+
 /// Renders one sample of one pixel.
 void render_sample(const RenderJob& job, Film& film, Worker& worker, int x, int y, uint64_t index) {
   Sampler& sampler = *worker.sampler;
-  sampler.start(x, y, index);
+  const PixelPlace at = place_of(job, film.settings().crop, x, y);
+  sampler.start(at.x, at.y, index);
   const SampledWavelengths lambda = job.wavelengths.sample_in_turn(index, sampler.get1d());
   const auto [offset, weight] = job.filter.sample(sampler.get2d());
-  const Vec2 film_point{float(x) + 0.5f + offset.x, float(y) + 0.5f + offset.y};
+  const Vec2 film_point{float(at.x) + 0.5f + offset.x, float(at.y) + 0.5f + offset.y};
   const Ray ray = job.camera.ray(film_point, job.camera.uses_lens() ? sampler.get2d() : Vec2{});
-  PathContext context{sampler, sample_key(job.seed, x, y, index), worker.arena};
+  PathContext context{sampler, sample_key(job.seed, at.x, at.y, index), worker.arena};
   const PathResult path = job.integrator.trace(job.world, ray, lambda, context);
   film.add(x, y, job.wavelengths.sensor(path.radiance, lambda), double(weight), path.sees_leaf);
   worker.rays += context.rays;

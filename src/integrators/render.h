@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <numeric>
+#include <span>
 
 #include "core/camera.h"
 #include "core/filter.h"
@@ -13,6 +14,11 @@
 #include "scene/film.h"
 
 namespace frond {
+
+/// A pixel of the whole picture.
+struct PixelPlace {
+  int x, y;
+};
 
 /// The parts of one render. All of them are shared by the threads, none is changed.
 struct RenderJob {
@@ -24,6 +30,8 @@ struct RenderJob {
   const Sampler& sampler;
   uint64_t seed;
   uint64_t first_sample, samples;  ///< of each pixel
+  /// Which pixels of the picture the film's stand for, row by row: some of them, drawn from all. Empty: themselves.
+  std::span<const PixelPlace> places = {};
 };
 
 /// How paths ended after so many scattering events; from kDepths - 1 on together in the last one.

@@ -117,12 +117,6 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
   return materials_[index] = result;
 }
 
-std::vector<std::shared_ptr<Material>> SceneResolver::materials() const {
-  std::vector<std::shared_ptr<Material>> result;
-  for (const auto& [index, material] : materials_) result.push_back(material);
-  return result;
-}
-
 SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, bool emission) {
   SpectrumPtr s;
   if (p.type == "rgb") {

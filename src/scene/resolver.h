@@ -26,8 +26,8 @@ class SceneResolver final : public ParamResolver {
   std::filesystem::path file(const std::string& name, const Location& where) override;
 
   std::shared_ptr<Material> material(size_t index);
-  /// All that have been made, each once.
-  std::vector<std::shared_ptr<Material>> materials() const;
+  /// All that have been made, each once, by their places in the description.
+  const std::map<size_t, std::shared_ptr<Material>>& materials() const { return materials_; }
 
  private:
   template <class Texture, class Info>

@@ -40,61 +40,9 @@ class OptionResolver final : public ParamResolver {
   const SceneDescription& description_;
 };
 
-/// What the new material does not know of the old one's parameters is left out, with a warning: the two describe the
-/// same leaf, but each has its own method.
-void apply_swap(const MaterialSwap& swap, const MaterialInfo& info, ParsedPlugin& plugin, const Log& log) {
-  std::erase_if(plugin.params, [&](const ParsedParam& given) {
-    const auto same_name = [&given](const Param& p) { return p.name == given.name; };
-    if (std::any_of(info.params.begin(), info.params.end(), same_name)) return false;
-    log.warn(given.where, fmt::format("\"{}\" has no parameter \"{}\": left out by the swap", info.name, given.name));
-    return true;
-  });
-  set_params(swap.to, info, {}, plugin);
-  plugin.name = swap.to.name;
-}
-
 bool is_mixture(const MaterialInfo& info) {
   return std::any_of(info.params.begin(), info.params.end(),
                      [](const Param& p) { return p.kind == ParamKind::material; });
-}
-
-void apply_swap_to_leaves(SceneDescription& description, const MaterialSwap& swap, const Registry& registry,
-                          const Log& log) {
-  const MaterialInfo& info = registry.materials.get(swap.to.name, {});
-  const auto leaves = Scene::leaf_materials(description, registry);
-  if (leaves.empty()) fail({}, "swap: none of the scene's materials is a leaf");
-  for (const size_t i : leaves) apply_swap(swap, info, description.materials[i].plugin, log);
-}
-
-void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
-                 const Log& log) {
-  for (const MaterialSwap& swap : swaps) {
-    if (swap.from == "*") {
-      apply_swap_to_leaves(description, swap, registry, log);
-      continue;
-    }
-    const MaterialInfo& info = registry.materials.get(swap.to.name, {});
-    std::vector<std::string_view> names;
-    bool found = false;
-    for (MaterialDescription& m : description.materials) {
-      names.push_back(m.name.empty() ? m.plugin.name : m.name);
-      if (m.name != swap.from && m.plugin.name != swap.from) continue;
-      apply_swap(swap, info, m.plugin, log);
-      found = true;
-    }
-    if (!found) fail({}, "swap: the scene has no material \"{}\"{}", swap.from, suggestion(swap.from, names));
-  }
-}
-
-/// The strategy, of the command line or else the scene's options.
-std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
-                                                     const SceneDescription& description, const Registry& registry) {
-  OptionResolver resolver(description);
-  const PluginText choice = parse_plugin_text(text, where);
-  const WavelengthsInfo& info = registry.wavelengths.get(choice.name, where);
-  ParsedPlugin plugin{choice.name, where, {}};
-  set_params(choice, info, where, plugin);
-  return info.make(Params(info, plugin, resolver));
 }
 
 }  // namespace
@@ -119,7 +67,7 @@ class SceneBuilder {
     scene_.materials_ = resolver.materials();
     SharedWork shared;
     const Preparation preparation{*scene_.wavelengths_, pool_, log_, overrides_.cache_dir, &shared};
-    for (const auto& material : scene_.materials_) material->prepare(preparation);
+    for (const auto& [place, material] : scene_.materials_) material->prepare(preparation);
     index_lights();
     scene_.integrator_->prepare(scene_);
   }
@@ -310,6 +258,21 @@ class SceneBuilder {
   ThreadPool& pool_;
   const Log& log_;
 };
+
+const Material* Scene::material(size_t place) const {
+  const auto it = materials_.find(place);
+  return it == materials_.end() ? nullptr : it->second.get();
+}
+
+std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
+                                                     const SceneDescription& description, const Registry& registry) {
+  OptionResolver resolver(description);
+  const PluginText choice = parse_plugin_text(text, where);
+  const WavelengthsInfo& info = registry.wavelengths.get(choice.name, where);
+  ParsedPlugin plugin{choice.name, where, {}};
+  set_params(choice, info, where, plugin);
+  return info.make(Params(info, plugin, resolver));
+}
 
 FilmSettings Scene::film_settings(const SceneDescription& description, const Registry& registry) {
   OptionResolver resolver(description);

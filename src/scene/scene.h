@@ -10,14 +10,9 @@
 #include "scene/description.h"
 #include "scene/plugin_text.h"
 #include "scene/registry.h"
+#include "scene/swap.h"
 
 namespace frond {
-
-/// Puts one material in place of another.
-struct MaterialSwap {
-  std::string from;  ///< name of a named material, or of a plugin; "*": every leaf
-  PluginText to;
-};
 
 /// What the command line says over the scene file.
 struct SceneOverrides {
@@ -29,6 +24,10 @@ struct SceneOverrides {
   bool quick = false;               ///< half the resolution, a sixteenth of the samples
   std::filesystem::path cache_dir;  ///< empty: no files are kept
 };
+
+/// The strategy that a PluginText names, of the command line or else the scene's options. Throws InputError at `where`.
+std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
+                                                     const SceneDescription& description, const Registry& registry);
 
 /// A scene ready to be rendered.
 class Scene final : public World {
@@ -60,6 +59,8 @@ class Scene final : public World {
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
   const Accelerator& accelerator() const { return *accelerator_; }
+  /// That of the description at this place; nullptr where nothing is made of it.
+  const Material* material(size_t place) const;
   int samples_per_pixel() const { return samples_per_pixel_; }
   /// Of all random numbers.
   uint64_t seed() const { return sampler_->seed(); }
@@ -73,7 +74,7 @@ class Scene final : public World {
   std::unique_ptr<Sampler> sampler_;
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<Integrator> integrator_;
-  std::vector<std::shared_ptr<Material>> materials_;
+  std::map<size_t, std::shared_ptr<Material>> materials_;  ///< by their places in the description
   std::vector<std::unique_ptr<Light>> owned_lights_;
   std::vector<const Light*> lights_;
   std::vector<const EnvironmentLight*> environment_;

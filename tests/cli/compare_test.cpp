@@ -122,7 +122,7 @@ TEST_F(CompareCommand, ALeafThatNobodySeesIsNoError) {
 }
 
 TEST_F(CompareCommand, BadRequestsAreRefused) {
-  EXPECT_THAT(compare({"--materials", "leaf"}).err, HasSubstr("unknown material \"leaf\""));
+  EXPECT_THAT(compare({"--materials", "leaves"}).err, HasSubstr("unknown material \"leaves\""));
   EXPECT_THAT(compare({"--materials", "abm,mood=weighted"}).err, HasSubstr("did you mean \"mode\"?"));
   EXPECT_THAT(compare({"--target", "0.1,0.2"}).err, HasSubstr("--target takes the RMS of red, green and blue"));
   EXPECT_THAT(compare({"--materials", "abm@wavelengths=bands"}).err,

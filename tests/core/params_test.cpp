@@ -243,5 +243,29 @@ TEST(PluginTable, UnknownNameNamesTheNearestOne) {
   }
 }
 
+constexpr Param kOtherParams[] = {
+    {.name = "roughness", .kind = ParamKind::real, .default_value = 0.9, .range = {0, 1}, .doc = "Of the same name."},
+    {.name = "amount", .kind = ParamKind::float_texture, .default_value = 0.5, .range = {0, 1}, .doc = "As well."},
+    {.name = "mode", .kind = ParamKind::string, .default_value = std::string_view("analog"), .doc = "Its own."},
+};
+const PluginInfo kOther{"material", "other", "For tests.", "", kOtherParams};
+
+TEST(Params, AreForwardedAsFarAsAnotherPluginHasThem) {
+  RecordingResolver resolver;
+  const Params p(kInfo,
+                 {"test",
+                  {},
+                  {{"float", "roughness", {}, {}, std::vector<double>{0.3}},
+                   {"float", "thickness", {}, {}, std::vector<double>{1e-3}}}},
+                 resolver);
+  const Params other = p.forwarded(kOther, {{"string", "mode", {}, {}, std::vector<std::string>{"weighted"}}});
+  EXPECT_EQ(other.plugin(), "other");
+  EXPECT_EQ(other.real("roughness"), 0.3);
+  EXPECT_FALSE(other.given("amount"));
+  EXPECT_EQ(other.string("mode"), "weighted");
+  EXPECT_THAT(p.unread(), ::testing::Not(::testing::Contains("amount")));
+  EXPECT_THAT(p.unread(), ::testing::Contains("thickness"));
+}
+
 }  // namespace
 }  // namespace frond

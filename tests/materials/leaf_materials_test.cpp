@@ -21,7 +21,7 @@ using testing::number;
 const ParsedParam kSolve = words("tablemethod", {"solve"});
 
 TEST(LeafMaterials, ShareTheParametersOfTheLeaf) {
-  for (const char* name : {"abm", "leaf_simplified"}) {
+  for (const char* name : {"leaf", "abm", "leaf_simplified", "leaf_solved", "leaf_lambert"}) {
     const auto params = material_info(name).params;
     ASSERT_GE(params.size(), kLeafParams.size());
     for (size_t i = 0; i < kLeafParams.size(); ++i) EXPECT_EQ(params[i].name, kLeafParams[i].name) << name;
@@ -67,6 +67,41 @@ TEST(LeafParams, KnowsWhatTexturesVary) {
   EXPECT_FALSE(leaf({texture("chlorophylla", {"1:2"})}).depth().is_constant());
   EXPECT_EQ(leaf({texture("spongyaspect", {"1:2"})}).cuticle_aspect(), nullptr);
   EXPECT_NE(leaf({texture("spongyaspect", {"1:2"})}).spongy_aspect(), nullptr);
+}
+
+/// Of light from above, averaged where the model draws lots.
+SampledSpectrum mean_f(Ready& ready) {
+  const Bsdf& bsdf = ready.bsdf({0.5f, 0.5f});
+  SampledSpectrum sum;
+  RandomStream random(1);
+  for (int i = 0; i < 200; ++i) sum += bsdf.f({0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}, random);
+  return sum * (1.f / 200);
+}
+
+TEST(Leaf, IsTheModelThatItNames) {
+  const auto maize = words("specimen", {"maize"});
+  for (const std::string model : {"leaf_lambert", "leaf_simplified", "leaf_solved"}) {
+    Ready leaf("leaf", {maize, words("model", {model})}), itself(model, {maize});
+    EXPECT_EQ(mean_f(leaf)[0], mean_f(itself)[0]) << model;
+  }
+}
+
+TEST(Leaf, IsTheWalkByWeightsWhereNobodyChooses) {
+  Ready weighted("abm", {words("mode", {"weighted"})}), analog("abm", {});
+  for (const auto& params : {std::vector<ParsedParam>{}, {words("model", {"auto"})}, {words("model", {"abm"})}}) {
+    Ready leaf("leaf", params);
+    EXPECT_EQ(mean_f(leaf)[0], mean_f(weighted)[0]);
+    EXPECT_NE(mean_f(leaf)[0], mean_f(analog)[0]);
+  }
+}
+
+TEST(Leaf, RefusesWhatItsModelRefuses) {
+  EXPECT_THAT(error_of([] {
+                Ready("leaf", {words("model", {"leaf_solved"}), texture("spongyaspect", {"1:2"})});
+              }),
+              HasSubstr("leaf_solved takes no texture for \"spongyaspect\""));
+  EXPECT_THAT(error_of([] { Ready("leaf", {words("model", {"leaf_simple"})}); }), HasSubstr("leaf_simplified"));
+  EXPECT_THAT(error_of([] { Ready("leaf", {number("float", "maxrms", {0})}); }), HasSubstr("outside its range 1e-06"));
 }
 
 class Pigments : public ::testing::Test {

@@ -77,6 +77,7 @@ struct Comparison {
   Reference reference;
   std::vector<Subject> subjects;
   uint64_t early_samples = 0;
+  std::string leaf_by_leaf;  ///< a sentence on what is enough for `Request::rms` of each leaf alone; empty: not asked
   double wall_seconds = 0, cpu_seconds = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/compare/inputs.h"
+#include "cli/paired_films.h"
 #include "cli/plugins.h"
 #include "core/random.h"
 #include "scene/parser.h"
@@ -34,6 +35,13 @@ void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
 
 std::string name_of(const MaterialDescription& m) { return m.name.empty() ? m.plugin.name : m.name; }
 
+/// Candidates answer what a leaf leaves open.
+void drop_requests(SceneDescription& description) {
+  for (MaterialDescription& m : description.materials)
+    if (m.plugin.name == "leaf")
+      std::erase_if(m.plugin.params, [](const ParsedParam& p) { return p.name == "maxrms" || p.name == "model"; });
+}
+
 std::vector<std::string> leaf_names(const SceneDescription& description, const Registry& registry) {
   std::vector<std::string> names;
   for (const size_t i : Scene::leaf_materials(description, registry))
@@ -52,6 +60,7 @@ Study::Study(const StudyOptions& options, ThreadPool& pool, const Log& log)
       description_(parse_scene(options.scene, log)) {
   resize(description_.film, Scene::film_settings(description_, registry_), options.size);
   film_ = Scene::film_settings(description_, registry_);
+  drop_requests(description_);
   leaves_ = options.leaves.empty() ? leaf_names(description_, registry_) : options.leaves;
   if (leaves_.empty()) fail({}, "{}: none of the materials is a leaf; --leaf names the one to replace", options.scene);
   if (options.leaves.empty()) swaps_.push_back({"*", {}});
@@ -63,16 +72,19 @@ std::unique_ptr<Scene> Study::scene(const Candidate& candidate) const {
   overrides.wavelengths = candidate.wavelengths.empty() ? options_.wavelengths : candidate.wavelengths;
   overrides.integrator = candidate.integrator;
   overrides.seed = options_.seed;
-  overrides.swaps = swaps_;
-  for (MaterialSwap& swap : overrides.swaps) swap.to = candidate.material;
+  overrides.swaps = swaps_to(candidate.material);
   overrides.cache_dir = options_.cache;
   return std::make_unique<Scene>(description_, registry_, overrides, pool_, log_);
 }
 
+std::vector<MaterialSwap> Study::swaps_to(const PluginText& material) const {
+  std::vector<MaterialSwap> swaps = swaps_;
+  for (MaterialSwap& swap : swaps) swap.to = material;
+  return swaps;
+}
+
 std::unique_ptr<Sampler> Study::sampler(const Scene& scene, uint64_t seed) const {
-  SceneResolver resolver(description_, registry_, scene.wavelengths());
-  const SamplerInfo& info = registry_.samplers.get(description_.sampler.name, description_.sampler.where);
-  return info.make(Params(info, description_.sampler, resolver), seed);
+  return make_sampler(description_, registry_, scene.wavelengths(), seed);
 }
 
 std::unique_ptr<Integrator> Study::integrator(const Scene& scene, const PluginText& over) const {

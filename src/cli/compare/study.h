@@ -27,13 +27,15 @@ class Study {
   std::unique_ptr<Scene> scene(const Candidate& candidate) const;
   /// The scene's sampler, with a seed of its own.
   std::unique_ptr<Sampler> sampler(const Scene& scene, uint64_t seed) const;
-
   /// The scene's integrator with these over it.
   std::unique_ptr<Integrator> integrator(const Scene& scene, const PluginText& over) const;
 
   /// From which those of all renders are made.
   uint64_t seed() const { return options_.seed.value_or(0); }
   const FilmSettings& film() const { return film_; }
+  const SceneDescription& description() const { return description_; }
+  /// Which put a material in the leaves' place.
+  std::vector<MaterialSwap> swaps_to(const PluginText& material) const;
   /// Names of the materials that candidates replace.
   const std::vector<std::string>& leaves() const { return leaves_; }
   /// The scene's integrator, by name.

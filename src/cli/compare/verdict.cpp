@@ -103,7 +103,7 @@ std::string verdict(const Comparison& c) {
   if (c.request.rms.empty()) return overview(c);
   std::string text;
   for (const double rms : c.request.rms) text += (text.empty() ? "" : "\n") + answer(c, rms);
-  return text;
+  return c.leaf_by_leaf.empty() ? text : text + '\n' + c.leaf_by_leaf;
 }
 
 }  // namespace frond::compare

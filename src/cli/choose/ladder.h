@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/plugin_text.h"
+#include "scene/registry.h"
+
+namespace frond::choose {
+
+/// One way to do a thing.
+struct Rung {
+  std::string name;
+  PluginText plugin;
+  /// CPU time of a sample, relative to the first rung's. A constant, measured beforehand (docs/choosing.md): what a run
+  /// measures varies, and the same command has to give the same picture.
+  double price;
+};
+
+/// What can be chosen from, each list from the cheapest to the one that counts as right.
+struct Ladder {
+  std::vector<Rung> models, wavelengths;
+};
+
+/// The models that the material `leaf` knows; wavelength strategies of colours.
+Ladder standard_ladder(const Registry& registry);
+
+}  // namespace frond::choose

@@ -1,0 +1,54 @@
+#include "scene/swap.h"
+
+#include <algorithm>
+
+#include "scene/scene.h"
+
+namespace frond {
+namespace {
+
+void leave_out_unknown(const MaterialInfo& info, ParsedPlugin& plugin, const Log& log) {
+  std::erase_if(plugin.params, [&](const ParsedParam& given) {
+    const auto same_name = [&given](const Param& p) { return p.name == given.name; };
+    if (std::any_of(info.params.begin(), info.params.end(), same_name)) return false;
+    log.warn(given.where, fmt::format("\"{}\" has no parameter \"{}\": left out by the swap", info.name, given.name));
+    return true;
+  });
+}
+
+void apply_swap_to_leaves(SceneDescription& description, const MaterialSwap& swap, const Registry& registry,
+                          const Log& log) {
+  const auto leaves = Scene::leaf_materials(description, registry);
+  if (leaves.empty()) fail({}, "swap: none of the scene's materials is a leaf");
+  for (const size_t i : leaves) swap_material(description.materials[i].plugin, swap.to, registry, log);
+}
+
+}  // namespace
+
+void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log) {
+  const MaterialInfo& info = registry.materials.get(to.name, {});
+  leave_out_unknown(info, plugin, log);
+  set_params(to, info, {}, plugin);
+  plugin.name = to.name;
+}
+
+void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
+                 const Log& log) {
+  for (const MaterialSwap& swap : swaps) {
+    if (swap.from == "*") {
+      apply_swap_to_leaves(description, swap, registry, log);
+      continue;
+    }
+    std::vector<std::string_view> names;
+    bool found = false;
+    for (MaterialDescription& m : description.materials) {
+      names.push_back(m.name.empty() ? m.plugin.name : m.name);
+      if (m.name != swap.from && m.plugin.name != swap.from) continue;
+      swap_material(m.plugin, swap.to, registry, log);
+      found = true;
+    }
+    if (!found) fail({}, "swap: the scene has no material \"{}\"{}", swap.from, suggestion(swap.from, names));
+  }
+}
+
+}  // namespace frond

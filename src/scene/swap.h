@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/description.h"
+#include "scene/plugin_text.h"
+#include "scene/registry.h"
+
+namespace frond {
+
+/// Puts one material in place of another.
+struct MaterialSwap {
+  std::string from;  ///< name of a named material, or of a plugin; "*": every leaf
+  PluginText to;
+};
+
+/// What the new material does not know of the old one's parameters is left out, with a warning: the two describe the
+/// same leaf, but each has its own method. Throws InputError.
+void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log);
+
+/// In this order, each on what the last one left. Throws InputError where the scene has no such material.
+void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
+                 const Log& log);
+
+}  // namespace frond
