@@ -252,15 +252,26 @@ class Chooser {
 
 double Choice::noise_rms() const { return std::sqrt(Convergence(noise, {}).noise_after(double(samples))); }
 
-Effort Choice::effort() const {
-  return Convergence(noise, {bias.high * bias.high, 0}).until_rms(rms, kNoiseZ).value_or(Effort{1, 1, false});
+namespace {
+
+/// Up to a whole power of two samples: there low-discrepancy ones are at their best, and were measured.
+Effort rounded_up(const std::optional<Effort>& effort) {
+  if (!effort) return {1, 1, false};  // nothing is left for noise, and nobody promised that there is
+  const double samples = std::exp2(std::ceil(std::log2(effort->samples)));
+  return {samples, effort->seconds * samples / effort->samples, effort->measured};
 }
 
-double Choice::samples_needed() const { return std::ceil(effort().samples); }
+}  // namespace
 
-Effort Choice::reference_effort() const { return *Convergence(reference_noise, {}).until_rms(rms, kNoiseZ); }
+Effort Choice::effort() const {
+  return rounded_up(Convergence(noise, {bias.high * bias.high, 0}).until_rms(rms, kNoiseZ));
+}
 
-double Choice::reference_samples_needed() const { return std::ceil(reference_effort().samples); }
+Effort Choice::reference_effort() const { return rounded_up(Convergence(reference_noise, {}).until_rms(rms, kNoiseZ)); }
+
+double Choice::samples_needed() const { return effort().samples; }
+
+double Choice::reference_samples_needed() const { return reference_effort().samples; }
 
 double Choice::time_saved() const { return reference_effort().seconds / effort().seconds; }
 

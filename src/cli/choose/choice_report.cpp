@@ -68,7 +68,7 @@ nlohmann::ordered_json to_json(const Answer& a) {
 std::string choice_text(const Choice& c) {
   std::string text = fmt::format(
       "leaf models for an RMS of {:g}, by a pilot of {} pixels and 2 x {} samples ({:.2g} s of CPU):\n"
-      "                         price     noise    cost   bias\n",
+      "                         price   noise   RMS of its bias, alone\n",
       c.rms, c.pilot.pixels, c.pilot_samples, c.pilot.cpu_seconds);
   for (const Answer& a : c.answers) text += answer_text(a, c.rms);
   return text + failures_text(c) + "  " + outcome_text(c) + "\n  " + samples_text(c);
