@@ -11,8 +11,8 @@ struct Price {
   std::string_view model;
   double price;
 };
-constexpr std::array kPrices{Price{"leaf_lambert", 1}, Price{"leaf_simplified", 1.06}, Price{"leaf_solved", 1.3},
-                             Price{"abm", 1.95}};
+constexpr std::array kPrices{Price{"leaf_lambert", 1}, Price{"leaf_simplified", 1.07}, Price{"leaf_solved", 1.15},
+                             Price{"abm", 1.77}};
 
 double price_of(std::string_view model) {
   const auto found = std::ranges::find(kPrices, model, &Price::model);
