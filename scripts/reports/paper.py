@@ -119,7 +119,8 @@ def main():
     runs = Runs(setting, scratch, options.threads, options.keep)
     measured = measure(runs)
     tables = {method: runs.table(method) for method in ("solve", "montecarlo")}
-    text = page(runs, docs / "images" / "paper", measured, tables, "scripts/paper" + (" --quick" if setting is not FULL else ""))
+    command = "scripts/paper" + (" --quick" if setting is not FULL else "") + (" --continue" if options.keep else "")
+    text = page(runs, docs / "images" / "paper", measured, tables, command)
     (docs / "paper.md").write_text(re.sub(r"\n{3,}", "\n\n", text))
     print(docs / "paper.md")
 
