@@ -151,4 +151,4 @@ class Runs:
                 frond("convert", self.half(s, model, 1), self.half(s, model, 2), "--exposure", s.stops, "-o", picture)
                 words += [picture, f"--text:x=8:y=20:size=15:shadow=2:font={FONT}", f"{s.figure}{letter}  {model}"]
         path.parent.mkdir(parents=True, exist_ok=True)
-        run("oiiotool", *words, "--mosaic:pad=8", "2x3", "--compression", "jpeg:90", "-o", path)
+        run("oiiotool", "--nosoftwareattrib", *words, "--mosaic:pad=8", "2x3", "--compression", "jpeg:90", "-o", path)
