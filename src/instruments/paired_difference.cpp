@@ -1,5 +1,7 @@
 #include "instruments/paired_difference.h"
 
+#include <algorithm>
+
 namespace frond {
 namespace {
 
@@ -19,6 +21,12 @@ Estimate mean_square(const PairedDifference& difference) {
   Moments moments;
   for (size_t i = 0; i < difference.pixels(); ++i) moments.add(product(difference, 0, difference, 1, i));
   return moments.estimate();
+}
+
+ConfidenceInterval mean_square_interval(const Estimate& mean_square, double z) {
+  const ConfidenceInterval skewed = confidence_interval(mean_square, z);
+  const double even = std::max(0.0, mean_square.mean) + z * mean_square.standard_error();
+  return {std::max(0.0, skewed.low), std::max(skewed.high, even)};
 }
 
 double mean_product(const PairedDifference& a, const PairedDifference& b) {

@@ -22,6 +22,10 @@ struct PairedDifference {
 /// taken to be drawn at random from the picture, so that the spread among them is uncertainty too.
 Estimate mean_square(const PairedDifference& difference);
 
+/// Where such a mean square lies, at `z` as in `confidence_interval`. It is none below 0: what noise makes of it there
+/// takes nothing off the upper end, and no skewness below 0 does.
+ConfidenceInterval mean_square_interval(const Estimate& mean_square, double z);
+
 /// Mean product of two differences, without their noise.
 double mean_product(const PairedDifference& a, const PairedDifference& b);
 

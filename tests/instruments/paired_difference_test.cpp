@@ -40,6 +40,15 @@ TEST(PairedDifference, ProductsAreThoseOfTheBiases) {
   EXPECT_DOUBLE_EQ(mean_product(a, a), mean_square(a).mean);
 }
 
+TEST(PairedDifference, NoiseBelowNothingDoesNotNarrowTheInterval) {
+  const ConfidenceInterval below = mean_square_interval({-3, 1, -2}, 2);
+  EXPECT_EQ(below.low, 0);
+  EXPECT_EQ(below.high, 2);
+  const ConfidenceInterval skewed = mean_square_interval({3, 1, 2}, 2), even = mean_square_interval({3, 1, 0}, 2);
+  EXPECT_EQ(even.high, 5);
+  EXPECT_GT(skewed.high, 5);
+}
+
 TEST(PairedDifference, OfNothingIsNothing) {
   EXPECT_EQ(mean_square({}).mean, 0);
   EXPECT_EQ(mean_product({}, {}), 0);

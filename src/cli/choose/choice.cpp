@@ -74,7 +74,7 @@ class Chooser {
 
   Bounds bounds(const Configuration& answers, const Configuration& from) const {
     const Estimate e = mean_square(pilot_.difference(answers, from));
-    const ConfidenceInterval interval = confidence_interval(e, z_);
+    const ConfidenceInterval interval = mean_square_interval(e, z_);
     return {interval, e.mean, interval.high - e.mean};
   }
 
