@@ -185,8 +185,9 @@ def page(cases, resolutions, options):
     return f"""# Choosing leaf models: what was measured
 
 Written by `scripts/choosing`; what the words mean stands in [choosing.md](choosing.md). None of these scenes was used to design
-the choice, but the first, whose early runs showed that samples were counted wrongly: two leaves close by and far away, maize lit from behind, dark leaves under a strong light, a leaf with a map of
-its chlorophyll (`scenes/choosing`), and `scenes/hundred-leaves`. All at {RESOLUTION} x {RESOLUTION} pixels, {options.seeds}
+the choice, but the first, whose early runs showed that samples were counted wrongly: two leaves close by and far away, maize
+lit from behind, dark leaves under a strong light, a leaf with a map of its chlorophyll (`scenes/choosing`), and
+`scenes/hundred-leaves`. All at {RESOLUTION} x {RESOLUTION} pixels, {options.seeds}
 seeds for every request. The pilot may use a quarter of the paths of the render: {', '.join(str(samples_for(r)) for r in REQUESTS)}
 samples per pixel for the requests from {REQUESTS[0]:g} to {REQUESTS[-1]:g}.
 
