@@ -17,7 +17,7 @@ namespace {
 
 const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
 
-/// "stdillum-D65", or the name of an .spd file.
+/// A name such as "stdillum-D65", or that of an .spd file.
 SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneDescription& description) {
   const auto& words = std::get<std::vector<std::string>>(p.values);
   if (words.size() != 1) fail(p.value_where, "\"{}\" takes one spectrum, {} names given", p.name, words.size());
@@ -130,7 +130,10 @@ SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, bool emission) {
                                                                 : spectrum_of_name(p, description_);
     if (emission) s = normalized(s, p);
   }
-  check_range(*s, wavelengths_, p.value_where, p.name);
+  if (emission)
+    check_light_range(*s, wavelengths_, p.value_where, p.name);
+  else
+    check_range(*s, wavelengths_, p.value_where, p.name);
   if (!emission && s->max_value() > 1)
     fail(p.value_where, "\"{}\" goes up to {}, outside its range 0 to 1", p.name, s->max_value());
   return s;

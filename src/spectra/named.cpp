@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "spectra/cie.h"
+#include "spectra/illuminants.h"
 
 namespace frond {
 namespace {
@@ -11,7 +12,7 @@ struct Named {
   std::string_view name;
   SpectrumPtr (*get)();
 };
-constexpr Named kNamed[] = {{"stdillum-D65", d65}};
+constexpr Named kNamed[] = {{"stdillum-A", illuminant_a}, {"stdillum-D65", d65}, {"stdillum-E", illuminant_e}};
 
 /// Families of names that pbrt-v4 has built in.
 bool is_known_to_pbrt(std::string_view name) {

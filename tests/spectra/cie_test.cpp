@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "spectra/analytic.h"
+#include "spectra/illuminants.h"
 #include "spectra/tabulated.h"
 
 namespace frond {
@@ -28,11 +29,39 @@ TEST(Cie, EqualEnergyIsNearlyWhite) {
   EXPECT_NEAR(xyz[2] / xyz[1], 1, 4e-4);
 }
 
-TEST(Cie, D65HasItsPublishedChromaticity) {
-  const Triple xyz = to_xyz(*d65());
+void expect_chromaticity(const Spectrum& s, double x, double y, double tolerance) {
+  const Triple xyz = to_xyz(s);
   const double sum = xyz[0] + xyz[1] + xyz[2];
-  EXPECT_NEAR(xyz[0] / sum, 0.31272, 3e-5);
-  EXPECT_NEAR(xyz[1] / sum, 0.32903, 3e-5);
+  EXPECT_NEAR(xyz[0] / sum, x, tolerance);
+  EXPECT_NEAR(xyz[1] / sum, y, tolerance);
+}
+
+// Tolerances are what five nanometres and the rounding of the tables leave.
+TEST(Cie, IlluminantsHaveTheirPublishedChromaticities) {
+  expect_chromaticity(*d65(), 0.31272, 0.32903, 3e-5);
+  expect_chromaticity(*illuminant_a(), 0.44758, 0.40745, 3e-5);
+  expect_chromaticity(*illuminant_e(), 1.0 / 3, 1.0 / 3, 6e-5);
+}
+
+TEST(Cie, IlluminantAHasItsPublishedValues) {
+  const std::pair<float, double> published[] = {{300.f, 0.930483}, {380.f, 9.79510}, {400.f, 14.7080},
+                                                {500.f, 59.8611},  {560.f, 100},     {600.f, 129.043},
+                                                {700.f, 198.261},  {780.f, 241.675}};
+  for (const auto& [nm, value] : published) EXPECT_NEAR(double(illuminant_a()->at(nm)), value, 5e-6 * value) << nm;
+}
+
+TEST(Cie, IlluminantAIsABlackbodyWithTheConstantOf1931) {
+  const BlackbodySpectrum blackbody(2848 * 1.438776877 / 1.435);
+  for (float nm = 300; nm <= 830; nm += 10)
+    EXPECT_NEAR(illuminant_a()->at(nm), 100 * blackbody.at(nm) / blackbody.at(560), 3e-4f) << nm;
+}
+
+TEST(Cie, IlluminantsEndWhereTheyAreDefined) {
+  EXPECT_EQ(illuminant_a()->range_nm().min, 300);
+  EXPECT_EQ(illuminant_a()->range_nm().max, 830);
+  EXPECT_EQ(illuminant_a()->at(900), illuminant_a()->at(830));
+  EXPECT_EQ(illuminant_a()->max_value(), illuminant_a()->at(830));
+  EXPECT_EQ(illuminant_e()->range_nm().max, 2500);
 }
 
 TEST(Cie, D65IsNormalisedAsPublishedAndToUnitLuminance) {

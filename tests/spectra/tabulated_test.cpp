@@ -89,11 +89,12 @@ TEST(Blackbody, ImpossibleTemperaturesAreRefused) {
     EXPECT_THAT(error_of([&] { BlackbodySpectrum s(kelvin, kHere); }), HasSubstr("scene.pbrt:3:7: a blackbody's"));
 }
 
-TEST(Named, D65IsThereAndOthersAreNamed) {
-  EXPECT_EQ(named_spectrum("stdillum-D65", kHere)->at(560), 100);
+TEST(Named, IlluminantsAreThereAsPublishedAndOthersAreNamed) {
+  for (const std::string_view name : spectrum_names()) EXPECT_EQ(named_spectrum(name, kHere)->at(560), 100) << name;
+  EXPECT_NE(named_spectrum("stdillum-A", kHere)->at(600), named_spectrum("stdillum-D65", kHere)->at(600));
   EXPECT_EQ(error_of([] { named_spectrum("metal-Cu-eta", kHere); }),
-            "scene.pbrt:3:7: pbrt-v4's spectrum \"metal-Cu-eta\" is not available; what there is: stdillum-D65, or a "
-            ".spd file");
+            "scene.pbrt:3:7: pbrt-v4's spectrum \"metal-Cu-eta\" is not available; what there is: stdillum-A, "
+            "stdillum-D65, stdillum-E, or a .spd file");
   EXPECT_THAT(error_of([] { named_spectrum("stdilum-D65", kHere); }), HasSubstr("did you mean \"stdillum-D65\"?"));
 }
 

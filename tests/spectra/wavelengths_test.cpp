@@ -7,6 +7,7 @@
 #include "spectra/check_range.h"
 #include "spectra/cie.h"
 #include "spectra/color_space.h"
+#include "spectra/named.h"
 #include "spectra/registry.h"
 #include "tests/support/bind.h"
 #include "tests/support/input_error.h"
@@ -153,6 +154,19 @@ TEST(CheckRange, DataThatEndTooSoonAreNamed) {
                 check_range({460, 700}, *make("smpte"), here, "reflectance");
               }),
               HasSubstr("needs 455 to 608"));
+}
+
+TEST(CheckRange, LightsThatEndTooSoonAreToldWhatReachesFurther) {
+  const auto needs_850 = make_hero(450, 850);
+  const auto message = [&](const SpectrumPtr& s) {
+    return error_of([&] { check_light_range(*s, *needs_850, {}, "I"); });
+  };
+  EXPECT_EQ(message(d65()),
+            "\"I\" is known from 360 to 830 nm, the render needs 450 to 850 nm; what reaches further: \"blackbody I\" "
+            "5800, \"spectrum I\" \"stdillum-E\" or an .spd file");
+  EXPECT_THAT(message(named_spectrum("stdillum-A", {})), HasSubstr("is known from 300 to 830 nm"));
+  EXPECT_EQ(message(named_spectrum("stdillum-E", {})), "");
+  EXPECT_EQ(message(std::make_shared<BlackbodySpectrum>(5800)), "");
 }
 
 TEST(Registry, EveryStrategyReadsWhatItDeclaresAndSaysWhereItComesFrom) {
