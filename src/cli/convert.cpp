@@ -18,7 +18,7 @@ struct ConvertOptions {
 
 LinearImage read(const std::string& path, const std::vector<double>& bands_nm) {
   if (bands_nm.empty()) return read_linear(path);
-  return {path, "linear sRGB", false_color_image(read_image(path, {}), path, bands_nm), {}};
+  return {path, "linear sRGB", false_color_image(read_image(path, {}), path, bands_nm), {}, {}};
 }
 
 void convert(const ConvertOptions& options) {

@@ -65,6 +65,21 @@ std::vector<LinearImage> read_halves(const std::vector<std::string>& paths) {
   return halves;
 }
 
+bool have_the_same_noise(const LinearImage& a, const LinearImage& b) {
+  return a.path == b.path || (!a.seed.empty() && a.seed == b.seed);
+}
+
+/// Bias is told from noise by (A1 - B1)(A2 - B2): what is on both sides of the product has to be independent. The same
+/// seed within one side of it, as in A1 and B1, does no harm.
+void warn_of_same_noise(const std::vector<LinearImage>& halves) {
+  for (const auto& [i, j] : {std::pair{0u, 1u}, {2u, 3u}, {0u, 3u}, {1u, 2u}})
+    if (have_the_same_noise(halves[i], halves[j]))
+      Log().warn({}, fmt::format("{} and {} have the same seed{}: noise cannot be told from bias; render one of them "
+                                 "with another --seed",
+                                 halves[i].path, halves[j].path,
+                                 halves[i].seed.empty() ? "" : fmt::format(" ({})", halves[i].seed)));
+}
+
 /// Adds "rms_red" and so on, with `prefix` before each name.
 void add_errors(nlohmann::ordered_json& j, const std::string& prefix, const std::vector<LinearImage>& halves,
                 std::span<const float> use) {
@@ -101,6 +116,7 @@ void difference(const DifferenceOptions& options) {
       fail({}, "{}: a difference is a picture in false colour: name a .png or .jpg", options.output);
   }
   const auto halves = read_halves(options.images);
+  warn_of_same_noise(halves);
   if (!options.output.empty()) write_difference(options.output, halves, options.scale);
   nlohmann::ordered_json j;
   add_errors(j, "", halves, {});

@@ -7,7 +7,8 @@ LinearImage read_linear(const std::string& path) {
   if (file.eight_bit) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
   if (file.header.color_space.empty())
     fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
-  LinearImage result{path, file.header.color_space, Image(file.image.width, file.image.height, {"R", "G", "B"}), {}};
+  LinearImage result{path, file.header.color_space, Image(file.image.width, file.image.height, {"R", "G", "B"}), {}, {}};
+  if (const auto seed = file.header.text.find("frond:seed"); seed != file.header.text.end()) result.seed = seed->second;
   const auto leaf = file.image.channel("leaf");
   for (int y = 0; y < file.image.height; ++y)
     for (int x = 0; x < file.image.width; ++x) {

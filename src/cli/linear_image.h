@@ -11,6 +11,7 @@ struct LinearImage {
   std::string path, space;
   Image image;              ///< R G B
   std::vector<float> leaf;  ///< empty: not in the file
+  std::string seed;         ///< of the render, as its header says; empty: it does not
 };
 
 /// Throws InputError when the file is not linear or lacks a channel.

@@ -272,6 +272,28 @@ TEST_F(Commands, DifferenceTellsNoiseFromBias) {
   EXPECT_EQ(read_image(path("d.png"), {}).image.width, 24);
 }
 
+TEST_F(Commands, DifferenceWarnsOfHalvesWithTheSameNoise) {
+  for (const char* seed : {"1", "2"}) {
+    ASSERT_EQ(render({"-o", path(std::string("a") + seed + ".exr"), "--seed", seed, "-q"}).code, 0);
+    ASSERT_EQ(render({"-o", path(std::string("b") + seed + ".exr"), "--seed", seed, "--swap",
+                      "thing=diffusetransmission", "-q"})
+                  .code,
+              0);
+  }
+  const auto warnings = [&](std::vector<std::string> images) {
+    std::vector<std::string> words{"difference"};
+    for (const std::string& image : images) words.push_back(path(image + ".exr"));
+    const Outcome o = frond_command(words);
+    EXPECT_EQ(o.code, 0) << o.err;
+    return o.err;
+  };
+  EXPECT_THAT(warnings({"a1", "a1", "b1", "b2"}),
+              HasSubstr("a1.exr have the same seed (1): noise cannot be told from bias; render one of them with"));
+  EXPECT_THAT(warnings({"a1", "a2", "b2", "b2"}), HasSubstr("the same seed (2)"));
+  EXPECT_THAT(warnings({"a1", "a2", "b2", "b1"}), HasSubstr("the same seed"));  // A1 with B2, A2 with B1
+  EXPECT_THAT(warnings({"a1", "a2", "b1", "b2"}), IsEmpty());
+}
+
 TEST_F(Commands, ConvertAveragesAndShows) {
   for (const char* seed : {"1", "2"})
     ASSERT_EQ(render({"-o", path(std::string("a") + seed + ".exr"), "--seed", seed, "-q"}).code, 0);
