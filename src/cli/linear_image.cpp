@@ -1,12 +1,25 @@
 #include "cli/linear_image.h"
 
+#include "cli/spectral_image.h"
+
 namespace frond {
+namespace {
+
+[[noreturn]] void refuse_without_colors(const std::string& path, const Image& image) {
+  const auto bands = bands_of(image);
+  if (bands.empty()) fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
+  fail({},
+       "{} holds bands from {} to {} nm and no colours; frond convert --bands {},{},{} shows three of them, and frond "
+       "compare --wavelengths bands,... tells errors band by band",
+       path, bands.front(), bands.back(), bands.back(), bands[bands.size() / 2], bands.front());
+}
+
+}  // namespace
 
 LinearImage read_linear(const std::string& path) {
   const ImageFile file = read_image(path, {});
   if (file.eight_bit) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
-  if (file.header.color_space.empty())
-    fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
+  if (file.header.color_space.empty()) refuse_without_colors(path, file.image);
   LinearImage result{path, file.header.color_space, Image(file.image.width, file.image.height, {"R", "G", "B"}), {}, {}};
   if (const auto seed = file.header.text.find("frond:seed"); seed != file.header.text.end()) result.seed = seed->second;
   const auto leaf = file.image.channel("leaf");

@@ -62,15 +62,19 @@ std::vector<SpectralChannel> spectral_channels(const Image& image) {
   return channels;
 }
 
+std::vector<double> wavelengths_of(const std::vector<SpectralChannel>& channels) {
+  std::vector<double> nm;
+  for (const SpectralChannel& c : channels) nm.push_back(c.nm);
+  return nm;
+}
+
 size_t nearest_channel(const std::vector<SpectralChannel>& channels, double nm, const std::string& path) {
   constexpr double kFarthest_nm = 10;
   const auto distance = [nm](const SpectralChannel& c) { return std::abs(c.nm - nm); };
   const auto nearest = std::ranges::min_element(channels, {}, distance);
   if (distance(*nearest) <= kFarthest_nm) return nearest->index;
-  std::vector<double> all;
-  for (const SpectralChannel& c : channels) all.push_back(c.nm);
   fail({}, "{} has no band within {} nm of {} nm; its bands are at {} nm", path, kFarthest_nm, nm,
-       fmt::join(all, ", "));
+       fmt::join(wavelengths_of(channels), ", "));
 }
 
 }  // namespace
@@ -86,6 +90,8 @@ std::optional<double> wavelength_of_channel(const std::string& name) {
   if (error != std::errc() || end != number.data() + number.size()) return {};
   return nm;
 }
+
+std::vector<double> bands_of(const Image& image) { return wavelengths_of(spectral_channels(image)); }
 
 Image spectral_image(const Film& film, std::span<const Band> bands) {
   std::vector<std::string> channels;

@@ -16,6 +16,9 @@ std::string spectral_channel(double nm);
 /// The wavelength (nm) that such a name says; nothing for other names, and for other units than nm.
 std::optional<double> wavelength_of_channel(const std::string& name);
 
+/// Wavelengths (nm) of an image's bands in ascending order; none where it is no spectral image.
+std::vector<double> bands_of(const Image& image);
+
 /// A film of bands in that layout: radiance by wavelength, its variance as variance.551,000000nm, `leaf`, and, where
 /// the bands cover the visible, linear sRGB as R G B for programs that know no spectra.
 Image spectral_image(const Film& film, std::span<const Band> bands);

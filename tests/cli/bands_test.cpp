@@ -127,6 +127,19 @@ TEST_F(BandCommands, AreNoPictureUntilThreeAreChosen) {
   EXPECT_EQ(frond_command({"convert", path("b.exr"), "--bands", "899,650,551", "-o", path("d.png")}).code, 1);
 }
 
+TEST_F(BandCommands, SayHowTheyAreShownAndCompared) {
+  ASSERT_EQ(render("bands,wavelengths=800,850,900,950,1000", "a.exr").code, 0);
+  for (const auto& command : {std::vector<std::string>{"convert", path("a.exr"), "-o", path("b.png")},
+                              {"difference", path("a.exr"), path("a.exr"), path("a.exr"), path("a.exr")}}) {
+    const Outcome o = frond_command(command);
+    EXPECT_EQ(o.code, 1);
+    EXPECT_THAT(o.err, HasSubstr("a.exr holds bands from 800 to 1000 nm and no colours"));
+    EXPECT_THAT(o.err, HasSubstr("frond convert --bands 1000,900,800"));
+    EXPECT_THAT(o.err, HasSubstr("frond compare --wavelengths bands,..."));
+  }
+  EXPECT_EQ(frond_command({"convert", path("a.exr"), "--bands", "1000,900,800", "-o", path("b.png")}).code, 0);
+}
+
 TEST_F(BandCommands, NeedSamplesEnoughToSeeEachBand) {
   const Outcome o = render("bands,lambdamin=400,lambdamax=500,step=1", "a.exr", {"--spp", "25"});
   EXPECT_EQ(o.code, 1);
