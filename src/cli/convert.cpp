@@ -24,6 +24,7 @@ LinearImage read(const std::string& path, const std::vector<double>& bands_nm) {
 void convert(const ConvertOptions& options) {
   check_writable(options.output);
   const ColorManager colors;
+  check_display_choice(options.output, colors, options.display);
   LinearImage mean = read(options.inputs[0], options.bands_nm);
   for (size_t i = 1; i < options.inputs.size(); ++i) {
     const LinearImage next = read(options.inputs[i], options.bands_nm);

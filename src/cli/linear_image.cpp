@@ -20,7 +20,8 @@ LinearImage read_linear(const std::string& path) {
   const ImageFile file = read_image(path, {});
   if (file.eight_bit) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
   if (file.header.color_space.empty()) refuse_without_colors(path, file.image);
-  LinearImage result{path, file.header.color_space, Image(file.image.width, file.image.height, {"R", "G", "B"}), {}, {}};
+  LinearImage result{
+      path, file.header.color_space, Image(file.image.width, file.image.height, {"R", "G", "B"}), {}, {}};
   if (const auto seed = file.header.text.find("frond:seed"); seed != file.header.text.end()) result.seed = seed->second;
   const auto leaf = file.image.channel("leaf");
   for (int y = 0; y < file.image.height; ++y)

@@ -57,6 +57,12 @@ std::string linear_space(const OutputDetails& details) {
 
 }  // namespace
 
+void check_display_choice(const std::string& path, const ColorManager& colors, const DisplayChoice& choice) {
+  if (!is_exr(path)) return colors.check_names(choice.display, choice.view);
+  if (!choice.display.empty() || !choice.view.empty())
+    fail({}, "--display and --view are for .png and .jpg: {} holds linear values", path);
+}
+
 void write_display_image(const std::string& path, const Image& image, std::string_view space,
                          const ColorManager& colors, const DisplayChoice& choice,
                          const std::map<std::string, std::string>& text) {
@@ -71,22 +77,19 @@ void write_display_image(const std::string& path, const Image& image, std::strin
 ImageOutput::ImageOutput(std::string path, DisplayChoice display)
     : path_(std::move(path)), display_(std::move(display)) {
   check_writable(path_);
-  if (is_exr(path_) && !(display_.display.empty() && display_.view.empty()))
-    fail({}, "--display and --view are for .png and .jpg: {} holds linear values", path_);
+  check_display_choice(path_, colors_, display_);
 }
 
 void ImageOutput::check(const OutputDetails& details) const {
-  if (details.film_space.empty()) {
-    check_holds_bands();
-    return;
-  }
+  check_channels(details.film_space);
+  if (details.film_space.empty()) return;
   const std::string space = linear_space(details);
   matrix_of(colors_, details.film_space, space);
   if (!is_exr(path_)) colors_.check_display(space, display_.display, display_.view);
 }
 
-void ImageOutput::check_holds_bands() const {
-  if (!is_exr(path_))
+void ImageOutput::check_channels(std::string_view film_space) const {
+  if (film_space.empty() && !is_exr(path_))
     fail({}, "{}: bands are no picture, and go to an .exr file; frond convert --bands makes a picture of three of them",
          path_);
 }
@@ -105,7 +108,7 @@ void ImageOutput::write(const Film& film, const OutputDetails& details) const {
 }
 
 void ImageOutput::write_bands(const Film& film, const OutputDetails& details) const {
-  check_holds_bands();
+  check_channels(details.film_space);
   auto attributes = spectral_attributes(details.bands);
   attributes.insert(details.attributes.begin(), details.attributes.end());
   write_exr(film, spectral_image(film, details.bands), preview_space(details.bands), attributes);

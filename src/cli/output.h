@@ -22,6 +22,9 @@ struct OutputDetails {
   std::map<std::string, std::string> attributes;
 };
 
+/// Refuses names that OpenColorIO does not know, and any for an EXR, which holds linear values. Throws InputError.
+void check_display_choice(const std::string& path, const ColorManager& colors, const DisplayChoice& choice);
+
 /// R, G and B of an image that is linear in `space`, through a display transform, as PNG or JPEG.
 void write_display_image(const std::string& path, const Image& image, std::string_view space,
                          const ColorManager& colors, const DisplayChoice& choice,
@@ -30,8 +33,11 @@ void write_display_image(const std::string& path, const Image& image, std::strin
 /// Where a render goes. Made before rendering, so that what cannot be written is refused first.
 class ImageOutput {
  public:
-  /// Throws InputError when the path cannot be written.
+  /// Throws InputError when the path cannot be written, and as check_display_choice does.
   ImageOutput(std::string path, DisplayChoice display);
+
+  /// Throws what `write` would throw for bands in a PNG or JPEG. Empty: the film's channels are bands.
+  void check_channels(std::string_view film_space) const;
 
   /// Throws what `write` would throw for a display, a view or a colour space that OpenColorIO does not know, and for
   /// bands in a PNG or JPEG.
@@ -42,7 +48,6 @@ class ImageOutput {
   void write(const Film& film, const OutputDetails& details) const;
 
  private:
-  void check_holds_bands() const;
   void write_bands(const Film& film, const OutputDetails& details) const;
   void write_exr(const Film& film, const Image& image, const std::string& space,
                  const std::map<std::string, std::string>& attributes) const;

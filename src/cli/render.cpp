@@ -158,6 +158,8 @@ void render_scene(const RenderOptions& options, const std::string& command_line)
   // Refused now, not after an hour.
   const std::string output = options.output.empty() ? film_settings.filename : options.output;
   const ImageOutput writer(output, options.display);
+  const WavelengthChoice wavelengths = wavelength_choice(description, overrides);
+  writer.check_channels(make_wavelengths(wavelengths.text, wavelengths.where, description, registry)->film_space());
 
   const auto choice = choose_models(options, film_settings, registry, description, overrides, pool, log);
   if (options.pilot) return print_choice(choice, options.json);

@@ -99,12 +99,10 @@ class SceneBuilder {
   void build_options() {
     OptionResolver resolver(description_);
     const Params p(kOptions, {"Option", {}, description_.options}, resolver);
-    const bool from_scene = overrides_.wavelengths.empty();
-    const Location where = from_scene ? p.where("wavelengths") : Location{};
-    const std::string text = from_scene ? p.string("wavelengths") : overrides_.wavelengths;
-    scene_.wavelengths_name_ = text;
     seed_ = overrides_.seed;
     if (!seed_ && p.given("seed")) seed_ = uint64_t(p.integer("seed"));
+    const auto [text, where] = wavelength_choice(description_, overrides_);
+    scene_.wavelengths_name_ = text;
     scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
   }
 
@@ -262,6 +260,13 @@ class SceneBuilder {
 const Material* Scene::material(size_t place) const {
   const auto it = materials_.find(place);
   return it == materials_.end() ? nullptr : it->second.get();
+}
+
+WavelengthChoice wavelength_choice(const SceneDescription& description, const SceneOverrides& overrides) {
+  OptionResolver resolver(description);
+  const Params p(kOptions, {"Option", {}, description.options}, resolver);
+  if (!overrides.wavelengths.empty()) return {overrides.wavelengths, {}};
+  return {p.string("wavelengths"), p.where("wavelengths")};
 }
 
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,

@@ -25,6 +25,13 @@ struct SceneOverrides {
   std::filesystem::path cache_dir;  ///< empty: no files are kept
 };
 
+/// Which wavelengths the command line asks for, or else the scene's options, or else their default.
+struct WavelengthChoice {
+  std::string text;  ///< a PluginText
+  Location where;
+};
+WavelengthChoice wavelength_choice(const SceneDescription& description, const SceneOverrides& overrides);
+
 /// The strategy that a PluginText names, of the command line or else the scene's options. Throws InputError at `where`.
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
                                                      const SceneDescription& description, const Registry& registry);

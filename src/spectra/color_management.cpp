@@ -86,11 +86,17 @@ class ColorManager::Impl {
             b.config->getProcessor(aces(b.config).c_str(), b.space.c_str())};
   }
 
-  Chain display(std::string_view from, std::string_view display_or_empty, std::string_view view_or_empty) const {
+  /// Of a display and one of its views, with the defaults in place of empty ones.
+  std::pair<std::string, std::string> names(std::string_view display_or_empty, std::string_view view_or_empty) const {
     const std::string display(display_or_empty.empty() ? config_->getDefaultDisplay() : display_or_empty);
     const std::vector<std::string> known_views = views(display);
     const std::string view(view_or_empty.empty() ? config_->getDefaultView(display.c_str()) : view_or_empty);
     require(fmt::format("view of display {}", display), view, known_views);
+    return {display, view};
+  }
+
+  Chain display(std::string_view from, std::string_view display_or_empty, std::string_view view_or_empty) const {
+    const auto [display, view] = names(display_or_empty, view_or_empty);
     Place source = find(from);
     Chain chain;
     if (source.config != config_ && !knows_aces(config_) && config_->getColorSpace(source.space.c_str())) {
@@ -181,6 +187,8 @@ void ColorManager::display(std::span<float> rgb, std::string_view from, std::str
 void ColorManager::check_display(std::string_view from, std::string_view display, std::string_view view) const {
   build([&] { return impl_->display(from, display, view); });
 }
+
+void ColorManager::check_names(std::string_view display, std::string_view view) const { impl_->names(display, view); }
 
 std::vector<std::string> ColorManager::spaces() const { return impl_->spaces(); }
 std::vector<std::string> ColorManager::displays() const { return impl_->displays(); }

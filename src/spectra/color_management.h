@@ -29,6 +29,9 @@ class ColorManager {
   /// Throws what `display` would throw, before there are pixels.
   void check_display(std::string_view from, std::string_view display, std::string_view view) const;
 
+  /// Throws what `display` would throw for a display or a view that is not there.
+  void check_names(std::string_view display, std::string_view view) const;
+
   std::vector<std::string> spaces() const;
   std::vector<std::string> displays() const;
   std::vector<std::string> views(std::string_view display) const;

@@ -306,6 +306,32 @@ TEST_F(Commands, ConvertAveragesAndShows) {
   EXPECT_EQ(frond_command({"convert", path("mean.png"), "-o", path("again.png")}).code, 1);
 }
 
+/// Before the scene is built, which would fail here.
+TEST_F(Commands, WhatTheOutputCannotHoldIsRefusedFirst) {
+  folder_.write("scene.pbrt", R"(WorldBegin LightSource "infinite" "spectrum L" "no_such.spd")");
+  const auto refusal = [&](std::vector<std::string> words) {
+    const Outcome o = render(std::move(words));
+    EXPECT_EQ(o.code, 1);
+    return o.err;
+  };
+  EXPECT_THAT(refusal({"-o", path("x.png"), "--display", "foo"}), HasSubstr("unknown display \"foo\""));
+  EXPECT_THAT(refusal({"-o", path("x.png"), "--view", "foo"}), HasSubstr("unknown view of display sRGB \"foo\""));
+  EXPECT_THAT(refusal({"-o", path("x.png"), "--wavelengths", "bands,wavelengths=450,900"}),
+              HasSubstr("bands are no picture"));
+  EXPECT_THAT(refusal({"-o", path("x.exr"), "--view", "Raw"}), HasSubstr("holds linear values"));
+  EXPECT_THAT(refusal({"-o", path("x.png")}), HasSubstr("no_such"));
+}
+
+TEST_F(Commands, ConvertRefusesADisplayForLinearValues) {
+  ASSERT_EQ(render({"-o", path("a.exr"), "-q"}).code, 0);
+  for (const char* option : {"--display", "--view"})
+    EXPECT_THAT(frond_command({"convert", path("a.exr"), "-o", path("b.exr"), option, "sRGB"}).err,
+                HasSubstr("b.exr holds linear values"));
+  EXPECT_FALSE(fs::exists(path("b.exr")));
+  EXPECT_THAT(frond_command({"convert", path("a.exr"), "-o", path("b.png"), "--view", "foo"}).err,
+              HasSubstr("unknown view of display sRGB \"foo\""));
+}
+
 TEST_F(Commands, NumbersThatAreNoneAreRefused) {
   for (const std::vector<std::string>& option :
        std::vector<std::vector<std::string>>{{"--seed", "-1"},
