@@ -1,12 +1,26 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cli/mistyped.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
 
 namespace frond {
 
 Registry builtin_registry() { return make_registry(builtin_materials(), builtin_integrators()); }
+
+namespace {
+
+/// Also prints help, which CLI11 takes for an error. A word that nothing is called by is told first: CLI11 would miss
+/// what that word was meant to be.
+int refuse(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string message = error.get_exit_code() == 0 ? "" : mistyped(app);
+  if (message.empty()) return app.exit(error) == 0 ? 0 : 1;
+  fmt::print(stderr, "frond: {}\n", message);
+  return 1;
+}
+
+}  // namespace
 
 int run(int argc, const char* const* argv) {
   CLI::App app{"frond: a spectral path tracer for plant leaves.", "frond"};
@@ -28,7 +42,7 @@ int run(int argc, const char* const* argv) {
   } catch (const CLI::RuntimeError& verdict) {  // a command's own exit code; it has said why
     return verdict.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
+    return refuse(app, error);
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "frond: out of memory\n");
   } catch (const std::exception& error) {

@@ -73,6 +73,26 @@ TEST_F(Commands, BadUseExitsWithOneAndAMessage) {
   }
 }
 
+TEST_F(Commands, MistypedWordsAreNamedWithWhatMayBeMeant) {
+  const auto complaint = [](const std::vector<std::string>& words) {
+    const Outcome o = frond_command(words);
+    EXPECT_EQ(o.code, 1);
+    return o.err;
+  };
+  EXPECT_EQ(complaint({"rendr", "x.pbrt"}), "frond: there is no command \"rendr\"; did you mean \"render\"?\n");
+  EXPECT_THAT(complaint({"paint"}), HasSubstr("there is no command \"paint\"; there are render, compare"));
+  EXPECT_EQ(complaint({"--verson"}), "frond: frond has no option --verson; did you mean --version?\n");
+  EXPECT_EQ(complaint({"render", "x.pbrt", "--sp", "1"}),
+            "frond: frond render has no option --sp; did you mean --spp?\n");
+  EXPECT_EQ(complaint({"render", "--sed=1"}), "frond: frond render has no option --sed; did you mean --seed?\n");
+  // Where the word that is meant is required, that it is missing is only half of the truth.
+  EXPECT_THAT(complaint({"table", "--wavelenghts", "551", "-o", "-"}), HasSubstr("did you mean --wavelengths?"));
+  EXPECT_THAT(complaint({"render", "x.pbrt", "--nonsense"}), HasSubstr("frond render --help prints what it has"));
+  EXPECT_THAT(complaint({"render", "x.pbrt", "y.pbrt"}), HasSubstr("not expected: y.pbrt"));
+  EXPECT_THAT(complaint({}), HasSubstr("subcommand is required"));
+  EXPECT_THAT(complaint({"describe", "foo"}), ::testing::Not(HasSubstr("did you mean")));
+}
+
 TEST_F(Commands, HelpAndVersionExitWithZero) {
   for (const char* flag : {"--help", "--version"}) EXPECT_EQ(frond_command({flag}).code, 0);
 }

@@ -30,6 +30,8 @@ TEST(Nearest, FindsAMisspeltWord) {
 TEST(Nearest, FindsNothingAmongUnlikeWords) {
   EXPECT_EQ(nearest("zebra", {"reflectance", "roughness"}), "");
   EXPECT_EQ(nearest("x", {}), "");
+  EXPECT_EQ(nearest("foo", {"box"}), "");
+  EXPECT_EQ(nearest("abn", {"abm"}), "abm");
 }
 
 TEST(Suggestion, ProposesTheNearestWord) {
