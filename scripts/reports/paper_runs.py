@@ -88,8 +88,8 @@ class Runs:
         """The paper's table of soybean, every degree from 0 to 180 at its three wavelengths: the shares and the CPU time."""
 
         def measure():
-            words = [FROND, "table", "--method", method, "--rays", self.setting.table_rays, "--wavelengths", "608,551,455",
-                     *self.threads, "-o", "-"]
+            rays = ["--rays", self.setting.table_rays] if method == "montecarlo" else []
+            words = [FROND, "table", "--method", method, *rays, "--wavelengths", "608,551,455", *self.threads, "-o", "-"]
             done = subprocess.run(list(map(str, words)), capture_output=True, text=True, check=True)
             shares = [r[share] for r in rows(done.stdout) for share in ("Rs", "Rd", "T")]
             seconds = float(re.search(r"([\d.e+-]+) s of CPU", done.stderr)[1])

@@ -3,8 +3,10 @@
 #include <ctime>
 
 #include "cli/commands.h"
+#include "cli/common_options.h"
 #include "cli/leaf_words.h"
 #include "cli/number_list.h"
+#include "cli/table_words.h"
 #include "core/parallel.h"
 #include "leaf/body_cache.h"
 #include "leaf/body_file.h"
@@ -19,29 +21,15 @@
 namespace frond {
 namespace {
 
-constexpr std::string_view kSimplified = "leaf_simplified", kSolved = "leaf_solved";
-
 struct TableOptions {
   std::vector<std::string> words;
   std::string specimen, method = "solve", wavelengths, angles = "0:180:1", output, rays = "1e6";
   uint64_t seed = 0;
   int threads = 0, nodes = 0;
   bool equal_sides = false, quiet = false;
-
-  /// The material whose table it is: the first word, if it is no parameter.
-  std::string_view material() const {
-    const bool named = !words.empty() && (words[0] == kSimplified || words[0] == kSolved);
-    return named ? std::string_view(words[0]) : kSimplified;
-  }
-  /// What makes the leaf.
-  std::vector<std::string> leaf() const {
-    std::vector<std::string> result(words.begin() + (!words.empty() && words[0] == material()), words.end());
-    if (!specimen.empty()) result.push_back("specimen=" + specimen);
-    return result;
-  }
 };
 
-constexpr PluginInfo kLeaf{"leaf", "leaf", "", "", kLeafParams};
+constexpr PluginInfo kLeaf{"the table of", kSimplified, "", "", kLeafParams};
 
 void check_ascending(const std::vector<double>& theta_deg) {
   for (size_t i = 0; i < theta_deg.size(); ++i) {
@@ -71,8 +59,8 @@ void check_wavelengths(std::vector<double> wavelengths_nm) {
     fail({}, "--wavelengths has {} twice", *twice);
 }
 
-leaf::TableRequest request_of(const TableOptions& options) {
-  leaf::TableRequest request{.params = LeafParams(leaf_from_words(kLeaf, options.leaf())).tissue(),
+leaf::TableRequest request_of(const TableOptions& options, const std::vector<std::string>& leaf) {
+  leaf::TableRequest request{.params = LeafParams(leaf_from_words(kLeaf, leaf)).tissue(),
                              .wavelengths_nm = parse_numbers("--wavelengths", options.wavelengths),
                              .theta_deg = parse_numbers("--angles", options.angles),
                              .seed = options.seed};
@@ -99,8 +87,8 @@ void write(const std::string& path, const std::string& text) {
 
 double cpu_seconds_since(std::clock_t start) { return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
 
-void make_shares_file(const TableOptions& options) {
-  const leaf::TableRequest request = request_of(options);
+void make_shares_file(const TableOptions& options, const std::vector<std::string>& leaf) {
+  const leaf::TableRequest request = request_of(options, leaf);
   const std::clock_t start = std::clock();
   leaf::Table table = leaf::make_table(request, ThreadPool(options.threads));
   const double cpu_seconds = cpu_seconds_since(start);
@@ -114,10 +102,9 @@ void make_shares_file(const TableOptions& options) {
       .info(leaf::summary(request, options.output, table) + fmt::format(", {:.2g} s of CPU", cpu_seconds));
 }
 
-leaf::BodyRequest modes_request_of(const TableOptions& options) {
+leaf::BodyRequest modes_request_of(const TableOptions& options, const std::vector<std::string>& leaf) {
   const MaterialInfo& info = PluginTable<MaterialInfo>("material", builtin_materials()).get(kSolved, {});
-  const Params params = leaf_from_words(info, options.leaf());
-  if (params.given("tablefile")) fail({}, "a table is made of a leaf, not of a \"tablefile\"");
+  const Params params = leaf_from_words(info, leaf);
   leaf::BodyRequest request{.params = LeafParams(params).tissue(),
                             .wavelengths_nm = parse_numbers("--wavelengths", options.wavelengths),
                             .tolerance = params.real("tolerance"),
@@ -126,8 +113,8 @@ leaf::BodyRequest modes_request_of(const TableOptions& options) {
   return request;
 }
 
-void make_modes_file(const TableOptions& options) {
-  const leaf::BodyRequest request = modes_request_of(options);
+void make_modes_file(const TableOptions& options, const std::vector<std::string>& leaf) {
+  const leaf::BodyRequest request = modes_request_of(options, leaf);
   const std::clock_t start = std::clock();
   const leaf::BodySpectrum spectrum = leaf::make_body_spectrum(request, ThreadPool(options.threads));
   const double cpu_seconds = cpu_seconds_since(start);
@@ -145,11 +132,25 @@ void check_modes_options(const CLI::App& command) {
       fail({}, "{} is for tables of {}; those of {} follow from its \"tolerance\"", name, kSimplified, kSolved);
 }
 
+/// Options that the method does not look at.
+void check_method_options(const TableOptions& options, const CLI::App& command) {
+  const auto refuse = [&command](const char* name, const char* method) {
+    if (command.count(name) > 0) fail({}, "{} is for --method {}", name, method);
+  };
+  if (options.method == "montecarlo") return refuse("--nodes", "solve");
+  refuse("--rays", "montecarlo");
+  refuse("--seed", "montecarlo");
+}
+
 void make_table_file(const TableOptions& options, const CLI::App& command) {
   if (options.output != "-") check_replaceable(options.output);  // now, not after the walks
-  if (options.material() == kSimplified) return make_shares_file(options);
-  check_modes_options(command);
-  make_modes_file(options);
+  const TableWords words = parse_table_words(options.words, options.specimen);
+  if (words.material == kSolved) {
+    check_modes_options(command);
+    return make_modes_file(options, words.leaf);
+  }
+  check_method_options(options, command);
+  make_shares_file(options, words.leaf);
 }
 
 }  // namespace
@@ -168,12 +169,12 @@ void add_table_command(CLI::App& app) {
       ->check(CLI::IsMember({"solve", "montecarlo"}));
   command->add_option("--wavelengths", o.wavelengths, "In nm: 608,551,455 or 360:830:5.")->required();
   command->add_option("--angles", o.angles, "Angles of incidence, degrees, above 90 on the abaxial side; 0:180:1.");
-  command->add_option("--rays", o.rays, "Walks for each angle and wavelength; 1e6.");
+  command->add_option("--rays", o.rays, "Walks of montecarlo for each angle and wavelength; 1e6.");
   command
       ->add_option("--nodes", o.nodes,
                    "Of the solution, for each segment of directions; by default as many as it needs.")
       ->check(CLI::Range(2, 200));
-  command->add_option("--seed", o.seed, "Seed of the walks.");
+  command->add_option("--seed", o.seed, "Seed of the walks of montecarlo.")->check(is_seed);
   command->add_option("--threads", o.threads, "Threads; all by default. The table does not depend on it.")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--equalsides", o.equal_sides, "The mean of both sides, on angles up to 90.");
