@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "cli/child_process.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "scene/atomic_file.h"
 
 namespace frond {
 namespace {

@@ -7,6 +7,7 @@
 #include "cli/leaf_words.h"
 #include "cli/number_list.h"
 #include "cli/table_words.h"
+#include "core/atomic_file.h"
 #include "core/parallel.h"
 #include "leaf/body_cache.h"
 #include "leaf/body_file.h"
@@ -16,7 +17,6 @@
 #include "leaf/table_file.h"
 #include "materials/leaf_params.h"
 #include "materials/registry.h"
-#include "scene/atomic_file.h"
 
 namespace frond {
 namespace {

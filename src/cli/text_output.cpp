@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "scene/atomic_file.h"
 
 namespace frond {
 namespace {

@@ -3,15 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <numbers>
 #include <numeric>
 
+#include "core/file_bytes.h"
 #include "leaf/body_table.h"
 
 namespace frond::leaf {
@@ -253,12 +251,7 @@ BodyFile parse_body_file(std::string_view text, const std::string& name) {
 }
 
 BodyFile read_body_file(const std::filesystem::path& path, const Location& where) {
-  if (std::filesystem::is_directory(path)) fail(where, "cannot read leaf modes \"{}\": it is a folder", path.string());
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail(where, "cannot read leaf modes \"{}\": {}", path.string(), std::strerror(errno));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) fail(where, "cannot read leaf modes \"{}\" to its end", path.string());
-  BodyFile file = parse_body_file(text, path.string());
+  BodyFile file = parse_body_file(read_file_bytes(path, where, "leaf modes"), path.string());
   check_wavelengths(file);
   return file;
 }

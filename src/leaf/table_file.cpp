@@ -3,14 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
+
+#include "core/file_bytes.h"
 
 namespace frond::leaf {
 namespace {
@@ -217,12 +216,7 @@ Table parse_table(std::string_view text, const std::string& name) {
 }
 
 Table read_table(const std::filesystem::path& path, const Location& where) {
-  if (std::filesystem::is_directory(path)) fail(where, "cannot read leaf table \"{}\": it is a folder", path.string());
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail(where, "cannot read leaf table \"{}\": {}", path.string(), std::strerror(errno));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) fail(where, "cannot read leaf table \"{}\" to its end", path.string());
-  return parse_table(text, path.string());
+  return parse_table(read_file_bytes(path, where, "leaf table"), path.string());
 }
 
 }  // namespace frond::leaf

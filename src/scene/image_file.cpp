@@ -11,8 +11,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "scene/atomic_file.h"
-#include "scene/file_bytes.h"
+#include "core/atomic_file.h"
+#include "core/file_bytes.h"
 
 namespace frond {
 namespace {

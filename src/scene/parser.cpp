@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "core/file_bytes.h"
 #include "core/random.h"
 #include "scene/description_builder.h"
 #include "scene/directives.h"
-#include "scene/file_bytes.h"
 
 namespace frond {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "scene/file_bytes.h"
+#include "core/file_bytes.h"
 #include "scene/ply_header.h"
 #include "scene/ply_source.h"
 

@@ -1,11 +1,10 @@
 #include "spectra/spd_file.h"
 
-#include <cerrno>
+#include <algorithm>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 #include <system_error>
 
+#include "core/file_bytes.h"
 #include "spectra/tabulated.h"
 
 namespace frond {
@@ -36,12 +35,14 @@ void parse_line(std::string_view line, Location where, std::vector<Number>& numb
 }
 
 std::vector<Number> read_numbers(const std::filesystem::path& path, const Location& where) {
-  std::ifstream in(path);
-  if (!in) fail(where, "cannot read spectrum file \"{}\": {}", path.string(), std::strerror(errno));
+  const std::string text = read_file_bytes(path, where, "spectrum file");
   Location here{std::make_shared<const std::string>(path.string()), 1, 1};
   std::vector<Number> numbers;
-  for (std::string line; std::getline(in, line); ++here.line) parse_line(line, here, numbers);
-  if (in.bad() || !in.eof()) fail(where, "cannot read spectrum file \"{}\" to its end", path.string());
+  for (std::string_view rest = text; !rest.empty(); ++here.line) {
+    const size_t end = std::min(rest.find('\n'), rest.size());
+    parse_line(rest.substr(0, end), here, numbers);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
   if (numbers.empty()) fail(here, "the file holds no spectrum: wavelength (nm) and value in turn are expected");
   return numbers;
 }

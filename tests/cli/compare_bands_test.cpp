@@ -6,7 +6,7 @@
 
 #include "cli/compare/channels.h"
 #include "cli/compare/study.h"
-#include "scene/file_bytes.h"
+#include "core/file_bytes.h"
 #include "spectra/cie.h"
 #include "tests/cli/command.h"
 #include "tests/cli/compare_scene.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/child_process.h"
-#include "scene/file_bytes.h"
+#include "core/file_bytes.h"
 #include "tests/cli/command.h"
 #include "tests/cli/compare_scene.h"
 #include "tests/support/input_error.h"

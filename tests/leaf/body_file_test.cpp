@@ -105,6 +105,8 @@ TEST(BodyFile, IsRefusedWhereItCannotBeReadOrSaysThingsTwice) {
   const TestFolder folder("body_file");
   EXPECT_THAT(error_of([&] { read_body_file(folder.name_of(""), {}); }), HasSubstr("it is a folder"));
   EXPECT_THAT(error_of([&] { read_body_file(folder.name_of("none"), {}); }), HasSubstr("No such file"));
+  EXPECT_EQ(error_of([] { read_body_file("/dev/zero", {}); }),
+            "cannot read leaf modes \"/dev/zero\": it is no regular file");
   const std::string sound = plain_leaf();
   const fs::path twice = folder.write("twice", sound + sound.substr(sound.find("wavelength_nm")));
   EXPECT_THAT(error_of([&] { read_body_file(twice, {}); }),

@@ -99,6 +99,8 @@ TEST(TableFile, RefusesBadColumns) {
   EXPECT_THAT(refusal(kColumns + "100,550,.1,.1,.1\n"), HasSubstr("those of the adaxial side are missing"));
   EXPECT_THAT(error_of([] { read_table("/no/such.csv", {}); }), HasSubstr("No such file"));
   EXPECT_THAT(error_of([] { read_table("/tmp", {}); }), HasSubstr("cannot read leaf table \"/tmp\""));
+  EXPECT_EQ(error_of([] { read_table("/dev/zero", {}); }),
+            "cannot read leaf table \"/dev/zero\": it is no regular file");
 }
 
 TEST(Table, MeanOfSidesIsTheirMean) {

@@ -51,7 +51,9 @@ TEST_F(SpdFile, ErrorsNameLineAndColumn) {
 
 TEST_F(SpdFile, UnreadableFilesAreNamedWhereTheSceneAsksForThem) {
   const Location here{std::make_shared<const std::string>("scene.pbrt"), 3, 7};
-  for (const std::filesystem::path& path : {path_ / "missing.spd", std::filesystem::temp_directory_path()}) try {
+  for (const std::filesystem::path& path :
+       {path_ / "missing.spd", std::filesystem::temp_directory_path(), std::filesystem::path("/dev/zero")})
+    try {
       read_spd(path, here);
       ADD_FAILURE() << path;
     } catch (const InputError& e) {

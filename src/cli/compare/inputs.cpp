@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
+#include "core/file_bytes.h"
 #include "core/random.h"
-#include "scene/file_bytes.h"
 #include "scene/plugin_library.h"
 
 namespace frond::compare {

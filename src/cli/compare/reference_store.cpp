@@ -4,9 +4,9 @@
 #include <type_traits>
 
 #include "cli/compare/cache_limit.h"
+#include "core/atomic_file.h"
+#include "core/file_bytes.h"
 #include "core/random.h"
-#include "scene/atomic_file.h"
-#include "scene/file_bytes.h"
 
 namespace frond::compare {
 namespace {

@@ -12,7 +12,7 @@
 #include "cli/compare/verdict.h"
 #include "cli/gnuplot.h"
 #include "cli/text_output.h"
-#include "scene/file_bytes.h"
+#include "core/file_bytes.h"
 #include "spectra/color_space.h"
 
 namespace frond::compare {
