@@ -5,7 +5,6 @@
 #include <chrono>
 #include <optional>
 
-#include "core/random.h"
 #include "leaf/body_file.h"
 #include "leaf/cache_file.h"
 #include "leaf/constants.h"
@@ -48,11 +47,9 @@ std::string describe(const BodyRequest& request) {
 BodySpectrum cached_body_spectrum(const BodyRequest& request, std::string_view name, const ThreadPool& pool,
                                   const Log& log, const std::filesystem::path& cache_dir) {
   const std::string header = describe(request);
-  const auto path = cache_dir / fmt::format("leaf-{:016x}.modes", hash_bytes(header));
-  std::error_code error;  // a cache that cannot be looked into is none
-  if (!cache_dir.empty() && std::filesystem::is_regular_file(path, error)) {
-    const std::string text = read_file(path);
-    if (auto spectrum = parse(without_checksum(text), header, request)) {
+  const auto path = cache_path(cache_dir, header, "modes");
+  if (const auto text = read_cached(path, log)) {
+    if (auto spectrum = parse(without_checksum(*text), header, request)) {
       log.info(summary(request, name, *spectrum) + ", from the cache");
       return std::move(*spectrum);
     }
@@ -62,8 +59,7 @@ BodySpectrum cached_body_spectrum(const BodyRequest& request, std::string_view n
   BodySpectrum spectrum = make_body_spectrum(request, pool);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   log.info(summary(request, name, spectrum) + fmt::format(", {:.2g} s", seconds.count()));
-  if (!cache_dir.empty() && !write_file(path, with_checksum(to_text(request, spectrum, header))))
-    log.warn({}, fmt::format("cannot write {}: the modes are made anew next time", path.string()));
+  if (!path.empty()) write_cached(path, with_checksum(to_text(request, spectrum, header)), log);
   return spectrum;
 }
 

@@ -1,11 +1,7 @@
 #include "leaf/cache_file.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <fstream>
-#include <iterator>
-
+#include "core/atomic_file.h"
+#include "core/file_bytes.h"
 #include "core/random.h"
 
 namespace frond::leaf {
@@ -17,6 +13,11 @@ std::string checksum_line(std::string_view text) { return fmt::format("{}{:016x}
 
 }  // namespace
 
+std::filesystem::path cache_path(const std::filesystem::path& folder, std::string_view header,
+                                 std::string_view extension) {
+  return folder.empty() ? folder : folder / fmt::format("leaf-{:016x}.{}", hash_bytes(header), extension);
+}
+
 std::string with_checksum(std::string text) { return text + checksum_line(text); }
 
 std::string_view without_checksum(std::string_view text) {
@@ -25,29 +26,21 @@ std::string_view without_checksum(std::string_view text) {
   return text.substr(0, body);
 }
 
-std::string read_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+std::optional<std::string> read_cached(const std::filesystem::path& path, const Log& log) try {
+  std::error_code error;  // a cache that cannot be looked into is none
+  if (path.empty() || !std::filesystem::is_regular_file(path, error)) return {};
+  return read_file_bytes(path, {});
+} catch (const InputError& error) {  // among them that another process has just deleted it
+  log.warn({}, fmt::format("{}: what it holds is made anew", error.what()));
+  return {};
 }
 
-bool write_file(const std::filesystem::path& path, const std::string& text) {
-  std::error_code error;
+void write_cached(const std::filesystem::path& path, const std::string& text, const Log& log) try {
+  std::error_code error;  // then the folder is missing, which the next line tells
   std::filesystem::create_directories(path.parent_path(), error);
-  const auto temporary = std::filesystem::path(path) += fmt::format(".{}.tmp", getpid());
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) {
-      std::filesystem::remove(temporary, error);
-      return false;
-    }
-  }
-  std::filesystem::rename(temporary, path, error);
-  if (!error) return true;
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
-  return false;
+  replace_file(path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+} catch (const InputError& error) {
+  log.warn({}, fmt::format("{}: what it would keep is made anew next time", error.what()));
 }
 
 }  // namespace frond::leaf

@@ -67,18 +67,21 @@ std::string seal(const Table& table, std::string_view header) { return with_chec
 bool unseal(std::string_view text, std::string_view header, Table& table) {
   const std::string_view body = without_checksum(text);
   if (body.empty() || !body.starts_with(header)) return false;
-  table = parse_table(body, "cache");
-  return true;
+  try {
+    table = parse_table(body, "");
+    return true;
+  } catch (const InputError&) {  // no more than damaged
+    return false;
+  }
 }
 
 Table cached_table(const TableRequest& request, std::string_view name, const ThreadPool& pool, const Log& log,
                    const std::filesystem::path& cache_dir) {
   const std::string header = describe(request);
-  const auto path = cache_dir / fmt::format("leaf-{:016x}.csv", hash_bytes(header));
+  const auto path = cache_path(cache_dir, header, "csv");
   Table table;
-  std::error_code error;  // a cache that cannot be looked into is none
-  if (!cache_dir.empty() && std::filesystem::is_regular_file(path, error)) {
-    if (unseal(read_file(path), header, table)) {
+  if (const auto text = read_cached(path, log)) {
+    if (unseal(*text, header, table)) {
       log.info(summary(request, name, table) + ", from the cache");
       return table;
     }
@@ -88,8 +91,7 @@ Table cached_table(const TableRequest& request, std::string_view name, const Thr
   table = make_table(request, pool);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   log.info(summary(request, name, table) + fmt::format(", {:.2g} s", seconds.count()));
-  if (!cache_dir.empty() && !write_file(path, seal(table, header)))
-    log.warn({}, fmt::format("cannot write {}: the table is made anew next time", path.string()));
+  if (!path.empty()) write_cached(path, seal(table, header), log);
   return table;
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "leaf/cache_file.h"
 #include "leaf/lookup.h"
 #include "leaf/specimens.h"
 #include "leaf/table_cache.h"
@@ -210,6 +211,26 @@ TEST_F(TableCache, MakesADamagedFileAnew) {
     Table again;
     std::ifstream repaired(file);
     EXPECT_TRUE(unseal(std::string{std::istreambuf_iterator<char>(repaired), {}}, describe(request), again));
+  }
+}
+
+TEST_F(TableCache, CountsAWellSealedFileThatIsNoTableAsDamaged) {
+  const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 10);
+  const Table sound = get(request);
+  std::ofstream(files().at(0)) << with_checksum(describe(request) + "theta_deg,wavelength_nm,Rs,Rd,T\n0,551,2,0,0\n");
+  EXPECT_EQ(get(request).shares, sound.shares);
+  EXPECT_EQ(get(request).shares, sound.shares);
+}
+
+TEST_F(TableCache, DoesWithoutAFileThatCannotBeRead) {
+  const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 10);
+  const Table sound = get(request);
+  const fs::path file = files().at(0);
+  fs::remove(file);
+  for (const char* target : {"/proc/self/mem", "gone", "/dev/zero"}) {
+    fs::create_symlink(target, file);
+    EXPECT_EQ(get(request).shares, sound.shares) << target;
+    fs::remove(file);
   }
 }
 
