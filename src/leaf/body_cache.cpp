@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 
+#include "core/cache_limit.h"
 #include "leaf/body_file.h"
 #include "leaf/cache_file.h"
 #include "leaf/constants.h"
@@ -50,6 +51,7 @@ BodySpectrum cached_body_spectrum(const BodyRequest& request, std::string_view n
   const auto path = cache_path(cache_dir, header, "modes");
   if (const auto text = read_cached(path, log)) {
     if (auto spectrum = parse(without_checksum(*text), header, request)) {
+      mark_as_used(path);
       log.info(summary(request, name, *spectrum) + ", from the cache");
       return std::move(*spectrum);
     }

@@ -1,12 +1,14 @@
 #include "leaf/cache_file.h"
 
 #include "core/atomic_file.h"
+#include "core/cache_limit.h"
 #include "core/file_bytes.h"
 #include "core/random.h"
 
 namespace frond::leaf {
 namespace {
 
+constexpr CacheKind kLeafFiles{"leaf-", 1'000'000'000};
 constexpr std::string_view kChecksum = "# checksum ";
 
 std::string checksum_line(std::string_view text) { return fmt::format("{}{:016x}\n", kChecksum, hash_bytes(text)); }
@@ -15,7 +17,7 @@ std::string checksum_line(std::string_view text) { return fmt::format("{}{:016x}
 
 std::filesystem::path cache_path(const std::filesystem::path& folder, std::string_view header,
                                  std::string_view extension) {
-  return folder.empty() ? folder : folder / fmt::format("leaf-{:016x}.{}", hash_bytes(header), extension);
+  return folder.empty() ? folder : folder / fmt::format("{}{:016x}.{}", kLeafFiles.name, hash_bytes(header), extension);
 }
 
 std::string with_checksum(std::string text) { return text + checksum_line(text); }
@@ -39,6 +41,7 @@ void write_cached(const std::filesystem::path& path, const std::string& text, co
   std::error_code error;  // then the folder is missing, which the next line tells
   std::filesystem::create_directories(path.parent_path(), error);
   replace_file(path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+  limit_cache(path, kLeafFiles, log);
 } catch (const InputError& error) {
   log.warn({}, fmt::format("{}: what it would keep is made anew next time", error.what()));
 }

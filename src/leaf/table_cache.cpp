@@ -5,6 +5,7 @@
 #include <bit>
 #include <chrono>
 
+#include "core/cache_limit.h"
 #include "core/random.h"
 #include "leaf/cache_file.h"
 #include "leaf/constants.h"
@@ -82,6 +83,7 @@ Table cached_table(const TableRequest& request, std::string_view name, const Thr
   Table table;
   if (const auto text = read_cached(path, log)) {
     if (unseal(*text, header, table)) {
+      mark_as_used(path);
       log.info(summary(request, name, table) + ", from the cache");
       return table;
     }

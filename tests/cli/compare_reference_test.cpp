@@ -2,7 +2,6 @@
 
 #include <cstring>
 
-#include "cli/compare/cache_limit.h"
 #include "cli/compare/reference_store.h"
 #include "tests/cli/compare_scene.h"
 #include "tests/support/input_error.h"
@@ -78,23 +77,17 @@ TEST(ReferenceStore, DamagedFilesCountAsNone) {
   EXPECT_EQ(second.samples(), 0u);
 }
 
-TEST(ReferenceStore, WhatLiesUnusedForLongestMakesRoom) {
-  const TestFolder folder("cache_limit");
-  const auto now = std::filesystem::file_time_type::clock::now();
-  const auto file = [&](const char* name, int minutes_ago) {
-    const auto path = folder.write(name, std::string(1000, 'x'));
-    std::filesystem::last_write_time(path, now - std::chrono::minutes(minutes_ago));
-    return path;
-  };
-  const auto newest = file("reference-1.bin", 9), old = file("reference-2.bin", 3), recent = file("reference-3.bin", 2),
-             read_again = file("reference-4.bin", 4), table = file("table-5.bin", 99);
-  mark_as_used(read_again);
-  limit_references(newest, 3500, Log(true));
-  EXPECT_TRUE(std::filesystem::exists(newest));
-  EXPECT_TRUE(std::filesystem::exists(read_again));
-  EXPECT_TRUE(std::filesystem::exists(recent));
-  EXPECT_TRUE(std::filesystem::exists(table));
-  EXPECT_FALSE(std::filesystem::exists(old));
+TEST(ReferenceStore, AFileThatCannotBeReadCountsAsNone) {
+  const Setting s;
+  PairedRender first = s.render(), second = s.render();
+  first.advance_to(1, s.pool, {});
+  s.store().save(first);
+  const std::filesystem::path cache = s.folder.name_of("cache");
+  const std::filesystem::path kept = std::filesystem::directory_iterator(cache)->path();
+  std::filesystem::remove(kept);
+  std::filesystem::create_symlink("/proc/self/mem", kept);  // a regular file that opens, but does not read
+  s.store().load(second);
+  EXPECT_EQ(second.samples(), 0u);
 }
 
 TEST(Study, ItsIdentityHangsOnEverythingThatDecidesThePixels) {

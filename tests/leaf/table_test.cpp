@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 #include <numbers>
 
@@ -220,6 +221,21 @@ TEST_F(TableCache, CountsAWellSealedFileThatIsNoTableAsDamaged) {
   std::ofstream(files().at(0)) << with_checksum(describe(request) + "theta_deg,wavelength_nm,Rs,Rd,T\n0,551,2,0,0\n");
   EXPECT_EQ(get(request).shares, sound.shares);
   EXPECT_EQ(get(request).shares, sound.shares);
+}
+
+TEST_F(TableCache, KnowsWhatWasUsedAndMakesRoom) {
+  const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 10);
+  get(request);
+  const fs::path kept = files().at(0), left_over = dir_ / ".frond-1-0.tmp";
+  std::ofstream(left_over) << "half";
+  const auto long_ago = fs::last_write_time(kept) - std::chrono::hours(99);
+  for (const fs::path& file : {kept, left_over}) fs::last_write_time(file, long_ago);
+  get(request);
+  EXPECT_GT(fs::last_write_time(kept), long_ago);
+  EXPECT_TRUE(fs::exists(left_over));
+  get(request_of("soybean", TableMethod::monte_carlo, 11));
+  EXPECT_FALSE(fs::exists(left_over));
+  EXPECT_EQ(files().size(), 2u);
 }
 
 TEST_F(TableCache, DoesWithoutAFileThatCannotBeRead) {

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include "cli/compare/cache_limit.h"
 #include "core/atomic_file.h"
+#include "core/cache_limit.h"
 #include "core/file_bytes.h"
 #include "core/random.h"
 
@@ -12,6 +12,8 @@ namespace frond::compare {
 namespace {
 
 static_assert(std::is_trivially_copyable_v<Film::Pixel> && std::is_trivially_copyable_v<Film::BandSums>);
+
+constexpr CacheKind kReferences{"reference-", 2'000'000'000};
 
 /// The file: this, the pixels and bands of the first film, of the second, and a hash of all that. In the machine's own
 /// order of bytes: it is a cache of this machine.
@@ -84,17 +86,19 @@ bool decode(std::string_view bytes, uint64_t identity, PairedRender& render) {
 }  // namespace
 
 ReferenceStore::ReferenceStore(const std::filesystem::path& folder, uint64_t identity, const Log& log)
-    : path_(folder.empty() ? folder : folder / fmt::format("reference-{:016x}.bin", identity)),
+    : path_(folder.empty() ? folder : folder / fmt::format("{}{:016x}.bin", kReferences.name, identity)),
       identity_(identity),
       log_(log) {}
 
-void ReferenceStore::load(PairedRender& render) const {
+void ReferenceStore::load(PairedRender& render) const try {
   std::error_code error;  // a cache that cannot be looked into is none
   if (path_.empty() || !std::filesystem::is_regular_file(path_, error)) return;
   if (decode(read_file_bytes(path_, {}), identity_, render))
     mark_as_used(path_);
   else
     log_.warn({}, fmt::format("{} is damaged: the reference is rendered anew", path_.string()));
+} catch (const InputError& error) {  // another process may have deleted it just now
+  log_.warn({}, fmt::format("{}: the reference is rendered anew", error.what()));
 }
 
 void ReferenceStore::save(const PairedRender& render) const {
@@ -103,7 +107,7 @@ void ReferenceStore::save(const PairedRender& render) const {
   try {
     std::filesystem::create_directories(path_.parent_path());
     replace_file(path_, {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
-    limit_references(path_, kMostCachedBytes, log_);
+    limit_cache(path_, kReferences, log_);
   } catch (const std::exception& error) {
     log_.warn({}, fmt::format("the reference is not kept for next time: {}", error.what()));
   }
