@@ -18,8 +18,8 @@ constexpr size_t kLooks = 10;
 constexpr double kLargestPart = 0.25;
 constexpr uint64_t kLeastLimit = 64;
 
-/// How far a bound of a mean square may lie above its estimate, as a part of what was asked for: what it takes off
-/// the request has to be made up for by more samples of the render.
+/// How far a bound of a mean square may lie above its estimate, as a part of what was asked for, before more samples
+/// are spent on it.
 constexpr double kSharp = 0.25;
 
 /// 95 % that there is no more noise than that.
@@ -170,6 +170,7 @@ class Chooser {
     }
     choice_.ground = Choice::Ground::nothing_meets;
     choice_.bias = {};
+    choice_.bias_estimate = 0;
     return reference_;
   }
 
@@ -184,6 +185,7 @@ class Chooser {
       const Bounds b = bounds(answers, reference_);
       known = {std::max(known.low, b.square.low), std::min(known.high, b.square.high)};
       choice_.bias = {root(known.low), root(known.high)};
+      choice_.bias_estimate = root(b.estimate);
       const bool met = known.high <= request(), sharp = b.uncertainty < kSharp * request();
       const bool helps = b.uncertainty < 0.8 * last;  // the spread among pixels stays
       const bool told = known.low > request() || (met && (sharp || !helps));
@@ -264,7 +266,7 @@ Effort rounded_up(const std::optional<Effort>& effort) {
 }  // namespace
 
 Effort Choice::effort() const {
-  return rounded_up(Convergence(noise, {bias.high * bias.high, 0}).until_rms(rms, kNoiseZ));
+  return rounded_up(Convergence(noise, {bias_estimate * bias_estimate, 0}).until_rms(rms, kNoiseZ));
 }
 
 Effort Choice::reference_effort() const { return rounded_up(Convergence(reference_noise, {}).until_rms(rms, kNoiseZ)); }

@@ -50,6 +50,7 @@ struct Choice {
   Ground ground = Ground::met;
   double rms = 0;               ///< what was asked for
   RmsBounds bias;               ///< of what was chosen, against the reference; 0 for the reference itself
+  double bias_estimate = 0;     ///< what was measured of it
   bool out_of_samples = false;  ///< the pilot's limit kept cheaper answers from being shown
   std::string reference;
   std::vector<Answer> answers;
@@ -63,7 +64,7 @@ struct Choice {
 
   /// Of one render with the scene's own number of samples.
   double noise_rms() const;
-  /// A pixel, that bring bias and noise together below what was asked for, both at upper bounds.
+  /// A pixel, that bring the bias that was measured and noise at its upper bound down to what was asked for.
   double samples_needed() const;
   /// The same for the reference, which has noise alone.
   double reference_samples_needed() const;

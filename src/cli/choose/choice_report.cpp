@@ -42,9 +42,8 @@ std::string failures_text(const Choice& c) {
 
 std::string samples_text(const Choice& c) {
   return fmt::format(
-      "{} samples per pixel leave noise of {:.2g} beside; {:.0f} bring both below {:g}, where {} would take {:.2g} "
-      "times "
-      "the CPU time",
+      "{} samples per pixel leave noise of {:.2g} beside; about {:.0f} bring both down to {:g}, where {} would take "
+      "{:.2g} times the CPU time",
       c.samples, c.noise_rms(), c.samples_needed(), c.rms, c.reference, c.time_saved());
 }
 
@@ -114,6 +113,7 @@ std::string choice_json(const Choice& c) {
   nlohmann::ordered_json j{{"rms", c.rms},
                            {"confidence", kConfidence},
                            {"met", c.ground == Choice::Ground::met},
+                           {"bias", c.bias_estimate},
                            {"bias_low", c.bias.low},
                            {"bias_high", c.bias.high},
                            {"out_of_samples", c.out_of_samples},
