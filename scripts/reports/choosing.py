@@ -1,12 +1,12 @@
 """Whether what frond render chooses is right, on scenes that it was not designed on: docs/choosing_measured.md."""
 
 import argparse
-import json
-import math
 import pathlib
-import re
 import tempfile
 
+from choosing_full_size import full_size, full_size_text
+from choosing_renders import (ABM, CANDIDATE_SEEDS, CHOICE_SEEDS, FULL_SEEDS, REFERENCE_SEEDS, Error, Render, choose, mean,
+                              name_of, root, sized, total_rms, words_of)
 from tools import ROOT, frond, machine, table
 
 SCENES = {
@@ -15,78 +15,14 @@ SCENES = {
     "dark": "choosing/dark.pbrt",
     "spotted": "choosing/spotted.pbrt",
     "hundred leaves": "hundred-leaves/scene.pbrt",
+    "shade": "choosing/shade.pbrt",
 }
 TEXTURED = ["spotted"]  # which leaf_lambert does not take
 REQUESTS = [0.02, 0.01, 0.005, 0.002, 0.001]
-RESOLUTION, LARGE = 96, 1024
+# One for each scene at full size: so small that models differ, so large that abm's picture can be waited for.
+FULL_SIZE_REQUESTS = {"near and far": 0.005, "maize": 0.01, "dark": 0.002, "spotted": 0.005, "hundred leaves": 0.002, "shade": 0.005}
+RESOLUTION = 96
 RESOLUTIONS = [64, 128, 256, 512]
-CONFIDENCE = 0.95
-CHANNELS = ("red", "green", "blue")
-# Nobody who is judged shares a seed with the judge.
-REFERENCE_SEEDS, CANDIDATE_SEEDS, CHOICE_SEEDS, FULL_SEEDS = (901, 902), (903, 904), range(1, 100), range(1001, 1100)
-
-
-def sized(path, size, folder):
-    """A copy of a scene at another size, which finds its parts where they are."""
-    source = ROOT / "scenes" / path
-    text = re.sub(r'("integer [xy]resolution") \d+', rf"\1 {size}", source.read_text())
-    text = re.sub(r'(Include|"string filename") "(?=[^"]*\.(?:pbrt|ply|png)")', rf'\1 "{source.parent}/', text)
-    copy = folder / f"{source.parent.name}-{source.stem}-{size}.pbrt"
-    copy.write_text(text)
-    return copy
-
-
-def mean(values):
-    values = list(values)
-    return sum(values) / len(values)
-
-
-class Render:
-    """Two renders with seeds of their own."""
-
-    def __init__(self, scene, words, samples, seeds, folder, name):
-        self.images = [folder / f"{name}-{seed}.exr" for seed in seeds]
-        self.samples = samples
-        reports = [json.loads(frond("render", scene, *words, "--spp", samples, "--seed", seed, "-o", image, "--json"))
-                   for seed, image in zip(seeds, self.images)]
-        self.seconds_per_sample = mean(r["cpu_seconds"] for r in reports) / samples
-
-
-class Error:
-    """Mean squares over all pixels and channels of how one render differs from the reference."""
-
-    def __init__(self, render, reference):
-        j = json.loads(frond("difference", *render.images, *reference.images, "--json"))
-        self.bias = mean(j[f"bias_squared_{c}"] for c in CHANNELS)
-        self.bias_error = mean(j[f"bias_squared_error_{c}"] for c in CHANNELS)  # too large, as channels are alike
-
-    def bounds(self):
-        return [root(self.bias + z * self.bias_error) for z in (-1.96, 1.96)]
-
-
-def root(square):
-    return math.sqrt(max(0.0, square))
-
-
-def total_rms(image, reference):
-    """Of one render against what the reference converges to: the reference's own noise is taken out."""
-    j = json.loads(frond("difference", image, image, *reference.images, "--json"))
-    return root(mean(j[f"rms_{c}"] ** 2 - j[f"noise_b_{c}"] ** 2 for c in CHANNELS))
-
-
-def words_of(choice):
-    """What of the command line names what was chosen, as an option has it."""
-    words = []
-    for leaf in choice["leaves"]:
-        name = "leaf" if leaf["name"].startswith("leaf in line") else leaf["name"]
-        words += ["--swap", f"{name}=leaf,model={leaf['chosen']}"]
-    return words + ["--wavelengths", choice["wavelengths"][0]["chosen"]]
-
-
-def name_of(choice):
-    leaves = choice["leaves"]
-    models = leaves[0]["chosen"] if len(leaves) == 1 else ", ".join(f"{l['name']}: {l['chosen']}" for l in leaves)
-    return f"{models}; {choice['wavelengths'][0]['chosen']}"
 
 
 def samples_for(request):
@@ -100,21 +36,15 @@ class Bench:
     def __init__(self, path, options, folder):
         self.scene = sized(path, RESOLUTION, folder)
         self.options, self.folder = options, folder
-        self.reference = Render(self.scene, ["--swap", "*=leaf,model=abm", "--wavelengths", "hero"],
-                                options.reference_samples, REFERENCE_SEEDS, folder, "reference")
+        self.reference = Render(self.scene, ABM, options.reference_samples, REFERENCE_SEEDS, folder, "reference")
         self.errors = {}
 
-    def choose(self, request, seed):
-        report = json.loads(frond("render", self.scene, "--swap", f"*=leaf,model=auto,maxrms={request}", "--seed", seed,
-                                  "--spp", samples_for(request), "--pilot", "--json"))
-        return report
-
     def judged(self, choice):
-        """The error of what was chosen and the CPU time of a sample, measured once."""
+        """The error of what was chosen, measured once."""
         words = words_of(choice)
         if str(words) not in self.errors:
             render = Render(self.scene, words, self.options.candidate_samples, CANDIDATE_SEEDS, self.folder, "candidate")
-            self.errors[str(words)] = (Error(render, self.reference), render.seconds_per_sample)
+            self.errors[str(words)] = Error(render, self.reference)
         return self.errors[str(words)]
 
     def full_render(self, choice, seed):
@@ -132,21 +62,18 @@ class Case:
 
     def __init__(self, scene, bench, request, options):
         self.scene, self.request = scene, request
-        choices = [bench.choose(request, seed) for seed in list(CHOICE_SEEDS)[:options.seeds]]
+        choices = [choose(bench.scene, request, seed, samples_for(request)) for seed in list(CHOICE_SEEDS)[:options.seeds]]
         self.verdicts = [self.verdict(c, bench) for c in choices]
         self.names = sorted({name_of(c) for c in choices})
         choice = choices[0]
-        self.choice, self.name, (self.error, seconds) = choice, name_of(choice), bench.judged(choice)
+        self.choice, self.name, self.error = choice, name_of(choice), bench.judged(choice)
         self.pilot = mean(c["pilot"]["cpu_seconds"] for c in choices)
-        self.equal_samples = bench.reference.seconds_per_sample / seconds
-        self.seconds = seconds * choice["samples_needed"]
-        self.abm_seconds = bench.reference.seconds_per_sample * choice["reference_samples_needed"]
         full = [bench.full_render(c, seed) for c, seed in zip(choices, FULL_SEEDS)]
         self.full = [rms for rms in full if rms is not None]
         print(scene, request, self.name, self.verdicts, self.error.bounds(), self.full, flush=True)
 
     def verdict(self, choice, bench):
-        low, high = bench.judged(choice)[0].bounds()
+        low, high = bench.judged(choice).bounds()
         return "missed" if low > self.request else "met" if high <= self.request else "open"
 
     def row(self):
@@ -155,13 +82,7 @@ class Case:
         others = len(self.names) - 1
         name = f"{self.name}{f' (other seeds: {others} more)' if others else ''}"
         return (self.scene, f"{self.request:g}", name, f"{self.choice['bias_high']:.5f}", f"{low:.5f} to {high:.5f}",
-                f"{int(self.choice['samples_needed'])}", full, f"{self.pilot:.1f}", f"{self.seconds:.2f}",
-                f"{self.abm_seconds:.2f}", f"{self.abm_seconds / self.seconds:.1f}", f"{self.faster():.1f}",
-                f"{self.faster(LARGE**2 / RESOLUTION**2):.1f}", f"{self.equal_samples:.2f}")
-
-    def faster(self, times=1):
-        """Than abm, pilot included, for so many times the pixels: the pilot has as many as before."""
-        return times * self.abm_seconds / (times * self.seconds + self.pilot)
+                f"{int(self.choice['samples_needed'])}", full, f"{self.pilot:.1f}")
 
 
 def by_resolution(path, samples, folder):
@@ -176,46 +97,44 @@ def by_resolution(path, samples, folder):
     return values
 
 
-def page(cases, resolutions, options):
+def page(cases, resolutions, large, options):
     verdicts = [v for c in cases for v in c.verdicts]
     missed = sum(v == "missed" for v in verdicts)
     unmet = [c for c in cases if not c.choice["met"]]
     full = [rms / c.request for c in cases for rms in c.full]
     exceeded = sum(ratio > 1 for ratio in full)
-    cheaper = [c for c in cases if c.choice["met"]]
-    small, large = (sorted(c.faster(times) for c in cheaper) for times in (1, LARGE**2 / RESOLUTION**2))
     pilots = sorted(c.pilot for c in cases)
     sizes = [(name, *(f"{v:.5f}" for v in values), f"{values[-1] / values[0]:.2f}") for name, values in resolutions.items()]
-    head = ("scene", "asked", "chosen", "pilot's bound", "measured bias", "samples needed", "RMS with these", "pilot, CPU s",
-            "chosen, CPU s", "abm, CPU s", "faster without pilot", "with it", f"at {LARGE} x {LARGE}", "faster, equal samples")
+    head = ("scene", "asked", "chosen", "pilot's bound", "measured bias", "samples needed", "RMS with these", "pilot, CPU s")
     return f"""# Choosing leaf models: what was measured
 
 Written by `scripts/choosing`; what the words mean stands in [choosing.md](choosing.md). None of these scenes was used to design
 the choice, but the first, whose early runs showed that samples were counted wrongly: two leaves close by and far away, maize
-lit from behind, dark leaves under a strong light, a leaf with a map of its chlorophyll (`scenes/choosing`), and
-`scenes/hundred-leaves`. All at {RESOLUTION} x {RESOLUTION} pixels, {options.seeds}
-seeds for every request. The pilot may use a quarter of the paths of the render: {', '.join(str(samples_for(r)) for r in REQUESTS)}
-samples per pixel for the requests from {REQUESTS[0]:g} to {REQUESTS[-1]:g}.
+lit from behind, dark leaves under a strong light, a leaf with a map of its chlorophyll, leaves in the shade of others
+(`scenes/choosing`), and `scenes/hundred-leaves`.
+
+## Right or wrong
+
+{RESOLUTION} x {RESOLUTION} pixels, {options.seeds} seeds for every request. The pilot may use a quarter of the paths of the
+render: {', '.join(str(samples_for(r)) for r in REQUESTS)} samples per pixel for the requests from {REQUESTS[0]:g} to {REQUESTS[-1]:g}.
 
 The judge renders what was chosen anew, twice {options.candidate_samples} samples per pixel at all pixels, and `abm` by weighted
 walks, twice {options.reference_samples}, with seeds that no pilot had. *Measured bias* is what these tell of the RMS over all
 pixels and channels that stays however many samples are taken, between bounds of 95 %. *RMS with these* is the error, noise and
 all, of a render for each seed with the number of samples that the choice said to be needed, where that is
-{options.most_full_samples} or less. CPU times are those of that many samples, and of as many as `abm` needs by the same pilot; `abm` has noise alone.
+{options.most_full_samples} or less.
 
 {table(head, [c.row() for c in cases])}
 **{missed} of {len(verdicts)} choices were missed**: their measured bias lies above what was asked for, at its lower bound. The
 choice promises that this happens to 1 in 20 at most. {sum(v == "met" for v in verdicts)} were met at the upper bound as well,
 the judge could not tell of {sum(v == "open" for v in verdicts)}. In {len(unmet)} of {len(cases)} rows nothing cheaper than `abm`
-could be shown to be good enough, and `abm` was taken. Of {len(full)} renders with the number of samples that was said to be
-needed, {exceeded} had an RMS above what was asked for, {max(full):.2f} times at most.
+could be shown to be good enough, and `abm` was taken: they prove nothing. Of {len(full)} renders with the number of samples that
+was said to be needed, {exceeded} had an RMS above what was asked for, {max(full):.2f} times at most.
 
-**Time.** The pilot took {pilots[0]:.1f} to {pilots[-1]:.1f} s of CPU time, {pilots[len(pilots) // 2]:.1f} in the middle, and
-takes that for a picture of any size. These pictures are so small that it does not pay for most of them: where something
-cheaper than `abm` was chosen, it took {small[0]:.1f} to {small[-1]:.1f} times less CPU time down to the same error, pilot
-included, {small[len(small) // 2]:.1f} in the middle. At {LARGE} x {LARGE} pixels, by the same costs of a sample, it is {large[0]:.1f}
-to {large[-1]:.1f} times, {large[len(large) // 2]:.1f} in the middle.
+The pilot took {pilots[0]:.1f} to {pilots[-1]:.1f} s of CPU time, {pilots[len(pilots) // 2]:.1f} in the middle, which is more than
+it saves in most pictures as small as these.
 
+{full_size_text(large, options.full_size)}
 ## Resolution
 
 The RMS by which `leaf_lambert` differs from `leaf_solved`, when the whole picture is rendered small:
@@ -224,7 +143,7 @@ The RMS by which `leaf_lambert` differs from `leaf_solved`, when the whole pictu
 A small picture hides what differs in sign from place to place, most of all where there are glints, and says too little. The pilot
 renders pixels of the full picture instead.
 
-Machine: {machine()}. Other programs ran on it.
+Machine: {machine()}.
 """
 
 
@@ -232,9 +151,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="few samples, into build/choosing")
     quick = parser.parse_args().quick
-    options = argparse.Namespace(seeds=3, reference_samples=192, candidate_samples=128, most_full_samples=256)
+    options = argparse.Namespace(seeds=3, reference_samples=192, candidate_samples=128, most_full_samples=256, full_size=512)
     if quick:
-        options = argparse.Namespace(seeds=1, reference_samples=64, candidate_samples=32, most_full_samples=16)
+        options = argparse.Namespace(seeds=1, reference_samples=64, candidate_samples=32, most_full_samples=16, full_size=64)
     docs = ROOT / "build" / "choosing" if quick else ROOT / "docs"
     docs.mkdir(parents=True, exist_ok=True)
     cases, resolutions = [], {}
@@ -245,7 +164,8 @@ def main():
                 resolutions[name] = by_resolution(path, 4 if quick else 16, folder)
             bench = Bench(path, options, folder)
             cases += [Case(name, bench, request, options) for request in REQUESTS]
-    (docs / "choosing_measured.md").write_text(page(cases, resolutions, options))
+    large = full_size({name: (SCENES[name], request) for name, request in FULL_SIZE_REQUESTS.items()}, options.full_size)
+    (docs / "choosing_measured.md").write_text(page(cases, resolutions, large, options))
     print(f"Written: {docs / 'choosing_measured.md'}")
 
 

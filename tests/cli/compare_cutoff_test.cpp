@@ -109,6 +109,19 @@ TEST(FitCutoff, DoesNotStepOverAnAnswerThatIsNear) {
   EXPECT_LT(fit.cutoff, 0.015);
 }
 
+/// The same where the answer lies in a step that leads past the jump; one farther on is found where there is none before.
+TEST(FitCutoff, LooksForAnAnswerThatAStepWouldPass) {
+  const auto with_wall = [](double cutoff) {
+    return UnshotRatio{1e-4 * std::pow(cutoff / 0.015, -1) * (cutoff > 0.015 ? 3 : 1), 0.005};
+  };
+  const CutoffFit before = fit_cutoff({1.003e-4, 0.005}, with_wall);
+  EXPECT_TRUE(before.equal);
+  EXPECT_LT(before.cutoff, 0.015);
+  const CutoffFit beyond = fit_cutoff({0.9e-4, 0.005}, with_wall);
+  EXPECT_TRUE(beyond.equal);
+  EXPECT_NEAR(beyond.cutoff, 0.05, 0.05 * 1.0001 * std::hypot(0.005, 0.005));
+}
+
 TEST(FitCutoff, SaysWhereNoneIsRight) {
   const auto indifferent = [](double) { return UnshotRatio{5e-4, 0.05}; };
   const CutoffFit many = fit_cutoff({1e-4, 0.05}, indifferent);

@@ -33,7 +33,7 @@ Ladder standard_ladder(const Registry& registry) {
     const std::string name(model);
     ladder.models.push_back({name, {"leaf", {{"model", name}}}, price_of(model)});
   }
-  for (const auto& [text, price] : {std::pair{"smpte", 0.9}, {"meyer,white=D65", 0.9}, {"hero", 1.0}})
+  for (const auto& [text, price] : {std::pair{"smpte", 0.88}, {"meyer,white=D65", 0.92}, {"hero", 1.0}})
     ladder.wavelengths.push_back({text, parse_plugin_text(text, {}), price});
   return ladder;
 }

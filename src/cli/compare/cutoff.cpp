@@ -10,7 +10,7 @@ namespace {
 const double kLogUnshot = std::log(1e-4);
 constexpr double kSmallest = 1e-6, kLargest = 0.5;
 const double kFirstStep = std::log(1.1);
-constexpr int kSmallSteps = 4, kMostTries = 16;
+constexpr int kSmallSteps = 4, kMostTries = 16, kMostHalvings = 4;
 
 /// The logarithm of the ratio after a whole number of events, and what its error follows from.
 struct Count {
@@ -40,28 +40,38 @@ double between(const Try& low, const Try& high) {
   return std::exp(std::lerp(low.log_cutoff, high.log_cutoff, t));
 }
 
-/// Away from the first cutoff by small steps that grow: the ratio jumps where many paths have the same attenuation, and
-/// what lies beyond a jump may be another answer.
+/// Away from the first cutoff by small steps that grow. The ratio jumps where many paths have the same attenuation, and
+/// what lies beyond a jump may be another answer: a step that leads away from the target is halved, until what lies
+/// before the jump has been looked at.
 class Search {
  public:
   void add(double cutoff, double miss) {
-    last_ = {cutoff, std::log(cutoff), miss};
-    (miss > 0 ? low_ : high_) = last_;
-    ++tries_;
+    const Try found{cutoff, std::log(cutoff), miss};
+    (miss > 0 ? low_ : high_) = found;
+    const bool worse = steps_ > 0 && std::abs(miss) > std::abs(before_.miss);
+    (worse ? after_ : before_) = found;
+    if (halvings_left_ == 0) {
+      ++steps_;
+      if (worse) beyond_ = found, halvings_left_ = kMostHalvings;
+    } else if (--halvings_left_ == 0) {
+      before_ = beyond_;
+    }
   }
 
   /// The cutoff to try next; nothing where there is none left.
   std::optional<double> next() const {
     if (low_ && high_) return between(*low_, *high_);
-    const double step = std::copysign(std::ldexp(kFirstStep, std::max(0, tries_ - kSmallSteps)), last_.miss);
-    const double cutoff = std::clamp(std::exp(last_.log_cutoff + step), kSmallest, kLargest);
-    return cutoff == last_.cutoff ? std::optional<double>() : cutoff;
+    if (halvings_left_ > 0) return std::sqrt(before_.cutoff * after_.cutoff);
+    const double step = std::copysign(std::ldexp(kFirstStep, std::max(0, steps_ - kSmallSteps)), before_.miss);
+    const double cutoff = std::clamp(std::exp(before_.log_cutoff + step), kSmallest, kLargest);
+    return cutoff == before_.cutoff ? std::optional<double>() : cutoff;
   }
 
  private:
   std::optional<Try> low_, high_;  // too small a cutoff, too large a one
-  Try last_ = {};
-  int tries_ = 0;
+  Try before_ = {}, after_ = {};   // the last try; where one led away from the target, those nearest to the jump
+  Try beyond_ = {};                // the one that led away: the search goes on from there when the jump has been looked at
+  int steps_ = 0, halvings_left_ = 0;
 };
 
 }  // namespace
