@@ -109,7 +109,8 @@ TEST(FitCutoff, DoesNotStepOverAnAnswerThatIsNear) {
   EXPECT_LT(fit.cutoff, 0.015);
 }
 
-/// The same where the answer lies in a step that leads past the jump; one farther on is found where there is none before.
+/// The same where the answer lies in a step that leads past the jump; one farther on is found where there is none
+/// before.
 TEST(FitCutoff, LooksForAnAnswerThatAStepWouldPass) {
   const auto with_wall = [](double cutoff) {
     return UnshotRatio{1e-4 * std::pow(cutoff / 0.015, -1) * (cutoff > 0.015 ? 3 : 1), 0.005};

@@ -1,6 +1,7 @@
 #include "cli/choose/choice.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -12,8 +13,10 @@ namespace {
 
 /// Samples a pixel, in each of two renders.
 constexpr uint64_t kFirstSamples = 8, kMostScreening = 64, kMostSamples = 4096;
-/// How often the same question is put to more samples, at most.
+/// Every power of two between the two: how often the same question may be put to more samples. What the data say tells
+/// which of these looks are taken, never where they lie.
 constexpr size_t kLooks = 10;
+static_assert(kFirstSamples << (kLooks - 1) == kMostSamples);
 /// A pilot may trace that part of the final render's paths for what it compares, and this many at least.
 constexpr double kLargestPart = 0.25;
 constexpr uint64_t kLeastLimit = 64;
@@ -163,12 +166,18 @@ class Chooser {
     Configuration floor(questions_.size(), 0);
     for (;;) {
       const Configuration answers = guess.cheapest(floor, choice_.rms);
-      if (answers == reference_ || meets_request(answers)) return answers;
+      if (answers == reference_) return reference_without_bias();
+      if (meets_request(answers)) return answers;
       const size_t worst = guess.worst(answers);
       if (worst == questions_.size()) break;
       floor[worst] = answers[worst] + 1;
     }
     choice_.ground = Choice::Ground::nothing_meets;
+    return reference_without_bias();
+  }
+
+  /// Whatever was tried before it.
+  const Configuration& reference_without_bias() {
     choice_.bias = {};
     choice_.bias_estimate = 0;
     return reference_;
@@ -185,7 +194,7 @@ class Chooser {
       const Bounds b = bounds(answers, reference_);
       known = {std::max(known.low, b.square.low), std::min(known.high, b.square.high)};
       choice_.bias = {root(known.low), root(known.high)};
-      choice_.bias_estimate = root(b.estimate);
+      choice_.bias_estimate = root(std::clamp(b.estimate, known.low, known.high));
       const bool met = known.high <= request(), sharp = b.uncertainty < kSharp * request();
       const bool helps = b.uncertainty < 0.8 * last;  // the spread among pixels stays
       const bool told = known.low > request() || (met && (sharp || !helps));
@@ -209,14 +218,16 @@ class Chooser {
     const uint64_t limit = most_samples();
     const double at_limit = uncertainty * double(samples_) / double(limit);
     if (samples_ >= limit || at_limit > kAtMostFaster * request()) return false;
-    samples_ = std::min(limit, uint64_t(double(samples_) * std::clamp(uncertainty / (kSharp * request()), 2.0, 8.0)));
+    const double factor = std::clamp(uncertainty / (kSharp * request()), 2.0, 8.0);
+    samples_ = std::min(limit, std::bit_ceil(uint64_t(double(samples_) * factor)));
     return true;
   }
 
   uint64_t most_samples() const {
     const double paths =
         double(subject_.film.crop.width()) * double(subject_.film.crop.height()) * double(choice_.samples);
-    return std::clamp(uint64_t(kLargestPart * paths / (4 * double(pilot_.cost().pixels))), kLeastLimit, kMostSamples);
+    const auto samples = uint64_t(kLargestPart * paths / (4 * double(pilot_.cost().pixels)));
+    return std::bit_floor(std::clamp(samples, kLeastLimit, kMostSamples));
   }
 
   void describe(const Configuration& chosen) {

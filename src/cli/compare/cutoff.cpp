@@ -70,7 +70,7 @@ class Search {
  private:
   std::optional<Try> low_, high_;  // too small a cutoff, too large a one
   Try before_ = {}, after_ = {};   // the last try; where one led away from the target, those nearest to the jump
-  Try beyond_ = {};                // the one that led away: the search goes on from there when the jump has been looked at
+  Try beyond_ = {};  // the one that led away: the search goes on from there when the jump has been looked at
   int steps_ = 0, halvings_left_ = 0;
 };
 
