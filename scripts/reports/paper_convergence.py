@@ -102,7 +102,7 @@ faster.
 
 The ratio does not fall evenly with the cutoff: it jumps where many paths have the same attenuation, so that two cutoffs may
 leave the same. Our wall behind the front lit leaves reflects 0.015. A cutoff above that ends every path that meets the wall
-first (of all paths {' with 0.01, '.join(at_first_event(measured))} with the solved cutoff end at their first event),
-and (b) then gains by the wall, not by the leaf. The paper's scenes have not been published, and whether its ABM was cut off at
-other surfaces is not said.
+first, and (b) would then gain by the wall, not by the leaf: of all paths {' with 0.01, '.join(at_first_event(measured))} with the
+solved cutoff end at their first event. The paper's scenes have not been published, and whether its ABM was cut off at other
+surfaces is not said.
 """

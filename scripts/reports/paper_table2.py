@@ -157,8 +157,11 @@ def goal_rows(measured):
         yield (s.title, "bias of `leaf_simplified`, upper 95 %", "at most " + " / ".join(triple(s.rms, 3)),
                " / ".join(triple(b["high"] for b in biases)), verdict(all(b["high"] <= r for b, r in zip(biases, s.rms))))
         speed = candidate(comparison, "leaf_simplified")["speed_up"]["c_equal_error"]
-        yield (s.title, "speed-up (c) of `leaf_simplified`", f"at least {s.speed_up:.2f}", ratio_text(speed),
+        yield (s.title, "speed-up (c) of `leaf_simplified`, at equal error", f"at least {s.speed_up:.2f}", ratio_text(speed),
                verdict(speed.get("value", 0) >= s.speed_up))
+        published = candidate(measured[s.name]["manner"], "leaf_simplified")["speed_up"]["b_paper"]
+        yield (s.title, "speed-up (b) of `leaf_simplified`, in the paper's manner", f"at least {s.speed_up:.2f}",
+               f"{published:.2f}", verdict(published >= s.speed_up))
         solved = max(last_errors(comparison, "leaf_solved")[c]["bias"]["high"] for c in CHANNELS)
         yield (s.title, "bias of `leaf_solved`, upper 95 %, worst channel", "at most 0.001", f"{solved:.4f}",
                verdict(solved <= 0.001))
@@ -170,4 +173,6 @@ def goals(measured):
 
 The paper's error and speed-up, and what was measured here; RMS and bias are of red, green and blue.
 
-{table(("set", "figure", "wanted", "measured", "holds"), goal_rows(measured))}"""
+{table(("set", "figure", "wanted", "measured", "holds"), goal_rows(measured))}
+Why (b) is near 1: [below](#where-ours-and-the-papers-differ-and-why). The paper's one speed-up is of
+kind (b); (c) is what a user gains."""

@@ -37,7 +37,7 @@ inline constexpr std::array kLeafParams{
     Param{.name = "specimen",
           .kind = ParamKind::string,
           .default_value = std::string_view("soybean"),
-          .doc = "A leaf from the literature: its structure, and the numbers that are not given.",
+          .doc = "A leaf from the literature: its structure, and the numbers that are not given (docs/conventions.md).",
           .choices = detail::kSpecimenNames},
     detail::leaf_number("thickness", "m", {1e-6, 1e-2}, "Thickness of the leaf; by default the specimen's."),
     detail::leaf_number("mesophyllfraction", "", {0, 1},
