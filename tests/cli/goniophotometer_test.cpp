@@ -10,8 +10,10 @@
 namespace frond {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 class GoniophotometerCommand : public InstrumentCommand {
  protected:
@@ -76,6 +78,10 @@ TEST_F(GoniophotometerCommand, DrawsCurvesAndMaps) {
   EXPECT_THAT(o.out, HasSubstr("abm specimen=soybean, 30 degrees, 551 nm, 1000 rays, 20 x 40 patches\n"));
   for (const char* text : {"abm specimen=soybean", "diffusetransmission", "551 nm", "608 nm", "BTDF (sr⁻¹)"})
     EXPECT_THAT(bytes_of(path("a.svg")), HasSubstr(text));
+  // Only what points toward the light is dotted: no path with a dash goes on to the mirror direction.
+  const std::string dotted = "rgb\\(128, 128, 128\\)' stroke-dasharray='[^']*' +d='M[^'M]*";
+  EXPECT_THAT(bytes_of(path("a.svg")), ContainsRegex(dotted + "'"));
+  EXPECT_THAT(bytes_of(path("a.svg")), Not(ContainsRegex(dotted + "M")));
   EXPECT_THAT(bytes_of(path("b.svg")), HasSubstr("BRDF: diffusetransmission"));
   ASSERT_EQ(measure({"--wavelengths", "551", "--rays", "100", "--map", path("b.png"), "-q"}).code, 0);
   EXPECT_THAT(bytes_of(path("b.png")), HasSubstr("PNG"));
