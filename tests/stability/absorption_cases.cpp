@@ -53,6 +53,15 @@ Cell material_loses_nothing(const std::string& material, const Parameters& param
   return comparison.cell();
 }
 
+Cell integral_loses_nothing(const Specimen& solved) {
+  Comparison comparison(kModesTolerance);
+  for (const double theta_deg : kAngles) {
+    const leaf::Shares s = integrate_shares(solved, theta_deg);
+    comparison.add("R + T", s.subsurface + s.transmitted, 1);
+  }
+  return comparison.cell();
+}
+
 /// Light from one direction, whichever of wo and wi the material takes for it.
 Cell instruments_lose_nothing(const Parameters& params) {
   Comparison comparison(2e-6);
@@ -81,19 +90,25 @@ void add_lossless(Theme& theme, const std::string& name, TissueParams params) {
   solved.push_back(words("tablemethod", {"solve"}));
   walked.push_back(words("tablemethod", {"montecarlo"}));
   walked.push_back(number("integer", "tablerays", {100}));
-  theme.add(name + ": energy", "R + T = 1: each ray in double precision, within 2e-6 in single; whichever way incident")
+  const Specimen solved_leaf = solved_specimen({params, 800});
+  theme
+      .add(name + ": energy",
+           "R + T = 1: each ray in double precision, within 2e-6 in single; modes within 5e-4; whichever way incident")
       .add(Method::walk_analog, walks_lose_nothing(tissue, Absorption::analog))
       .add(Method::walk_weighted, walks_lose_nothing(tissue, Absorption::weighted))
       .add(Method::batch, batches_lose_nothing(tissue))
       .add(Method::solver, solver_loses_nothing(tissue, 1e-9))
       .add(Method::abm, material_loses_nothing("abm", words_for(params), kFloat))
       .add(Method::simplified, material_loses_nothing("leaf_simplified", solved, kFloat))
+      .add(Method::solved_leaf, integral_loses_nothing(solved_leaf))
+      .add(Method::lambert, material_loses_nothing("leaf_lambert", words_for(params), kFloat))
       .add(Method::spectrophotometer, instruments_lose_nothing(words_for(params)))
       .add(Method::simplified_walked, material_loses_nothing("leaf_simplified", walked, kFloat));
   Row& shares = theme.add(name + ": shares", "exact; solver within 2e-5, table within 5e-4");
   const Lit lit = solved_finely(tissue, kAngles);
   compare_tissue_methods(shares, tissue, lit, 2e-5);
   compare_material_methods(shares, {params, 800}, lit, 5e-4);
+  compare_solved_leaf(shares, solved_leaf, lit);
 }
 
 /// Of a mesophyll that lets nothing through.
@@ -105,6 +120,7 @@ void add_opaque(Theme& theme, const std::string& name, const LeafInScene& leaf, 
   Row& row = theme.add(name, "T = 0, R of the surface and the epidermis alone; solver within 1e-5, table within 5e-4");
   compare_tissue_methods(row, tissue, lit, 1e-5);
   compare_material_methods(row, leaf, lit, 5e-4);
+  compare_solved_leaf(row, solved_specimen(leaf), lit);
 }
 
 /// A pigment that absorbs `level` m^2/kg at all wavelengths.
@@ -127,9 +143,8 @@ void add_bad_pigment(Theme& theme, const std::string& name, std::string_view tex
     return refusal(
         part, [&] { Specimen(material, params, 800); }, folder.name_of(""));
   };
-  theme.add("a pigment " + name, expect_refusal(part))
-      .add(Method::abm, give_to("abm"))
-      .add(Method::simplified, give_to("leaf_simplified"));
+  Row& row = theme.add("a pigment " + name, expect_refusal(part));
+  for (const auto& [method, material] : kLeafMaterials) row.add(method, give_to(material));
 }
 
 /// Media of one index, one lobe at the entrance, absorption between: light goes straight on, by Beer's law.

@@ -19,6 +19,7 @@ void add_angles(Theme& theme, std::string name, std::string_view specimen, const
                                                                           rounded_up(kSolver), rounded_up(kTable)));
   compare_tissue_methods(row, tissue, lit, kSolver);
   compare_material_methods(row, {params, kNm}, lit, kTable);
+  compare_solved_leaf(row, solved_specimen({params, kNm}), lit);
 }
 
 /// What all methods say just above and just below the horizon: everything is reflected at the surface.
@@ -32,6 +33,7 @@ void add_crossing(Theme& theme, std::string_view specimen) {
                        "continuous: all reflected at the surface; solver within 1e-9, table within 5e-6");
   compare_tissue_methods(row, tissue, lit, 1e-9);
   compare_material_methods(row, {params, kNm}, lit, 5e-6);
+  compare_solved_leaf(row, solved_specimen({params, kNm}), lit);
 }
 
 }  // namespace

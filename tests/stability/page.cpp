@@ -42,11 +42,19 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"simplified", "material `leaf_simplified`, its table solved"},
     {"simplified, walked", "material `leaf_simplified`, its table by 1000 walks for each degree"},
     {"table file", "material `leaf_simplified` with `tablefile`"},
+    {"solved leaf",
+     "material `leaf_solved`, f integrated over all directions: R and T within its tolerance, 5e-4; "
+     "[its limits](solved_leaf.md#limits)"},
+    {"solved f", "material `leaf_solved`, pi f by direction, against modes of twice the nodes at the very angles"},
+    {"lambert",
+     "material `leaf_lambert`, R and T at the `incidence` that it is given: the case's angles up to 89 degrees"},
     {"spectrophotometer", "`measure_shares`, as `frond spectrophotometer` calls it, of `abm`"},
     {"goniophotometer", "`measure_f` and its sphere of detectors, as `frond goniophotometer` calls them"},
     {"path, abm", "the path integrator, rendering a scene with `abm`"},
     {"path, weighted abm", "the same with `abm` in its weighted mode"},
     {"path, simplified", "the same with `leaf_simplified`"},
+    {"path, solved leaf", "the same with `leaf_solved`"},
+    {"path, lambert", "the same with `leaf_lambert`, its means under diffuse light"},
 }};
 
 /// What Markdown would take for its own.

@@ -21,17 +21,22 @@ enum class Method : uint8_t {
   simplified,
   simplified_walked,
   table_file,
+  solved_leaf,
+  solved_f,
+  lambert,
   spectrophotometer,
   goniophotometer,
   path_abm,
   path_weighted,
   path_simplified,
+  path_solved,
+  path_lambert,
 };
 struct MethodName {
   std::string_view name, doc;
 };
 const MethodName& describe(Method method);
-inline constexpr size_t kMethods = 15;
+inline constexpr size_t kMethods = 20;
 
 /// What one method did in one case.
 struct Cell {

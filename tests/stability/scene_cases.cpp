@@ -63,8 +63,11 @@ struct Leaf {
   Method method;
   std::string material;
 };
-const Leaf kLeaves[] = {
-    {Method::path_abm, kAbm}, {Method::path_weighted, kWeighted}, {Method::path_simplified, kSimplified}};
+const Leaf kLeaves[] = {{Method::path_abm, kAbm},
+                        {Method::path_weighted, kWeighted},
+                        {Method::path_simplified, kSimplified},
+                        {Method::path_solved, "\"leaf_solved\""},
+                        {Method::path_lambert, "\"leaf_lambert\""}};
 
 /// A row with a cell for each leaf; cell_of(leaf) makes it.
 template <class CellOf>

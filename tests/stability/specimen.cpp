@@ -1,5 +1,8 @@
 #include "tests/stability/specimen.h"
 
+#include <optional>
+
+#include "instruments/goniophotometer.h"
 #include "instruments/spectrophotometer.h"
 
 namespace frond::stability {
@@ -26,6 +29,8 @@ Parameters with(Parameters params, Parameters more) {
   return params;
 }
 
+Parameters words_of(const LeafInScene& leaf) { return with(words_for(leaf.leaf), leaf.pigments); }
+
 Cell sampled(Specimen& specimen, const Lit& lit) {
   Comparison comparison;
   for (size_t i = 0; i < lit.theta_deg.size(); ++i)
@@ -45,11 +50,32 @@ Cell measured(const Specimen& specimen, const Lit& lit) {
   return comparison.cell();
 }
 
+/// For methods that tell R and not its parts.
+void add_all_reflected(Comparison& comparison, const Shares& value, const Shares& truth) {
+  comparison.add("R", value.surface + value.subsurface, truth.surface + truth.subsurface);
+  comparison.add("T", value.transmitted, truth.transmitted);
+}
+
 Cell looked_up(Specimen& specimen, const Lit& lit, double bound) {
   Comparison comparison(bound);
   for (size_t i = 0; i < lit.theta_deg.size(); ++i)
     add_shares(comparison, read_off(specimen.bsdf(), toward_in_float(lit.theta_deg[i])), lit.truth[i]);
   return comparison.cell();
+}
+
+/// Of `leaf_lambert`, whose R and T are those of one angle: a leaf for each. None where all angles are beyond its
+/// range.
+std::optional<Cell> given_incidence(const Parameters& params, double lambda_nm, const Lit& lit, double bound) {
+  Comparison comparison(bound);
+  bool any = false;
+  for (size_t i = 0; i < lit.theta_deg.size(); ++i) {
+    const double theta = lit.theta_deg[i], from_normal = std::min(theta, 180 - theta);
+    if (from_normal > 89) continue;
+    Specimen lambert("leaf_lambert", with(params, {number("float", "incidence", {from_normal})}), lambda_nm);
+    add_all_reflected(comparison, read_off(lambert.bsdf(), toward_in_float(theta)), lit.truth[i]);
+    any = true;
+  }
+  return any ? std::optional(comparison.cell()) : std::nullopt;
 }
 
 /// A table's own noise: `rays` walks at each angle, of which the neighbours take part in a look-up.
@@ -131,8 +157,23 @@ MeasuredShares sample_many(const Bsdf& bsdf, const Vec3& wo, int samples) {
   return measured;
 }
 
+Shares integrate_shares(const Specimen& specimen, double theta_deg) {
+  const GoniophotometerReading reading =
+      integrate_f({specimen.material(), {theta_deg, specimen.lambda_nm()}}, DetectorSphere(2, 1), specimen.pool());
+  return {0, reading.share(true).mean, reading.share(false).mean};
+}
+
+Specimen solved_specimen(const LeafInScene& leaf) { return {"leaf_solved", words_of(leaf), leaf.lambda_nm}; }
+
+void compare_solved_leaf(Row& row, const Specimen& solved, const Lit& lit) {
+  Comparison comparison(kModesTolerance);
+  for (size_t i = 0; i < lit.theta_deg.size(); ++i)
+    add_all_reflected(comparison, integrate_shares(solved, lit.theta_deg[i]), lit.truth[i]);
+  row.add(Method::solved_leaf, comparison.cell());
+}
+
 void compare_material_methods(Row& row, const LeafInScene& leaf, const Lit& lit, double table_bound) {
-  const Parameters params = with(words_for(leaf.leaf), leaf.pigments);
+  const Parameters params = words_of(leaf);
   Specimen abm("abm", params, leaf.lambda_nm);
   row.add(Method::abm, sampled(abm, lit));
   row.add(Method::spectrophotometer, measured(abm, lit));
@@ -144,6 +185,7 @@ void compare_material_methods(Row& row, const LeafInScene& leaf, const Lit& lit,
                                 number("integer", "tablerays", {kTableWalks})}),
                   leaf.lambda_nm);
   row.add(Method::simplified_walked, looked_up_in_walked(walked, lit, table_bound));
+  if (const auto cell = given_incidence(params, leaf.lambda_nm, lit, table_bound)) row.add(Method::lambert, *cell);
 }
 
 }  // namespace frond::stability

@@ -39,9 +39,30 @@ struct LeafInScene {
   Parameters pigments = {};
 };
 
+/// Every registered leaf material, and the column of what it does by default.
+struct LeafMaterial {
+  Method method;
+  std::string_view name;
+};
+inline constexpr LeafMaterial kLeafMaterials[] = {{Method::abm, "abm"},
+                                                  {Method::simplified, "leaf_simplified"},
+                                                  {Method::solved_leaf, "leaf_solved"},
+                                                  {Method::lambert, "leaf_lambert"}};
+
+/// What leaf_solved's own "tolerance" allows.
+inline constexpr double kModesTolerance = 5e-4;
+
 /// Fills in the cells of everything that works on a registered leaf material. `table_bound`: on the error of looking up
-/// a table that was solved.
+/// a table that was solved. But `leaf_solved`, whose modes cost more: it is made once for all rows about a leaf.
 void compare_material_methods(Row& row, const LeafInScene& leaf, const Lit& lit, double table_bound);
+
+Specimen solved_specimen(const LeafInScene& leaf);
+
+/// Fills in the cell of R and T of `leaf_solved`, made by `solved_specimen`.
+void compare_solved_leaf(Row& row, const Specimen& solved, const Lit& lit);
+
+/// R and T of a material whose f is exact, without noise.
+leaf::Shares integrate_shares(const Specimen& specimen, double theta_deg);
 
 /// Rs, Rd and T of `leaf_simplified` at one angle, read off its BSDF without noise. `simplified` has "surfacedirect"
 /// false: so Rs is the weight of a lobe of its own.
