@@ -105,6 +105,8 @@ def measure(name, ladder, reference_samples, folder):
 
 def chart(path, results):
     script = "set multiplot layout 1,3\nset logscale xy\nset key top right font ',11'\nset format x '10^{%T}'\n"
+    seconds = [p["seconds"] for _, curves in results.values() for points in curves.values() for p in points]
+    script += f"set xrange [{min(seconds) / 1.3}:{1.3 * max(seconds)}]\n"
     script += "set xlabel 'CPU time (s)'\nset yrange [0.2:30]\nset ytics (0.2,0.3,0.5,1,2,3,5,10,20,30)\n"
     for panel, (scene, (reference, curves)) in enumerate(results.items()):
         plots = []
