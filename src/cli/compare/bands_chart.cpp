@@ -46,6 +46,12 @@ std::string curve(size_t i, double aside, const std::string& label) {
       i, kSeriesColors[i], aside, line_style(i), kPoints[i], gnuplot_text(label));
 }
 
+/// An entry of the key.
+std::string bars_explained() {
+  return "NaN with points pt '|' lc rgb '#000000' "
+         "title 'bars: intervals of 95 %; without a mark the bias is not told from none', ";
+}
+
 /// The range of wavelengths, with room for what stands aside.
 std::string wavelength_axis(const ChannelList& channels, double step_nm) {
   return fmt::format("set xlabel 'wavelength (nm)'\nset xrange [{}:{}]\n", channels.bands.front().nm - step_nm,
@@ -77,8 +83,8 @@ std::string bands_chart(const Comparison& c) {
     script += data_block(i, all[i], y);
     plot += curve(i, step_nm * 0.5 * ((double(i) + 0.5) / double(all.size()) - 0.5), c.subjects[i].candidate.label);
   }
-  return script + log_axis('y', y, fmt::format("bias and noise ({})", c.channels.unit)) + key_below(all.size() + 1) +
-         "plot " + plot +
+  return script + log_axis('y', y, fmt::format("bias and noise ({})", c.channels.unit)) + key_below(all.size() + 2) +
+         "plot " + plot + bars_explained() +
          fmt::format("NaN with lines lc rgb '#000000' dt 3 lw 2 title 'noise of one render of {} samples'\n",
                      c.subjects.front().rungs.back().samples);
 }

@@ -32,8 +32,7 @@ std::string flip_caption(const Comparison& c) {
 
 constexpr const char* kBandsCaption =
     "All pixels. Points: bias, with bars of 95 %. A bar without a point: a bias that cannot be told from none, up to "
-    "the "
-    "bar’s end. Dotted: the noise that is left.";
+    "the bar’s end. Dotted: the noise that is left.";
 
 Chart curves(const Comparison& c, Measure measure, const char* name, const char* description, std::string caption) {
   return {name,   description,    std::move(caption), has_curves(c, measure) ? curves_chart(c, measure) : "",
@@ -49,7 +48,7 @@ std::vector<Chart> charts_of(const Comparison& c) {
              "The same over the pixels that see a leaf.")};
   if (c.channels.are_bands())
     charts.push_back(
-        {"bands", "Bias and noise against wavelength", kBandsCaption, bands_chart(c), kWidth, height_of(c, 1)});
+        {"bands", "Bias and noise against wavelength", kBandsCaption, bands_chart(c), kWidth, height_of(c, 2)});
   else
     charts.push_back(curves(c, Measure::flip, "flip", "FLIP against CPU time", flip_caption(c)));
   return charts;
