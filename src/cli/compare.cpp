@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <ctime>
 
 #include "cli/choose/choice_report.h"
 #include "cli/commands.h"
@@ -12,6 +11,7 @@
 #include "cli/compare/summary.h"
 #include "cli/compare/verdict.h"
 #include "cli/plugins.h"
+#include "core/cpu_clock.h"
 #include "scene/words.h"
 
 namespace frond {
@@ -141,7 +141,7 @@ void run_compare(const CompareOptions& o) {
   result.command = command_line_of(o);
   result.machine = compare::machine_description();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result.cpu_seconds = double(std::clock()) / CLOCKS_PER_SEC;
+  result.cpu_seconds = cpu_seconds();
   compare::write_report(o.output, result);
   if (o.quiet) return;
   fmt::print("{}\n{}\n\nThe report is {}\n", compare::summary_text(result), compare::verdict(result),

@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <ctime>
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
@@ -8,6 +7,7 @@
 #include "cli/number_list.h"
 #include "cli/table_words.h"
 #include "core/atomic_file.h"
+#include "core/cpu_clock.h"
 #include "core/parallel.h"
 #include "leaf/body_cache.h"
 #include "leaf/body_file.h"
@@ -85,21 +85,18 @@ void write(const std::string& path, const std::string& text) {
   replace_file(path, std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
 }
 
-double cpu_seconds_since(std::clock_t start) { return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
-
 void make_shares_file(const TableOptions& options, const std::vector<std::string>& leaf) {
   const leaf::TableRequest request = request_of(options, leaf);
-  const std::clock_t start = std::clock();
+  const double start = cpu_seconds();
   leaf::Table table = leaf::make_table(request, ThreadPool(options.threads));
-  const double cpu_seconds = cpu_seconds_since(start);
+  const double seconds = cpu_seconds() - start;
   std::string header = leaf::describe(request);
   if (options.equal_sides) {
     table = leaf::mean_of_sides(table);
     header += "# mean of both sides\n";
   }
   write(options.output, leaf::to_csv(table, header));
-  Log(options.quiet)
-      .info(leaf::summary(request, options.output, table) + fmt::format(", {:.2g} s of CPU", cpu_seconds));
+  Log(options.quiet).info(leaf::summary(request, options.output, table) + fmt::format(", {:.2g} s of CPU", seconds));
 }
 
 leaf::BodyRequest modes_request_of(const TableOptions& options, const std::vector<std::string>& leaf) {
@@ -115,14 +112,14 @@ leaf::BodyRequest modes_request_of(const TableOptions& options, const std::vecto
 
 void make_modes_file(const TableOptions& options, const std::vector<std::string>& leaf) {
   const leaf::BodyRequest request = modes_request_of(options, leaf);
-  const std::clock_t start = std::clock();
+  const double start = cpu_seconds();
   const leaf::BodySpectrum spectrum = leaf::make_body_spectrum(request, ThreadPool(options.threads));
-  const double cpu_seconds = cpu_seconds_since(start);
+  const double seconds = cpu_seconds() - start;
   write(options.output, leaf::to_text(request, spectrum, leaf::describe(request)));
   const size_t bytes = leaf::BodyTable(request, spectrum, false).bytes();
   Log(options.quiet)
       .info(leaf::summary(request, options.output, spectrum) +
-            fmt::format(", {} kB in a render, {:.2g} s of CPU", (bytes + 512) / 1024, cpu_seconds));
+            fmt::format(", {} kB in a render, {:.2g} s of CPU", (bytes + 512) / 1024, seconds));
 }
 
 /// Options that say nothing of a table of modes.

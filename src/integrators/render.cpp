@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <memory>
 #include <mutex>
+
+#include "core/cpu_clock.h"
 
 namespace frond {
 namespace {
 
 constexpr int kTile = 16;
-
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
-}
 
 class Clock {
  public:

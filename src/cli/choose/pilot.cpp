@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "cli/choose/pilot_pixels.h"
-#include "cli/cpu_clock.h"
+#include "core/cpu_clock.h"
 #include "core/random.h"
 
 namespace frond::choose {

@@ -1,6 +1,6 @@
 #include "cli/compare/paired_render.h"
 
-#include "cli/cpu_clock.h"
+#include "core/cpu_clock.h"
 
 namespace frond::compare {
 namespace {

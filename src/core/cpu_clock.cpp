@@ -1,4 +1,4 @@
-#include "cli/cpu_clock.h"
+#include "core/cpu_clock.h"
 
 #include <ctime>
 
