@@ -13,18 +13,14 @@ SceneVariant::SceneVariant(const Scene& scene, const SceneDescription& descripti
   // What was made ready for other wavelengths has to be made anew, leaf or not.
   for (size_t place = 0; place < description.materials.size(); ++place)
     if (const Material* from = scene.material(place); from && (own_wavelengths_ || from->is_leaf()))
-      swaps_.push_back({from, resolver.material(place)});
+      swaps_.emplace(from, resolver.material(place));
   const Preparation preparation{wavelengths(), pool, log, overrides.cache_dir, &shared};
   for (const auto& [place, material] : resolver.materials()) material->prepare(preparation);
 }
 
 bool SceneVariant::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
   if (!scene_.intersect(ray, key, point)) return false;
-  for (const Swap& swap : swaps_)
-    if (swap.from == point.material) {
-      point.material = swap.to.get();
-      break;
-    }
+  if (const auto swap = swaps_.find(point.material); swap != swaps_.end()) point.material = swap->second.get();
   return true;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <unordered_map>
+
 #include "scene/scene.h"
 
 namespace frond {
@@ -22,14 +24,9 @@ class SceneVariant final : public World {
   const WavelengthStrategy& wavelengths() const { return own_wavelengths_ ? *own_wavelengths_ : scene_.wavelengths(); }
 
  private:
-  struct Swap {
-    const Material* from;
-    std::shared_ptr<Material> to;
-  };
-
   const Scene& scene_;
-  std::unique_ptr<WavelengthStrategy> own_wavelengths_;  ///< nullptr: the scene's
-  std::vector<Swap> swaps_;
+  std::unique_ptr<WavelengthStrategy> own_wavelengths_;                   ///< nullptr: the scene's
+  std::unordered_map<const Material*, std::shared_ptr<Material>> swaps_;  ///< by the scene's own
 };
 
 }  // namespace frond
