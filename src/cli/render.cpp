@@ -133,7 +133,7 @@ std::optional<choose::Choice> choose_models(const RenderOptions& options, const 
   if (!chosen) return {};
   log.info(choose::choice_text(chosen->choice));
   if (const std::string warning = choose::choice_warning(chosen->choice); !warning.empty()) log.warn({}, warning);
-  description = std::move(chosen->description);
+  description.materials = std::move(chosen->materials);
   overrides.wavelengths = chosen->wavelengths;
   return chosen->choice;
 }

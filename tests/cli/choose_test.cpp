@@ -5,6 +5,7 @@
 #include "cli/choose/choice_report.h"
 #include "scene/image_file.h"
 #include "scene/parser.h"
+#include "scene/scene_variant.h"
 #include "tests/cli/choose_scene.h"
 #include "tests/cli/command.h"
 #include "tests/planted/planted.h"

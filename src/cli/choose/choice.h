@@ -79,8 +79,8 @@ struct Choice {
 /// What is chosen, and the scene with it.
 struct Chosen {
   Choice choice;
-  SceneDescription description;
-  std::string wavelengths;  ///< in place of the command line's
+  std::vector<MaterialDescription> materials;  ///< in place of the description's
+  std::string wavelengths;                     ///< in place of the command line's
 };
 
 /// The cheapest answers to what the scene leaves open that meet its leaves' "maxrms", the smallest of them. Nothing

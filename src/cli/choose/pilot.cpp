@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <unordered_set>
 
 #include "cli/choose/pilot_pixels.h"
 #include "core/cpu_clock.h"
 #include "core/random.h"
+#include "scene/scene_variant.h"
 
 namespace frond::choose {
 namespace {
@@ -48,7 +50,7 @@ struct Pilot::Render {
 };
 
 Pilot::Pilot(const Subject& subject, const Ladder& ladder, ThreadPool& pool)
-    : subject_(subject), pool_(pool), start_cpu_seconds_(cpu_seconds()) {
+    : subject_(subject), pool_(pool), start_cpu_seconds_(cpu_seconds()), variant_(without_shapes(subject.description)) {
   const bool named = !subject.overrides.wavelengths.empty() || names_wavelengths(subject.description);
   SceneOverrides overrides = subject.overrides;
   if (!named) overrides.wavelengths = ladder.wavelengths.back().name;
@@ -76,11 +78,10 @@ Configuration Pilot::reference() const {
 Pilot::Render Pilot::make(const Configuration& answers) {
   SceneOverrides overrides = subject_.overrides;
   overrides.wavelengths = wavelengths_of(questions_, answers, overrides.wavelengths);
-  const SceneDescription description = answered(subject_.description, subject_.registry, questions_, answers);
-  auto world =
-      std::make_unique<SceneVariant>(*scene_, description, subject_.registry, overrides, pool_, quiet_, shared_);
+  variant_.materials = answered(subject_.description, subject_.registry, questions_, answers);
+  auto world = std::make_unique<SceneVariant>(*scene_, variant_, subject_.registry, overrides, pool_, quiet_, shared_);
   const auto seed = [this](SeedUse use) { return hash_key(scene_->seed(), uint64_t{use}); };
-  PairedFilms films(row_of(subject_.film, pixels_.size()), {seed(kFirstHalf), seed(kSecondHalf)}, description,
+  PairedFilms films(row_of(subject_.film, pixels_.size()), {seed(kFirstHalf), seed(kSecondHalf)}, variant_,
                     subject_.registry, world->wavelengths(), pixels_);
   return {std::move(world), std::move(films)};
 }
@@ -126,11 +127,12 @@ double Pilot::cpu_us_per_path(const Configuration& answers) const {
 
 double Pilot::share(const Question& question) const {
   const Scene& scene = *scene_;
+  std::unordered_set<const Material*> asked;
+  for (const size_t place : question.materials) asked.insert(scene.material(place));
   const auto sees = [&](const PixelPlace& p) {
     SurfacePoint point;
     const Ray ray = scene.camera().ray({float(p.x) + 0.5f, float(p.y) + 0.5f}, {0.5f, 0.5f});
-    if (!scene.intersect(ray, hash_key(scene.seed(), p.x, p.y), point)) return false;
-    return std::ranges::any_of(question.materials, [&](size_t m) { return scene.material(m) == point.material; });
+    return scene.intersect(ray, hash_key(scene.seed(), p.x, p.y), point) && asked.contains(point.material);
   };
   return double(std::ranges::count_if(pixels_, sees)) / double(pixels_.size());
 }

@@ -6,7 +6,6 @@
 #include "cli/paired_films.h"
 #include "instruments/convergence.h"
 #include "instruments/paired_difference.h"
-#include "scene/scene_variant.h"
 #include "spectra/color_management.h"
 
 namespace frond::choose {
@@ -66,7 +65,8 @@ class Pilot {
   Subject subject_;
   ThreadPool& pool_;
   double start_cpu_seconds_;
-  Log quiet_{true};  ///< what there is to say the final render says
+  SceneDescription variant_;  ///< the subject's without its shapes, as it was rendered last
+  Log quiet_{true};           ///< what there is to say the final render says
   SharedWork shared_;
   ColorManager colors_;
   std::unique_ptr<Scene> scene_;  ///< with the wavelengths that count as right

@@ -24,20 +24,22 @@ bool same_leaf(const ParsedPlugin& a, const ParsedPlugin& b) {
   });
 }
 
-/// With the rungs that the leaf can take.
-void add_options(Question& question, const SceneDescription& description, const Registry& registry,
+/// With the rungs that the leaf can take. Leaves the description as it is.
+void add_options(Question& question, SceneDescription& description, const Registry& registry,
                  const WavelengthStrategy& wavelengths, const std::vector<Rung>& models) {
   const size_t place = question.materials.front();
+  ParsedPlugin& plugin = description.materials[place].plugin;
+  const ParsedPlugin open = plugin;
   for (const Rung& rung : models) {
-    SceneDescription changed = description;
-    swap_material(changed.materials[place].plugin, rung.plugin, registry, Log(true));
+    swap_material(plugin, rung.plugin, registry, Log(true));
     try {
-      SceneResolver(changed, registry, wavelengths).material(place);
+      SceneResolver(description, registry, wavelengths).material(place);
       question.options.push_back(rung);
     } catch (const InputError& error) {
       if (&rung == &models.back()) throw;
       question.refused.push_back({rung.name, error.what()});
     }
+    plugin = open;
   }
 }
 
@@ -45,12 +47,35 @@ void add_options(Question& question, const SceneDescription& description, const 
 
 bool has_open_leaf(const SceneDescription& description) { return std::ranges::any_of(description.materials, is_open); }
 
+SceneDescription without_shapes(const SceneDescription& d) {
+  return {.camera = d.camera,
+          .film = d.film,
+          .sampler = d.sampler,
+          .integrator = d.integrator,
+          .filter = d.filter,
+          .color_space = d.color_space,
+          .color_space_where = d.color_space_where,
+          .options = d.options,
+          .camera_from_world = d.camera_from_world,
+          .coordinate_systems = d.coordinate_systems,
+          .textures = d.textures,
+          .materials = d.materials,
+          .area_lights = {},
+          .shapes = {},
+          .lights = {},
+          .objects = {},
+          .instances = {},
+          .files = d.files,
+          .content_hash = d.content_hash};
+}
+
 bool names_wavelengths(const SceneDescription& description) { return find(description.options, "wavelengths"); }
 
 std::vector<Question> open_leaves(const SceneDescription& description, const Registry& registry,
                                   const WavelengthStrategy& wavelengths, const Ladder& ladder) {
   std::vector<Question> leaves;
   SceneResolver resolver(description, registry, wavelengths);
+  SceneDescription tried = without_shapes(description);
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
     if (!is_open(m)) continue;
@@ -65,17 +90,17 @@ std::vector<Question> open_leaves(const SceneDescription& description, const Reg
     const Params params(registry.materials.get("leaf", m.plugin.where), m.plugin, resolver);
     const std::string name = m.name.empty() ? fmt::format("leaf in line {}", m.plugin.where.line) : m.name;
     Question& question = leaves.emplace_back(Question{name, {i}, params.real("maxrms"), {}});
-    add_options(question, description, registry, wavelengths, ladder.models);
+    add_options(question, tried, registry, wavelengths, ladder.models);
   }
   return leaves;
 }
 
-SceneDescription answered(const SceneDescription& description, const Registry& registry,
-                          const std::vector<Question>& questions, const Configuration& answers) {
-  SceneDescription result = description;
+std::vector<MaterialDescription> answered(const SceneDescription& description, const Registry& registry,
+                                          const std::vector<Question>& questions, const Configuration& answers) {
+  std::vector<MaterialDescription> result = description.materials;
   for (size_t q = 0; q < questions.size(); ++q)
     for (const size_t place : questions[q].materials)
-      swap_material(result.materials[place].plugin, questions[q].options[answers[q]].plugin, registry, Log(true));
+      swap_material(result[place].plugin, questions[q].options[answers[q]].plugin, registry, Log(true));
   return result;
 }
 

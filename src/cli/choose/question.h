@@ -28,6 +28,8 @@ struct Question {
 using Configuration = std::vector<size_t>;
 
 bool has_open_leaf(const SceneDescription& description);
+/// All but what stands in the scene, shapes and lights, which may be large: enough to make its materials.
+SceneDescription without_shapes(const SceneDescription& description);
 /// Whether the scene says which wavelengths it wants.
 bool names_wavelengths(const SceneDescription& description);
 
@@ -36,9 +38,9 @@ bool names_wavelengths(const SceneDescription& description);
 std::vector<Question> open_leaves(const SceneDescription& description, const Registry& registry,
                                   const WavelengthStrategy& wavelengths, const Ladder& ladder);
 
-/// With these answers written into the leaves.
-SceneDescription answered(const SceneDescription& description, const Registry& registry,
-                          const std::vector<Question>& questions, const Configuration& answers);
+/// The description's materials with these answers written into the leaves.
+std::vector<MaterialDescription> answered(const SceneDescription& description, const Registry& registry,
+                                          const std::vector<Question>& questions, const Configuration& answers);
 
 /// What was answered to the question of wavelengths, as a PluginText; `otherwise` where that is no question.
 std::string wavelengths_of(const std::vector<Question>& questions, const Configuration& answers,
