@@ -4,7 +4,6 @@
 #include "core/integrator.h"
 #include "core/sampling.h"
 #include "integrators/light_selector.h"
-#include "integrators/registry.h"
 
 namespace frond {
 namespace {

@@ -1,5 +1,6 @@
 #include "leaf/tissue.h"
 
+#include "leaf/absorption.h"
 #include "leaf/constants.h"
 
 namespace frond::leaf {

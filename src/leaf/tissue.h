@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "leaf/absorption.h"
 #include "leaf/lobe.h"
 #include "leaf/tissue_params.h"
 

@@ -4,6 +4,7 @@
 #include "leaf/table_cache.h"
 #include "leaf/table_file.h"
 #include "materials/leaf_params.h"
+#include "materials/lobes/active_lanes.h"
 #include "materials/lobes/three_lobe.h"
 #include "materials/table_file_param.h"
 #include "materials/table_wavelengths.h"

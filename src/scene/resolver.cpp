@@ -1,7 +1,5 @@
 #include "scene/resolver.h"
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "spectra/analytic.h"
 #include "spectra/check_range.h"

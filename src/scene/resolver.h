@@ -42,7 +42,6 @@ class SceneResolver final : public ParamResolver {
   std::map<std::string, std::shared_ptr<const FloatTexture>> float_textures_;
   std::map<std::string, std::shared_ptr<const SpectrumTexture>> spectrum_textures_;
   std::map<size_t, std::shared_ptr<Material>> materials_;
-  std::map<std::string, SpectrumPtr> spectra_;
   std::set<std::string> in_progress_;  ///< textures and materials being made: a second visit is a cycle
 };
 

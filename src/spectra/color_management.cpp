@@ -10,7 +10,6 @@
 
 #include "core/error.h"
 #include "spectra/builtin_config.h"
-#include "spectra/color_space.h"
 
 namespace OCIO = OCIO_NAMESPACE;
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "leaf/absorption.h"
 #include "leaf/specimens.h"
 #include "leaf/tissue.h"
 

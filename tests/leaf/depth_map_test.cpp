@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "leaf/absorption.h"
 #include "leaf/specimens.h"
 #include "leaf/tissue.h"
 #include "tests/support/ramp.h"

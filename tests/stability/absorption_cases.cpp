@@ -1,6 +1,7 @@
 #include <boost/math/special_functions/expint.hpp>
 
 #include "instruments/spectrophotometer.h"
+#include "leaf/absorption.h"
 #include "leaf/specimens.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/specimen.h"

@@ -4,7 +4,6 @@
 
 #include "core/bsdf.h"
 #include "leaf/lookup.h"
-#include "materials/lobes/active_lanes.h"
 #include "materials/lobes/surface_lobe.h"
 
 namespace frond {
