@@ -10,6 +10,7 @@
 #include "cli/compare/report.h"
 #include "cli/compare/summary.h"
 #include "cli/compare/verdict.h"
+#include "cli/number_list.h"
 #include "cli/plugins.h"
 #include "core/cpu_clock.h"
 #include "scene/words.h"
@@ -63,7 +64,7 @@ std::array<double, 3> target_of(const std::string& text) {
   if (text == "ambient") return {0.020, 0.016, 0.012};
   std::array<double, 3> target{};
   const auto words = split(text, ',');
-  for (size_t i = 0; i < 3 && words.size() == 3; ++i) target[i] = std::strtod(words[i].c_str(), nullptr);
+  for (size_t i = 0; i < 3 && words.size() == 3; ++i) target[i] = finite_number(words[i]).value_or(0);
   if (!(target[0] > 0 && target[1] > 0 && target[2] > 0))
     fail({}, "--target takes the RMS of red, green and blue (0.009,0.009,0.012), or front, back or ambient: \"{}\"",
          text);
@@ -161,7 +162,7 @@ void add_options(CLI::App& command, CompareOptions& o) {
   command.add_option("--reference", o.reference, "Candidate that counts as right, once converged.")
       ->default_val(kReference);
   command.add_option("--rms", o.rms, "Name the cheapest candidate with this RMS error; may be given again.")
-      ->check(CLI::PositiveNumber)
+      ->check(is_positive)
       ->allow_extra_args(false);
   command.add_option("--target", o.target,
                      "RMS of red, green and blue for speed-up (c): numbers, or front, back, "
@@ -170,14 +171,11 @@ void add_options(CLI::App& command, CompareOptions& o) {
       ->allow_extra_args(false);
   command.add_option("--wavelengths", o.wavelengths, "In place of the scene's; smpte for the paper's three.");
   command.add_option("--size", o.size, "Pixels of the longer side; 256 by default.")->check(CLI::Range(1, 65536));
-  command.add_option("--spp", o.samples, "Samples per pixel of the last rung; 256 by default.")
-      ->check(CLI::Range(1, 1 << 24));
-  command
-      .add_option("--reference-spp", o.reference_samples,
-                  "Samples per pixel of each of the reference's two renders; 1024 by default, or what is cached.")
-      ->check(CLI::Range(1, 1 << 30));
+  add_count_option(command, "--spp", o.samples, 1 << 24, "Samples per pixel of the last rung; 256 by default.");
+  add_count_option(command, "--reference-spp", o.reference_samples, 1 << 30,
+                   "Samples per pixel of each of the reference's two renders; 1024 by default, or what is cached.");
   command.add_option("--exposure", o.exposure, "Stops by which pictures and FLIP are brightened.")
-      ->check(CLI::Range(-20, 20));
+      ->check(is_within({-20, 20}));
   command.add_option("--threads", o.threads, "Threads; all by default.")->check(CLI::Range(1, 1024));
   add_plugin_option(command, o.plugins);
   command.add_option("--cache", o.cache, "Folder for references and tables; ~/.cache/frond by default.");

@@ -114,7 +114,7 @@ void add_conform_command(CLI::App& app) {
   command
       ->add_option("--false-alarm-rate", o->false_alarm_rate,
                    "Chance that a law is called broken though all hold; 1e-6 by default.")
-      ->check(CLI::Range(1e-12, 0.5));
+      ->check(is_within({1e-12, 0.5}));
   command->add_option("--json", o->json,
                       "File for everything that was found; - for standard output, in place of text.");
   command->add_option("--picture", o->picture,

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cli/common_options.h"
 #include "cli/linear_image.h"
 #include "cli/output.h"
 #include "cli/spectral_image.h"
@@ -52,8 +53,8 @@ void add_convert_command(CLI::App& app) {
   auto* bands = command->add_option("--bands", o->bands_nm,
                                     "Wavelengths (nm) of three bands to show as red, green and blue, such as "
                                     "850,650,550; a white in equal-energy light is 1.");
-  bands->delimiter(',')->expected(3);
-  command->add_option("--exposure", o->exposure, "Stops.");
+  bands->delimiter(',')->expected(3)->check(is_positive);
+  command->add_option("--exposure", o->exposure, "Stops.")->check(is_number);
   command->add_option("--display", o->display.display, "Display of PNG and JPEG output; sRGB by default.");
   command->add_option("--view", o->display.view, "View of that display.");
   command->callback([o] { convert(*o); });

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/common_options.h"
 #include "cli/linear_image.h"
 #include "cli/output.h"
 #include "cli/smpte_luminance.h"
@@ -143,7 +144,7 @@ void add_difference_command(CLI::App& app) {
       ->expected(4);
   command->add_option("-o,--output", o->output,
                       "Picture of the signed difference in luminance: red where A is brighter.");
-  command->add_option("--scale", o->scale, "Difference at full colour; 0.1 by default.")->check(CLI::PositiveNumber);
+  command->add_option("--scale", o->scale, "Difference at full colour; 0.1 by default.")->check(is_positive);
   command->add_flag("--json", o->json, "Print JSON.");
   command->callback([o] { difference(*o); });
 }

@@ -2,9 +2,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <optional>
 
 #include "core/error.h"
+#include "scene/tokenizer.h"
 #include "scene/words.h"
 
 namespace frond {
@@ -13,7 +13,7 @@ namespace {
 constexpr double kMostNumbers = 1e6;
 
 template <class T>
-std::optional<T> parse(const std::string& text) {
+std::optional<T> parse(std::string_view text) {
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return {};
@@ -21,7 +21,7 @@ std::optional<T> parse(const std::string& text) {
 }
 
 double number(const std::string& option, const std::string& text) {
-  if (const auto value = parse<double>(text); value && std::isfinite(*value)) return *value;
+  if (const auto value = finite_number(text)) return *value;
   fail({}, "{} takes numbers, as in 0,8,30, or ranges first:last:step, as in 0:180:1; \"{}\" is neither", option, text);
 }
 
@@ -36,6 +36,11 @@ void append_range(const std::string& option, const std::vector<std::string>& end
 
 }  // namespace
 
+std::optional<double> finite_number(std::string_view text) {
+  const auto value = parse_number(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
 std::vector<double> parse_numbers(const std::string& option, const std::string& text) {
   std::vector<double> numbers;
   for (const std::string& part : split(text, ',')) {
@@ -48,10 +53,11 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   return numbers;
 }
 
-int64_t parse_count(const std::string& option, const std::string& text, int64_t least) {
-  const auto value = parse<double>(text);
-  if (!value || !(*value >= double(least) && *value <= 0x1p53) || *value != std::floor(*value))
-    fail({}, "{} takes a whole number from {} on, as in 1000000 or 1e6; \"{}\" was given", option, least, text);
+int64_t parse_count(const std::string& option, const std::string& text, int64_t least, int64_t most) {
+  const auto value = finite_number(text);
+  if (!value || !(*value >= double(least) && *value <= double(most)) || *value != std::floor(*value))
+    fail({}, "{} takes a whole number from {} {}, as in 1000000 or 1e6; \"{}\" was given", option, least,
+         most == kMostCount ? "on" : fmt::format("to {}", most), text);
   return static_cast<int64_t>(*value);
 }
 

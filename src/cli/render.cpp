@@ -220,16 +220,16 @@ void add_render_command(CLI::App& app) {
   auto* command = app.add_subcommand("render", "Render a pbrt-v4 scene file.");
   command->add_option("scene", o.scene, "Scene file.")->required();
   command->add_option("-o,--output", o.output, "Image: .exr (linear), .png or .jpg (through the display transform).");
-  command->add_option("--spp", o.samples, "Samples per pixel, in place of the scene's.")->check(CLI::Range(1, 1 << 30));
+  add_count_option(*command, "--spp", o.samples, 1 << 30, "Samples per pixel, in place of the scene's.");
   command->add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")
       ->check(CLI::Range(1, 1024));
   auto* seed = command->add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
   auto* crop = command->add_option("--crop,--cropwindow", o.crop,
                                    "x0,x1,y0,y1 of what to render, as fractions of the film; ends are rounded up.");
-  crop->delimiter(',')->expected(4)->check(CLI::Range(0.0, 1.0));
+  crop->delimiter(',')->expected(4)->check(is_within({0, 1}));
   auto* pixels = command->add_option("--pixels,--pixelbounds", o.pixels,
                                      "x0,x1,y0,y1 of what to render, in pixels; x1 and y1 are not in it.");
-  pixels->delimiter(',')->expected(4)->check(CLI::NonNegativeNumber)->excludes(crop);
+  pixels->delimiter(',')->expected(4)->check(is_pixel)->excludes(crop);
   command->add_option("--wavelengths", o.wavelengths,
                       "hero (also hero,lambdamin=400,lambdamax=700), meyer, smpte for the paper's three, or "
                       "bands,wavelengths=450,550,850 (also bands,lambdamin=400,lambdamax=1000,step=10).");

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cli/common_options.h"
 #include "cli/gnuplot.h"
 #include "cli/instrument.h"
 #include "cli/number_list.h"
@@ -65,7 +66,7 @@ void add_spectrophotometer_command(CLI::App& app) {
   add_instrument_options(*command, *o);
   command->add_option("--rays", o->rays, "Rays for each reading: 1e6 by default; with --se the most, 1e9 by default.");
   command->add_option("--se", o->standard_error, "Stop when the standard errors of R, T and A are no larger than this.")
-      ->check(CLI::PositiveNumber);
+      ->check(is_positive);
   command->add_option("--plot", o->plot, "Chart of R and 1 - T against wavelength or angle, .svg or .png.");
   command->callback([o] { run_spectrophotometer(*o); });
 }

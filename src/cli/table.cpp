@@ -66,9 +66,7 @@ leaf::TableRequest request_of(const TableOptions& options, const std::vector<std
                              .seed = options.seed};
   if (options.method == "montecarlo") request.method = leaf::TableMethod::monte_carlo;
   constexpr int kMostRays = 1'000'000'000;
-  const int64_t rays = parse_count("--rays", options.rays, 1);
-  if (rays > kMostRays) fail({}, "--rays goes up to {}, {} was given", kMostRays, rays);
-  request.rays = static_cast<int>(rays);
+  request.rays = static_cast<int>(parse_count("--rays", options.rays, 1, kMostRays));
   request.nodes = options.nodes;
   check_wavelengths(request.wavelengths_nm);
   check_ascending(request.theta_deg);

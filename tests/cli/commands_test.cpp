@@ -367,6 +367,32 @@ TEST_F(Commands, NumbersThatAreNoneAreRefused) {
   EXPECT_FALSE(fs::exists(path("x.exr")));
 }
 
+TEST_F(Commands, NumbersThatAreNoneAreToldInFewWords) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"difference", "a", "b", "c", "d", "--scale", "0"}, "--scale: a number above 0 is needed"},
+      {{"spectrophotometer", "abm", "--wavelengths", "551", "--se", "0"}, "--se: a number above 0 is needed"},
+      {{"spectrophotometer", "abm", "--wavelengths", "551", "--se", "nan"}, "--se: a number above 0 is needed"},
+      {{"conform", "abm", "--false-alarm-rate", "1"}, "--false-alarm-rate: a number from 1e-12 to 0.5 is needed"},
+      {{"convert", "a.exr", "-o", "b.png", "--exposure", "abc"}, "--exposure: a number is needed"},
+      {{"convert", "a.exr", "-o", "b.png", "--bands", "650,x,450"}, "--bands: a number above 0 is needed"},
+      {{"compare", "s.pbrt", "-o", "r", "--exposure", "99"}, "--exposure: a number from -20 to 20 is needed"},
+      {{"render", "s.pbrt", "--crop", "0,1,0,7"}, "--crop: a number from 0 to 1 is needed"},
+      {{"render", "s.pbrt", "--pixels", "0,-4,0,1"}, "--pixels: whole numbers of pixels from 0 on are needed"},
+      {{"render", "s.pbrt", "--spp", "0"}, "--spp takes a whole number from 1 to"},
+      {{"compare", "s.pbrt", "-o", "r", "--spp", "1.5"}, "--spp takes a whole number from 1 to"}};
+  for (const auto& [words, message] : cases) {
+    const Outcome o = frond_command(words);
+    EXPECT_EQ(o.code, 1) << message;
+    EXPECT_THAT(o.err, HasSubstr(message));
+  }
+}
+
+TEST_F(Commands, SamplesAreCountedAsRaysAre) {
+  const Outcome o = render({"-o", path("a.exr"), "--spp", "1e1", "--json", "-q"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(nlohmann::json::parse(o.out)["samples_per_pixel"], 10);
+}
+
 TEST_F(Commands, AFilmLargerThanMemoryIsRefused) {
   folder_.write("vast.pbrt", "Film \"rgb\" \"integer xresolution\" 65536 \"integer yresolution\" 65536 WorldBegin");
   const Outcome o = frond_command({"render", path("vast.pbrt"), "-o", path("x.exr")});

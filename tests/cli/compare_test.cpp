@@ -124,13 +124,25 @@ TEST_F(CompareCommand, ALeafThatNobodySeesIsNoError) {
 TEST_F(CompareCommand, BadRequestsAreRefused) {
   EXPECT_THAT(compare({"--materials", "leaves"}).err, HasSubstr("unknown material \"leaves\""));
   EXPECT_THAT(compare({"--materials", "abm,mood=weighted"}).err, HasSubstr("did you mean \"mode\"?"));
-  EXPECT_THAT(compare({"--target", "0.1,0.2"}).err, HasSubstr("--target takes the RMS of red, green and blue"));
+  for (const char* target : {"0.1,0.2", "0.01,0.01,0.01x", "0.01,0.01,-1"})
+    EXPECT_THAT(compare({"--target", target}).err, HasSubstr("--target takes the RMS of red, green and blue"));
+  EXPECT_THAT(compare({"--leaf", "foo"}).err, HasSubstr("no material \"foo\""));
+  EXPECT_THAT(compare({"--rms", "0"}).err, HasSubstr("--rms: a number above 0 is needed"));
   EXPECT_THAT(compare({"--materials", "abm@wavelengths=bands"}).err,
               HasSubstr("its wavelengths \"bands\" give other channels than the reference's \"smpte\""));
   std::string scene(kLeafScene);
   scene.replace(scene.find("leaf_simplified"), 15, "diffuse");
   scene.replace(scene.find("\"string specimen\" \"soybean\""), 27, "");
   EXPECT_THAT(compare({}, scene).err, HasSubstr("none of the materials is a leaf; --leaf names the one to replace"));
+  EXPECT_FALSE(std::filesystem::exists(report())) << "a folder without a report";
+}
+
+TEST_F(CompareCommand, AFolderThatCannotBeIsRefusedFirst) {
+  folder_.write("file", "");
+  for (const char* folder : {"file", "file/report"})
+    EXPECT_EQ(frond_command({"compare", "/no/such/scene.pbrt", "-o", folder_.name_of(folder)})
+                  .err.find("frond: cannot write"),
+              0u);
 }
 
 /// In a real browser, where there is one: its script decodes every picture and draws.

@@ -28,8 +28,19 @@ TEST(NumberList, RefusesOtherThings) {
 TEST(Count, TakesWholeNumbersInAnyNotation) {
   EXPECT_EQ(parse_count("-x", "1e6", 1), 1'000'000);
   EXPECT_EQ(parse_count("-x", "12", 1), 12);
+  EXPECT_EQ(parse_count("-x", "12", 1, 12), 12);
+  EXPECT_THAT(error_of([] { parse_count("-x", "13", 1, 12); }), HasSubstr("-x takes a whole number from 1 to 12"));
+  EXPECT_THAT(error_of([] { parse_count("-x", "0", 1); }), HasSubstr("-x takes a whole number from 1 on"));
   for (const char* text : {"0", "-1", "1.5", "1e30", "nan", "", "many"})
     EXPECT_THAT(error_of([text] { parse_count("--rays", text, 1); }), HasSubstr("--rays")) << text;
+}
+
+TEST(Number, IsTheWholeText) {
+  EXPECT_EQ(finite_number("0.5"), 0.5);
+  EXPECT_EQ(finite_number("+2"), 2);
+  EXPECT_EQ(finite_number("-1e-6"), -1e-6);
+  for (const char* other : {"", "+", "+-1", "0.01x", "x", "nan", "inf", "1e999", " 1"})
+    EXPECT_FALSE(finite_number(other)) << other;
 }
 
 TEST(Product, TakesTwoWholeNumbers) {

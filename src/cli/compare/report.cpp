@@ -125,12 +125,15 @@ std::string page(const std::filesystem::path& folder, const Comparison& c, const
 
 void check_report_folder(const std::filesystem::path& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) fail({}, "cannot make the folder {}: {}", folder.string(), error.message());
-  check_chart(path_in(folder, "rms.svg"));
+  auto existing = std::filesystem::absolute(folder);
+  while (!std::filesystem::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
+  check_chart(path_in(existing, "rms.svg"));
 }
 
 void write_report(const std::filesystem::path& folder, const Comparison& c) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) fail({}, "cannot make the folder {}: {}", folder.string(), error.message());
   const std::vector<Chart> charts = charts_of(c);
   write_charts(folder, charts);
   write_text(path_in(folder, "compare.csv"), comparison_csv(c));
