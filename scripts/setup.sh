@@ -1,5 +1,19 @@
 # Sourced by the other scripts: installs what is missing, builds the release preset. Leaves FROND_BUILD and FROND set.
 
+# -h and --help print the comment at the head of the script that sources this, and nothing is installed.
+for argument in "$@"; do
+  case "$argument" in
+    -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "${BASH_SOURCE[1]}"; exit 0 ;;
+  esac
+done
+
+# no_arguments "$@": for scripts that take none.
+no_arguments() {
+  [ $# -eq 0 ] && return
+  echo "usage: scripts/$(basename "${BASH_SOURCE[1]}")" >&2
+  exit 1
+}
+
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 FROND_BUILD="$root/build/release"
 FROND="$FROND_BUILD/frond"
