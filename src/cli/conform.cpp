@@ -47,6 +47,13 @@ std::vector<ParameterSet> parameter_sets(const MaterialWords& material, const Co
            material.plugin}};
 }
 
+/// Whether what the material may refuse is more than its own declared values: parameters, wavelengths, or a word that
+/// it cannot do without.
+bool is_asked_for(const MaterialWords& material, const ConformOptions& o) {
+  return !material.plugin.params.empty() || o.wavelengths != ConformOptions{}.wavelengths ||
+         std::ranges::any_of(material.info.params, &Param::required);
+}
+
 /// As many at once as a path carries.
 std::vector<GivenWavelengths> in_lanes(const std::vector<double>& nm) {
   std::vector<GivenWavelengths> groups;
@@ -74,7 +81,8 @@ ConformReport examine_material(const ConformOptions& o) {
   for (const GivenWavelengths& wavelengths : in_lanes(report.wavelengths_nm)) {
     SceneResolver resolver(others, registry, wavelengths);
     const Preparation preparation{wavelengths, pool, log, {}};
-    const Findings findings = examine(material.info, sets, {preparation, resolver, o.claims, report.effort});
+    const Findings findings =
+        examine(material.info, sets, {preparation, resolver, o.claims, report.effort, is_asked_for(material, o)});
     report.findings.insert(report.findings.end(), findings.begin(), findings.end());
   }
   report.level = judge(report.findings, o.false_alarm_rate);

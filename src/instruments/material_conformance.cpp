@@ -45,6 +45,7 @@ std::unique_ptr<Material> make_ready(const MaterialInfo& info, const ParameterSe
   } catch (const InputError& e) {
     material = nullptr;
     if (!must_work) return nullptr;
+    if (how.is_asked_for) throw;
     finding.message = fmt::format("refused: {}", e.what());
     finding.p_value = 0;
   } catch (const std::logic_error& e) {

@@ -11,10 +11,13 @@ struct MaterialExamination {
   ParamResolver& resolver;
   Claims claims;  ///< for every set of parameters, beside what the material claims itself
   Effort effort;
+  /// The first set or the wavelengths are what somebody asks for: where the material refuses them, that is no defect of
+  /// it, and the InputError gets through.
+  bool is_asked_for = false;
 };
 
 /// Makes the material from each set of parameters and runs all laws on its BSDF. Sets that the plugin refuses with an
-/// InputError are passed over, save the first, which must be right.
+/// InputError are passed over, save the first, which must be right. Throws InputError.
 Findings examine(const MaterialInfo& info, std::span<const ParameterSet> sets, const MaterialExamination& how);
 
 }  // namespace frond

@@ -67,7 +67,10 @@ TEST(Conform, ABrokenLawIsNamedAndExitsWithTwo) {
 /// At the end of its range `picky` throws: an exception of the shared object, which the sweep knows as InputError.
 TEST(Conform, ASweepPassesOverWhatAPluginRefuses) {
   EXPECT_EQ(conform_planted({"picky", "--sweep"}).code, 0);
-  const Outcome refused = conform_planted({"picky", "level=0.95"});
+  const Outcome bad_use = conform_planted({"picky", "level=0.95"});
+  EXPECT_EQ(bad_use.code, 1);
+  EXPECT_THAT(bad_use.err, HasSubstr("frond: \"level\" is 0.95, and picky wants less than 0.9"));
+  const Outcome refused = conform_planted({"picky_with_itself"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.out, AllOf(HasSubstr("BROKEN     parameters"), HasSubstr("picky wants less than 0.9")));
   EXPECT_THAT(refused.out, Not(HasSubstr("not there")));
@@ -111,12 +114,17 @@ TEST(Conform, BadUseExitsWithOne) {
        std::vector<std::vector<std::string>>{{"difuse"},
                                              {"diffuse", "reflectanc=1"},
                                              {"diffuse", "reflectance"},
+                                             {"diffuse", "reflectance=2"},
+                                             {"abm", "specimen=rice"},
+                                             {"abm", "--wavelengths", "3000"},
+                                             {"mix"},
                                              {"diffuse", "--wavelengths", "0"},
                                              {"diffuse", "--picture", "picture.gif"},
                                              {"diffuse", "--json", "/no/such/folder/a.json"}}) {
     const Outcome o = conform(arguments);
     EXPECT_EQ(o.code, 1) << ::testing::PrintToString(arguments);
     EXPECT_THAT(o.err, Not(IsEmpty()));
+    EXPECT_THAT(o.out, IsEmpty());
   }
   EXPECT_EQ(frond_command({"conform", "diffuse", "--angles", "90"}).code, 1);
   EXPECT_EQ(frond_command({"conform", "diffuse", "--samples", "10"}).code, 1);

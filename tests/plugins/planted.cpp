@@ -9,6 +9,9 @@ namespace {
 constexpr Param kLevel[] = {
     {.name = "level", .kind = ParamKind::real, .default_value = 0.5, .range = {0, 1}, .doc = "Below 0.9."}};
 
+constexpr Param kTooHigh[] = {
+    {.name = "level", .kind = ParamKind::real, .default_value = 0.95, .range = {0, 1}, .doc = "Too high by default."}};
+
 /// Finds out by itself that a parameter is wrong.
 struct Picky final : Material {
   explicit Picky(const Params& p) {
@@ -27,6 +30,7 @@ struct NotThere final : Material {
 
 const MaterialInfo kTable[] = {
     {{"material", "picky", "Refuses what it dislikes.", "", kLevel}, make_material<Picky>},
+    {{"material", "picky_with_itself", "Refuses its own default.", "", kTooHigh}, make_material<Picky>},
     {{"material", "not_there", "A surface that is none.", "", {}}, make_material<NotThere>},
     planted<GoodLambertian>("good"),
     planted<GoodStochastic>("good_stochastic"),
