@@ -23,6 +23,22 @@ std::vector<double> even_wavelengths(const Interval& range, double step_nm) {
   return grid;
 }
 
+bool reaches(Interval data_nm, Interval needed_nm) {
+  return data_nm.contains(needed_nm.min) && data_nm.contains(needed_nm.max);
+}
+
+/// As check_range, and says so where a render of fewer wavelengths would do: few files are made for a whole spectrum.
+void check_file_range(Interval in_file_nm, const WavelengthStrategy& strategy, const Location& where,
+                      std::string_view name) {
+  const Interval needed_nm = strategy.range_nm(), smpte_nm{455, 608};
+  if (needed_nm.min < needed_nm.max && !reaches(in_file_nm, needed_nm) && reaches(in_file_nm, smpte_nm))
+    fail(where,
+         "\"{}\" is known from {} to {} nm, the render needs {} to {} nm; --wavelengths smpte asks for 608, 551 and "
+         "455 nm",
+         name, in_file_nm.min, in_file_nm.max, needed_nm.min, needed_nm.max);
+  check_range(in_file_nm, strategy, where, name);
+}
+
 }  // namespace
 
 std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) {
@@ -35,7 +51,7 @@ std::vector<double> file_wavelengths(std::vector<double> in_file_nm, const Wavel
                                      const Location& where, std::string_view name) {
   const bool grey = in_file_nm.size() == 1;
   std::ranges::sort(in_file_nm);
-  if (!grey) check_range({in_file_nm.front(), in_file_nm.back()}, strategy, where, name);
+  if (!grey) check_file_range({in_file_nm.front(), in_file_nm.back()}, strategy, where, name);
   if (!strategy.fixed_nm().empty()) return to_vector(strategy.fixed_nm());
   const Interval needed = strategy.range_nm();
   return grey ? std::vector{needed.min, needed.max + 1} : in_file_nm;

@@ -224,6 +224,10 @@ TEST(LeafSimplified, TakesItsTableFromAFile) {
   }
   EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {file("8,500,0,0,0\n8,600,0,0,0\n")}); }),
               HasSubstr("is known from 500 to 600 nm, the render needs 455 to 608 nm"));
+  EXPECT_THAT(
+      error_of([&] { Ready("leaf_simplified", {file("8,455,0,0,0\n8,608,0,0,0\n")}, "hero"); }),
+      HasSubstr("is known from 455 to 608 nm, the render needs 360 to 830 nm; --wavelengths smpte asks for 608, "
+                "551 and 455 nm"));
   EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {file("8,551,1,1,1\n")}); }),
               HasSubstr("t.csv:2:1: Rs + Rd + T"));
 }
