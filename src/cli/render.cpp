@@ -34,7 +34,8 @@ MaterialSwap parse_swap(const std::string& text) {
   const size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     fail({}, "--swap takes MATERIAL=PLUGIN[,parameter=value...], \"{}\" was given", text);
-  return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), {})};
+  const Location where{std::make_shared<const std::string>("--swap " + text)};
+  return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), where), where};
 }
 
 std::vector<MaterialSwap> swaps_of(const RenderOptions& options) {

@@ -8,7 +8,10 @@
 
 namespace frond {
 
-std::string Location::text() const { return file ? fmt::format("{}:{}:{}: ", *file, line, column) : std::string(); }
+std::string Location::text() const {
+  if (!file) return {};
+  return line > 0 ? fmt::format("{}:{}:{}: ", *file, line, column) : *file + ": ";
+}
 
 InputError::InputError(const Location& where, const std::string& message)
     : std::runtime_error(where.text() + message) {}

@@ -11,7 +11,7 @@
 
 namespace frond {
 
-/// A place in an input file; line and column count from 1. Without a file it prints nothing.
+/// A place in an input file, counted from 1; line 0: the "file" is a command line's option. No file: prints nothing.
 struct Location {
   std::shared_ptr<const std::string> file;
   int line = 0, column = 0;

@@ -52,7 +52,7 @@ void DescriptionBuilder::finish(const Location& where) {
     const Saved& open = saved_.back();
     fail(open.where, "{} without {}", opener(open.by_object), open.by_object ? "ObjectEnd" : "AttributeEnd");
   }
-  const auto check_defined = [](const Names& names, std::string_view kind) {
+  const auto check_defined = [](const Names& names, std::string_view kind, std::string_view maker) {
     const Name* unknown = nullptr;
     std::string_view unknown_name;
     std::vector<std::string_view> defined;
@@ -62,10 +62,12 @@ void DescriptionBuilder::finish(const Location& where) {
       else if (!unknown || name.index < unknown->index)
         unknown = &name, unknown_name = text;
     }
-    if (unknown) fail(unknown->first_use, "unknown {} \"{}\"{}", kind, unknown_name, suggestion(unknown_name, defined));
+    if (unknown)
+      fail(unknown->first_use, "there is no {} \"{}\"{}", kind, unknown_name,
+           defined.empty() ? fmt::format("; {} makes them", maker) : suggestion(unknown_name, defined));
   };
-  check_defined(materials_, "material");
-  check_defined(objects_, "object");
+  check_defined(materials_, "named material", "MakeNamedMaterial");
+  check_defined(objects_, "object", "ObjectBegin");
 }
 
 void DescriptionBuilder::camera(ParsedPlugin plugin) {

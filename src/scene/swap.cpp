@@ -19,16 +19,17 @@ void leave_out_unknown(const MaterialInfo& info, ParsedPlugin& plugin, const Log
 void apply_swap_to_leaves(SceneDescription& description, const MaterialSwap& swap, const Registry& registry,
                           const Log& log) {
   const auto leaves = Scene::leaf_materials(description, registry);
-  if (leaves.empty()) fail({}, "swap: none of the scene's materials is a leaf");
-  for (const size_t i : leaves) swap_material(description.materials[i].plugin, swap.to, registry, log);
+  if (leaves.empty()) fail(swap.where, "swap: none of the scene's materials is a leaf");
+  for (const size_t i : leaves) swap_material(description.materials[i].plugin, swap.to, registry, log, swap.where);
 }
 
 }  // namespace
 
-void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log) {
-  const MaterialInfo& info = registry.materials.get(to.name, {});
+void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log,
+                   const Location& where) {
+  const MaterialInfo& info = registry.materials.get(to.name, where);
   leave_out_unknown(info, plugin, log);
-  set_params(to, info, {}, plugin);
+  set_params(to, info, where, plugin);
   plugin.name = to.name;
 }
 
@@ -44,10 +45,10 @@ void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>&
     for (MaterialDescription& m : description.materials) {
       names.push_back(m.name.empty() ? m.plugin.name : m.name);
       if (m.name != swap.from && m.plugin.name != swap.from) continue;
-      swap_material(m.plugin, swap.to, registry, log);
+      swap_material(m.plugin, swap.to, registry, log, swap.where);
       found = true;
     }
-    if (!found) fail({}, "swap: the scene has no material \"{}\"{}", swap.from, suggestion(swap.from, names));
+    if (!found) fail(swap.where, "swap: the scene has no material \"{}\"{}", swap.from, suggestion(swap.from, names));
   }
 }
 

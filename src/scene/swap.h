@@ -13,11 +13,13 @@ namespace frond {
 struct MaterialSwap {
   std::string from;  ///< name of a named material, or of a plugin; "*": every leaf
   PluginText to;
+  Location where = {};  ///< of what asks for it
 };
 
 /// What the new material does not know of the old one's parameters is left out, with a warning: the two describe the
-/// same leaf, but each has its own method. Throws InputError.
-void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log);
+/// same leaf, but each has its own method. Throws InputError at `where`, which is then the place of what is new.
+void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log,
+                   const Location& where = {});
 
 /// In this order, each on what the last one left. Throws InputError where the scene has no such material.
 void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,

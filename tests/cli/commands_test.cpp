@@ -193,6 +193,8 @@ TEST_F(Commands, SwapChangesTheModelByOneWord) {
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing"}).err, HasSubstr("MATERIAL=PLUGIN"));
   EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing=diffusetransmission,scal=2"}).err,
               HasSubstr("did you mean \"scale\"?"));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--swap", "thing=diffusetransmission,scale=-2"}).err,
+              HasSubstr("frond: --swap thing=diffusetransmission,scale=-2: \"scale\" is -2, outside its range"));
 }
 
 TEST_F(Commands, WavelengthsTakeParameters) {

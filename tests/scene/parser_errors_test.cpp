@@ -94,14 +94,14 @@ TEST(ParserErrors, TellWhatIsNotNestedAsItShouldBe) {
 TEST(ParserErrors, TellWhichNameIsUnknownOrDefinedAgain) {
   const std::string leaf = "MakeNamedMaterial \"leaf\" \"string type\" \"abm\"\n";
   expect_errors_in_world({
-      {leaf + "NamedMaterial \"leef\"", "s:3:15: unknown material \"leef\"; did you mean \"leaf\"?"},
-      {"NamedMaterial \"leaf\"", "s:2:15: unknown material \"leaf\"; there are none"},
+      {leaf + "NamedMaterial \"leef\"", "s:3:15: there is no named material \"leef\"; did you mean \"leaf\"?"},
+      {"NamedMaterial \"leaf\"", "s:2:15: there is no named material \"leaf\"; MakeNamedMaterial makes them"},
       {leaf + leaf, "s:3:19: material \"leaf\" is defined again"},
       {"MakeNamedMaterial \"m\"", "s:2:19: MakeNamedMaterial \"m\" needs parameter \"string type\""},
       {"MakeNamedMaterial \"m\" \"float type\" 1", "s:2:23: \"type\" is string, a float was given"},
       {"MakeNamedMaterial \"m\" \"string type\" [\"a\" \"b\"]", "s:2:38: \"type\" takes 1 value, 2 given"},
       {"ObjectBegin \"leaf\" ObjectEnd\nObjectInstance \"leave\"",
-       "s:3:16: unknown object \"leave\"; did you mean \"leaf\"?"},
+       "s:3:16: there is no object \"leave\"; did you mean \"leaf\"?"},
       {"CoordSysTransform \"wurld\"", "s:2:19: unknown coordinate system \"wurld\"; did you mean \"world\"?"},
       {"Texture \"t\" \"color\" \"constant\"", "s:2:13: unknown kind of texture \"color\"; there are float, spectrum"},
       {"Texture \"t\" \"float\" \"scale\"\nTexture \"t\" \"float\" \"mix\"",
