@@ -56,17 +56,17 @@ def full_size_text(cases, size):
     exceeded = [c for c in cases if c.high > c.request]
     whole = sum(c.abm_seconds for c in cases) / sum(c.pilots + c.seconds for c in cases)
     head = ("scene", "asked", "chosen", "samples", "RMS (95 %)", "pilots, CPU s", "render, CPU s", "`abm`: samples", "RMS",
-            "CPU s", "times less")
+            "CPU s", "`abm` / chosen")
     return f"""## Time, at full size
 
 One request on each scene at {size} x {size} pixels. The pilot was asked first for the scene's own 64 samples per pixel, then
 once more for as many as it had said to be needed; what that chose was rendered with the samples that it named, and so was
 `abm` by weighted walks (with hero wavelengths, which count as right) with those that the pilot named for it. Both were rendered
 twice, with seeds that the pilot had not: that is what RMS is measured by, bias and noise together, that of `abm` being noise.
-CPU times are of one render; the last column is that of `abm` over that of both pilots and the render.
+CPU times are of one render; the last column is that of `abm` over that of both pilots and the render together.
 
 {table(head, [c.row() for c in cases])}
-{faster[0]:.1f} to {faster[-1]:.1f} times less CPU time, all scenes together {whole:.1f} times. {len(exceeded)} of {len(cases)}
-renders may lie above what was asked for (the upper end of their interval). Numbers of samples are powers of two, for both,
-so that a single ratio is good to a factor of two; an RMS far below the request is what that leaves.
+`abm` took {faster[0]:.1f} to {faster[-1]:.1f} times the CPU time, {whole:.1f} times in all scenes together. The upper end of the
+interval lies above what was asked for in {len(exceeded)} of {len(cases)} renders. Numbers of samples are powers of two, for both, so
+that a single ratio is good to a factor of two; an RMS far below the request is what that leaves.
 """
