@@ -269,13 +269,18 @@ WavelengthChoice wavelength_choice(const SceneDescription& description, const Sc
   return {p.string("wavelengths"), p.where("wavelengths")};
 }
 
+ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry) {
+  const PluginText choice = parse_plugin_text(text, where);
+  ParsedPlugin plugin{choice.name, where, {}};
+  set_params(choice, registry.wavelengths.get(choice.name, where), where, plugin);
+  return plugin;
+}
+
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
                                                      const SceneDescription& description, const Registry& registry) {
   OptionResolver resolver(description);
-  const PluginText choice = parse_plugin_text(text, where);
-  const WavelengthsInfo& info = registry.wavelengths.get(choice.name, where);
-  ParsedPlugin plugin{choice.name, where, {}};
-  set_params(choice, info, where, plugin);
+  const ParsedPlugin plugin = wavelengths_plugin(text, where, registry);
+  const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
   return info.make(Params(info, plugin, resolver));
 }
 

@@ -32,6 +32,9 @@ struct WavelengthChoice {
 };
 WavelengthChoice wavelength_choice(const SceneDescription& description, const SceneOverrides& overrides);
 
+/// A strategy, which a PluginText names, with its parameters as a scene file has them. Throws InputError at `where`.
+ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry);
+
 /// The strategy that a PluginText names, of the command line or else the scene's options. Throws InputError at `where`.
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
                                                      const SceneDescription& description, const Registry& registry);

@@ -107,6 +107,36 @@ TEST(Study, ItsIdentityHangsOnEverythingThatDecidesThePixels) {
   EXPECT_NE(identity(base), s.study.identity(s.walk));
 }
 
+TEST(Study, ItsIdentityHangsOnWhatIsInTheFilesThatAreNamed) {
+  const Setting s;
+  const std::string red = s.folder.write("red.spd", "600 1  650 1").string();
+  const std::string table = s.folder.write("leaf.csv", "a table").string();
+  const std::string sensor = "bands,responses=" + red;
+  const auto option = [&](const std::string& text) { return "Option \"string wavelengths\" \"" + text + "\"\n"; };
+  const auto scene = [&](const char* name, const std::string& head) {
+    return s.folder.write(name, head + std::string(kLeafScene)).string();
+  };
+  struct Case {
+    const char* what;
+    StudyOptions options;
+    std::string candidate, file;
+  };
+  const std::string plain = scene("plain.pbrt", "");
+  const std::vector<Case> cases{
+      {"the comparison's wavelengths", {.scene = plain, .wavelengths = sensor}, "abm", red},
+      {"the scene's wavelengths", {.scene = scene("own.pbrt", option("bands,responses=red.spd"))}, "abm", red},
+      {"the candidate's wavelengths", {.scene = plain}, "abm@wavelengths=" + sensor, red},
+      {"the candidate's pigment", {.scene = plain}, "abm,pigments=" + red + ",pigmentconcentrations=1", red},
+      {"the candidate's table", {.scene = plain}, "leaf_simplified,tablefile=" + table, table}};
+  for (const Case& c : cases) {
+    const auto identity = [&] { return Study(c.options, s.pool, s.quiet).identity(parse_candidate(c.candidate)); };
+    const uint64_t before = identity();
+    EXPECT_EQ(identity(), before) << c.what;
+    std::ofstream(c.file, std::ios::app) << "  700 0.5\n";
+    EXPECT_NE(identity(), before) << c.what;
+  }
+}
+
 TEST(Study, TakesTheWholePictureOrItsPartToSize) {
   const Setting s;
   EXPECT_EQ(s.study.film().width, 16);

@@ -23,9 +23,10 @@ void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::v
 
 }  // namespace
 
-std::vector<std::filesystem::path> input_files(const SceneDescription& scene) {
+std::vector<std::filesystem::path> input_files(const SceneDescription& scene, const ParsedPlugin& wavelengths) {
   std::vector<std::filesystem::path> files;
-  for (const ParsedPlugin* plugin : {&scene.camera, &scene.film, &scene.sampler, &scene.integrator, &scene.filter})
+  for (const ParsedPlugin* plugin :
+       {&wavelengths, &scene.camera, &scene.film, &scene.sampler, &scene.integrator, &scene.filter})
     add_files(*plugin, scene, files);
   for (const auto& t : scene.textures) add_files(t.plugin, scene, files);
   for (const auto& m : scene.materials) add_files(m.plugin, scene, files);

@@ -10,8 +10,9 @@
 
 namespace frond::compare {
 
-/// The files that the scene's parameters name (meshes, images, spectra), as far as they exist.
-std::vector<std::filesystem::path> input_files(const SceneDescription& description);
+/// The files that the parameters of the scene and of its wavelength strategy name (meshes, images, spectra), as far as
+/// they exist.
+std::vector<std::filesystem::path> input_files(const SceneDescription& description, const ParsedPlugin& wavelengths);
 
 /// This program and the plug-ins that it loads.
 std::vector<std::filesystem::path> program_files(std::span<const std::string> plugins);

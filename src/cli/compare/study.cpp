@@ -67,14 +67,18 @@ Study::Study(const StudyOptions& options, ThreadPool& pool, const Log& log)
   for (const std::string& leaf : options.leaves) swaps_.push_back({leaf, {}});
 }
 
-std::unique_ptr<Scene> Study::scene(const Candidate& candidate) const {
+SceneOverrides Study::overrides_of(const Candidate& candidate) const {
   SceneOverrides overrides;
   overrides.wavelengths = candidate.wavelengths.empty() ? options_.wavelengths : candidate.wavelengths;
   overrides.integrator = candidate.integrator;
   overrides.seed = options_.seed;
   overrides.swaps = swaps_to(candidate.material);
   overrides.cache_dir = options_.cache;
-  return std::make_unique<Scene>(description_, registry_, overrides, pool_, log_);
+  return overrides;
+}
+
+std::unique_ptr<Scene> Study::scene(const Candidate& candidate) const {
+  return std::make_unique<Scene>(description_, registry_, overrides_of(candidate), pool_, log_);
 }
 
 std::vector<MaterialSwap> Study::swaps_to(const PluginText& material) const {
@@ -97,12 +101,23 @@ std::unique_ptr<Integrator> Study::integrator(const Scene& scene, const PluginTe
   return integrator;
 }
 
+/// Those of the candidate's own material, integrator and wavelengths are among them.
+std::vector<std::filesystem::path> Study::input_files(const Candidate& candidate) const {
+  const SceneOverrides overrides = overrides_of(candidate);
+  SceneDescription description = description_;
+  apply_swaps(description, overrides.swaps, registry_, Log(true));
+  if (const auto& own = overrides.integrator)
+    override_plugin(*own, registry_.integrators.get(own->name, {}), {}, description.integrator);
+  const auto [text, where] = wavelength_choice(description, overrides);
+  return compare::input_files(description, wavelengths_plugin(text, where, registry_));
+}
+
 uint64_t Study::identity(const Candidate& candidate) const {
   std::string choices =
       fmt::format("{} {} {} {} {}", candidate.text, options_.wavelengths, film_.width, film_.height, seed());
   for (const std::string& leaf : options_.leaves) choices += '\n' + leaf;
   uint64_t hash = hash_bytes(choices, description_.content_hash);
-  for (const auto& file : input_files(description_)) hash = hash_file(file, hash);
+  for (const auto& file : input_files(candidate)) hash = hash_file(file, hash);
   for (const auto& file : program_files(options_.plugins)) hash = hash_file(file, hash);
   return hash;
 }

@@ -41,11 +41,14 @@ class Study {
   /// The scene's integrator, by name.
   const std::string& integrator_name() const { return description_.integrator.name; }
   const Registry& registry() const { return registry_; }
-  /// A hash of all that decides the pixels of this candidate: the program, its plug-ins, the scene with the files that
-  /// it names, size, wavelengths, seed. Another hash may be the same pixels, the same hash is.
+  /// A hash of all that decides the pixels of this candidate: the program, its plug-ins, the scene, size, wavelengths,
+  /// seed, and the files that any of them names. Another hash may be the same pixels, the same hash is.
   uint64_t identity(const Candidate& candidate) const;
 
  private:
+  SceneOverrides overrides_of(const Candidate& candidate) const;
+  std::vector<std::filesystem::path> input_files(const Candidate& candidate) const;
+
   StudyOptions options_;
   ThreadPool& pool_;
   const Log& log_;
