@@ -23,15 +23,10 @@ std::string wavelength_text(double nm) {
   return text.append(kUnit);
 }
 
-/// A response as the layout writes spectra, between its points: "450nm:0.5;451nm:0.75;"
-std::string sensitivity_text(const Spectrum& response) {
-  constexpr int kPoints = 256;
-  const Interval range = response.range_nm();
+/// A response as the layout writes spectra, point by point: "450nm:0.5;451nm:0.75;"
+std::string sensitivity_text(std::span<const ResponsePoint> response) {
   std::string text;
-  for (int i = 0; i <= kPoints; ++i) {
-    const double nm = std::lerp(range.min, range.max, double(i) / kPoints);
-    text += fmt::format("{:.6g}nm:{:.6g};", nm, response.at(static_cast<float>(nm)));
-  }
+  for (const auto& [nm, value] : response) text += fmt::format("{}nm:{};", nm, value);
   return text;
 }
 
@@ -124,7 +119,7 @@ std::string preview_space(std::span<const Band> bands) {
 std::map<std::string, std::string> spectral_attributes(std::span<const Band> bands) {
   std::map<std::string, std::string> text{{"spectralLayoutVersion", "1.0"}, {"emissiveUnits", "W.m^-2.sr^-1"}};
   for (const Band& band : bands)
-    if (band.response) text[spectral_channel(band.nm)] = sensitivity_text(*band.response);
+    if (!band.response.empty()) text[spectral_channel(band.nm)] = sensitivity_text(band.response);
   return text;
 }
 

@@ -51,7 +51,7 @@ struct Interval {
 /// and the integrator retires a lane whose throughput has fallen to zero, so that nobody works for it.
 struct SampledWavelengths {
   std::array<float, kLanes> nm{};
-  std::array<float, kLanes> pdf{};  ///< density per nm, of bands over their response; 1 for wavelengths that are fixed
+  std::array<float, kLanes> pdf{};  ///< density per nm; 1 for wavelengths that are fixed or a band's
   std::array<bool, kLanes> active{};
   int count = 0;                        ///< lanes in use
   std::array<uint16_t, kLanes> band{};  ///< of the strategy, where it has bands

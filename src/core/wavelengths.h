@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/plugin.h"
 #include "core/spectrum.h"
@@ -25,10 +26,16 @@ struct SensorResponse {
   std::array<double, 3> color() const { return {value[0], value[1], value[2]}; }
 };
 
+/// Of a sensor's response, in whatever unit.
+struct ResponsePoint {
+  double nm, value;
+  friend bool operator==(const ResponsePoint&, const ResponsePoint&) = default;
+};
+
 /// A film channel that is no colour: the radiance at one wavelength, or its mean under a response.
 struct Band {
-  double nm;                  ///< the wavelength, or the response's centre of gravity
-  SpectrumPtr response = {};  ///< nullptr: the wavelength alone
+  double nm;                                 ///< the wavelength, or the response's centre of gravity
+  std::vector<ResponsePoint> response = {};  ///< linear between the points, 0 beyond; empty: the wavelength alone
 };
 
 /// How the wavelengths of a path are chosen, and what film channels its radiance feeds.

@@ -76,7 +76,7 @@ class Bands final : public WavelengthStrategy {
     if (files.empty())
       for (const Band& band : bands_) listed_nm_.push_back(static_cast<float>(band.nm));
     for (const Band& band : bands_)
-      if (band.response) samplers_.emplace_back(band.response, p.where("responses"));
+      if (!band.response.empty()) samplers_.emplace_back(band.response, p.where("responses"));
     find_range();
   }
 
@@ -95,10 +95,8 @@ class Bands final : public WavelengthStrategy {
       const size_t band = count <= kLanes ? i : (index + i * count / kLanes) % count;
       lambda.band[i] = static_cast<uint16_t>(band);
       lambda.active[i] = true;
-      const auto [nm, weight] =
-          samplers_.empty() ? ResponseSampler::Sample{listed_nm_[band], 1} : samplers_[band].sample(u);
-      lambda.nm[i] = nm;
-      lambda.pdf[i] = 1 / weight;
+      lambda.nm[i] = samplers_.empty() ? listed_nm_[band] : samplers_[band].sample(u);
+      lambda.pdf[i] = 1;
     }
     return lambda;
   }
@@ -116,7 +114,7 @@ class Bands final : public WavelengthStrategy {
     response.count = lambda.count;
     for (size_t i = 0; i < size_t(lambda.count); ++i) {
       response.channel[i] = lambda.band[i];
-      response.value[i] = double(radiance.v[i]) / double(lambda.pdf[i]);
+      response.value[i] = double(radiance.v[i]);
     }
     return response;
   }
@@ -124,7 +122,9 @@ class Bands final : public WavelengthStrategy {
  private:
   void read_responses(const std::vector<std::filesystem::path>& files, const Location& where) {
     for (const auto& file : files) {
-      const SpectrumPtr response = read_spd(file, where);
+      std::vector<ResponsePoint> response;
+      for (const SpectrumPoint& p : read_spd_points(file, where)) response.push_back({p.lambda_nm, p.value});
+      response = without_margins(response);
       bands_.push_back({ResponseSampler(response, where).centroid_nm(), response});
     }
   }

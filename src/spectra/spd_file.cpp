@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "core/file_bytes.h"
-#include "spectra/tabulated.h"
 
 namespace frond {
 namespace {
@@ -49,14 +48,19 @@ std::vector<Number> read_numbers(const std::filesystem::path& path, const Locati
 
 }  // namespace
 
-SpectrumPtr read_spd(const std::filesystem::path& path, const Location& where) {
+std::vector<SpectrumPoint> read_spd_points(const std::filesystem::path& path, const Location& where) {
   const std::vector<Number> numbers = read_numbers(path, where);
   if (numbers.size() % 2 != 0)
     fail(numbers.back().where, "wavelength {} nm has no value: the file ends after it", numbers.back().value);
   std::vector<SpectrumPoint> points;
   for (size_t i = 0; i < numbers.size(); i += 2)
     points.push_back({numbers[i].value, numbers[i + 1].value, numbers[i].where});
-  return make_tabulated(points);
+  check_points(points);
+  return points;
+}
+
+SpectrumPtr read_spd(const std::filesystem::path& path, const Location& where) {
+  return make_tabulated(read_spd_points(path, where));
 }
 
 }  // namespace frond

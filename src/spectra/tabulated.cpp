@@ -7,20 +7,6 @@
 namespace frond {
 namespace {
 
-void check(std::span<const SpectrumPoint> points) {
-  if (points.size() < 2)
-    fail(points.empty() ? Location{} : points[0].where, "a spectrum needs two wavelengths at least, {} given",
-         points.size());
-  double last = 0;
-  for (const auto& [lambda_nm, value, where] : points) {
-    if (!std::isfinite(lambda_nm) || lambda_nm <= 0) fail(where, "{} is not a wavelength in nm", lambda_nm);
-    if (lambda_nm <= last) fail(where, "wavelengths must ascend, {} nm follows {} nm", lambda_nm, last);
-    if (!std::isfinite(value)) fail(where, "the value at {} nm is {}, finite numbers are needed", lambda_nm, value);
-    if (value < 0) fail(where, "the value at {} nm is {}, a spectrum cannot be negative", lambda_nm, value);
-    last = lambda_nm;
-  }
-}
-
 bool is_constant(std::span<const SpectrumPoint> points) {
   return std::all_of(points.begin(), points.end(), [&](const auto& p) { return p.value == points[0].value; });
 }
@@ -36,8 +22,22 @@ bool lies_on_whole_nanometres(std::span<const SpectrumPoint> points) {
 
 }  // namespace
 
+void check_points(std::span<const SpectrumPoint> points) {
+  if (points.size() < 2)
+    fail(points.empty() ? Location{} : points[0].where, "a spectrum needs two wavelengths at least, {} given",
+         points.size());
+  double last = 0;
+  for (const auto& [lambda_nm, value, where] : points) {
+    if (!std::isfinite(lambda_nm) || lambda_nm <= 0) fail(where, "{} is not a wavelength in nm", lambda_nm);
+    if (lambda_nm <= last) fail(where, "wavelengths must ascend, {} nm follows {} nm", lambda_nm, last);
+    if (!std::isfinite(value)) fail(where, "the value at {} nm is {}, finite numbers are needed", lambda_nm, value);
+    if (value < 0) fail(where, "the value at {} nm is {}, a spectrum cannot be negative", lambda_nm, value);
+    last = lambda_nm;
+  }
+}
+
 TabulatedSpectrum::TabulatedSpectrum(std::span<const SpectrumPoint> points) {
-  check(points);
+  check_points(points);
   for (const SpectrumPoint& p : points) {
     lambda_nm_.push_back(static_cast<float>(p.lambda_nm));
     values_.push_back(static_cast<float>(p.value));

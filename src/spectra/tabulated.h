@@ -14,11 +14,14 @@ struct SpectrumPoint {
   Location where = {};
 };
 
+/// Throws InputError unless there are two points at least, wavelengths are positive and ascend, and values are finite
+/// and not negative.
+void check_points(std::span<const SpectrumPoint> points);
+
 /// Linear between its points, whatever their spacing.
 class TabulatedSpectrum final : public Spectrum {
  public:
-  /// Throws InputError unless there are two points at least, wavelengths are positive and ascend, and values are finite
-  /// and not negative.
+  /// Throws as check_points does.
   explicit TabulatedSpectrum(std::span<const SpectrumPoint> points);
   float at(float lambda_nm) const override;
   Interval range_nm() const override { return {double(lambda_nm_.front()), double(lambda_nm_.back())}; }

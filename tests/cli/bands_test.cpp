@@ -109,6 +109,14 @@ TEST_F(BandCommands, TakeASensorsResponsesAndWriteThem) {
   EXPECT_NEAR(mean / 24 / white(), sum / area, 5 * std::sqrt(error) / 24 / white());
 }
 
+TEST_F(BandCommands, WriteTheResponsesPointByPoint) {
+  folder_.write("narrow.spd", "300 0  839.25 0  840.25 0.125  841.25 0  2500 0");
+  const Outcome o = render("bands,responses=" + path("narrow.spd"), "a.exr");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const ImageFile file = read_image(path("a.exr"), {});
+  EXPECT_EQ(file.header.text.at(spectral_channel(840.25)), "839.25nm:0;840.25nm:0.125;841.25nm:0;");
+}
+
 TEST_F(BandCommands, AreNoPictureUntilThreeAreChosen) {
   const Outcome png = render("bands,wavelengths=650,551,900", "a.png");
   EXPECT_EQ(png.code, 1);

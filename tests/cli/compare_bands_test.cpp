@@ -73,6 +73,13 @@ TEST_F(CompareBands, AResponseCountsItsMeanWhite) {
   EXPECT_NEAR(channels("bands,responses=" + folder_.name_of("flat.spd")).white[0], mean, 1e-3 * mean);
 }
 
+/// Two nanometres of a table that is 0 elsewhere.
+TEST_F(CompareBands, ANarrowResponseCountsItsOwnWhite) {
+  folder_.write("narrow.spd", "400 0  563.1 0  564.1 1  565.1 0  800 0");
+  const double d65 = double(unit_d65()->at(564.1f));  // linear around it
+  EXPECT_NEAR(channels("bands,responses=" + folder_.name_of("narrow.spd")).white[0], d65, 1e-6 * d65);
+}
+
 TEST_F(CompareBands, AreSeenAsColoursOrThreeOfThemAsFalseOnes) {
   EXPECT_THAT(channels("bands,step=50").how_shown, HasSubstr("linear interpolation"));
   const ChannelList list = channels("bands,wavelengths=700,750,800");

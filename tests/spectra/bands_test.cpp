@@ -159,11 +159,66 @@ TEST_F(Responses, AreSampledWithinTheirSupport) {
   ASSERT_EQ(bands->bands().size(), 1u);
   EXPECT_TRUE(bands->fixed_nm().empty());
   EXPECT_TRUE(bands->listed_nm().empty());
-  EXPECT_NEAR(bands->range_nm().min, 500, 1.7);
-  EXPECT_NEAR(bands->range_nm().max, 550, 1.7);
-  EXPECT_NEAR(bands->bands()[0].nm, 18300.0 / 35, 1e-3);  // of a trapezium
+  EXPECT_EQ(bands->range_nm().min, 500);
+  EXPECT_EQ(bands->range_nm().max, 550);
+  EXPECT_NEAR(bands->bands()[0].nm, 18300.0 / 35, 1e-9);  // of a trapezium
   for (float u = 0; u < 1; u += 0.01f)
     EXPECT_TRUE(bands->range_nm().contains(double(bands->sample_in_turn(0, u).nm[0])));
+}
+
+/// By the midpoints of many steps between the response's points.
+template <class Function>
+double mean_under(const std::vector<ResponsePoint>& response, const Function& f) {
+  constexpr int kSteps = 1000;
+  double weighted = 0, area = 0;
+  for (size_t i = 1; i < response.size(); ++i)
+    for (int k = 0; k < kSteps; ++k) {
+      const double t = (k + 0.5) / kSteps;
+      const double s = std::lerp(response[i - 1].value, response[i].value, t) * (response[i].nm - response[i - 1].nm);
+      weighted += s * f(std::lerp(response[i - 1].nm, response[i].nm, t));
+      area += s;
+    }
+  return weighted / area;
+}
+
+/// As sensors' tables often are: over their whole range, and 0 for most of it.
+TEST_F(Responses, ArePaddedWithAnyNumberOfZeros) {
+  std::string box;  // 5 nm at steps of 1
+  for (int nm = 400; nm <= 1000; ++nm) box += fmt::format("{} {}\n", nm, nm >= 701 && nm <= 704 ? 1 : 0);
+  struct Case {
+    std::string text;
+    std::vector<ResponsePoint> points;
+  };
+  const std::vector<Case> cases{{box, {{700, 0}, {701, 1}, {702, 1}, {703, 1}, {704, 1}, {705, 0}}},
+                                {"300 0  549 0  550 2  551 0  2500 0", {{549, 0}, {550, 2}, {551, 0}}},
+                                {"300 0  500 0  510 1  600 0  800 0  801 0.1  802 0  2000 0",
+                                 {{500, 0}, {510, 1}, {600, 0}, {800, 0}, {801, 0.1}, {802, 0}}},
+                                {"400 3  401 0  900 0", {{400, 3}, {401, 0}}},
+                                {"400 0  899 0  900 3", {{899, 0}, {900, 3}}}};
+  constexpr int kSamples = 1 << 16;
+  for (const Case& c : cases) {
+    const auto bands = make({write("padded.spd", c.text)});
+    const Band& band = bands->bands()[0];
+    EXPECT_EQ(band.response, c.points);
+    const double width = c.points.back().nm - c.points.front().nm;
+    double first = 0, second = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const SampledWavelengths lambda = bands->sample_in_turn(0, (float(i) + 0.5f) / kSamples);
+      EXPECT_EQ(bands->sensor(SampledSpectrum(1), lambda).value[0], 1);  // equal energy
+      EXPECT_TRUE(bands->range_nm().contains(double(lambda.nm[0])));
+      const double x = (double(lambda.nm[0]) - c.points.front().nm) / width;
+      first += x, second += x * x;
+    }
+    const auto mean = [&](int power) {
+      return mean_under(c.points, [&](double nm) { return std::pow((nm - c.points.front().nm) / width, power); });
+    };
+    // x and its square rise with u, from 0 to 1: the mean of their midpoints is off by half a step at most. Half a
+    // float's step of wavelength comes to it, and what mean_under's steps leave.
+    const double rounding = 6.2e-5 / width + 1e-6;
+    EXPECT_NEAR(first / kSamples, mean(1), 0.5 / kSamples + rounding) << c.text.substr(0, 60);
+    EXPECT_NEAR(second / kSamples, mean(2), 0.5 / kSamples + 2 * rounding) << c.text.substr(0, 60);
+    EXPECT_NEAR(band.nm, c.points.front().nm + width * mean(1), 1e-6 * width);
+  }
 }
 
 /// Mean response of each band to a spectrum, over evenly spaced u, and its exact value.
@@ -184,16 +239,10 @@ TEST_F(Responses, FindTheMeanRadianceUnderEachResponse) {
   }
   for (size_t b = 0; b < 5; ++b) {
     const Band& band = bands->bands()[b];
-    double weighted = 0, area = 0;
-    for (double nm = 400.0005; nm < 900; nm += 0.001) {
-      const double s = nm > band.response->range_nm().min && nm < band.response->range_nm().max
-                           ? double(band.response->at(float(nm)))
-                           : 0;
-      weighted += s * double(light->at(float(nm)));
-      area += s;
-    }
     EXPECT_EQ(count[b], kSamples * 4 / 5);
-    EXPECT_NEAR(sum[b] / count[b] / (weighted / area), 1, 2e-3) << band.nm;
+    EXPECT_NEAR(sum[b] / count[b] / mean_under(band.response, [&](double nm) { return double(light->at(float(nm))); }),
+                1, 2e-3)
+        << band.nm;
   }
 }
 

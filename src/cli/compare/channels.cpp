@@ -20,30 +20,51 @@ ChannelList colors() {
 std::string name_of(const Band& band) { return fmt::format("{:.8g} nm", band.nm); }
 
 /// Spectrum of all lights, each by its photometric power, at luminance 1.
-double white_at(const Scene& scene, float nm) {
-  double sum = 0, power = 0;
-  for (const Light* light : scene.lights()) {
-    const double p = light->power(scene.radius());
-    if (!(p > 0)) continue;
-    power += p;
-    sum += p * double(light->emission().at(nm)) / photometric(light->emission());
+class White {
+ public:
+  explicit White(const Scene& scene) {
+    double sum = 0;
+    for (const Light* light : scene.lights()) {
+      const double power = light->power(scene.radius());
+      if (!(power > 0)) continue;
+      sum += power;
+      lights_.push_back({&light->emission(), power / photometric(light->emission())});
+    }
+    for (Share& light : lights_) light.weight /= sum;
   }
-  return power > 0 ? sum / power : 0;
-}
 
-/// Of a band with a response, its mean under that.
-double white_in(const Scene& scene, const Band& band) {
-  if (!band.response) return white_at(scene, float(band.nm));
-  constexpr int kSteps = 256;
-  const Interval range = band.response->range_nm();
-  double sum = 0, weight = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    const auto nm = float(std::lerp(range.min, range.max, (i + 0.5) / kSteps));
-    const auto w = double(band.response->at(nm));
-    sum += w * white_at(scene, nm), weight += w;
+  /// Of a band with a response, its mean under that.
+  double in(const Band& band) const { return band.response.empty() ? at(band.nm) : under(band.response); }
+
+ private:
+  struct Share {
+    const Spectrum* emission;
+    double weight;
+  };
+
+  double at(double nm) const {
+    double sum = 0;
+    for (const Share& light : lights_) sum += light.weight * double(light.emission->at(float(nm)));
+    return sum;
   }
-  return sum / weight;
-}
+
+  /// By the midpoints of steps of a nanometre, or what lies between two points of the response.
+  double under(std::span<const ResponsePoint> response) const {
+    constexpr double kMostSteps = 10000;
+    double sum = 0, area = 0;
+    for (size_t i = 1; i < response.size(); ++i) {
+      const auto &a = response[i - 1], &b = response[i];
+      const int steps = int(std::clamp(std::ceil(b.nm - a.nm), 1.0, kMostSteps));
+      for (int k = 0; k < steps; ++k) {
+        const double t = (k + 0.5) / steps, weight = (b.nm - a.nm) / steps * std::lerp(a.value, b.value, t);
+        sum += weight * at(std::lerp(a.nm, b.nm, t)), area += weight;
+      }
+    }
+    return sum / area;
+  }
+
+  std::vector<Share> lights_;
+};
 
 /// As the eye sees them, where they cover what it sees; else three of them as red, green and blue.
 void choose_picture(ChannelList& list) {
@@ -69,25 +90,15 @@ ChannelList bands_of(const Scene& scene) {
   const auto bands = scene.wavelengths().bands();
   ChannelList list{
       .names = {"all bands"}, .bands = {bands.begin(), bands.end()}, .unit = "radiance over that of white"};
+  const White white(scene);
   for (const Band& band : list.bands) {
     list.names.push_back(name_of(band));
-    list.white.push_back(white_in(scene, band));
+    list.white.push_back(white.in(band));
     if (!(list.white.back() > 0))
       fail({}, "the scene's lights give no light at {}: there is nothing to compare", name_of(band));
   }
   choose_picture(list);
   return list;
-}
-
-bool same_response(const SpectrumPtr& a, const SpectrumPtr& b) {
-  if (!a || !b) return !a && !b;
-  const Interval range = a->range_nm();
-  if (b->range_nm().min != range.min || b->range_nm().max != range.max) return false;
-  constexpr int kSteps = 256;
-  for (int i = 0; i <= kSteps; ++i)
-    if (const auto nm = float(std::lerp(range.min, range.max, double(i) / kSteps)); a->at(nm) != b->at(nm))
-      return false;
-  return true;
 }
 
 }  // namespace
@@ -106,7 +117,7 @@ uint64_t samples_for_all_channels(const Scene& scene) {
 }
 
 bool same_channels(const ChannelList& a, const ChannelList& b) {
-  return a.names == b.names && std::ranges::equal(a.bands, b.bands, same_response, &Band::response, &Band::response);
+  return a.names == b.names && std::ranges::equal(a.bands, b.bands, {}, &Band::response, &Band::response);
 }
 
 }  // namespace frond::compare
