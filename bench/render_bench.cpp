@@ -30,6 +30,7 @@ class RecordingWorld final : public World {
   std::span<const Light* const> lights() const override { return world_.lights(); }
   std::span<const EnvironmentLight* const> environment() const override { return world_.environment(); }
   float radius() const override { return world_.radius(); }
+  const WavelengthStrategy& wavelengths() const override { return world_.wavelengths(); }
   const std::vector<Record>& records() const { return records_; }
 
  private:

@@ -60,6 +60,8 @@ class WavelengthStrategy {
   /// Colour space of the film's three channels, a name of spectra/color_space.h: "XYZ" or "linear SMPTE-C"; empty where
   /// the channels are bands.
   virtual std::string_view film_space() const = 0;
+  /// Shares of the lanes in luminance where they are red, green and blue, as many as lanes; empty elsewhere.
+  virtual std::span<const float> luminance_shares() const { return {}; }
   /// The film's channels, in order, where they are no colours.
   virtual std::span<const Band> bands() const { return {}; }
 };

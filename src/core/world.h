@@ -27,6 +27,8 @@ class World {
   virtual std::span<const EnvironmentLight* const> environment() const = 0;
   /// Radius of a sphere around everything.
   virtual float radius() const = 0;
+  /// Of its paths; its materials are made ready for them.
+  virtual const WavelengthStrategy& wavelengths() const = 0;
 };
 
 /// A ray from a hit that cannot meet the same surface again: the origin is lifted off along ng, to the side of `d`.

@@ -137,7 +137,7 @@ class PathIntegrator final : public Integrator {
       if (depth >= max_depth_) break;
       const LocalBsdf local(*bsdf, point.hit, -path.ray.d);
       if (sample_lights_ && !selector_.empty()) add_sampled_light(world, point.hit, local, key, path, context);
-      if (!scatter(point.hit, local, key, path, context) || ends(depth, key, path)) break;
+      if (!scatter(point.hit, local, key, path, context) || ends(world, depth, key, path)) break;
       path.result.scatterings = ++depth;
     }
     return path.result;
@@ -210,9 +210,9 @@ class PathIntegrator final : public Integrator {
   }
 
   /// Whether the path ends here; roulette rewards the survivors.
-  bool ends(int depth, VertexKey key, Path& path) const {
+  bool ends(const World& world, int depth, VertexKey key, Path& path) const {
     if (path.throughput.is_black()) return true;
-    if (cut_off_attenuation_) return attenuation(path.throughput, path.lambda) < cutoff_;
+    if (cut_off_attenuation_) return attenuation(world, path) < cutoff_;
     const float survival = path.throughput.max();
     if (depth < 2 || survival >= 1) return false;
     if (key.stream(Use::roulette).uniform() >= survival) return true;
@@ -220,10 +220,13 @@ class PathIntegrator final : public Integrator {
     return false;
   }
 
-  /// The paper's luminance of the attenuation, eq. 4, where the lanes are its three wavelengths; the mean elsewhere.
-  static float attenuation(const SampledSpectrum& throughput, const SampledWavelengths& lambda) {
-    if (lambda.count == 3) return 0.21222f * throughput[0] + 0.7013f * throughput[1] + 0.0865f * throughput[2];
-    return mean(throughput, lambda);
+  /// The paper's luminance of the attenuation where the lanes are its three colours; the mean elsewhere.
+  static float attenuation(const World& world, const Path& path) {
+    const auto shares = world.wavelengths().luminance_shares();
+    if (shares.empty()) return mean(path.throughput, path.lambda);
+    float sum = 0;
+    for (size_t i = 0; i < shares.size(); ++i) sum += shares[i] * path.throughput.v[i];
+    return sum;
   }
 
   /// Surfaces that are not there, in one path: rounding might have a ray meet the same one for ever.

@@ -62,7 +62,7 @@ class Scene final : public World {
   std::span<const EnvironmentLight* const> environment() const override { return environment_; }
   float radius() const override { return radius_; }
 
-  const WavelengthStrategy& wavelengths() const { return *wavelengths_; }
+  const WavelengthStrategy& wavelengths() const override { return *wavelengths_; }
   const std::string& wavelengths_name() const { return wavelengths_name_; }
   const Camera& camera() const { return *camera_; }
   const Sampler& sampler() const { return *sampler_; }

@@ -20,8 +20,9 @@ class SceneVariant final : public World {
   std::span<const Light* const> lights() const override { return scene_.lights(); }
   std::span<const EnvironmentLight* const> environment() const override { return scene_.environment(); }
   float radius() const override { return scene_.radius(); }
-
-  const WavelengthStrategy& wavelengths() const { return own_wavelengths_ ? *own_wavelengths_ : scene_.wavelengths(); }
+  const WavelengthStrategy& wavelengths() const override {
+    return own_wavelengths_ ? *own_wavelengths_ : scene_.wavelengths();
+  }
 
  private:
   const Scene& scene_;

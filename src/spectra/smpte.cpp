@@ -18,6 +18,9 @@ constexpr Param kParams[] = {
         "464.7 nm."),
 };
 
+/// Baranoski and Rokne, eq. 4, as printed.
+constexpr std::array kLuminance{0.21222f, 0.7013f, 0.0865f};
+
 /// A channel is the radiance at one wavelength over that of the reference white, D65 of luminance 1: white under D65 is
 /// white. The channels are then those of linear SMPTE-C, to the accuracy of three wavelengths.
 class Smpte final : public WavelengthStrategy {
@@ -43,6 +46,7 @@ class Smpte final : public WavelengthStrategy {
     for (size_t i = 0; i < 3; ++i) rgb[i] = double(radiance.v[i]) * per_radiance_[i];
     return rgb;
   }
+  std::span<const float> luminance_shares() const override { return kLuminance; }
   std::string_view film_space() const override { return "linear SMPTE-C"; }
 
  private:

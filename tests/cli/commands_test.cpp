@@ -231,6 +231,23 @@ Shape "sphere"
   EXPECT_THAT(render({"-o", path("x.exr"), "--integrator", "pat"}).err, HasSubstr("did you mean \"path\"?"));
 }
 
+/// After a second event three bands carry 0.27 in the mean; by the paper's weights of red, green and blue already the
+/// first leaves 0.21 of the near infrared.
+TEST_F(Commands, BandsAreCutOffByTheirMean) {
+  folder_.write("scene.pbrt", R"(
+Film "rgb" "integer xresolution" 4 "integer yresolution" 4
+Integrator "path" "string termination" "attenuation" "float cutoff" .28
+WorldBegin
+LightSource "infinite" "spectrum L" [300 1 2500 1]
+Material "diffuse" "spectrum reflectance" [300 .9 850 .9 1000 .03 2500 .03]
+Shape "sphere"
+)");
+  const Outcome o =
+      render({"-o", path("a.exr"), "--spp", "1", "--json", "-q", "--wavelengths", "bands,wavelengths=850,1650,2200"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_EQ(nlohmann::json::parse(o.out)["paths_absorbed_by_depth"].get<std::vector<int>>(), (std::vector{0, 16}));
+}
+
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
   const auto before = files();
   for (const std::string& output : {path("no/such/folder.exr"), path("picture.xyz"), folder_.name_of(".")}) {

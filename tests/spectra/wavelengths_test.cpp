@@ -43,6 +43,7 @@ TEST(Smpte, CarriesThePapersThreeWavelengths) {
   EXPECT_THAT(lambda.pdf, ::testing::ElementsAre(1, 1, 1, 0));
   EXPECT_THAT(lambda.active, ::testing::ElementsAre(true, true, true, false));
   EXPECT_THAT(smpte->fixed_nm(), ::testing::ElementsAre(608, 551, 455));
+  EXPECT_THAT(smpte->luminance_shares(), ::testing::ElementsAre(0.21222f, 0.7013f, 0.0865f));
   EXPECT_EQ(smpte->film_space(), "linear SMPTE-C");
   EXPECT_NE(find_color_space(smpte->film_space()), nullptr);
 }
