@@ -210,6 +210,8 @@ std::string command_line_of(const RenderOptions& o) {
   for (const std::string& plugin : o.plugins) line += " --plugin " + std::filesystem::path(plugin).filename().string();
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
   if (o.quick) line += " --quick";
+  if (!o.display.display.empty()) line += " --display " + o.display.display;
+  if (!o.display.view.empty()) line += " --view " + o.display.view;
   return line;
 }
 

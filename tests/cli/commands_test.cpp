@@ -248,6 +248,12 @@ Shape "sphere"
   EXPECT_EQ(nlohmann::json::parse(o.out)["paths_absorbed_by_depth"].get<std::vector<int>>(), (std::vector{0, 16}));
 }
 
+TEST_F(Commands, APictureSaysThroughWhichViewItWasMade) {
+  ASSERT_EQ(render({"-o", path("a.png"), "--spp", "1", "-q", "--display", "sRGB"}).code, 0);
+  EXPECT_EQ(read_image(path("a.png"), {}).header.text.at("frond:command"),
+            "frond render scene.pbrt --spp 1 --display sRGB");
+}
+
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
   const auto before = files();
   for (const std::string& output : {path("no/such/folder.exr"), path("picture.xyz"), folder_.name_of(".")}) {
