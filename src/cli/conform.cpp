@@ -30,12 +30,13 @@ struct ConformOptions {
   bool sweep = false;
 };
 
-Effort effort_of(const ConformOptions& o) {
+ExaminationEffort effort_of(const ConformOptions& o) {
   constexpr int64_t kFewest = 1000;  // below it, tests have next to no power
-  Effort effort{.samples = static_cast<int>(std::min<int64_t>(parse_count("--samples", o.samples, kFewest), 1 << 30)),
-                .angles_deg = parse_numbers("--angles", o.angles),
-                .seed = o.seed,
-                .maps = !o.picture.empty()};
+  ExaminationEffort effort{
+      .samples = static_cast<int>(std::min<int64_t>(parse_count("--samples", o.samples, kFewest), 1 << 30)),
+      .angles_deg = parse_numbers("--angles", o.angles),
+      .seed = o.seed,
+      .maps = !o.picture.empty()};
   for (const double angle : effort.angles_deg)
     if (!(angle >= 0 && angle < 90)) fail({}, "--angles: {} is not from 0 to below 90 degrees", angle);
   return effort;

@@ -11,7 +11,7 @@ namespace frond {
 struct ConformReport {
   std::string material;  ///< the words of the command line
   std::vector<double> wavelengths_nm;
-  Effort effort;
+  ExaminationEffort effort;
   double false_alarm_rate = 0;
   double level = 0;  ///< p-value below which a test fails
   Findings findings;

@@ -12,14 +12,14 @@ namespace frond {
 
 std::string_view law_name(Law law) { return kLaws[static_cast<size_t>(law)].name; }
 
-Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims, const Effort& effort,
-                 const std::string& where) {
+Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims,
+                 const ExaminationEffort& effort, const std::string& where) {
   Findings findings;
   for (const double angle_deg : effort.angles_deg)
     for (const int side : {1, -1}) {
       const double cos_theta = side * std::cos(angle_deg * std::numbers::pi / 180);
       const double phi = 0.4 + 0.03 * angle_deg;  // no axis, where mistakes of azimuth hide
-      Effort own = effort;
+      ExaminationEffort own = effort;
       own.seed = hash_key(effort.seed, static_cast<uint64_t>(angle_deg), static_cast<uint64_t>(side + 1));
       const Series s(bsdf, lambda, sphere_direction(cos_theta, phi), own,
                      fmt::format("{}, wo at {} deg on the {}", where, angle_deg, side > 0 ? "front" : "back"));

@@ -75,7 +75,7 @@ struct Finding {
   double p_value = 1;   ///< of a statistical test; 0 or 1 for any other
   bool statistical = false;
   bool passed = true;                              ///< set by `judge`
-  std::shared_ptr<const SphereMap> map = nullptr;  ///< if Effort asks for maps and the law has directions
+  std::shared_ptr<const SphereMap> map = nullptr;  ///< if ExaminationEffort asks for maps and the law has directions
 };
 using Findings = std::vector<Finding>;
 
@@ -87,7 +87,7 @@ struct Claims {
 };
 
 /// How much work goes into one BSDF. Directions `wo` lie at each of the angles on both sides.
-struct Effort {
+struct ExaminationEffort {
   int samples = 20000;  ///< of `sample` for each direction
   std::vector<double> angles_deg = {0, 30, 60, 80, 89};
   uint64_t seed = 1;
@@ -95,8 +95,8 @@ struct Effort {
 };
 
 /// Runs all laws that a BSDF can be asked about. `where` begins the text of each finding. `judge` comes after.
-Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims, const Effort& effort,
-                 const std::string& where);
+Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims,
+                 const ExaminationEffort& effort, const std::string& where);
 
 /// Sets `passed`, and returns the p-value below which a finding fails. `false_alarm_rate` is that of all the findings
 /// together: the chance that any law is said to be broken though all hold.

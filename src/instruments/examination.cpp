@@ -14,8 +14,8 @@ std::vector<Vec3> directions(std::span<const BsdfSample> samples) {
 
 }  // namespace
 
-Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction, const Effort& effort,
-               const std::string& asked_where)
+Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
+               const ExaminationEffort& effort, const std::string& asked_where)
     : bsdf(asked),
       lambda(wavelengths),
       wo(direction),

@@ -43,8 +43,8 @@ struct Series {
 
   static constexpr int kPilotShare = 4;
 
-  Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction, const Effort& effort,
-         const std::string& asked_where);
+  Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
+         const ExaminationEffort& effort, const std::string& asked_where);
 
   /// For a finding: a pair of numbers for each bin. nullptr where nobody asked for maps. Without `expected` there is
   /// nothing to compare with.
@@ -137,7 +137,7 @@ void check_values(const Series& s, Findings& findings);
 
 // Laws of a BSDF as a whole.
 void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
-void check_reciprocity(const Bsdf& bsdf, const std::string& where, const Effort& effort, Findings& findings);
+void check_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort, Findings& findings);
 
 /// The verdict on a law that allows no exception: passes until the first fault, whose text it keeps.
 class Verdict {

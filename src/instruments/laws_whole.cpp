@@ -84,7 +84,8 @@ std::shared_ptr<const SphereMap> reciprocity_map(const Bsdf& bsdf, const Vec3& a
   return std::make_shared<SphereMap>(std::move(map));
 }
 
-void check_exact_reciprocity(const Bsdf& bsdf, const std::string& where, const Effort& effort, Findings& findings) {
+void check_exact_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort,
+                             Findings& findings) {
   Verdict verdict(Law::reciprocity, where);
   const auto directions = random_directions(20, effort.seed);
   std::optional<Vec3> broken_at;
@@ -101,7 +102,8 @@ void check_exact_reciprocity(const Bsdf& bsdf, const std::string& where, const E
 }
 
 /// Means of f over the streams, both ways, for a few pairs of directions.
-void check_mean_reciprocity(const Bsdf& bsdf, const std::string& where, const Effort& effort, Findings& findings) {
+void check_mean_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort,
+                            Findings& findings) {
   const auto directions = random_directions(16, effort.seed);
   for (size_t pair = 0; pair + 1 < directions.size(); pair += 2) {
     const Vec3 &a = directions[pair], &b = directions[pair + 1];
@@ -126,7 +128,8 @@ void check_mean_reciprocity(const Bsdf& bsdf, const std::string& where, const Ef
 
 }  // namespace
 
-void check_reciprocity(const Bsdf& bsdf, const std::string& where, const Effort& effort, Findings& findings) {
+void check_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort,
+                       Findings& findings) {
   if (any(bsdf.flags() & Lobes::stochastic))
     check_mean_reciprocity(bsdf, where, effort, findings);
   else

@@ -63,7 +63,7 @@ Findings examine(const MaterialInfo& info, std::span<const ParameterSet> sets, c
   Findings findings;
   Arena arena;
   for (const ParameterSet& set : sets) {
-    Effort effort = how.effort;
+    ExaminationEffort effort = how.effort;
     effort.seed = hash_key(effort.seed, hash_bytes(info.name), hash_bytes(set.label));
     const SampledWavelengths lambda = how.preparation.wavelengths.sample(RandomStream(effort.seed).uniform());
     const std::string where = fmt::format("{}: {}; {}", info.name, set.label, wavelengths_text(lambda));

@@ -10,7 +10,7 @@ struct MaterialExamination {
   const Preparation& preparation;  ///< its wavelengths are those that the BSDFs are asked at
   ParamResolver& resolver;
   Claims claims;  ///< for every set of parameters, beside what the material claims itself
-  Effort effort;
+  ExaminationEffort effort;
   /// The first set or the wavelengths are what somebody asks for: where the material refuses them, that is no defect of
   /// it, and the InputError gets through.
   bool is_asked_for = false;

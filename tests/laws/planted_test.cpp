@@ -16,7 +16,7 @@ constexpr double kFalseAlarmRate = 1e-6;
 
 Findings findings(const MaterialInfo& info, const Claims& claims = {},
                   const WavelengthStrategy& wavelengths = GivenWavelengths({608, 551, 455}),
-                  const Effort& effort = {}) {
+                  const ExaminationEffort& effort = {}) {
   const Setup setup(wavelengths);
   PlainResolver resolver([](const std::string&) { return nullptr; });
   const auto sets = parameter_sweep(info, {});
@@ -153,7 +153,7 @@ TEST(Maps, CountEveryDirectionOnce) {
   double found = 0, expected = 0, solid_angle = 0;
   for (const SphereMap::Patch& p : map.patches)
     found += p.found, expected += p.expected, solid_angle += p.box.solid_angle();
-  EXPECT_EQ(found, Effort().samples);
+  EXPECT_EQ(found, ExaminationEffort().samples);
   EXPECT_NEAR(expected, found, 1e-6);
   EXPECT_NEAR(solid_angle, 4 * kPi, 1e-5);
 }

@@ -53,8 +53,8 @@ const SweepOptions kSweep{.pinned = {given("string", "tablemethod", std::string(
 
 /// Runs the laws and fails the test where one is broken.
 Findings expect_lawful(const MaterialInfo& info, std::span<const ParameterSet> sets,
-                       const WavelengthStrategy& wavelengths, const Effort& effort, const Claims& claims = {},
-                       PlainResolver resolver = two_materials()) {
+                       const WavelengthStrategy& wavelengths, const ExaminationEffort& effort,
+                       const Claims& claims = {}, PlainResolver resolver = two_materials()) {
   const Setup setup(wavelengths);
   Findings findings =
       examine(info, sets, {.preparation = setup.preparation, .resolver = resolver, .claims = claims, .effort = effort});
