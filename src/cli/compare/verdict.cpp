@@ -31,15 +31,16 @@ bool holds(const std::vector<Offer>& all, size_t subject) {
 }
 
 std::string answer(const Comparison& c, double rms) {
-  const auto all = offers(c, rms, simultaneous_z(c));
+  const double z = simultaneous_z(c);
+  const auto all = offers(c, rms, z);
   const Offer& best = all.front();
   if (!best.effort) {
-    const auto least = std::ranges::min_element(
-        c.subjects, {}, [](const Subject& s) { return s.convergence(kAll).bias().root_at(kZ95); });
+    const auto most = [z](const Subject& s) { return s.convergence(kAll).bias().root_at(z); };
+    const auto least = std::ranges::min_element(c.subjects, {}, most);
     return fmt::format(
         "None of the candidates meets an RMS of {:g} with 95 % confidence: the bias of {}, the least, may be up to "
         "{:.2g}.",
-        rms, least->candidate.label, least->convergence(kAll).bias().root_at(simultaneous_z(c)));
+        rms, least->candidate.label, most(*least));
   }
   std::string text = fmt::format("{} is enough for an RMS of {:g}, with 95 % confidence: {}", label(c, best.subject),
                                  rms, effort_text(*best.effort));
