@@ -2,12 +2,15 @@
 
 #include <cmath>
 
+#include "tests/leaf/statistics.h"
 #include "tests/support/bind.h"
 #include "tests/support/render_text.h"
 
 namespace frond {
 namespace {
 
+using test::z_limit;
+using test::z_of_chi_square;
 using testing::channel_mean;
 using testing::ChannelMean;
 using testing::render_text;
@@ -103,8 +106,7 @@ TEST(FlatLeaf, NoiseOfTheWalkIsIndependentFromPixelToPixel) {
   double chi2 = 0;
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) chi2 += std::pow(film.mean(x, y)[1] - all.mean, 2) / film.covariance(x, y)[1];
-  // 63 degrees of freedom, normal to good approximation: 5 deviations either way.
-  EXPECT_NEAR(chi2, 63, 5 * std::sqrt(2 * 63.0));
+  EXPECT_LT(std::abs(z_of_chi_square(chi2, 63)), z_limit(1)) << chi2;
 }
 
 TEST(FlatLeaf, ReverseOrientationAndAMirrorSwapTheSides) {
