@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
 #include "core/material.h"
 #include "materials/leaf_params.h"
 
@@ -10,12 +14,26 @@ extern const MaterialInfo leaf_solved_material;
 
 namespace {
 
-/// After the first, the ladder: from the cheapest to the most accurate.
-constexpr std::string_view kModels[] = {"auto", "leaf_lambert", "leaf_simplified", "leaf_solved", "abm"};
+constexpr std::string_view kAuto = "auto";
+
+/// The ladder: from the cheapest to the most accurate.
+struct Model {
+  std::string_view name;
+  const MaterialInfo* info;
+};
+constexpr std::array kLadder{Model{"leaf_lambert", &leaf_lambert_material},
+                             Model{"leaf_simplified", &leaf_simplified_material},
+                             Model{"leaf_solved", &leaf_solved_material}, Model{"abm", &abm_material}};
+
+constexpr auto kModels = [] {
+  std::array<std::string_view, kLadder.size() + 1> names{kAuto};
+  std::ranges::transform(kLadder, names.begin() + 1, &Model::name);
+  return names;
+}();
 constexpr Param kOwn[] = {
     {.name = "model",
      .kind = ParamKind::string,
-     .default_value = std::string_view("auto"),
+     .default_value = kAuto,
      .doc = "The material that stands for the leaf; auto: frond render takes the cheapest that meets maxrms "
             "(docs/choosing.md), all else takes abm, by weighted walks.",
      .choices = kModels},
@@ -28,9 +46,10 @@ constexpr Param kOwn[] = {
 constexpr auto kLeaf = with_leaf_params(kOwn);
 
 const MaterialInfo& material_of(std::string_view model) {
-  for (const MaterialInfo* info : {&leaf_lambert_material, &leaf_simplified_material, &leaf_solved_material})
-    if (info->name == model) return *info;
-  return abm_material;
+  if (model == kAuto) return abm_material;
+  const auto found = std::ranges::find(kLadder, model, &Model::name);
+  if (found == kLadder.end()) throw std::logic_error("no leaf model is called " + std::string(model));
+  return *found->info;
 }
 
 ParsedParam weighted_walks() { return {"string", "mode", {}, {}, std::vector<std::string>{"weighted"}}; }
