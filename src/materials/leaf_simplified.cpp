@@ -84,8 +84,9 @@ class LeafSimplified final : public Material {
   void prepare(const Preparation& preparation) override {
     file_.warn(preparation.log);
     if (file_.is_given())
-      lookup_ = preparation.share<leaf::TableLookup>("leaf table file " + file_.path().string(),
-                                                     [&] { return read_lookup(preparation); });
+      lookup_ = preparation.share<leaf::TableLookup>(
+          wavelengths_key(preparation.wavelengths) + "leaf table file " + file_.path().string(),
+          [&] { return read_lookup(preparation); });
     else if (varies_)
       lookup_ = std::make_shared<const leaf::TableLookup>(depth_lookup(preparation));
     else
@@ -134,8 +135,7 @@ class LeafSimplified final : public Material {
   }
 
   std::string key_of_request(const Preparation& preparation) const {
-    return (preparation.wavelengths.fixed_nm().empty() ? "varying wavelengths\n" : "fixed wavelengths\n") +
-           leaf::describe(request_for(preparation.wavelengths));
+    return wavelengths_key(preparation.wavelengths) + leaf::describe(request_for(preparation.wavelengths));
   }
 
   leaf::TableLookup made_lookup(const Preparation& preparation) const {

@@ -46,10 +46,12 @@ class LeafSolved final : public Material {
 
   void prepare(const Preparation& preparation) override {
     file_.warn(preparation.log);
+    fixed_.reset();
     if (file_.is_given())
-      table_ =
-          preparation.share<leaf::BodyTable>(fmt::format("leaf modes file {} {}", tolerance_, file_.path().string()),
-                                             [&] { return read_table(preparation); });
+      table_ = preparation.share<leaf::BodyTable>(
+          wavelengths_key(preparation.wavelengths) +
+              fmt::format("leaf modes file {} {}", tolerance_, file_.path().string()),
+          [&] { return read_table(preparation); });
     else
       make_table(preparation);
     if (table_->lanes_are_columns()) fixed_ = table_->select(preparation.wavelengths.sample(0));
@@ -83,8 +85,7 @@ class LeafSolved final : public Material {
       preparation.log.info(fmt::format("leaf modes: {}, {} kB in memory", leaf_.specimen(), table.bytes() / 1024));
       return table;
     };
-    const std::string key = (vary ? "varying wavelengths\n" : "fixed wavelengths\n") + describe(request);
-    table_ = preparation.share<leaf::BodyTable>(key, make);
+    table_ = preparation.share<leaf::BodyTable>(wavelengths_key(preparation.wavelengths) + describe(request), make);
   }
 
   leaf::BodyTable read_table(const Preparation& preparation) const {

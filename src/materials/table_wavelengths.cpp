@@ -1,5 +1,7 @@
 #include "materials/table_wavelengths.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -55,6 +57,12 @@ std::vector<double> file_wavelengths(std::vector<double> in_file_nm, const Wavel
   if (!strategy.fixed_nm().empty()) return to_vector(strategy.fixed_nm());
   const Interval needed = strategy.range_nm();
   return grey ? std::vector{needed.min, needed.max + 1} : in_file_nm;
+}
+
+std::string wavelengths_key(const WavelengthStrategy& strategy) {
+  if (!strategy.fixed_nm().empty()) return fmt::format("fixed wavelengths {}\n", fmt::join(strategy.fixed_nm(), " "));
+  const Interval range = strategy.range_nm();
+  return fmt::format("varying wavelengths {} to {}\n", range.min, range.max);
 }
 
 std::vector<double> index_wavelengths(const WavelengthStrategy& strategy) {

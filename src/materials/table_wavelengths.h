@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/wavelengths.h"
@@ -18,6 +19,9 @@ std::vector<double> table_wavelengths(const WavelengthStrategy& strategy);
 /// not reach as far as the render.
 std::vector<double> file_wavelengths(std::vector<double> in_file_nm, const WavelengthStrategy& strategy,
                                      const Location& where, std::string_view name);
+
+/// All of a strategy that a table made or read for it depends on, for the key of what materials share.
+std::string wavelengths_key(const WavelengthStrategy& strategy);
 
 /// As `table_wavelengths` where the table has the optical depth for an axis, so that the refractive indices alone
 /// change with the wavelength: 40 nm apart.

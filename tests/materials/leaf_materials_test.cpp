@@ -232,6 +232,13 @@ TEST(LeafSimplified, TakesItsTableFromAFile) {
               HasSubstr("t.csv:2:1: Rs + Rd + T"));
 }
 
+TEST(LeafSimplified, SharesAFileWithThoseOfItsWavelengthsAlone) {
+  const TestFolder folder("leaf_table");
+  const std::string rows = "8,300,.04,.1,.2\n8,900,.04,.1,.8\n";
+  expect_sharing_changes_nothing(
+      "leaf_simplified", {words("tablefile", {folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n" + rows)})});
+}
+
 TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   const TestFolder folder("leaf_table");
   const std::string path = folder.write("t.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n8,551,.04,.1,.2\n");

@@ -135,6 +135,7 @@ TEST(LeafSolved, TakesItsModesFromAFile) {
   EXPECT_THAT(error_of([&] { Ready("leaf_solved", {file(column(500) + column(600))}); }),
               HasSubstr("is known from 500 to 600 nm, the render needs 455 to 608 nm"));
   EXPECT_THAT(error_of([&] { Ready("leaf_solved", {file("wavelength 551")}); }), HasSubstr("t.modes:3:12: 2 words"));
+  expect_sharing_changes_nothing("leaf_solved", {file(column(900) + column(300))});
 }
 
 TEST(LeafSolved, RefusesTexturesOfCells) {

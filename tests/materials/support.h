@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include "core/material.h"
 #include "materials/registry.h"
 #include "spectra/registry.h"
@@ -82,5 +84,32 @@ class Ready {
   std::unique_ptr<WavelengthStrategy> strategy_;
   SampledWavelengths lambda_;
 };
+
+/// Made ready for one strategy after another, with what others share, a material is what it is alone.
+inline void expect_sharing_changes_nothing(std::string_view material, const std::vector<ParsedParam>& params) {
+  Resolver resolver;
+  const MaterialInfo& info = material_info(material);
+  const auto make = [&] { return info.make(Params(info, {std::string(material), {}, params}, resolver)); };
+  const auto together = make(), holds_the_last = make();
+  SharedWork shared;
+  ThreadPool pool(1);
+  Arena arena;
+  const Log quiet(true);
+  for (const char* name : {"smpte", "hero", "meyer", "smpte"}) {
+    const auto strategy =
+        testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get(name, {}), {});
+    const auto alone = make();
+    alone->prepare({*strategy, pool, quiet, {}});
+    together->prepare({*strategy, pool, quiet, {}, &shared});
+    const SampledWavelengths lambda = strategy->sample(0.3f);
+    const auto f = [&](const Material& m) {
+      RandomStream rng(1);
+      return m.evaluate({{}, {0, 0, 1}, Frame::around(Vec3{0, 0, 1}), {}}, lambda, arena)
+          ->f({0, 0, 1}, {0, 0, -1}, rng);
+    };
+    EXPECT_EQ(f(*together), f(*alone)) << name;
+    holds_the_last->prepare({*strategy, pool, quiet, {}, &shared});
+  }
+}
 
 }  // namespace frond::test
