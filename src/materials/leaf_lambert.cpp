@@ -116,6 +116,7 @@ class LeafLambert final : public Material {
   const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
     const auto [front, back] = spectra_->at(lambda);
     return arena.make<TwoSidedLambertianBsdf>(front, back, leaf_.from_light());
+    request.params.cuticle_aspect = 0;  // it turns reflected light, and no share depends on it
   }
 
   bool is_leaf() const override { return true; }

@@ -77,6 +77,8 @@ class LeafSimplified final : public Material {
     request_.params = leaf_.tissue();
     request_.theta_deg = table_angles(request_.params, p.real("tablestep"));
     if (p.string("tablemethod") == "montecarlo") request_.method = leaf::TableMethod::monte_carlo;
+    // Leaves with other cuticles share a table. Walks draw from its lobe, and other numbers thereafter.
+    if (request_.method == leaf::TableMethod::solve) request_.params.cuticle_aspect = 0;
     request_.rays = p.integer("tablerays");
     if (!file_.is_given()) refuse_textures(p);
   }

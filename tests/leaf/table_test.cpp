@@ -42,6 +42,19 @@ TEST(Solver, GivesTheCheckFigures) {
   }
 }
 
+/// Leaves that differ in it alone may share a table.
+TEST(Solver, SharesDoNotHangOnTheCuticlesShape) {
+  const ThreadPool pool(2);
+  for (const std::string_view specimen : {"soybean", "maize"}) {
+    TableRequest request = request_of(specimen, TableMethod::solve);
+    request.theta_deg = {0, 40, 80, 100, 180};
+    const Table own = make_table(request, pool);
+    request.params.cuticle_aspect = 0;
+    EXPECT_EQ(make_table(request, pool).shares, own.shares) << specimen;
+    EXPECT_EQ(make_table(request, pool).error, own.error) << specimen;
+  }
+}
+
 /// Both sides, grazing angles above all.
 std::vector<double> test_angles() {
   std::vector<double> angles = even_steps(0, 180, 4);

@@ -279,6 +279,7 @@ TEST(LeafSimplified, SharesTheTableOfLeavesThatAreTheSame) {
   const ParsedParam maize = words("specimen", {"maize"}), wax = number("float", "oblateness", {2});
   EXPECT_EQ(tables_made({{kSolve}, {kSolve, wax}, {kSolve}}), 1u);
   EXPECT_EQ(tables_made({{kSolve}, {kSolve, maize}, {kSolve, maize, wax}}), 2u);
+  EXPECT_EQ(tables_made({{kSolve}, {kSolve, number("float", "cuticleaspect", {3})}}), 1u);
 }
 
 TEST(LeafSimplified, IsWhereATextureSaysTheLeafOfThatValue) {
