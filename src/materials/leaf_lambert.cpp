@@ -2,6 +2,7 @@
 
 #include "core/material.h"
 #include "leaf/quadrature.h"
+#include "leaf/table_axes.h"
 #include "leaf/table_cache.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
@@ -50,9 +51,7 @@ class TwoSidedSpectra {
   /// `fixed_lanes`: the wavelengths are the lanes; else they ascend, and are two at least.
   TwoSidedSpectra(const std::vector<double>& nm, std::vector<TwoSides> values, bool fixed_lanes)
       : values_(std::move(values)) {
-    if (fixed_lanes) return;
-    nm_.assign(nm.begin(), nm.end());
-    nodes_per_nm_ = static_cast<float>(nm_.size() - 1) / (nm_.back() - nm_.front());
+    if (!fixed_lanes) axis_ = leaf::WavelengthAxis(nm);
   }
 
   /// Lanes that are not active hold 0.
@@ -61,7 +60,7 @@ class TwoSidedSpectra {
     for (int lane = 0; lane < lambda.count; ++lane) {
       if (!lambda.is_active(lane)) continue;
       const auto i = static_cast<size_t>(lane);
-      const TwoSides s = nm_.empty() ? values_[i] : between(lambda.nm[i]);
+      const TwoSides s = axis_.empty() ? values_[i] : between(axis_.cell(lambda.nm[i]));
       sides[0].reflected[lane] = s.front_reflected;
       sides[0].transmitted[lane] = s.front_transmitted;
       sides[1].reflected[lane] = s.back_reflected;
@@ -71,22 +70,16 @@ class TwoSidedSpectra {
   }
 
  private:
-  TwoSides between(float nm) const {
-    // The guess is right where the nodes are evenly spaced.
-    const auto last = nm_.size() - 2;
-    auto i = std::min(static_cast<size_t>(std::max((nm - nm_.front()) * nodes_per_nm_, 0.f)), last);
-    while (i < last && nm > nm_[i + 1]) ++i;
-    while (i > 0 && nm < nm_[i]) --i;
-    const float t = std::clamp((nm - nm_[i]) / (nm_[i + 1] - nm_[i]), 0.f, 1.f);
-    const TwoSides &a = values_[i], &b = values_[i + 1];
+  TwoSides between(const leaf::AxisCell& cell) const {
+    const float t = cell.t;
+    const TwoSides &a = values_[cell.below], &b = values_[cell.below + 1];
     const auto blend = [&](float TwoSides::*value) { return a.*value * (1 - t) + b.*value * t; };
     return {blend(&TwoSides::front_reflected), blend(&TwoSides::front_transmitted), blend(&TwoSides::back_reflected),
             blend(&TwoSides::back_transmitted)};
   }
 
-  std::vector<float> nm_;  ///< empty: values are lanes
+  leaf::WavelengthAxis axis_;  ///< empty: values are lanes
   std::vector<TwoSides> values_;
-  float nodes_per_nm_ = 0;
 };
 
 /// A leaf by two numbers a side and wavelength, as plant codes have them.
@@ -108,28 +101,22 @@ class LeafLambert final : public Material {
           leaf::cached_table(request, leaf_.specimen(), preparation.pool, preparation.log, preparation.cache_dir);
       return means(table, !preparation.wavelengths.fixed_nm().empty());
     };
-    SharedWork alone;
-    SharedWork& shared = preparation.shared ? *preparation.shared : alone;
-    spectra_ = shared.get<TwoSidedSpectra>(key_of(request, preparation.wavelengths), make);
+    spectra_ = preparation.share<TwoSidedSpectra>(
+        "means, " + wavelengths_key(preparation.wavelengths) + leaf::describe(request), make);
   }
 
   const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
     const auto [front, back] = spectra_->at(lambda);
     return arena.make<TwoSidedLambertianBsdf>(front, back, leaf_.from_light());
-    request.params.cuticle_aspect = 0;  // it turns reflected light, and no share depends on it
   }
 
   bool is_leaf() const override { return true; }
 
  private:
-  static std::string key_of(const leaf::TableRequest& request, const WavelengthStrategy& wavelengths) {
-    return (wavelengths.fixed_nm().empty() ? "means, varying wavelengths\n" : "means, fixed wavelengths\n") +
-           leaf::describe(request);
-  }
-
   leaf::TableRequest request_for(const WavelengthStrategy& wavelengths) const {
     leaf::TableRequest request;
     request.params = leaf_.tissue();
+    request.params.cuticle_aspect = 0;  // it turns reflected light, and no share depends on it
     request.wavelengths_nm = table_wavelengths(wavelengths);
     request.theta_deg.clear();
     for (const Incidence& i : incidences_) request.theta_deg.push_back(i.theta_deg);

@@ -44,6 +44,24 @@ Pair diffuse_mean(const leaf::TissueParams& params, double lambda_nm, bool back)
   return mean;
 }
 
+/// Five of them vary from path to path, and two lie within a float's step of each other.
+TEST(LeafLambert, TakesBandsHoweverClose) {
+  Resolver resolver;
+  const WavelengthsInfo& bands = PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("bands", {});
+  const auto strategy = testing::make_plugin(bands, {number("float", "wavelengths", {500, 600, 600.00001, 700, 800})});
+  const MaterialInfo& info = material_info("leaf_lambert");
+  const auto leaf = info.make(Params(info, {"", {}, {words("specimen", {"soybean"})}}, resolver));
+  ThreadPool pool(1);
+  leaf->prepare({*strategy, pool, Log(true), {}});
+  Arena arena;
+  RandomStream rng(1);
+  for (uint64_t index = 0; index < 5; ++index) {
+    const SampledWavelengths lambda = strategy->sample_in_turn(index, 0);
+    const Bsdf& bsdf = *leaf->evaluate({{}, kUp, Frame::around(kUp), {}}, lambda, arena);
+    for (int lane = 0; lane < kLanes; ++lane) EXPECT_GT(bsdf.f(kUp, kUp, rng)[lane], 0) << index;
+  }
+}
+
 TEST(LeafLambert, HasTheMeansUnderDiffuseLight) {
   for (const std::string specimen : {"soybean", "maize"}) {
     Ready leaf("leaf_lambert", {words("specimen", {specimen})});
