@@ -90,8 +90,8 @@ constexpr Param kPath[] = {
     {.name = "termination",
      .kind = ParamKind::string,
      .default_value = std::string_view("roulette"),
-     .doc = "roulette: unbiased. attenuation: a path ends when the luminance of its attenuation falls below the "
-            "cutoff, as in the paper; biased.",
+     .doc = "roulette: unbiased. attenuation: a path ends when the luminance of its attenuation (where wavelengths are "
+            "not smpte's, the mean) falls below the cutoff, as in the paper; biased.",
      .choices = kTerminations},
     {.name = "cutoff",
      .kind = ParamKind::real,
