@@ -10,9 +10,11 @@ struct Specimen {
   TissueParams params;
 };
 
+inline constexpr std::string_view kSpecimenNames[] = {"soybean", "maize"};
+
 /// Baranoski 2006 (Remote Sensing of Environment 100:335-347); Baranoski and Eng 2007 (IEEE TGRS 45:2593-2599).
-inline constexpr Specimen kSpecimens[] = {
-    {"soybean",
+inline const Specimen kSpecimens[] = {
+    {kSpecimenNames[0],
      "Soybean, a bifacial leaf.",
      {.structure = Structure::bifacial,
       .thickness_m = 1.66e-4,
@@ -27,7 +29,7 @@ inline constexpr Specimen kSpecimens[] = {
       .epidermis_aspect = 5,
       .spongy_aspect = 5,
       .palisade_aspect = 1}},
-    {"maize",
+    {kSpecimenNames[1],
      "Maize, a unifacial leaf.",
      {.structure = Structure::unifacial,
       .thickness_m = 2.04e-4,
@@ -45,7 +47,7 @@ inline constexpr Specimen kSpecimens[] = {
 };
 
 /// nullptr where there is none of that name.
-constexpr const Specimen* find_specimen(std::string_view name) {
+inline const Specimen* find_specimen(std::string_view name) {
   for (const Specimen& specimen : kSpecimens)
     if (specimen.name == name) return &specimen;
   return nullptr;

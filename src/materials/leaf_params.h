@@ -14,13 +14,6 @@ namespace frond {
 
 namespace detail {
 
-constexpr auto specimen_names() {
-  std::array<std::string_view, std::size(leaf::kSpecimens)> names;
-  for (size_t i = 0; i < names.size(); ++i) names[i] = leaf::kSpecimens[i].name;
-  return names;
-}
-inline constexpr auto kSpecimenNames = specimen_names();
-
 inline constexpr Unit kDensity = "kg/m^3";
 
 inline constexpr std::string_view kIncident[] = {"traced", "light"};
@@ -38,7 +31,7 @@ inline constexpr std::array kLeafParams{
           .kind = ParamKind::string,
           .default_value = std::string_view("soybean"),
           .doc = "A leaf from the literature: its structure, and the numbers that are not given (docs/conventions.md).",
-          .choices = detail::kSpecimenNames},
+          .choices = leaf::kSpecimenNames},
     detail::leaf_number("thickness", "m", {1e-6, 1e-2}, "Thickness of the leaf; by default the specimen's."),
     detail::leaf_number("mesophyllfraction", "", {0, 1},
                         "Part of the thickness that absorbs; by default the specimen's."),
