@@ -100,25 +100,24 @@ TEST(FitCutoff, FindsThatOfAPowerLaw) {
 
 /// A wall that reflects 0.015 stands behind the leaves: a larger cutoff takes all paths that met it, of what was shot
 /// as well, and the ratio is the same again farther on.
-TEST(FitCutoff, DoesNotStepOverAnAnswerThatIsNear) {
-  const auto with_wall = [](double cutoff) {
-    return UnshotRatio{1.6e-4 * std::pow(cutoff / 0.01, -1) * (cutoff > 0.015 ? 3 : 1), 0.05};
+auto with_wall(double relative_error) {
+  return [relative_error](double cutoff) {
+    return UnshotRatio{1.5e-6 / cutoff * (cutoff > 0.015 ? 3 : 1), relative_error};
   };
-  const CutoffFit fit = fit_cutoff({1.15e-4, 0.05}, with_wall);
+}
+
+TEST(FitCutoff, DoesNotStepOverAnAnswerThatIsNear) {
+  const CutoffFit fit = fit_cutoff({1.08e-4, 0.05}, with_wall(0.05));
   EXPECT_TRUE(fit.equal);
   EXPECT_LT(fit.cutoff, 0.015);
 }
 
-/// The same where the answer lies in a step that leads past the jump; one farther on is found where there is none
-/// before.
+/// One farther on is found where there is none before.
 TEST(FitCutoff, LooksForAnAnswerThatAStepWouldPass) {
-  const auto with_wall = [](double cutoff) {
-    return UnshotRatio{1e-4 * std::pow(cutoff / 0.015, -1) * (cutoff > 0.015 ? 3 : 1), 0.005};
-  };
-  const CutoffFit before = fit_cutoff({1.003e-4, 0.005}, with_wall);
+  const CutoffFit before = fit_cutoff({1.003e-4, 0.005}, with_wall(0.005));
   EXPECT_TRUE(before.equal);
   EXPECT_LT(before.cutoff, 0.015);
-  const CutoffFit beyond = fit_cutoff({0.9e-4, 0.005}, with_wall);
+  const CutoffFit beyond = fit_cutoff({0.9e-4, 0.005}, with_wall(0.005));
   EXPECT_TRUE(beyond.equal);
   EXPECT_NEAR(beyond.cutoff, 0.05, 0.05 * 1.0001 * std::hypot(0.005, 0.005));
 }
