@@ -1,5 +1,7 @@
 #pragma once
 
+#include <iterator>
+
 #include "leaf/tissue_params.h"
 
 namespace frond::leaf {
@@ -10,6 +12,7 @@ struct Specimen {
   TissueParams params;
 };
 
+/// Apart from the specimens, which hold vectors: g++ 12 takes an array of such for no constant where UBSan is on.
 inline constexpr std::string_view kSpecimenNames[] = {"soybean", "maize"};
 
 /// Baranoski 2006 (Remote Sensing of Environment 100:335-347); Baranoski and Eng 2007 (IEEE TGRS 45:2593-2599).
@@ -45,6 +48,8 @@ inline const Specimen kSpecimens[] = {
       .spongy_aspect = 5,
       .palisade_aspect = 5}},  // a unifacial leaf has no palisade: unused
 };
+
+static_assert(std::size(kSpecimens) == std::size(kSpecimenNames));
 
 /// nullptr where there is none of that name.
 inline const Specimen* find_specimen(std::string_view name) {

@@ -34,6 +34,7 @@ TEST(Specimens, TheConventionsSayWhatTheyAre) {
   expect_row("cuticleaspect", "", &TissueParams::cuticle_aspect);
   expect_row("epidermisaspect", "", &TissueParams::epidermis_aspect);
   expect_row("spongyaspect", "", &TissueParams::spongy_aspect);
+  EXPECT_NE(page.find(fmt::format("| `palisadeaspect` | | {} | – |\n", soybean.palisade_aspect)), std::string::npos);
 }
 
 }  // namespace
