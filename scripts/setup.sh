@@ -42,16 +42,22 @@ install_missing() {
 
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
 
-# build TARGET...: configures once and builds; says nothing while all goes well.
-build() {
-  local options=() log
+# build_preset PRESET WORD...: configures and builds, the words are those of cmake --build; says nothing while all goes well.
+build_preset() {
+  local preset=$1 options=() log
+  shift
   command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   log=$(mktemp)
-  echo "Building $*"
-  if ! { cmake -S "$root" --preset release "${options[@]}" && cmake --build "$FROND_BUILD" --target "$@"; } >"$log" 2>&1; then
+  if ! (cd "$root" && cmake --preset "$preset" "${options[@]}" && cmake --build --preset "$preset" "$@") >"$log" 2>&1; then
     tail -n 60 "$log" >&2
     rm -f "$log"
     exit 1
   fi
   rm -f "$log"
+}
+
+# build TARGET...: as programs are used.
+build() {
+  echo "Building $*"
+  build_preset release --target "$@"
 }

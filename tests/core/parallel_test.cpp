@@ -45,8 +45,8 @@ TEST(ThreadPool, ThrowsWhatABodyThrowsAndStops) {
 TEST(ThreadPool, ZeroMeansTheMachinesThreads) { EXPECT_GE(ThreadPool().size(), 1); }
 
 TEST(ThreadPool, WorksWithFewerThreadsThanAsked) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "AddressSanitizer needs more addresses than the limit leaves";
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need more addresses than the limit leaves";
 #endif
   rlimit before{};
   getrlimit(RLIMIT_AS, &before);
