@@ -1,0 +1,48 @@
+"""The page that docs/validation.md grows into, and what its pieces share."""
+
+import math
+import re
+
+from tools import BUILD, ROOT, gnuplot
+
+LEAVES = ["soybean", "maize"]
+RGB = [608, 551, 455]
+
+
+class Report:
+    def __init__(self, quick):
+        self.quick = quick
+        self.folder = BUILD.parent / "validation" if quick else ROOT / "docs"
+        self.images = self.folder / "images" / "validation"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.parts = []
+
+    def rays(self, full):
+        return f"{full / 100 if self.quick else full:.0e}"
+
+    def add(self, text):
+        self.parts.append(text.strip() + "\n")
+
+    def chart(self, name, title, script, size=(900, 560)):
+        gnuplot(self.images / f"{name}.svg", script, size)
+        self.add(f"![{title}](images/validation/{name}.svg)")
+
+    def write(self, renewed):
+        """`renewed`: what was measured takes the place of sections of the same title in the page that there is."""
+        path = self.folder / "validation.md"
+        text = "\n".join(self.parts)
+        if renewed:
+            sections = dict((s.split("\n", 1)[0], s) for s in re.split(r"^(?=## )", path.read_text(), flags=re.M))
+            for section in filter(None, re.split(r"^(?=## )", text, flags=re.M)):
+                title = section.split("\n", 1)[0]
+                if title not in sections:
+                    raise SystemExit(f"{path} has no section {title!r}: measure all of it")
+                sections[title] = section.rstrip("\n") + "\n\n"
+            text = "".join(sections.values()).rstrip("\n") + "\n"
+        path.write_text(text)
+        print(path)
+
+
+def rms(differences):
+    differences = list(differences)
+    return math.sqrt(sum(d * d for d in differences) / len(differences))
