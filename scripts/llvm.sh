@@ -2,12 +2,14 @@
 # and find otherwise.
 
 llvm_version=14
-llvm_wheel=14.0.6 # PyPI's: Debian 12 has packages, Debian 13 has 17 and later alone
+# PyPI's, for Debian 13, which packages 17 and later alone. Its clang-tidy lacks the compiler's headers.
+declare -A llvm_wheels=([clang-format]=14.0.6)
 llvm_tools="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/build/tools"
 
 # llvm_tool NAME: prints the command; fails where there is none of this version, and says what there is.
 llvm_tool() {
-  local command version others=()
+  local command version others=() elsewhere=""
+  [ -z "${llvm_wheels[$1]:-}" ] || elsewhere=", there PyPI's $1 ${llvm_wheels[$1]}"
   for command in "$1-$llvm_version" "$1" "$llvm_tools/bin/$1"; do
     command -v "$command" >/dev/null || continue
     version=$("$command" --version | sed -n 's/.* version \([0-9]*\).*/\1/p')
@@ -20,26 +22,28 @@ llvm_tool() {
   [ ${#others[@]} -gt 0 ] || others=("there is none")
   {
     printf '%s %s is needed, other versions differ: %s.\n' "$1" "$llvm_version" "$(IFS=';' && echo "${others[*]}")"
-    echo "scripts/test installs it: Debian 12's package $1-$llvm_version; Debian 13 has none, there PyPI's $1 $llvm_wheel."
+    echo "scripts/test installs it: Debian 12's package $1-$llvm_version;" \
+      "Debian 13 has none$elsewhere."
   } >&2
   return 1
 }
 
-# install_llvm NAME...: after setup.sh, whose install_missing it uses.
+# llvm_packaged NAME: whether this Debian has it.
+llvm_packaged() {
+  as_root apt-get update -qq
+  apt-cache show "$1-$llvm_version" >/dev/null 2>&1
+}
+
+# install_llvm NAME: after setup.sh, whose install_missing it uses. Fails where it cannot be had.
 install_llvm() {
-  local name
-  for name in "$@"; do
-    llvm_tool "$name" >/dev/null 2>&1 && continue
-    as_root apt-get update -qq
-    if apt-cache show "$name-$llvm_version" >/dev/null 2>&1; then
-      install_missing "$name-$llvm_version"
-      continue
-    fi
+  local wheel=${llvm_wheels[$1]:-}
+  llvm_tool "$1" >/dev/null 2>&1 && return
+  if llvm_packaged "$1"; then
+    install_missing "$1-$llvm_version"
+  elif [ -n "$wheel" ]; then
     install_missing python3-venv
-    echo "Installing $name $llvm_wheel from PyPI into $llvm_tools"
-    if ! { /usr/bin/python3 -m venv "$llvm_tools" && "$llvm_tools/bin/pip" install -q "$name==$llvm_wheel"; }; then
-      echo "$name $llvm_version cannot be had: no package of it here, and PyPI's $name $llvm_wheel could not be installed" >&2
-      exit 1
-    fi
-  done
+    echo "Installing $1 $wheel from PyPI into $llvm_tools"
+    /usr/bin/python3 -m venv "$llvm_tools" && "$llvm_tools/bin/pip" install -q "$1==$wheel" || true
+  fi
+  llvm_tool "$1" >/dev/null
 }

@@ -42,18 +42,28 @@ install_missing() {
 
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
 
-# build_preset PRESET WORD...: configures and builds, the words are those of cmake --build; says nothing while all goes well.
-build_preset() {
-  local preset=$1 options=() log
-  shift
-  command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+# quietly COMMAND...: in the root; says nothing while all goes well.
+quietly() {
+  local log
   log=$(mktemp)
-  if ! (cd "$root" && cmake --preset "$preset" "${options[@]}" && cmake --build --preset "$preset" "$@") >"$log" 2>&1; then
+  if ! (cd "$root" && "$@") >"$log" 2>&1; then
     tail -n 60 "$log" >&2
     rm -f "$log"
     exit 1
   fi
   rm -f "$log"
+}
+
+configure() {
+  local options=()
+  command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  quietly cmake --preset "$1" "${options[@]}"
+}
+
+# build_preset PRESET WORD...: the words are those of cmake --build.
+build_preset() {
+  configure "$1"
+  quietly cmake --build --preset "$@"
 }
 
 # build TARGET...: as programs are used.
