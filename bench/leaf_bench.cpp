@@ -2,9 +2,9 @@
 
 #include <numbers>
 
-#include "leaf/batch_walk.h"
-#include "leaf/specimens.h"
-#include "leaf/table.h"
+#include "leaf/table/table.h"
+#include "leaf/tissue/specimens.h"
+#include "leaf/walk/batch_walk.h"
 #include "tests/leaf/plain_walk.h"
 
 /// Walks by method, and tables by method. Names and arguments stay from release to release, so that JSON output

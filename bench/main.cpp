@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "cli/compare/machine.h"
+#include "study/compare/machine.h"
 
 namespace {
 

@@ -3,10 +3,10 @@
 #include <map>
 #include <numbers>
 
-#include "cli/plugins.h"
 #include "core/sampling.h"
 #include "instruments/given_wavelengths.h"
 #include "instruments/sweep.h"
+#include "render/plugins.h"
 #include "tests/laws/setup.h"
 
 /// What a call of a BSDF costs, for every material at its defaults, those of FROND_PLUGIN_PATH included. Names and

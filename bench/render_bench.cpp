@@ -2,8 +2,9 @@
 
 #include <ctime>
 
-#include "cli/commands.h"
-#include "integrators/render.h"
+#include "core/log.h"
+#include "render/plugins.h"
+#include "render/render_loop.h"
 #include "scene/embree.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
@@ -41,8 +42,7 @@ class RecordingWorld final : public World {
 /// One scene, loaded once for all the benchmarks on it, on one thread.
 struct LoadedScene {
   explicit LoadedScene(const std::string& file, std::vector<MaterialSwap> swaps = {})
-      : log(true),
-        pool(1),
+      : pool(1),
         description(parse_scene(std::string(FROND_SOURCE_DIR "/scenes/") + file, log)),
         registry(builtin_registry()),
         overrides(make_overrides(std::move(swaps))),
@@ -55,13 +55,14 @@ struct LoadedScene {
     o.swaps = std::move(swaps);
     return o;
   }
-  RenderJob job(const World& world, uint64_t samples) const {
+  RenderJob job(const World& world) const {
     return {world,          scene.camera(),  scene.integrator(), scene.wavelengths(),
-            scene.filter(), scene.sampler(), scene.seed(),       0,
-            samples};
+            scene.filter(), scene.sampler(), scene.seed()};
   }
+  /// What a render's film is like.
+  Film film() const { return Film({.settings = film_settings, .exponent = film_exponent(job(scene), film_settings)}); }
 
-  Log log;
+  const Log& log = silent_log();
   ThreadPool pool;
   SceneDescription description;
   Registry registry;
@@ -78,8 +79,8 @@ void render_paths(benchmark::State& state, const std::string& file, const std::v
   const LoadedScene loaded(file, swaps);
   RenderStatistics total;
   for (auto _ : state) {
-    Film film(loaded.film_settings);
-    const RenderStatistics s = render(loaded.job(loaded.scene, 4), film, loaded.pool, {});
+    Film film = loaded.film();
+    const RenderStatistics s = render(loaded.job(loaded.scene), plan_of(film, {0, 4}), film, loaded.pool);
     total.paths += s.paths, total.rays += s.rays, total.cpu_seconds += s.cpu_seconds;
     state.counters["foliar_ratio"] = film.foliar_ratio();
   }
@@ -91,12 +92,12 @@ void render_paths(benchmark::State& state, const std::string& file, const std::v
 void replay_rays(benchmark::State& state, const std::string& file) {
   const LoadedScene loaded(file, kSolved);
   const RecordingWorld recorder(loaded.scene);
-  Film film(loaded.film_settings);
-  render(loaded.job(recorder, 1), film, loaded.pool, {});
+  Film film = loaded.film();
+  render(loaded.job(recorder), plan_of(film, {0, 1}), film, loaded.pool);
   double render_seconds = 0, embree_seconds = 0;
   for (auto _ : state) {
-    Film again(loaded.film_settings);
-    render_seconds += render(loaded.job(loaded.scene, 1), again, loaded.pool, {}).cpu_seconds;
+    Film again = loaded.film();
+    render_seconds += render(loaded.job(loaded.scene), plan_of(again, {0, 1}), again, loaded.pool).cpu_seconds;
     const std::clock_t start = std::clock();
     RTCRayHit query;
     for (const auto& [ray, shadow] : recorder.records())

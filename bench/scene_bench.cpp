@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/scene_study.h"
-#include "integrators/render.h"
+#include "render/render_loop.h"
 
 /// The leaf models in whole scenes: what a sample costs, and how far off the picture is that it goes into
 /// (docs/benchmarks.md says what each counter means). Names stay from release to release.
@@ -20,22 +20,17 @@ SceneStudy& study_of(const std::string& scene) {
 /// A render on one thread that goes on by one sample for each pixel at a time.
 class Meter {
  public:
-  Meter(SceneStudy& study, const std::string& material) : scene_(study.scene(material)), film_(study.film()), pool_(1) {
+  Meter(SceneStudy& study, const std::string& material)
+      : scene_(study.scene(material)), film_({.settings = study.film()}), pool_(1) {
     add_sample();  // whose memory is new
     paths_ = cpu_seconds_ = 0;
   }
 
   void add_sample() {
-    const RenderJob job{scene_,
-                        scene_.camera(),
-                        scene_.integrator(),
-                        scene_.wavelengths(),
-                        scene_.filter(),
-                        scene_.sampler(),
-                        scene_.seed(),
-                        samples_++,
-                        1};
-    const RenderStatistics s = render(job, film_, pool_, {});
+    const RenderJob job{scene_,          scene_.camera(),  scene_.integrator(), scene_.wavelengths(),
+                        scene_.filter(), scene_.sampler(), scene_.seed()};
+    const RenderStatistics s = render(job, plan_of(film_, {samples_, samples_ + 1}), film_, pool_);
+    ++samples_;
     paths_ += double(s.paths), cpu_seconds_ += s.cpu_seconds;
   }
   double seconds_per_path() const { return cpu_seconds_ / paths_; }

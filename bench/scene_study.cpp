@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "cli/compare/reference_store.h"
 #include "core/random.h"
+#include "study/compare/reference_store.h"
 
 namespace frond {
 namespace {
@@ -56,7 +56,7 @@ ChannelAccuracy accuracy_of(std::span<const std::array<compare::Picture, 2>> can
 
 }  // namespace
 
-SceneStudy::SceneStudy(const std::string& name) : log_(true), study_(options(name), pool_, log_) {}
+SceneStudy::SceneStudy(const std::string& name) : study_(options(name), pool_, log_) {}
 
 const Scene& SceneStudy::scene(const std::string& material) {
   auto& scene = scenes_[material];
@@ -93,7 +93,7 @@ std::vector<SceneStudy::Pictures> SceneStudy::render(const std::string& material
     const compare::ReferenceStore store(cache(), hash_key(identity, uint64_t{use}, repeat), log_);
     store.load(render);
     if (render.samples() < samples) {
-      render.advance_to(samples, pool_, {});
+      render.advance_to(samples, pool_, nullptr);
       store.save(render);
     }
     result.push_back(pictures_of(render, colors));

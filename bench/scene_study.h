@@ -4,10 +4,11 @@
 #include <memory>
 #include <string>
 
-#include "cli/compare/picture.h"
-#include "cli/compare/study.h"
+#include "core/log.h"
 #include "instruments/render_error.h"
 #include "instruments/statistics.h"
+#include "study/compare/picture.h"
+#include "study/compare/study.h"
 
 namespace frond {
 
@@ -52,7 +53,7 @@ class SceneStudy {
   std::vector<Pictures> render(const std::string& material, SeedUse use, uint64_t samples) const;
 
   ThreadPool pool_;
-  Log log_;
+  const Log& log_ = silent_log();
   compare::Study study_;
   std::map<std::string, std::unique_ptr<Scene>> scenes_;
   std::map<std::string, Accuracy> accuracies_;

@@ -1,12 +1,9 @@
 include(CMakePackageConfigHelpers)
 
-set(frond_layers core spectra leaf materials scene integrators instruments)
-set(frond_layer_targets ${frond_layers})
-list(TRANSFORM frond_layer_targets PREPEND frond_)
 set(frond_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/frond")
 
 install(TARGETS frond RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-install(TARGETS ${frond_layer_targets} frond_plugin EXPORT frond ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS libfrond frond_plugin EXPORT frond LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}")
 foreach(layer IN LISTS frond_layers)
   install(DIRECTORY "src/${layer}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond" FILES_MATCHING PATTERN "*.h")
@@ -16,4 +13,4 @@ configure_package_config_file(cmake/frondConfig.cmake.in "${CMAKE_CURRENT_BINARY
                               INSTALL_DESTINATION "${frond_package_dir}")
 write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/frondConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/frondConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/frondConfigVersion.cmake"
-              cmake/FrondDependencies.cmake DESTINATION "${frond_package_dir}")
+              cmake/FrondFmt.cmake DESTINATION "${frond_package_dir}")

@@ -41,7 +41,7 @@ class Ends:
 
     def ratio_between(self, depth):
         """The first ratio at a depth between two whole ones, its logarithm taken as linear, and its standard error of
-        counting. Where no ray is left half a one is taken. As src/cli/compare/cutoff.cpp does."""
+        counting. Where no ray is left half a one is taken. As src/study/compare/cutoff.cpp does."""
         whole = math.floor(depth)
         t = depth - whole
         a, b = (self.alive(d) + 0.5 for d in (whole, whole + 1))

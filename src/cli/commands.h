@@ -1,18 +1,14 @@
 #pragma once
 
-#include "scene/registry.h"
-
 namespace CLI {
 class App;
 }
 
 namespace frond {
 
-/// Every plugin that this build knows.
-Registry builtin_registry();
-
 // One file for each subcommand: adds itself to the command line, and runs when chosen.
 void add_render_command(CLI::App& app);
+void add_merge_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_difference_command(CLI::App& app);

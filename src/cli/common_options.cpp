@@ -50,6 +50,15 @@ std::function<std::string(const std::string&)> is_within(Interval range) {
   };
 }
 
+void add_plugin_option(CLI::App& command, std::vector<std::string>& files) {
+  command
+      .add_option(
+          "--plugin", files,
+          "Shared object with further plugins; may be given again. Those in the folders of FROND_PLUGIN_PATH are "
+          "loaded by themselves.")
+      ->allow_extra_args(false);
+}
+
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, int& value, int most,
                               const std::string& doc) {
   const auto set = [name, &value, most](const std::string& text) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/spectrum.h"
 
@@ -15,6 +16,9 @@ namespace frond {
 
 /// Where computed tables are kept: the folder given, else the user's cache; empty where there is none or `no_cache`.
 std::filesystem::path cache_directory(const std::string& given, bool no_cache);
+
+/// `--plugin FILE`, which may be given again.
+void add_plugin_option(CLI::App& command, std::vector<std::string>& files);
 
 /// A number of things, from 1 to `most`, that may be written 1e3.
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, int& value, int most, const std::string& doc);

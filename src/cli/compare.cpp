@@ -1,19 +1,21 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 
-#include "cli/choose/choice_report.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/compare/curve_style.h"
-#include "cli/compare/machine.h"
-#include "cli/compare/measure.h"
-#include "cli/compare/report.h"
-#include "cli/compare/summary.h"
-#include "cli/compare/verdict.h"
 #include "cli/number_list.h"
-#include "cli/plugins.h"
-#include "core/cpu_clock.h"
+#include "cli/progress.h"
+#include "core/log.h"
+#include "render/plugins.h"
 #include "scene/words.h"
+#include "study/choose/choice_report.h"
+#include "study/compare/curve_style.h"
+#include "study/compare/machine.h"
+#include "study/compare/measure.h"
+#include "study/compare/report.h"
+#include "study/compare/summary.h"
+#include "study/compare/verdict.h"
+#include "system/cpu_clock.h"
 
 namespace frond {
 namespace {
@@ -53,7 +55,6 @@ Plan plan_of(const CompareOptions& o) {
   plan.top_samples = o.samples > 0 ? uint64_t(o.samples) : setting.samples;
   plan.reference_samples = o.reference_samples > 0 ? uint64_t(o.reference_samples) : setting.reference_samples;
   plan.cache = cache_directory(o.cache, o.no_cache);
-  plan.quiet = o.quiet;
   return plan;
 }
 
@@ -114,13 +115,13 @@ std::string leaf_by_leaf(double rms, const std::string& wavelengths, const compa
                          ThreadPool& pool, const Log& log) {
   SceneDescription description = study.description();
   const PluginText open{"leaf", {{"model", "auto"}, {"maxrms", fmt::format("{}", rms)}}};
-  apply_swaps(description, study.swaps_to(open), study.registry(), Log(true));
+  apply_swaps(description, study.swaps_to(open), study.registry(), silent_log());
   SceneOverrides overrides;
   overrides.wavelengths = wavelengths;
   overrides.seed = study.seed();
   overrides.cache_dir = plan.cache;
   const choose::Subject subject{description, study.registry(), overrides, study.film(), plan.top_samples};
-  const auto chosen = choose::choose_models(subject, choose::standard_ladder(study.registry()), pool, Log(true));
+  const auto chosen = choose::choose_models(subject, choose::standard_ladder(study.registry()), pool, silent_log());
   if (!chosen) return {};
   log.info(choose::choice_text(chosen->choice));
   return choose::choice_sentence(chosen->choice);
@@ -128,8 +129,10 @@ std::string leaf_by_leaf(double rms, const std::string& wavelengths, const compa
 
 void run_compare(const CompareOptions& o) {
   const auto start = std::chrono::steady_clock::now();
-  const Log log(o.quiet);
-  const Plan plan = plan_of(o);
+  const ConsoleLog log(o.quiet);
+  Plan plan = plan_of(o);
+  ProgressLine progress(o.quiet);
+  plan.progress = &progress;
   const Request request = request_of(o);
   compare::check_report_folder(o.output);
   ThreadPool pool(o.threads);

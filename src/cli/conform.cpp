@@ -4,15 +4,16 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/conform_report.h"
-#include "cli/gnuplot.h"
 #include "cli/material_words.h"
 #include "cli/number_list.h"
-#include "cli/plugins.h"
-#include "cli/sphere_chart.h"
-#include "cli/text_output.h"
+#include "core/log.h"
 #include "instruments/given_wavelengths.h"
 #include "instruments/material_conformance.h"
+#include "render/plugins.h"
+#include "report/conform_report.h"
+#include "report/gnuplot.h"
+#include "report/sphere_chart.h"
+#include "report/text_output.h"
 #include "scene/resolver.h"
 
 namespace frond {
@@ -73,7 +74,7 @@ ConformReport examine_material(const ConformOptions& o) {
   const SceneDescription others = scene_of_materials(registry);
   const auto sets = parameter_sets(material, o);
   ThreadPool pool;
-  const Log log;
+  const ConsoleLog log;
   ConformReport report{.material = fmt::format("{}", fmt::join(o.material, " ")),
                        .wavelengths_nm = parse_numbers("--wavelengths", o.wavelengths),
                        .effort = effort_of(o),

@@ -2,9 +2,9 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/linear_image.h"
-#include "cli/output.h"
-#include "cli/spectral_image.h"
+#include "image/linear_image.h"
+#include "image/spectral_layout.h"
+#include "render/image_output.h"
 
 namespace frond {
 namespace {

@@ -3,7 +3,8 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
-#include "cli/plugins.h"
+#include "cli/common_options.h"
+#include "render/plugins.h"
 
 namespace frond {
 namespace {

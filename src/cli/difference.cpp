@@ -3,10 +3,11 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/linear_image.h"
-#include "cli/output.h"
-#include "cli/smpte_luminance.h"
+#include "core/log.h"
+#include "image/linear_image.h"
 #include "instruments/image_error.h"
+#include "render/image_output.h"
+#include "study/smpte_luminance.h"
 
 namespace frond {
 namespace {
@@ -75,10 +76,11 @@ bool have_the_same_noise(const LinearImage& a, const LinearImage& b) {
 void warn_of_same_noise(const std::vector<LinearImage>& halves) {
   for (const auto& [i, j] : {std::pair{0u, 1u}, {2u, 3u}, {0u, 3u}, {1u, 2u}})
     if (have_the_same_noise(halves[i], halves[j]))
-      Log().warn({}, fmt::format("{} and {} have the same seed{}: noise cannot be told from bias; render one of them "
-                                 "with another --seed",
-                                 halves[i].path, halves[j].path,
-                                 halves[i].seed.empty() ? "" : fmt::format(" ({})", halves[i].seed)));
+      ConsoleLog().warn(
+          {}, fmt::format("{} and {} have the same seed{}: noise cannot be told from bias; render one of them "
+                          "with another --seed",
+                          halves[i].path, halves[j].path,
+                          halves[i].seed.empty() ? "" : fmt::format(" ({})", halves[i].seed)));
 }
 
 /// Adds "rms_red" and so on, with `prefix` before each name.

@@ -3,11 +3,11 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
-#include "cli/gnuplot.h"
 #include "cli/instrument.h"
 #include "cli/number_list.h"
-#include "cli/patch_charts.h"
-#include "cli/text_output.h"
+#include "report/gnuplot.h"
+#include "report/patch_charts.h"
+#include "report/text_output.h"
 
 namespace frond {
 namespace {

@@ -6,11 +6,11 @@
 #include <chrono>
 
 #include "cli/common_options.h"
-#include "cli/gnuplot.h"
 #include "cli/number_list.h"
-#include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/text_output.h"
+#include "render/plugins.h"
+#include "report/gnuplot.h"
+#include "report/text_output.h"
 #include "scene/words.h"
 
 namespace frond {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/specimen.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "instruments/beam.h"
 #include "instruments/rays.h"
@@ -48,7 +49,7 @@ class InstrumentBench {
   void check_exposures() const;
 
   ThreadPool pool_;
-  Log log_;
+  ConsoleLog log_;
   uint64_t seed_;
   bool as_rendered_;
   std::vector<double> angles_deg_, wavelengths_nm_;

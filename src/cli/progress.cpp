@@ -14,8 +14,11 @@ constexpr double kSecondsBetweenLines = 0.2;
 
 TerminalLine::TerminalLine(bool quiet) : active_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
-TerminalLine::~TerminalLine() {
-  if (active_) fmt::print(stderr, "\r\x1b[K");
+TerminalLine::~TerminalLine() { clear(); }
+
+void TerminalLine::clear() {
+  if (active_ && last_shown_ >= 0) fmt::print(stderr, "\r\x1b[K");
+  last_shown_ = -1;
 }
 
 bool TerminalLine::is_due(double seconds) {
@@ -29,7 +32,7 @@ void TerminalLine::show(const std::string& text) {
   std::fflush(stderr);
 }
 
-void ProgressLine::operator()(double fraction, const RenderStatistics& s) {
+void ProgressLine::update(double fraction, const RenderStatistics& s) {
   if (!line_.is_due(s.wall_seconds)) return;
   const double left = fraction > 0 ? s.wall_seconds * (1 - fraction) / fraction : 0;
   line_.show(fmt::format("{:5.1f} %  {:.1f} M samples  {:.2f} M rays/s  {:.0f} s left", 100 * fraction,

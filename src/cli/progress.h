@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "integrators/render.h"
+#include "render/progress.h"
 
 namespace frond {
 
@@ -18,6 +18,7 @@ class TerminalLine {
   /// Whether it is time for a new text, `seconds` after the start.
   bool is_due(double seconds);
   void show(const std::string& text);
+  void clear();
 
  private:
   bool active_;
@@ -25,10 +26,11 @@ class TerminalLine {
 };
 
 /// How far a render is.
-class ProgressLine {
+class ProgressLine final : public Progress {
  public:
   explicit ProgressLine(bool quiet) : line_(quiet) {}
-  void operator()(double fraction, const RenderStatistics& so_far);
+  void update(double fraction, const RenderStatistics& so_far) override;
+  void finish() override { line_.clear(); }
 
  private:
   TerminalLine line_;

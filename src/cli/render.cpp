@@ -1,32 +1,39 @@
-#include "integrators/render.h"
-
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "cli/choose/choice_report.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/output.h"
-#include "cli/plugins.h"
+#include "cli/interrupt.h"
 #include "cli/progress.h"
-#include "scene/parser.h"
-#include "scene/scene.h"
-#include "spectra/color_space.h"
+#include "cli/render_report.h"
+#include "render/adaptive.h"
+#include "render/checkpoint.h"
+#include "render/image_output.h"
+#include "render/part_file.h"
+#include "render/session.h"
+#include "scene/words.h"
+#include "study/choose/choice_report.h"
+#include "system/atomic_file.h"
 
 namespace frond {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 struct RenderOptions {
-  std::string scene, output, wavelengths, integrator, cache;
+  std::string scene, output, part, wavelengths, integrator, cache, range;
   std::vector<double> crop;
   std::vector<int> pixels;
-  std::vector<std::string> swaps, plugins;
+  std::vector<std::string> swaps, plugins, channels;
   DisplayChoice display;
   int samples = 0, threads = 0;
   uint64_t seed = 0;
-  bool seed_given = false, quick = false, json = false, quiet = false, no_cache = false, pilot = false;
+  double checkpoint_seconds = 0, time_limit_seconds = 0, max_rms = 0;
+  bool seed_given = false, quick = false, json = false, quiet = false, no_cache = false, pilot = false, resume = false;
 };
 
 /// "leaf=abm" or "leaf=abm,mode=analog".
@@ -62,78 +69,23 @@ SceneOverrides overrides_of(const RenderOptions& options) {
   overrides.wavelengths = options.wavelengths;
   if (!options.integrator.empty()) overrides.integrator = parse_plugin_text(options.integrator, {});
   if (options.seed_given) overrides.seed = options.seed;
-  overrides.cache_dir = cache_directory(options.cache, options.no_cache);
+  overrides.cache_dir = cache_directory(options.cache, options.no_cache);  // of pilots; the session has its own
   overrides.quick = options.quick;
   return overrides;
 }
 
-/// One thing that was rendered, for people and for programs.
-struct Report {
-  RenderStatistics statistics;
-  double load_seconds;
-  int samples;
-  double foliar_ratio;
-  std::optional<choose::Choice> choice;
-};
-
-/// Counts by depth, as far as there are any.
-std::vector<uint64_t> counts(std::span<const uint64_t> by_depth) {
-  while (!by_depth.empty() && by_depth.back() == 0) by_depth = by_depth.first(by_depth.size() - 1);
-  return {by_depth.begin(), by_depth.end()};
-}
-
-void print_report(const Report& r, const std::string& output, bool json) {
-  const RenderStatistics& s = r.statistics;
-  const double per_path = s.cpu_seconds / double(s.paths) * 1e6, rays_per_path = double(s.rays) / double(s.paths);
-  if (json) {
-    nlohmann::ordered_json j{{"output", output},
-                             {"samples_per_pixel", r.samples},
-                             {"load_seconds", r.load_seconds},
-                             {"wall_seconds", s.wall_seconds},
-                             {"cpu_seconds", s.cpu_seconds},
-                             {"paths", s.paths},
-                             {"rays", s.rays},
-                             {"cpu_us_per_path", per_path},
-                             {"rays_per_path", rays_per_path},
-                             {"foliar_ratio", r.foliar_ratio},
-                             {"paths_escaped_by_depth", counts(s.ends.escaped)},
-                             {"paths_absorbed_by_depth", counts(s.ends.absorbed)}};
-    if (r.choice) j["choice"] = nlohmann::ordered_json::parse(choose::choice_json(*r.choice));
-    fmt::print("{}\n", j.dump(2));
-    return;
-  }
-  fmt::print(stderr,
-             "{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), loaded in "
-             "{:.2f} s\n",
-             output, r.samples, s.wall_seconds, s.cpu_seconds, per_path, rays_per_path, r.load_seconds);
-  fmt::print(stderr, "foliar ratio {:.2f} %\n", 100 * r.foliar_ratio);
-}
-
-/// A ColorSpace directive decides the image's space too; without one the wavelength strategy's own serves, where that
-/// was not chosen: what is chosen shall not change the space.
-std::string output_space(const SceneDescription& description, const std::optional<choose::Choice>& choice) {
-  const bool chosen = choice && !choice->answers.front().is_leaf;
-  if (!description.color_space_where.file) return chosen ? "linear sRGB" : "";
-  return std::string(color_space(description.color_space, description.color_space_where).linear_name);
-}
-
-/// Samples see a few bands each.
-void check_samples(uint64_t samples, size_t bands) {
-  const size_t needed = (bands + kLanes - 1) / kLanes;
-  if (samples < needed)
-    fail({}, "{} bands need {} samples per pixel at least, each of which sees {}: {} were asked for", bands, needed,
-         kLanes, samples);
-}
-
-/// Writes what is chosen into the description and the overrides.
-std::optional<choose::Choice> choose_models(const RenderOptions& options, const FilmSettings& film,
-                                            const Registry& registry, SceneDescription& description,
-                                            SceneOverrides& overrides, ThreadPool& pool, const Log& log) {
-  const choose::Subject subject{description, registry, overrides, film, uint64_t(options.samples)};
-  auto chosen = choose::choose_models(subject, choose::standard_ladder(registry), pool, log);
+/// Writes what is chosen into the description and the overrides. The whole picture decides, whatever part of it is
+/// rendered: parts of one picture go together.
+std::optional<choose::Choice> choose_models(const RenderOptions& options, Session& session,
+                                            SceneDescription& description, SceneOverrides& overrides) {
+  const choose::Subject subject{description, session.registry(), overrides, session.film(description, options.quick),
+                                uint64_t(options.samples)};
+  auto chosen =
+      choose::choose_models(subject, choose::standard_ladder(session.registry()), session.pool(), session.log());
   if (!chosen) return {};
-  log.info(choose::choice_text(chosen->choice));
-  if (const std::string warning = choose::choice_warning(chosen->choice); !warning.empty()) log.warn({}, warning);
+  session.log().info(choose::choice_text(chosen->choice));
+  if (const std::string warning = choose::choice_warning(chosen->choice); !warning.empty())
+    session.log().warn({}, warning);
   description.materials = std::move(chosen->materials);
   overrides.wavelengths = chosen->wavelengths;
   return chosen->choice;
@@ -145,74 +97,217 @@ void print_choice(const std::optional<choose::Choice>& choice, bool json) {
   if (json) fmt::print("{}\n", nlohmann::ordered_json::parse(choose::choice_json(*choice)).dump(2));
 }
 
-void render_scene(const RenderOptions& options, const std::string& command_line) {
-  auto start = std::chrono::steady_clock::now();
-  const Log log(options.quiet);
-  ThreadPool pool(options.threads);
-  SceneDescription description = parse_scene(options.scene, log);
-  const Registry registry = load_registry(options.plugins);
-  apply_swaps(description, swaps_of(options), registry, log);
-  SceneOverrides overrides = overrides_of(options);
-  FilmSettings film_settings = Scene::film_settings(description, registry);
-  film_settings.crop = crop_of(options, film_settings);
-  if (options.quick) film_settings = halved(film_settings);
-  // Refused now, not after an hour.
-  const std::string output = options.output.empty() ? film_settings.filename : options.output;
-  const ImageOutput writer(output, options.display);
-  const WavelengthChoice wavelengths = wavelength_choice(description, overrides);
-  writer.check_channels(make_wavelengths(wavelengths.text, wavelengths.where, description, registry)->film_space());
-
-  const auto choice = choose_models(options, film_settings, registry, description, overrides, pool, log);
-  if (options.pilot) return print_choice(choice, options.json);
-  if (choice) start = std::chrono::steady_clock::now();  // its time is told apart
-  const Scene scene(description, registry, overrides, pool, log);
-  const int samples = options.samples > 0 ? options.samples : scene.samples_per_pixel();
-  const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const auto bands = scene.wavelengths().bands();
-  OutputDetails details{.film_space = std::string(scene.wavelengths().film_space()),
-                        .bands = {bands.begin(), bands.end()},
-                        .color_space = output_space(description, choice),
-                        .attributes = {{"frond:version", FROND_VERSION},
-                                       {"frond:seed", std::to_string(scene.seed())},
-                                       {"frond:samples", std::to_string(samples)},
-                                       {"frond:wavelengths", scene.wavelengths_name()},
-                                       {"frond:scene_hash", fmt::format("{:016x}", description.content_hash)},
-                                       {"frond:command", command_line}}};
-  if (choice) details.attributes.merge(choose::choice_attributes(*choice));
-  writer.check(details);
-  check_samples(uint64_t(samples), bands.size());
-  Film film(film_settings, description.film.where, bands.size());
-  const RenderJob job{
-      scene, scene.camera(),   scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
-      0,     uint64_t(samples)};
-  RenderStatistics statistics;
-  {
-    ProgressLine line(options.quiet);
-    statistics = render(job, film, pool, std::ref(line));
-  }
-  if (const int64_t count = film.not_finite(); count > 0)
-    log.warn({}, fmt::format("{} of {} samples were too bright for a number, or none at all, and count as black", count,
-                             statistics.paths));
-  writer.write(film, details);
-  if (!options.quiet || options.json)
-    print_report({statistics, load_seconds, samples, film.foliar_ratio(), choice}, output, options.json);
-}
-
-/// What of the command decides the pixels: threads, paths and what is printed do not belong in a file's header.
+/// What of the command decides the pixels, but for their number and that of their samples: threads, paths and what is
+/// printed do not belong in a file's header.
 std::string command_line_of(const RenderOptions& o) {
   std::string line = "frond render " + std::filesystem::path(o.scene).filename().string();
-  if (o.samples > 0) line += fmt::format(" --spp {}", o.samples);
   if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
   if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
   if (!o.integrator.empty()) line += " --integrator " + o.integrator;
-  if (!o.crop.empty()) line += fmt::format(" --crop {}", fmt::join(o.crop, ","));
-  if (!o.pixels.empty()) line += fmt::format(" --pixels {}", fmt::join(o.pixels, ","));
   for (const std::string& plugin : o.plugins) line += " --plugin " + std::filesystem::path(plugin).filename().string();
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
+  if (!o.channels.empty()) line += fmt::format(" --channels {}", fmt::join(o.channels, ","));
   if (o.quick) line += " --quick";
   if (!o.display.display.empty()) line += " --display " + o.display.display;
   if (!o.display.view.empty()) line += " --view " + o.display.view;
   return line;
+}
+
+/// "64:128"
+SampleRange parse_range(const std::string& text) {
+  SampleRange range;
+  const char *begin = text.data(), *end = begin + text.size();
+  const auto first = std::from_chars(begin, end, range.begin);
+  const bool has_colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
+  const auto last = std::from_chars(has_colon ? first.ptr + 1 : end, end, range.end);
+  if (!has_colon || last.ec != std::errc() || last.ptr != end || range.empty() || range.end > 1u << 30)
+    fail({}, "--samples takes FIRST:END, such as 64:128 for the 64 samples from number 64 on: \"{}\"", text);
+  return range;
+}
+
+/// A render from its command line to its files.
+class RenderCommand {
+ public:
+  explicit RenderCommand(const RenderOptions& options)
+      : options_(options),
+        log_(options.quiet),
+        session_(log_, {options.threads, cache_directory(options.cache, options.no_cache), options.plugins}) {}
+
+  /// The program's exit code.
+  int run() {
+    prepare();
+    if (options_.pilot) return 0;
+    if (keeps_part()) lock_.emplace(part_path_);
+    RenderPart part = first_part();
+    const int signal = fill(part);
+    if (keeps_part()) write_part(part_path_, part.header, part.film);
+    if (signal != 0) return say_how_to_go_on(signal);
+    finish(part);
+    return 0;
+  }
+
+ private:
+  /// What can be refused is refused now, not after an hour.
+  void prepare() {
+    description_ = session_.read(options_.scene);
+    apply_swaps(description_, swaps_of(options_), session_.registry(), log_);
+    SceneOverrides overrides = overrides_of(options_);
+    FilmSettings film = session_.film(description_, false);
+    film.crop = crop_of(options_, film);
+    if (options_.quick) film = halved(film);
+    find_paths(film.filename);
+    check_bands(overrides);
+    PictureRequest request{.pixels = film.crop,
+                           .channels = options_.channels,
+                           .adaptive = is_adaptive(),
+                           .command = command_line_of(options_)};
+    choice_ = choose_models(options_, session_, description_, overrides);
+    if (options_.pilot) return print_choice(choice_, options_.json);
+    if (choice_) {
+      load_start_ = Clock::now();  // its time is told apart
+      request.attributes = choose::choice_attributes(*choice_);
+      // What is chosen shall not change the space.
+      if (!choice_->answers.front().is_leaf) request.color_space = "linear sRGB";
+    }
+    scene_.emplace(session_.load(std::move(description_), overrides, request));
+    load_seconds_ = std::chrono::duration<double>(Clock::now() - load_start_).count();
+    range_ = {0, options_.samples > 0 ? uint64_t(options_.samples) : scene_->samples()};
+    if (!options_.range.empty()) range_ = parse_range(options_.range);
+    scene_->check_samples(range_.count());
+    if (output_) output_->check(scene_->picture());
+  }
+
+  void find_paths(const std::string& scene_output) {
+    if (!options_.part.empty()) {
+      check_replaceable(options_.part);
+      part_path_ = options_.part;
+      return;
+    }
+    output_.emplace(options_.output.empty() ? scene_output : options_.output, options_.display);
+    if (options_.checkpoint_seconds == 0 && !options_.resume) return;
+    part_path_ = output_->path() + ".part";
+    check_replaceable(part_path_);
+  }
+
+  /// Before anything is chosen or loaded.
+  void check_bands(const SceneOverrides& overrides) const {
+    const auto [text, where] = wavelength_choice(description_, overrides);
+    if (output_)
+      output_->check_channels(make_wavelengths(text, where, description_, session_.registry())->film_space());
+  }
+
+  bool is_adaptive() const { return options_.max_rms > 0; }
+  bool keeps_part() const { return !part_path_.empty(); }
+
+  /// What an earlier run has left, or nothing.
+  RenderPart first_part() const {
+    std::error_code error;
+    RenderPart fresh = scene_->empty_part();
+    fresh.header.request = range_.end;
+    if (!keeps_part() || !std::filesystem::exists(part_path_, error)) return fresh;
+    if (!options_.resume)
+      fail({}, "\"{}\" is there already: --resume goes on from it; delete it to begin anew", part_path_.string());
+    RenderPart part = read_part(part_path_);
+    const std::string difference =
+        fresh.header.identity.difference(part.header.identity, "this command", "\"" + part_path_.string() + "\"");
+    if (!difference.empty()) fail({}, "--resume: this is another render. {}", difference);
+    if (part.film.format().blocks != fresh.film.format().blocks)
+      fail({}, "--resume: \"{}\" was made {} --max-rms", part_path_.string(), is_adaptive() ? "without" : "with");
+    if (part.film.settings().crop != fresh.film.settings().crop)
+      fail({}, "--resume: \"{}\" is of other pixels than this command asks for", part_path_.string());
+    part.header.request = range_.end;
+    return part;
+  }
+
+  /// Renders what is missing. Returns the signal that ended it, or 0.
+  int fill(RenderPart& part) {
+    ProgressLine line(options_.quiet);
+    RenderControl control{.progress = &line};
+    if (options_.time_limit_seconds > 0)
+      control.deadline = start_ + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(options_.time_limit_seconds));
+    if (!keeps_part()) {
+      render(part, control, nullptr);
+      return 0;
+    }
+    const Interrupt interrupt;
+    control.stop = interrupt.token();
+    const double seconds = options_.checkpoint_seconds > 0 ? options_.checkpoint_seconds : kCheckpointSeconds;
+    Checkpointer checkpointer(part_path_, seconds, part, &line, log_);
+    control.progress = &checkpointer;
+    render(part, control, &checkpointer);
+    return interrupt.signal();
+  }
+
+  void render(RenderPart& part, const RenderControl& control, Checkpointer* checkpointer) {
+    if (!is_adaptive()) {
+      statistics_ = session_.render(*scene_, range_, part, control);
+      return;
+    }
+    NoiseRequest request{.max_rms = options_.max_rms};
+    if (options_.samples > 0) request.most_samples = uint64_t(options_.samples);
+    if (checkpointer) request.planned = [checkpointer](const PartHeader& header) { checkpointer->set_header(header); };
+    statistics_ = session_.render_to(*scene_, request, part, control);
+  }
+
+  int say_how_to_go_on(int signal) const {
+    log_.info(fmt::format("stopped; what was rendered is in {}: the same command with --resume goes on from there",
+                          part_path_.string()));
+    return 128 + signal;
+  }
+
+  void finish(const RenderPart& part) const {
+    const SampleCount samples = sample_count(part.film);
+    if (const uint64_t count = part.film.not_finite(); count > 0)
+      log_.warn({}, fmt::format("{} samples were too bright for a number, or none at all, and count as black", count));
+    if (is_adaptive())
+      say_noise(part.film);
+    else if (samples.least < range_.count())
+      log_.warn({}, fmt::format("the time was over: pixels have {} to {} samples, not {}", samples.least, samples.most,
+                                range_.count()));
+    if (output_) output_->write(part.film, finished_picture(part));
+    if (options_.quiet && !options_.json) return;
+    print_report({.statistics = statistics_,
+                  .load_seconds = load_seconds_,
+                  .samples = samples,
+                  .foliar_ratio = part.film.foliar_ratio(),
+                  .choice = choice_,
+                  .output = output_ ? output_->path() : part_path_.string()},
+                 options_.json);
+  }
+
+  void say_noise(const Film& film) const {
+    const NoiseEstimate noise = picture_noise(film, noise_z());
+    if (noise.upper_rms() <= options_.max_rms)
+      log_.info(fmt::format("noise RMS {:.5f}, {:.5f} at most ({:.0f} %)", noise.rms(), noise.upper_rms(),
+                            100 * kNoiseConfidence));
+    else
+      log_.warn({}, fmt::format("noise RMS {:.5f}, {:.5f} at most: more than the {:g} asked for", noise.rms(),
+                                noise.upper_rms(), options_.max_rms));
+  }
+
+  static constexpr double kCheckpointSeconds = 60;
+
+  const RenderOptions& options_;
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point load_start_ = start_;
+  ConsoleLog log_;
+  Session session_;
+  SceneDescription description_;
+  std::optional<ImageOutput> output_;  ///< empty: a part is asked for
+  std::filesystem::path part_path_;    ///< empty: no part is kept
+  std::optional<PartLock> lock_;
+  std::optional<choose::Choice> choice_;
+  std::optional<LoadedScene> scene_;
+  SampleRange range_;
+  double load_seconds_ = 0;
+  RenderStatistics statistics_;
+};
+
+std::string channels_doc() {
+  std::string doc = "What camera rays meet first, beside the image's colours:";
+  for (const ChannelInfo& channel : kChannels) doc += fmt::format("{} {}", doc.ends_with(':') ? "" : ",", channel.name);
+  return doc + '.';
 }
 
 }  // namespace
@@ -222,7 +317,8 @@ void add_render_command(CLI::App& app) {
   RenderOptions& o = *options;
   auto* command = app.add_subcommand("render", "Render a pbrt-v4 scene file.");
   command->add_option("scene", o.scene, "Scene file.")->required();
-  command->add_option("-o,--output", o.output, "Image: .exr (linear), .png or .jpg (through the display transform).");
+  auto* output = command->add_option("-o,--output", o.output,
+                                     "Image: .exr (linear), .png or .jpg (through the display transform).");
   add_count_option(*command, "--spp", o.samples, 1 << 30, "Samples per pixel, in place of the scene's.");
   command->add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")
       ->check(CLI::Range(1, 1024));
@@ -251,9 +347,31 @@ void add_render_command(CLI::App& app) {
   command->add_flag("--pilot", o.pilot, "Choose the models of open leaves, say which, and render nothing.");
   command->add_flag("--json", o.json, "Print the statistics as JSON on standard output.");
   command->add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");
+  auto* part = command->add_option(
+      "--part", o.part, "Write the sums, which frond merge adds to those of other parts, instead of an image.");
+  part->excludes(output);
+  auto* range = command->add_option("--samples", o.range,
+                                    "FIRST:END of the samples to render, as 64:128; from 0 to --spp by default.");
+  command
+      ->add_option("--checkpoint", o.checkpoint_seconds,
+                   "Every so many seconds, and when stopped by SIGINT or SIGTERM, keep what is done in OUTPUT.part.")
+      ->check(is_positive);
+  command->add_flag("--resume", o.resume,
+                    "Go on from OUTPUT.part, or --part's file, where there is one; keeps one too.");
+  command->add_option("--time-limit", o.time_limit_seconds, "End after so many seconds, with what there is then.")
+      ->check(is_positive);
+  command
+      ->add_option(
+          "--max-rms", o.max_rms,
+          "Render until the noise of the picture's linear colours is below this, with more samples where there "
+          "is more; --spp is then the most that a pixel gets.")
+      ->check(is_positive)
+      ->excludes(range);
+  command->add_option("--channels", o.channels, channels_doc())->delimiter(',');
   command->callback([options, seed] {
     options->seed_given = seed->count() > 0;
-    render_scene(*options, command_line_of(*options));
+    const int code = RenderCommand(*options).run();
+    if (code != 0) throw CLI::RuntimeError(code);
   });
 }
 

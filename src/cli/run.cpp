@@ -1,13 +1,11 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
 #include "cli/mistyped.h"
-#include "integrators/registry.h"
-#include "materials/registry.h"
 
 namespace frond {
-
-Registry builtin_registry() { return make_registry(builtin_materials(), builtin_integrators()); }
 
 namespace {
 
@@ -27,6 +25,7 @@ int run(int argc, const char* const* argv) {
   app.set_version_flag("--version", "frond " FROND_VERSION);
   app.require_subcommand(1);
   add_render_command(app);
+  add_merge_command(app);
   add_compare_command(app);
   add_convert_command(app);
   add_difference_command(app);

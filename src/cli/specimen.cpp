@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/material_words.h"
+#include "core/log.h"
 #include "instruments/beam.h"
 #include "scene/resolver.h"
 

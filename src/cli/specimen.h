@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/log.h"
 #include "core/material.h"
 #include "scene/registry.h"
 

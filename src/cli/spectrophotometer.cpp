@@ -4,11 +4,11 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/gnuplot.h"
 #include "cli/instrument.h"
 #include "cli/number_list.h"
-#include "cli/share_tables.h"
-#include "cli/text_output.h"
+#include "report/gnuplot.h"
+#include "report/share_tables.h"
+#include "report/text_output.h"
 
 namespace frond {
 namespace {

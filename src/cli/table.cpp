@@ -6,17 +6,18 @@
 #include "cli/leaf_words.h"
 #include "cli/number_list.h"
 #include "cli/table_words.h"
-#include "core/atomic_file.h"
-#include "core/cpu_clock.h"
+#include "core/log.h"
 #include "core/parallel.h"
-#include "leaf/body_cache.h"
-#include "leaf/body_file.h"
-#include "leaf/body_table.h"
-#include "leaf/constants.h"
-#include "leaf/table_cache.h"
-#include "leaf/table_file.h"
+#include "leaf/table/body_cache.h"
+#include "leaf/table/body_file.h"
+#include "leaf/table/body_table.h"
+#include "leaf/table/table_cache.h"
+#include "leaf/table/table_file.h"
+#include "leaf/tissue/constants.h"
 #include "materials/leaf_params.h"
 #include "materials/registry.h"
+#include "system/atomic_file.h"
+#include "system/cpu_clock.h"
 
 namespace frond {
 namespace {
@@ -94,7 +95,8 @@ void make_shares_file(const TableOptions& options, const std::vector<std::string
     header += "# mean of both sides\n";
   }
   write(options.output, leaf::to_csv(table, header));
-  Log(options.quiet).info(leaf::summary(request, options.output, table) + fmt::format(", {:.2g} s of CPU", seconds));
+  ConsoleLog(options.quiet)
+      .info(leaf::summary(request, options.output, table) + fmt::format(", {:.2g} s of CPU", seconds));
 }
 
 leaf::BodyRequest modes_request_of(const TableOptions& options, const std::vector<std::string>& leaf) {
@@ -115,7 +117,7 @@ void make_modes_file(const TableOptions& options, const std::vector<std::string>
   const double seconds = cpu_seconds() - start;
   write(options.output, leaf::to_text(request, spectrum, leaf::describe(request)));
   const size_t bytes = leaf::BodyTable(request, spectrum, false).bytes();
-  Log(options.quiet)
+  ConsoleLog(options.quiet)
       .info(leaf::summary(request, options.output, spectrum) +
             fmt::format(", {} kB in a render, {:.2g} s of CPU", (bytes + 512) / 1024, seconds));
 }

@@ -1,30 +1,72 @@
 #pragma once
 
-#include <array>
-#include <cassert>
+#include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace frond {
 
-/// Bump allocator for the BSDFs of one path vertex: nothing is freed, `reset` starts again, no heap in the loop.
+/// Bump allocator for the BSDFs of one path vertex: nothing is freed, `reset` starts again. It grows to what the
+/// scene's most demanding hit takes and stays there: from then on there is no heap in the loop.
 class Arena {
  public:
   template <class T, class... Args>
   T* make(Args&&... args) {
     static_assert(std::is_trivially_destructible_v<T>, "an arena never runs destructors");
-    const size_t start = (used_ + alignof(T) - 1) & ~(alignof(T) - 1);
-    if (start + sizeof(T) > bytes_.size()) throw std::bad_alloc();
+    static_assert(alignof(T) <= kAlignment);
+    size_t start = (used_ + alignof(T) - 1) & ~(alignof(T) - 1);
+    if (start + sizeof(T) > block_->size) {
+      next_block(sizeof(T));
+      start = 0;
+    }
     used_ = start + sizeof(T);
-    return ::new (static_cast<void*>(bytes_.data() + start)) T{std::forward<Args>(args)...};
+    return ::new (static_cast<void*>(block_->bytes + start)) T{std::forward<Args>(args)...};
   }
-  void reset() { used_ = 0; }
+  void reset() {
+    block_ = blocks_.front().get();
+    used_ = 0;
+  }
+  /// Bytes that it has taken from the heap.
+  size_t capacity() const {
+    size_t sum = 0;
+    for (const auto& block : blocks_) sum += block->size;
+    return sum;
+  }
 
  private:
-  alignas(64) std::array<std::byte, 16384> bytes_;
+  static constexpr size_t kAlignment = 64, kFirstSize = 16384;
+
+  struct Block {
+    explicit Block(size_t bytes_) : size(bytes_), bytes(static_cast<std::byte*>(::operator new(bytes_, kAligned))) {}
+    ~Block() { ::operator delete(bytes, kAligned); }
+    Block(const Block&) = delete;
+    Block& operator=(const Block&) = delete;
+    static constexpr std::align_val_t kAligned{kAlignment};
+    size_t size;
+    std::byte* bytes;
+  };
+
+  void next_block(size_t least) {
+    auto next = std::ranges::find(blocks_, block_, &std::unique_ptr<Block>::get) + 1;
+    while (next != blocks_.end() && (*next)->size < least) ++next;
+    if (next == blocks_.end())
+      next = blocks_.insert(next, std::make_unique<Block>(std::max(2 * blocks_.back()->size, least)));
+    block_ = next->get();
+  }
+
+  std::vector<std::unique_ptr<Block>> blocks_ = first_block();
+  Block* block_ = blocks_.front().get();
   size_t used_ = 0;
+
+  static std::vector<std::unique_ptr<Block>> first_block() {
+    std::vector<std::unique_ptr<Block>> blocks;
+    blocks.push_back(std::make_unique<Block>(kFirstSize));
+    return blocks;
+  }
 };
 
 }  // namespace frond

@@ -52,12 +52,4 @@ std::string suggestion(std::string_view word, const std::vector<std::string_view
   return fmt::format("; there {} {}", candidates.size() == 1 ? "is" : "are", fmt::join(candidates, ", "));
 }
 
-void Log::info(std::string_view message) const {
-  if (!quiet_) fmt::print(stderr, "{}\n", message);
-}
-
-void Log::warn(const Location& where, std::string_view message) const {
-  if (!quiet_) fmt::print(stderr, "{}warning: {}\n", where.text(), message);
-}
-
 }  // namespace frond

@@ -37,15 +37,4 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
 /// `; did you mean "x"?`, or a list of what there is when nothing is near: the end of an error message.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
 
-/// Where messages to the user go: standard error, or nowhere when quiet.
-class Log {
- public:
-  explicit Log(bool quiet = false) : quiet_(quiet) {}
-  void info(std::string_view message) const;
-  void warn(const Location& where, std::string_view message) const;
-
- private:
-  bool quiet_;
-};
-
 }  // namespace frond

@@ -14,11 +14,22 @@ struct PathContext {
   uint64_t rays = 0;  ///< traced so far, shadow rays included
 };
 
+/// What a camera ray met first.
+struct FirstHit {
+  bool is_hit = false;  ///< false: nothing, and the rest means nothing
+  bool is_leaf = false;
+  uint32_t material = 0, instance = 0;  ///< as of a SurfacePoint
+  Vec3 p, n;                            ///< world space; the shading normal, unit
+  /// The path's weight after it was scattered there: an unbiased estimate of the albedo, all that the surface gives
+  /// back of light from -direction of the camera ray, on both sides.
+  SampledSpectrum albedo;
+};
+
 struct PathResult {
   SampledSpectrum radiance;
-  bool sees_leaf = false;  ///< the first thing the path meets is a leaf
-  int scatterings = 0;     ///< how often the path was scattered
-  bool escaped = false;    ///< it left the scene; else it was absorbed or cut off
+  FirstHit first;
+  int scatterings = 0;   ///< how often the path was scattered
+  bool escaped = false;  ///< it left the scene; else it was absorbed or cut off
 };
 
 /// Radiance along camera rays.

@@ -133,17 +133,29 @@ class PathIntegrator final : public Integrator {
         pass(point.hit, path);
         continue;
       }
-      if (depth == 0) path.result.sees_leaf = point.material->is_leaf();
+      if (depth == 0) path.result.first = first_hit(point);
       if (depth >= max_depth_) break;
       const LocalBsdf local(*bsdf, point.hit, -path.ray.d);
       if (sample_lights_ && !selector_.empty()) add_sampled_light(world, point.hit, local, key, path, context);
-      if (!scatter(point.hit, local, key, path, context) || ends(world, depth, key, path)) break;
+      if (!scatter(point.hit, local, key, path, context)) break;
+      if (depth == 0) path.result.first.albedo = path.throughput;
+      if (ends(world, depth, key, path)) break;
       path.result.scatterings = ++depth;
     }
     return path.result;
   }
 
  private:
+  static FirstHit first_hit(const SurfacePoint& point) {
+    return {.is_hit = true,
+            .is_leaf = point.material->is_leaf(),
+            .material = point.material_id,
+            .instance = point.instance_id,
+            .p = point.hit.p,
+            .n = point.hit.shading.z,
+            .albedo = {}};
+  }
+
   void add_environment(const World& world, Path& path) const {
     for (const EnvironmentLight* light : world.environment())
       path.add(light->radiance(path.ray.d, path.lambda), weight_of(*light, path.scatter_pdf, light->pdf(path.ray.d)));

@@ -1,6 +1,6 @@
 #include "core/material.h"
 #include "core/sampling.h"
-#include "leaf/batch_walk.h"
+#include "leaf/walk/batch_walk.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/surface_lobe.h"
 

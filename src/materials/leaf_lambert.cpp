@@ -1,9 +1,9 @@
 #include <numbers>
 
 #include "core/material.h"
-#include "leaf/quadrature.h"
-#include "leaf/table_axes.h"
-#include "leaf/table_cache.h"
+#include "leaf/solve/quadrature.h"
+#include "leaf/table/table_axes.h"
+#include "leaf/table/table_cache.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/two_sided_lambertian.h"

@@ -1,7 +1,7 @@
 #include "materials/leaf_params.h"
 
-#include "leaf/absorption.h"
-#include "leaf/constants.h"
+#include "leaf/tissue/absorption.h"
+#include "leaf/tissue/constants.h"
 #include "spectra/check_range.h"
 #include "spectra/spd_file.h"
 

@@ -7,8 +7,8 @@
 
 #include "core/params.h"
 #include "core/wavelengths.h"
-#include "leaf/depth_map.h"
-#include "leaf/specimens.h"
+#include "leaf/table/depth_map.h"
+#include "leaf/tissue/specimens.h"
 
 namespace frond {
 

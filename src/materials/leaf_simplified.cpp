@@ -1,8 +1,8 @@
 #include <chrono>
 
 #include "core/material.h"
-#include "leaf/table_cache.h"
-#include "leaf/table_file.h"
+#include "leaf/table/table_cache.h"
+#include "leaf/table/table_file.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/three_lobe.h"

@@ -1,9 +1,9 @@
 #include <optional>
 
 #include "core/material.h"
-#include "leaf/body_cache.h"
-#include "leaf/body_file.h"
-#include "leaf/body_table.h"
+#include "leaf/table/body_cache.h"
+#include "leaf/table/body_file.h"
+#include "leaf/table/body_table.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/solved_bsdf.h"

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/log.h"
 #include "core/params.h"
 
 namespace frond {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "leaf/absorption.h"
-#include "leaf/constants.h"
+#include "leaf/tissue/absorption.h"
+#include "leaf/tissue/constants.h"
 #include "spectra/check_range.h"
 
 namespace frond {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/wavelengths.h"
-#include "leaf/depth_map.h"
-#include "leaf/table_axes.h"
+#include "leaf/table/depth_map.h"
+#include "leaf/table/table_axes.h"
 
 namespace frond {
 

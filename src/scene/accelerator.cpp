@@ -261,6 +261,8 @@ bool Accelerator::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) c
   set_frame(hit, hit.ng, ns, ray.d);
   point.material = primitive.material;
   point.light = primitive.light;
+  point.material_id = primitive.material_id;
+  point.instance_id = instanced ? uint32_t(query.hit.instID[0] - top_.size() + 1) : 0;
   return true;
 }
 

@@ -30,6 +30,7 @@ struct Primitive {
   const Material* material = nullptr;
   const AreaLight* light = nullptr;
   std::shared_ptr<const FloatTexture> alpha;  ///< null: opaque
+  uint32_t material_id = 0;                   ///< as of a SurfacePoint
 };
 
 /// Places one group of primitives. 64 bytes for each copy, besides Embree's own record.

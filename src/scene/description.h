@@ -54,7 +54,8 @@ struct InstanceDescription {
   Location where;
 };
 
-struct SceneDescription {
+/// What a scene file says but for what stands in the scene: enough to make its materials and its view.
+struct SceneSettings {
   // Options, with what holds where the file says nothing.
   ParsedPlugin camera{"perspective", {}, {}};
   ParsedPlugin film{"rgb", {}, {}};
@@ -70,17 +71,21 @@ struct SceneDescription {
   std::map<std::string, Transform> coordinate_systems;  ///< "camera", "world" and the file's own
   std::vector<TextureDescription> textures;             ///< in the file's order; names are unique for each value type
   std::vector<MaterialDescription> materials;           ///< the first is what holds before any `Material`: "diffuse"
-  std::vector<ParsedPlugin> area_lights;
-  std::vector<ShapeDescription> shapes;
-  std::vector<LightDescription> lights;
-  std::vector<ObjectDescription> objects;
-  std::vector<InstanceDescription> instances;
 
   std::vector<std::filesystem::path> files;  ///< the main file and what it includes, in the order of reading
   uint64_t content_hash = 0;                 ///< over the bytes of `files`, in order
 
   /// A file name in the scene as a path: relative to the file that names it, or else to the main file.
   std::filesystem::path resolve(const std::string& name, const Location& where) const;
+};
+
+/// With its shapes and lights, which may be large.
+struct SceneDescription : SceneSettings {
+  std::vector<ParsedPlugin> area_lights;
+  std::vector<ShapeDescription> shapes;
+  std::vector<LightDescription> lights;
+  std::vector<ObjectDescription> objects;
+  std::vector<InstanceDescription> instances;
 };
 
 }  // namespace frond

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/log.h"
+
 namespace frond {
 namespace {
 
@@ -76,7 +78,7 @@ void DescriptionBuilder::camera(ParsedPlugin plugin) {
   scene_.coordinate_systems["camera"] = state_.transform.inverse();
 }
 
-void DescriptionBuilder::set_option_plugin(ParsedPlugin SceneDescription::*option, std::string_view directive,
+void DescriptionBuilder::set_option_plugin(ParsedPlugin SceneSettings::*option, std::string_view directive,
                                            ParsedPlugin plugin) {
   ParsedPlugin& slot = scene_.*option;
   if (slot.where.file)

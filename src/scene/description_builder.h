@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/log.h"
 #include "scene/description.h"
 
 namespace frond {
@@ -28,7 +29,7 @@ class DescriptionBuilder {
 
   // Options
   void camera(ParsedPlugin plugin);
-  void set_option_plugin(ParsedPlugin SceneDescription::*option, std::string_view directive, ParsedPlugin plugin);
+  void set_option_plugin(ParsedPlugin SceneSettings::*option, std::string_view directive, ParsedPlugin plugin);
   void option(ParsedParam param) { scene_.options.push_back(std::move(param)); }
   void color_space(const std::string& name, const Location& where);
 

@@ -105,7 +105,7 @@ void accelerator(Directive d) {
   d.context.log.warn(plugin.where, fmt::format("Accelerator \"{}\" has no effect: Embree brings its own", plugin.name));
 }
 
-template <ParsedPlugin SceneDescription::*option>
+template <ParsedPlugin SceneSettings::*option>
 void option_plugin(Directive d) {
   d.scene().set_option_plugin(option, d.name, d.plugin());
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/log.h"
 #include "scene/description_builder.h"
 #include "scene/parameter_list.h"
 #include "scene/tokenizer.h"

@@ -4,8 +4,8 @@
 
 #include "core/error.h"
 #include "core/texture.h"
+#include "image/rgb_image.h"
 #include "scene/registry.h"
-#include "scene/rgb_image.h"
 #include "spectra/color_space.h"
 #include "spectra/rgb_upsampling.h"
 

@@ -3,9 +3,9 @@
 
 #include "core/error.h"
 #include "core/sampling.h"
+#include "image/rgb_image.h"
 #include "scene/distribution.h"
 #include "scene/registry.h"
-#include "scene/rgb_image.h"
 #include "spectra/cie.h"
 #include "spectra/color_space.h"
 #include "spectra/rgb_upsampling.h"

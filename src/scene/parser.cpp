@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
-#include "core/file_bytes.h"
+#include "core/log.h"
 #include "core/random.h"
 #include "scene/description_builder.h"
 #include "scene/directives.h"
+#include "system/file_bytes.h"
 
 namespace frond {
 namespace {
@@ -88,7 +89,7 @@ SceneDescription parse_scene_text(const std::string& text, const std::string& na
   return scene;
 }
 
-fs::path SceneDescription::resolve(const std::string& name, const Location& where) const {
+fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
   const fs::path path = name;
   if (path.is_absolute() || !where.file) return path;
   const fs::path beside = (fs::path(*where.file).parent_path() / path).lexically_normal();

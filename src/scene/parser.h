@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "scene/description.h"
 
 namespace frond {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "core/file_bytes.h"
 #include "scene/ply_header.h"
 #include "scene/ply_source.h"
+#include "system/file_bytes.h"
 
 namespace frond {
 namespace {

@@ -7,7 +7,7 @@
 namespace frond {
 
 extern const CameraInfo perspective_camera, orthographic_camera;
-extern const FilmInfo rgb_film;
+extern const FilmInfo rgb_film, gbuffer_film;
 extern const SamplerInfo independent_sampler, padded_sobol_sampler;
 extern const FilterInfo box_filter, triangle_filter, gaussian_filter, mitchell_filter, sinc_filter;
 extern const ShapeInfo triangle_mesh_shape, ply_mesh_shape, sphere_shape, disk_shape, bilinear_mesh_shape;
@@ -20,7 +20,7 @@ extern const SpectrumTextureInfo constant_spectrum_texture, scale_spectrum_textu
 namespace {
 
 constexpr std::array kCameras{&perspective_camera, &orthographic_camera};
-constexpr std::array kFilms{&rgb_film};
+constexpr std::array kFilms{&rgb_film, &gbuffer_film};
 constexpr std::array kSamplers{&padded_sobol_sampler, &independent_sampler};
 constexpr std::array kFilters{&box_filter, &triangle_filter, &gaussian_filter, &mitchell_filter, &sinc_filter};
 constexpr std::array kShapes{&triangle_mesh_shape, &ply_mesh_shape, &sphere_shape, &disk_shape, &bilinear_mesh_shape};

@@ -6,7 +6,7 @@
 #include "core/material.h"
 #include "core/sampler.h"
 #include "core/texture.h"
-#include "scene/film.h"
+#include "scene/film_settings.h"
 #include "scene/lights.h"
 #include "scene/shape.h"
 

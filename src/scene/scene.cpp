@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/log.h"
 #include "scene/resolver.h"
 
 namespace frond {
@@ -109,6 +110,7 @@ class SceneBuilder {
   void build_view(SceneResolver& resolver) {
     FilmSettings film = Scene::film_settings(description_, registry_);
     if (overrides_.quick) film = halved(film);
+    scene_.film_ = film;
     scene_.camera_ = make(registry_.cameras, description_.camera, resolver,
                           CameraPlacement{description_.camera_from_world.inverse(), film.width, film.height});
     check_camera(film);
@@ -164,8 +166,9 @@ class SceneBuilder {
   Primitive primitive(const ShapeDescription& shape, SceneResolver& resolver) {
     const ShapeInfo& info = registry_.shapes.get(shape.plugin.name, shape.plugin.where);
     const Params params(info, shape.plugin, resolver);
-    Primitive result{info.make(params, {shape.world_from_object, shape.reverse_orientation}), nullptr, nullptr,
-                     nullptr};
+    Primitive result{.geometry = info.make(params, {shape.world_from_object, shape.reverse_orientation}),
+                     .alpha = nullptr,
+                     .material_id = uint32_t(shape.material)};
     check_extent(result.geometry, shape.plugin.where);
     const auto alpha = params.float_texture("alpha");
     if (!alpha->is_constant() || alpha->range().min < 1) result.alpha = alpha;

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "core/log.h"
 #include "core/parallel.h"
 #include "core/world.h"
 #include "scene/accelerator.h"
@@ -64,6 +65,8 @@ class Scene final : public World {
 
   const WavelengthStrategy& wavelengths() const override { return *wavelengths_; }
   const std::string& wavelengths_name() const { return wavelengths_name_; }
+  /// Half the description's where a first look will do.
+  const FilmSettings& film() const { return film_; }
   const Camera& camera() const { return *camera_; }
   const Sampler& sampler() const { return *sampler_; }
   const Filter& filter() const { return *filter_; }
@@ -80,6 +83,7 @@ class Scene final : public World {
 
   std::string wavelengths_name_;
   std::unique_ptr<WavelengthStrategy> wavelengths_;
+  FilmSettings film_;
   std::unique_ptr<Camera> camera_;
   std::unique_ptr<Sampler> sampler_;
   std::unique_ptr<Filter> filter_;

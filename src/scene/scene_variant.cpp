@@ -1,5 +1,6 @@
 #include "scene/scene_variant.h"
 
+#include "core/log.h"
 #include "scene/resolver.h"
 
 namespace frond {

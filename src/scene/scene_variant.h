@@ -2,6 +2,7 @@
 
 #include <unordered_map>
 
+#include "core/log.h"
 #include "scene/scene.h"
 
 namespace frond {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/log.h"
 #include "scene/description.h"
 #include "scene/plugin_text.h"
 #include "scene/registry.h"

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <system_error>
 
-#include "core/file_bytes.h"
+#include "system/file_bytes.h"
 
 namespace frond {
 namespace {

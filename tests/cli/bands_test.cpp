@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "cli/spectral_image.h"
-#include "scene/image_file.h"
+#include "image/image_file.h"
+#include "image/spectral_layout.h"
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"
 

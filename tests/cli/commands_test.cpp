@@ -8,7 +8,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "scene/image_file.h"
+#include "image/image_file.h"
+#include "render/plugins.h"
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"
 
@@ -80,7 +81,7 @@ TEST_F(Commands, MistypedWordsAreNamedWithWhatMayBeMeant) {
     return o.err;
   };
   EXPECT_EQ(complaint({"rendr", "x.pbrt"}), "frond: there is no command \"rendr\"; did you mean \"render\"?\n");
-  EXPECT_THAT(complaint({"paint"}), HasSubstr("there is no command \"paint\"; there are render, compare"));
+  EXPECT_THAT(complaint({"paint"}), HasSubstr("there is no command \"paint\"; there are render, merge, compare"));
   EXPECT_EQ(complaint({"--verson"}), "frond: frond has no option --verson; did you mean --version?\n");
   EXPECT_EQ(complaint({"render", "x.pbrt", "--sp", "1"}),
             "frond: frond render has no option --sp; did you mean --spp?\n");
@@ -128,7 +129,7 @@ TEST_F(Commands, RenderWritesWhatItSays) {
   EXPECT_EQ(file.header.color_space, "linear SMPTE-C");
   EXPECT_EQ(file.header.text.at("frond:seed"), "9");
   EXPECT_EQ(file.header.text.at("frond:samples"), "3");
-  EXPECT_EQ(file.header.text.at("frond:command"), "frond render scene.pbrt --spp 3 --seed 9 --wavelengths smpte");
+  EXPECT_EQ(file.header.text.at("frond:command"), "frond render scene.pbrt --seed 9 --wavelengths smpte --spp 3");
   EXPECT_EQ(file.header.text.at("frond:scene_hash").size(), 16u);
   ASSERT_TRUE(file.chromaticities);
   EXPECT_NEAR(file.chromaticities->red.x, 0.630, 1e-6);
@@ -226,7 +227,7 @@ Shape "sphere"
   EXPECT_EQ(ends("path,termination=attenuation,cutoff=0.4"), (std::vector{0, 16}));
   EXPECT_EQ(ends("path,maxdepth=3,termination=attenuation"), (std::vector{0, 0, 0, 16}));
   EXPECT_EQ(read_image(path("a.exr"), {}).header.text.at("frond:command"),
-            "frond render scene.pbrt --spp 1 --integrator path,maxdepth=3,termination=attenuation");
+            "frond render scene.pbrt --integrator path,maxdepth=3,termination=attenuation --spp 1");
   EXPECT_THAT(render({"-o", path("x.exr"), "--integrator", "path,cut=1"}).err, HasSubstr("has no parameter \"cut\""));
   EXPECT_THAT(render({"-o", path("x.exr"), "--integrator", "pat"}).err, HasSubstr("did you mean \"path\"?"));
 }
@@ -251,7 +252,7 @@ Shape "sphere"
 TEST_F(Commands, APictureSaysThroughWhichViewItWasMade) {
   ASSERT_EQ(render({"-o", path("a.png"), "--spp", "1", "-q", "--display", "sRGB"}).code, 0);
   EXPECT_EQ(read_image(path("a.png"), {}).header.text.at("frond:command"),
-            "frond render scene.pbrt --spp 1 --display sRGB");
+            "frond render scene.pbrt --display sRGB --spp 1");
 }
 
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "image/image_file.h"
 #include "instruments/conformance.h"
-#include "scene/image_file.h"
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "cli/plugins.h"
+#include "render/plugins.h"
 #include "scene/plugin_library.h"
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"

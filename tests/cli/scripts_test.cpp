@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "cli/child_process.h"
+#include "system/child_process.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "leaf/specimens.h"
-#include "leaf/table_file.h"
+#include "leaf/table/table_file.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/log.h"
 #include "instruments/rays.h"
 #include "instruments/sweep.h"
 #include "materials/registry.h"
@@ -25,7 +26,7 @@ class Prepared {
   Prepared(const MaterialInfo& info, std::vector<ParsedParam> params, double lambda_nm) : lambda_nm_(lambda_nm) {
     PlainResolver nothing([](const std::string&) { return nullptr; });
     material_ = info.make(Params(info, {std::string(info.name), {}, std::move(params)}, nothing));
-    const Log quiet(true);
+    const Log& quiet = silent_log();
     ThreadPool pool(1);
     material_->prepare({OneWavelength(lambda_nm), pool, quiet, {}});
   }

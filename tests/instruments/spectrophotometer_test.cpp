@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "leaf/constants.h"
-#include "leaf/fresnel.h"
+#include "leaf/tissue/constants.h"
+#include "leaf/tissue/fresnel.h"
 #include "tests/instruments/specimen.h"
 #include "tests/planted/planted.h"
 #include "tests/support/input_error.h"

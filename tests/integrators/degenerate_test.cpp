@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene/image_file.h"
+#include "image/image_file.h"
 #include "tests/support/input_error.h"
 #include "tests/support/render_text.h"
 

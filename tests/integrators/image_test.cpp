@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/image_file.h"
+#include "image/image_file.h"
 #include "tests/support/input_error.h"
 #include "tests/support/render_text.h"
 

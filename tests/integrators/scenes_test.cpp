@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/log.h"
 #include "tests/support/render_text.h"
 
 namespace frond {
@@ -7,7 +8,7 @@ namespace {
 
 /// A scene of the project at two samples a pixel, its leaves by a table that costs no walks.
 Film render_scene(const std::string& path) {
-  const Log quiet(true);
+  const Log& quiet = silent_log();
   ThreadPool pool(2);
   const SceneDescription description = parse_scene(FROND_SOURCE_DIR "/scenes/" + path, quiet);
   const Registry registry = make_registry(builtin_materials(), builtin_integrators());
@@ -15,10 +16,10 @@ Film render_scene(const std::string& path) {
   overrides.wavelengths = "smpte";
   if (path.starts_with("soybean")) overrides.swaps = {{"leaf", {"leaf_simplified", {{"tablemethod", "solve"}}}}};
   const Scene scene(description, registry, overrides, pool, quiet);
-  Film film(Scene::film_settings(description, registry));
-  render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(), scene.seed(),
-          0, 2},
-         film, pool, {});
+  Film film({.settings = scene.film()});
+  const RenderJob job{scene,          scene.camera(),  scene.integrator(), scene.wavelengths(),
+                      scene.filter(), scene.sampler(), scene.seed()};
+  render(job, plan_of(film, {0, 2}), film, pool);
   return film;
 }
 

@@ -2,6 +2,7 @@
 
 #include <ostream>
 
+#include "core/log.h"
 #include "instruments/given_wavelengths.h"
 #include "instruments/material_conformance.h"
 
@@ -38,7 +39,7 @@ struct Setup {
   explicit Setup(const WavelengthStrategy& wavelengths) : preparation{wavelengths, pool, log, {}} {}
 
   ThreadPool pool{1};
-  Log log{/*quiet=*/true};
+  const Log& log = silent_log();
   Preparation preparation;
 };
 

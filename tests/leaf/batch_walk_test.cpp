@@ -1,4 +1,4 @@
-#include "leaf/batch_walk.h"
+#include "leaf/walk/batch_walk.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "leaf/solver.h"
-#include "leaf/specimens.h"
+#include "leaf/solve/solver.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/leaf/plain_walk.h"
 #include "tests/leaf/statistics.h"
 #include "tests/support/slow.h"

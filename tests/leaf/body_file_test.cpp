@@ -1,4 +1,4 @@
-#include "leaf/body_file.h"
+#include "leaf/table/body_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "leaf/body_cache.h"
-#include "leaf/specimens.h"
+#include "core/log.h"
+#include "leaf/table/body_cache.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/support/input_error.h"
 
 namespace frond::leaf {
@@ -116,7 +117,9 @@ TEST(BodyFile, IsRefusedWhereItCannotBeReadOrSaysThingsTwice) {
 TEST(BodyFile, IsTheCacheToo) {
   const TestFolder folder("body_cache");
   const BodyRequest request = request_of("soybean", {551});
-  const auto get = [&] { return cached_body_spectrum(request, "test", ThreadPool(1), Log(true), folder.name_of("")); };
+  const auto get = [&] {
+    return cached_body_spectrum(request, "test", ThreadPool(1), silent_log(), folder.name_of(""));
+  };
   const BodySpectrum made = get();
   const std::vector<fs::path> files(fs::directory_iterator(folder.name_of("")), fs::directory_iterator());
   ASSERT_THAT(files, SizeIs(1));

@@ -1,4 +1,4 @@
-#include "leaf/body_table.h"
+#include "leaf/table/body_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "leaf/body_file.h"
-#include "leaf/quadrature.h"
-#include "leaf/solver.h"
-#include "leaf/specimens.h"
+#include "leaf/solve/quadrature.h"
+#include "leaf/solve/solver.h"
+#include "leaf/table/body_file.h"
+#include "leaf/tissue/specimens.h"
 
 namespace frond::leaf {
 namespace {

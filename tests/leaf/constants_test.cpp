@@ -1,12 +1,12 @@
-#include "leaf/constants.h"
+#include "leaf/tissue/constants.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "leaf/absorption.h"
-#include "leaf/specimens.h"
-#include "leaf/tissue.h"
+#include "leaf/tissue/absorption.h"
+#include "leaf/tissue/specimens.h"
+#include "leaf/tissue/tissue.h"
 
 namespace frond::leaf {
 namespace {

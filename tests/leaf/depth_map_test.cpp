@@ -1,10 +1,10 @@
-#include "leaf/depth_map.h"
+#include "leaf/table/depth_map.h"
 
 #include <gtest/gtest.h>
 
-#include "leaf/absorption.h"
-#include "leaf/specimens.h"
-#include "leaf/tissue.h"
+#include "leaf/tissue/absorption.h"
+#include "leaf/tissue/specimens.h"
+#include "leaf/tissue/tissue.h"
 #include "tests/support/ramp.h"
 
 namespace frond::leaf {

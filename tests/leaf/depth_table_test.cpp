@@ -1,11 +1,11 @@
-#include "leaf/depth_table.h"
+#include "leaf/table/depth_table.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "leaf/lookup.h"
-#include "leaf/specimens.h"
+#include "leaf/table/lookup.h"
+#include "leaf/tissue/specimens.h"
 
 namespace frond::leaf {
 namespace {

@@ -1,4 +1,4 @@
-#include "leaf/lobe.h"
+#include "leaf/tissue/lobe.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
-#include "leaf/modes.h"
+#include "leaf/solve/modes.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "leaf/azimuth.h"
-#include "leaf/quadrature.h"
-#include "leaf/solver.h"
-#include "leaf/specimens.h"
-#include "leaf/walk.h"
+#include "leaf/solve/azimuth.h"
+#include "leaf/solve/quadrature.h"
+#include "leaf/solve/solver.h"
+#include "leaf/tissue/specimens.h"
+#include "leaf/walk/walk.h"
 #include "tests/leaf/statistics.h"
 #include "tests/support/slow.h"
 

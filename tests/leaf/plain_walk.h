@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "leaf/walk.h"
+#include "leaf/walk/walk.h"
 
 namespace frond::test {
 

@@ -1,4 +1,4 @@
-#include "leaf/reduced_basis.h"
+#include "leaf/solve/reduced_basis.h"
 
 #include <gtest/gtest.h>
 

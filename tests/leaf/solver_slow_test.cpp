@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "leaf/batch_walk.h"
-#include "leaf/solver.h"
-#include "leaf/specimens.h"
-#include "leaf/table.h"
+#include "leaf/solve/solver.h"
+#include "leaf/table/table.h"
+#include "leaf/tissue/specimens.h"
+#include "leaf/walk/batch_walk.h"
 #include "tests/support/slow.h"
 
 /// The solution against weighted walks in great number: minutes on all cores, so only where FROND_SLOW_TESTS is 1.

@@ -1,4 +1,4 @@
-#include "leaf/specimens.h"
+#include "leaf/tissue/specimens.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <string>
 
-#include "leaf/specimens.h"
-#include "leaf/walk.h"
+#include "leaf/tissue/specimens.h"
+#include "leaf/walk/walk.h"
 #include "tests/leaf/statistics.h"
 
 /// Walks that carry several wavelengths, against walks of one.

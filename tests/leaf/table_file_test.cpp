@@ -1,10 +1,10 @@
-#include "leaf/table_file.h"
+#include "leaf/table/table_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "leaf/lookup.h"
-#include "leaf/specimens.h"
+#include "leaf/table/lookup.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/support/input_error.h"
 
 namespace frond::leaf {

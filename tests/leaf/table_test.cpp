@@ -1,4 +1,4 @@
-#include "leaf/table.h"
+#include "leaf/table/table.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,11 @@
 #include <fstream>
 #include <numbers>
 
-#include "leaf/cache_file.h"
-#include "leaf/lookup.h"
-#include "leaf/specimens.h"
-#include "leaf/table_cache.h"
+#include "core/log.h"
+#include "leaf/table/cache_file.h"
+#include "leaf/table/lookup.h"
+#include "leaf/table/table_cache.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/leaf/statistics.h"
 
 namespace frond::leaf {
@@ -169,7 +170,9 @@ class TableCache : public testing::Test {
   }
   void TearDown() override { fs::remove_all(dir_); }
 
-  Table get(const TableRequest& request) const { return cached_table(request, "test", ThreadPool(1), Log(true), dir_); }
+  Table get(const TableRequest& request) const {
+    return cached_table(request, "test", ThreadPool(1), silent_log(), dir_);
+  }
   std::vector<fs::path> files() const {
     std::vector<fs::path> result;
     for (const auto& entry : fs::directory_iterator(dir_)) result.push_back(entry.path());
@@ -265,7 +268,7 @@ TEST_F(TableCache, DoesWithoutAFileThatCannotBeRead) {
 
 TEST_F(TableCache, DoesWithoutADiskThatCannotBeWritten) {
   const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 10);
-  const Table table = cached_table(request, "test", ThreadPool(1), Log(true), "/proc/none");
+  const Table table = cached_table(request, "test", ThreadPool(1), silent_log(), "/proc/none");
   EXPECT_EQ(table.shares, make_table(request, ThreadPool(1)).shares);
 }
 
@@ -386,7 +389,7 @@ TEST(TableLookup, KeepsEnergyThatNothingAbsorbs) {
 
 TEST_F(TableCache, ThatCannotBeLookedIntoIsNone) {
   const TableRequest request = request_of("soybean", TableMethod::monte_carlo, 5);
-  const Table table = cached_table(request, "test", ThreadPool(1), Log(true), std::string(300, 'x'));
+  const Table table = cached_table(request, "test", ThreadPool(1), silent_log(), std::string(300, 'x'));
   EXPECT_FALSE(table.shares.empty());
 }
 

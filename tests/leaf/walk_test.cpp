@@ -1,13 +1,13 @@
-#include "leaf/walk.h"
+#include "leaf/walk/walk.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <span>
 
-#include "leaf/batch_walk.h"
-#include "leaf/fresnel.h"
-#include "leaf/specimens.h"
+#include "leaf/tissue/fresnel.h"
+#include "leaf/tissue/specimens.h"
+#include "leaf/walk/batch_walk.h"
 #include "tests/leaf/statistics.h"
 
 namespace frond::leaf {

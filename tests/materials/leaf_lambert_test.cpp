@@ -3,9 +3,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "leaf/solver.h"
-#include "leaf/specimens.h"
-#include "leaf/table.h"
+#include "core/log.h"
+#include "leaf/solve/solver.h"
+#include "leaf/table/table.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/materials/support.h"
 #include "tests/support/input_error.h"
 
@@ -52,7 +53,7 @@ TEST(LeafLambert, TakesBandsHoweverClose) {
   const MaterialInfo& info = material_info("leaf_lambert");
   const auto leaf = info.make(Params(info, {"", {}, {words("specimen", {"soybean"})}}, resolver));
   ThreadPool pool(1);
-  leaf->prepare({*strategy, pool, Log(true), {}});
+  leaf->prepare({*strategy, pool, silent_log(), {}});
   Arena arena;
   RandomStream rng(1);
   for (uint64_t index = 0; index < 5; ++index) {

@@ -4,9 +4,10 @@
 #include <fstream>
 #include <numbers>
 
-#include "leaf/absorption.h"
-#include "leaf/solver.h"
-#include "leaf/specimens.h"
+#include "core/log.h"
+#include "leaf/solve/solver.h"
+#include "leaf/tissue/absorption.h"
+#include "leaf/tissue/specimens.h"
 #include "materials/leaf_params.h"
 #include "tests/leaf/statistics.h"
 #include "tests/materials/support.h"
@@ -249,7 +250,7 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   const auto strategy =
       testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
   ThreadPool pool(1);
-  const Log log;
+  const ConsoleLog log;
   ::testing::internal::CaptureStderr();
   material->prepare({*strategy, pool, log, {}});
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
@@ -262,7 +263,7 @@ size_t tables_made(const std::vector<std::vector<ParsedParam>>& leaves) {
   const auto strategy =
       testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get("smpte", {}), {});
   ThreadPool pool(1);
-  const Log log;
+  const ConsoleLog log;
   SharedWork shared;
   Resolver resolver;
   std::vector<std::unique_ptr<Material>> materials;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/log.h"
 #include "core/material.h"
 #include "materials/registry.h"
 #include "spectra/registry.h"
@@ -78,7 +79,7 @@ class Ready {
 
  private:
   ThreadPool pool_{2};
-  Log log_{true};
+  const Log& log_ = silent_log();
   Arena arena_;
   std::unique_ptr<Material> material_;
   std::unique_ptr<WavelengthStrategy> strategy_;
@@ -94,7 +95,7 @@ inline void expect_sharing_changes_nothing(std::string_view material, const std:
   SharedWork shared;
   ThreadPool pool(1);
   Arena arena;
-  const Log quiet(true);
+  const Log& quiet = silent_log();
   for (const char* name : {"smpte", "hero", "meyer", "smpte"}) {
     const auto strategy =
         testing::make_plugin(PluginTable<WavelengthsInfo>("wavelengths", builtin_wavelengths()).get(name, {}), {});

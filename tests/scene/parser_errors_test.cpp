@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "core/log.h"
 #include "core/random.h"
 #include "scene/parser.h"
 #include "tests/support/input_error.h"
@@ -14,7 +15,7 @@ struct BadScene {
 /// The whole message, place included.
 void expect_errors(const std::vector<BadScene>& scenes) {
   for (const auto& [text, error] : scenes)
-    EXPECT_EQ(error_of([&text = text] { parse_scene_text(text, "s", Log(true)); }), error) << text;
+    EXPECT_EQ(error_of([&text = text] { parse_scene_text(text, "s", silent_log()); }), error) << text;
 }
 
 /// The text stands on the second line, inside the world.
@@ -214,11 +215,11 @@ CoordinateSystem "c" CoordSysTransform "c" ReverseOrientation LightSource "point
 
 /// Parses or throws InputError; anything else gets out and fails the test.
 void parse_anything(const std::string& text) {
-  error_of([&] { parse_scene_text(text, "fuzz", Log(true)); });
+  error_of([&] { parse_scene_text(text, "fuzz", silent_log()); });
 }
 
 TEST(ParserErrors, EveryPieceOfASceneParsesOrIsRefused) {
-  ASSERT_EQ(error_of([] { parse_scene_text(std::string(kGood), "good", Log(true)); }), "");
+  ASSERT_EQ(error_of([] { parse_scene_text(std::string(kGood), "good", silent_log()); }), "");
   for (size_t length = 0; length <= kGood.size(); ++length) {
     parse_anything(std::string(kGood.substr(0, length)));
     parse_anything("WorldBegin " + std::string(kGood.substr(length)));

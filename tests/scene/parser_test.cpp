@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/log.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -10,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-SceneDescription parse(const std::string& text) { return parse_scene_text(text, "s.pbrt", Log(true)); }
+SceneDescription parse(const std::string& text) { return parse_scene_text(text, "s.pbrt", silent_log()); }
 SceneDescription parse_world(const std::string& text) { return parse("WorldBegin\n" + text); }
 
 const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
@@ -247,7 +248,7 @@ TEST(Parser, WarnsOfAcceleratorsOptionsGivenTwiceAndLightsInObjects) {
   parse_scene_text(R"(Accelerator "bvh" Film "rgb"
 Film "rgb"
 WorldBegin ObjectBegin "o" LightSource "point" ObjectEnd)",
-                   "s.pbrt", Log());
+                   "s.pbrt", ConsoleLog());
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "s.pbrt:1:13: warning: Accelerator \"bvh\" has no effect: Embree brings its own\n"
             "s.pbrt:2:6: warning: this Film takes the place of that at s.pbrt:1:24\n"
@@ -260,7 +261,7 @@ TEST(Parser, IncludesFilesBesideTheOneThatNamesThemOrBesideTheMainFile) {
   folder.write("parts/b.pbrt", "Translate 1 0 0");
   folder.write("parts/c.pbrt", "\nShape \"sphere\"");
   const auto main = folder.write("main.pbrt", "WorldBegin Include \"parts/a.pbrt\" AttributeEnd Shape \"disk\"");
-  const SceneDescription s = parse_scene(main, Log(true));
+  const SceneDescription s = parse_scene(main, silent_log());
   ASSERT_EQ(s.shapes.size(), 2u);
   EXPECT_EQ(s.shapes[1].world_from_object, Transform::translate({1, 0, 0}));
   EXPECT_EQ(s.shapes[0].plugin.where.text(), folder.name_of("parts/c.pbrt") + ":2:7: ");
@@ -273,11 +274,11 @@ TEST(Parser, HashesTheContentOfAllFilesAndNotTheirNames) {
   const TestFolder folder("hash");
   const auto main = folder.write("main.pbrt", "WorldBegin Include \"part.pbrt\"");
   folder.write("part.pbrt", "Shape \"sphere\"");
-  const uint64_t before = parse_scene(main, Log(true)).content_hash;
-  EXPECT_EQ(before, parse_scene(main, Log(true)).content_hash);
-  EXPECT_EQ(parse("WorldBegin").content_hash, parse_scene_text("WorldBegin", "other", Log(true)).content_hash);
+  const uint64_t before = parse_scene(main, silent_log()).content_hash;
+  EXPECT_EQ(before, parse_scene(main, silent_log()).content_hash);
+  EXPECT_EQ(parse("WorldBegin").content_hash, parse_scene_text("WorldBegin", "other", silent_log()).content_hash);
   folder.write("part.pbrt", "Shape \"disk\"");
-  EXPECT_NE(before, parse_scene(main, Log(true)).content_hash);
+  EXPECT_NE(before, parse_scene(main, silent_log()).content_hash);
 }
 
 TEST(Parser, PrintsTheChainOfAnIncludeCycle) {
@@ -286,7 +287,7 @@ TEST(Parser, PrintsTheChainOfAnIncludeCycle) {
   folder.write("a.pbrt", "Include \"b.pbrt\"");
   folder.write("b.pbrt", "\n Include \"./a.pbrt\"");
   const std::string a = folder.name_of("a.pbrt"), b = folder.name_of("b.pbrt");
-  EXPECT_EQ(error_of([&] { parse_scene(main, Log(true)); }),
+  EXPECT_EQ(error_of([&] { parse_scene(main, silent_log()); }),
             b + ":2:10: include cycle: " + a + " -> " + b + " -> " + a);
 }
 
@@ -294,18 +295,18 @@ TEST(Parser, RefusesIncludesThatNestTooDeep) {
   const TestFolder folder("deep");
   const auto main = folder.write("0.pbrt", "Include \"1.pbrt\"");
   for (int i = 1; i <= 64; ++i) folder.write(fmt::format("{}.pbrt", i), fmt::format("Include \"{}.pbrt\"", i + 1));
-  EXPECT_THAT(error_of([&] { parse_scene(main, Log(true)); }),
+  EXPECT_THAT(error_of([&] { parse_scene(main, silent_log()); }),
               HasSubstr("63.pbrt:1:9: includes are nested more than 64 deep"));
 }
 
 TEST(Parser, SaysWhatIsWrongWithFilesThatItCannotRead) {
   const TestFolder folder("missing");
   const auto main = folder.write("main.pbrt", "Include \"gone.pbrt\"");
-  EXPECT_EQ(error_of([&] { parse_scene(main, Log(true)); }),
+  EXPECT_EQ(error_of([&] { parse_scene(main, silent_log()); }),
             main.string() + ":1:9: there is no file " + folder.name_of("gone.pbrt"));
-  EXPECT_EQ(error_of([&] { parse_scene(folder.name_of("gone"), Log(true)); }),
+  EXPECT_EQ(error_of([&] { parse_scene(folder.name_of("gone"), silent_log()); }),
             "there is no file " + folder.name_of("gone"));
-  EXPECT_EQ(error_of([&] { parse_scene(folder.name_of("."), Log(true)); }),
+  EXPECT_EQ(error_of([&] { parse_scene(folder.name_of("."), silent_log()); }),
             folder.name_of(".") + " is a folder, not a file");
 }
 

@@ -1,8 +1,8 @@
 #include <boost/math/special_functions/expint.hpp>
 
 #include "instruments/spectrophotometer.h"
-#include "leaf/absorption.h"
-#include "leaf/specimens.h"
+#include "leaf/tissue/absorption.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/specimen.h"
 #include "tests/support/input_error.h"

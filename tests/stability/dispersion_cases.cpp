@@ -1,7 +1,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "leaf/specimens.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/leaf_methods.h"
 

@@ -1,4 +1,4 @@
-#include "leaf/specimens.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/leaf_methods.h"
 

@@ -2,7 +2,7 @@
 
 #include "instruments/goniophotometer.h"
 #include "instruments/spectrophotometer.h"
-#include "leaf/specimens.h"
+#include "leaf/tissue/specimens.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/specimen.h"
 

@@ -3,7 +3,7 @@
 #include <bit>
 #include <numbers>
 
-#include "leaf/batch_walk.h"
+#include "leaf/walk/batch_walk.h"
 
 namespace frond::stability {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "instruments/statistics.h"
-#include "leaf/solver.h"
-#include "leaf/walk.h"
+#include "leaf/solve/solver.h"
+#include "leaf/walk/walk.h"
 #include "tests/stability/comparison.h"
 
 namespace frond::stability {

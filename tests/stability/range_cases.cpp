@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "leaf/specimens.h"
+#include "leaf/tissue/specimens.h"
 #include "materials/leaf_params.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/solved_f.h"

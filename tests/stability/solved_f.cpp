@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "leaf/fresnel.h"
-#include "leaf/modes.h"
+#include "leaf/solve/modes.h"
+#include "leaf/tissue/fresnel.h"
 
 namespace frond::stability {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/log.h"
 #include "instruments/goniophotometer.h"
 #include "instruments/spectrophotometer.h"
 
@@ -119,7 +120,7 @@ Specimen::Specimen(std::string_view material, Parameters params, double lambda_n
   const MaterialInfo& info = test::material_info(material);
   material_ = info.make(Params(info, {std::string(material), {}, std::move(params)}, resolver));
   const OneWavelength strategy(lambda_nm);
-  material_->prepare({strategy, pool_, Log(true), {}});
+  material_->prepare({strategy, pool_, silent_log(), {}});
 }
 
 const Bsdf& Specimen::bsdf() {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "instruments/beam.h"
-#include "leaf/tissue_params.h"
+#include "leaf/tissue/tissue_params.h"
 #include "tests/materials/support.h"
 #include "tests/stability/leaf_methods.h"
 

@@ -2,9 +2,10 @@
 
 #include <string>
 
+#include "core/log.h"
 #include "integrators/registry.h"
-#include "integrators/render.h"
 #include "materials/registry.h"
+#include "render/render_loop.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
 
@@ -22,7 +23,7 @@ struct RenderSettings {
 
 /// Renders a scene that a test spells out.
 inline Film render_text(const std::string& text, const RenderSettings& settings = {}) {
-  const Log quiet(true);
+  const Log& quiet = silent_log();
   ThreadPool pool(settings.threads);
   const SceneDescription description = parse_scene_text(text, "test.pbrt", quiet);
   Registry registry = make_registry(builtin_materials(), builtin_integrators());
@@ -32,11 +33,10 @@ inline Film render_text(const std::string& text, const RenderSettings& settings 
   overrides.seed = settings.seed;
   overrides.swaps = settings.swaps;
   const Scene scene(description, registry, overrides, pool, quiet);
-  Film film(Scene::film_settings(description, registry));
-  const RenderStatistics statistics =
-      render({scene, scene.camera(), scene.integrator(), scene.wavelengths(), scene.filter(), scene.sampler(),
-              scene.seed(), 0, uint64_t(settings.samples)},
-             film, pool, {});
+  Film film({.settings = scene.film(), .bands = scene.wavelengths().bands().size()});
+  const RenderJob job{scene,          scene.camera(),  scene.integrator(), scene.wavelengths(),
+                      scene.filter(), scene.sampler(), scene.seed()};
+  const RenderStatistics statistics = render(job, plan_of(film, {0, uint64_t(settings.samples)}), film, pool);
   if (settings.statistics) *settings.statistics = statistics;
   return film;
 }
@@ -50,7 +50,7 @@ inline ChannelMean channel_mean(const Film& film, size_t channel) {
   const Crop& c = film.settings().crop;
   double sum = 0, variance = 0;
   for (int y = c.y0; y < c.y1; ++y)
-    for (int x = c.x0; x < c.x1; ++x) sum += film.mean(x, y)[channel], variance += film.covariance(x, y)[channel];
+    for (int x = c.x0; x < c.x1; ++x) sum += film.mean(x, y)[channel], variance += film.variance(x, y)[channel];
   const double n = double(c.width()) * double(c.height());
   return {sum / n, std::sqrt(variance) / n};
 }

@@ -11,7 +11,7 @@ from .comparison import FALSE_ALARMS, geometric_mean, warnings
 from .text import change, interval, seconds, verdict
 
 HERE = pathlib.Path(__file__).parent
-STYLES = (ROOT / "src/cli/compare/page/page.css", HERE / "page.css")  # that of frond compare's report, and more
+STYLES = (ROOT / "src/study/compare/page/page.css", HERE / "page.css")  # that of frond compare's report, and more
 SIGNS = {"slower": "▲ slower", "faster": "▼ faster", "": ""}
 CHANNELS = ("red", "green", "blue")
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "core/bsdf.h"
-#include "leaf/body_table.h"
+#include "leaf/table/body_table.h"
 #include "materials/lobes/surface_lobe.h"
 
 namespace frond {

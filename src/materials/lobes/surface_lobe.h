@@ -5,7 +5,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "core/vec.h"
-#include "leaf/lobe.h"
+#include "leaf/tissue/lobe.h"
 
 namespace frond {
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "core/bsdf.h"
-#include "leaf/lookup.h"
+#include "leaf/table/lookup.h"
 #include "materials/lobes/surface_lobe.h"
 
 namespace frond {

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace frond {
+
+__extension__ using Int128 = __int128;
+
+/// A sum that does not depend on the order of its terms: fixed point, 128 bits, `kFraction` of them behind the point.
+/// Each term is rounded toward 0 to a multiple of 2^-kFraction; from there on all is exact. 2^30 terms below
+/// `kLargestTerm` in magnitude cannot overflow it.
+template <int kFraction>
+class ExactSum {
+ public:
+  static constexpr double kLargestTerm =
+      double(uint64_t{1} << 48) * double(uint64_t{1} << 48) / double(uint64_t{1} << kFraction);
+
+  void add(double term) {
+    // In units of 2^64: what is before the point, and what is behind it.
+    const double units = term * (double(uint64_t{1} << kFraction) * 0x1p-64);
+    const auto whole = static_cast<int64_t>(units);
+    const auto rest = static_cast<int64_t>((units - static_cast<double>(whole)) * 0x1p63);
+    bits_ += (static_cast<Int128>(whole) << 64) + (static_cast<Int128>(rest) << 1);
+  }
+  ExactSum& operator+=(const ExactSum& other) {
+    bits_ += other.bits_;
+    return *this;
+  }
+  double value() const { return static_cast<double>(bits_) / double(uint64_t{1} << kFraction); }
+
+  friend bool operator==(const ExactSum&, const ExactSum&) = default;
+
+ private:
+  Int128 bits_ = 0;
+};
+
+}  // namespace frond

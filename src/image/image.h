@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace frond {
+
+/// Pixels in memory: rows from the top, channels next to each other.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;
+  std::vector<float> pixels;
+
+  Image() = default;
+  /// Black.
+  Image(int width, int height, std::vector<std::string> channels);
+
+  std::optional<size_t> channel(std::string_view name) const;
+  const float& at(int x, int y, size_t channel) const { return pixels[index(x, y, channel)]; }
+  float& at(int x, int y, size_t channel) { return pixels[index(x, y, channel)]; }
+
+ private:
+  size_t index(int x, int y, size_t channel) const {
+    return (size_t(y) * size_t(width) + size_t(x)) * channels.size() + channel;
+  }
+};
+
+}  // namespace frond

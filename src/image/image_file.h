@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "image/image.h"
+#include "spectra/color_space.h"
+
+namespace frond {
+
+/// What an image file says beside its pixels.
+struct ImageHeader {
+  std::string color_space;                  ///< linear name of spectra/color_space.h; empty: unknown
+  std::map<std::string, std::string> text;  ///< attributes by name, such as "frond:seed"
+  /// Where the image lies in a larger one of which it is a part (EXR's data and display windows); 0: it is the whole.
+  int x = 0, y = 0, full_width = 0, full_height = 0;
+};
+
+enum class ExrDepth { half, single };
+
+/// Refuses, by InputError, a path that `write_image` could not write: unknown extension, missing folder, no permission,
+/// something that is no regular file. Nothing is left behind.
+void check_writable(const std::filesystem::path& path);
+
+/// By the extension, in whatever case.
+bool is_exr(const std::filesystem::path& path);
+
+/// Writes .exr (floats), or .png and .jpg (8 bits; values are already encoded for a display, and clamped to [0, 1]).
+/// The image is encoded in memory, written beside its place, synchronised to the disk and renamed: a file of that name
+/// is either the old one or the whole new one. Known colour spaces leave their chromaticities in an EXR. The date is
+/// now, or SOURCE_DATE_EPOCH if that is set. Throws InputError when anything fails.
+void write_image(const std::filesystem::path& path, const Image& image, const ImageHeader& header,
+                 ExrDepth depth = ExrDepth::single);
+
+struct ImageFile {
+  Image image;
+  ImageHeader header;
+  std::optional<Chromaticities> chromaticities;
+  bool eight_bit = false;  ///< values 0 to 255 in the file, here 0 to 1 and still encoded
+};
+
+/// Reads an image in any format that OpenImageIO knows (EXR, PNG, JPEG, HDR, TIFF, ...): values as they stand in the
+/// file, alpha not multiplied in. Throws InputError at `where` if there is no such file or its data are not whole.
+ImageFile read_image(const std::filesystem::path& path, const Location& where);
+
+}  // namespace frond

@@ -1,7 +1,0 @@
-#include "leaf/batch_event.h"
-
-namespace frond::leaf::batch {
-
-const Kernel kBaseline = kernel("baseline");
-
-}  // namespace frond::leaf::batch

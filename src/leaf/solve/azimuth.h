@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+
+#include "leaf/solve/quadrature.h"
+
+namespace frond::leaf {
+
+/// Fourier modes over azimuth of a lobe's max(0, cos alpha)^e, for directions at given angles to the normal.
+class AzimuthModes {
+ public:
+  explicit AzimuthModes(double exponent);
+
+  /// Means over azimuth phi of lobe * cos(m phi), m = 0, 1, ... modes.size() - 1. mu_axis, mu in [0, 1]: cosines to the
+  /// normal of the lobe's axis and of the direction, on the same side.
+  void operator()(double mu_axis, double mu, std::span<double> modes) const;
+  /// The mean alone.
+  double mean(double mu_axis, double mu) const;
+
+ private:
+  /// cos alpha = a + b cos phi, which is positive up to phi_max.
+  struct Angles {
+    double a, b, phi_max;
+    Angles(double mu_axis, double mu);
+  };
+  /// Means of the lobes of exponents e and e + 1.
+  struct Means {
+    double value, next;
+  };
+  Means means(const Angles& angles) const;
+  double direct(double power, const Angles& angles) const;
+  void forward(const Angles& angles, const Means& means, std::span<double> modes) const;
+  void backward(const Angles& angles, const Means& means, std::span<double> modes) const;
+
+  double exponent_, fraction_;
+  std::vector<QuadratureNode> quadrature_;  ///< empty where the exponent is an integer
+};
+
+}  // namespace frond::leaf

@@ -1,0 +1,137 @@
+#include "leaf/solve/modes.h"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "leaf/solve/chain.h"
+#include "leaf/tissue/fresnel.h"
+
+namespace frond::leaf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr size_t kFirst = Chain::kFirst, kLast = Chain::kLast;
+
+/// An epidermis's side of the outer interface: how light that has just come in is spread among the nodes, and how light
+/// that a lobe is about to send out spreads over directions that are no nodes. Both epidermes have one index and one
+/// lobe.
+class Port {
+ public:
+  Port(const Chain& chain, const VectorXd& mu, size_t modes)
+      : chain_(chain), lobes_(lobe_modes(lobe().exponent(), epidermis().mu, mu, modes)) {
+    kept_ = lobes_[0].transpose() * epidermis().weight;
+  }
+
+  /// Rows: the directions that light comes in along, inside; columns: nodes. Shares.
+  MatrixXd entrance(size_t mode) const {
+    return kept_.cwiseInverse().asDiagonal() * lobes_[mode].transpose() * epidermis().weight.asDiagonal();
+  }
+
+  /// Light leaves unperturbed through the outer interface, but every direction inside an epidermis was drawn from a
+  /// lobe: so the event before the last one has a density toward any direction at all.
+  Sources exits(size_t mode) const {
+    const Index ways = lobes_[mode].cols();
+    Sources sources{.ways = 2 * ways};
+    const auto add = [&](MatrixXd& source, size_t medium, bool up, bool refracts, Index column) {
+      source = MatrixXd::Zero(chain_.count(medium), sources.ways);
+      source.middleCols(column, ways) = chain_.branch_density(lobes_[mode], medium, up, refracts);
+    };
+    add(sources.down[kFirst], kFirst, false, false, 0);
+    add(sources.up[kFirst + 1], kFirst + 1, true, true, 0);
+    add(sources.up[kLast], kLast, true, false, ways);
+    add(sources.down[kLast - 1], kLast - 1, false, true, ways);
+    return sources;
+  }
+
+ private:
+  const Lobe& lobe() const { return *chain_.tissue().lobes[0][false][true]; }
+  const Directions& epidermis() const { return chain_.directions(kFirst); }
+
+  const Chain& chain_;
+  std::vector<MatrixXd> lobes_;  ///< [mode](node, direction)
+  VectorXd kept_;
+};
+
+/// Of directions inside that refract into those of the given sines.
+VectorXd inner_cosines(std::span<const double> sines, double n) {
+  VectorXd mu(static_cast<Index>(sines.size()));
+  for (Index i = 0; i < mu.size(); ++i) {
+    const double sine = sines[static_cast<size_t>(i)] / n;
+    assert(std::abs(sine) < 1);
+    mu[i] = std::sqrt(1 - sine * sine);
+  }
+  return mu;
+}
+
+/// -1 for negative sines in odd modes.
+VectorXd signs(std::span<const double> sines, size_t mode) {
+  VectorXd result(static_cast<Index>(sines.size()));
+  for (Index i = 0; i < result.size(); ++i) result[i] = mode % 2 == 1 && sines[static_cast<size_t>(i)] < 0 ? -1 : 1;
+  return result;
+}
+
+BodyModes::Grid row_by_row(const MatrixXd& matrix) {
+  BodyModes::Grid grid;
+  for (Index i = 0; i < matrix.rows(); ++i)
+    for (Index j = 0; j < matrix.cols(); ++j) grid.push_back(matrix(i, j));
+  return grid;
+}
+
+/// Beyond it the modes of lobes of this exponent are nothing.
+size_t most_modes(double exponent) { return static_cast<size_t>(16 + 3 * std::sqrt(exponent)); }
+
+}  // namespace
+
+double passage(const Tissue& tissue, double cos_i, double cos_o) {
+  const double eta = 1 / tissue.n_cuticle();
+  const Crossing in = fresnel(cos_i, eta), out = fresnel(cos_o, eta);
+  return (1 - in.reflectance) * (1 - out.reflectance) / out.cos_t;
+}
+
+int mode_nodes(const Tissue& tissue) {
+  const auto [least, most] = exponents_inside(tissue);
+  const int for_width = static_cast<int>(std::ceil(2.5 + 1.1 * std::sqrt(most)));
+  return std::max(least < 1 ? 8 : 5, for_width);
+}
+
+BodyModes solve_modes(const Tissue& tissue, std::span<const double> sines, double tolerance, int nodes) {
+  const size_t most = most_modes(tissue.lobes[0][false][true]->exponent());
+  const Chain chain(tissue, nodes, most);
+  const double n = tissue.n_cuticle();
+  const Port port(chain, inner_cosines(sines, n), most);
+  const auto ways = static_cast<Index>(sines.size());
+
+  BodyModes result({sines.begin(), sines.end()});
+  std::array<bool, 2> open{true, true};  // whether light that returns, that crosses, has modes left
+  for (size_t m = 0; m < most && (open[0] || open[1]); ++m) {
+    const Sources exits = port.exits(m);
+    const Prospects inside = ModeSolver(chain, m, exits).solve(tissue, 2 * nodes);
+    const MatrixXd entrance = port.entrance(m);
+    const VectorXd sign = signs(sines, m);
+    const double scale = (m == 0 ? 1 : 2) / (2 * std::numbers::pi * n * n);
+    std::array<double, 2> largest{};
+    std::array<std::array<MatrixXd, 2>, 2> values;
+    for (const bool from_below : {false, true}) {
+      const MatrixXd out = scale * sign.asDiagonal() * entrance * (from_below ? inside.from_below : inside.from_above);
+      for (const bool crosses : {false, true}) {
+        MatrixXd& part = values[from_below][crosses];
+        part = out.middleCols(from_below != crosses ? ways : 0, ways) * sign.asDiagonal();
+        largest[crosses] = std::max(largest[crosses], part.cwiseAbs().maxCoeff());
+      }
+    }
+    for (const bool crosses : {false, true}) {
+      // The modes left out shrink at least threefold from each to the next.
+      open[crosses] = open[crosses] && (m == 0 || largest[crosses] * std::numbers::pi > tolerance / 2);
+      if (open[crosses])
+        for (const bool from_below : {false, true})
+          result.series(from_below, crosses).push_back(row_by_row(values[from_below][crosses]));
+    }
+  }
+  return result;
+}
+
+}  // namespace frond::leaf

@@ -1,0 +1,69 @@
+#include "leaf/table/body_cache.h"
+
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <optional>
+
+#include "core/log.h"
+#include "leaf/solve/solver.h"
+#include "leaf/table/body_file.h"
+#include "leaf/table/cache_file.h"
+#include "leaf/table/table_cache.h"
+#include "leaf/tissue/constants.h"
+#include "system/cache_limit.h"
+
+namespace frond::leaf {
+namespace {
+
+/// What `to_text` wrote under the same header; none if it is anything else.
+std::optional<BodySpectrum> parse(std::string_view text, std::string_view header, const BodyRequest& request) {
+  if (!text.starts_with(header)) return {};
+  try {
+    BodyFile file = parse_body_file(text, "");
+    const size_t columns = request.wavelengths_nm.size() * std::max<size_t>(1, request.depths.depths().size());
+    if (file.columns.size() == columns) return std::move(file.spectrum);
+  } catch (const InputError&) {  // no more than damaged
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string summary(const BodyRequest& request, std::string_view name, const BodySpectrum& spectrum) {
+  const std::string depths = request.depths.empty() ? "" : fmt::format(" x {} depths", request.depths.depths().size());
+  return fmt::format("leaf modes: {}, {} wavelengths{} x {} cells, error of pi f <= {:.1e}", name,
+                     request.wavelengths_nm.size(), depths, spectrum.cells, spectrum.error + request.tolerance / 2);
+}
+
+std::string describe(const BodyRequest& request) {
+  std::string text =
+      fmt::format("# leaf modes (docs/table_format.md)\n{}# solver {}, modes {}, constants {:016x}, tolerance {}\n",
+                  describe(request.params), kSolverVersion, kModesVersion, constants_hash(), request.tolerance);
+  text += fmt::format("# wavelengths_nm {}\n", list_text(request.wavelengths_nm));
+  if (request.nodes > 0) text += fmt::format("# nodes {}\n", request.nodes);
+  if (!request.depths.empty()) text += fmt::format("# depths {}\n", fmt::join(request.depths.depths(), ","));
+  return text;
+}
+
+BodySpectrum cached_body_spectrum(const BodyRequest& request, std::string_view name, const ThreadPool& pool,
+                                  const Log& log, const std::filesystem::path& cache_dir) {
+  const std::string header = describe(request);
+  const auto path = cache_path(cache_dir, header, "modes");
+  if (const auto text = read_cached(path, log)) {
+    if (auto spectrum = parse(without_checksum(*text), header, request)) {
+      mark_as_used(path);
+      log.info(summary(request, name, *spectrum) + ", from the cache");
+      return std::move(*spectrum);
+    }
+    log.warn({}, fmt::format("{} is damaged, its modes are made anew", path.string()));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  BodySpectrum spectrum = make_body_spectrum(request, pool);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  log.info(summary(request, name, spectrum) + fmt::format(", {:.2g} s", seconds.count()));
+  if (!path.empty()) write_cached(path, with_checksum(to_text(request, spectrum, header)), log);
+  return spectrum;
+}
+
+}  // namespace frond::leaf

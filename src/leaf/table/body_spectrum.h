@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "core/parallel.h"
+#include "leaf/solve/modes.h"
+#include "leaf/table/table_axes.h"
+#include "leaf/tissue/tissue_params.h"
+
+namespace frond::leaf {
+
+/// All that a BodySpectrum depends on.
+struct BodyRequest {
+  TissueParams params;
+  std::vector<double> wavelengths_nm;
+  DepthAxis depths = {};  ///< empty: the leaf's own
+  double tolerance;       ///< of pi f: see solve_modes
+  int nodes = 0;          ///< per segment; 0: as many as mode_nodes says
+};
+
+/// BodyModes of one leaf, on a grid even in the sines of both angles for cubic interpolation: `cells` in [0, 1], and
+/// one beyond on either side, so that the ends are like the middle.
+struct BodySpectrum {
+  int cells = 0;
+  std::vector<double> index = {};     ///< of the cuticle, by column
+  std::vector<BodyModes> modes = {};  ///< columns: [wavelength], or [wavelength][depth]
+  /// Estimate of the largest error of pi f that interpolation between the sines leaves. At most the tolerance, but
+  /// where that would take more than kMostCells.
+  double error = 0;
+};
+
+inline constexpr int kMostCells = 32;
+
+std::vector<double> grid_sines(int cells);
+
+/// The same bits for any number of threads.
+BodySpectrum make_body_spectrum(const BodyRequest& request, const ThreadPool& pool);
+
+}  // namespace frond::leaf

@@ -1,0 +1,102 @@
+#include "leaf/table/body_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "leaf/solve/quadrature.h"
+#include "leaf/tissue/fresnel.h"
+
+namespace frond::leaf {
+namespace {
+
+/// Share of the tolerance that the functions of SeriesTable may leave out, and their small terms once more.
+constexpr double kTableShare = 1.0 / 8;
+
+/// Of each node of the leaving sine in the integral of series / (1 - F_i) over the hemisphere.
+std::vector<double> exit_weights(double index, size_t cells, const std::vector<QuadratureNode>& rule) {
+  std::vector<double> weights(cells + 3, 0.0);
+  for (const auto& [x, weight] : rule) {
+    const double mu = x * x;  // dense at grazing, where the chance to leave is like a square root
+    const Crossing out = fresnel(mu, 1 / index);
+    const double whole = weight * 2 * x * mu * 2 * std::numbers::pi * (1 - out.reflectance) / out.cos_t;
+    const SineNodes nodes(static_cast<float>(std::sqrt(1 - mu * mu)), cells);
+    for (size_t k = 0; k < 4; ++k) weights[nodes.first + k] += whole * static_cast<double>(nodes.weight[k]);
+  }
+  return weights;
+}
+
+}  // namespace
+
+BodyTable::BodyTable(const BodyRequest& request, const BodySpectrum& spectrum, bool lanes_vary)
+    : cells_(static_cast<size_t>(spectrum.cells)),
+      index_(spectrum.index.begin(), spectrum.index.end()),
+      depths_(request.depths) {
+  if (lanes_vary) wavelengths_ = WavelengthAxis(request.wavelengths_nm);
+  for (const bool from_below : {false, true})
+    for (const bool crosses : {false, true})
+      series_[from_below][crosses] = SeriesTable(spectrum, from_below, crosses, kTableShare * request.tolerance);
+  add_ways(spectrum);
+}
+
+/// By mode 0, interpolated as a look-up does.
+void BodyTable::add_ways(const BodySpectrum& spectrum) {
+  const size_t side = cells_ + 3;
+  const std::vector<QuadratureNode> rule = gauss_legendre(16);
+  for (size_t c = 0; c < index_.size(); ++c) {
+    const std::vector<double> weights = exit_weights(static_cast<double>(index_[c]), cells_, rule);
+    const auto share = [&](bool from_below, bool crosses, size_t incident) {
+      const double* h = &spectrum.modes[c].series(from_below, crosses)[0][incident * side];
+      return static_cast<float>(std::inner_product(weights.begin(), weights.end(), h, 0.0));
+    };
+    for (const bool below : {false, true})
+      for (size_t i = 0; i < side; ++i)
+        ways_[below].push_back(Float4{share(below, false, i), share(below, true, i), share(!below, true, i), 0});
+  }
+}
+
+size_t BodyTable::bytes() const {
+  size_t sum = 0;
+  for (const bool below : {false, true}) {
+    sum += ways_[below].size() * sizeof(Float4);
+    for (const SeriesTable& table : series_[below]) sum += table.bytes();
+  }
+  return sum;
+}
+
+BodyTable::Selection BodyTable::select(const SampledWavelengths& lambda) const {
+  return with_index(select_columns(wavelengths_, lambda));
+}
+
+BodyTable::Selection BodyTable::select(const SampledWavelengths& lambda,
+                                       const std::array<double, kLanes>& optical_depth) const {
+  return with_index(select_columns(wavelengths_, depths_, lambda, optical_depth));
+}
+
+BodyTable::Selection BodyTable::with_index(const TableSelection& columns) const {
+  Selection selection{columns, SampledSpectrum(index_[0])};
+  for (size_t l = 0; l < static_cast<size_t>(columns.lane_count); ++l) {
+    float index = 0;
+    for (size_t c = 0; c < static_cast<size_t>(columns.columns_per_lane); ++c)
+      index += columns.lanes[l].weight[c] * index_[columns.lanes[l].column[c]];
+    selection.index.v[l] = index;
+  }
+  return selection;
+}
+
+BodyTable::Ways BodyTable::ways(bool from_below, const Nodes& incident, const SampledSpectrum& light,
+                                const TableSelection& columns) const {
+  Float4 sum{};
+  for (size_t l = 0; l < static_cast<size_t>(columns.lane_count); ++l)
+    for (size_t c = 0; c < static_cast<size_t>(columns.columns_per_lane); ++c) {
+      const Float4* shares = &ways_[from_below][columns.lanes[l].column[c] * (cells_ + 3) + incident.first];
+      Float4 between{};
+      for (size_t i = 0; i < 4; ++i) between += incident.weight[i] * shares[i];
+      sum += light.v[l] * columns.lanes[l].weight[c] * between;
+    }
+  sum = larger(sum, Float4{});
+  return {sum[0], sum[1], sum[2]};
+}
+
+}  // namespace frond::leaf

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/spectrum.h"
+#include "core/texture.h"
+#include "leaf/tissue/tissue_params.h"
+
+namespace frond::leaf {
+
+/// Optical depth of the mesophyll, on a leaf whose chemistry or thickness follows textures. Concentrations, thickness
+/// and mesophyll fraction act on light through this one number.
+class DepthMap {
+ public:
+  /// A number of TissueParams that a texture replaces.
+  struct Varying {
+    std::function<double&(TissueParams&)> number;
+    std::shared_ptr<const FloatTexture> texture;
+  };
+  /// `constant` holds for whatever is not in `varying`.
+  DepthMap(const TissueParams& constant, const std::vector<Varying>& varying);
+
+  /// Whether the depth is the same everywhere.
+  bool is_constant() const { return curves_.empty() && !thickness_.texture && !fraction_.texture; }
+
+  /// Lane by lane, in every lane in use.
+  std::array<double, kLanes> at(Vec2 uv, const SampledWavelengths& lambda) const;
+  /// Bounds of what `at` returns at a wavelength.
+  Interval range(double lambda_nm) const;
+
+ private:
+  struct Factor {
+    double constant;
+    std::shared_ptr<const FloatTexture> texture;  ///< nullptr: constant
+    double at(Vec2 uv) const { return texture ? double(texture->evaluate(uv)) : constant; }
+    Interval range() const { return texture ? texture->range() : Interval{constant, constant}; }
+  };
+  /// A concentration that varies, and the absorption of 1 kg/m^3 of it at kAbsorptionGrid.
+  struct Curve {
+    std::shared_ptr<const FloatTexture> concentration;
+    std::vector<double> absorption;
+  };
+
+  Factor thickness_, fraction_;
+  std::vector<double> base_;  ///< absorption of all that is constant, at kAbsorptionGrid
+  std::vector<Curve> curves_;
+};
+
+}  // namespace frond::leaf

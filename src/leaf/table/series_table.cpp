@@ -1,0 +1,114 @@
+#include "leaf/table/series_table.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace frond::leaf {
+namespace {
+
+size_t longest_series(const std::vector<BodyModes>& modes, bool from_below, bool crosses) {
+  size_t longest = 0;
+  for (const BodyModes& m : modes) longest = std::max(longest, m.series(from_below, crosses).size());
+  return longest;
+}
+
+/// All modes of each column in a row: [mode][place].
+std::vector<std::vector<double>> rows_of(const BodySpectrum& spectrum, bool from_below, bool crosses, size_t modes,
+                                         size_t places) {
+  std::vector<std::vector<double>> rows;
+  for (const BodyModes& column : spectrum.modes) {
+    std::vector<double>& row = rows.emplace_back(modes * places, 0.0);
+    auto to = row.begin();
+    for (const BodyModes::Grid& h : column.series(from_below, crosses)) to = std::ranges::copy(h, to).out;
+  }
+  return rows;
+}
+
+/// Largest sum over the modes of a row, which is one of pi f: what stands before the series is about 1 at most.
+double largest_sum(const std::vector<double>& row, size_t places) {
+  double largest = 0;
+  for (size_t i = 0; i < places; ++i) {
+    double sum = 0;
+    for (size_t k = i; k < row.size(); k += places) sum += std::abs(row[k]);
+    largest = std::max(largest, sum);
+  }
+  return largest * std::numbers::pi;
+}
+
+}  // namespace
+
+SeriesTable::SeriesTable(const BodySpectrum& spectrum, bool from_below, bool crosses, double tolerance)
+    : cells_(static_cast<size_t>(spectrum.cells)), modes_(longest_series(spectrum.modes, from_below, crosses)) {
+  assert(modes_ <= kMostModes);
+  const ReducedBasis basis = reduce_basis(
+      rows_of(spectrum, from_below, crosses, modes_, places()),
+      [this](const std::vector<double>& row) { return largest_sum(row, places()); }, tolerance, 4 * kMostBlocks);
+  blocks_ = (basis.functions.size() + 3) / 4;
+  set_weights(basis);
+  set_needed(basis, tolerance);
+  set_values(basis);
+}
+
+void SeriesTable::set_weights(const ReducedBasis& basis) {
+  weights_.resize(basis.weights.size() * blocks_);
+  for (size_t c = 0; c < basis.weights.size(); ++c)
+    for (size_t k = 0; k < basis.functions.size(); ++k)
+      weights_[c * blocks_ + k / 4][k % 4] = static_cast<float>(basis.weights[c][k]);
+}
+
+/// Of pi f, at each place: what a mode of the block's functions adds in the column where it adds most.
+std::vector<double> SeriesTable::size_of(const ReducedBasis& basis, size_t block, size_t mode) const {
+  const size_t first = 4 * block, end = std::min(first + 4, basis.functions.size());
+  std::vector<double> sizes(places(), 0.0);
+  for (const std::vector<double>& weights : basis.weights)
+    for (size_t i = 0; i < places(); ++i) {
+      double sum = 0;
+      for (size_t k = first; k < end; ++k) sum += weights[k] * basis.functions[k][mode * places() + i];
+      sizes[i] = std::max(sizes[i], std::abs(sum) * std::numbers::pi);
+    }
+  return sizes;
+}
+
+/// Of what it adds in a cell: the cubics' weights have a sum of absolute values of 25/16 at most.
+double SeriesTable::around(const std::vector<double>& size, size_t incident, size_t leaving) const {
+  double largest = 0;
+  for (size_t i = incident; i < incident + 4; ++i)
+    for (size_t o = leaving; o < leaving + 4; ++o) largest = std::max(largest, size[i * side() + o]);
+  return largest * 25 / 16;
+}
+
+/// In each cell as many modes as it takes to leave out less than the tolerance in all blocks together; one at least.
+void SeriesTable::set_needed(const ReducedBasis& basis, double tolerance) {
+  needed_.resize(cells_ * cells_ * blocks_);
+  for (size_t b = 0; b < blocks_; ++b) {
+    std::vector<std::vector<double>> sizes;
+    for (size_t m = 0; m < modes_; ++m) sizes.push_back(size_of(basis, b, m));
+    for (size_t cell = 0; cell < cells_ * cells_; ++cell) {
+      size_t needed = modes_;
+      double left_out = 0;
+      while (needed > 1) {
+        left_out += around(sizes[needed - 1], cell / cells_, cell % cells_);
+        if (left_out > tolerance / static_cast<double>(blocks_)) break;
+        --needed;
+      }
+      needed_[cell * blocks_ + b] = static_cast<uint8_t>(needed);
+      most_modes_[b] = std::max(most_modes_[b], needed);
+    }
+    terms_ += most_modes_[b];
+  }
+}
+
+void SeriesTable::set_values(const ReducedBasis& basis) {
+  values_.resize(places() * terms_);
+  for (size_t i = 0; i < places(); ++i)
+    for (size_t k = 0, before = 0; k < basis.functions.size(); ++k) {
+      if (k > 0 && k % 4 == 0) before += most_modes_[k / 4 - 1];
+      for (size_t m = 0; m < most_modes_[k / 4]; ++m)
+        values_[i * terms_ + before + m][k % 4] = static_cast<float>(basis.functions[k][m * places() + i]);
+    }
+}
+
+}  // namespace frond::leaf

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/float4.h"
+#include "leaf/solve/reduced_basis.h"
+#include "leaf/table/body_spectrum.h"
+
+namespace frond::leaf {
+
+/// The four nodes of a grid around a sine in [0, 1], and their weights in the cubic through them.
+struct SineNodes {
+  Float4 weight;
+  size_t first;
+
+  SineNodes() = default;
+  SineNodes(float sine, size_t cells) {
+    const float x = sine * static_cast<float>(cells);
+    first = std::min(static_cast<size_t>(x), cells - 1);
+    const float t = x - static_cast<float>(first);
+    // Lagrange's polynomials through -1, 0, 1, 2.
+    weight = Float4{0, 1, 0, 0};
+    weight += t * (Float4{-2, -3, 6, -1} + t * (Float4{3, -6, 3, 0} + t * Float4{-1, 3, -3, 1})) * (1.f / 6);
+  }
+};
+
+/// The series of a BodySpectrum for one side lit and one way out, as a render looks them up. All columns are mixtures
+/// of a few functions of direction, four of which share a register: what a look-up costs hardly depends on the number
+/// of columns and lanes, and the table stays in the processor's nearest cache.
+class SeriesTable {
+ public:
+  SeriesTable() = default;
+  /// What is left out of the columns by the functions, and of the functions where a term of theirs is small, is at most
+  /// `tolerance` of pi f each.
+  SeriesTable(const BodySpectrum& spectrum, bool from_below, bool crosses, double tolerance);
+
+  /// In the lanes that look at `columns`; not below 0.
+  SampledSpectrum at(const SineNodes& incident, const SineNodes& leaving, float cos_phi,
+                     const TableSelection& columns) const {
+    const Sums sums = functions_at(incident, leaving, cos_phi);
+    Float4 lanes{};
+    for (int lane = 0; lane < columns.lane_count; ++lane)
+      lanes[lane] =
+          mixture(sums, columns.lanes[static_cast<size_t>(lane)], static_cast<size_t>(columns.columns_per_lane));
+    return to_spectrum(larger(lanes, Float4{}));
+  }
+  /// The same where the lanes are the table's columns, one by one.
+  SampledSpectrum at(const SineNodes& incident, const SineNodes& leaving, float cos_phi) const {
+    return to_spectrum(larger(functions_at(incident, leaving, cos_phi)[0], Float4{}));
+  }
+
+  size_t bytes() const { return values_.size() * sizeof(Float4) + weights_.size() * sizeof(Float4); }
+
+ private:
+  static constexpr size_t kMostModes = 64, kMostBlocks = 8;
+  /// Values of the functions, four by four.
+  using Sums = std::array<Float4, kMostBlocks>;
+
+  size_t side() const { return cells_ + 3; }
+  size_t places() const { return side() * side(); }
+  void set_weights(const ReducedBasis& basis);
+  void set_needed(const ReducedBasis& basis, double tolerance);
+  void set_values(const ReducedBasis& basis);
+  std::vector<double> size_of(const ReducedBasis& basis, size_t block, size_t mode) const;
+  double around(const std::vector<double>& size, size_t incident, size_t leaving) const;
+
+  Sums functions_at(const SineNodes& incident, const SineNodes& leaving, float cos_phi) const {
+    std::array<float, kMostModes> cosines;  // cos m phi, by Chebyshev's recurrence
+    cosines[0] = 1, cosines[1] = cos_phi;
+    for (size_t m = 2; m < modes_; ++m) cosines[m] = 2 * cos_phi * cosines[m - 1] - cosines[m - 2];
+    Sums sums;
+    const Float4* term = values_.data() + (incident.first * side() + leaving.first) * terms_;
+    const uint8_t* needed = &needed_[(incident.first * cells_ + leaving.first) * blocks_];
+    for (size_t b = 0; b < blocks_; term += most_modes_[b++]) {
+      sums[b] = Float4{};
+      for (size_t m = 0; m < needed[b]; ++m)
+        sums[b] += cosines[m] * sum_patch(term + m, incident.weight, leaving.weight);
+    }
+    return sums;
+  }
+
+  Float4 sum_patch(const Float4* node, Float4 incident, Float4 leaving) const {
+    const size_t row = side() * terms_;
+    return (incident[0] * sum_row(node, leaving) + incident[1] * sum_row(node + row, leaving)) +
+           (incident[2] * sum_row(node + 2 * row, leaving) + incident[3] * sum_row(node + 3 * row, leaving));
+  }
+  Float4 sum_row(const Float4* node, Float4 leaving) const {
+    return (leaving[0] * node[0] + leaving[1] * node[terms_]) +
+           (leaving[2] * node[2 * terms_] + leaving[3] * node[3 * terms_]);
+  }
+
+  float mixture(const Sums& sums, const TableSelection::Lane& lane, size_t columns) const {
+    Float4 products{};
+    for (size_t c = 0; c < columns; ++c)
+      for (size_t b = 0; b < blocks_; ++b)
+        products += lane.weight[c] * (weights_[lane.column[c] * blocks_ + b] * sums[b]);
+    return sum(products);
+  }
+
+  size_t cells_ = 0, modes_ = 0, blocks_ = 0;
+  std::vector<Float4> weights_;                   ///< of the functions: [column][block]
+  std::array<size_t, kMostBlocks> most_modes_{};  ///< of a block, in any cell
+  size_t terms_ = 0;                              ///< sum of these
+  std::vector<Float4> values_;                    ///< [incident node][leaving node][block][mode]
+  std::vector<uint8_t> needed_;                   ///< modes, by [incident cell][leaving cell][block]
+};
+
+}  // namespace frond::leaf

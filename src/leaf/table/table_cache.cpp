@@ -1,0 +1,101 @@
+#include "leaf/table/table_cache.h"
+
+#include <fmt/ranges.h>
+
+#include <bit>
+#include <chrono>
+
+#include "core/log.h"
+#include "core/random.h"
+#include "leaf/table/cache_file.h"
+#include "leaf/table/table_file.h"
+#include "leaf/tissue/constants.h"
+#include "leaf/walk/walk.h"
+#include "system/cache_limit.h"
+
+namespace frond::leaf {
+namespace {
+
+std::string_view method_name(TableMethod method) { return method == TableMethod::monte_carlo ? "montecarlo" : "solve"; }
+
+}  // namespace
+
+std::string list_text(const std::vector<double>& values) {
+  if (values.size() > 2) {
+    const double step = values[1] - values[0];
+    if (step > 0 && even_steps(values[0], values.back(), step) == values)
+      return fmt::format("{}:{}:{}", values[0], values.back(), step);
+  }
+  return fmt::format("{}", fmt::join(values, ","));
+}
+
+std::string describe(const TissueParams& p) {
+  std::string text = fmt::format(
+      "# structure {}, thickness {} m, mesophyll fraction {}\n"
+      "# kg/m3: chlorophyll a {}, b {}, carotenoids {}, protein {}, cellulose {}, lignin {}\n"
+      "# aspect ratios: cuticle {}, epidermis {}, spongy {}, palisade {}; sieve and detour {}\n",
+      p.structure == Structure::bifacial ? "bifacial" : "unifacial", p.thickness_m, p.mesophyll_fraction,
+      p.chlorophyll_a, p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose, p.lignin, p.cuticle_aspect,
+      p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.sieve_and_detour);
+  for (const Pigment& pigment : p.pigments) {
+    uint64_t curve = 0;
+    for (const double x : pigment.specific_absorption) curve = hash_key(curve, std::bit_cast<uint64_t>(x));
+    text += fmt::format("# pigment {} kg/m3, absorption {:016x}\n", pigment.concentration, curve);
+  }
+  return text;
+}
+
+std::string describe(const TableRequest& request) {
+  std::string text = fmt::format("# leaf table of {}\n{}", method_name(request.method), describe(request.params));
+  if (request.method == TableMethod::monte_carlo)
+    text += fmt::format("# rays {}, seed {}, walk {}", request.rays, request.seed, kWalkVersion);
+  else
+    text +=
+        fmt::format("# solver {}{}", kSolverVersion, request.nodes > 0 ? fmt::format(", nodes {}", request.nodes) : "");
+  return text + fmt::format(", constants {:016x}\n# wavelengths_nm {}\n# theta_deg {}\n", constants_hash(),
+                            list_text(request.wavelengths_nm), list_text(request.theta_deg));
+}
+
+std::string summary(const TableRequest& request, std::string_view name, const Table& table) {
+  const bool walks = request.method == TableMethod::monte_carlo;
+  return fmt::format("leaf table: {}, {} wavelengths x {} angles, {}{}, {} <= {:.1e}", name,
+                     table.wavelengths_nm.size(), table.theta_deg.size(), method_name(request.method),
+                     walks ? fmt::format(" {} rays", request.rays) : "", walks ? "standard error" : "error",
+                     table.error);
+}
+
+std::string seal(const Table& table, std::string_view header) { return with_checksum(to_csv(table, header)); }
+
+bool unseal(std::string_view text, std::string_view header, Table& table) {
+  const std::string_view body = without_checksum(text);
+  if (body.empty() || !body.starts_with(header)) return false;
+  try {
+    table = parse_table(body, "");
+    return true;
+  } catch (const InputError&) {  // no more than damaged
+    return false;
+  }
+}
+
+Table cached_table(const TableRequest& request, std::string_view name, const ThreadPool& pool, const Log& log,
+                   const std::filesystem::path& cache_dir) {
+  const std::string header = describe(request);
+  const auto path = cache_path(cache_dir, header, "csv");
+  Table table;
+  if (const auto text = read_cached(path, log)) {
+    if (unseal(*text, header, table)) {
+      mark_as_used(path);
+      log.info(summary(request, name, table) + ", from the cache");
+      return table;
+    }
+    log.warn({}, fmt::format("{} is damaged, its table is made anew", path.string()));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  table = make_table(request, pool);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  log.info(summary(request, name, table) + fmt::format(", {:.2g} s", seconds.count()));
+  if (!path.empty()) write_cached(path, seal(table, header), log);
+  return table;
+}
+
+}  // namespace frond::leaf

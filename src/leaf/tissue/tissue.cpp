@@ -1,0 +1,69 @@
+#include "leaf/tissue/tissue.h"
+
+#include "leaf/tissue/absorption.h"
+#include "leaf/tissue/constants.h"
+
+namespace frond::leaf {
+
+TissueModel::TissueModel(const TissueParams& params)
+    : params_(params),
+      lobes_(std::make_shared<const Lobes>(
+          Lobes{TabulatedLobe(params.cuticle_aspect), TabulatedLobe(params.epidermis_aspect),
+                TabulatedLobe(params.spongy_aspect), TabulatedLobe(params.palisade_aspect)})) {
+  const double thickness = params.mesophyll_fraction * params.thickness_m;
+  const std::vector<double> absorption = absorption_coefficients(params);
+  for (size_t i = 0; i < kAbsorptionGrid.size(); ++i) {
+    const Constants c = constants_at(kAbsorptionGrid.nm(i));
+    optics_.push_back({c.n_cuticle, c.n_mesophyll, c.n_antidermal_wall, absorption[i] * thickness});
+  }
+}
+
+TissueModel::Optics TissueModel::optics_at(double lambda_nm) const {
+  const auto [i, t] = kAbsorptionGrid.cell(lambda_nm);
+  const Optics &a = optics_[i], &b = optics_[i + 1];
+  const double s = 1 - t;
+  return {s * a.n_cuticle + t * b.n_cuticle, s * a.n_mesophyll + t * b.n_mesophyll,
+          s * a.n_antidermal_wall + t * b.n_antidermal_wall, s * a.depth + t * b.depth};
+}
+
+Tissue TissueModel::at(double lambda_nm) const& { return build(optics_at(lambda_nm), lobes()); }
+
+Tissue TissueModel::at(double lambda_nm, double optical_depth, const LeafLobes& lobes) const {
+  Optics optics = optics_at(lambda_nm);
+  optics.depth = optical_depth;
+  return build(optics, lobes);
+}
+
+Tissue TissueModel::build(const Optics& optics, const LeafLobes& lobes) const {
+  const auto [n_cuticle, n_mesophyll, n_antidermal_wall, depth] = optics;
+  const auto [cut, epi, spo, pal] = lobes;
+  constexpr const Lobe* none = nullptr;
+  const bool bifacial = params_.structure == Structure::bifacial;
+
+  Tissue t{};
+  t.sieve_and_detour = params_.sieve_and_detour;
+  t.air_space_moves = !bifacial;
+  // Going down: reflected, refracted; going up: reflected, refracted.
+  if (bifacial) {
+    t.n = {1, n_cuticle, n_mesophyll, 1, n_antidermal_wall, n_cuticle, 1};
+    t.optical_depth = {0, 0, depth, 0, 0, 0, 0};
+    t.lobes = {{{{{cut, epi}, {epi, none}}},     // air, adaxial epidermis
+                {{{epi, pal}, {pal, epi}}},      // adaxial epidermis, mesophyll
+                {{{pal, spo}, {spo, pal}}},      // mesophyll, air space
+                {{{none, none}, {none, none}}},  // air space, antidermal wall
+                {{{none, epi}, {epi, none}}},    // antidermal wall, abaxial epidermis
+                {{{epi, none}, {cut, epi}}}}};   // abaxial epidermis, air
+  } else {
+    t.n = {1, n_cuticle, n_mesophyll, 1, n_mesophyll, n_cuticle, 1};
+    t.optical_depth = {0, 0, depth, 0, depth, 0, 0};
+    t.lobes = {{{{{cut, epi}, {epi, none}}},    // air, adaxial epidermis
+                {{{epi, spo}, {spo, epi}}},     // adaxial epidermis, mesophyll
+                {{{spo, spo}, {spo, spo}}},     // mesophyll, air space
+                {{{spo, spo}, {spo, spo}}},     // air space, mesophyll
+                {{{spo, epi}, {epi, spo}}},     // mesophyll, abaxial epidermis
+                {{{epi, none}, {cut, epi}}}}};  // abaxial epidermis, air
+  }
+  return t;
+}
+
+}  // namespace frond::leaf

@@ -1,0 +1,7 @@
+#include "leaf/walk/batch_event.h"
+
+namespace frond::leaf::batch {
+
+const Kernel kBaseline = kernel("baseline");
+
+}  // namespace frond::leaf::batch

@@ -1,0 +1,207 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <vector>
+
+#include "core/exact_sum.h"
+#include "core/vec.h"
+#include "core/wavelengths.h"
+#include "render/work.h"
+#include "scene/film_settings.h"
+#include "spectra/matrix3.h"
+
+namespace frond {
+
+/// What a film holds, and in which units.
+struct FilmFormat {
+  FilmSettings settings;
+  size_t bands = 0;       ///< of a sensor; 0: the film has three colours
+  bool features = false;  ///< what camera rays met first is summed up too
+  bool blocks = false;    ///< how blocks of a pixel's samples differ is summed up too: whole blocks have to be rendered
+  /// Values are kept in units of 2^exponent: near the picture's typical value, sums have 18 digits below it and 10
+  /// above, squares 6 below and 8 above. Brighter samples are cut off there, and counted.
+  int exponent = 0;
+  Matrix3 color = Matrix3::diagonal({1, 1, 1});  ///< from a path's response to the film's colours
+  Triple white = {1, 1, 1};  ///< the film's colours of a path of radiance 1: what an albedo of 1 is measured by
+};
+
+/// What a sample's camera ray met first.
+struct Features {
+  SensorResponse albedo;
+  Vec3 normal, position;
+  float depth = 0;
+  uint32_t material = 0, instance = 0;
+  float from_center = 0;  ///< distance of the sample from the pixel's centre, pixels
+  uint64_t sample = 0;
+};
+
+/// Sums over the samples of some pixels, exact and so the same in any order: of three colours, or of a sensor's bands,
+/// of which a sample need not see all.
+class FilmTile {
+ public:
+  struct Pixel {
+    std::array<ExactSum<60>, 3> sum{};     ///< of colours
+    std::array<ExactSum<40>, 3> square{};  ///< of colours
+    int64_t weight = 0;                    ///< in units of 2^-30
+    uint64_t samples = 0, leaf = 0;
+    uint64_t not_finite = 0;  ///< of these samples; also those too bright for the film
+    Pixel& operator+=(const Pixel& other);
+    friend bool operator==(const Pixel&, const Pixel&) = default;
+  };
+  /// Of those samples of a pixel that saw a band.
+  struct BandSums {
+    ExactSum<60> sum;
+    ExactSum<40> square;
+    uint64_t samples = 0, unused = 0;  // no padding: its bytes are kept in files
+    BandSums& operator+=(const BandSums& other);
+    friend bool operator==(const BandSums&, const BandSums&) = default;
+  };
+  /// Of those samples of a pixel that met something.
+  struct FeatureSums {
+    std::array<ExactSum<40>, 3> albedo{}, normal{}, position{};
+    ExactSum<40> depth;
+    uint64_t hits = 0;
+    /// Ids are no quantities: those of the sample nearest to the pixel's centre, the first of them.
+    uint64_t nearest_sample = ~uint64_t{0};
+    float nearest_distance = INFINITY;
+    uint32_t material = 0, instance = 0, unused = 0;
+    FeatureSums& operator+=(const FeatureSums& other);
+    friend bool operator==(const FeatureSums&, const FeatureSums&) = default;
+  };
+
+  /// Of a pixel's blocks of kBlock samples, which are spread more evenly than any samples: from how much their means
+  /// differ follows what noise there is.
+  static constexpr uint64_t kBlock = 16;
+  struct BlockSums {
+    std::array<ExactSum<40>, 3> square{};  ///< of a block's mean
+    uint64_t blocks = 0, unused = 0;
+    BlockSums& operator+=(const BlockSums& other);
+    friend bool operator==(const BlockSums&, const BlockSums&) = default;
+  };
+
+  FilmTile(const FilmFormat& format, const Crop& pixels);
+  /// Black again, of other pixels.
+  void clear(const Crop& pixels);
+
+  /// Adds one sample: sensor response, filter weight, and whether the camera ray met a leaf. A response that is no
+  /// finite number counts as black, one too bright for the film as the brightest that it can hold; both are counted.
+  void add(const FilmFormat& format, int x, int y, SensorResponse sensor, double weight, bool leaf);
+  /// What a sample's camera ray met, of a film that has features.
+  void add(const FilmFormat& format, int x, int y, const Features& features);
+  /// That the last kBlock samples of a pixel, which began at `before`, are a block of a film that has blocks.
+  void add_block(int x, int y, const Pixel& before);
+  void add_rays(uint64_t rays) { rays_ += rays; }
+  /// The sums of pixels that lie in this tile. False, and nothing changes, where both hold a sample of the same pixel.
+  bool merge(const FilmTile& other);
+  /// Says that all these samples have been added.
+  bool cover(const WorkItem& item) { return coverage_.add(item); }
+
+  const Crop& pixels() const { return crop_; }
+  const Coverage& coverage() const { return coverage_; }
+  const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
+  const BandSums& band(int x, int y, size_t band) const { return bands_[index(x, y) * band_count_ + band]; }
+  const FeatureSums& features(int x, int y) const { return features_[index(x, y)]; }
+  const BlockSums& blocks(int x, int y) const { return blocks_[index(x, y)]; }
+  /// Traced for its samples.
+  uint64_t rays() const { return rays_; }
+  friend bool operator==(const FilmTile&, const FilmTile&) = default;
+
+ private:
+  friend class PartFile;  // keeps them as they are
+
+  size_t index(int x, int y) const { return size_t(y - crop_.y0) * size_t(crop_.width()) + size_t(x - crop_.x0); }
+
+  Crop crop_;
+  size_t band_count_;
+  bool has_features_, has_blocks_;
+  uint64_t rays_ = 0;
+  std::vector<Pixel> pixels_;
+  std::vector<BandSums> bands_;        ///< [pixel][band]
+  std::vector<FeatureSums> features_;  ///< [pixel]
+  std::vector<BlockSums> blocks_;      ///< [pixel]
+  Coverage coverage_;
+};
+
+/// The tiles of a picture's crop. Its tiles lie on a grid that begins at pixel (0, 0) of the whole picture, so that
+/// those of its parts match.
+class Film {
+ public:
+  static constexpr int kTile = 16;
+
+  /// Throws InputError, with the place of the directive, if the pixels need more memory than the machine has.
+  explicit Film(const FilmFormat& format, const Location& where = {});
+
+  const FilmFormat& format() const { return format_; }
+  const FilmSettings& settings() const { return format_.settings; }
+  size_t bands() const { return format_.bands; }
+
+  size_t tiles() const { return tiles_.size(); }
+  /// Of the grid, whose rows follow each other.
+  size_t columns() const { return size_t(columns_); }
+  const FilmTile& tile(size_t i) const { return tiles_[i]; }
+  Crop tile_pixels(size_t i) const { return tiles_[i].pixels(); }
+  /// A copy that no thread is at work on.
+  FilmTile snapshot(size_t i) const;
+  /// What tile `i` holds. Thread-safe.
+  Coverage coverage(size_t i) const;
+  /// Adds what another thread, or machine, has rendered of tile `i`. Thread-safe. False where there is some of it
+  /// already.
+  bool merge(size_t i, const FilmTile& part);
+  /// The tile of a pixel.
+  size_t tile_at(int x, int y) const;
+  /// Adds one sample. No two threads at a time.
+  void add(int x, int y, const SensorResponse& sensor, double weight, bool leaf) {
+    tiles_[tile_at(x, y)].add(format_, x, y, sensor, weight, leaf);
+  }
+
+  /// Mean colour.
+  Triple mean(int x, int y) const;
+  /// Estimated variance of `mean`; 0 with less than two samples. With low-discrepancy samples it is an upper bound: it
+  /// does not know that they repel each other.
+  Triple variance(int x, int y) const;
+  /// The same from how blocks of samples differ, of a film that has them: they know in part how samples repel each
+  /// other.
+  Triple block_variance(int x, int y) const;
+  /// Mean of the samples that saw a band, and its estimated variance, 0 with less than two of them.
+  struct BandMean {
+    double mean = 0, variance = 0;
+    uint64_t samples = 0;
+  };
+  BandMean band_mean(int x, int y, size_t band) const;
+  /// Means over the samples that met something; 0 where none did.
+  struct FeatureMeans {
+    Triple albedo{};
+    Vec3d normal, position;
+    double depth = 0;
+    uint32_t material = 0, instance = 0;
+    uint64_t hits = 0;
+  };
+  FeatureMeans features(int x, int y) const;
+  uint64_t samples(int x, int y) const { return pixel(x, y).samples; }
+  /// Fraction of the samples that saw a leaf first.
+  double leaf_fraction(int x, int y) const;
+  double foliar_ratio() const;
+  /// Samples of all pixels that were no finite numbers, or too bright.
+  uint64_t not_finite() const;
+
+  friend bool operator==(const Film& a, const Film& b) { return a.tiles_ == b.tiles_; }
+
+ private:
+  const FilmTile::Pixel& pixel(int x, int y) const { return tiles_[tile_at(x, y)].pixel(x, y); }
+
+  FilmFormat format_;
+  int first_column_, first_row_, columns_;
+  double unit_;
+  std::vector<FilmTile> tiles_;
+  static constexpr size_t kLocks = 64;
+  std::unique_ptr<std::array<std::mutex, kLocks>> locks_;  ///< of tiles in turn
+};
+
+/// Refuses, by InputError at `where`, so many films and the pictures that are made of them where this machine has not
+/// the memory: Linux promises it, and ends the program when it comes to use it. `advice` ends the message.
+void check_memory(const FilmFormat& format, size_t films, const Location& where, std::string_view advice);
+
+}  // namespace frond

@@ -1,0 +1,39 @@
+#include "render/image_output.h"
+
+#include "core/error.h"
+#include "image/image_file.h"
+#include "image/spectral_layout.h"
+
+namespace frond {
+
+ImageOutput::ImageOutput(std::string path, DisplayChoice display)
+    : path_(std::move(path)), display_(std::move(display)) {
+  check_writable(path_);
+  check_display_choice(path_, colors_, display_);
+}
+
+void ImageOutput::check_channels(std::string_view film_space) const {
+  if (film_space.empty() && !is_exr(path_))
+    fail({}, "{}: bands are no picture, and go to an .exr file; frond convert --bands makes a picture of three of them",
+         path_);
+}
+
+void ImageOutput::check(const PictureFormat& format) const {
+  check_channels(format.space);
+  if (!is_exr(path_)) colors_.check_display(format.space, display_.display, display_.view);
+}
+
+void ImageOutput::write(const Film& film, const PictureFormat& format) const {
+  check(format);
+  const Image image = film_image(film, format);
+  if (!is_exr(path_)) return write_display_image(path_, image, format.space, colors_, display_, format.attributes);
+  auto attributes = format.attributes;
+  if (!format.bands.empty()) attributes.merge(spectral_attributes(format.bands));
+  const FilmSettings& s = film.settings();
+  write_image(path_, image,
+              {format.space.empty() ? preview_space(format.bands) : format.space, attributes, s.crop.x0, s.crop.y0,
+               s.width, s.height},
+              s.half ? ExrDepth::half : ExrDepth::single);
+}
+
+}  // namespace frond

@@ -1,0 +1,64 @@
+#include "render/inputs.h"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+
+#include "core/random.h"
+#include "scene/plugin_library.h"
+#include "system/file_bytes.h"
+
+namespace frond {
+namespace {
+
+void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::vector<std::filesystem::path>& files) {
+  for (const ParsedParam& p : plugin.params) {
+    const auto* words = std::get_if<std::vector<std::string>>(&p.values);
+    if (!words) continue;
+    for (const std::string& word : *words) {
+      const std::filesystem::path path = scene.resolve(word, p.value_where);
+      std::error_code error;
+      if (std::filesystem::is_regular_file(path, error)) files.push_back(path);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> input_files(const SceneDescription& scene, const ParsedPlugin& wavelengths) {
+  std::vector<std::filesystem::path> files;
+  for (const ParsedPlugin* plugin :
+       {&wavelengths, &scene.camera, &scene.film, &scene.sampler, &scene.integrator, &scene.filter})
+    add_files(*plugin, scene, files);
+  for (const auto& t : scene.textures) add_files(t.plugin, scene, files);
+  for (const auto& m : scene.materials) add_files(m.plugin, scene, files);
+  for (const auto& a : scene.area_lights) add_files(a, scene, files);
+  for (const auto& s : scene.shapes) add_files(s.plugin, scene, files);
+  for (const auto& l : scene.lights) add_files(l.plugin, scene, files);
+  for (const auto& o : scene.objects)
+    for (const auto& s : o.shapes) add_files(s.plugin, scene, files);
+  return files;
+}
+
+std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plugins) {
+  std::vector<std::filesystem::path> files;
+  if (const char* folders = std::getenv("FROND_PLUGIN_PATH"))
+    for (const auto& file : plugins_in(folders)) files.push_back(file);
+  files.insert(files.end(), plugins.begin(), plugins.end());
+  return files;
+}
+
+std::filesystem::path program_file() {
+  Dl_info info;
+  static const char kHere = 0;
+  if (dladdr(&kHere, &info) == 0 || !info.dli_fname) return "/proc/self/exe";
+  std::error_code error;
+  const auto path = std::filesystem::canonical(info.dli_fname, error);
+  return error ? std::filesystem::path("/proc/self/exe") : path;  // of a program, the name that it was called by
+}
+
+uint64_t hash_file(const std::filesystem::path& path, uint64_t seed) {
+  return hash_bytes(read_file_bytes(path, {}), seed);
+}
+
+}  // namespace frond

@@ -1,0 +1,260 @@
+#include "render/session.h"
+
+#include <fmt/ranges.h>
+
+#include "core/random.h"
+#include "render/adaptive.h"
+#include "render/inputs.h"
+#include "render/plugins.h"
+#include "scene/parser.h"
+#include "spectra/color_management.h"
+#include "spectra/color_space.h"
+
+namespace frond {
+namespace {
+
+/// Rows of the matrix that a conversion is, found by converting the unit vectors.
+Matrix3 matrix_of(std::string_view from, std::string_view to) {
+  if (from == to) return Matrix3::diagonal({1, 1, 1});
+  std::array<float, 9> unit{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  ColorManager().convert(unit, from, to);
+  Matrix3 m;
+  for (size_t column = 0; column < 3; ++column)
+    for (size_t row = 0; row < 3; ++row) m.row[row][column] = double(unit[3 * column + row]);
+  return m;
+}
+
+/// What a path of radiance 1 at all wavelengths says of colours.
+Triple white_of(const WavelengthStrategy& wavelengths, const Matrix3& color) {
+  constexpr int kPaths = 1024;
+  Triple sum{};
+  for (int i = 0; i < kPaths; ++i) {
+    const SampledWavelengths lambda = wavelengths.sample_in_turn(uint64_t(i), (float(i) + 0.5f) / float(kPaths));
+    const Triple one = color * wavelengths.sensor(SampledSpectrum(1), lambda).color();
+    for (size_t c = 0; c < 3; ++c) sum[c] += one[c] / kPaths;
+  }
+  return sum;
+}
+
+/// What the image's R, G and B are in: what the scene's ColorSpace says, or what was asked for, or else the film's own.
+std::string space_of(const SceneDescription& description, const PictureRequest& request, std::string_view film_space) {
+  if (film_space.empty()) return {};
+  std::string space = request.color_space;
+  if (description.color_space_where.file)
+    space = color_space(description.color_space, description.color_space_where).linear_name;
+  if (space.empty()) space = film_space;
+  return space == kXyzName ? "linear sRGB" : space;
+}
+
+std::array<std::array<double, 4>, 3> to_double_rows(const Transform& t) {
+  std::array<std::array<double, 4>, 3> rows{};
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 4; ++j) rows[i][j] = double(t.rows()[i][j]);
+  return rows;
+}
+
+/// Names of materials, by the numbers of the channel that has them.
+void name_materials(const SceneDescription& description, PictureFormat& picture) {
+  for (size_t i = 0; i < description.materials.size(); ++i) {
+    const MaterialDescription& m = description.materials[i];
+    picture.attributes[fmt::format("frond:material:{}", i + 1)] = m.name.empty() ? m.plugin.name : m.name;
+  }
+}
+
+PictureFormat picture_of(const SceneDescription& description, const PictureRequest& request, const Scene& scene,
+                         const FilmSettings& film) {
+  const auto bands = scene.wavelengths().bands();
+  PictureFormat picture{.space = space_of(description, request, scene.wavelengths().film_space()),
+                        .bands = {bands.begin(), bands.end()},
+                        .attributes = request.attributes};
+  std::vector<std::string> channels = film.channels;
+  channels.insert(channels.end(), request.channels.begin(), request.channels.end());
+  picture.channels = checked_channels(channels, {});
+  if (!bands.empty() && std::ranges::find(picture.channels, "albedo") != picture.channels.end())
+    fail({}, "channel \"albedo\" is a colour: wavelengths \"{}\" give bands", scene.wavelengths_name());
+  if (film.features_in_camera_space) picture.from_world = to_double_rows(description.camera_from_world);
+  if (std::ranges::find(picture.channels, "material") != picture.channels.end()) name_materials(description, picture);
+  picture.attributes["frond:version"] = FROND_VERSION;
+  picture.attributes["frond:seed"] = std::to_string(scene.seed());
+  picture.attributes["frond:wavelengths"] = scene.wavelengths_name();
+  picture.attributes["frond:scene_hash"] = fmt::format("{:016x}", description.content_hash);
+  return picture;
+}
+
+std::string text_of(const ParsedPlugin& plugin) {
+  std::string text = plugin.name;
+  for (const ParsedParam& p : plugin.params)
+    std::visit([&](const auto& values) { text += fmt::format(",{}={}", p.name, fmt::join(values, " ")); }, p.values);
+  return text;
+}
+
+uint64_t hash_materials(const SceneDescription& description) {
+  uint64_t hash = 0;
+  for (const MaterialDescription& m : description.materials) hash = hash_bytes(m.name + '\n' + text_of(m.plugin), hash);
+  return hash;
+}
+
+/// Embree's hits differ in their last bits from one to the next.
+const char* instruction_set() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return "avx2";
+  if (__builtin_cpu_supports("avx")) return "avx";
+  return "sse";
+#else
+  return "generic";
+#endif
+}
+
+std::string hexadecimal(uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+bool has_all(const Film& film, const std::vector<uint64_t>& tile_ends) {
+  for (size_t i = 0; i < film.tiles(); ++i)
+    if (!film.tile(i).coverage().missing({film.tile_pixels(i), {0, tile_ends[i]}}).empty()) return false;
+  return true;
+}
+
+/// The fraction of all plans together, in place of that of one.
+class WholeProgress final : public Progress {
+ public:
+  explicit WholeProgress(Progress* next) : next_(next) {}
+  void plan(uint64_t paths_before, uint64_t predicted_paths) { before_ = paths_before, predicted_ = predicted_paths; }
+  void update(double, const RenderStatistics& so_far) override {
+    if (next_)
+      next_->update(std::min(double(before_ + so_far.paths) / double(std::max<uint64_t>(predicted_, 1)), 1.0), so_far);
+  }
+  void finish() override {
+    if (next_) next_->finish();
+  }
+
+ private:
+  Progress* next_;
+  uint64_t before_ = 0, predicted_ = 0;
+};
+
+}  // namespace
+
+void LoadedScene::check_samples(uint64_t samples) const {
+  const size_t bands = format_.bands, needed = (bands + kLanes - 1) / kLanes;
+  if (samples < needed)
+    fail({}, "{} bands need {} samples per pixel at least, each of which sees {}: {} were asked for", bands, needed,
+         kLanes, samples);
+}
+
+RenderJob LoadedScene::job() const {
+  return {*scene_,          scene_->camera(),  scene_->integrator(), scene_->wavelengths(),
+          scene_->filter(), scene_->sampler(), scene_->seed()};
+}
+
+Identity LoadedScene::identity() const {
+  Identity id;
+  const FilmSettings& film = format_.settings;
+  id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_file(program_file(), 0))));
+  id.add("instruction set", instruction_set());
+  for (const auto& plugin : plugins_)
+    id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_file(plugin, 0)));
+  id.add("seed", std::to_string(scene_->seed()));
+  id.add("wavelengths", scene_->wavelengths_name());
+  id.add("integrator", text_of(description_.integrator));
+  id.add("resolution", fmt::format("{} x {}", film.width, film.height));
+  id.add("film", fmt::format("exposure {}, maxcomponentvalue {}", film.exposure, film.max_component));
+  id.add("channels", fmt::format("{}", fmt::join(picture_.channels, ",")));
+  id.add("color space", picture_.space);
+  id.add("command", command_);
+  id.add("scene", hexadecimal(description_.content_hash));
+  id.add("materials", hexadecimal(hash_materials(description_)));
+  for (const auto& file : input_files(description_, wavelengths_))
+    id.add("file " + file.filename().string(), hexadecimal(hash_file(file, 0)));
+  return id;
+}
+
+RenderPart LoadedScene::empty_part() const {
+  Film film(format_, description_.film.where);
+  PartHeader header;
+  header.identity = identity();
+  header.picture = picture_;
+  header.command = command_;
+  header.scene_crop = scene_crop_;
+  return {std::move(header), std::move(film)};
+}
+
+Session::Session(const Log& log, SessionOptions options)
+    : log_(log), options_(std::move(options)), registry_(load_registry(options_.plugins)), pool_(options_.threads) {}
+
+SceneDescription Session::read(const std::filesystem::path& path) const { return parse_scene(path, log_); }
+
+FilmSettings Session::film(const SceneDescription& description, bool quick) const {
+  const FilmSettings settings = Scene::film_settings(description, registry_);
+  return quick ? halved(settings) : settings;
+}
+
+LoadedScene Session::load(SceneDescription description, SceneOverrides overrides, const PictureRequest& request) {
+  LoadedScene loaded;
+  loaded.command_ = request.command;
+  loaded.plugins_ = plugin_files(options_.plugins);
+  apply_swaps(description, overrides.swaps, registry_, log_);
+  overrides.swaps.clear();
+  if (const auto& own = overrides.integrator) {
+    override_plugin(*own, registry_.integrators.get(own->name, {}), {}, description.integrator);
+    overrides.integrator.reset();
+  }
+  overrides.cache_dir = options_.cache;
+  const auto [text, where] = wavelength_choice(description, overrides);
+  loaded.wavelengths_ = wavelengths_plugin(text, where, registry_);
+  loaded.scene_ = std::make_unique<Scene>(description, registry_, overrides, pool_, log_);
+  FilmSettings film = loaded.scene_->film();
+  loaded.scene_crop_ = film.crop;
+  if (request.pixels) film.crop = *request.pixels;
+  loaded.picture_ = picture_of(description, request, *loaded.scene_, film);
+  loaded.description_ = std::move(description);
+  const WavelengthStrategy& wavelengths = loaded.scene_->wavelengths();
+  FilmFormat& format = loaded.format_;
+  format.settings = film;
+  format.bands = wavelengths.bands().size();
+  format.features = have_features(loaded.picture_.channels);
+  format.blocks = request.adaptive;
+  if (request.adaptive && format.bands > 0)
+    fail({}, "noise is measured in colours: wavelengths \"{}\" give bands", text);
+  if (format.bands == 0) {
+    format.color = matrix_of(wavelengths.film_space(), loaded.picture_.space);
+    format.white = white_of(wavelengths, format.color);
+  }
+  format.exponent = film_exponent(loaded.job(), film);
+  return loaded;
+}
+
+RenderStatistics Session::render(const LoadedScene& scene, SampleRange samples, RenderPart& part,
+                                 const RenderControl& control) {
+  return render(scene, plan_of(part.film, samples), part, control);
+}
+
+RenderStatistics Session::render(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
+                                 const RenderControl& control) {
+  const RenderStatistics statistics = frond::render(scene.job(), plan, part.film, pool_, control);
+  part.header.statistics += statistics;
+  return statistics;
+}
+
+RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest& request, RenderPart& part,
+                                    const RenderControl& control) {
+  WholeProgress progress(control.progress);
+  RenderControl each = control;
+  each.progress = &progress;
+  RenderStatistics statistics;
+  PartHeader& header = part.header;
+  header.adaptive = true;
+  SamplePlan plan = first_plan(part.film);
+  if (header.tile_ends.empty()) header.tile_ends = plan.tile_ends;
+  for (;;) {
+    if (request.planned) request.planned(header);
+    progress.plan(statistics.paths, plan.predicted_paths);
+    statistics += render(scene, {part.film.settings().crop, {}, header.tile_ends}, part, each);
+    if (!has_all(part.film, header.tile_ends)) return statistics;  // ended early
+    if (picture_noise(part.film, noise_z()).upper_rms() <= request.max_rms) return statistics;
+    plan = next_plan(part.film, request.max_rms, request.most_samples);
+    if (plan.tile_ends == header.tile_ends) return statistics;  // no tile may have more
+    header.tile_ends = plan.tile_ends;
+    ++header.round;
+  }
+}
+
+}  // namespace frond

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/log.h"
+#include "core/parallel.h"
+#include "render/part.h"
+#include "render/render_loop.h"
+#include "scene/scene.h"
+
+namespace frond {
+
+/// What is said of the picture over what the scene says.
+struct PictureRequest {
+  std::optional<Crop> pixels = {};         ///< of the film, which --quick has halved
+  std::vector<std::string> channels = {};  ///< beside those of the scene's film: names of kChannels
+  std::string color_space = {};  ///< by linear name, where the scene names none; empty: as the wavelengths have it
+  std::map<std::string, std::string> attributes = {};  ///< for the image's header
+  bool adaptive = false;                               ///< the film is to know its noise, for Session::render_to
+  std::string command = {};  ///< the same, as people would ask for it, without samples and pixels; part of the identity
+};
+
+/// A scene, ready to be rendered, with all that its picture is made of.
+class LoadedScene {
+ public:
+  const Scene& scene() const { return *scene_; }
+  const SceneDescription& description() const { return description_; }
+  /// What a film of it holds.
+  const FilmFormat& film_format() const { return format_; }
+  const PictureFormat& picture() const { return picture_; }
+  /// Of each pixel, that the scene asks for.
+  uint64_t samples() const { return uint64_t(scene_->samples_per_pixel()); }
+  /// Throws InputError where a sensor's bands cannot all be seen in so many samples.
+  void check_samples(uint64_t samples) const;
+  RenderJob job() const;
+  /// All that decides its pixels. Reads every file that the scene names.
+  Identity identity() const;
+  /// A part that nothing has been rendered of.
+  RenderPart empty_part() const;
+
+ private:
+  friend class Session;
+  LoadedScene() = default;
+
+  SceneDescription description_;
+  ParsedPlugin wavelengths_;
+  std::string command_;
+  std::vector<std::filesystem::path> plugins_;
+  std::unique_ptr<Scene> scene_;
+  Crop scene_crop_{};
+  FilmFormat format_;
+  PictureFormat picture_;
+};
+
+/// A picture whose noise is small enough.
+struct NoiseRequest {
+  double max_rms = 0;                ///< over pixels and colours, in the film's units
+  uint64_t most_samples = 1u << 30;  ///< of a pixel
+  /// Is told of each plan, before it is rendered: what is to be kept with checkpoints. May be empty.
+  std::function<void(const PartHeader&)> planned = {};
+};
+
+struct SessionOptions {
+  int threads = 0;                        ///< 0: all
+  std::filesystem::path cache = {};       ///< folder of tables that are computed at load; empty: nothing is kept
+  std::vector<std::string> plugins = {};  ///< shared objects beside those of FROND_PLUGIN_PATH
+};
+
+/// What renders have in common: the plugins, the threads, the cache, and whom messages go to. The way in for programs
+/// that render with frond:
+///
+///   Session session(log);
+///   const LoadedScene scene = session.load(session.read("scene.pbrt"), {});
+///   RenderPart part = scene.empty_part();
+///   session.render(scene, {0, 64}, part);
+///   const Image image = film_image(part.film, part.header.picture);
+///
+/// Whatever is wrong with the input is an InputError.
+class Session {
+ public:
+  /// `log` must outlive it.
+  explicit Session(const Log& log, SessionOptions options = {});
+
+  const Registry& registry() const { return registry_; }
+  const Log& log() const { return log_; }
+  ThreadPool& pool() { return pool_; }
+  const std::filesystem::path& cache() const { return options_.cache; }
+
+  /// A scene file; "-" is standard input.
+  SceneDescription read(const std::filesystem::path& path) const;
+  /// The film that a scene asks for; half of it where a first look will do.
+  FilmSettings film(const SceneDescription& description, bool quick) const;
+  /// The cache is the session's, whatever the overrides say.
+  LoadedScene load(SceneDescription description, SceneOverrides overrides, const PictureRequest& picture = {});
+
+  /// Adds these samples of all the part's pixels to it, but what it has already. Says what this call took; the part's
+  /// own statistics grow by it.
+  RenderStatistics render(const LoadedScene& scene, SampleRange samples, RenderPart& part,
+                          const RenderControl& control = {});
+  RenderStatistics render(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
+                          const RenderControl& control = {});
+  /// Adds samples where they do most against noise, until it is small enough with kNoiseConfidence (render/adaptive.h),
+  /// or no tile may have more, or the control ends it. The scene was loaded for that. A part that was ended early goes
+  /// on as if it had not been.
+  RenderStatistics render_to(const LoadedScene& scene, const NoiseRequest& request, RenderPart& part,
+                             const RenderControl& control = {});
+
+ private:
+  const Log& log_;
+  SessionOptions options_;
+  Registry registry_;
+  ThreadPool pool_;
+};
+
+}  // namespace frond

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+
+#include "core/integrator.h"
+
+namespace frond {
+
+/// How paths ended after so many scattering events; from kDepths - 1 on together in the last one.
+struct PathEnds {
+  static constexpr size_t kDepths = 64;
+  std::array<uint64_t, kDepths> escaped{}, absorbed{};  ///< left the scene; were absorbed or cut off
+
+  void add(const PathResult& path) {
+    const size_t depth = std::min(size_t(path.scatterings), kDepths - 1);
+    ++(path.escaped ? escaped : absorbed)[depth];
+  }
+  /// Paths that went on after so many scattering events, below kDepths.
+  uint64_t alive_after(size_t events) const {
+    return std::accumulate(escaped.begin() + events, escaped.end(), uint64_t{0}) +
+           std::accumulate(absorbed.begin() + events, absorbed.end(), uint64_t{0});
+  }
+  PathEnds& operator+=(const PathEnds& other) {
+    for (size_t i = 0; i < kDepths; ++i) escaped[i] += other.escaped[i], absorbed[i] += other.absorbed[i];
+    return *this;
+  }
+};
+
+/// What a render took.
+struct RenderStatistics {
+  uint64_t paths = 0, rays = 0;
+  double wall_seconds = 0, cpu_seconds = 0;
+  PathEnds ends;
+
+  RenderStatistics& operator+=(const RenderStatistics& other) {
+    paths += other.paths, rays += other.rays;
+    wall_seconds += other.wall_seconds, cpu_seconds += other.cpu_seconds;
+    ends += other.ends;
+    return *this;
+  }
+};
+
+}  // namespace frond

@@ -1,0 +1,125 @@
+#include "report/conform_report.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/build_identity.h"
+
+namespace frond {
+namespace {
+
+std::string_view verdict(const LawSummary& law) {
+  if (law.tests == 0) return "not asked";
+  return law.failures == 0 ? "holds" : "BROKEN";
+}
+
+std::string counted(size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string tests_text(const LawSummary& law) {
+  if (law.tests == 0) return "";
+  const std::string tests = counted(static_cast<size_t>(law.tests), "test");
+  return law.failures == 0 ? tests : fmt::format("{} of {}", law.failures, tests);
+}
+
+/// Of a statistical law: what p says in any other one, the verdict says too.
+std::string p_text(const LawSummary& law) {
+  return law.worst && law.worst->statistical ? fmt::format("{:.2g}", law.worst->p_value) : "";
+}
+
+std::vector<const Finding*> failures_of(const ConformReport& report, Law law) {
+  std::vector<const Finding*> failures;
+  for (const Finding& f : report.findings)
+    if (f.law == law && !f.passed) failures.push_back(&f);
+  std::ranges::stable_sort(failures, {}, &Finding::p_value);
+  return failures;
+}
+
+std::string failures_text(const ConformReport& report, Law law) {
+  constexpr size_t kShown = 3;
+  const auto failures = failures_of(report, law);
+  std::string text;
+  for (const Finding* f : std::span(failures).first(std::min(failures.size(), kShown))) {
+    text += fmt::format("      {}\n        {}", f->where, f->message);
+    text += f->statistical ? fmt::format(" (p = {:.2g})\n", f->p_value) : "\n";
+  }
+  if (failures.size() > kShown) text += fmt::format("      and {} more\n", failures.size() - kShown);
+  return text;
+}
+
+std::string broken_text(const ConformReport& report) {
+  std::vector<std::string_view> names;
+  for (const Law law : broken_laws(report.findings)) names.push_back(law_name(law));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool is_there(const ConformReport& report) {
+  return std::ranges::any_of(report.findings, [](const Finding& f) { return f.law != Law::parameters; });
+}
+
+}  // namespace
+
+bool ConformReport::all_hold() const { return std::ranges::all_of(findings, &Finding::passed); }
+
+std::string conform_text(const ConformReport& r) {
+  std::string text = fmt::format(
+      "{}\n{} nm; wo at {} deg from the normal, front and back; {} samples each; seed {}\n{}. If every law "
+      "holds, "
+      "the chance that any is called broken is {:.2g}: a test fails below p = {:.2g}.\n\n",
+      r.material, fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "), r.effort.samples,
+      r.effort.seed, counted(r.findings.size(), "test"), r.false_alarm_rate, r.level);
+  if (r.all_hold() && !is_there(r)) text += "The surface is not there: there is no BSDF to ask.\n\n";
+  text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", "", "law", "", "worst p", "");
+  for (const LawSummary& law : summarise(r.findings)) {
+    text += fmt::format("  {:<9}  {:<13}  {:<16}  {:<8}  {}\n", verdict(law), law.law.name, tests_text(law),
+                        p_text(law), law.law.text);
+    text += failures_text(r, law.law.law);
+  }
+  return text + (r.all_hold() ? "\nEvery law that was asked holds.\n" : "\nBroken: " + broken_text(r) + ".\n");
+}
+
+std::string conform_json(const ConformReport& r) {
+  using Json = nlohmann::ordered_json;
+  Json laws = Json::object(), findings = Json::array();
+  for (const LawSummary& law : summarise(r.findings)) {
+    Json& j = laws[std::string(law.law.name)];
+    j = {{"verdict", law.tests == 0      ? "not asked"
+                     : law.failures == 0 ? "holds"
+                                         : "broken"},
+         {"tests", law.tests},
+         {"failures", law.failures},
+         {"says", law.law.text}};
+    if (law.worst && law.worst->statistical) j["worst_p"] = law.worst->p_value;
+  }
+  for (const Finding& f : r.findings) {
+    Json j{{"law", law_name(f.law)}, {"holds", f.passed}, {"where", f.where}};
+    if (!f.message.empty()) j["message"] = f.message;
+    if (f.statistical) j["p"] = f.p_value;
+    findings.push_back(std::move(j));
+  }
+  return Json{{"frond", FROND_BUILD_IDENTITY},
+              {"material", r.material},
+              {"wavelengths_nm", r.wavelengths_nm},
+              {"angles_deg", r.effort.angles_deg},
+              {"samples", r.effort.samples},
+              {"seed", r.effort.seed},
+              {"false_alarm_rate", r.false_alarm_rate},
+              {"level", r.level},
+              {"all_hold", r.all_hold()},
+              {"laws", std::move(laws)},
+              {"findings", std::move(findings)}}
+             .dump(2) +
+         "\n";
+}
+
+const Finding* finding_to_draw(const ConformReport& report) {
+  const Finding* worst = nullptr;
+  for (const Finding& f : report.findings)
+    if (f.map && (!worst || std::pair(f.passed, f.p_value) < std::pair(worst->passed, worst->p_value))) worst = &f;
+  return worst;
+}
+
+}  // namespace frond

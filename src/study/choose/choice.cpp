@@ -1,0 +1,306 @@
+#include "study/choose/choice.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/log.h"
+#include "study/choose/screening.h"
+
+namespace frond::choose {
+namespace {
+
+/// Samples a pixel, in each of two renders.
+constexpr uint64_t kFirstSamples = 8, kMostScreening = 64, kMostSamples = 4096;
+/// Every power of two between the two: how often the same question may be put to more samples. What the data say tells
+/// which of these looks are taken, never where they lie.
+constexpr size_t kLooks = 10;
+static_assert(kFirstSamples << (kLooks - 1) == kMostSamples);
+/// A pilot may trace that part of the final render's paths for what it compares, and this many at least.
+constexpr double kLargestPart = 0.25;
+constexpr uint64_t kLeastLimit = 64;
+
+/// How far a bound of a mean square may lie above its estimate, as a part of what was asked for, before more samples
+/// are spent on it.
+constexpr double kSharp = 0.25;
+
+/// 95 % that there is no more noise than that.
+constexpr double kNoiseZ = 1.645;
+
+double root(double square) { return std::sqrt(std::max(0.0, square)); }
+
+/// A mean square, between bounds.
+struct Bounds {
+  ConfidenceInterval square;
+  double estimate;
+  double uncertainty;  ///< of the upper bound, above the estimate
+
+  RmsBounds rms() const { return {root(square.low), root(square.high)}; }
+};
+
+size_t count_combinations(const std::vector<Question>& questions) {
+  double product = 1;
+  for (const Question& q : questions) product *= double(q.options.size());
+  return size_t(std::min(product, 1e15));
+}
+
+/// Asks a pilot until it knows.
+class Chooser {
+ public:
+  Chooser(Pilot& pilot, const Subject& subject)
+      : pilot_(pilot), questions_(pilot.questions()), reference_(pilot.reference()), subject_(subject) {
+    choice_.rms = 1;
+    for (const Question& q : questions_) {
+      base_.push_back(q.base());
+      if (q.is_leaf()) choice_.rms = std::min(choice_.rms, q.rms);
+    }
+    // Every combination against the reference and every single answer against the base, each at every look, from
+    // above and from below: whatever the pilot comes to compare is among them.
+    choice_.comparisons = 2 * 2 * kLooks * count_combinations(questions_);
+    z_ = normal_upper_quantile(sidak_level(1 - kConfidence, choice_.comparisons));
+    choice_.samples = pilot.scene_samples();
+    weights_ = weights();
+  }
+
+  /// The answers.
+  Configuration run() {
+    screen();
+    const Configuration chosen = search();
+    describe(chosen);
+    return chosen;
+  }
+  const Choice& choice() const { return choice_; }
+
+ private:
+  double request() const { return choice_.rms * choice_.rms; }
+
+  Bounds bounds(const Configuration& answers, const Configuration& from) const {
+    const Estimate e = mean_square(pilot_.difference(answers, from));
+    const ConfidenceInterval interval = mean_square_interval(e, z_);
+    return {interval, e.mean, interval.high - e.mean};
+  }
+
+  Configuration single(size_t question, size_t option) const {
+    Configuration answers = base_;
+    answers[question] = option;
+    return answers;
+  }
+
+  /// Renders every single answer until its bias is known well enough to choose by.
+  void screen() {
+    std::vector<Configuration> singles;
+    for (size_t q = 0; q < questions_.size(); ++q)
+      for (size_t option = 0; option < base_[q]; ++option) singles.push_back(single(q, option));
+    for (samples_ = kFirstSamples;; samples_ *= 2) {
+      pilot_.render(base_, samples_);
+      for (const Configuration& s : singles) pilot_.render(s, samples_);
+      if (samples_ >= kMostScreening || std::ranges::all_of(singles, [this](const auto& s) { return is_clear(s); }))
+        break;
+    }
+  }
+
+  bool is_clear(const Configuration& single) const {
+    const Estimate e = mean_square(pilot_.difference(single, base_));
+    return e.standard_error() < std::max(request(), e.mean) / 8;
+  }
+
+  /// Shares of the leaves that are seen; a leaf that only light sees has none.
+  std::vector<double> weights() const {
+    std::vector<double> result;
+    for (const Question& q : questions_) result.push_back(q.is_leaf() ? pilot_.share(q) : 0);
+    const double sum = std::accumulate(result.begin(), result.end(), 0.0);
+    for (double& w : result) w = sum > 0 ? w / sum : 1 / double(result.size());
+    return result;
+  }
+
+  /// Of one answer, as a factor to the base's.
+  double price(size_t question, size_t option) const {
+    const auto& options = questions_[question].options;
+    const double weight = questions_[question].is_leaf() ? weights_[question] : 1;
+    return 1 + weight * (options[option].price / options[base_[question]].price - 1);
+  }
+
+  double price(const Configuration& answers) const {
+    double product = 1;
+    for (size_t q = 0; q < answers.size(); ++q) product *= price(q, answers[q]);
+    return product;
+  }
+
+  /// What was found of single answers is kept for the report.
+  Screening screening() {
+    ByOption<Screening::Single> singles(questions_.size());
+    std::vector<PairedDifference> differences;
+    findings_.resize(questions_.size());
+    for (size_t q = 0; q < questions_.size(); ++q) {
+      for (size_t option = 0; option < base_[q]; ++option) {
+        const Finding& found = findings_[q].emplace_back(finding(q, option));
+        singles[q].push_back({found.price, found.noise, differences.size()});
+        differences.push_back(pilot_.difference(single(q, option), base_));
+      }
+      findings_[q].push_back(finding(q, base_[q]));
+      singles[q].push_back({.is_base = true});
+    }
+    std::vector<std::vector<double>> products(differences.size());
+    for (size_t i = 0; i < differences.size(); ++i)
+      for (const PairedDifference& other : differences) products[i].push_back(mean_product(differences[i], other));
+    return {std::move(singles), std::move(products), {pilot_.noise(base_), {}}};
+  }
+
+  Finding finding(size_t question, size_t option) const {
+    const Configuration answers = single(question, option);
+    const Bounds b = bounds(answers, base_);
+    const double noise = pilot_.noise(answers).back().noise.value, base = pilot_.noise(base_).back().noise.value;
+    return {questions_[question].options[option].name,
+            price(question, option),
+            base > 0 ? noise / base : 1,
+            root(b.estimate),
+            b.rms(),
+            pilot_.cpu_us_per_path(answers)};
+  }
+
+  /// The cheapest first; where that is not shown to meet the request, with a better answer to the question that spoils
+  /// it most.
+  Configuration search() {
+    const Screening guess = screening();
+    Configuration floor(questions_.size(), 0);
+    for (;;) {
+      const Configuration answers = guess.cheapest(floor, choice_.rms);
+      if (answers == reference_) return reference_without_bias();
+      if (meets_request(answers)) return answers;
+      const size_t worst = guess.worst(answers);
+      if (worst == questions_.size()) break;
+      floor[worst] = answers[worst] + 1;
+    }
+    choice_.ground = Choice::Ground::nothing_meets;
+    return reference_without_bias();
+  }
+
+  /// Whatever was tried before it.
+  const Configuration& reference_without_bias() {
+    choice_.bias = {};
+    choice_.bias_estimate = 0;
+    return reference_;
+  }
+
+  /// More samples until the bounds tell, or the limit is reached. All bounds hold together: the narrowest counts.
+  bool meets_request(const Configuration& answers) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    ConfidenceInterval known{0, kInfinity};
+    for (double last = kInfinity;;) {
+      const uint64_t samples = samples_;
+      pilot_.render(reference_, samples);
+      pilot_.render(answers, samples);
+      const Bounds b = bounds(answers, reference_);
+      known = {std::max(known.low, b.square.low), std::min(known.high, b.square.high)};
+      choice_.bias = {root(known.low), root(known.high)};
+      choice_.bias_estimate = root(std::clamp(b.estimate, known.low, known.high));
+      const bool met = known.high <= request(), sharp = b.uncertainty < kSharp * request();
+      const bool helps = b.uncertainty < 0.8 * last;  // the spread among pixels stays
+      const bool told = known.low > request() || (met && (sharp || !helps));
+      last = b.uncertainty;
+      if (!told && grow(b.uncertainty)) continue;
+      choice_.out_of_samples = choice_.out_of_samples || (!told && !met);
+      choice_.trials.push_back({names_of(answers), {root(known.low), root(known.high)}, samples});
+      return met;
+    }
+  }
+
+  std::vector<std::string> names_of(const Configuration& answers) const {
+    std::vector<std::string> names;
+    for (size_t q = 0; q < answers.size(); ++q) names.push_back(questions_[q].options[answers[q]].name);
+    return names;
+  }
+
+  /// Noise of a squared bias falls as 1 / samples, faster where few pixels have most of it.
+  bool grow(double uncertainty) {
+    constexpr double kAtMostFaster = 8;
+    const uint64_t limit = most_samples();
+    const double at_limit = uncertainty * double(samples_) / double(limit);
+    if (samples_ >= limit || at_limit > kAtMostFaster * request()) return false;
+    const double factor = std::clamp(uncertainty / (kSharp * request()), 2.0, 8.0);
+    samples_ = std::min(limit, std::bit_ceil(uint64_t(double(samples_) * factor)));
+    return true;
+  }
+
+  uint64_t most_samples() const {
+    const double paths =
+        double(subject_.film.crop.width()) * double(subject_.film.crop.height()) * double(choice_.samples);
+    const auto samples = uint64_t(kLargestPart * paths / (4 * double(pilot_.cost().pixels)));
+    return std::bit_floor(std::clamp(samples, kLeastLimit, kMostSamples));
+  }
+
+  void describe(const Configuration& chosen) {
+    for (size_t q = 0; q < questions_.size(); ++q) {
+      const Question& question = questions_[q];
+      choice_.answers.push_back({question.name, question.is_leaf(), question.options[chosen[q]].name,
+                                 pilot_.share(question), question.options[base_[q]].name, findings_[q],
+                                 question.refused});
+    }
+    pilot_.render(reference_, samples_);
+    choice_.reference = questions_.back().options.back().name;
+    choice_.noise = priced_noise(chosen), choice_.reference_noise = priced_noise(reference_);
+    choice_.pilot_samples = samples_;
+    choice_.pilot = pilot_.cost();
+  }
+
+  std::vector<ConvergencePoint> priced_noise(const Configuration& answers) const {
+    std::vector<ConvergencePoint> points = pilot_.noise(answers);
+    for (ConvergencePoint& p : points) p.seconds = p.samples * price(answers);
+    return points;
+  }
+
+  Pilot& pilot_;
+  const std::vector<Question>& questions_;
+  Configuration reference_, base_;
+  const Subject& subject_;
+  std::vector<double> weights_;
+  ByOption<Finding> findings_;
+  double z_ = 0;
+  uint64_t samples_ = 0;
+  Choice choice_;
+};
+
+}  // namespace
+
+double Choice::noise_rms() const { return std::sqrt(Convergence(noise, {}).noise_after(double(samples))); }
+
+namespace {
+
+/// Up to a whole power of two samples: there low-discrepancy ones are at their best, and were measured.
+Effort rounded_up(const std::optional<Effort>& effort) {
+  if (!effort) return {1, 1, false};  // nothing is left for noise, and nobody promised that there is
+  const double samples = std::exp2(std::ceil(std::log2(effort->samples)));
+  return {samples, effort->seconds * samples / effort->samples, effort->measured};
+}
+
+}  // namespace
+
+Effort Choice::effort() const {
+  return rounded_up(Convergence(noise, {bias_estimate * bias_estimate, 0}).until_rms(rms, kNoiseZ));
+}
+
+Effort Choice::reference_effort() const { return rounded_up(Convergence(reference_noise, {}).until_rms(rms, kNoiseZ)); }
+
+double Choice::samples_needed() const { return effort().samples; }
+
+double Choice::reference_samples_needed() const { return reference_effort().samples; }
+
+double Choice::time_saved() const { return reference_effort().seconds / effort().seconds; }
+
+std::optional<Chosen> choose_models(const Subject& subject, const Ladder& ladder, ThreadPool& pool, const Log& log) {
+  if (!has_open_leaf(subject.description)) return {};
+  Pilot pilot(subject, ladder, pool);
+  if (!pilot.has_colors()) {
+    log.warn({},
+             "a leaf's model is chosen by pictures of colours, and bands are none: leaves without \"model\" are abm");
+    return {};
+  }
+  Chooser chooser(pilot, subject);
+  const Configuration answers = chooser.run();
+  return Chosen{chooser.choice(), answered(subject.description, subject.registry, pilot.questions(), answers),
+                wavelengths_of(pilot.questions(), answers, subject.overrides.wavelengths)};
+}
+
+}  // namespace frond::choose

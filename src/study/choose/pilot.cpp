@@ -1,0 +1,146 @@
+#include "study/choose/pilot.h"
+
+#include <algorithm>
+#include <bit>
+#include <unordered_set>
+
+#include "core/random.h"
+#include "scene/scene_variant.h"
+#include "study/choose/pilot_pixels.h"
+#include "system/cpu_clock.h"
+
+namespace frond::choose {
+namespace {
+
+/// Enough to know a mean square whose pixels spread by five times their mean to 8 %. More samples of fewer pixels tell
+/// more about bias than fewer of more: its noise falls with samples times the root of pixels.
+constexpr size_t kPixels = 4096;
+
+/// Those of the final render differ.
+enum SeedUse : uint64_t { kFirstHalf = 0x70696c6f74, kSecondHalf, kPixelSeed };
+
+/// A film that has room for so many pixels, in a row.
+FilmSettings row_of(const FilmSettings& film, size_t pixels) {
+  FilmSettings row = film;
+  row.width = int(pixels), row.height = 1;
+  row.crop = {0, 0, row.width, 1};
+  return row;
+}
+
+/// From how two halves differ. Channels of a pixel go together: its noise is one thing.
+MeanSquare noise_of(const std::array<std::vector<float>, 2>& halves) {
+  Moments squares;
+  for (size_t i = 0; i + 2 < halves[0].size(); i += 3) {
+    double sum = 0;
+    for (size_t c = i; c < i + 3; ++c) {
+      const double gap = double(halves[0][c]) - double(halves[1][c]);
+      sum += gap * gap / 2;
+    }
+    squares.add(sum / 3);
+  }
+  return {squares.mean(), squares.estimate().standard_error()};
+}
+
+}  // namespace
+
+struct Pilot::Render {
+  std::unique_ptr<SceneVariant> world;
+  PairedFilms films;
+  std::vector<ConvergencePoint> noise = {};
+};
+
+Pilot::Pilot(const Subject& subject, const Ladder& ladder, ThreadPool& pool)
+    : subject_(subject), pool_(pool), start_cpu_seconds_(cpu_seconds()), variant_(without_shapes(subject.description)) {
+  const bool named = !subject.overrides.wavelengths.empty() || names_wavelengths(subject.description);
+  SceneOverrides overrides = subject.overrides;
+  if (!named) overrides.wavelengths = ladder.wavelengths.back().name;
+  scene_ = std::make_unique<Scene>(subject.description, subject.registry, overrides, pool, quiet_);
+  if (!named) questions_.push_back({"wavelengths", {}, 0, ladder.wavelengths});
+  const auto leaves = open_leaves(subject.description, subject.registry, scene_->wavelengths(), ladder);
+  questions_.insert(questions_.end(), leaves.begin(), leaves.end());
+  pixels_ = pilot_pixels(subject.film.crop, kPixels, hash_key(scene_->seed(), uint64_t{kPixelSeed}));
+}
+
+Pilot::~Pilot() = default;
+
+bool Pilot::has_colors() const { return scene_->wavelengths().bands().empty(); }
+
+uint64_t Pilot::scene_samples() const {
+  return subject_.samples > 0 ? subject_.samples : uint64_t(scene_->samples_per_pixel());
+}
+
+Configuration Pilot::reference() const {
+  Configuration answers;
+  for (const Question& q : questions_) answers.push_back(q.reference());
+  return answers;
+}
+
+Pilot::Render Pilot::make(const Configuration& answers) {
+  SceneOverrides overrides = subject_.overrides;
+  overrides.wavelengths = wavelengths_of(questions_, answers, overrides.wavelengths);
+  variant_.materials = answered(subject_.description, subject_.registry, questions_, answers);
+  auto world = std::make_unique<SceneVariant>(*scene_, variant_, subject_.registry, overrides, pool_, quiet_, shared_);
+  const auto seed = [this](SeedUse use) { return hash_key(scene_->seed(), uint64_t{use}); };
+  PairedFilms films(row_of(subject_.film, pixels_.size()), {seed(kFirstHalf), seed(kSecondHalf)}, variant_,
+                    subject_.registry, {*world, world->wavelengths(), *scene_}, pixels_);
+  return {std::move(world), std::move(films)};
+}
+
+void Pilot::render(const Configuration& answers, uint64_t samples) {
+  auto found = renders_.find(answers);
+  if (found == renders_.end()) found = renders_.emplace(answers, make(answers)).first;
+  Render& r = found->second;
+  while (r.films.samples() < samples) {
+    const uint64_t next = std::min(samples, std::bit_floor(r.films.samples()) * 2 + (r.films.samples() == 0));
+    r.films.advance_to(next, {*r.world, r.world->wavelengths(), *scene_}, pool_, nullptr);
+    r.noise.push_back({double(next), 0, noise_of(pictures(r))});
+  }
+}
+
+const Pilot::Render& Pilot::rendered(const Configuration& answers) const { return renders_.at(answers); }
+
+Pilot::Halves Pilot::pictures(const Render& render) const {
+  Halves halves;
+  for (size_t i = 0; i < 2; ++i) {
+    for (int x = 0; x < int(pixels_.size()); ++x)
+      for (const double value : render.films.film(i).mean(x, 0)) halves[i].push_back(float(value));
+    colors_.convert(halves[i], render.world->wavelengths().film_space(), "linear SMPTE-C");
+  }
+  return halves;
+}
+
+PairedDifference Pilot::difference(const Configuration& answers, const Configuration& from) const {
+  PairedDifference d{pictures(rendered(answers)), 3};
+  const Halves other = pictures(rendered(from));
+  for (size_t i = 0; i < 2; ++i) std::ranges::transform(d.half[i], other[i], d.half[i].begin(), std::minus<>());
+  return d;
+}
+
+const std::vector<ConvergencePoint>& Pilot::noise(const Configuration& answers) const {
+  return rendered(answers).noise;
+}
+
+double Pilot::cpu_us_per_path(const Configuration& answers) const {
+  const Render& r = rendered(answers);
+  return r.films.cost().cpu_seconds * 1e6 / (double(r.films.samples()) * double(pixels_.size()));
+}
+
+double Pilot::share(const Question& question) const {
+  const Scene& scene = *scene_;
+  std::unordered_set<const Material*> asked;
+  for (const size_t place : question.materials) asked.insert(scene.material(place));
+  const auto sees = [&](const PixelPlace& p) {
+    SurfacePoint point;
+    const Ray ray = scene.camera().ray({float(p.x) + 0.5f, float(p.y) + 0.5f}, {0.5f, 0.5f});
+    return scene.intersect(ray, hash_key(scene.seed(), p.x, p.y), point) && asked.contains(point.material);
+  };
+  return double(std::ranges::count_if(pixels_, sees)) / double(pixels_.size());
+}
+
+PilotCost Pilot::cost() const {
+  PilotCost cost{.pixels = pixels_.size(), .cpu_seconds = cpu_seconds() - start_cpu_seconds_};
+  for (const auto& [answers, r] : renders_) cost.paths += 2 * r.films.samples() * pixels_.size();
+  return cost;
+}
+
+}  // namespace frond::choose

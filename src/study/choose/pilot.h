@@ -1,0 +1,79 @@
+#pragma once
+
+#include <map>
+
+#include "core/log.h"
+#include "instruments/convergence.h"
+#include "instruments/paired_difference.h"
+#include "spectra/color_management.h"
+#include "study/choose/question.h"
+#include "study/paired_films.h"
+
+namespace frond::choose {
+
+/// A scene as it is to be rendered, but for what it leaves open.
+struct Subject {
+  const SceneDescription& description;
+  const Registry& registry;
+  const SceneOverrides& overrides;  ///< without swaps: the description has them
+  FilmSettings film;
+  uint64_t samples;  ///< a pixel, of the render that the choice is for; 0: the scene's
+};
+
+/// What a pilot has cost.
+struct PilotCost {
+  size_t pixels = 0;
+  uint64_t paths = 0;
+  double cpu_seconds = 0;  ///< tables and all
+};
+
+/// Renders some pixels of the picture with any answers to the questions. All renders share their random numbers: where
+/// two do not differ they are the same, noise and all. What they say depends on the subject and its seed alone.
+class Pilot {
+ public:
+  /// Also finds the questions. Throws InputError.
+  Pilot(const Subject& subject, const Ladder& ladder, ThreadPool& pool);
+  ~Pilot();
+
+  const std::vector<Question>& questions() const { return questions_; }
+  /// Wavelengths that have no colours cannot be compared.
+  bool has_colors() const;
+  /// A pixel, of the render that the choice is for.
+  uint64_t scene_samples() const;
+  /// The last option of every question.
+  Configuration reference() const;
+
+  /// Up to so many samples a pixel in each of two renders.
+  void render(const Configuration& answers, uint64_t samples);
+  /// Of two that have been rendered.
+  PairedDifference difference(const Configuration& answers, const Configuration& from) const;
+  /// Mean square over pixels and channels of one render's noise, after 1, 2, 4 ... samples and the last. Seconds are 0.
+  const std::vector<ConvergencePoint>& noise(const Configuration& answers) const;
+  double cpu_us_per_path(const Configuration& answers) const;
+
+  /// Share of the pixels whose middle sees one of the question's materials first.
+  double share(const Question& question) const;
+  PilotCost cost() const;
+
+ private:
+  struct Render;
+  using Halves = std::array<std::vector<float>, 2>;
+
+  Render make(const Configuration& answers);
+  const Render& rendered(const Configuration& answers) const;
+  Halves pictures(const Render& render) const;
+
+  Subject subject_;
+  ThreadPool& pool_;
+  double start_cpu_seconds_;
+  SceneDescription variant_;         ///< the subject's without its shapes, as it was rendered last
+  const Log& quiet_ = silent_log();  ///< what there is to say the final render says
+  SharedWork shared_;
+  ColorManager colors_;
+  std::unique_ptr<Scene> scene_;  ///< with the wavelengths that count as right
+  std::vector<Question> questions_;
+  std::vector<PixelPlace> pixels_;
+  std::map<Configuration, Render> renders_;
+};
+
+}  // namespace frond::choose

@@ -1,0 +1,95 @@
+#include "study/choose/question.h"
+
+#include <algorithm>
+
+#include "core/log.h"
+#include "scene/resolver.h"
+
+namespace frond::choose {
+namespace {
+
+const ParsedParam* find(const std::vector<ParsedParam>& params, std::string_view name) {
+  const auto found = std::ranges::find(params, name, &ParsedParam::name);
+  return found == params.end() ? nullptr : &*found;
+}
+
+bool is_open(const MaterialDescription& m) {
+  if (m.plugin.name != "leaf") return false;
+  const ParsedParam* model = find(m.plugin.params, "model");
+  return !model || model->values == decltype(model->values){std::vector<std::string>{"auto"}};
+}
+
+bool same_leaf(const ParsedPlugin& a, const ParsedPlugin& b) {
+  return std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
+    return p.type == q.type && p.name == q.name && p.values == q.values;
+  });
+}
+
+/// With the rungs that the leaf can take. Leaves the description as it is.
+void add_options(Question& question, SceneDescription& description, const Registry& registry,
+                 const WavelengthStrategy& wavelengths, const std::vector<Rung>& models) {
+  const size_t place = question.materials.front();
+  ParsedPlugin& plugin = description.materials[place].plugin;
+  const ParsedPlugin open = plugin;
+  for (const Rung& rung : models) {
+    swap_material(plugin, rung.plugin, registry, silent_log());
+    try {
+      SceneResolver(description, registry, wavelengths).material(place);
+      question.options.push_back(rung);
+    } catch (const InputError& error) {
+      if (&rung == &models.back()) throw;
+      question.refused.push_back({rung.name, error.what()});
+    }
+    plugin = open;
+  }
+}
+
+}  // namespace
+
+bool has_open_leaf(const SceneDescription& description) { return std::ranges::any_of(description.materials, is_open); }
+
+SceneDescription without_shapes(const SceneDescription& description) { return {description, {}, {}, {}, {}, {}}; }
+
+bool names_wavelengths(const SceneDescription& description) { return find(description.options, "wavelengths"); }
+
+std::vector<Question> open_leaves(const SceneDescription& description, const Registry& registry,
+                                  const WavelengthStrategy& wavelengths, const Ladder& ladder) {
+  std::vector<Question> leaves;
+  SceneResolver resolver(description, registry, wavelengths);
+  SceneDescription tried = without_shapes(description);
+  for (size_t i = 0; i < description.materials.size(); ++i) {
+    const MaterialDescription& m = description.materials[i];
+    if (!is_open(m)) continue;
+    const auto alike = std::ranges::find_if(leaves, [&](const Question& q) {
+      const MaterialDescription& other = description.materials[q.materials.front()];
+      return m.name.empty() && other.name.empty() && same_leaf(m.plugin, other.plugin);
+    });
+    if (alike != leaves.end()) {
+      alike->materials.push_back(i);
+      continue;
+    }
+    const Params params(registry.materials.get("leaf", m.plugin.where), m.plugin, resolver);
+    const std::string name = m.name.empty() ? fmt::format("leaf in line {}", m.plugin.where.line) : m.name;
+    Question& question = leaves.emplace_back(Question{name, {i}, params.real("maxrms"), {}});
+    add_options(question, tried, registry, wavelengths, ladder.models);
+  }
+  return leaves;
+}
+
+std::vector<MaterialDescription> answered(const SceneDescription& description, const Registry& registry,
+                                          const std::vector<Question>& questions, const Configuration& answers) {
+  std::vector<MaterialDescription> result = description.materials;
+  for (size_t q = 0; q < questions.size(); ++q)
+    for (const size_t place : questions[q].materials)
+      swap_material(result[place].plugin, questions[q].options[answers[q]].plugin, registry, silent_log());
+  return result;
+}
+
+std::string wavelengths_of(const std::vector<Question>& questions, const Configuration& answers,
+                           const std::string& otherwise) {
+  for (size_t q = 0; q < questions.size(); ++q)
+    if (!questions[q].is_leaf()) return questions[q].options[answers[q]].name;
+  return otherwise;
+}
+
+}  // namespace frond::choose

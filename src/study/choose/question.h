@@ -1,0 +1,49 @@
+#pragma once
+
+#include "scene/scene.h"
+#include "study/choose/ladder.h"
+
+namespace frond::choose {
+
+/// What a leaf cannot take, and why.
+struct Refusal {
+  std::string name, reason;
+};
+
+/// Something that a scene leaves open: the model of a leaf, or the wavelengths.
+struct Question {
+  std::string name;               ///< of the leaf's material; "wavelengths"
+  std::vector<size_t> materials;  ///< by their places in the description; none: the question is of wavelengths
+  double rms = 0;                 ///< what the leaf asks for
+  std::vector<Rung> options;      ///< the last one counts as right
+  std::vector<Refusal> refused = {};
+
+  bool is_leaf() const { return !materials.empty(); }
+  size_t reference() const { return options.size() - 1; }
+  /// The best that is no random walk, as far as there is one: what pilots compare with first.
+  size_t base() const { return is_leaf() && options.size() > 1 ? options.size() - 2 : reference(); }
+};
+
+/// An answer to each question: the place of an option.
+using Configuration = std::vector<size_t>;
+
+bool has_open_leaf(const SceneDescription& description);
+/// All but what stands in the scene, shapes and lights, which may be large: enough to make its materials.
+SceneDescription without_shapes(const SceneDescription& description);
+/// Whether the scene says which wavelengths it wants.
+bool names_wavelengths(const SceneDescription& description);
+
+/// Leaf by leaf; those without a name that are alike are one. Which models a leaf can take does not hang on the
+/// wavelengths: any will do. Throws InputError.
+std::vector<Question> open_leaves(const SceneDescription& description, const Registry& registry,
+                                  const WavelengthStrategy& wavelengths, const Ladder& ladder);
+
+/// The description's materials with these answers written into the leaves.
+std::vector<MaterialDescription> answered(const SceneDescription& description, const Registry& registry,
+                                          const std::vector<Question>& questions, const Configuration& answers);
+
+/// What was answered to the question of wavelengths, as a PluginText; `otherwise` where that is no question.
+std::string wavelengths_of(const std::vector<Question>& questions, const Configuration& answers,
+                           const std::string& otherwise);
+
+}  // namespace frond::choose

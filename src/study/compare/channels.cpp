@@ -1,0 +1,123 @@
+#include "study/compare/channels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "spectra/band_preview.h"
+#include "spectra/cie.h"
+#include "spectra/color_space.h"
+
+namespace frond::compare {
+namespace {
+
+ChannelList colors() {
+  return {.names = {"rgb", "red", "green", "blue", "luminance"},
+          .shown = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+          .unit = std::string(kErrorSpace)};
+}
+
+std::string name_of(const Band& band) { return fmt::format("{:.8g} nm", band.nm); }
+
+/// Spectrum of all lights, each by its photometric power, at luminance 1.
+class White {
+ public:
+  explicit White(const Scene& scene) {
+    double sum = 0;
+    for (const Light* light : scene.lights()) {
+      const double power = light->power(scene.radius());
+      if (!(power > 0)) continue;
+      sum += power;
+      lights_.push_back({&light->emission(), power / photometric(light->emission())});
+    }
+    for (Share& light : lights_) light.weight /= sum;
+  }
+
+  /// Of a band with a response, its mean under that.
+  double in(const Band& band) const { return band.response.empty() ? at(band.nm) : under(band.response); }
+
+ private:
+  struct Share {
+    const Spectrum* emission;
+    double weight;
+  };
+
+  double at(double nm) const {
+    double sum = 0;
+    for (const Share& light : lights_) sum += light.weight * double(light.emission->at(float(nm)));
+    return sum;
+  }
+
+  /// By the midpoints of steps of a nanometre, or what lies between two points of the response.
+  double under(std::span<const ResponsePoint> response) const {
+    constexpr double kMostSteps = 10000;
+    double sum = 0, area = 0;
+    for (size_t i = 1; i < response.size(); ++i) {
+      const auto &a = response[i - 1], &b = response[i];
+      const int steps = int(std::clamp(std::ceil(b.nm - a.nm), 1.0, kMostSteps));
+      for (int k = 0; k < steps; ++k) {
+        const double t = (k + 0.5) / steps, weight = (b.nm - a.nm) / steps * std::lerp(a.value, b.value, t);
+        sum += weight * at(std::lerp(a.nm, b.nm, t)), area += weight;
+      }
+    }
+    return sum / area;
+  }
+
+  std::vector<Share> lights_;
+};
+
+/// As the eye sees them, where they cover what it sees; else three of them as red, green and blue.
+void choose_picture(ChannelList& list) {
+  const size_t count = list.bands.size();
+  const auto xyz = xyz_of_bands(list.bands);
+  list.shown.assign(count, Triple{});
+  if (!xyz.empty()) {
+    const Matrix3& to_rgb = color_space(kErrorSpace, {}).rgb_from_xyz;
+    for (size_t b = 0; b < count; ++b) {
+      const Triple rgb = to_rgb * xyz[b];
+      for (size_t c = 0; c < 3; ++c) list.shown[b][c] = rgb[c] * list.white[b];
+    }
+    list.how_shown = "colours by linear interpolation between the bands";
+    return;
+  }
+  const std::array<size_t, 3> shown{count - 1, count / 2, 0};
+  for (size_t c = 0; c < 3; ++c) list.shown[shown[c]][c] = 1;
+  list.how_shown = fmt::format("false colours: {} as red, {} as green, {} as blue", name_of(list.bands[shown[0]]),
+                               name_of(list.bands[shown[1]]), name_of(list.bands[shown[2]]));
+}
+
+ChannelList bands_of(const Scene& scene) {
+  const auto bands = scene.wavelengths().bands();
+  ChannelList list{
+      .names = {"all bands"}, .bands = {bands.begin(), bands.end()}, .unit = "radiance over that of white"};
+  const White white(scene);
+  for (const Band& band : list.bands) {
+    list.names.push_back(name_of(band));
+    list.white.push_back(white.in(band));
+    if (!(list.white.back() > 0))
+      fail({}, "the scene's lights give no light at {}: there is nothing to compare", name_of(band));
+  }
+  choose_picture(list);
+  return list;
+}
+
+}  // namespace
+
+ChannelList channels_of(const Scene& scene) { return scene.wavelengths().bands().empty() ? colors() : bands_of(scene); }
+
+uint64_t samples_for_all_channels(const Scene& scene) {
+  std::set<uint16_t> seen;
+  const size_t bands = scene.wavelengths().bands().size();
+  uint64_t samples = 0;
+  do {
+    const SampledWavelengths lambda = scene.wavelengths().sample_in_turn(samples++, 0.5f);
+    seen.insert(lambda.band.begin(), lambda.band.begin() + lambda.count);
+  } while (seen.size() < bands);
+  return samples;
+}
+
+bool same_channels(const ChannelList& a, const ChannelList& b) {
+  return a.names == b.names && std::ranges::equal(a.bands, b.bands, {}, &Band::response, &Band::response);
+}
+
+}  // namespace frond::compare

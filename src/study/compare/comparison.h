@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "instruments/convergence.h"
+#include "instruments/render_error.h"
+#include "study/compare/candidate.h"
+#include "study/compare/channels.h"
+#include "study/compare/cutoff.h"
+#include "study/compare/paired_render.h"
+#include "study/compare/picture.h"
+
+namespace frond::compare {
+
+/// Which pixels: all, or those that see a leaf.
+enum Region : size_t { kAll, kLeaf, kRegions };
+inline constexpr std::array<const char*, kRegions> kRegionNames{"all", "leaf"};
+
+/// By region and place in a ChannelList.
+using ErrorTable = std::array<std::vector<RenderError>, kRegions>;
+
+/// One candidate after so many samples a pixel.
+struct Rung {
+  uint64_t samples = 0;
+  RenderCost cost;  ///< of one render
+  ErrorTable errors = {};
+  std::optional<double> flip = {};  ///< mean FLIP of one render against the reference; none of bands
+};
+
+/// A candidate in the paper's manner (paper_manner.h), timed alone.
+struct PaperTiming {
+  Candidate candidate;
+  double depth;  ///< where the trees end
+  CutoffFit end;
+  double cpu_seconds_per_sample = 0;
+};
+
+/// What was measured of one candidate.
+struct Subject {
+  Candidate candidate;
+  std::string wavelengths;
+  double setup_cpu_seconds = 0;
+  std::vector<Rung> rungs = {};
+  std::optional<PaperTiming> paper = {};
+  Picture early = {}, late = {};  ///< as shown: one render at `Comparison::early_samples`; both after the last rung
+
+  /// Bias is that of the last rung, where noise hides the least of it.
+  Convergence convergence(Region region, size_t channel = kTogether) const;
+};
+
+struct Reference {
+  Candidate candidate;
+  uint64_t samples = 0;                                      ///< of each of two renders
+  uint64_t cached_samples = 0;                               ///< of these, from the cache
+  RenderCost cost;                                           ///< of one render
+  std::array<std::vector<MeanSquare>, kRegions> noise = {};  ///< of the mean of the two, by place in the ChannelList
+  std::optional<double> flip = {};  ///< between the two: twice the noise of what candidates are compared with
+  Picture picture = {};             ///< as shown
+};
+
+/// What the user wants to know.
+struct Request {
+  std::vector<double> rms = {};                      ///< errors to meet, over all channels and all pixels
+  std::optional<std::array<double, 3>> target = {};  ///< RMS of red, green and blue for speed-up (c)
+  double exposure_stops = 0;
+};
+
+/// Everything that a report tells.
+struct Comparison {
+  std::string scene, command, machine;
+  int width = 0, height = 0;
+  ChannelList channels;
+  double foliar_ratio = 0;
+  std::vector<std::string> leaves;
+  Request request;
+  Reference reference;
+  std::vector<Subject> subjects;
+  uint64_t early_samples = 0;
+  std::string leaf_by_leaf;  ///< a sentence on what is enough for `Request::rms` of each leaf alone; empty: not asked
+  double wall_seconds = 0, cpu_seconds = 0;
+};
+
+}  // namespace frond::compare

@@ -1,0 +1,218 @@
+#include "study/compare/measure.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "core/log.h"
+#include "core/random.h"
+#include "study/compare/paper_manner.h"
+#include "study/compare/picture.h"
+#include "study/compare/reference_store.h"
+
+namespace frond::compare {
+namespace {
+
+/// No candidate shares a seed with the reference, or a part of its noise would look like agreement.
+enum SeedUse : uint64_t { kCandidateSeed = 1, kReferenceSeed = 3, kTimingSeed = 5 };
+
+PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use, size_t pairs = 1) {
+  const uint64_t base = study.seed();
+  return {study, candidate, hash_key(base, uint64_t{use}), hash_key(base, uint64_t{use} + 1), pairs};
+}
+
+/// The two renders of a method as pictures.
+using PicturePair = std::array<Picture, 2>;
+
+std::vector<RenderError> errors_of(const PicturePair& renders, const PicturePair& reference, size_t film_channels,
+                                   std::span<const float> use) {
+  std::vector<RenderError> errors(kFirst);
+  for (size_t c = 0; c < renders[0].channels.size(); ++c)
+    errors.push_back(render_error({renders[0].channels[c], renders[1].channels[c]},
+                                  {reference[0].channels[c], reference[1].channels[c]}, use));
+  errors[kTogether] = frond::mean_of(std::span(errors).subspan(kFirst, film_channels));
+  return errors;
+}
+
+/// Measures against one reference.
+class Bench {
+ public:
+  Bench(const PairedRender& reference, double exposure_stops)
+      : channels_(channels_of(reference.scene())),
+        reference_(pictures(reference)),
+        leaf_(leaf_mask(reference.film(0))),
+        exposure_stops_(exposure_stops),
+        display_(display(shown_mean(reference_))) {}
+
+  Rung rung(const PairedRender& render) const {
+    const PicturePair pair = pictures(render);
+    return {render.samples(), render.cost(), errors(pair), flip(display_, pair[0])};
+  }
+  Picture shown_first(const PairedRender& render) const { return shown(pictures(render)[0], channels_); }
+  Picture shown_mean(const PairedRender& render) const { return shown_mean(pictures(render)); }
+
+  Reference described(const Candidate& candidate, const PairedRender& render) const {
+    Reference r{.candidate = candidate, .samples = render.samples(), .cost = render.cost()};
+    const ErrorTable table = errors(reference_);
+    for (size_t region = 0; region < kRegions; ++region)
+      for (const RenderError& e : table[region]) r.noise[region].push_back(e.reference_noise);
+    r.flip = flip(display(shown(reference_[0], channels_)), reference_[1]);
+    r.picture = shown_mean(reference_);
+    return r;
+  }
+  const ChannelList& channels() const { return channels_; }
+
+ private:
+  PicturePair pictures(const PairedRender& render) const {
+    return {picture_of(render.film(0), render.scene(), channels_, colors_),
+            picture_of(render.film(1), render.scene(), channels_, colors_)};
+  }
+  Picture shown_mean(const PicturePair& pair) const { return shown(mean_of(pair[0], pair[1]), channels_); }
+  ErrorTable errors(const PicturePair& pictures) const {
+    const size_t count = channels_.film_channels();
+    return {errors_of(pictures, reference_, count, {}), errors_of(pictures, reference_, count, leaf_)};
+  }
+  DisplayImage display(const Picture& shown) const { return display_image(shown, exposure_stops_, colors_); }
+  /// The eye has no say in bands.
+  std::optional<double> flip(const DisplayImage& reference, const Picture& picture) const {
+    if (channels_.are_bands()) return {};
+    return mean_flip(reference, display(shown(picture, channels_)));
+  }
+
+  ColorManager colors_;
+  ChannelList channels_;
+  PicturePair reference_;
+  std::vector<float> leaf_;
+  double exposure_stops_;
+  DisplayImage display_;  ///< the reference's
+};
+
+/// Kept on disk from time to time: what was rendered is not lost when the program is ended. Returns how many samples
+/// came from there.
+uint64_t render_reference(PairedRender& render, const ReferenceStore& store, const Plan& plan, const ThreadPool& pool) {
+  store.load(render);
+  const uint64_t cached = render.samples();
+  constexpr uint64_t kFirstStep = 256;
+  while (render.samples() < plan.reference_samples) {
+    const uint64_t next = std::min(plan.reference_samples, std::max(kFirstStep, 2 * render.samples()));
+    render.advance_to(next, pool, plan.progress);
+    store.save(render);
+  }
+  return cached;
+}
+
+/// With fewer samples there are bands that no path has carried.
+uint64_t first_rung(const Scene& scene) { return std::bit_ceil(samples_for_all_channels(scene)); }
+
+void check_channels(const PairedRender& render, const Candidate& candidate, const PairedRender& reference) {
+  if (same_channels(channels_of(render.scene()), channels_of(reference.scene()))) return;
+  fail({}, "{}: its wavelengths \"{}\" give other channels than the reference's \"{}\": only like can be compared",
+       candidate.label, render.scene().wavelengths_name(), reference.scene().wavelengths_name());
+}
+
+void check_request(const Request& request, const Plan& plan, const Scene& scene) {
+  if (request.target && !scene.wavelengths().bands().empty())
+    fail({}, "--target is an RMS of red, green and blue, wavelengths \"{}\" give bands: --rms is of all channels",
+         scene.wavelengths_name());
+  if (const uint64_t first = first_rung(scene); std::min(plan.top_samples, plan.reference_samples) < first)
+    fail({}, "wavelengths \"{}\" show each band once in {} samples: --spp and --reference-spp are that at least",
+         scene.wavelengths_name(), first);
+}
+
+std::vector<PairedRender> prepared(const Study& study, const std::vector<Candidate>& candidates,
+                                   const PairedRender& reference) {
+  std::vector<PairedRender> renders;
+  for (const Candidate& c : candidates) {
+    renders.push_back(pair_of(study, c, kCandidateSeed));
+    check_channels(renders.back(), c, reference);
+  }
+  return renders;
+}
+
+void warn_of_lost_samples(const PairedRender& render, const Candidate& candidate, const Log& log) {
+  if (const uint64_t count = render.film(0).not_finite() + render.film(1).not_finite(); count > 0)
+    log.warn({}, fmt::format("{}: {} samples were too bright for a number, or none at all, and count as black",
+                             candidate.label, count));
+}
+
+/// Doublings, and the last rung that was asked for.
+std::vector<uint64_t> ladder(uint64_t first, uint64_t top) {
+  std::vector<uint64_t> rungs;
+  for (uint64_t samples = first; samples < top; samples *= 2) rungs.push_back(samples);
+  rungs.push_back(top);
+  return rungs;
+}
+
+void step_to(uint64_t samples, PairedRender& render, const Plan& plan, const Bench& bench, const ThreadPool& pool,
+             const Log& log, Subject& subject) {
+  render.advance_to(samples, pool, plan.progress);
+  subject.rungs.push_back(bench.rung(render));
+  const Rung& r = subject.rungs.back();
+  log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {:.5f}{}", subject.candidate.label, samples,
+                       r.cost.cpu_seconds, r.errors[kAll][kTogether].total.root(),
+                       r.flip ? fmt::format(", FLIP {:.4f}", *r.flip) : ""));
+}
+
+void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& bench, const ThreadPool& pool,
+           const Log& log, Comparison& result) {
+  const auto rungs = ladder(first_rung(renders.front().scene()), plan.top_samples);
+  // An early picture has about a sixteenth of the samples of the last.
+  result.early_samples = rungs[rungs.size() > 5 ? rungs.size() - 5 : 0];
+  for (const uint64_t samples : rungs)
+    for (size_t i = 0; i < renders.size(); ++i) {
+      Subject& subject = result.subjects[i];
+      step_to(samples, renders[i], plan, bench, pool, log, subject);
+      if (samples == result.early_samples) subject.early = bench.shown_first(renders[i]);
+    }
+  for (size_t i = 0; i < renders.size(); ++i) {
+    result.subjects[i].late = bench.shown_mean(renders[i]);
+    warn_of_lost_samples(renders[i], plan.candidates[i], log);
+  }
+}
+
+/// A sample's CPU time hardly hangs on how many there are. The few rays that a cutoff leaves are counted over more.
+constexpr uint64_t kTimingSamples = 8, kPilotFactor = 4;
+
+void time_in_the_papers_manner(const Study& study, const Plan& plan, const ThreadPool& pool, Comparison& result) {
+  const uint64_t samples = std::min(kTimingSamples, plan.top_samples);
+  const PaperManner manner(study, plan.candidates.front(), kPilotFactor * samples, pool);
+  std::vector<std::pair<PaperTiming*, PairedRender>> renders;
+  for (Subject& subject : result.subjects)
+    if ((subject.paper = manner.of(subject.candidate)))
+      renders.emplace_back(&*subject.paper, pair_of(study, subject.paper->candidate, kTimingSeed));
+  for (uint64_t n = 1; n <= samples; ++n)
+    for (auto& [timing, render] : renders) render.advance_to(n, pool, {});
+  for (auto& [timing, render] : renders) timing->cpu_seconds_per_sample = render.cost().cpu_seconds / double(samples);
+}
+
+}  // namespace
+
+Comparison measure(const Study& study, const Plan& plan, const Request& request, const ThreadPool& pool,
+                   const Log& log) {
+  Comparison result;
+  result.request = request;
+  result.leaves = study.leaves();
+  PairedRender reference_render = pair_of(study, plan.reference, kReferenceSeed, plan.candidates.size() + 1);
+  check_request(request, plan, reference_render.scene());
+  auto renders = prepared(study, plan.candidates, reference_render);
+  const ReferenceStore store(plan.cache, study.identity(plan.reference), log);
+  const uint64_t cached = render_reference(reference_render, store, plan, pool);
+  warn_of_lost_samples(reference_render, plan.reference, log);
+  const Bench bench(reference_render, request.exposure_stops);
+  result.channels = bench.channels();
+  result.reference = bench.described(plan.reference, reference_render);
+  result.reference.cached_samples = cached;
+  result.width = result.reference.picture.width, result.height = result.reference.picture.height;
+  result.foliar_ratio = reference_render.film(0).foliar_ratio();
+  log.info(fmt::format("reference {}: 2 x {} samples ({} from the cache), its own noise RMS {:.5f}, taken out below",
+                       plan.reference.text, result.reference.samples, cached,
+                       result.reference.noise[kAll][kTogether].root()));
+  for (size_t i = 0; i < renders.size(); ++i)
+    result.subjects.push_back({.candidate = plan.candidates[i],
+                               .wavelengths = renders[i].scene().wavelengths_name(),
+                               .setup_cpu_seconds = renders[i].setup_cpu_seconds()});
+  climb(renders, plan, bench, pool, log, result);
+  time_in_the_papers_manner(study, plan, pool, result);
+  return result;
+}
+
+}  // namespace frond::compare

@@ -1,0 +1,97 @@
+#include "study/compare/paper_manner.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frond::compare {
+namespace {
+
+bool declares(const PluginInfo& info, std::string_view name) {
+  return std::ranges::any_of(info.params, [name](const Param& p) { return p.name == name; });
+}
+
+void set(PluginText& text, const std::string& name, const std::string& value) {
+  std::erase_if(text.params, [&name](const auto& p) { return p.first == name; });
+  text.params.emplace_back(name, value);
+}
+
+std::string text_of(const PluginText& plugin) {
+  std::string text = plugin.name;
+  for (const auto& [name, value] : plugin.params) text += fmt::format(",{}={}", name, value);
+  return text;
+}
+
+std::string text_of(const Candidate& c) {
+  return text_of(c.material) + (c.wavelengths.empty() ? "" : "@wavelengths=" + c.wavelengths) +
+         "@integrator=" + text_of(*c.integrator);
+}
+
+/// Ended by attenuation; the cutoff and the depth are yet to be said. Nothing where its integrator does not know them.
+std::optional<Candidate> ended_by_attenuation(Candidate c, const Study& study) {
+  if (!c.integrator) c.integrator = PluginText{study.integrator_name(), {}};
+  const IntegratorInfo& integrator = study.registry().integrators.get(c.integrator->name, {});
+  for (const char* needed : {"termination", "cutoff", "maxdepth"})
+    if (!declares(integrator, needed)) return {};
+  set(*c.integrator, "termination", "attenuation");
+  if (declares(study.registry().materials.get(c.material.name, {}), "surfacedirect"))
+    set(c.material, "surfacedirect", "false");
+  return c;
+}
+
+PluginText with_end(PluginText integrator, double cutoff, double depth) {
+  set(integrator, "cutoff", fmt::format("{:.3g}", cutoff));
+  set(integrator, "maxdepth", fmt::format("{:.0f}", std::ceil(depth)));
+  return integrator;
+}
+
+/// Renders a candidate with one cutoff after another.
+class Pilot {
+ public:
+  Pilot(const Study& study, const Candidate& candidate, uint64_t samples, const ThreadPool& pool)
+      : study_(study),
+        pool_(pool),
+        samples_(samples),
+        integrator_(*candidate.integrator),
+        scene_(study.scene(candidate)),
+        sampler_(study.sampler(*scene_, study.seed())) {}
+
+  PathEnds ends_with(double cutoff) const {
+    const auto integrator = study_.integrator(*scene_, with_end(integrator_, cutoff, PathEnds::kDepths - 1));
+    Film film({.settings = study_.film(), .bands = scene_->wavelengths().bands().size()});
+    const RenderJob job{*scene_,          scene_->camera(), *integrator,  scene_->wavelengths(),
+                        scene_->filter(), *sampler_,        study_.seed()};
+    return render(job, plan_of(film, {0, samples_}), film, pool_).ends;
+  }
+
+ private:
+  const Study& study_;
+  const ThreadPool& pool_;
+  uint64_t samples_;
+  PluginText integrator_;
+  std::unique_ptr<Scene> scene_;
+  std::unique_ptr<Sampler> sampler_;
+};
+
+}  // namespace
+
+PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples, const ThreadPool& pool)
+    : study_(study), pool_(pool), pilot_samples_(pilot_samples) {
+  const auto candidate = ended_by_attenuation(baseline, study);
+  if (!candidate) return;
+  const PathEnds ends = Pilot(study, *candidate, pilot_samples, pool).ends_with(kPaperCutoff);
+  depth_ = depth_of_trees(ends);
+  target_ = unshot_ratio(ends, depth_);
+}
+
+std::optional<PaperTiming> PaperManner::of(const Candidate& candidate) const {
+  auto c = ended_by_attenuation(candidate, study_);
+  if (!c || depth_ == 0) return {};
+  const Pilot pilot(study_, *c, pilot_samples_, pool_);
+  const CutoffFit end =
+      fit_cutoff(target_, [&](double cutoff) { return unshot_ratio(pilot.ends_with(cutoff), depth_); });
+  c->integrator = with_end(*c->integrator, end.cutoff, depth_);
+  c->text = text_of(*c);
+  return PaperTiming{*c, depth_, end};
+}
+
+}  // namespace frond::compare

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "study/compare/comparison.h"
+
+namespace frond::compare {
+
+/// Refuses, by InputError, a folder that cannot be made or written to, and a machine without gnuplot. Leaves
+/// nothing behind.
+void check_report_folder(const std::filesystem::path& folder);
+
+/// Makes the folder and writes index.html, which needs nothing beside it, the charts as SVG and PNG, and the data as
+/// CSV and JSON.
+void write_report(const std::filesystem::path& folder, const Comparison& comparison);
+
+}  // namespace frond::compare

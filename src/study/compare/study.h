@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+
+#include "core/log.h"
+#include "scene/scene.h"
+#include "study/compare/candidate.h"
+
+namespace frond::compare {
+
+/// What decides the pictures beside the candidates.
+struct StudyOptions {
+  std::string scene = {}, wavelengths = {};  ///< wavelengths: a PluginText; empty: the scene's
+  std::vector<std::string> leaves = {};      ///< names of the materials that candidates replace; empty: every leaf
+  std::vector<std::string> plugins = {};
+  std::optional<uint64_t> seed = {};  ///< 0 by default
+  int size = 256;                     ///< pixels of the picture's longer side
+  std::filesystem::path cache = {};
+};
+
+/// One scene, in which one leaf model stands for another.
+class Study {
+ public:
+  /// Throws InputError.
+  Study(const StudyOptions& options, ThreadPool& pool, const Log& log);
+
+  /// With the candidate in place of the leaves. Throws InputError.
+  std::unique_ptr<Scene> scene(const Candidate& candidate) const;
+  /// The scene's sampler, with a seed of its own.
+  std::unique_ptr<Sampler> sampler(const Scene& scene, uint64_t seed) const;
+  /// The scene's integrator with these over it.
+  std::unique_ptr<Integrator> integrator(const Scene& scene, const PluginText& over) const;
+
+  /// From which those of all renders are made.
+  uint64_t seed() const { return options_.seed.value_or(0); }
+  const FilmSettings& film() const { return film_; }
+  const SceneDescription& description() const { return description_; }
+  /// Which put a material in the leaves' place.
+  std::vector<MaterialSwap> swaps_to(const PluginText& material) const;
+  /// Names of the materials that candidates replace.
+  const std::vector<std::string>& leaves() const { return leaves_; }
+  /// The scene's integrator, by name.
+  const std::string& integrator_name() const { return description_.integrator.name; }
+  const Registry& registry() const { return registry_; }
+  /// A hash of all that decides the pixels of this candidate: the program, its plug-ins, the scene, size, wavelengths,
+  /// seed, and the files that any of them names. Another hash may be the same pixels, the same hash is.
+  uint64_t identity(const Candidate& candidate) const;
+
+ private:
+  SceneOverrides overrides_of(const Candidate& candidate) const;
+  std::vector<std::filesystem::path> input_files(const Candidate& candidate) const;
+
+  StudyOptions options_;
+  ThreadPool& pool_;
+  const Log& log_;
+  Registry registry_;
+  SceneDescription description_;
+  FilmSettings film_;
+  std::vector<std::string> leaves_;
+  std::vector<MaterialSwap> swaps_;  ///< without what they put in
+};
+
+}  // namespace frond::compare

@@ -1,0 +1,139 @@
+#include "study/compare/tables.h"
+
+#include <algorithm>
+
+#include "study/compare/error_tables.h"
+#include "study/compare/figures.h"
+#include "study/compare/html.h"
+#include "study/compare/html_table.h"
+#include "study/compare/speed_up.h"
+#include "study/compare/verdict.h"
+
+namespace frond::compare {
+namespace {
+
+std::string ratio_text(double r) { return fmt::format("{:.2f}×", r); }
+
+std::string ratio_text(const std::optional<Ratio>& r) {
+  if (!r) return "–";
+  switch (r->kind) {
+    case Ratio::Kind::not_reached:
+      return "not reached";
+    case Ratio::Kind::baseline_not_there:
+      return "the baseline does not reach it";
+    case Ratio::Kind::extrapolated:
+      return ratio_text(r->value) + " (extrapolated)";
+    default:
+      return ratio_text(r->value);
+  }
+}
+
+std::string plateau_text(const Subject& s) {
+  const auto plateau = s.convergence(kAll).until_plateau();
+  return plateau ? fmt::format("{} s, {:.0f} samples", figures(plateau->seconds, 3), plateau->samples) : "none found";
+}
+
+std::string speed_row(const Comparison& c, size_t i) {
+  const Subject& s = c.subjects[i];
+  const SpeedUps v = speed_ups(c, i);
+  const Rung& r = s.rungs.back();
+  return "<tr>" + cell(html_text(s.candidate.label)) +
+         cell(fmt::format("{:.3g}", r.cost.cpu_seconds / double(r.samples))) +
+         cell(fmt::format("{:.2g}", s.setup_cpu_seconds)) + cell(plateau_text(s)) + cell(ratio_text(v.equal_samples)) +
+         cell(v.paper ? ratio_text(*v.paper) : "–") + cell(ratio_text(v.equal_error)) +
+         cell(ratio_text(v.equal_error_at_bias)) + cell(ratio_text(v.equal_noise)) + "</tr>\n";
+}
+
+std::string cutoff_text(const Subject& s) {
+  const CutoffFit& end = s.paper->end;
+  const std::string text = fmt::format("{:.2g} for {}", end.cutoff, html_text(s.candidate.label));
+  return end.equal ? text : fmt::format("{} (which leaves {:.1e}: none leaves the same)", text, end.left.value);
+}
+
+/// What stands behind (b); nothing where the scene's integrator cannot render so.
+std::string paper_note(const Comparison& c) {
+  std::vector<std::string> cutoffs;
+  for (const Subject& s : c.subjects)
+    if (s.paper) cutoffs.push_back(cutoff_text(s));
+  if (cutoffs.empty() || !c.subjects.front().paper) return "";
+  const PaperTiming& baseline = *c.subjects.front().paper;
+  return fmt::format(
+      "(b): light sampling does not see the surface lobe, and a path ends when the luminance of its attenuation falls "
+      "below a cutoff, such that at tree depth {:.1f} all leave the same ratio of rays unshot to shot, {:.1e}: {}. ",
+      baseline.depth, baseline.end.left.value, fmt::join(cutoffs, ", "));
+}
+
+std::string speed_table(const Comparison& c) {
+  std::string rows;
+  for (size_t i = 0; i < c.subjects.size(); ++i) rows += speed_row(c, i);
+  const std::string target = c.request.target ? fmt::format("an RMS of {:g} / {:g} / {:g}", (*c.request.target)[0],
+                                                            (*c.request.target)[1], (*c.request.target)[2])
+                                              : "an RMS that --target gives";
+  return table(
+      "Speed",
+      head({"candidate", "CPU s<br>per sample", "CPU s to<br>make ready", "noise below<br>bias from",
+            "(a) equal<br>samples", "(b) paper’s<br>manner", "(c) equal<br>error", "(c) at 1.5<br>× bias",
+            "(d) equal<br>noise"}),
+      rows,
+      fmt::format("Speed-up: CPU time of {} over the candidate’s. {}(c): until all three channels are down to {}; and "
+                  "until the RMS of all is 1.5 times the candidate’s bias. (d): at the same variance. Tables from the "
+                  "cache cost little to make ready.",
+                  html_text(c.subjects.front().candidate.label), paper_note(c), target));
+}
+
+constexpr const char* kTable2Note =
+    "As Table 2 of Baranoski and Rokne, who give for their simplified model 0.009 0.009 0.012 and 5.14× (front lit), "
+    "0.011 "
+    "0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS of clipped pictures, linear "
+    "SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are told below.";
+
+std::string table_2_row(const Comparison& c, size_t i) {
+  const auto& e = c.subjects[i].rungs.back().errors[kAll];
+  const SpeedUps v = speed_ups(c, i);
+  std::string row = "<tr>" + cell(html_text(c.subjects[i].candidate.label));
+  for (size_t k = 0; k < 3; ++k) row += cell(fmt::format("{:.4f}", e[kFirst + k].clipped.root()));
+  return row + cell(ratio_text(v.equal_samples)) + cell(v.paper ? ratio_text(*v.paper) : "–") +
+         cell(ratio_text(v.equal_error)) + cell(ratio_text(v.equal_noise)) + "</tr>\n";
+}
+
+/// Of colours.
+std::string table_2(const Comparison& c) {
+  if (c.channels.are_bands()) return "";
+  std::string rows;
+  for (size_t i = 0; i < c.subjects.size(); ++i) rows += table_2_row(c, i);
+  return table(
+      fmt::format("Table 2: RMS error of {} samples per pixel, and speed-up", c.subjects.front().rungs.back().samples),
+      head({"candidate", "RMS<br>red", "RMS<br>green", "RMS<br>blue", "(a) equal<br>samples", "(b) paper’s<br>manner",
+            "(c) equal<br>error", "(d) equal<br>noise"}),
+      rows, kTable2Note);
+}
+
+std::string offer_table(const Comparison& c, double rms, const char* note) {
+  std::string rows;
+  for (const Offer& o : offers(c, rms, simultaneous_z(c)))
+    rows +=
+        "<tr>" + cell(html_text(c.subjects[o.subject].candidate.label)) +
+        (o.effort
+             ? cell(fmt::format("{:.0f}", std::ceil(o.effort->samples))) +
+                   cell(fmt::format("{}{}", figures(o.effort->seconds, 3), o.effort->measured ? "" : " (extrapolated)"))
+             : cell(o.never ? "never" : "not known") + cell("–")) +
+        "</tr>\n";
+  return table(fmt::format("An RMS of {:g}", rms), head({"candidate", "samples per pixel", "CPU s"}), rows, note);
+}
+
+constexpr const char* kOffersNote =
+    "With bias and noise taken at the upper ends of intervals that hold all together with 95 % confidence. Not known: "
+    "the "
+    "error lies within the interval of the bias.";
+
+std::string offer_tables(const Comparison& c) {
+  std::string html;
+  for (const double rms : c.request.rms) html += offer_table(c, rms, rms == c.request.rms.back() ? kOffersNote : "");
+  return html;
+}
+
+}  // namespace
+
+std::string tables_html(const Comparison& c) { return offer_tables(c) + table_2(c) + error_tables(c) + speed_table(c); }
+
+}  // namespace frond::compare

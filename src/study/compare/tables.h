@@ -1,0 +1,10 @@
+#pragma once
+
+#include "study/compare/comparison.h"
+
+namespace frond::compare {
+
+/// As HTML: what meets the errors asked for, the paper's Table 2, and what that leaves out.
+std::string tables_html(const Comparison& comparison);
+
+}  // namespace frond::compare

@@ -1,0 +1,73 @@
+#include "system/child_process.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "core/error.h"
+
+extern char** environ;
+
+namespace frond {
+namespace {
+
+/// An unnamed file for one of the child's streams: unlike a pipe it never fills up, so nobody waits for anybody.
+class StreamFile {
+ public:
+  StreamFile() : file_(std::tmpfile(), &std::fclose) {
+    if (!file_) fail({}, "cannot make a temporary file: {}", std::strerror(errno));
+  }
+  int descriptor() const { return fileno(file_.get()); }
+
+  void fill(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0)
+      fail({}, "cannot write a temporary file: {}", std::strerror(errno));
+    std::rewind(file_.get());
+  }
+  std::string content() {
+    std::rewind(file_.get());
+    std::string text;
+    std::array<char, 65536> buffer;
+    for (size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), file_.get())) > 0;) text.append(buffer.data(), n);
+    return text;
+  }
+
+ private:
+  std::unique_ptr<FILE, int (*)(FILE*)> file_;
+};
+
+int wait_for(pid_t child) {
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+}  // namespace
+
+std::optional<ChildResult> run_child(const std::vector<std::string>& command, const std::string& input) {
+  std::array<StreamFile, 3> streams;
+  streams[0].fill(input);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (int i = 0; i < 3; ++i)
+    posix_spawn_file_actions_adddup2(&actions, streams[static_cast<size_t>(i)].descriptor(), i);
+  std::vector<char*> argv;
+  for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error == ENOENT) return {};
+  if (error != 0) fail({}, "cannot run {}: {}", command[0], std::strerror(error));
+  const int status = wait_for(child);
+  return ChildResult{status, streams[1].content(), streams[2].content()};
+}
+
+}  // namespace frond

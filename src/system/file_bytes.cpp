@@ -1,0 +1,78 @@
+#include "system/file_bytes.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace frond {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+/// What is read, and what messages call it.
+struct Source {
+  std::string path;
+  const Location& where;
+  std::string_view what;
+
+  /// `plain` is the whole message on a file that is called by its name alone.
+  [[noreturn]] void refuse(std::string_view reason, std::string_view plain) const {
+    if (what.empty()) fail(where, "{}", plain);
+    fail(where, "cannot read {} \"{}\": {}", what, path, reason);
+  }
+  [[noreturn]] void refuse(std::string_view attempt, int error) const {
+    const char* reason = std::strerror(error);
+    refuse(reason, fmt::format("cannot {} {}: {}", attempt, path, reason));
+  }
+};
+
+/// Devices would never end, and folders open but do not read.
+void check_kind(const Source& source) {
+  std::error_code error;
+  const fs::file_type type = fs::status(source.path, error).type();
+  if (type == fs::file_type::not_found) source.refuse(std::strerror(ENOENT), "there is no file " + source.path);
+  if (type == fs::file_type::none) source.refuse("open", error.value());
+  if (type == fs::file_type::directory) source.refuse("it is a folder", source.path + " is a folder, not a file");
+  if (type != fs::file_type::regular && type != fs::file_type::fifo)
+    source.refuse("it is no regular file", source.path + " is not a regular file");
+}
+
+File open(const Source& source) {
+  check_kind(source);
+  File file(std::fopen(source.path.c_str(), "rb"));
+  if (!file) source.refuse("open", errno);
+  return file;
+}
+
+void append_rest(std::FILE* file, const Source& source, std::string& bytes) {
+  std::array<char, 1 << 16> block;
+  while (const size_t count = std::fread(block.data(), 1, block.size(), file)) bytes.append(block.data(), count);
+  if (std::ferror(file)) source.refuse("read", errno);
+}
+
+}  // namespace
+
+std::string read_file_bytes(const fs::path& path, const Location& where, std::string_view what) {
+  const Source source{path.string(), where, what};
+  const File file = open(source);
+  std::string bytes;
+  std::error_code unknown_size;
+  if (const auto size = fs::file_size(path, unknown_size); !unknown_size) bytes.reserve(size);
+  append_rest(file.get(), source, bytes);
+  return bytes;
+}
+
+std::string read_standard_input() {
+  std::string bytes;
+  append_rest(stdin, {"standard input", {}, {}}, bytes);
+  return bytes;
+}
+
+}  // namespace frond

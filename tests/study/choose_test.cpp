@@ -1,0 +1,211 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/log.h"
+#include "image/image_file.h"
+#include "render/plugins.h"
+#include "scene/parser.h"
+#include "scene/scene_variant.h"
+#include "study/choose/choice_report.h"
+#include "tests/cli/command.h"
+#include "tests/planted/planted.h"
+#include "tests/study/choose_scene.h"
+#include "tests/support/input_error.h"
+
+namespace frond::choose {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Key;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+class Choosing : public ::testing::Test {
+ protected:
+  void SetUp() override { setenv("SOURCE_DATE_EPOCH", "0", 1); }
+
+  Outcome render(const std::string& scene, std::vector<std::string> more = {}) const {
+    std::vector<std::string> all{
+        "render", folder_.write("scene.pbrt", scene).string(), "-o", image(), "--cache", tables().name_of("")};
+    all.insert(all.end(), more.begin(), more.end());
+    return frond_command(all);
+  }
+  std::string image() const { return folder_.name_of("image.exr"); }
+  std::map<std::string, std::string> header() const { return read_image(image(), {}).header.text; }
+
+  /// Made once for all tests here.
+  static const TestFolder& tables() {
+    static const TestFolder folder("choose_tables");
+    return folder;
+  }
+
+  TestFolder folder_{"choose"};
+};
+
+const std::vector<std::string> kQuick{"--wavelengths", "smpte", "--spp", "4", "--json"};
+
+nlohmann::json choice_of(const Outcome& o) {
+  EXPECT_EQ(o.code, 0) << o.err;
+  return nlohmann::json::parse(o.out)["choice"];
+}
+
+TEST_F(Choosing, WhatIsFarAwayMayBeSimpler) {
+  const auto choice = choice_of(render(two_leaves("\"float maxrms\" 0.01", "\"float maxrms\" 0.01"), kQuick));
+  ASSERT_EQ(choice["leaves"].size(), 2u);
+  EXPECT_EQ(choice["leaves"][0]["name"], "near");
+  EXPECT_NE(choice["leaves"][0]["chosen"], "leaf_lambert");
+  EXPECT_EQ(choice["leaves"][1]["chosen"], "leaf_lambert");
+  EXPECT_GT(choice["leaves"][0]["share"], choice["leaves"][1]["share"]);
+  EXPECT_TRUE(choice["met"]);
+  EXPECT_LT(choice["bias_high"], 0.01);
+  EXPECT_FALSE(choice.contains("wavelengths"));
+}
+
+TEST_F(Choosing, TheLogAndTheHeaderSayWhatAndWhy) {
+  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "smpte", "--spp", "4"});
+  EXPECT_THAT(o.err, HasSubstr("leaf models for an RMS of 0.01, by a pilot of 2304 pixels"));
+  EXPECT_THAT(o.err, HasSubstr("far, seen first by"));
+  EXPECT_THAT(o.err, HasSubstr("* leaf_lambert"));
+  const auto attributes = header();
+  EXPECT_THAT(attributes.at("frond:leaf:far"), HasSubstr("leaf_lambert"));
+  EXPECT_THAT(attributes.at("frond:choice"), StartsWith("RMS against abm at most 0.0"));
+}
+
+TEST_F(Choosing, TheSameCommandGivesTheSameFileOnAnyThreads) {
+  const std::string scene = two_leaves("", "");
+  const auto bytes = [&](const char* threads) {
+    EXPECT_EQ(render(scene, {"--wavelengths", "smpte", "--spp", "4", "-q", "--threads", threads}).code, 0);
+    std::ifstream in(image(), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string one = bytes("1");
+  EXPECT_EQ(one, bytes("2"));
+  EXPECT_EQ(one, bytes("1"));
+}
+
+TEST_F(Choosing, SaysWhenNothingMeetsTheRequest) {
+  const Outcome o = render(two_leaves("\"float maxrms\" 1e-6", ""), {"--wavelengths", "smpte", "--spp", "4"});
+  EXPECT_THAT(o.err, HasSubstr("warning: no model but abm was shown to keep the picture's RMS error below 1e-06"));
+  EXPECT_EQ(header().at("frond:leaf:near"), "abm");
+  EXPECT_THAT(header().at("frond:choice"), StartsWith("no model but abm"));
+}
+
+TEST_F(Choosing, WhoNamesAModelHasIt) {
+  const Outcome o =
+      render(two_leaves("\"string model\" \"leaf_lambert\"", "\"string model\" \"leaf_lambert\""), kQuick);
+  EXPECT_FALSE(nlohmann::json::parse(o.out).contains("choice"));
+  EXPECT_THAT(header(), Not(Contains(Key("frond:choice"))));
+}
+
+TEST_F(Choosing, AnySceneCanBeAskedBySwapping) {
+  const std::string fixed = "\"string model\" \"leaf_simplified\"";
+  std::vector<std::string> more = kQuick;
+  more.insert(more.end(), {"--swap", "*=leaf,model=auto,maxrms=0.3"});
+  const auto choice = choice_of(render(two_leaves(fixed, fixed), more));
+  EXPECT_EQ(choice["rms"], 0.3);
+  EXPECT_EQ(choice["leaves"].size(), 2u);
+}
+
+TEST_F(Choosing, TexturesOfCellWallsLeaveTheWalkAlone) {
+  Image ramp(2, 1, {"R", "G", "B"});
+  ramp.at(1, 0, 0) = ramp.at(1, 0, 1) = ramp.at(1, 0, 2) = 1;
+  write_image(folder_.name_of("ramp.png"), ramp, {});
+  std::string scene = two_leaves("\"texture spongyaspect\" \"ramp\"", "");
+  scene.insert(scene.find("WorldBegin\n") + 11,
+               "Texture \"ramp\" \"float\" \"imagemap\" \"string filename\" \"ramp.png\"\n");
+  const auto choice = choice_of(render(scene, kQuick));
+  EXPECT_EQ(choice["leaves"][0]["chosen"], "abm");
+  EXPECT_EQ(choice["leaves"][0]["refused"].size(), 3u);
+  EXPECT_THAT(choice["leaves"][0]["refused"][1]["reason"].get<std::string>(), HasSubstr("takes no texture"));
+}
+
+TEST_F(Choosing, APilotAloneRendersNothing) {
+  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "smpte", "--pilot", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(o.out)["leaves"][1]["chosen"], "leaf_lambert");
+  EXPECT_FALSE(std::filesystem::exists(image()));
+  const std::string fixed = "\"string model\" \"abm\"";
+  EXPECT_THAT(render(two_leaves(fixed, fixed), {"--pilot"}).err, HasSubstr("leaves no leaf's model open"));
+}
+
+TEST_F(Choosing, BadRequestsAreRefusedWithTheirPlace) {
+  EXPECT_THAT(render(two_leaves("\"float maxrms\" -1", "")).err, HasSubstr("\"maxrms\" is -1, outside its range"));
+  EXPECT_THAT(render(two_leaves("\"string model\" \"leaf\"", "")).err, HasSubstr("\"model\" is one of auto"));
+  EXPECT_THAT(render(two_leaves("\"float rms\" 0.1", "")).err, HasSubstr("maxrms"));
+}
+
+TEST_F(Choosing, BandsAreNoPicture) {
+  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "bands,wavelengths=450,550", "--spp", "4"});
+  EXPECT_EQ(o.code, 0);
+  EXPECT_THAT(o.err, HasSubstr("bands are none"));
+}
+
+SceneOverrides with_smpte() {
+  SceneOverrides overrides;
+  overrides.wavelengths = "smpte";
+  return overrides;
+}
+
+/// What is chosen for two leaves.
+Choice chosen_from(const Ladder& ladder, const Registry& registry, const SceneDescription& description,
+                   const SceneOverrides& overrides) {
+  ThreadPool pool(2);
+  const Subject subject{description, registry, overrides, Scene::film_settings(description, registry), 64};
+  return choose_models(subject, ladder, pool, silent_log()).value().choice;
+}
+
+/// A cheap model that is wrong stands at the foot of the ladder.
+TEST_F(Choosing, AWrongModelIsNotChosenHoweverCheap) {
+  const MaterialInfo wrong = test::planted<test::GoodLambertian>("planted_wrong");
+  Registry registry = builtin_registry();
+  registry.materials.add(wrong);
+  Ladder ladder = standard_ladder(registry);
+  ladder.models.insert(ladder.models.begin(), {"planted_wrong", {"planted_wrong", {}}, 0.01});
+  const SceneDescription description = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), silent_log());
+  const Choice choice = chosen_from(ladder, registry, description, with_smpte());
+  const Answer& near = choice.answers.front();
+  EXPECT_EQ(near.findings.front().name, "planted_wrong");
+  EXPECT_GT(near.findings.front().bias.low, 0.01);
+  EXPECT_NE(near.chosen, "planted_wrong");
+  EXPECT_EQ(choice.ground, Choice::Ground::met);
+}
+
+TEST_F(Choosing, WavelengthsAreAQuestionWhereNobodyNamesThem) {
+  const Registry registry = builtin_registry();
+  Ladder ladder = standard_ladder(registry);
+  std::erase_if(ladder.models, [](const Rung& r) { return r.name != "leaf_lambert" && r.name != "abm"; });
+  SceneDescription description = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), silent_log());
+  for (MaterialDescription& m : description.materials)
+    if (m.plugin.name == "leaf") m.plugin.params.push_back({"float", "maxrms", {}, {}, std::vector<double>{0.3}});
+  const Choice choice = chosen_from(ladder, registry, description, {});
+  ASSERT_EQ(choice.answers.size(), 3u);
+  EXPECT_EQ(choice.answers[0].question, "wavelengths");
+  EXPECT_NE(choice.answers[0].chosen, "hero");
+  EXPECT_EQ(choice.answers[1].chosen, "leaf_lambert");
+}
+
+/// The pilot's leaves are the very ones that a scene made for them has.
+TEST_F(Choosing, AVariantRendersAsTheSceneItStandsFor) {
+  const Registry registry = builtin_registry();
+  ThreadPool pool(2);
+  const Log& quiet = silent_log();
+  const SceneDescription open = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), quiet);
+  const SceneDescription closed = parse_scene(
+      folder_.write("closed.pbrt",
+                    two_leaves("\"string model\" \"leaf_simplified\"", "\"string model\" \"leaf_lambert\"")),
+      quiet);
+  const SceneOverrides overrides = with_smpte();
+  const Scene scene(open, registry, overrides, pool, quiet), direct(closed, registry, overrides, pool, quiet);
+  SharedWork shared;
+  const SceneVariant variant(scene, closed, registry, overrides, pool, quiet, shared);
+  const FilmSettings film = Scene::film_settings(open, registry);
+  const RenderedWorld first{variant, variant.wavelengths(), scene}, second{direct, direct.wavelengths(), scene};
+  PairedFilms a(film, {1, 2}, open, registry, first), b(film, {1, 2}, open, registry, second);
+  a.advance_to(2, first, pool, nullptr);
+  b.advance_to(2, second, pool, nullptr);
+  ASSERT_EQ(a.film(0), b.film(0));
+}
+
+}  // namespace
+}  // namespace frond::choose

@@ -1,0 +1,174 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "system/child_process.h"
+#include "system/file_bytes.h"
+#include "tests/cli/command.h"
+#include "tests/study/compare_scene.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class CompareCommand : public ::testing::Test {
+ protected:
+  Outcome compare(std::vector<std::string> more, std::string_view scene = kLeafScene) const {
+    std::vector<std::string> all{"compare",
+                                 folder_.write("scene.pbrt", scene).string(),
+                                 "-o",
+                                 report(),
+                                 "--cache",
+                                 folder_.name_of("cache"),
+                                 "--wavelengths",
+                                 "smpte",
+                                 "--size",
+                                 "16",
+                                 "--spp",
+                                 "4",
+                                 "--reference-spp",
+                                 "8"};
+    all.insert(all.end(), more.begin(), more.end());
+    return frond_command(all);
+  }
+  std::string report() const { return folder_.name_of("report"); }
+  std::string file(const std::string& name) const { return read_file_bytes(report() + "/" + name, {}); }
+  nlohmann::json json() const { return nlohmann::json::parse(file("compare.json")); }
+
+  TestFolder folder_{"compare"};
+};
+
+TEST_F(CompareCommand, MeasuresEveryCandidateOnEveryRung) {
+  const Outcome o = compare({"--materials", "abm,leaf_simplified,oblateness=2", "--rms", "0.5"});
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("is enough for an RMS of 0.5, with 95 % confidence: 1 sample per pixel"));
+  const auto j = json();
+  ASSERT_EQ(j["candidates"].size(), 2u);
+  EXPECT_EQ(j["candidates"][1]["label"], "leaf_simplified,oblateness=2");
+  EXPECT_EQ(j["leaf_materials"], nlohmann::json{"blade"});
+  EXPECT_GT(j["foliar_ratio"], 0.05);
+  for (const auto& candidate : j["candidates"]) {
+    ASSERT_EQ(candidate["rungs"].size(), 3u);
+    for (size_t i = 0; i < 3; ++i) {
+      const auto& rung = candidate["rungs"][i];
+      EXPECT_EQ(rung["samples"], 1 << i);
+      EXPECT_GT(rung["cpu_seconds"], 0);
+      EXPECT_GT(rung["flip"], 0);
+      EXPECT_GT(rung["leaf"]["green"]["noise"]["value"], 0);
+    }
+  }
+  const auto &abm = j["candidates"][0]["paper_manner"], &simplified = j["candidates"][1]["paper_manner"];
+  EXPECT_EQ(abm["cutoff"], 0.01);
+  EXPECT_EQ(abm["ratio_is_the_baselines"], true);
+  EXPECT_EQ(simplified["tree_depth"], abm["tree_depth"]);
+  EXPECT_THAT(std::string(simplified["candidate"]),
+              AllOf(HasSubstr("oblateness=2,surfacedirect=false@integrator=path,termination=attenuation,cutoff="),
+                    HasSubstr(",maxdepth=" + fmt::format("{:.0f}", std::ceil(double(abm["tree_depth"]))))));
+  EXPECT_GT(simplified["cpu_seconds_per_sample"], 0);
+  const std::string csv = file("compare.csv");
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 6 + 2 * 3 * 2 * 5);
+}
+
+TEST_F(CompareCommand, TheReportNeedsNothingBesideIt) {
+  ASSERT_EQ(compare({"--materials", "name <b>:abm"}).code, 0);
+  const std::string html = file("index.html");
+  EXPECT_THAT(html, AllOf(Not(HasSubstr("http")), Not(HasSubstr(" src=\"/")), Not(HasSubstr("{{")),
+                          Not(HasSubstr("name <b>:")), HasSubstr("name &lt;b&gt;")));
+  for (const char* chart : {"rms", "rms-leaf", "flip"}) {
+    EXPECT_THAT(file(chart + std::string(".svg")), HasSubstr("<svg"));
+    EXPECT_EQ(file(chart + std::string(".png")).substr(1, 3), "PNG");
+  }
+}
+
+TEST_F(CompareCommand, ContinuesTheReferenceFromTheCache) {
+  ASSERT_EQ(compare({"--materials", "abm"}).code, 0);
+  EXPECT_EQ(json()["reference"]["samples_from_cache"], 0);
+  ASSERT_EQ(compare({"--materials", "abm"}).code, 0);
+  const auto cached = json()["reference"];
+  EXPECT_EQ(cached["samples_from_cache"], 8);
+  ASSERT_EQ(frond_command({"compare", folder_.name_of("scene.pbrt"), "-o", report(), "--cache",
+                           folder_.name_of("cache"), "--wavelengths", "smpte", "--size", "16", "--spp", "2",
+                           "--reference-spp", "16", "-q", "--materials", "abm"})
+                .code,
+            0);
+  const auto continued = json()["reference"];
+  EXPECT_EQ(continued["samples_from_cache"], 8);
+  EXPECT_EQ(continued["samples"], 16);
+  EXPECT_LT(continued["noise"]["all"]["rgb"]["value"], cached["noise"]["all"]["rgb"]["value"]);
+}
+
+TEST_F(CompareCommand, ReplacesTheLeavesThatAreNamed) {
+  std::string scene(kLeafScene);
+  scene.replace(scene.find("NamedMaterial \"blade\"\n"), 0, "MakeNamedMaterial \"other\" \"string type\" \"abm\"\n");
+  ASSERT_EQ(compare({"--materials", "abm", "--leaf", "blade"}, scene).code, 0);
+  EXPECT_EQ(json()["leaf_materials"], nlohmann::json{"blade"});
+  ASSERT_EQ(compare({"--materials", "abm"}, scene).code, 0);
+  EXPECT_EQ(json()["leaf_materials"], (nlohmann::json{"blade", "other"}));
+  EXPECT_THAT(compare({"--materials", "abm", "--leaf", "blad"}, scene).err, HasSubstr("did you mean \"blade\"?"));
+}
+
+TEST_F(CompareCommand, ALeafThatNobodySeesIsNoError) {
+  std::string scene(kLeafScene);
+  scene.replace(scene.find("NamedMaterial \"blade\"\n"), 0, "Translate 0 -5 0\n");
+  const Outcome o = compare({"--materials", "abm"}, scene);
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(file("index.html"), HasSubstr("There is nothing to draw"));
+}
+
+TEST_F(CompareCommand, BadRequestsAreRefused) {
+  EXPECT_THAT(compare({"--materials", "leaves"}).err, HasSubstr("unknown material \"leaves\""));
+  EXPECT_THAT(compare({"--materials", "abm,mood=weighted"}).err, HasSubstr("did you mean \"mode\"?"));
+  for (const char* target : {"0.1,0.2", "0.01,0.01,0.01x", "0.01,0.01,-1"})
+    EXPECT_THAT(compare({"--target", target}).err, HasSubstr("--target takes the RMS of red, green and blue"));
+  EXPECT_THAT(compare({"--leaf", "foo"}).err, HasSubstr("no material \"foo\""));
+  EXPECT_THAT(compare({"--rms", "0"}).err, HasSubstr("--rms: a number above 0 is needed"));
+  EXPECT_THAT(compare({"--materials", "abm@wavelengths=bands"}).err,
+              HasSubstr("its wavelengths \"bands\" give other channels than the reference's \"smpte\""));
+  std::string scene(kLeafScene);
+  scene.replace(scene.find("leaf_simplified"), 15, "diffuse");
+  scene.replace(scene.find("\"string specimen\" \"soybean\""), 27, "");
+  EXPECT_THAT(compare({}, scene).err, HasSubstr("none of the materials is a leaf; --leaf names the one to replace"));
+  EXPECT_FALSE(std::filesystem::exists(report())) << "a folder without a report";
+}
+
+TEST_F(CompareCommand, AFolderThatCannotBeIsRefusedFirst) {
+  folder_.write("file", "");
+  for (const char* folder : {"file", "file/report"})
+    EXPECT_EQ(frond_command({"compare", "/no/such/scene.pbrt", "-o", folder_.name_of(folder)})
+                  .err.find("frond: cannot write"),
+              0u);
+}
+
+/// In a real browser, where there is one: its script decodes every picture and draws.
+TEST_F(CompareCommand, TheReportRunsInABrowser) {
+  const std::vector<std::string> browser{"chromium", "--headless=new", "--no-sandbox", "--disable-gpu"};
+  const auto run = [&](const std::string& what, const std::string& url) {
+    auto command = browser;
+    command.insert(command.end(),
+                   {"--user-data-dir=" + folder_.name_of("profile"), "--virtual-time-budget=5000", what, url});
+    return run_child(command, "");
+  };
+  ASSERT_EQ(compare({"--materials", "abm,leaf_simplified"}).code, 0);
+  const std::string url = "file://" + report() + "/index.html";
+  const auto dom = run("--dump-dom", url + "#mode=difference&a=1&b=2");
+  if (!dom) GTEST_SKIP() << "chromium is not installed";
+  EXPECT_THAT(dom->out,
+              AllOf(HasSubstr("data-ready=\"5\""), HasSubstr("data-mode=\"difference\" aria-pressed=\"true\""),
+                    HasSubstr("legend shown"), HasSubstr("luminance A minus B")));
+  for (const auto& [link, width] : std::map<std::string, int>{{"#mode=side&zoom=3", 2 * 16 * 3 + 8},
+                                                              {"#mode=wipe&zoom=2", 16 * 2},
+                                                              {"#mode=flip&zoom=8&exposure=2", 16 * 8}})
+    EXPECT_THAT(run("--dump-dom", url + link)->out, HasSubstr(fmt::format("width=\"{}\"", width))) << link;
+  const std::string screenshot = folder_.name_of("screen.png");
+  run("--screenshot=" + screenshot, url);
+  EXPECT_EQ(read_file_bytes(screenshot, {}).substr(1, 3), "PNG");
+}
+
+}  // namespace
+}  // namespace frond

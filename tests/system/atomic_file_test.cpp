@@ -1,0 +1,45 @@
+#include "system/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "system/file_bytes.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+namespace fs = std::filesystem;
+
+void replace(const fs::path& path, std::string_view text) {
+  replace_file(path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+TEST(AtomicFile, TakesThePlaceOfTheOldOne) {
+  const TestFolder folder("atomic_file");
+  const fs::path path = folder.write("file", "the old one, which is longer");
+  replace(path, "new");
+  EXPECT_EQ(read_file_bytes(path, {}), "new");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.name_of("")), {}), 1);
+}
+
+// Containers that share a folder number their processes alike.
+TEST(AtomicFile, LeavesAloneWhatAnotherProcessOfTheSameNumberIsWriting) {
+  const TestFolder folder("atomic_file");
+  const std::string others = fmt::format(".frond-{}-0.tmp", ::getpid());
+  folder.write(others, "half of so");
+  replace(folder.name_of("file"), "whole");
+  EXPECT_EQ(read_file_bytes(folder.name_of(others), {}), "half of so");
+  EXPECT_EQ(read_file_bytes(folder.name_of("file"), {}), "whole");
+}
+
+TEST(AtomicFile, SaysWhyNot) {
+  const TestFolder folder("atomic_file");
+  const std::string missing = folder.name_of("missing"), path = missing + "/file";
+  EXPECT_EQ(error_of([&] { replace(path, "new"); }),
+            "cannot write \"" + path + "\": there is no folder \"" + missing + "\"");
+  EXPECT_EQ(error_of([&] { replace("/dev/full", "new"); }), "cannot write \"/dev/full\": it is no regular file");
+}
+
+}  // namespace
+}  // namespace frond
