@@ -1,5 +1,5 @@
-# Installs the build in BUILD_DIR to a folder of its own, then configures, builds and runs this project and the example
-# plug-in against it.
+# Installs the build in BUILD_DIR to a folder of its own, then configures, builds and runs this project and the examples
+# against it.
 set(prefix "${WORK_DIR}/prefix")
 file(REMOVE_RECURSE "${WORK_DIR}")
 function(run)
@@ -13,6 +13,11 @@ run("${prefix}/bin/frond" --version)
 run(${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK_DIR}/build" -G Ninja "-DCMAKE_PREFIX_PATH=${prefix}")
 run(${CMAKE_COMMAND} --build "${WORK_DIR}/build")
 run("${WORK_DIR}/build/consumer")
+
+set(embed "${CMAKE_CURRENT_LIST_DIR}/../../examples/embed")
+run(${CMAKE_COMMAND} -S "${embed}" -B "${WORK_DIR}/embed" -G Ninja "-DCMAKE_PREFIX_PATH=${prefix}")
+run(${CMAKE_COMMAND} --build "${WORK_DIR}/embed")
+run("${WORK_DIR}/embed/embed" "${CMAKE_CURRENT_LIST_DIR}/../../scenes/soybean-front/scene.pbrt")
 
 set(example "${CMAKE_CURRENT_LIST_DIR}/../../examples/plugin_material")
 run(${CMAKE_COMMAND} -S "${example}" -B "${WORK_DIR}/plugin" -G Ninja "-DCMAKE_PREFIX_PATH=${prefix}")
