@@ -9,6 +9,7 @@ namespace frond {
 // One file for each subcommand: adds itself to the command line, and runs when chosen.
 void add_render_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
+void add_submit_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_difference_command(CLI::App& app);
@@ -20,7 +21,8 @@ void add_spectrophotometer_command(CLI::App& app);
 void add_goniophotometer_command(CLI::App& app);
 
 /// Runs the frond command. 0: done; 1: bad use or bad input, with a message on standard error; 2: `conform` found a law
-/// broken.
+/// broken; 75: another frond is at work on the same part; 130, 143: stopped by SIGINT or SIGTERM, what was done is
+/// kept.
 int run(int argc, const char* const* argv);
 
 }  // namespace frond

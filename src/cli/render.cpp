@@ -140,8 +140,12 @@ class RenderCommand {
     if (keeps_part()) lock_.emplace(part_path_);
     RenderPart part = first_part();
     const int signal = fill(part);
+    if (signal != 0) {
+      write_part(checkpoint_path_, part.header, part.film);
+      return say_how_to_go_on(signal);
+    }
     if (keeps_part()) write_part(part_path_, part.header, part.film);
-    if (signal != 0) return say_how_to_go_on(signal);
+    if (checkpoint_path_ != part_path_) std::filesystem::remove(checkpoint_path_);
     finish(part);
     return 0;
   }
@@ -180,12 +184,13 @@ class RenderCommand {
   void find_paths(const std::string& scene_output) {
     if (!options_.part.empty()) {
       check_replaceable(options_.part);
-      part_path_ = options_.part;
+      part_path_ = checkpoint_path_ = options_.part;
+      checkpoint_path_ += ".checkpoint";  // where there is a part of this name, it is finished
       return;
     }
     output_.emplace(options_.output.empty() ? scene_output : options_.output, options_.display);
     if (options_.checkpoint_seconds == 0 && !options_.resume) return;
-    part_path_ = output_->path() + ".part";
+    part_path_ = checkpoint_path_ = output_->path() + ".part";
     check_replaceable(part_path_);
   }
 
@@ -204,19 +209,26 @@ class RenderCommand {
     std::error_code error;
     RenderPart fresh = scene_->empty_part();
     fresh.header.request = range_.end;
-    if (!keeps_part() || !std::filesystem::exists(part_path_, error)) return fresh;
+    if (!keeps_part()) return fresh;
+    const bool finished = std::filesystem::exists(part_path_, error);
+    const std::filesystem::path& path = finished ? part_path_ : checkpoint_path_;
+    if (!std::filesystem::exists(path, error)) return fresh;
     if (!options_.resume)
-      fail({}, "\"{}\" is there already: --resume goes on from it; delete it to begin anew", part_path_.string());
-    RenderPart part = read_part(part_path_);
-    const std::string difference =
-        fresh.header.identity.difference(part.header.identity, "this command", "\"" + part_path_.string() + "\"");
-    if (!difference.empty()) fail({}, "--resume: this is another render. {}", difference);
-    if (part.film.format().blocks != fresh.film.format().blocks)
-      fail({}, "--resume: \"{}\" was made {} --max-rms", part_path_.string(), is_adaptive() ? "without" : "with");
-    if (part.film.settings().crop != fresh.film.settings().crop)
-      fail({}, "--resume: \"{}\" is of other pixels than this command asks for", part_path_.string());
+      fail({}, "\"{}\" is there already: --resume goes on from it; delete it to begin anew", path.string());
+    RenderPart part = read_part(path);
+    check_same_render(fresh, part, path);
     part.header.request = range_.end;
     return part;
+  }
+
+  void check_same_render(const RenderPart& wanted, const RenderPart& found, const std::filesystem::path& path) const {
+    const std::string difference =
+        wanted.header.identity.difference(found.header.identity, "this command", "\"" + path.string() + "\"");
+    if (!difference.empty()) fail({}, "--resume: this is another render. {}", difference);
+    if (found.film.format().blocks != wanted.film.format().blocks)
+      fail({}, "--resume: \"{}\" was made {} --max-rms", path.string(), is_adaptive() ? "without" : "with");
+    if (found.film.settings().crop != wanted.film.settings().crop)
+      fail({}, "--resume: \"{}\" is of other pixels than this command asks for", path.string());
   }
 
   /// Renders what is missing. Returns the signal that ended it, or 0.
@@ -233,7 +245,7 @@ class RenderCommand {
     const Interrupt interrupt;
     control.stop = interrupt.token();
     const double seconds = options_.checkpoint_seconds > 0 ? options_.checkpoint_seconds : kCheckpointSeconds;
-    Checkpointer checkpointer(part_path_, seconds, part, &line, log_);
+    Checkpointer checkpointer(checkpoint_path_, seconds, part, &line, log_);
     control.progress = &checkpointer;
     render(part, control, &checkpointer);
     return interrupt.signal();
@@ -252,7 +264,7 @@ class RenderCommand {
 
   int say_how_to_go_on(int signal) const {
     log_.info(fmt::format("stopped; what was rendered is in {}: the same command with --resume goes on from there",
-                          part_path_.string()));
+                          checkpoint_path_.string()));
     return 128 + signal;
   }
 
@@ -294,8 +306,9 @@ class RenderCommand {
   ConsoleLog log_;
   Session session_;
   SceneDescription description_;
-  std::optional<ImageOutput> output_;  ///< empty: a part is asked for
-  std::filesystem::path part_path_;    ///< empty: no part is kept
+  std::optional<ImageOutput> output_;      ///< empty: a part is asked for
+  std::filesystem::path part_path_;        ///< empty: no part is kept
+  std::filesystem::path checkpoint_path_;  ///< what is not finished
   std::optional<PartLock> lock_;
   std::optional<choose::Choice> choice_;
   std::optional<LoadedScene> scene_;

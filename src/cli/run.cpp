@@ -4,10 +4,13 @@
 
 #include "cli/commands.h"
 #include "cli/mistyped.h"
+#include "render/checkpoint.h"
 
 namespace frond {
 
 namespace {
+
+constexpr int kTryAgainLater = 75;  // EX_TEMPFAIL of sysexits.h
 
 /// Also prints help, which CLI11 takes for an error. A word that nothing is called by is told first: CLI11 would miss
 /// what that word was meant to be.
@@ -26,6 +29,7 @@ int run(int argc, const char* const* argv) {
   app.require_subcommand(1);
   add_render_command(app);
   add_merge_command(app);
+  add_submit_command(app);
   add_compare_command(app);
   add_convert_command(app);
   add_difference_command(app);
@@ -42,6 +46,9 @@ int run(int argc, const char* const* argv) {
     return verdict.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return refuse(app, error);
+  } catch (const Busy& error) {
+    fmt::print(stderr, "frond: {}\n", error.what());
+    return kTryAgainLater;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "frond: out of memory\n");
   } catch (const std::exception& error) {

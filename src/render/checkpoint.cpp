@@ -19,7 +19,7 @@ PartLock::PartLock(const std::filesystem::path& part) : path_(part) {
   if (descriptor_ < 0) fail({}, "cannot write \"{}\": {}", path_.string(), std::strerror(errno));
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;  // some file systems have no locks
   close(descriptor_);
-  fail({}, "another frond is at work on \"{}\": wait for it, or name another output", part.string());
+  throw Busy(fmt::format("another frond is at work on \"{}\": wait for it, or name another output", part.string()));
 }
 
 PartLock::~PartLock() {

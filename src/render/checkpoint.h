@@ -10,7 +10,13 @@
 
 namespace frond {
 
-/// Refuses, by InputError, that two programs work on one part: each would undo what the other has written. Holds for as
+/// Another program is at work on the same thing: what is refused now may be done later.
+class Busy : public InputError {
+ public:
+  explicit Busy(const std::string& message) : InputError({}, message) {}
+};
+
+/// Refuses, by Busy, that two programs work on one part: each would undo what the other has written. Holds for as
 /// long as it lives, or until the program ends, however it does.
 class PartLock {
  public:

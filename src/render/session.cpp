@@ -224,11 +224,11 @@ LoadedScene Session::load(SceneDescription description, SceneOverrides overrides
 
 RenderStatistics Session::render(const LoadedScene& scene, SampleRange samples, RenderPart& part,
                                  const RenderControl& control) {
-  return render(scene, plan_of(part.film, samples), part, control);
+  return render_plan(scene, plan_of(part.film, samples), part, control);
 }
 
-RenderStatistics Session::render(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
-                                 const RenderControl& control) {
+RenderStatistics Session::render_plan(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
+                                      const RenderControl& control) {
   const RenderStatistics statistics = frond::render(scene.job(), plan, part.film, pool_, control);
   part.header.statistics += statistics;
   return statistics;
@@ -247,7 +247,7 @@ RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest
   for (;;) {
     if (request.planned) request.planned(header);
     progress.plan(statistics.paths, plan.predicted_paths);
-    statistics += render(scene, {part.film.settings().crop, {}, header.tile_ends}, part, each);
+    statistics += render_plan(scene, {part.film.settings().crop, {}, header.tile_ends}, part, each);
     if (!has_all(part.film, header.tile_ends)) return statistics;  // ended early
     if (picture_noise(part.film, noise_z()).upper_rms() <= request.max_rms) return statistics;
     plan = next_plan(part.film, request.max_rms, request.most_samples);

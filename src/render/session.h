@@ -101,8 +101,8 @@ class Session {
   /// own statistics grow by it.
   RenderStatistics render(const LoadedScene& scene, SampleRange samples, RenderPart& part,
                           const RenderControl& control = {});
-  RenderStatistics render(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
-                          const RenderControl& control = {});
+  RenderStatistics render_plan(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
+                               const RenderControl& control = {});
   /// Adds samples where they do most against noise, until it is small enough with kNoiseConfidence (render/adaptive.h),
   /// or no tile may have more, or the control ends it. The scene was loaded for that. A part that was ended early goes
   /// on as if it had not been.
