@@ -34,7 +34,7 @@ struct CompareOptions {
   std::vector<std::string> materials{kCandidates}, leaves, plugins;
   int size = 0, samples = 0, reference_samples = 0, threads = 0;
   uint64_t seed = 0;
-  double exposure = 0;
+  std::optional<double> exposure;
   std::vector<double> rms;
   bool quick = false, quiet = false, no_cache = false, seed_given = false;
 };
@@ -100,7 +100,7 @@ std::string command_line_of(const CompareOptions& o) {
   for (const std::string& plugin : o.plugins) add("--plugin", plugin);
   add_number("--size", o.size), add_number("--spp", o.samples), add_number("--reference-spp", o.reference_samples);
   for (const double rms : o.rms) add_number("--rms", rms);
-  add_number("--exposure", o.exposure);
+  add_number("--exposure", o.exposure.value_or(0));
   if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
   return line + (o.quick ? " --quick" : "");
 }
@@ -177,7 +177,10 @@ void add_options(CLI::App& command, CompareOptions& o) {
   add_count_option(command, "--spp", o.samples, 1 << 24, "Samples per pixel of the last rung; 256 by default.");
   add_count_option(command, "--reference-spp", o.reference_samples, 1 << 30,
                    "Samples per pixel of each of the reference's two renders; 1024 by default, or what is cached.");
-  command.add_option("--exposure", o.exposure, "Stops by which pictures and FLIP are brightened.")
+  command
+      .add_option("--exposure", o.exposure,
+                  "Stops by which pictures and FLIP are brightened; by default so that the picture is neither dark nor "
+                  "burnt out.")
       ->check(is_within({-20, 20}));
   command.add_option("--threads", o.threads, "Threads; all by default.")->check(CLI::Range(1, 1024));
   add_plugin_option(command, o.plugins);

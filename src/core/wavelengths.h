@@ -21,7 +21,8 @@ struct SensorResponse {
 
   SensorResponse() = default;
   /// Of a film of three colours.
-  SensorResponse(const std::array<double, 3>& color) : value{color[0], color[1], color[2], 0}, count(3) {}
+  SensorResponse(const std::array<double, 3>& color)  // NOLINT(google-explicit-constructor): a response as it is
+      : value{color[0], color[1], color[2], 0}, count(3) {}
   double operator[](size_t i) const { return value[i]; }
   std::array<double, 3> color() const { return {value[0], value[1], value[2]}; }
 };

@@ -101,7 +101,7 @@ std::optional<Chromaticities> read_chromaticities(const OIIO::ImageSpec& spec) {
   const auto* attribute = spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
   if (!attribute) return {};
   const auto* v = static_cast<const float*>(attribute->data());
-  const auto xy = [v](int i) { return Chromaticity{double(v[2 * i]), double(v[2 * i + 1])}; };
+  const auto xy = [v](size_t i) { return Chromaticity{double(v[2 * i]), double(v[2 * i + 1])}; };
   return Chromaticities{xy(0), xy(1), xy(2), xy(3)};
 }
 

@@ -72,10 +72,10 @@ class Cubature {
     }
     for (size_t i = 0; i < 4; ++i) {
       const SphereBox& q = quarters[i];
-      const auto others = std::ranges::partition(peaks, [&q](const Peak& p) {
+      const auto others = std::partition(peaks.begin(), peaks.end(), [&q](const Peak& p) {
         return p.cos_theta >= q.z0 && p.cos_theta < q.z1 && p.phi >= q.phi0 && p.phi < q.phi1;
       });
-      refine(q, values[i], peaks.first(peaks.size() - others.size()), depth - 1, parts);
+      refine(q, values[i], peaks.first(size_t(others - peaks.begin())), depth - 1, parts);
     }
   }
 

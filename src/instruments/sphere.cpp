@@ -57,12 +57,14 @@ size_t SphereBins::build(const SphereBox& box, std::span<SpherePoint> points, in
   const bool by_phi = depth % 2 == 1;
   const double low = by_phi ? box.phi0 : box.z0, high = by_phi ? box.phi1 : box.z1;
   const double split = must_split ? (low + high) / 2 : median_or_middle(points, by_phi, low, high);
-  const auto rest = std::ranges::partition(points, [&](const SpherePoint& p) { return coordinate(p, by_phi) < split; });
+  const auto rest =
+      std::partition(points.begin(), points.end(), [&](const SpherePoint& p) { return coordinate(p, by_phi) < split; });
+  const auto count = size_t(rest - points.begin());
   SphereBox below = box, above = box;
   (by_phi ? below.phi1 : below.z1) = (by_phi ? above.phi0 : above.z0) = split;
   Node node{.by_phi = by_phi, .split = split};
-  node.below = build(below, points.first(points.size() - rest.size()), depth + 1);
-  node.above = build(above, points.last(rest.size()), depth + 1);
+  node.below = build(below, points.first(count), depth + 1);
+  node.above = build(above, points.subspan(count), depth + 1);
   nodes_.push_back(node);
   return nodes_.size() - 1;
 }

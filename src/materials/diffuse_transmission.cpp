@@ -63,7 +63,8 @@ class DiffuseTransmission final : public Material {
     const Interval both{std::max({r.min, t.min, 300.0}), std::min({r.max, t.max, 2500.0})};
     for (double nm = both.min; nm <= both.max; nm += 2)
       for (int place = 0; place < 256; ++place) {
-        const Vec2 uv{(static_cast<float>(place % 16) + 0.5f) / 16, (static_cast<float>(place / 16) + 0.5f) / 16};
+        const int column = place % 16, row = place / 16;
+        const Vec2 uv{(static_cast<float>(column) + 0.5f) / 16, (static_cast<float>(row) + 0.5f) / 16};
         const auto [reflected, transmitted] = shares(uv, one_wavelength(static_cast<float>(nm)));
         const float sum = reflected[0] + transmitted[0];
         if (sum > 1 + kRounding)

@@ -14,8 +14,8 @@ struct Directive {
   Location where;
   DirectiveContext& context;
 
-  Token quoted() { return read_quoted(context.tokens, name); }
-  std::string text(const Token& token) { return context.tokens.text_of(token); }
+  Token quoted() const { return read_quoted(context.tokens, name); }
+  std::string text(const Token& token) const { return context.tokens.text_of(token); }
   Location place(const Token& token) { return context.tokens.where(token); }
   DescriptionBuilder& scene() { return context.scene; }
 

@@ -8,6 +8,7 @@ set -euo pipefail
 [[ ${FROND_SLOW_TESTS:-1} != 0 ]] || { echo "skipped: takes a minute, scripts/test --slow runs it" && exit 77; }
 
 here=$(cd "$(dirname "$0")" && pwd)
+templates=$here/../../src/cli/slurm
 # A cluster that this test itself runs on has no say in the test's jobs.
 unset "${!SLURM@}" "${!SBATCH@}"
 export SOURCE_DATE_EPOCH=0 # pictures are compared byte for byte
@@ -54,8 +55,9 @@ await() { soon "$@" || { say "waited $1 s in vain for: ${*:2}" && exit 1; }; }
 
 fill() { # fill TEMPLATE NAME=VALUE...: as "frond submit" does
   local text pair
-  text=$(<"$here/$1")
+  text=$(<"$templates/$1")
   shift
+  text=${text//@OPTIONS@/}
   for pair in "$@"; do text=${text//"@${pair%%=*}@"/"$(printf %q "${pair#*=}")"}; done
   printf '%s\n' "$text"
 }
@@ -64,7 +66,8 @@ fill() { # fill TEMPLATE NAME=VALUE...: as "frond submit" does
 make_job() {
   local job=$tmp/$1 template
   mkdir "$job"
-  cp "$here/submit.sh" "$job"
+  cp "$templates/submit.sh" "$job"
+  chmod +x "$job/submit.sh"
   for template in render.sbatch merge.sbatch; do
     fill "$template" FROND="$2" SCENE="$scene" OUT="$job/out.exr" SPP="$3" TASKS="$4" LAST_TASK=$(($4 - 1)) |
       sed -E "s/^checkpoint_seconds=.*/checkpoint_seconds=1/;${5:-}" >"$job/$template"
@@ -78,7 +81,7 @@ make_main() {
     return
   fi
   "$frond" submit "$scene" -o "$tmp/$1/out.exr" --folder "$tmp/$1" --spp "$spp" --tasks "$2" --slurm "${options[@]}"
-  sed -Ei 's/^checkpoint_seconds=.*/checkpoint_seconds=1/; s/^(#SBATCH --cpus-per-task)=.*/\1=1/' "$tmp/$1/render.sbatch"
+  sed -Ei 's/^checkpoint_seconds=.*/checkpoint_seconds=1/' "$tmp/$1/render.sbatch"
 }
 
 # submit NAME SECONDS_PER_SAMPLE: submits it, as from within some other job, and sets array and merge to the numbers

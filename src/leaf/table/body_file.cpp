@@ -8,6 +8,7 @@
 #include <iterator>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "leaf/table/body_table.h"
 #include "system/file_bytes.h"
@@ -43,7 +44,7 @@ class Lines {
     if (at_end()) fail(here_, "the file ends where {} should follow", what);
     if (words_.size() != count)
       fail(words_[std::min(count, words_.size() - 1)].where, "{} in place of {}", counted(words_.size(), "word"), what);
-    std::vector<Word> line = std::move(words_);
+    std::vector<Word> line = std::exchange(words_, {});
     next();
     return line;
   }

@@ -21,7 +21,7 @@ std::filesystem::path cache_path(const std::filesystem::path& folder, std::strin
   return folder.empty() ? folder : folder / fmt::format("{}{:016x}.{}", kLeafFiles.name, hash_bytes(header), extension);
 }
 
-std::string with_checksum(std::string text) { return text + checksum_line(text); }
+std::string with_checksum(std::string text) { return text.append(checksum_line(text)); }
 
 std::string_view without_checksum(std::string_view text) {
   const size_t body = text.rfind(kChecksum);

@@ -27,7 +27,7 @@ std::string flip_caption(const Comparison& c) {
   return fmt::format(
       "What a person would see who flips between a render and the reference (Andersson et al. 2020, 67 pixels per "
       "degree, exposure {:+g} stops); 0: nothing, 1: all. The reference’s two renders differ by {:.2g}.",
-      c.request.exposure_stops, c.reference.flip.value_or(0));
+      c.exposure_stops, c.reference.flip.value_or(0));
 }
 
 constexpr const char* kBandsCaption =

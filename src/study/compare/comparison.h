@@ -63,11 +63,12 @@ struct Reference {
 struct Request {
   std::vector<double> rms = {};                      ///< errors to meet, over all channels and all pixels
   std::optional<std::array<double, 3>> target = {};  ///< RMS of red, green and blue for speed-up (c)
-  double exposure_stops = 0;
+  std::optional<double> exposure_stops = {};
 };
 
 /// Everything that a report tells.
 struct Comparison {
+  double exposure_stops = 0;  ///< by which pictures and FLIP are brightened
   std::string scene, command, machine;
   int width = 0, height = 0;
   ChannelList channels;

@@ -148,7 +148,7 @@ std::string comparison_json(const Comparison& c) {
             {"leaf_materials", c.leaves},
             {"wall_seconds", c.wall_seconds},
             {"cpu_seconds", c.cpu_seconds},
-            {"exposure_stops", c.request.exposure_stops},
+            {"exposure_stops", c.exposure_stops},
             {"verdict", verdict(c)},
             {"reference", reference_json(c.channels, c.reference)}};
   for (const Band& band : c.channels.bands) json["band_nm"].push_back(band.nm);

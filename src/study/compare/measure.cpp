@@ -36,11 +36,11 @@ std::vector<RenderError> errors_of(const PicturePair& renders, const PicturePair
 /// Measures against one reference.
 class Bench {
  public:
-  Bench(const PairedRender& reference, double exposure_stops)
+  Bench(const PairedRender& reference, const std::optional<double>& exposure_stops)
       : channels_(channels_of(reference.scene())),
         reference_(pictures(reference)),
         leaf_(leaf_mask(reference.film(0))),
-        exposure_stops_(exposure_stops),
+        exposure_stops_(exposure_stops.value_or(fitting_exposure(shown_mean(reference_)))),
         display_(display(shown_mean(reference_))) {}
 
   Rung rung(const PairedRender& render) const {
@@ -60,6 +60,7 @@ class Bench {
     return r;
   }
   const ChannelList& channels() const { return channels_; }
+  double exposure_stops() const { return exposure_stops_; }
 
  private:
   PicturePair pictures(const PairedRender& render) const {
@@ -199,6 +200,7 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request,
   warn_of_lost_samples(reference_render, plan.reference, log);
   const Bench bench(reference_render, request.exposure_stops);
   result.channels = bench.channels();
+  result.exposure_stops = bench.exposure_stops();
   result.reference = bench.described(plan.reference, reference_render);
   result.reference.cached_samples = cached;
   result.width = result.reference.picture.width, result.height = result.reference.picture.height;

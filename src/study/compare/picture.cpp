@@ -1,5 +1,6 @@
 #include "study/compare/picture.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "study/smpte_luminance.h"
@@ -70,6 +71,18 @@ std::vector<float> interleaved(const Picture& picture) {
   for (size_t i = 0; i < picture.channels[0].size(); ++i)
     for (size_t c = 0; c < 3; ++c) rgb.push_back(picture.channels[c][i]);
   return rgb;
+}
+
+double fitting_exposure(const Picture& shown) {
+  constexpr double kTarget = 0.6, kBrightest = 0.1, kMostStops = 20;
+  std::vector<float> lit;
+  for (size_t i = 0; i < shown.channels[0].size(); ++i)
+    if (const float y = smpte_luminance(shown.channels[0][i], shown.channels[1][i], shown.channels[2][i]); y > 0)
+      lit.push_back(y);
+  if (lit.empty()) return 0;
+  const auto place = lit.begin() + ptrdiff_t(double(lit.size() - 1) * (1 - kBrightest));
+  std::ranges::nth_element(lit, place);
+  return std::clamp(std::round(std::log2(kTarget / double(*place))), -kMostStops, kMostStops);
 }
 
 DisplayImage display_image(const Picture& picture, double exposure_stops, const ColorManager& colors) {

@@ -22,6 +22,10 @@ Picture shown(const Picture& picture, const ChannelList& list);
 /// Half and half.
 Picture mean_of(const Picture& a, const Picture& b);
 
+/// Whole stops by which a display has to brighten it for people to see much: the brightest tenth, as far as it is lit,
+/// comes to lie above 0.6. 0 for a black picture.
+double fitting_exposure(const Picture& shown);
+
 /// What people see, as a display shows it after brightening by so many stops.
 DisplayImage display_image(const Picture& shown, double exposure_stops, const ColorManager& colors);
 

@@ -54,10 +54,8 @@ std::vector<double> srgb_from_smpte() {
 }
 
 std::string viewer_data(const Comparison& c) {
-  nlohmann::ordered_json json{{"width", c.width},
-                              {"height", c.height},
-                              {"exposure", c.request.exposure_stops},
-                              {"srgb_from_smpte", srgb_from_smpte()}};
+  nlohmann::ordered_json json{
+      {"width", c.width}, {"height", c.height}, {"exposure", c.exposure_stops}, {"srgb_from_smpte", srgb_from_smpte()}};
   json["pictures"].push_back(
       picture_json(fmt::format("reference: {}, {} samples", c.reference.candidate.label, 2 * c.reference.samples),
                    c.reference.picture));
