@@ -81,7 +81,8 @@ TEST_F(Commands, MistypedWordsAreNamedWithWhatMayBeMeant) {
     return o.err;
   };
   EXPECT_EQ(complaint({"rendr", "x.pbrt"}), "frond: there is no command \"rendr\"; did you mean \"render\"?\n");
-  EXPECT_THAT(complaint({"paint"}), HasSubstr("there is no command \"paint\"; there are render, merge, submit, compare"));
+  EXPECT_THAT(complaint({"paint"}),
+              HasSubstr("there is no command \"paint\"; there are render, merge, submit, compare"));
   EXPECT_EQ(complaint({"--verson"}), "frond: frond has no option --verson; did you mean --version?\n");
   EXPECT_EQ(complaint({"render", "x.pbrt", "--sp", "1"}),
             "frond: frond render has no option --sp; did you mean --spp?\n");
