@@ -41,6 +41,8 @@ void merge(const MergeOptions& o) {
   } else {
     write_part(o.part, whole.header, whole.film);
   }
+  if (const uint64_t count = whole.film.not_finite(); count > 0)
+    log.warn({}, fmt::format("{} samples were too bright for the film, or no numbers at all", count));
   const SampleCount samples = sample_count(whole.film);
   log.info(fmt::format("{}: {} part{}, {} samples per pixel, {:.2f} s of CPU", output ? o.output : o.part,
                        o.parts.size(), o.parts.size() == 1 ? "" : "s",

@@ -106,10 +106,8 @@ std::string command_line_of(const RenderOptions& o) {
   if (!o.integrator.empty()) line += " --integrator " + o.integrator;
   for (const std::string& plugin : o.plugins) line += " --plugin " + std::filesystem::path(plugin).filename().string();
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
-  if (!o.channels.empty()) line += fmt::format(" --channels {}", fmt::join(o.channels, ","));
+  if (!o.channels.empty()) line += fmt::format(" --channels {}", fmt::join(ChannelList(o.channels).names(), ","));
   if (o.quick) line += " --quick";
-  if (!o.display.display.empty()) line += " --display " + o.display.display;
-  if (!o.display.view.empty()) line += " --view " + o.display.view;
   return line;
 }
 
@@ -178,6 +176,9 @@ class RenderCommand {
     range_ = {0, options_.samples > 0 ? uint64_t(options_.samples) : scene_->samples()};
     if (!options_.range.empty()) range_ = parse_range(options_.range);
     scene_->check_samples(range_.count());
+    if (is_adaptive() && options_.samples > 0 && uint64_t(options_.samples) < kLeastAdaptive)
+      fail({}, "--max-rms: {} samples per pixel at least tell how much noise there is, --spp allows {}", kLeastAdaptive,
+           options_.samples);
     if (output_) output_->check(scene_->picture());
   }
 
@@ -270,8 +271,13 @@ class RenderCommand {
 
   void finish(const RenderPart& part) const {
     const SampleCount samples = sample_count(part.film);
+    if (output_ && samples.most == 0) fail({}, "--time-limit: the time was over before anything was rendered");
     if (const uint64_t count = part.film.not_finite(); count > 0)
-      log_.warn({}, fmt::format("{} samples were too bright for a number, or none at all, and count as black", count));
+      log_.warn(
+          {},
+          fmt::format(
+              "{} samples were too bright for the film, or no numbers at all, and count as its brightest or as black",
+              count));
     if (is_adaptive())
       say_noise(part.film);
     else if (samples.least < range_.count())
@@ -319,7 +325,8 @@ class RenderCommand {
 
 std::string channels_doc() {
   std::string doc = "What camera rays meet first, beside the image's colours:";
-  for (const ChannelInfo& channel : kChannels) doc += fmt::format("{} {}", doc.ends_with(':') ? "" : ",", channel.name);
+  for (const ChannelInfo& channel : all_channels())
+    doc += fmt::format("{} {}", doc.ends_with(':') ? "" : ",", channel.name);
   return doc + '.';
 }
 
@@ -366,8 +373,10 @@ void add_render_command(CLI::App& app) {
   auto* range = command->add_option("--samples", o.range,
                                     "FIRST:END of the samples to render, as 64:128; from 0 to --spp by default.");
   command
-      ->add_option("--checkpoint", o.checkpoint_seconds,
-                   "Every so many seconds, and when stopped by SIGINT or SIGTERM, keep what is done in OUTPUT.part.")
+      ->add_option(
+          "--checkpoint", o.checkpoint_seconds,
+          "Every so many seconds, and when stopped by SIGINT or SIGTERM, keep what is done in OUTPUT.part, or in "
+          "FILE.checkpoint where --part asks for FILE.")
       ->check(is_positive);
   command->add_flag("--resume", o.resume,
                     "Go on from OUTPUT.part, or --part's file, where there is one; keeps one too.");

@@ -42,7 +42,10 @@ void try_out(const SubmitOptions& o) {
   const fs::path part = fs::path(o.folder) / "parts" / "trial.part";
   std::vector<std::string> words{"frond", "render", o.scene};
   words.insert(words.end(), o.render_options.begin(), o.render_options.end());
-  for (const char* word : {"--spp", "16", "--time-limit", "0.001", "--quiet", "--part"}) words.emplace_back(word);
+  for (const std::string& word :
+       {std::string("--samples"), fmt::format("0:{}", o.samples / o.tasks), std::string("--time-limit"),
+        std::string("0.001"), std::string("--quiet"), std::string("--part")})
+    words.push_back(word);
   words.push_back(part.string());
   std::vector<const char*> arguments;
   for (const std::string& word : words) arguments.push_back(word.c_str());

@@ -70,10 +70,12 @@ NoiseEstimate picture_noise(const Film& film, double z) {
 double noise_z() { return normal_upper_quantile(sidak_level(1 - kNoiseConfidence, kNoiseLooks)); }
 
 SamplePlan first_plan(const Film& film) {
-  return {std::vector<uint64_t>(film.tiles(), 2 * kBlock), uint64_t(pixels_of(film.settings().crop)) * 2 * kBlock};
+  return {std::vector<uint64_t>(film.tiles(), kLeastAdaptive),
+          uint64_t(pixels_of(film.settings().crop)) * kLeastAdaptive};
 }
 
-SamplePlan next_plan(const Film& film, double max_rms, uint64_t most) {
+SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples) {
+  const uint64_t most = most_samples / kBlock * kBlock;
   std::vector<TileNoise> tiles;
   for (size_t i = 0; i < film.tiles(); ++i) tiles.push_back(noise_of(film, i));
   const std::vector<double> variance = smoothed(tiles, film.columns());

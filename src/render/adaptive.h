@@ -30,13 +30,14 @@ struct SamplePlan {
   uint64_t predicted_paths = 0;     ///< of the whole render, until its noise is down
 };
 
-/// First: two blocks everywhere.
+/// First: two blocks everywhere, the fewest that tell noise.
+inline constexpr uint64_t kLeastAdaptive = 2 * FilmTile::kBlock;
 SamplePlan first_plan(const Film& film);
 
 /// Where samples do most against the picture's noise: to bring it down to `max_rms`, tile t gets so many that the last
 /// ray in each takes as much of it away, n_t proportional to sqrt(variance / rays) (Neyman's allocation). At most twice
-/// of what it has, so that the next look sees what came of it, and `most`. Tiles whose noise is not known well learn
-/// from their neighbours: half of it is the mean of the nine.
+/// of what it has, so that the next look sees what came of it, and the whole blocks of `most`. Tiles whose noise is not
+/// known well learn from their neighbours: half of it is the mean of the nine.
 ///
 /// What a tile gets depends on the samples that it has: a pixel's mean is not free of bias, of at most the covariance
 /// of its own noise with its tile's share of samples (docs/adaptive.md measures it).

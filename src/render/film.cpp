@@ -34,9 +34,9 @@ bool cut_off(double& value) {
   return true;
 }
 
-double held(float value) {
+double held(double value) {
   constexpr double kMost = ExactSum<40>::kLargestTerm;
-  return std::isfinite(value) ? std::clamp(double(value), -kMost, kMost) : 0;
+  return std::isfinite(value) ? std::clamp(value, -kMost, kMost) : 0;
 }
 
 int floor_to_tile(int pixel) { return pixel / Film::kTile; }  // pixels are not negative
@@ -59,14 +59,14 @@ FilmTile::BandSums& FilmTile::BandSums::operator+=(const BandSums& b) {
   return *this;
 }
 
-FilmTile::FeatureSums& FilmTile::FeatureSums::operator+=(const FeatureSums& b) {
-  for (size_t c = 0; c < 3; ++c) albedo[c] += b.albedo[c], normal[c] += b.normal[c], position[c] += b.position[c];
-  depth += b.depth, hits += b.hits;
-  if (std::pair(b.nearest_distance, b.nearest_sample) < std::pair(nearest_distance, nearest_sample)) {
-    nearest_distance = b.nearest_distance, nearest_sample = b.nearest_sample;
-    material = b.material, instance = b.instance;
+Features::Features(const ChannelList& channels, const CameraHit& hit) {
+  size_t mean = 0, id = 0;
+  for (const ChannelInfo* channel : channels.infos()) {
+    if (channel->kind == ChannelInfo::Kind::sample_count) continue;
+    const Triple value = channel->value(hit);
+    for (size_t c = 0; c < channel->size(); ++c)
+      (channel->kind == ChannelInfo::Kind::mean ? means[mean++] : ids[id++]) = value[c];
   }
-  return *this;
 }
 
 FilmTile::BlockSums& FilmTile::BlockSums::operator+=(const BlockSums& b) {
@@ -76,7 +76,10 @@ FilmTile::BlockSums& FilmTile::BlockSums::operator+=(const BlockSums& b) {
 }
 
 FilmTile::FilmTile(const FilmFormat& format, const Crop& pixels)
-    : band_count_(format.bands), has_features_(format.features), has_blocks_(format.blocks) {
+    : band_count_(format.bands),
+      mean_count_(format.channels.means()),
+      id_count_(format.channels.ids()),
+      has_blocks_(format.blocks) {
   clear(pixels);
 }
 
@@ -85,7 +88,9 @@ void FilmTile::clear(const Crop& pixels) {
   const size_t count = size_t(pixels.width()) * size_t(pixels.height());
   pixels_.assign(count, {});
   bands_.assign(count * band_count_, {});
-  features_.assign(has_features_ ? count : 0, {});
+  hits_.assign(mean_count_ + id_count_ > 0 ? count : 0, {});
+  mean_sums_.assign(count * mean_count_, {});
+  ids_.assign(count * id_count_, 0);
   blocks_.assign(has_blocks_ ? count : 0, {});
   rays_ = 0;
   coverage_ = {};
@@ -124,19 +129,27 @@ void FilmTile::add(const FilmFormat& format, int x, int y, SensorResponse sensor
   ++pixel.samples;
 }
 
-void FilmTile::add(const FilmFormat& format, int x, int y, const Features& f) {
-  FeatureSums one;
-  const Triple albedo = format.color * f.albedo.color();
-  for (size_t c = 0; c < 3; ++c) {
-    one.albedo[c].add(held(float(albedo[c] / format.white[c])));
-    one.normal[c].add(held(f.normal[int(c)]));
-    one.position[c].add(held(f.position[int(c)]));
+void FilmTile::add(int x, int y, const Features& f) {
+  const size_t at = index(x, y);
+  Hits& hits = hits_[at];
+  ++hits.count;
+  for (size_t i = 0; i < mean_count_; ++i) mean_sums_[at * mean_count_ + i].add(held(f.means[i]));
+  if (std::pair(double(f.from_center), f.sample) < std::pair(hits.nearest_distance, hits.nearest_sample)) {
+    hits.nearest_distance = double(f.from_center), hits.nearest_sample = f.sample;
+    std::copy_n(f.ids.begin(), id_count_, &ids_[at * id_count_]);
   }
-  one.depth.add(held(f.depth));
-  one.hits = 1;
-  one.nearest_distance = f.from_center, one.nearest_sample = f.sample;
-  one.material = f.material, one.instance = f.instance;
-  features_[index(x, y)] += one;
+}
+
+void FilmTile::add_features(size_t at, const FilmTile& other, size_t from) {
+  Hits& hits = hits_[at];
+  const Hits& others = other.hits_[from];
+  hits.count += others.count;
+  for (size_t i = 0; i < mean_count_; ++i) mean_sums_[at * mean_count_ + i] += other.mean_sums_[from * mean_count_ + i];
+  if (std::pair(others.nearest_distance, others.nearest_sample) <
+      std::pair(hits.nearest_distance, hits.nearest_sample)) {
+    hits.nearest_distance = others.nearest_distance, hits.nearest_sample = others.nearest_sample;
+    std::copy_n(&other.ids_[from * id_count_], id_count_, &ids_[at * id_count_]);
+  }
 }
 
 void FilmTile::add_block(int x, int y, const Pixel& before) {
@@ -160,7 +173,7 @@ bool FilmTile::merge(const FilmTile& other) {
     const size_t to = index(c.x0, y), from = other.index(c.x0, y);
     add_all(pixels_, to, other.pixels_, from, width);
     add_all(bands_, to * band_count_, other.bands_, from * band_count_, width * band_count_);
-    if (has_features_) add_all(features_, to, other.features_, from, width);
+    for (size_t i = 0; i < (hits_.empty() ? 0 : width); ++i) add_features(to + i, other, from + i);
     if (has_blocks_) add_all(blocks_, to, other.blocks_, from, width);
   }
   rays_ += other.rays_;
@@ -241,16 +254,13 @@ Film::BandMean Film::band_mean(int x, int y, size_t band) const {
 }
 
 Film::FeatureMeans Film::features(int x, int y) const {
-  const FilmTile::FeatureSums& f = tiles_[tile_at(x, y)].features(x, y);
-  FeatureMeans means;
-  if (f.hits == 0) return means;
-  const auto mean = [&f](const ExactSum<40>& sum) { return sum.value() / double(f.hits); };
-  means.albedo = {mean(f.albedo[0]), mean(f.albedo[1]), mean(f.albedo[2])};
-  means.normal = {mean(f.normal[0]), mean(f.normal[1]), mean(f.normal[2])};
-  means.position = {mean(f.position[0]), mean(f.position[1]), mean(f.position[2])};
-  means.depth = mean(f.depth);
-  means.material = f.material, means.instance = f.instance, means.hits = f.hits;
-  return means;
+  const FilmTile& tile = tiles_[tile_at(x, y)];
+  const ChannelList& channels = format_.channels;
+  FeatureMeans result{.hits = tile.hits(x, y).count};
+  if (result.hits == 0) return result;
+  for (size_t i = 0; i < channels.means(); ++i) result.means[i] = tile.mean_sum(x, y, i).value() / double(result.hits);
+  for (size_t i = 0; i < channels.ids(); ++i) result.ids[i] = tile.id(x, y, i);
+  return result;
 }
 
 double Film::leaf_fraction(int x, int y) const {
@@ -280,12 +290,13 @@ uint64_t Film::not_finite() const {
 }
 
 void check_memory(const FilmFormat& format, size_t films, const Location& where, std::string_view advice) {
-  constexpr double kImageBytes = 64, kBandBytes = 48,
-                   kFeatureBytes = 96;  // of the picture that is made of a pixel in the end, and its file
+  constexpr double kImageBytes = 64,
+                   kBandBytes = 48;  // of the picture that is made of a pixel in the end, and its file
   const Crop& crop = format.settings.crop;
   const double pixel = sizeof(FilmTile::Pixel) + kImageBytes +
                        double(format.bands) * (sizeof(FilmTile::BandSums) + kBandBytes) +
-                       (format.features ? sizeof(FilmTile::FeatureSums) + kFeatureBytes : 0) +
+                       double(format.channels.means()) * (sizeof(ExactSum<40>) + sizeof(float)) +
+                       double(format.channels.ids()) * (sizeof(double) + sizeof(float)) + sizeof(FilmTile::Hits) +
                        (format.blocks ? sizeof(FilmTile::BlockSums) : 0);
   const double bytes = double(crop.width()) * double(crop.height()) * double(films) * pixel;
   const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));

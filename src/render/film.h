@@ -9,6 +9,7 @@
 #include "core/exact_sum.h"
 #include "core/vec.h"
 #include "core/wavelengths.h"
+#include "render/channels.h"
 #include "render/work.h"
 #include "scene/film_settings.h"
 #include "spectra/matrix3.h"
@@ -18,9 +19,9 @@ namespace frond {
 /// What a film holds, and in which units.
 struct FilmFormat {
   FilmSettings settings;
-  size_t bands = 0;       ///< of a sensor; 0: the film has three colours
-  bool features = false;  ///< what camera rays met first is summed up too
-  bool blocks = false;    ///< how blocks of a pixel's samples differ is summed up too: whole blocks have to be rendered
+  size_t bands = 0;           ///< of a sensor; 0: the film has three colours
+  ChannelList channels = {};  ///< of what camera rays met first, summed up too
+  bool blocks = false;  ///< how blocks of a pixel's samples differ is summed up too: whole blocks have to be rendered
   /// Values are kept in units of 2^exponent: near the picture's typical value, sums have 18 digits below it and 10
   /// above, squares 6 below and 8 above. Brighter samples are cut off there, and counted.
   int exponent = 0;
@@ -28,14 +29,14 @@ struct FilmFormat {
   Triple white = {1, 1, 1};  ///< the film's colours of a path of radiance 1: what an albedo of 1 is measured by
 };
 
-/// What a sample's camera ray met first.
+/// Values of a film's channels, of one sample that met something.
 struct Features {
-  SensorResponse albedo;
-  Vec3 normal, position;
-  float depth = 0;
-  uint32_t material = 0, instance = 0;
+  std::array<double, kMostMeans> means;
+  std::array<double, kMostIds> ids;
   float from_center = 0;  ///< distance of the sample from the pixel's centre, pixels
   uint64_t sample = 0;
+
+  Features(const ChannelList& channels, const CameraHit& hit);
 };
 
 /// Sums over the samples of some pixels, exact and so the same in any order: of three colours, or of a sensor's bands,
@@ -59,17 +60,12 @@ class FilmTile {
     BandSums& operator+=(const BandSums& other);
     friend bool operator==(const BandSums&, const BandSums&) = default;
   };
-  /// Of those samples of a pixel that met something.
-  struct FeatureSums {
-    std::array<ExactSum<40>, 3> albedo{}, normal{}, position{};
-    ExactSum<40> depth;
-    uint64_t hits = 0;
-    /// Ids are no quantities: those of the sample nearest to the pixel's centre, the first of them.
-    uint64_t nearest_sample = ~uint64_t{0};
-    float nearest_distance = INFINITY;
-    uint32_t material = 0, instance = 0, unused = 0;
-    FeatureSums& operator+=(const FeatureSums& other);
-    friend bool operator==(const FeatureSums&, const FeatureSums&) = default;
+  /// Of those samples of a pixel that met something; their sums are with the tile, one for each value.
+  struct Hits {
+    uint64_t count = 0;
+    uint64_t nearest_sample = ~uint64_t{0};  ///< the first of those nearest to the pixel's centre, whose ids hold
+    double nearest_distance = INFINITY;      ///< pixels
+    friend bool operator==(const Hits&, const Hits&) = default;
   };
 
   /// Of a pixel's blocks of kBlock samples, which are spread more evenly than any samples: from how much their means
@@ -89,8 +85,8 @@ class FilmTile {
   /// Adds one sample: sensor response, filter weight, and whether the camera ray met a leaf. A response that is no
   /// finite number counts as black, one too bright for the film as the brightest that it can hold; both are counted.
   void add(const FilmFormat& format, int x, int y, SensorResponse sensor, double weight, bool leaf);
-  /// What a sample's camera ray met, of a film that has features.
-  void add(const FilmFormat& format, int x, int y, const Features& features);
+  /// What a sample's camera ray met, of a film that has channels for it.
+  void add(int x, int y, const Features& features);
   /// That the last kBlock samples of a pixel, which began at `before`, are a block of a film that has blocks.
   void add_block(int x, int y, const Pixel& before);
   void add_rays(uint64_t rays) { rays_ += rays; }
@@ -103,7 +99,10 @@ class FilmTile {
   const Coverage& coverage() const { return coverage_; }
   const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
   const BandSums& band(int x, int y, size_t band) const { return bands_[index(x, y) * band_count_ + band]; }
-  const FeatureSums& features(int x, int y) const { return features_[index(x, y)]; }
+  const Hits& hits(int x, int y) const { return hits_[index(x, y)]; }
+  /// Of a channel's value, by its place among those that are means, or ids.
+  const ExactSum<40>& mean_sum(int x, int y, size_t i) const { return mean_sums_[index(x, y) * mean_count_ + i]; }
+  double id(int x, int y, size_t i) const { return ids_[index(x, y) * id_count_ + i]; }
   const BlockSums& blocks(int x, int y) const { return blocks_[index(x, y)]; }
   /// Traced for its samples.
   uint64_t rays() const { return rays_; }
@@ -112,16 +111,19 @@ class FilmTile {
  private:
   friend class PartFile;  // keeps them as they are
 
+  void add_features(size_t at, const FilmTile& other, size_t from);
   size_t index(int x, int y) const { return size_t(y - crop_.y0) * size_t(crop_.width()) + size_t(x - crop_.x0); }
 
   Crop crop_;
-  size_t band_count_;
-  bool has_features_, has_blocks_;
+  size_t band_count_, mean_count_, id_count_;
+  bool has_blocks_;
   uint64_t rays_ = 0;
   std::vector<Pixel> pixels_;
-  std::vector<BandSums> bands_;        ///< [pixel][band]
-  std::vector<FeatureSums> features_;  ///< [pixel]
-  std::vector<BlockSums> blocks_;      ///< [pixel]
+  std::vector<BandSums> bands_;          ///< [pixel][band]
+  std::vector<Hits> hits_;               ///< [pixel], where there are means or ids
+  std::vector<ExactSum<40>> mean_sums_;  ///< [pixel][value]
+  std::vector<double> ids_;              ///< [pixel][value]
+  std::vector<BlockSums> blocks_;        ///< [pixel]
   Coverage coverage_;
 };
 
@@ -171,12 +173,10 @@ class Film {
     uint64_t samples = 0;
   };
   BandMean band_mean(int x, int y, size_t band) const;
-  /// Means over the samples that met something; 0 where none did.
+  /// Values of the film's channels: means over the samples that met something, and ids; 0 where none did.
   struct FeatureMeans {
-    Triple albedo{};
-    Vec3d normal, position;
-    double depth = 0;
-    uint32_t material = 0, instance = 0;
+    std::array<double, kMostMeans> means{};
+    std::array<double, kMostIds> ids{};
     uint64_t hits = 0;
   };
   FeatureMeans features(int x, int y) const;

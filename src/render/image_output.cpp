@@ -26,8 +26,14 @@ void ImageOutput::check(const PictureFormat& format) const {
 void ImageOutput::write(const Film& film, const PictureFormat& format) const {
   check(format);
   const Image image = film_image(film, format);
-  if (!is_exr(path_)) return write_display_image(path_, image, format.space, colors_, display_, format.attributes);
   auto attributes = format.attributes;
+  if (!is_exr(path_)) {
+    if (const auto command = attributes.find("frond:command"); command != attributes.end()) {
+      if (!display_.display.empty()) command->second += " --display " + display_.display;
+      if (!display_.view.empty()) command->second += " --view " + display_.view;
+    }
+    return write_display_image(path_, image, format.space, colors_, display_, attributes);
+  }
   if (!format.bands.empty()) attributes.merge(spectral_attributes(format.bands));
   const FilmSettings& s = film.settings();
   write_image(path_, image,

@@ -15,6 +15,8 @@ namespace {
 
 std::string text_of(const Crop& c) { return fmt::format("{},{},{},{}", c.x0, c.x1, c.y0, c.y1); }
 
+Crop scaled(const Crop& c, int scale) { return {c.x0 * scale, c.y0 * scale, c.x1 * scale, c.y1 * scale}; }
+
 Crop around(const Crop& a, const Crop& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
@@ -120,7 +122,7 @@ PictureFormat finished_picture(const RenderPart& part) {
   std::string command = part.header.command;
   if (even) command += fmt::format(" --spp {}", count.most);
   if (const Crop& crop = part.film.settings().crop; crop != part.header.scene_crop)
-    command += " --pixels " + text_of(crop);
+    command += " --pixels " + text_of(scaled(crop, part.header.pixel_scale));
   picture.attributes["frond:command"] = command;
   return picture;
 }

@@ -3,6 +3,7 @@
 #include <zstd.h>
 
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
@@ -22,7 +23,7 @@ class PartFile {
  public:
   static_assert(std::has_unique_object_representations_v<FilmTile::Pixel>, "no byte of a file is left to chance");
   static_assert(std::has_unique_object_representations_v<FilmTile::BandSums>);
-  static_assert(sizeof(FilmTile::FeatureSums) == 10 * 16 + 2 * 8 + 4 * 4);
+  static_assert(sizeof(FilmTile::Hits) == 24);
 
   /// calls each(pointer, bytes) for every array.
   template <class Tile, class Each>
@@ -30,7 +31,9 @@ class PartFile {
     const auto array = [&each](auto& values) { each(values.data(), values.size() * sizeof(values[0])); };
     array(tile.pixels_);
     array(tile.bands_);
-    array(tile.features_);
+    array(tile.hits_);
+    array(tile.mean_sums_);
+    array(tile.ids_);
     array(tile.blocks_);
     each(&tile.rays_, sizeof tile.rays_);
   }
@@ -78,7 +81,7 @@ Json json_of(const FilmFormat& f) {
           {"exposure", s.exposure},
           {"max_component", std::isinf(s.max_component) ? Json() : Json(s.max_component)},  // JSON has no infinity
           {"bands", f.bands},
-          {"features", f.features},
+          {"channels", f.channels.names()},
           {"blocks", f.blocks},
           {"exponent", f.exponent},
           {"color", f.color.row},
@@ -91,7 +94,8 @@ FilmFormat film_format_of(const Json& j) {
   s.half = j.at("half"), s.exposure = j.at("exposure");
   const Json& most = j.at("max_component");
   s.max_component = most.is_null() ? std::numeric_limits<double>::infinity() : most.get<double>();
-  f.bands = j.at("bands"), f.features = j.at("features"), f.blocks = j.at("blocks"), f.exponent = j.at("exponent");
+  f.bands = j.at("bands"), f.channels = ChannelList(j.at("channels").get<std::vector<std::string>>()),
+  f.blocks = j.at("blocks"), f.exponent = j.at("exponent");
   f.color.row = j.at("color").get<std::array<Triple, 3>>(), f.white = j.at("white").get<Triple>();
   if (s.crop.x0 < 0 || s.crop.y0 < 0 || s.crop.x1 > s.width || s.crop.y1 > s.height || s.crop.width() <= 0 ||
       s.crop.height() <= 0)
@@ -123,11 +127,11 @@ std::string header_text(const PartHeader& h, const FilmFormat& film) {
                {"picture",
                 {{"space", h.picture.space},
                  {"bands", json_of(h.picture.bands)},
-                 {"channels", h.picture.channels},
                  {"from_world", h.picture.from_world},
                  {"attributes", h.picture.attributes}}},
                {"command", h.command},
                {"scene_crop", json_of(h.scene_crop)},
+               {"pixel_scale", h.pixel_scale},
                {"request", h.request},
                {"adaptive", h.adaptive},
                {"tile_ends", h.tile_ends},
@@ -142,11 +146,11 @@ PartHeader header_of(const Json& j) {
   const Json& picture = j.at("picture");
   h.picture.space = picture.at("space");
   h.picture.bands = bands_of(picture.at("bands"));
-  h.picture.channels = picture.at("channels").get<std::vector<std::string>>();
   h.picture.from_world = picture.at("from_world").get<decltype(h.picture.from_world)>();
   h.picture.attributes = picture.at("attributes").get<std::map<std::string, std::string>>();
   h.command = j.at("command");
   h.scene_crop = crop_of(j.at("scene_crop"));
+  h.pixel_scale = j.at("pixel_scale");
   h.request = j.at("request"), h.adaptive = j.at("adaptive"), h.round = j.at("round");
   h.tile_ends = j.at("tile_ends").get<std::vector<uint64_t>>();
   h.statistics = statistics_of(j.at("statistics"));
@@ -259,20 +263,46 @@ uint64_t take_number(std::string_view& bytes) {
   return number;
 }
 
-/// Takes the header off the front, and the end mark off the end.
-Json take_header(std::string_view& bytes, const fs::path& path) {
+/// Its size, which stands at the front behind the magic word.
+uint64_t take_header_size(std::string_view& bytes, const fs::path& path) {
   if (!bytes.starts_with(kMagic.substr(0, 11))) fail({}, "\"{}\" is no part of a render", path.string());
   if (!bytes.starts_with(kMagic))
     fail({}, "\"{}\" is a part in another version of the format: this frond reads version 1", path.string());
   bytes.remove_prefix(kMagic.size());
-  if (!bytes.ends_with(kEnd) || bytes.size() < kEnd.size() + 2 * sizeof(uint64_t)) fail_to_read(path, "is cut short");
-  bytes.remove_suffix(kEnd.size());
-  const uint64_t size = take_number(bytes);
-  if (size > bytes.size() - sizeof(uint64_t)) fail_to_read(path, "is damaged");
+  if (bytes.size() < sizeof(uint64_t)) fail_to_read(path, "is cut short");
+  return take_number(bytes);
+}
+
+/// Takes the header off the front.
+Json take_header(std::string_view& bytes, const fs::path& path) {
+  const uint64_t size = take_header_size(bytes, path);
+  if (bytes.size() < sizeof(uint64_t) || size > bytes.size() - sizeof(uint64_t)) fail_to_read(path, "is cut short");
   const std::string_view text = bytes.substr(0, size);
   bytes.remove_prefix(size);
   if (take_number(bytes) != hash_bytes(text)) fail_to_read(path, "is damaged");
   return Json::parse(text);
+}
+
+void check_readable(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || !std::ifstream(path)) read_file_bytes(path, {});  // which says why not
+}
+
+/// A part's front, with the whole header and no more.
+std::string read_front(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string front(kMagic.size() + sizeof(uint64_t), '\0');
+  file.read(front.data(), static_cast<std::streamsize>(front.size()));
+  front.resize(static_cast<size_t>(file.gcount()));
+  std::string_view rest = front;
+  const uint64_t size = take_header_size(rest, path) + sizeof(uint64_t);
+  std::error_code error;
+  if (const uintmax_t whole = fs::file_size(path, error); error || size > whole) fail_to_read(path, "is cut short");
+  const size_t start = front.size();
+  front.resize(start + size);
+  file.read(front.data() + start, static_cast<std::streamsize>(size));
+  front.resize(start + static_cast<size_t>(file.gcount()));
+  return front;
 }
 
 }  // namespace
@@ -296,8 +326,9 @@ std::vector<unsigned char> encode_part(const PartHeader& header, const Film& fil
 }
 
 PartHead read_part_head(const fs::path& path) try {
-  const std::string file = read_file_bytes(path, {});
-  std::string_view bytes = file;
+  check_readable(path);
+  const std::string front = read_front(path);
+  std::string_view bytes = front;
   return head_of(take_header(bytes, path));
 } catch (const Json::exception& error) {
   fail_to_read(path, "is damaged");
@@ -306,6 +337,10 @@ PartHead read_part_head(const fs::path& path) try {
 RenderPart read_part(const fs::path& path) { return decode_part(read_file_bytes(path, {}), path); }
 
 RenderPart decode_part(std::string_view bytes, const fs::path& path) try {
+  if (bytes.starts_with(kMagic)) {
+    if (!bytes.ends_with(kEnd)) fail_to_read(path, "is cut short");
+    bytes.remove_suffix(kEnd.size());
+  }
   PartHead head = head_of(take_header(bytes, path));
   Film film(head.film);
   RenderPart part{std::move(head.header), std::move(film)};

@@ -10,8 +10,6 @@
 namespace frond {
 namespace {
 
-const ChannelInfo& info_of(std::string_view name) { return *std::ranges::find(kChannels, name, &ChannelInfo::name); }
-
 /// Values of an image, pixel by pixel, in the order of its channels.
 class PixelWriter {
  public:
@@ -26,9 +24,8 @@ class PixelWriter {
       preview_ = xyz_of_bands(format.bands);
       if (!preview_.empty()) names_.insert(names_.end(), {"R", "G", "B"});
     }
-    for (const std::string& channel : format.channels)
-      for (const std::string_view name : info_of(channel).exr)
-        if (!name.empty()) names_.emplace_back(name);
+    for (const ChannelInfo* channel : film.format().channels.infos())
+      for (size_t c = 0; c < channel->size(); ++c) names_.emplace_back(channel->exr[c]);
   }
   const std::vector<std::string>& names() const { return names_; }
 
@@ -38,9 +35,7 @@ class PixelWriter {
       write_bands(x, y);
     else
       write_colors(x, y);
-    const bool has_features = film_.format().features;
-    const Film::FeatureMeans means = has_features ? film_.features(x, y) : Film::FeatureMeans{};
-    for (const std::string& channel : format_.channels) write_channel(channel, means, film_.samples(x, y));
+    write_channels(x, y);
   }
 
  private:
@@ -71,14 +66,25 @@ class PixelWriter {
     if (!preview_.empty()) put(find_color_space("srgb")->rgb_from_xyz * xyz);
   }
 
-  void write_channel(std::string_view channel, const Film::FeatureMeans& f, uint64_t samples) {
-    if (channel == "albedo") put(f.albedo);
-    if (channel == "normal") put(mapped(f.normal, 0));
-    if (channel == "depth") put(f.depth);
-    if (channel == "position") put(mapped(f.position, f.hits > 0 ? 1 : 0));
-    if (channel == "material") put(f.hits > 0 ? f.material + 1.0 : 0.0);
-    if (channel == "instance") put(double(f.instance));
-    if (channel == "samples") put(double(samples));
+  void write_channels(int x, int y) {
+    const ChannelList& channels = film_.format().channels;
+    const bool has_features = channels.means() + channels.ids() > 0;
+    const Film::FeatureMeans features = has_features ? film_.features(x, y) : Film::FeatureMeans{};
+    const double* mean = features.means.data();
+    const double* id = features.ids.data();
+    for (const ChannelInfo* channel : channels.infos()) {
+      if (channel->kind == ChannelInfo::Kind::sample_count) {
+        put(double(film_.samples(x, y)));
+        continue;
+      }
+      const double*& value = channel->kind == ChannelInfo::Kind::mean ? mean : id;
+      if (channel->space == ChannelInfo::Space::none)
+        for (size_t c = 0; c < channel->size(); ++c) put(value[c]);
+      else
+        put(mapped({value[0], value[1], value[2]},
+                   channel->space == ChannelInfo::Space::point && features.hits > 0 ? 1 : 0));
+      value += channel->size();
+    }
   }
 
   /// `w` 1: a point, 0: a vector. Cameras are placed without shear, so that normals are vectors.
@@ -100,22 +106,6 @@ class PixelWriter {
 };
 
 }  // namespace
-
-std::vector<std::string> checked_channels(const std::vector<std::string>& names, const Location& where) {
-  std::vector<std::string_view> known;
-  for (const ChannelInfo& info : kChannels) known.push_back(info.name);
-  for (const std::string& name : names)
-    if (std::ranges::find(known, name) == known.end())
-      fail(where, "there is no channel \"{}\"{}", name, suggestion(name, known));
-  std::vector<std::string> result;
-  for (const std::string_view name : known)
-    if (std::ranges::find(names, name) != names.end()) result.emplace_back(name);
-  return result;
-}
-
-bool have_features(const std::vector<std::string>& channels) {
-  return std::ranges::any_of(channels, [](const std::string& name) { return info_of(name).is_feature; });
-}
 
 Image film_image(const Film& film, const PictureFormat& format) {
   PixelWriter writer(film, format);

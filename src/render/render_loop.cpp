@@ -100,6 +100,12 @@ class Worker {
     }
   }
 
+  Triple albedo(const FirstHit& first, const SampledWavelengths& lambda) const {
+    if (format_.bands > 0) return {};
+    const Triple color = format_.color * job_.wavelengths.sensor(first.albedo, lambda).color();
+    return {color[0] / format_.white[0], color[1] / format_.white[1], color[2] / format_.white[2]};
+  }
+
   void render_sample(int x, int y, uint64_t index) {
     const PixelPlace at = place_of(x, y);
     sampler_->start(at.x, at.y, index);
@@ -110,17 +116,10 @@ class Worker {
     PathContext context{*sampler_, sample_key(job_.seed, at.x, at.y, index), arena_};
     const PathResult path = job_.integrator.trace(job_.world, ray, lambda, context);
     tile_.add(format_, x, y, job_.wavelengths.sensor(path.radiance, lambda), double(weight), path.first.is_leaf);
-    if (format_.features && path.first.is_hit) {
-      const FirstHit& first = path.first;
-      tile_.add(format_, x, y,
-                Features{.albedo = job_.wavelengths.sensor(first.albedo, lambda),
-                         .normal = first.n,
-                         .position = first.p,
-                         .depth = dot(first.p - ray.o, axis_),
-                         .material = first.material,
-                         .instance = first.instance,
-                         .from_center = std::hypot(offset.x, offset.y),
-                         .sample = index});
+    if (path.first.is_hit && format_.channels.means() + format_.channels.ids() > 0) {
+      Features features(format_.channels, {path.first, ray, axis_, albedo(path.first, lambda)});
+      features.from_center = std::hypot(offset.x, offset.y), features.sample = index;
+      tile_.add(x, y, features);
     }
     statistics_.rays += context.rays;
     tile_.add_rays(context.rays);

@@ -62,18 +62,13 @@ void name_materials(const SceneDescription& description, PictureFormat& picture)
 }
 
 PictureFormat picture_of(const SceneDescription& description, const PictureRequest& request, const Scene& scene,
-                         const FilmSettings& film) {
+                         const FilmSettings& film, const ChannelList& channels) {
   const auto bands = scene.wavelengths().bands();
   PictureFormat picture{.space = space_of(description, request, scene.wavelengths().film_space()),
                         .bands = {bands.begin(), bands.end()},
                         .attributes = request.attributes};
-  std::vector<std::string> channels = film.channels;
-  channels.insert(channels.end(), request.channels.begin(), request.channels.end());
-  picture.channels = checked_channels(channels, {});
-  if (!bands.empty() && std::ranges::find(picture.channels, "albedo") != picture.channels.end())
-    fail({}, "channel \"albedo\" is a colour: wavelengths \"{}\" give bands", scene.wavelengths_name());
   if (film.features_in_camera_space) picture.from_world = to_double_rows(description.camera_from_world);
-  if (std::ranges::find(picture.channels, "material") != picture.channels.end()) name_materials(description, picture);
+  if (channels.has("material")) name_materials(description, picture);
   picture.attributes["frond:version"] = FROND_VERSION;
   picture.attributes["frond:seed"] = std::to_string(scene.seed());
   picture.attributes["frond:wavelengths"] = scene.wavelengths_name();
@@ -157,7 +152,8 @@ Identity LoadedScene::identity() const {
   id.add("integrator", text_of(description_.integrator));
   id.add("resolution", fmt::format("{} x {}", film.width, film.height));
   id.add("film", fmt::format("exposure {}, maxcomponentvalue {}", film.exposure, film.max_component));
-  id.add("channels", fmt::format("{}", fmt::join(picture_.channels, ",")));
+  id.add("channels", fmt::format("{}", fmt::join(format_.channels.names(), ",")));
+  id.add("noise", format_.blocks ? "measured (--max-rms)" : "not measured");
   id.add("color space", picture_.space);
   id.add("command", command_);
   id.add("scene", hexadecimal(description_.content_hash));
@@ -174,6 +170,7 @@ RenderPart LoadedScene::empty_part() const {
   header.picture = picture_;
   header.command = command_;
   header.scene_crop = scene_crop_;
+  header.pixel_scale = is_quick_ ? 2 : 1;
   return {std::move(header), std::move(film)};
 }
 
@@ -190,6 +187,7 @@ FilmSettings Session::film(const SceneDescription& description, bool quick) cons
 LoadedScene Session::load(SceneDescription description, SceneOverrides overrides, const PictureRequest& request) {
   LoadedScene loaded;
   loaded.command_ = request.command;
+  loaded.is_quick_ = overrides.quick;
   loaded.plugins_ = plugin_files(options_.plugins);
   apply_swaps(description, overrides.swaps, registry_, log_);
   overrides.swaps.clear();
@@ -204,14 +202,19 @@ LoadedScene Session::load(SceneDescription description, SceneOverrides overrides
   FilmSettings film = loaded.scene_->film();
   loaded.scene_crop_ = film.crop;
   if (request.pixels) film.crop = *request.pixels;
-  loaded.picture_ = picture_of(description, request, *loaded.scene_, film);
-  loaded.description_ = std::move(description);
-  const WavelengthStrategy& wavelengths = loaded.scene_->wavelengths();
   FilmFormat& format = loaded.format_;
   format.settings = film;
+  std::vector<std::string> channels = film.channels;
+  if (!loaded.scene_->wavelengths().bands().empty()) std::erase(channels, "albedo");  // a colour; bands have none
+  channels.insert(channels.end(), request.channels.begin(), request.channels.end());
+  format.channels = ChannelList(channels);
+  loaded.picture_ = picture_of(description, request, *loaded.scene_, film, format.channels);
+  loaded.description_ = std::move(description);
+  const WavelengthStrategy& wavelengths = loaded.scene_->wavelengths();
   format.bands = wavelengths.bands().size();
-  format.features = have_features(loaded.picture_.channels);
   format.blocks = request.adaptive;
+  if (format.bands > 0 && format.channels.has("albedo"))
+    fail({}, "channel \"albedo\" is a colour: wavelengths \"{}\" give bands", text);
   if (request.adaptive && format.bands > 0)
     fail({}, "noise is measured in colours: wavelengths \"{}\" give bands", text);
   if (format.bands == 0) {

@@ -17,7 +17,7 @@ namespace frond {
 /// What is said of the picture over what the scene says.
 struct PictureRequest {
   std::optional<Crop> pixels = {};         ///< of the film, which --quick has halved
-  std::vector<std::string> channels = {};  ///< beside those of the scene's film: names of kChannels
+  std::vector<std::string> channels = {};  ///< beside those of the scene's film: names of render/channels.h
   std::string color_space = {};  ///< by linear name, where the scene names none; empty: as the wavelengths have it
   std::map<std::string, std::string> attributes = {};  ///< for the image's header
   bool adaptive = false;                               ///< the film is to know its noise, for Session::render_to
@@ -52,6 +52,7 @@ class LoadedScene {
   std::vector<std::filesystem::path> plugins_;
   std::unique_ptr<Scene> scene_;
   Crop scene_crop_{};
+  bool is_quick_ = false;
   FilmFormat format_;
   PictureFormat picture_;
 };

@@ -30,7 +30,7 @@ struct FilmSettings {
   double exposure = 1;       ///< factor from radiance to film
   double max_component = 0;  ///< samples are scaled down to this channel value; infinity: not at all
 
-  std::vector<std::string> channels = {};  ///< beside colour: names of render/picture_format.h
+  std::vector<std::string> channels = {};  ///< beside colour: names of render/channels.h
   bool features_in_camera_space = false;   ///< normals and positions; else in world space
 
   /// That a channel of an EXR can have.

@@ -253,7 +253,7 @@ Shape "sphere"
 TEST_F(Commands, APictureSaysThroughWhichViewItWasMade) {
   ASSERT_EQ(render({"-o", path("a.png"), "--spp", "1", "-q", "--display", "sRGB"}).code, 0);
   EXPECT_EQ(read_image(path("a.png"), {}).header.text.at("frond:command"),
-            "frond render scene.pbrt --display sRGB --spp 1");
+            "frond render scene.pbrt --spp 1 --display sRGB");
 }
 
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
