@@ -35,7 +35,7 @@ class BodyModes {
   std::array<std::array<std::vector<Grid>, 2>, 2> series_;
 };
 
-/// The walk's modes, by the chain of `solve` (leaf/solver.h), as many as it takes to leave out less than `tolerance` of
+/// The walk's modes, by the chain of `solve` (leaf/solve/solver.h), as many as it takes to leave out less than `tolerance` of
 /// pi f, which is 1 for white paper. `sines` of angles outside, for both directions: between -n and n, n the cuticle's
 /// index. `nodes` per segment.
 BodyModes solve_modes(const Tissue& tissue, std::span<const double> sines, double tolerance, int nodes);
