@@ -79,7 +79,8 @@ def start_and_load(folder, scene):
         return statistics.median(once() for _ in range(5))
 
     return {"list": median_cpu("list"), "describe": median_cpu("describe", "abm"),
-            "load": load("--cache", folder / "cache"), "load without cache": load("--no-cache")}
+            "load": load("--cache", folder / "cache"), "load without cache": load("--no-cache"),
+            "megabytes": frond(*one_pixel, "--resume", "--cache", folder / "cache").megabytes}
 
 
 def bytes_a_pixel(folder):
@@ -95,8 +96,8 @@ def bytes_a_pixel(folder):
 
 
 def render_parts(folder, scene):
-    """Parts by samples, and the CPU time of a path."""
-    parts, seconds, paths = [], 0, 0
+    """Parts by samples, the CPU time of a path, and the memory of the largest render."""
+    parts, seconds, paths, megabytes = [], 0, 0, 0
     for i in range(max(PARTS)):
         parts.append(folder / f"samples_{i}.part")
         use = frond("render", scene, "--samples", f"{SAMPLES * i}:{SAMPLES * (i + 1)}", "--part", parts[-1], "-q", "--json",
@@ -104,7 +105,8 @@ def render_parts(folder, scene):
         report = json.loads(use.output)
         seconds += report["cpu_seconds"]
         paths += report["paths"]
-    return parts, seconds / paths
+        megabytes = max(megabytes, use.megabytes)
+    return parts, seconds / paths, megabytes
 
 
 def render_strips(folder, scene):
@@ -141,8 +143,18 @@ def merges(folder, parts):
     return result
 
 
+def libraries():
+    """Shared libraries that the program loads, and their bytes."""
+    words = [line.split() for line in tools.run("ldd", tools.FROND).splitlines()]
+    files = {pathlib.Path(w[2]).resolve() for w in words if len(w) > 2 and w[1] == "=>" and w[2].startswith("/")}
+    return len(files), sum(f.stat().st_size for f in files)
+
+
 def hours(seconds):
-    return f"{seconds / 3600:.1f} h" if seconds >= 3600 else f"{seconds / 60:.1f} min" if seconds >= 60 else f"{seconds:.1f} s"
+    for unit, name in ((3600, "h"), (60, "min")):
+        if seconds >= unit:
+            return f"{seconds / unit:.1f} {name}"
+    return f"{seconds:.1f} s"
 
 
 def size(count):
@@ -155,7 +167,7 @@ def main():
         scene = scene_of_size(folder, WIDTH, HEIGHT)
         start = start_and_load(folder, scene)
         sizes = bytes_a_pixel(folder)
-        parts, path_seconds = render_parts(folder, scene)
+        parts, path_seconds, render_memory = render_parts(folder, scene)
         part_bytes = statistics.mean(p.stat().st_size for p in parts)
         strips = render_strips(folder, scene)
         if not same_picture(folder, parts[:1], strips) or not same_picture(folder, parts, reversed(parts)):
@@ -170,8 +182,11 @@ def main():
         ["`frond list`", f"{start['list']:.2f}"], ["`frond describe abm`", f"{start['describe']:.2f}"],
         ["one pixel of the hundred leaves, tables from the cache", f"{start['load']:.2f}"],
         ["the same with `--no-cache`", f"{start['load without cache']:.2f}"]]))
+    count, bytes_on_disk = libraries()
+    print(f"The program loads {count} shared libraries of {size(bytes_on_disk)}.\n")
     print(f"A path takes {path_seconds * 1e6:.2f} µs of CPU.\n")
-    print(tools.table(["samples of a pixel", "part, bytes a pixel"], [[tools.thousands(n), f"{b:.1f}"] for n, b in sizes.items()]))
+    print(tools.table(["samples of a pixel", "part, bytes a pixel"],
+                      [[tools.thousands(n), f"{b:.1f}"] for n, b in sizes.items()]))
     print(f"{WIDTH} × {HEIGHT} pixels, {SAMPLES} samples a part, {size(part_bytes)} each; the image has {size(image_bytes)}:\n")
     print(tools.table(["parts", "merged into an image, CPU s", "into a part, CPU s", "most memory, MB"],
                       [[n, f"{i:.2f}", f"{p:.2f}", f"{m:.0f}"] for n, (i, p, m) in by_parts.items()]))
@@ -179,26 +194,46 @@ def main():
     _, beside_part = line([(n, p) for n, (_, p, _) in by_parts.items()])
     memory = max(m for _, _, m in by_parts.values())
     print(f"A further part takes {each / megapixels:.3f} CPU s a megapixel, what comes once {beside / megapixels:.2f} for an "
-          f"image and {beside_part / megapixels:.2f} for a part. The same {SAMPLES} samples in {len(strips)} strips of rows "
+          f"image and {beside_part / megapixels:.2f} for a part. The same {SAMPLES} samples in {len(strips)} strips of its pixels "
           f"take {strips_cpu:.2f} CPU s.\n")
 
+    print_calculation(start["load"], path_seconds, sizes, part_bytes / megapixels, each / megapixels, beside / megapixels,
+                      beside_part / megapixels, start["megabytes"], (memory - start["megabytes"]) / megapixels,
+                      (render_memory - start["megabytes"]) / megapixels)
+
+
+def print_calculation(load, path, sizes, part_bytes, each, image, part, least_memory, merge_memory,
+                      render_memory):
+    """From figures a megapixel to those of the large picture."""
     large = LARGE_WIDTH * LARGE_HEIGHT / 1e6
-    paths = LARGE_WIDTH * LARGE_HEIGHT * LARGE_SAMPLES
-    pixel_part, sample_part = sizes[4096] * large * 1e6 / NODES, part_bytes / megapixels * large
-    per_part = each * large / megapixels
-    once = beside * large / megapixels
-    tree = 32  # parts that a first merge takes
-    by_tree = 2 * (tree * per_part + beside_part * large / megapixels)
-    print(f"{LARGE_WIDTH} × {LARGE_HEIGHT}, {LARGE_SAMPLES} samples, {NODES} tasks of one thread:\n")
-    print(tools.table(["", "by samples", "by rows"], [
-        ["paths, CPU time of all", *[hours(paths * path_seconds)] * 2],
-        ["of one task", *[hours(paths * path_seconds / NODES)] * 2],
-        ["start and load of one task", *[hours(start["load"])] * 2],
-        ["one part", size(sample_part), size(pixel_part)],
-        ["all parts", size(sample_part * NODES), size(pixel_part * NODES)],
-        ["merge, CPU time", hours(per_part * NODES + once), hours(per_part + once)],
-        [f"the same by {tree} at a time, in two steps", hours(by_tree), ""],
-        ["memory of the merge", *[size(memory * 1.048576e6 * large / megapixels)] * 2]]))
+    seconds = large * 1e6 * LARGE_SAMPLES * path
+
+    def memory(of_megapixel, megapixels):
+        return size((least_memory + of_megapixel * megapixels) * 1.048576e6)
+
+    def by_samples(tasks):
+        """A part has all pixels, and few samples of each."""
+        samples = LARGE_SAMPLES / tasks
+        nearest = min(sizes, key=lambda n: abs(n - samples))
+        bytes_each = part_bytes * large * sizes[nearest] / sizes[SAMPLES]
+        group = max(2, round(tasks**0.5))
+        return [hours(seconds / tasks), hours(load), size(bytes_each), size(bytes_each * tasks),
+                hours(large * (each * tasks + image)), hours(large * (each * group + part + each * tasks / group + image)),
+                memory(render_memory, large)]
+
+    def by_pixels(tasks):
+        """A part has all samples of few pixels."""
+        everything = sizes[LARGE_SAMPLES] * large * 1e6
+        return [hours(seconds / tasks), hours(load), size(everything / tasks), size(everything),
+                hours(large * (each + image)), "", memory(render_memory, large / tasks)]
+
+    names = ["paths of one task, CPU time", "start and load of one task", "one part", "all parts", "merge, CPU time",
+             "the same in two steps, the first of which many do at once", "memory of one task"]
+    columns = [by_samples(NODES), by_samples(64), by_pixels(NODES)]
+    print(f"{LARGE_WIDTH} × {LARGE_HEIGHT}, {tools.thousands(LARGE_SAMPLES)} samples: {hours(seconds)} of CPU time for paths, "
+          f"{memory(merge_memory, large)} of memory for the merge.\n")
+    print(tools.table(["", f"{tools.thousands(NODES)} tasks, by samples", "64 tasks, by samples",
+                       f"{tools.thousands(NODES)} tasks, by pixels"], list(map(list, zip(names, *columns)))))
 
 
 if __name__ == "__main__":
