@@ -31,8 +31,8 @@ class Scripts : public ::testing::Test {
 };
 
 TEST_F(Scripts, PrintTheirHelpAndDoNothing) {
-  for (const char* script : {"demo", "test", "tidy", "paper", "choosing", "validation", "wavelengths", "stability",
-                             "many_machines"})
+  for (const char* script :
+       {"demo", "test", "tidy", "paper", "choosing", "validation", "wavelengths", "stability", "many_machines"})
     for (const char* flag : {"-h", "--help"}) {
       const ChildResult r = run_script(script, flag);
       EXPECT_EQ(r.status, 0) << script;
