@@ -174,7 +174,7 @@ void for_each_case(const Body& body) {
   }
 }
 
-/// The largest error of a solution, leaf/solver.h.
+/// The largest error of a solution, leaf/solve/solver.h.
 constexpr double kSolverError = 2e-6;
 
 TEST(WalkBatch, CountsAreAsSolved) {

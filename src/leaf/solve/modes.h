@@ -35,9 +35,9 @@ class BodyModes {
   std::array<std::array<std::vector<Grid>, 2>, 2> series_;
 };
 
-/// The walk's modes, by the chain of `solve` (leaf/solver.h), as many as it takes to leave out less than `tolerance` of
-/// pi f, which is 1 for white paper. `sines` of angles outside, for both directions: between -n and n, n the cuticle's
-/// index. `nodes` per segment.
+/// The walk's modes, by the chain of `solve` (leaf/solve/solver.h), as many as it takes to leave out less than
+/// `tolerance` of pi f, which is 1 for white paper. `sines` of angles outside, for both directions: between -n and n, n
+/// the cuticle's index. `nodes` per segment.
 BodyModes solve_modes(const Tissue& tissue, std::span<const double> sines, double tolerance, int nodes);
 
 /// Enough nodes for errors of pi f below 3e-5 where all lobes inside the leaf have exponents from 1 to 20 (the

@@ -22,7 +22,7 @@ struct Shares {
 /// Shares for light at theta degrees from +z, each in [0, 180] (above 90 the abaxial side is lit), without noise.
 ///
 /// Averaged over azimuth, what an event of the walk does depends on the ray's direction through mu = |cos theta| alone:
-/// this is mode 0 of the chain of leaf/chain.h.
+/// this is mode 0 of the chain of leaf/solve/chain.h.
 ///
 /// `nodes` per segment, and twice as many places of a unifacial leaf's air space.
 std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_deg, int nodes);

@@ -22,7 +22,7 @@ std::string_view without_checksum(std::string_view text);
 
 /// None where there is no such file. One that cannot be read costs a warning.
 std::optional<std::string> read_cached(const std::filesystem::path& path, const Log& log);
-/// Makes room for it where files lie unused (core/cache_limit.h). A folder that does not take it costs a warning.
+/// Makes room for it where files lie unused (system/cache_limit.h). A folder that does not take it costs a warning.
 void write_cached(const std::filesystem::path& path, const std::string& text, const Log& log);
 
 }  // namespace frond::leaf

@@ -6,7 +6,7 @@
 namespace frond::compare {
 
 /// Keeps renders on disk, with all that is needed to continue them. A file that is damaged, or of something else,
-/// counts as none. Files that lie unused for longest make room for new ones (core/cache_limit.h).
+/// counts as none. Files that lie unused for longest make room for new ones (system/cache_limit.h).
 class ReferenceStore {
  public:
   /// `folder` empty: nothing is kept. `identity` of all that decides the pixels.
