@@ -230,13 +230,13 @@ class RenderCommand {
       render(part, control, nullptr);
       return 0;
     }
-    const Interrupt interrupt;
-    control.stop = interrupt.token();
+    interrupt_.emplace();
+    control.stop = interrupt_->token();
     const double seconds = options_.checkpoint_seconds > 0 ? options_.checkpoint_seconds : kCheckpointSeconds;
     Checkpointer checkpointer(part_path_, seconds, part, &line, log_);
     control.progress = &checkpointer;
     render(part, control, &checkpointer);
-    return interrupt.signal();
+    return interrupt_->signal();
   }
 
   void render(RenderPart& part, const RenderControl& control, Checkpointer* checkpointer) {
@@ -297,6 +297,7 @@ class RenderCommand {
   std::optional<ImageOutput> output_;  ///< empty: a part is asked for
   std::filesystem::path part_path_;    ///< empty: no part is kept
   std::optional<PartLock> lock_;
+  std::optional<Interrupt> interrupt_;  ///< until all is written: signals come while the last part is
   std::optional<choose::Choice> choice_;
   std::optional<LoadedScene> scene_;
   SampleRange range_;
