@@ -140,7 +140,7 @@ class RenderCommand {
     if (keeps_part()) lock_.emplace(part_path_);
     RenderPart part = first_part();
     const int signal = fill(part);
-    if (keeps_part()) write_part(part_path_, part.header, part.film);
+    if (keeps_part()) keep(part, signal != 0);
     if (signal != 0) return say_how_to_go_on(signal);
     finish(part);
     return 0;
@@ -248,6 +248,14 @@ class RenderCommand {
     if (options_.samples > 0) request.most_samples = uint64_t(options_.samples);
     if (checkpointer) request.planned = [checkpointer](const PartHeader& header) { checkpointer->set_header(header); };
     statistics_ = session_.render_to(*scene_, request, part, control);
+  }
+
+  /// The last checkpoint, or what was asked for. Where the picture is done, it is not lost with its checkpoint.
+  void keep(const RenderPart& part, bool stopped) const try {
+    write_part(part_path_, part.header, part.film);
+  } catch (const InputError& error) {
+    if (stopped || !output_) throw;
+    log_.warn({}, fmt::format("no checkpoint was written: {}", error.what()));
   }
 
   int say_how_to_go_on(int signal) const {
