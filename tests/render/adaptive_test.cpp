@@ -40,9 +40,10 @@ class Adaptive : public ::testing::Test {
     return part;
   }
   /// All of a part but what it took.
-  static std::vector<unsigned char> bytes_of(RenderPart part) {
-    part.header.statistics = {};
-    return encode_part(part.header, part.film);
+  static std::vector<unsigned char> bytes_of(const RenderPart& part) {
+    PartHeader header = part.header;
+    header.statistics = {};
+    return encode_part(header, part.film);
   }
 
   TestFolder folder_{"adaptive"};
@@ -64,8 +65,8 @@ TEST_F(Adaptive, NoiseIsNoLessThanPicturesDifferBy) {
   const LoadedScene one = load(true, 1), two = load(true, 2);
   for (const uint64_t samples : {32u, 64u, 256u}) {
     RenderPart a = one.empty_part(), b = two.empty_part();
-    session_.render(one, {0, samples}, a);
-    session_.render(two, {0, samples}, b);
+    session_.render(one, SampleRange{0, samples}, a);
+    session_.render(two, SampleRange{0, samples}, b);
     // The difference has the noise of both.
     const double noise = square_difference(a.film, b.film) / 2;
     EXPECT_GT(noise, 0);
@@ -81,7 +82,7 @@ TEST_F(Adaptive, NoiseIsNoLessThanPicturesDifferBy) {
 TEST_F(Adaptive, NoiseComesDownToWhatIsAskedFor) {
   const LoadedScene scene = load(true);
   RenderPart reference = scene.empty_part();
-  session_.render(scene, {1 << 20, (1 << 20) + 2048}, reference);  // of other samples
+  session_.render(scene, SampleRange{1 << 20, (1 << 20) + 2048}, reference);  // of other samples
   uint64_t before = 0;
   for (const double max_rms : {0.05, 0.02, 0.01}) {
     const RenderPart part = to_noise(scene, max_rms);
@@ -135,7 +136,7 @@ TEST_F(Adaptive, StoppedAndResumedItIsTheSameRender) {
 TEST_F(Adaptive, PlainRendersStoppedAndResumedAreTheSameToo) {
   const LoadedScene scene = load(false);
   RenderPart whole = scene.empty_part();
-  session_.render(scene, {0, 70}, whole);
+  session_.render(scene, SampleRange{0, 70}, whole);
   for (const int reports : {1, 3, 7}) {
     const RenderPart part = in_pieces(scene, reports, [&](RenderPart& p, const RenderControl& control) {
       session_.render(scene, SampleRange{0, 70}, p, control);
