@@ -32,6 +32,7 @@ Interrupt::Interrupt() {
 }
 
 Interrupt::~Interrupt() {
+  if (caught != 0) return;  // the program ends, and says so by its own exit code
   for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, SIG_DFL);
 }
 

@@ -6,7 +6,7 @@
 namespace frond {
 
 /// While it lives, the first SIGINT or SIGTERM asks for a stop instead of ending the program; a second SIGINT ends it,
-/// a second SIGTERM does not.
+/// a second SIGTERM does not, then or later.
 class Interrupt {
  public:
   Interrupt();
