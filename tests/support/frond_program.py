@@ -78,16 +78,16 @@ class FrondTest(unittest.TestCase):
 
     def samples_in(self, seconds):
         """How many samples per pixel a run of so many seconds gets to here and now, load and all."""
-        out, _ = self.run_to_end(
-            self.command(self.folder / "calibration.exr", "--spp", 1 << 24, "--time-limit", seconds, "--json", "-q")
-        )
+        picture = self.folder / "calibration.exr"
+        out, _ = self.run_to_end(self.command(picture, "--spp", 1 << 24, "--time-limit", seconds, "--json", "-q"))
+        picture.unlink()
         return max(64, json.loads(out)["samples_per_pixel"])
 
     def wait_for(self, condition, what, seconds=20):
         end = time.monotonic() + seconds
         while not condition():
             self.assertLess(time.monotonic(), end, f"{what} did not come")
-            time.sleep(0.002)
+            time.sleep(0.0005)
 
     def files(self):
         return sorted(path.name for path in self.folder.iterdir())
