@@ -15,7 +15,8 @@ void remember(int signal) { caught = signal; }
 void set_handler(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second one has its way
+  // A second SIGINT, of someone who will not wait, has its way; batch systems send SIGTERM twice.
+  action.sa_flags = SA_RESTART | (signal == SIGINT ? static_cast<int>(SA_RESETHAND) : 0);
   sigaction(signal, &action, nullptr);
 }
 
@@ -31,6 +32,7 @@ Interrupt::Interrupt() {
 }
 
 Interrupt::~Interrupt() {
+  if (caught != 0) return;  // the program ends, and says so by its own exit code
   for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, SIG_DFL);
 }
 

@@ -5,7 +5,8 @@
 
 namespace frond {
 
-/// While it lives, the first SIGINT or SIGTERM asks for a stop instead of ending the program; a second one ends it.
+/// While it lives, the first SIGINT or SIGTERM asks for a stop instead of ending the program; a second SIGINT ends it,
+/// a second SIGTERM does not, then or later.
 class Interrupt {
  public:
   Interrupt();

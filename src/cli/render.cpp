@@ -138,12 +138,8 @@ class RenderCommand {
     if (keeps_part()) lock_.emplace(part_path_);
     RenderPart part = first_part();
     const int signal = fill(part);
-    if (signal != 0) {
-      write_part(checkpoint_path_, part.header, part.film);
-      return say_how_to_go_on(signal);
-    }
-    if (keeps_part()) write_part(part_path_, part.header, part.film);
-    if (checkpoint_path_ != part_path_) std::filesystem::remove(checkpoint_path_);
+    if (keeps_part()) keep(part, signal != 0);
+    if (signal != 0) return say_how_to_go_on(signal);
     finish(part);
     return 0;
   }
@@ -243,13 +239,13 @@ class RenderCommand {
       render(part, control, nullptr);
       return 0;
     }
-    const Interrupt interrupt;
-    control.stop = interrupt.token();
+    interrupt_.emplace();
+    control.stop = interrupt_->token();
     const double seconds = options_.checkpoint_seconds > 0 ? options_.checkpoint_seconds : kCheckpointSeconds;
     Checkpointer checkpointer(checkpoint_path_, seconds, part, &line, log_);
     control.progress = &checkpointer;
     render(part, control, &checkpointer);
-    return interrupt.signal();
+    return interrupt_->signal();
   }
 
   void render(RenderPart& part, const RenderControl& control, Checkpointer* checkpointer) {
@@ -261,6 +257,15 @@ class RenderCommand {
     if (options_.samples > 0) request.most_samples = uint64_t(options_.samples);
     if (checkpointer) request.planned = [checkpointer](const PartHeader& header) { checkpointer->set_header(header); };
     statistics_ = session_.render_to(*scene_, request, part, control);
+  }
+
+  /// The last checkpoint, or what was asked for. Where the picture is done, it is not lost with its checkpoint.
+  void keep(const RenderPart& part, bool stopped) const try {
+    write_part(stopped ? checkpoint_path_ : part_path_, part.header, part.film);
+    if (!stopped && checkpoint_path_ != part_path_) std::filesystem::remove(checkpoint_path_);
+  } catch (const InputError& error) {
+    if (stopped || !output_) throw;
+    log_.warn({}, fmt::format("no checkpoint was written: {}", error.what()));
   }
 
   int say_how_to_go_on(int signal) const {
@@ -316,6 +321,7 @@ class RenderCommand {
   std::filesystem::path part_path_;        ///< empty: no part is kept
   std::filesystem::path checkpoint_path_;  ///< what is not finished
   std::optional<PartLock> lock_;
+  std::optional<Interrupt> interrupt_;  ///< until all is written: signals come while the last part is
   std::optional<choose::Choice> choice_;
   std::optional<LoadedScene> scene_;
   SampleRange range_;

@@ -8,7 +8,7 @@ namespace frond {
 __extension__ using Int128 = __int128;
 
 /// A sum that does not depend on the order of its terms: fixed point, 128 bits, `kFraction` of them behind the point.
-/// Each term is rounded toward 0 to a multiple of 2^-kFraction; from there on all is exact. 2^30 terms below
+/// Each term is rounded toward 0 to a multiple of 2^(1 - kFraction); from there on all is exact. 2^30 terms below
 /// `kLargestTerm` in magnitude cannot overflow it.
 template <int kFraction>
 class ExactSum {

@@ -87,12 +87,16 @@ RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
   const PartHead first = read_part_head(files.front());
   PartHeader header = first.header;
   header.statistics = {};
+  if (files.size() > 1) header.tile_ends.clear(), header.round = 0;  // what one of them was about to have
   FilmFormat format = first.film;
   for (const auto& file : files) {
     const PartHead head = read_part_head(file);
     const std::string difference =
         first.header.identity.difference(head.header.identity, files.front().string(), file.string());
     if (!difference.empty()) fail({}, "these are no parts of one render. {}", difference);
+    if (head.film.blocks != format.blocks)
+      fail({}, "\"{}\" was made with --max-rms, \"{}\" without: they do not add up",
+           (format.blocks ? files.front() : file).string(), (format.blocks ? file : files.front()).string());
     format.settings.crop = around(format.settings.crop, head.film.settings.crop);
     header.request = std::max(header.request, head.header.request);
     header.adaptive |= head.header.adaptive;

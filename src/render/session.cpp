@@ -153,7 +153,6 @@ Identity LoadedScene::identity() const {
   id.add("resolution", fmt::format("{} x {}", film.width, film.height));
   id.add("film", fmt::format("exposure {}, maxcomponentvalue {}", film.exposure, film.max_component));
   id.add("channels", fmt::format("{}", fmt::join(format_.channels.names(), ",")));
-  id.add("noise", format_.blocks ? "measured (--max-rms)" : "not measured");
   id.add("color space", picture_.space);
   id.add("command", command_);
   id.add("scene", hexadecimal(description_.content_hash));

@@ -77,7 +77,7 @@ struct SessionOptions {
 ///   Session session(log);
 ///   const LoadedScene scene = session.load(session.read("scene.pbrt"), {});
 ///   RenderPart part = scene.empty_part();
-///   session.render(scene, {0, 64}, part);
+///   session.render(scene, SampleRange{0, 64}, part);
 ///   const Image image = film_image(part.film, part.header.picture);
 ///
 /// Whatever is wrong with the input is an InputError.

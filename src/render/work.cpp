@@ -82,4 +82,8 @@ bool Coverage::add(const WorkItem& item) {
   return true;
 }
 
+bool Coverage::has_all_of(const Coverage& other) const {
+  return std::ranges::all_of(other.items_, [this](const WorkItem& item) { return missing(item).empty(); });
+}
+
 }  // namespace frond

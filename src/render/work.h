@@ -32,7 +32,7 @@ struct WorkItem {
 /// What both have.
 WorkItem intersection(const WorkItem& a, const WorkItem& b);
 
-/// Items that have nothing in common with each other, as few as can be had by putting neighbours together.
+/// Items that have nothing in common with each other; neighbours are put together.
 class Coverage {
  public:
   /// False, and nothing changes, where some of it is covered already.
@@ -41,9 +41,12 @@ class Coverage {
   std::vector<WorkItem> missing(const WorkItem& item) const;
 
   const std::vector<WorkItem>& items() const { return items_; }
-  friend bool operator==(const Coverage&, const Coverage&) = default;
+  /// Whether both cover the same: in which pieces hangs on the order in which they came.
+  friend bool operator==(const Coverage& a, const Coverage& b) { return a.has_all_of(b) && b.has_all_of(a); }
 
  private:
+  bool has_all_of(const Coverage& other) const;
+
   std::vector<WorkItem> items_;  ///< sorted
 };
 

@@ -1,0 +1,142 @@
+"""Renders that are killed at random moments and resumed: the picture is that of an undisturbed render, and little is
+rendered twice.
+
+What a killed run has rendered since its last checkpoint is lost, and is rendered again. Every --checkpoint seconds
+one is begun; a run that is killed has lost what it rendered since the youngest checkpoint on the disk was begun. That
+is one interval at most, and the time that it takes to write one, during which the machine may do other things: each
+run's loss is measured in seconds, from the time stamp of the part (or the start of the run, if it has not written
+one) to the kill, and the mean over all kills has to be below one and a half intervals. And nothing that a part holds
+is rendered again: the paths that the runs counted into it, one after the other, never become fewer, and in the end are
+no more than the picture has.
+"""
+
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+from frond_program import PIXELS, SLOW, FrondTest, part_header
+
+INTERVAL = 0.2
+KILLS = 100 if SLOW else 20
+LONGEST = 0.7  # seconds of a run that is killed
+
+
+class Kill(FrondTest):
+    pictures = {}  # of undisturbed renders, by their samples
+    per_second = None
+
+    def setUp(self):
+        super().setUp()
+        if not Kill.per_second:
+            Kill.per_second = 2 * self.samples_in(0.5)
+        self.output = self.folder / "killed.exr"
+        self.part = self.folder / "killed.exr.part"
+
+    def render(self, spp, *words):
+        return self.command(self.output, "--spp", spp, "--checkpoint", INTERVAL, "--resume", *words)
+
+    def undisturbed(self, spp):
+        if spp not in self.pictures:
+            path = self.folder / "undisturbed.exr"
+            self.run_to_end(self.command(path, "--spp", spp, "-q"))
+            self.pictures[spp] = path.read_bytes()
+        return self.pictures[spp]
+
+    def paths_kept(self):
+        return part_header(self.part)["statistics"]["paths"] if self.part.exists() else 0
+
+    def check_resumed(self, spp):
+        """Goes on to the end; the image and the part are those of an undisturbed render."""
+        self.run_to_end(self.render(spp, "-q"))
+        expected = self.undisturbed(spp)
+        self.assertEqual(self.output.read_bytes(), expected)
+        merged = self.folder / "merged.exr"
+        frond = self.command("")[0]
+        self.run_to_end([frond, "merge", str(self.part), "-o", str(merged), "-q"])  # without --allow-holes
+        self.assertEqual(merged.read_bytes(), expected)
+
+    def start_and_wait_for_checkpoint(self, spp):
+        process = self.start(self.render(spp))
+        self.wait_for(self.part.exists, "a checkpoint")
+        return process
+
+    def test_at_random_moments(self):
+        moments = random.Random(1)
+        spp = self.per_second * KILLS // 8
+        kept, killed, loss = 0, 0, 0.0
+        for _ in range(KILLS):
+            start = time.time()
+            process = self.start(self.render(spp, "-q"))
+            try:
+                process.wait(timeout=moments.uniform(0, LONGEST))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                end = time.time()
+                process.wait()
+                killed += 1
+                since = max(start, self.part.stat().st_mtime) if self.part.exists() else start
+                loss += max(end - since, 0)
+            else:
+                self.assertEqual(process.returncode, 0, process.stderr.read())
+            kept_before, kept = kept, self.paths_kept()
+            self.assertGreaterEqual(kept, kept_before)
+        self.assertGreater(killed, KILLS / 2)
+        self.assertLess(loss / killed, 1.5 * INTERVAL)
+        self.assertGreater(kept, 0)
+        self.check_resumed(spp)
+        self.assertLessEqual(self.paths_kept(), spp * PIXELS)
+
+    def test_stopped_by_a_signal(self):
+        spp = self.per_second
+        for number, code in ((signal.SIGTERM, 143), (signal.SIGINT, 130)):
+            with self.subTest(signal=number.name):
+                process = self.start_and_wait_for_checkpoint(spp)
+                process.send_signal(number)
+                _, err = process.communicate()
+                self.assertEqual(process.returncode, code, err)
+                self.assertIn("the same command with --resume goes on from there", err)
+                self.assertIn(str(self.part), err)
+                self.assertFalse(self.output.exists())
+                self.check_resumed(spp)
+                self.part.unlink()
+                self.output.unlink()
+
+    def test_terminated_twice_it_still_leaves_its_part(self):
+        spp = self.per_second
+        process = self.start_and_wait_for_checkpoint(spp)
+        before = self.paths_kept()
+        while process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+            time.sleep(0.001)
+        _, err = process.communicate()
+        self.assertEqual(process.returncode, 143, err)
+        self.assertIn("--resume", err)
+        self.assertGreaterEqual(self.paths_kept(), before)
+        self.check_resumed(spp)
+
+    def test_a_second_interrupt_ends_it_at_once(self):
+        spp = self.per_second
+        process = self.start_and_wait_for_checkpoint(spp)
+        process.send_signal(signal.SIGINT)
+        self.wait_for(lambda: not self.catches(process, signal.SIGINT), "the first signal")
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+        self.assertIn(process.returncode, (-signal.SIGINT, 130))  # 130: it was done with the first one by then
+        self.check_resumed(spp)
+
+    @staticmethod
+    def catches(process, number):
+        """Whether it has a handler for a signal."""
+        if process.poll() is not None:
+            return False
+        with open(f"/proc/{process.pid}/status", encoding="ascii") as status:
+            for line in status:
+                if line.startswith("SigCgt:"):
+                    return bool(int(line.split()[1], 16) >> (number - 1) & 1)
+        return False
+
+
+if __name__ == "__main__":
+    unittest.main()

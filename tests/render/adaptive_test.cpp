@@ -1,0 +1,166 @@
+#include "render/adaptive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/part_file.h"
+#include "tests/render/render_scene.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using testing::SceneRender;
+
+/// Asks for a stop after so many reports, as a signal would.
+class StopAfter final : public Progress {
+ public:
+  explicit StopAfter(int reports) : left_(reports) {}
+  void update(double, const RenderStatistics&) override {
+    if (--left_ <= 0) stop_.request_stop();
+  }
+  std::stop_token token() const { return stop_.get_token(); }
+
+ private:
+  int left_;
+  std::stop_source stop_;
+};
+
+class Adaptive : public ::testing::Test {
+ protected:
+  void SetUp() override { scene_ = folder_.write("scene.pbrt", testing::a_scene()); }
+
+  LoadedScene load(bool adaptive, uint64_t seed = 1) {
+    return SceneRender{.seed = seed, .adaptive = adaptive}.load(session_, scene_);
+  }
+  RenderPart to_noise(const LoadedScene& scene, double max_rms, uint64_t most = 1u << 16) {
+    RenderPart part = scene.empty_part();
+    session_.render_to(scene, {.max_rms = max_rms, .most_samples = most}, part);
+    return part;
+  }
+  /// All of a part but what it took.
+  static std::vector<unsigned char> bytes_of(const RenderPart& part) {
+    PartHeader header = part.header;
+    header.statistics = {};
+    return encode_part(header, part.film);
+  }
+
+  TestFolder folder_{"adaptive"};
+  std::filesystem::path scene_;
+  Session session_{silent_log(), {.threads = 2}};
+};
+
+/// Mean square of what two pictures differ by, over pixels and colours.
+double square_difference(const Film& a, const Film& b) {
+  const Crop& c = a.settings().crop;
+  double sum = 0;
+  for (int y = c.y0; y < c.y1; ++y)
+    for (int x = c.x0; x < c.x1; ++x)
+      for (size_t i = 0; i < 3; ++i) sum += std::pow(a.mean(x, y)[i] - b.mean(x, y)[i], 2);
+  return sum / (3 * c.width() * c.height());
+}
+
+TEST_F(Adaptive, NoiseIsNoLessThanPicturesDifferBy) {
+  const LoadedScene one = load(true, 1), two = load(true, 2);
+  for (const uint64_t samples : {32u, 64u, 256u}) {
+    RenderPart a = one.empty_part(), b = two.empty_part();
+    session_.render(one, SampleRange{0, samples}, a);
+    session_.render(two, SampleRange{0, samples}, b);
+    // The difference has the noise of both.
+    const double noise = square_difference(a.film, b.film) / 2;
+    EXPECT_GT(noise, 0);
+    for (const Film* film : {&a.film, &b.film}) {
+      const NoiseEstimate estimate = picture_noise(*film, noise_z());
+      EXPECT_GE(estimate.upper, noise) << samples;
+      EXPECT_GE(estimate.upper, estimate.mean_square);
+      EXPECT_GE(estimate.mean_square, 0.8 * noise) << samples;
+    }
+  }
+}
+
+TEST_F(Adaptive, NoiseComesDownToWhatIsAskedFor) {
+  const LoadedScene scene = load(true);
+  RenderPart reference = scene.empty_part();
+  session_.render(scene, SampleRange{1 << 20, (1 << 20) + 2048}, reference);  // of other samples
+  uint64_t before = 0;
+  for (const double max_rms : {0.05, 0.02, 0.01}) {
+    const RenderPart part = to_noise(scene, max_rms);
+    EXPECT_LE(picture_noise(part.film, noise_z()).upper_rms(), max_rms);
+    EXPECT_LE(std::sqrt(square_difference(part.film, reference.film)), max_rms);
+    EXPECT_EQ(what_is_missing(part), "");
+    EXPECT_GE(part.header.statistics.paths, before);
+    before = part.header.statistics.paths;
+  }
+  // The sky takes less than the thing.
+  const SampleCount count = sample_count(to_noise(scene, 0.01).film);
+  EXPECT_LT(count.least, count.most);
+  EXPECT_EQ(count.least % FilmTile::kBlock, 0u);
+}
+
+TEST_F(Adaptive, MostSamplesAreNotExceeded) {
+  const LoadedScene scene = load(true);
+  const RenderPart part = to_noise(scene, 1e-6, 96);
+  EXPECT_EQ(sample_count(part.film).most, 96u);
+  EXPECT_GT(picture_noise(part.film, noise_z()).upper_rms(), 1e-6);
+}
+
+/// Ends a render after so many reports, and again and again, until there is no more to do. `on(part, control)` renders.
+RenderPart in_pieces(const LoadedScene& scene, int reports, const auto& on) {
+  RenderPart part = scene.empty_part();
+  for (int i = 0; i < 10000; ++i) {
+    StopAfter stop(reports);
+    on(part, RenderControl{.stop = stop.token(), .progress = &stop});
+    const auto bytes = encode_part(part.header, part.film);  // what the next process finds
+    part = decode_part({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "x.part");
+    if (!stop.token().stop_requested()) return part;
+  }
+  ADD_FAILURE() << "the render does not get on";
+  return part;
+}
+
+TEST_F(Adaptive, StoppedAndResumedItIsTheSameRender) {
+  const LoadedScene scene = load(true);
+  const RenderPart whole = to_noise(scene, 0.02);
+  ASSERT_GT(whole.header.round, 0);
+  for (const int reports : {1, 3, 7, 20}) {
+    const RenderPart part = in_pieces(scene, reports, [&](RenderPart& p, const RenderControl& control) {
+      session_.render_to(scene, {.max_rms = 0.02, .most_samples = 1u << 16}, p, control);
+    });
+    EXPECT_EQ(part.film, whole.film);
+    EXPECT_EQ(bytes_of(part), bytes_of(whole)) << reports;
+    EXPECT_EQ(part.header.statistics.paths, whole.header.statistics.paths);
+  }
+}
+
+TEST_F(Adaptive, PlainRendersStoppedAndResumedAreTheSameToo) {
+  const LoadedScene scene = load(false);
+  RenderPart whole = scene.empty_part();
+  session_.render(scene, SampleRange{0, 70}, whole);
+  for (const int reports : {1, 3, 7}) {
+    const RenderPart part = in_pieces(scene, reports, [&](RenderPart& p, const RenderControl& control) {
+      session_.render(scene, SampleRange{0, 70}, p, control);
+    });
+    EXPECT_EQ(bytes_of(part), bytes_of(whole)) << reports;
+    EXPECT_EQ(part.header.statistics.paths, whole.header.statistics.paths);
+  }
+}
+
+/// Whatever the pieces were about to have, the whole of them goes on.
+TEST_F(Adaptive, MergedPiecesGoOn) {
+  std::vector<std::filesystem::path> files;
+  for (const Crop& pixels : {Crop{0, 0, 16, 27}, Crop{16, 0, 40, 27}}) {
+    const LoadedScene piece = SceneRender{.pixels = pixels, .adaptive = true}.load(session_, scene_);
+    const RenderPart part = to_noise(piece, 0.05);
+    files.emplace_back(folder_.name_of(fmt::format("{}.part", pixels.x0)));
+    write_part(files.back(), part.header, part.film);
+  }
+  RenderPart merged = merge_parts(files);
+  EXPECT_EQ(what_is_missing(merged), "");
+  session_.render_to(load(true), {.max_rms = 0.02}, merged);
+  EXPECT_EQ(what_is_missing(merged), "");
+  EXPECT_LE(picture_noise(merged.film, noise_z()).upper_rms(), 0.02);
+}
+
+}  // namespace
+}  // namespace frond
