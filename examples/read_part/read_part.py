@@ -14,7 +14,8 @@ import sys
 MAGIC, END = b"frond part 1\n", b"frond part end\n"
 TILE = 16
 ITEM = struct.Struct("<4i2Q")  # x0 y0 x1 y1, first sample, end
-PIXEL_BYTES, BAND_BYTES, FEATURE_BYTES, BLOCK_BYTES = 128, 48, 192, 64
+PIXEL_BYTES, BAND_BYTES, BLOCK_BYTES = 128, 48, 64
+HITS_BYTES, MEAN_BYTES, ID_BYTES = 24, 16, 8
 
 
 def decompressed(frame):
@@ -78,7 +79,9 @@ def read(path):
     with open(path, "rb") as file:
         header, data = split(file.read())
     film = header["film"]
-    of_pixel = (PIXEL_BYTES + film["bands"] * BAND_BYTES + film["features"] * FEATURE_BYTES + film["blocks"] * BLOCK_BYTES)
+    features = film["means"] * MEAN_BYTES + film["ids"] * ID_BYTES
+    of_pixel = (PIXEL_BYTES + film["bands"] * BAND_BYTES + (features + HITS_BYTES if features else 0) +
+                film["blocks"] * BLOCK_BYTES)
     tiles, at = [], 0
     for rectangle in tiles_of(film["crop"]):
         (items,) = struct.unpack_from("<Q", data, at)

@@ -15,7 +15,7 @@ struct PartHeader {
   PictureFormat picture;
   std::string command;  ///< the command line without samples and pixels, which follow from the film
   Crop scene_crop{};    ///< what the scene asks for
-  int pixel_scale = 1;   ///< from the film's pixels to the command line's: 2 where --quick has halved them
+  int pixel_scale = 1;  ///< from the film's pixels to the command line's: 2 where --quick has halved them
   uint64_t request =
       0;  ///< samples of each pixel that the whole render is to have; adaptive ones may have other numbers
   bool adaptive = false;

@@ -82,6 +82,8 @@ Json json_of(const FilmFormat& f) {
           {"max_component", std::isinf(s.max_component) ? Json() : Json(s.max_component)},  // JSON has no infinity
           {"bands", f.bands},
           {"channels", f.channels.names()},
+          {"means", f.channels.means()},
+          {"ids", f.channels.ids()},
           {"blocks", f.blocks},
           {"exponent", f.exponent},
           {"color", f.color.row},
