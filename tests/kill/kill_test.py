@@ -24,7 +24,7 @@ LONGEST = 0.7  # seconds of a run that is killed
 
 
 class Kill(FrondTest):
-    pictures = {}  # of undisturbed renders, by their samples
+    pictures = {}  # of undisturbed renders, by their words
     per_second = None
 
     def setUp(self):
@@ -34,23 +34,23 @@ class Kill(FrondTest):
         self.output = self.folder / "killed.exr"
         self.part = self.folder / "killed.exr.part"
 
-    def render(self, spp, *words):
-        return self.command(self.output, "--spp", spp, "--checkpoint", INTERVAL, "--resume", *words)
+    def render(self, spp, *words, interval=INTERVAL):
+        return self.command(self.output, "--spp", spp, "--checkpoint", interval, "--resume", *words)
 
-    def undisturbed(self, spp):
-        if spp not in self.pictures:
+    def undisturbed(self, spp, *words):
+        if (spp, *words) not in self.pictures:
             path = self.folder / "undisturbed.exr"
-            self.run_to_end(self.command(path, "--spp", spp, "-q"))
-            self.pictures[spp] = path.read_bytes()
-        return self.pictures[spp]
+            self.run_to_end(self.command(path, "--spp", spp, "-q", *words))
+            self.pictures[(spp, *words)] = path.read_bytes()
+        return self.pictures[(spp, *words)]
 
     def paths_kept(self):
         return part_header(self.part)["statistics"]["paths"] if self.part.exists() else 0
 
-    def check_resumed(self, spp):
+    def check_resumed(self, spp, *words):
         """Goes on to the end; the image and the part are those of an undisturbed render."""
-        self.run_to_end(self.render(spp, "-q"))
-        expected = self.undisturbed(spp)
+        self.run_to_end(self.render(spp, "-q", *words))
+        expected = self.undisturbed(spp, *words)
         self.assertEqual(self.output.read_bytes(), expected)
         merged = self.folder / "merged.exr"
         frond = self.command("")[0]
@@ -87,6 +87,18 @@ class Kill(FrondTest):
         self.assertGreater(kept, 0)
         self.check_resumed(spp)
         self.assertLessEqual(self.paths_kept(), spp * PIXELS)
+
+    def test_with_samples_where_noise_is(self):
+        moments, spp = random.Random(2), self.per_second // 4
+        adaptive = ("--max-rms", "0.0001")  # which it does not reach
+        for _ in range(KILLS // 4):
+            process = self.start(self.render(spp, "-q", *adaptive, interval=0.05))
+            try:
+                process.wait(timeout=moments.uniform(0.1, LONGEST / 2))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+        self.check_resumed(spp, *adaptive)
 
     def test_stopped_by_a_signal(self):
         spp = self.per_second
