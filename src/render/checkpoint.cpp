@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,14 +13,30 @@
 #include "render/part_file.h"
 
 namespace frond {
+namespace {
+
+/// Whether a file still has its name: a lock on one that has not keeps nobody out.
+bool is_there(int descriptor, const std::filesystem::path& path) {
+  struct stat opened {
+  }, named{};
+  return fstat(descriptor, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
+}
+
+}  // namespace
 
 PartLock::PartLock(const std::filesystem::path& part) : path_(part) {
   path_ += ".lock";
-  descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail({}, "cannot write \"{}\": {}", path_.string(), std::strerror(errno));
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;  // some file systems have no locks
-  close(descriptor_);
-  throw Busy(fmt::format("another frond is at work on \"{}\": wait for it, or name another output", part.string()));
+  for (;;) {
+    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail({}, "cannot write \"{}\": {}", path_.string(), std::strerror(errno));
+    const bool has_lock = flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+    if (!has_lock && errno != EWOULDBLOCK) return;  // some file systems have no locks
+    if (has_lock && is_there(descriptor_, path_)) return;
+    close(descriptor_);
+    if (!has_lock)
+      throw Busy(fmt::format("another frond is at work on \"{}\": wait for it, or name another output", part.string()));
+  }
 }
 
 PartLock::~PartLock() {
@@ -63,7 +80,8 @@ void Checkpointer::write() {
 }
 
 void Checkpointer::set_header(const PartHeader& header) {
-  const std::lock_guard lock(mutex_);
+  // What is being written has the old header, and shall have none of the samples that the new one announces.
+  const std::scoped_lock lock(writing_, mutex_);
   header_ = header;
   so_far_ = {};
 }

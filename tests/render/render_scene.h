@@ -11,11 +11,11 @@
 namespace frond::testing {
 
 /// A sphere, a panel and much empty sky, 40 x 27 pixels: tiles at the right and below are not whole.
-inline std::string a_scene(const std::string& more = "", int width = 40) {
+inline std::string a_scene(const std::string& more = "", int width = 40, int height = 27) {
   return fmt::format(R"(
 LookAt 0 .5 2  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
-Film "rgb" "integer xresolution" {} "integer yresolution" 27
+Film "rgb" "integer xresolution" {} "integer yresolution" {}
 Sampler "paddedsobol" "integer pixelsamples" 4
 PixelFilter "gaussian"
 Integrator "path" "integer maxdepth" 3
@@ -29,7 +29,7 @@ Shape "trianglemesh" "point3 P" [-2 -.5 -2  2 -.5 -2  2 -.5 2  -2 -.5 2] "intege
 NamedMaterial "thing"
 Shape "sphere" "float radius" .5
 {})",
-                     width, more);
+                     width, height, more);
 }
 
 /// A mesh of one triangle, `size` high.

@@ -26,6 +26,7 @@ Material "diffusetransmission" "rgb reflectance" [.2 .5 .1]
 Shape "sphere" "float radius" .5
 """
 PIXELS = 48 * 32
+THREADS = 2
 
 
 def part_header(path):
@@ -51,8 +52,9 @@ class FrondTest(unittest.TestCase):
         path.write_text(text, encoding="utf-8")
         return path
 
-    def command(self, output, *words, scene=None):
-        return [FROND, "render", str(scene or self.scene), "--no-cache", "--threads", "2", "-o", str(output), *map(str, words)]
+    def command(self, output, *words):
+        words = ("--threads", THREADS, "-o", output, *words)
+        return [FROND, "render", str(self.scene), "--no-cache", *map(str, words)]
 
     def start(self, command, **more):
         environment = dict(os.environ, SOURCE_DATE_EPOCH="0")
