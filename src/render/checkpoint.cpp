@@ -52,7 +52,7 @@ Checkpointer::Checkpointer(std::filesystem::path path, double seconds, const Ren
       header_(part.header),
       next_(next),
       log_(log),
-      thread_([this](std::stop_token stop) { run(stop); }) {}
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Checkpointer::~Checkpointer() = default;
 
@@ -86,7 +86,7 @@ void Checkpointer::set_header(const PartHeader& header) {
   so_far_ = {};
 }
 
-void Checkpointer::run(std::stop_token stop) {
+void Checkpointer::run(const std::stop_token& stop) {
   std::mutex none;
   std::unique_lock lock(none);
   const auto interval = std::chrono::duration<double>(seconds_);

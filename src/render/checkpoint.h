@@ -46,7 +46,7 @@ class Checkpointer final : public Progress {
   void write();
 
  private:
-  void run(std::stop_token stop);
+  void run(const std::stop_token& stop);
 
   std::filesystem::path path_;
   double seconds_;
