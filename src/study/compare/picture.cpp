@@ -74,7 +74,7 @@ std::vector<float> interleaved(const Picture& picture) {
 }
 
 double fitting_exposure(const Picture& shown) {
-  constexpr double kTarget = 0.6, kBrightest = 0.1, kMostStops = 20;
+  constexpr double kTarget = 0.3, kBrightest = 0.1, kMostStops = 20;
   std::vector<float> lit;
   for (size_t i = 0; i < shown.channels[0].size(); ++i)
     if (const float y = smpte_luminance(shown.channels[0][i], shown.channels[1][i], shown.channels[2][i]); y > 0)

@@ -23,7 +23,7 @@ Picture shown(const Picture& picture, const ChannelList& list);
 Picture mean_of(const Picture& a, const Picture& b);
 
 /// Whole stops by which a display has to brighten it for people to see much: the brightest tenth, as far as it is lit,
-/// comes to lie above 0.6. 0 for a black picture.
+/// comes to lie above 0.3. 0 for a black picture.
 double fitting_exposure(const Picture& shown);
 
 /// What people see, as a display shows it after brightening by so many stops.
