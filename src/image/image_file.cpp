@@ -60,6 +60,11 @@ OIIO::ImageSpec make_spec(const Image& image, const ImageHeader& header, Format 
       spec.x = header.x, spec.y = header.y;
       spec.full_width = header.full_width, spec.full_height = header.full_height;
     }
+    if (depth == ExrDepth::half && !header.full_precision.empty())
+      for (const std::string& name : image.channels) {
+        const bool is_full = std::ranges::find(header.full_precision, name) != header.full_precision.end();
+        spec.channelformats.push_back(is_full ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
+      }
     spec.attribute("compression", "zip");
     if (const Chromaticities* c = chromaticities_of(header.color_space)) {
       std::vector<float> xy;

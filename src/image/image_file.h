@@ -19,6 +19,8 @@ struct ImageHeader {
   std::map<std::string, std::string> text;  ///< attributes by name, such as "frond:seed"
   /// Where the image lies in a larger one of which it is a part (EXR's data and display windows); 0: it is the whole.
   int x = 0, y = 0, full_width = 0, full_height = 0;
+  /// Channels that stay floats in an EXR of halves: ids and places, which halves would round away.
+  std::vector<std::string> full_precision = {};
 };
 
 enum class ExrDepth { half, single };

@@ -36,9 +36,11 @@ void ImageOutput::write(const Film& film, const PictureFormat& format) const {
   }
   if (!format.bands.empty()) attributes.merge(spectral_attributes(format.bands));
   const FilmSettings& s = film.settings();
-  write_image(path_, image,
-              {format.space.empty() ? preview_space(format.bands) : format.space, attributes, s.crop.x0, s.crop.y0,
-               s.width, s.height},
+  std::vector<std::string> full_precision;
+  for (const ChannelInfo* channel : film.format().channels.infos())
+    for (size_t c = 0; c < channel->size(); ++c) full_precision.emplace_back(channel->exr[c]);
+  const std::string space = format.space.empty() ? preview_space(format.bands) : format.space;
+  write_image(path_, image, {space, attributes, s.crop.x0, s.crop.y0, s.width, s.height, full_precision},
               s.half ? ExrDepth::half : ExrDepth::single);
 }
 

@@ -139,6 +139,33 @@ TEST_F(Commands, RenderWritesWhatItSays) {
   EXPECT_LT(file.image.at(12, 8, *file.image.channel("R")), 0.6);
 }
 
+/// What cannot be rounded to eleven bits is not, in a file of halves either.
+TEST_F(Commands, ChannelsOfWhatIsMetFirst) {
+  std::ifstream in(path("scene.pbrt"));
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  text.replace(text.find("\"integer xresolution\""), 0, "\"bool savefp16\" true ");
+  folder_.write("scene.pbrt", text);
+  ASSERT_EQ(render({"-o", path("a.exr"), "--wavelengths", "smpte", "--spp", "64", "-q", "--channels",
+                    "material,albedo,depth,samples,normal,position,instance"})
+                .code,
+            0);
+  const ImageFile file = read_image(path("a.exr"), {});
+  const auto at = [&](const char* channel) { return file.image.at(12, 8, file.image.channel(channel).value()); };
+  // The sphere of radius 1/2 in the middle, seen from (0, 0, 2).
+  EXPECT_NEAR(at("Z"), 1.5f, 0.01f);
+  EXPECT_NEAR(at("P.Z"), 0.5f, 0.01f);
+  EXPECT_NEAR(at("normal.Z"), 1, 0.02f);
+  EXPECT_NEAR(at("albedo.G"), 0.5f, 0.02f);
+  EXPECT_EQ(at("materialId"), 2);
+  EXPECT_EQ(file.header.text.at("frond:material:2"), "thing");
+  EXPECT_EQ(at("instanceId"), 0);
+  EXPECT_EQ(at("samples"), 64);
+  EXPECT_EQ(file.image.at(0, 0, file.image.channel("Z").value()), 0);
+  const float z = at("Z");
+  EXPECT_GT(std::abs(z * 4096 - std::round(z * 1024) * 4), 0) << "rounded to a half";
+  EXPECT_THAT(render({"-o", path("b.exr"), "--channels", "albdo"}).err, HasSubstr("did you mean \"albedo\"?"));
+}
+
 TEST_F(Commands, TheSameFileOnAnyNumberOfThreads) {
   for (const char* threads : {"1", "2", "5"})
     ASSERT_EQ(render({"-o", path(std::string("t") + threads + ".exr"), "--threads", threads, "-q"}).code, 0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "study/compare/picture.h"
 #include "system/child_process.h"
 #include "system/file_bytes.h"
 #include "tests/cli/command.h"
@@ -168,6 +169,15 @@ TEST_F(CompareCommand, TheReportRunsInABrowser) {
   const std::string screenshot = folder_.name_of("screen.png");
   run("--screenshot=" + screenshot, url);
   EXPECT_EQ(read_file_bytes(screenshot, {}).substr(1, 3), "PNG");
+}
+
+TEST(FittingExposure, BringsTheBrightestTenthToTheMiddleOfTheScale) {
+  using compare::fitting_exposure;
+  const auto grey = [](float value) { return compare::Picture{10, 1, {3, std::vector<float>(10, value)}}; };
+  EXPECT_EQ(fitting_exposure(grey(0.3f)), 0);
+  EXPECT_EQ(fitting_exposure(grey(0.3f / 8)), 3);
+  EXPECT_EQ(fitting_exposure(grey(0.3f * 4)), -2);
+  EXPECT_EQ(fitting_exposure(grey(0)), 0);
 }
 
 }  // namespace
