@@ -120,7 +120,7 @@ std::string leaf_by_leaf(double rms, const std::string& wavelengths, const compa
   overrides.wavelengths = wavelengths;
   overrides.seed = study.seed();
   overrides.cache_dir = plan.cache;
-  const choose::Subject subject{description, study.registry(), overrides, study.film(), plan.top_samples};
+  const choose::ChoiceTask subject{description, study.registry(), overrides, study.film(), plan.top_samples};
   const auto chosen = choose::choose_models(subject, choose::standard_ladder(study.registry()), pool, silent_log());
   if (!chosen) return {};
   log.info(choose::choice_text(chosen->choice));

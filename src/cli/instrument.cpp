@@ -106,7 +106,7 @@ void InstrumentBench::check_exposures() const {
 
 Exposure InstrumentBench::exposure(size_t i) const {
   const size_t wavelength = i % wavelengths_nm_.size(), angle = i / wavelengths_nm_.size() % angles_deg_.size();
-  const Specimen& s = specimen(i);
+  const MeasuredMaterial& s = specimen(i);
   return {s.at(wavelength),
           {angles_deg_[angle], wavelengths_nm_[wavelength]},
           hash_key(seed_, hash_bytes(s.label())),
@@ -134,7 +134,7 @@ void InstrumentProgress::operator()(int64_t rays) {
 std::vector<std::string> instrument_notes(const std::string& instrument, const InstrumentOptions& options,
                                           const InstrumentBench& bench) {
   std::vector<std::string> notes{fmt::format("frond {} {}", FROND_VERSION, instrument)};
-  for (const Specimen& s : bench.specimens()) notes.push_back("material: " + s.label());
+  for (const MeasuredMaterial& s : bench.specimens()) notes.push_back("material: " + s.label());
   notes.push_back(fmt::format("seed: {}", options.seed));
   notes.push_back(options.as_rendered
                       ? "As rendered: light comes along wi and is seen along wo, whichever the model calls incident."

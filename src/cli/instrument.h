@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/specimen.h"
+#include "cli/measured_material.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "instruments/beam.h"
@@ -37,13 +37,15 @@ class InstrumentBench {
   const Log& log() const { return log_; }
   const std::vector<double>& angles_deg() const { return angles_deg_; }
   const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
-  const std::vector<Specimen>& specimens() const { return specimens_; }
+  const std::vector<MeasuredMaterial>& specimens() const { return specimens_; }
   size_t size() const { return specimens_.size() * angles_deg_.size() * wavelengths_nm_.size(); }
 
   /// Exposure number i: wavelengths run fastest, then angles, then specimens. Random numbers differ from one to the
   /// next, by material, angle and wavelength, not by place in the list.
   Exposure exposure(size_t i) const;
-  const Specimen& specimen(size_t i) const { return specimens_[i / (angles_deg_.size() * wavelengths_nm_.size())]; }
+  const MeasuredMaterial& specimen(size_t i) const {
+    return specimens_[i / (angles_deg_.size() * wavelengths_nm_.size())];
+  }
 
  private:
   void check_exposures() const;
@@ -53,7 +55,7 @@ class InstrumentBench {
   uint64_t seed_;
   bool as_rendered_;
   std::vector<double> angles_deg_, wavelengths_nm_;
-  std::vector<Specimen> specimens_;
+  std::vector<MeasuredMaterial> specimens_;
 };
 
 /// Tells on a terminal how far a list of exposures is.

@@ -78,8 +78,8 @@ SceneOverrides overrides_of(const RenderOptions& options) {
 /// rendered: parts of one picture go together.
 std::optional<choose::Choice> choose_models(const RenderOptions& options, Session& session,
                                             SceneDescription& description, SceneOverrides& overrides) {
-  const choose::Subject subject{description, session.registry(), overrides, session.film(description, options.quick),
-                                uint64_t(options.samples)};
+  const choose::ChoiceTask subject{description, session.registry(), overrides, session.film(description, options.quick),
+                                   uint64_t(options.samples)};
   auto chosen =
       choose::choose_models(subject, choose::standard_ladder(session.registry()), session.pool(), session.log());
   if (!chosen) return {};
@@ -332,7 +332,7 @@ class RenderCommand {
 std::string channels_doc() {
   std::string doc = "What camera rays meet first, beside the image's colours:";
   for (const ChannelInfo& channel : all_channels())
-    doc += fmt::format("{} {}", doc.ends_with(':') ? "" : ",", channel.name);
+    doc += fmt::format("{} {} ({})", doc.ends_with(':') ? "" : ",", channel.name, channel.doc);
   return doc + '.';
 }
 

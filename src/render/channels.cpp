@@ -57,6 +57,8 @@ constexpr size_t count(ChannelInfo::Kind kind) {
   for (const ChannelInfo& c : kChannels) values += c.kind == kind ? c.size() : 0;
   return values;
 }
+static_assert(std::ranges::all_of(kChannels,
+                                  [](const ChannelInfo& c) { return c.space == Space::none || c.size() == 3; }));
 static_assert(count(Kind::mean) <= kMostMeans && count(Kind::nearest) <= kMostIds);
 
 }  // namespace

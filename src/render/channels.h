@@ -20,13 +20,13 @@ struct CameraHit {
   Triple albedo;  ///< of the hit, as a colour; 1 where all is given back
 };
 
-/// A channel, or three, that an image may have beside its colours. A new one is a row of the table in channels.cpp;
-/// what it takes and FirstHit has not, the integrator adds there.
+/// A channel, or up to three, that an image may have beside its colours. A new one is a row of the table in
+/// channels.cpp; what it takes and FirstHit has not, the integrator adds there.
 struct ChannelInfo {
   /// What becomes of a pixel's samples: the mean of those that met something; what the one nearest to the pixel's
   /// centre says, for ids are no quantities; how many samples there are.
   enum class Kind : uint8_t { mean, nearest, sample_count };
-  /// How values follow the space that an image's features are in.
+  /// How values follow the space that an image's features are in; points and vectors have three.
   enum class Space : uint8_t { none, point, vector };
 
   std::string_view name;                ///< as --channels takes it
@@ -36,7 +36,7 @@ struct ChannelInfo {
   std::string_view doc;
   Triple (*value)(const CameraHit&);  ///< of one sample; nullptr for sample_count
 
-  constexpr size_t size() const { return exr[1].empty() ? 1 : 3; }
+  constexpr size_t size() const { return exr[1].empty() ? 1 : exr[2].empty() ? 2 : 3; }
 };
 
 /// Most values that all channels together can have, by kind.

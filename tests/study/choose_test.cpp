@@ -151,7 +151,7 @@ SceneOverrides with_smpte() {
 Choice chosen_from(const Ladder& ladder, const Registry& registry, const SceneDescription& description,
                    const SceneOverrides& overrides) {
   ThreadPool pool(2);
-  const Subject subject{description, registry, overrides, Scene::film_settings(description, registry), 64};
+  const ChoiceTask subject{description, registry, overrides, Scene::film_settings(description, registry), 64};
   return choose_models(subject, ladder, pool, silent_log()).value().choice;
 }
 
@@ -174,7 +174,7 @@ TEST_F(Choosing, AWrongModelIsNotChosenHoweverCheap) {
 TEST_F(Choosing, WavelengthsAreAQuestionWhereNobodyNamesThem) {
   const Registry registry = builtin_registry();
   Ladder ladder = standard_ladder(registry);
-  std::erase_if(ladder.models, [](const Rung& r) { return r.name != "leaf_lambert" && r.name != "abm"; });
+  std::erase_if(ladder.models, [](const ModelOption& r) { return r.name != "leaf_lambert" && r.name != "abm"; });
   SceneDescription description = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), silent_log());
   for (MaterialDescription& m : description.materials)
     if (m.plugin.name == "leaf") m.plugin.params.push_back({"float", "maxrms", {}, {}, std::vector<double>{0.3}});

@@ -65,10 +65,10 @@ TEST(Verdict, UncertainBiasIsHeldAgainstACandidate) {
   c.request.rms = {0.014};
   // Two bounds at 95 % together: 1 - sqrt(0.95) above each, 1.95 standard errors.
   EXPECT_NEAR(simultaneous_z(c), 1.955, 0.001);
-  EXPECT_FALSE(offers(c, 0.014, simultaneous_z(c))[0].effort);
-  EXPECT_FALSE(offers(c, 0.014, simultaneous_z(c))[0].never);
-  EXPECT_TRUE(offers(c, 0.0001, 0)[0].never);
-  EXPECT_TRUE(offers(c, 0.014, 0)[0].effort);
+  EXPECT_FALSE(candidate_costs(c, 0.014, simultaneous_z(c))[0].effort);
+  EXPECT_FALSE(candidate_costs(c, 0.014, simultaneous_z(c))[0].never);
+  EXPECT_TRUE(candidate_costs(c, 0.0001, 0)[0].never);
+  EXPECT_TRUE(candidate_costs(c, 0.014, 0)[0].effort);
 }
 
 TEST(Verdict, AFewPerCentChangeNoReign) {
@@ -76,12 +76,12 @@ TEST(Verdict, AFewPerCentChangeNoReign) {
   c.subjects = {subject("a", 1, 0.02, 0), subject("b", 0.99, 0.0201, 0)};
   for (Rung& rung : c.subjects[1].rungs)
     if (rung.samples == 4) rung.cost.cpu_seconds *= 1.02;
-  EXPECT_EQ(reigns(c).size(), 1u);
+  EXPECT_EQ(cheapest_ranges(c).size(), 1u);
 }
 
 TEST(Verdict, ReignsChangeWhereBiasIsReached) {
   const Comparison c = two();
-  const auto all = reigns(c);
+  const auto all = cheapest_ranges(c);
   ASSERT_EQ(all.size(), 1u);  // the smallest RMS measured is 0.0366, where the fast one is ahead
   EXPECT_EQ(all[0].subject, 1u);
   EXPECT_THAT(verdict(c), HasSubstr("fast is the cheapest down to an RMS of 0.037"));

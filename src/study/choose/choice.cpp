@@ -40,19 +40,19 @@ struct Bounds {
   RmsBounds rms() const { return {root(square.low), root(square.high)}; }
 };
 
-size_t count_combinations(const std::vector<Question>& questions) {
+size_t count_combinations(const std::vector<OpenChoice>& questions) {
   double product = 1;
-  for (const Question& q : questions) product *= double(q.options.size());
+  for (const OpenChoice& q : questions) product *= double(q.options.size());
   return size_t(std::min(product, 1e15));
 }
 
 /// Asks a pilot until it knows.
 class Chooser {
  public:
-  Chooser(Pilot& pilot, const Subject& subject)
+  Chooser(Pilot& pilot, const ChoiceTask& subject)
       : pilot_(pilot), questions_(pilot.questions()), reference_(pilot.reference()), subject_(subject) {
     choice_.rms = 1;
-    for (const Question& q : questions_) {
+    for (const OpenChoice& q : questions_) {
       base_.push_back(q.base());
       if (q.is_leaf()) choice_.rms = std::min(choice_.rms, q.rms);
     }
@@ -109,7 +109,7 @@ class Chooser {
   /// Shares of the leaves that are seen; a leaf that only light sees has none.
   std::vector<double> weights() const {
     std::vector<double> result;
-    for (const Question& q : questions_) result.push_back(q.is_leaf() ? pilot_.share(q) : 0);
+    for (const OpenChoice& q : questions_) result.push_back(q.is_leaf() ? pilot_.share(q) : 0);
     const double sum = std::accumulate(result.begin(), result.end(), 0.0);
     for (double& w : result) w = sum > 0 ? w / sum : 1 / double(result.size());
     return result;
@@ -135,7 +135,7 @@ class Chooser {
     findings_.resize(questions_.size());
     for (size_t q = 0; q < questions_.size(); ++q) {
       for (size_t option = 0; option < base_[q]; ++option) {
-        const Finding& found = findings_[q].emplace_back(finding(q, option));
+        const OptionResult& found = findings_[q].emplace_back(finding(q, option));
         singles[q].push_back({found.price, found.noise, differences.size()});
         differences.push_back(pilot_.difference(single(q, option), base_));
       }
@@ -148,7 +148,7 @@ class Chooser {
     return {std::move(singles), std::move(products), {pilot_.noise(base_), {}}};
   }
 
-  Finding finding(size_t question, size_t option) const {
+  OptionResult finding(size_t question, size_t option) const {
     const Configuration answers = single(question, option);
     const Bounds b = bounds(answers, base_);
     const double noise = pilot_.noise(answers).back().noise.value, base = pilot_.noise(base_).back().noise.value;
@@ -233,7 +233,7 @@ class Chooser {
 
   void describe(const Configuration& chosen) {
     for (size_t q = 0; q < questions_.size(); ++q) {
-      const Question& question = questions_[q];
+      const OpenChoice& question = questions_[q];
       choice_.answers.push_back({question.name, question.is_leaf(), question.options[chosen[q]].name,
                                  pilot_.share(question), question.options[base_[q]].name, findings_[q],
                                  question.refused});
@@ -252,11 +252,11 @@ class Chooser {
   }
 
   Pilot& pilot_;
-  const std::vector<Question>& questions_;
+  const std::vector<OpenChoice>& questions_;
   Configuration reference_, base_;
-  const Subject& subject_;
+  const ChoiceTask& subject_;
   std::vector<double> weights_;
-  ByOption<Finding> findings_;
+  ByOption<OptionResult> findings_;
   double z_ = 0;
   uint64_t samples_ = 0;
   Choice choice_;
@@ -289,7 +289,7 @@ double Choice::reference_samples_needed() const { return reference_effort().samp
 
 double Choice::time_saved() const { return reference_effort().seconds / effort().seconds; }
 
-std::optional<Chosen> choose_models(const Subject& subject, const Ladder& ladder, ThreadPool& pool, const Log& log) {
+std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool, const Log& log) {
   if (!has_open_leaf(subject.description)) return {};
   Pilot pilot(subject, ladder, pool);
   if (!pilot.has_colors()) {

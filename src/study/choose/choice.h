@@ -16,7 +16,7 @@ struct RmsBounds {
 };
 
 /// What a pilot found of one answer to one question, all others answered by their base.
-struct Finding {
+struct OptionResult {
   std::string name;
   double price = 1, noise = 1;  ///< as in Screening::Single
   double estimate = 0;          ///< RMS of its bias against the base
@@ -31,7 +31,7 @@ struct Answer {
   std::string chosen;
   double share = 0;  ///< of the pixels, that see this leaf first
   std::string base;
-  std::vector<Finding> findings;  ///< from the cheapest to the base
+  std::vector<OptionResult> findings;  ///< from the cheapest to the base
   std::vector<Refusal> refused;
 };
 
@@ -86,6 +86,6 @@ struct Chosen {
 
 /// The cheapest answers to what the scene leaves open that meet its leaves' "maxrms", the smallest of them. Nothing
 /// where no leaf is open, or where wavelengths have no colours (with a warning). Throws InputError.
-std::optional<Chosen> choose_models(const Subject& subject, const Ladder& ladder, ThreadPool& pool, const Log& log);
+std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool, const Log& log);
 
 }  // namespace frond::choose

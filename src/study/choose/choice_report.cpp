@@ -7,7 +7,7 @@
 namespace frond::choose {
 namespace {
 
-std::string bias_text(const Finding& f, const Answer& answer, double rms) {
+std::string bias_text(const OptionResult& f, const Answer& answer, double rms) {
   if (f.name == answer.base) return "0: what the others are compared with here";
   return fmt::format("{:.5f} ({:.5f} to {:.5f}){}", f.estimate, f.bias.low, f.bias.high,
                      f.bias.low > rms ? ", too much" : "");
@@ -16,7 +16,7 @@ std::string bias_text(const Finding& f, const Answer& answer, double rms) {
 std::string answer_text(const Answer& a, double rms) {
   std::string text = a.is_leaf ? fmt::format("  {}, seen first by {:.1f} % of the pixels\n", a.question, 100 * a.share)
                                : fmt::format("  {}\n", a.question);
-  for (const Finding& f : a.findings)
+  for (const OptionResult& f : a.findings)
     text += fmt::format("  {} {:<17}{:>8.2f}{:>8.2f}   {}\n", f.name == a.chosen ? '*' : ' ', f.name, f.price, f.noise,
                         bias_text(f, a, rms));
   for (const Refusal& r : a.refused) text += fmt::format("    {:<17} not for this leaf: {}\n", r.name, r.reason);
@@ -50,7 +50,7 @@ std::string samples_text(const Choice& c) {
 nlohmann::ordered_json to_json(const Answer& a) {
   nlohmann::ordered_json j{{"name", a.question}, {"chosen", a.chosen}};
   if (a.is_leaf) j["share"] = a.share;
-  for (const Finding& f : a.findings)
+  for (const OptionResult& f : a.findings)
     j["options"].push_back({{"name", f.name},
                             {"price", f.price},
                             {"noise", f.noise},
@@ -92,8 +92,8 @@ std::string choice_warning(const Choice& c) {
 std::map<std::string, std::string> choice_attributes(const Choice& c) {
   std::map<std::string, std::string> attributes;
   for (const Answer& a : c.answers) {
-    const Finding* chosen = nullptr;
-    for (const Finding& f : a.findings)
+    const OptionResult* chosen = nullptr;
+    for (const OptionResult& f : a.findings)
       if (f.name == a.chosen) chosen = &f;
     attributes[a.is_leaf ? "frond:leaf:" + a.question : "frond:chosen_wavelengths"] =
         chosen && a.chosen != a.base ? fmt::format("{}, alone an RMS of {:.5f} at most", a.chosen, chosen->bias.high)

@@ -9,7 +9,7 @@
 namespace frond::choose {
 
 /// One way to do a thing.
-struct Rung {
+struct ModelOption {
   std::string name;
   PluginText plugin;
   /// CPU time of a sample, relative to the first rung's. A constant, measured beforehand (docs/choosing.md): what a run
@@ -19,7 +19,7 @@ struct Rung {
 
 /// What can be chosen from, each list from the cheapest to the one that counts as right.
 struct Ladder {
-  std::vector<Rung> models, wavelengths;
+  std::vector<ModelOption> models, wavelengths;
 };
 
 /// The models that the material `leaf` knows; wavelength strategies of colours.

@@ -49,7 +49,7 @@ struct Pilot::Render {
   std::vector<ConvergencePoint> noise = {};
 };
 
-Pilot::Pilot(const Subject& subject, const Ladder& ladder, ThreadPool& pool)
+Pilot::Pilot(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool)
     : subject_(subject), pool_(pool), start_cpu_seconds_(cpu_seconds()), variant_(without_shapes(subject.description)) {
   const bool named = !subject.overrides.wavelengths.empty() || names_wavelengths(subject.description);
   SceneOverrides overrides = subject.overrides;
@@ -71,7 +71,7 @@ uint64_t Pilot::scene_samples() const {
 
 Configuration Pilot::reference() const {
   Configuration answers;
-  for (const Question& q : questions_) answers.push_back(q.reference());
+  for (const OpenChoice& q : questions_) answers.push_back(q.reference());
   return answers;
 }
 
@@ -125,7 +125,7 @@ double Pilot::cpu_us_per_path(const Configuration& answers) const {
   return r.films.cost().cpu_seconds * 1e6 / (double(r.films.samples()) * double(pixels_.size()));
 }
 
-double Pilot::share(const Question& question) const {
+double Pilot::share(const OpenChoice& question) const {
   const Scene& scene = *scene_;
   std::unordered_set<const Material*> asked;
   for (const size_t place : question.materials) asked.insert(scene.material(place));

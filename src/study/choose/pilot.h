@@ -12,7 +12,7 @@
 namespace frond::choose {
 
 /// A scene as it is to be rendered, but for what it leaves open.
-struct Subject {
+struct ChoiceTask {
   const SceneDescription& description;
   const Registry& registry;
   const SceneOverrides& overrides;  ///< without swaps: the description has them
@@ -32,10 +32,10 @@ struct PilotCost {
 class Pilot {
  public:
   /// Also finds the questions. Throws InputError.
-  Pilot(const Subject& subject, const Ladder& ladder, ThreadPool& pool);
+  Pilot(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool);
   ~Pilot();
 
-  const std::vector<Question>& questions() const { return questions_; }
+  const std::vector<OpenChoice>& questions() const { return questions_; }
   /// Wavelengths that have no colours cannot be compared.
   bool has_colors() const;
   /// A pixel, of the render that the choice is for.
@@ -52,7 +52,7 @@ class Pilot {
   double cpu_us_per_path(const Configuration& answers) const;
 
   /// Share of the pixels whose middle sees one of the question's materials first.
-  double share(const Question& question) const;
+  double share(const OpenChoice& question) const;
   PilotCost cost() const;
 
  private:
@@ -63,7 +63,7 @@ class Pilot {
   const Render& rendered(const Configuration& answers) const;
   Halves pictures(const Render& render) const;
 
-  Subject subject_;
+  ChoiceTask subject_;
   ThreadPool& pool_;
   double start_cpu_seconds_;
   SceneDescription variant_;         ///< the subject's without its shapes, as it was rendered last
@@ -71,7 +71,7 @@ class Pilot {
   SharedWork shared_;
   ColorManager colors_;
   std::unique_ptr<Scene> scene_;  ///< with the wavelengths that count as right
-  std::vector<Question> questions_;
+  std::vector<OpenChoice> questions_;
   std::vector<PixelPlace> pixels_;
   std::map<Configuration, Render> renders_;
 };

@@ -26,12 +26,12 @@ bool same_leaf(const ParsedPlugin& a, const ParsedPlugin& b) {
 }
 
 /// With the rungs that the leaf can take. Leaves the description as it is.
-void add_options(Question& question, SceneDescription& description, const Registry& registry,
-                 const WavelengthStrategy& wavelengths, const std::vector<Rung>& models) {
+void add_options(OpenChoice& question, SceneDescription& description, const Registry& registry,
+                 const WavelengthStrategy& wavelengths, const std::vector<ModelOption>& models) {
   const size_t place = question.materials.front();
   ParsedPlugin& plugin = description.materials[place].plugin;
   const ParsedPlugin open = plugin;
-  for (const Rung& rung : models) {
+  for (const ModelOption& rung : models) {
     swap_material(plugin, rung.plugin, registry, silent_log());
     try {
       SceneResolver(description, registry, wavelengths).material(place);
@@ -52,15 +52,15 @@ SceneDescription without_shapes(const SceneDescription& description) { return {d
 
 bool names_wavelengths(const SceneDescription& description) { return find(description.options, "wavelengths"); }
 
-std::vector<Question> open_leaves(const SceneDescription& description, const Registry& registry,
-                                  const WavelengthStrategy& wavelengths, const Ladder& ladder) {
-  std::vector<Question> leaves;
+std::vector<OpenChoice> open_leaves(const SceneDescription& description, const Registry& registry,
+                                    const WavelengthStrategy& wavelengths, const Ladder& ladder) {
+  std::vector<OpenChoice> leaves;
   SceneResolver resolver(description, registry, wavelengths);
   SceneDescription tried = without_shapes(description);
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
     if (!is_open(m)) continue;
-    const auto alike = std::ranges::find_if(leaves, [&](const Question& q) {
+    const auto alike = std::ranges::find_if(leaves, [&](const OpenChoice& q) {
       const MaterialDescription& other = description.materials[q.materials.front()];
       return m.name.empty() && other.name.empty() && same_leaf(m.plugin, other.plugin);
     });
@@ -70,14 +70,14 @@ std::vector<Question> open_leaves(const SceneDescription& description, const Reg
     }
     const Params params(registry.materials.get("leaf", m.plugin.where), m.plugin, resolver);
     const std::string name = m.name.empty() ? fmt::format("leaf in line {}", m.plugin.where.line) : m.name;
-    Question& question = leaves.emplace_back(Question{name, {i}, params.real("maxrms"), {}});
+    OpenChoice& question = leaves.emplace_back(OpenChoice{name, {i}, params.real("maxrms"), {}});
     add_options(question, tried, registry, wavelengths, ladder.models);
   }
   return leaves;
 }
 
 std::vector<MaterialDescription> answered(const SceneDescription& description, const Registry& registry,
-                                          const std::vector<Question>& questions, const Configuration& answers) {
+                                          const std::vector<OpenChoice>& questions, const Configuration& answers) {
   std::vector<MaterialDescription> result = description.materials;
   for (size_t q = 0; q < questions.size(); ++q)
     for (const size_t place : questions[q].materials)
@@ -85,7 +85,7 @@ std::vector<MaterialDescription> answered(const SceneDescription& description, c
   return result;
 }
 
-std::string wavelengths_of(const std::vector<Question>& questions, const Configuration& answers,
+std::string wavelengths_of(const std::vector<OpenChoice>& questions, const Configuration& answers,
                            const std::string& otherwise) {
   for (size_t q = 0; q < questions.size(); ++q)
     if (!questions[q].is_leaf()) return questions[q].options[answers[q]].name;

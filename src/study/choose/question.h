@@ -11,11 +11,11 @@ struct Refusal {
 };
 
 /// Something that a scene leaves open: the model of a leaf, or the wavelengths.
-struct Question {
-  std::string name;               ///< of the leaf's material; "wavelengths"
-  std::vector<size_t> materials;  ///< by their places in the description; none: the question is of wavelengths
-  double rms = 0;                 ///< what the leaf asks for
-  std::vector<Rung> options;      ///< the last one counts as right
+struct OpenChoice {
+  std::string name;                  ///< of the leaf's material; "wavelengths"
+  std::vector<size_t> materials;     ///< by their places in the description; none: the question is of wavelengths
+  double rms = 0;                    ///< what the leaf asks for
+  std::vector<ModelOption> options;  ///< the last one counts as right
   std::vector<Refusal> refused = {};
 
   bool is_leaf() const { return !materials.empty(); }
@@ -35,15 +35,15 @@ bool names_wavelengths(const SceneDescription& description);
 
 /// Leaf by leaf; those without a name that are alike are one. Which models a leaf can take does not hang on the
 /// wavelengths: any will do. Throws InputError.
-std::vector<Question> open_leaves(const SceneDescription& description, const Registry& registry,
-                                  const WavelengthStrategy& wavelengths, const Ladder& ladder);
+std::vector<OpenChoice> open_leaves(const SceneDescription& description, const Registry& registry,
+                                    const WavelengthStrategy& wavelengths, const Ladder& ladder);
 
 /// The description's materials with these answers written into the leaves.
 std::vector<MaterialDescription> answered(const SceneDescription& description, const Registry& registry,
-                                          const std::vector<Question>& questions, const Configuration& answers);
+                                          const std::vector<OpenChoice>& questions, const Configuration& answers);
 
 /// What was answered to the question of wavelengths, as a PluginText; `otherwise` where that is no question.
-std::string wavelengths_of(const std::vector<Question>& questions, const Configuration& answers,
+std::string wavelengths_of(const std::vector<OpenChoice>& questions, const Configuration& answers,
                            const std::string& otherwise);
 
 }  // namespace frond::choose

@@ -45,9 +45,9 @@ PluginText with_end(PluginText integrator, double cutoff, double depth) {
 }
 
 /// Renders a candidate with one cutoff after another.
-class Pilot {
+class CutoffRenders {
  public:
-  Pilot(const Study& study, const Candidate& candidate, uint64_t samples, const ThreadPool& pool)
+  CutoffRenders(const Study& study, const Candidate& candidate, uint64_t samples, const ThreadPool& pool)
       : study_(study),
         pool_(pool),
         samples_(samples),
@@ -78,7 +78,7 @@ PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t
     : study_(study), pool_(pool), pilot_samples_(pilot_samples) {
   const auto candidate = ended_by_attenuation(baseline, study);
   if (!candidate) return;
-  const PathEnds ends = Pilot(study, *candidate, pilot_samples, pool).ends_with(kPaperCutoff);
+  const PathEnds ends = CutoffRenders(study, *candidate, pilot_samples, pool).ends_with(kPaperCutoff);
   depth_ = depth_of_trees(ends);
   target_ = unshot_ratio(ends, depth_);
 }
@@ -86,7 +86,7 @@ PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t
 std::optional<PaperTiming> PaperManner::of(const Candidate& candidate) const {
   auto c = ended_by_attenuation(candidate, study_);
   if (!c || depth_ == 0) return {};
-  const Pilot pilot(study_, *c, pilot_samples_, pool_);
+  const CutoffRenders pilot(study_, *c, pilot_samples_, pool_);
   const CutoffFit end =
       fit_cutoff(target_, [&](double cutoff) { return unshot_ratio(pilot.ends_with(cutoff), depth_); });
   c->integrator = with_end(*c->integrator, end.cutoff, depth_);

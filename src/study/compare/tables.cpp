@@ -110,7 +110,7 @@ std::string table_2(const Comparison& c) {
 
 std::string offer_table(const Comparison& c, double rms, const char* note) {
   std::string rows;
-  for (const Offer& o : offers(c, rms, simultaneous_z(c)))
+  for (const CandidateCost& o : candidate_costs(c, rms, simultaneous_z(c)))
     rows +=
         "<tr>" + cell(html_text(c.subjects[o.subject].candidate.label)) +
         (o.effort

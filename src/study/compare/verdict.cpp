@@ -14,7 +14,7 @@ constexpr double kRisk = 0.05;
 
 const std::string& label(const Comparison& c, size_t subject) { return c.subjects[subject].candidate.label; }
 
-double cost_of(const Offer& offer) {
+double cost_of(const CandidateCost& offer) {
   return offer.effort ? offer.effort->seconds : std::numeric_limits<double>::infinity();
 }
 
@@ -24,16 +24,16 @@ std::string effort_text(const Effort& e) {
 }
 
 /// Times of one program differ by some per cent: who is as cheap as the best as far as can be told need not give way.
-bool holds(const std::vector<Offer>& all, size_t subject) {
+bool holds(const std::vector<CandidateCost>& all, size_t subject) {
   constexpr double kMargin = 1.05;
-  const auto own = std::ranges::find(all, subject, &Offer::subject);
+  const auto own = std::ranges::find(all, subject, &CandidateCost::subject);
   return cost_of(*own) <= kMargin * cost_of(all.front());
 }
 
 std::string answer(const Comparison& c, double rms) {
   const double z = simultaneous_z(c);
-  const auto all = offers(c, rms, z);
-  const Offer& best = all.front();
+  const auto all = candidate_costs(c, rms, z);
+  const CandidateCost& best = all.front();
   if (!best.effort) {
     const auto most = [z](const Subject& s) { return s.convergence(kAll).bias().root_at(z); };
     const auto least = std::ranges::min_element(c.subjects, {}, most);
@@ -44,7 +44,7 @@ std::string answer(const Comparison& c, double rms) {
   }
   std::string text = fmt::format("{} is enough for an RMS of {:g}, with 95 % confidence: {}", label(c, best.subject),
                                  rms, effort_text(*best.effort));
-  for (const Offer& other : all) {
+  for (const CandidateCost& other : all) {
     if (other.subject == best.subject) continue;
     text += "; " + label(c, other.subject);
     text += other.effort  ? fmt::format(" takes {} s", figures(other.effort->seconds, 3))
@@ -56,7 +56,7 @@ std::string answer(const Comparison& c, double rms) {
 
 std::string overview(const Comparison& c) {
   std::string text;
-  for (const Reign& reign : reigns(c)) {
+  for (const CheapestRange& reign : cheapest_ranges(c)) {
     const Subject& s = c.subjects[reign.subject];
     const auto effort = s.convergence(kAll).until_rms(reign.rms_to);
     const std::string price = effort ? fmt::format(" ({})", effort_text(*effort)) : "";
@@ -69,8 +69,8 @@ std::string overview(const Comparison& c) {
 
 }  // namespace
 
-std::vector<Offer> offers(const Comparison& c, double rms, double z) {
-  std::vector<Offer> all;
+std::vector<CandidateCost> candidate_costs(const Comparison& c, double rms, double z) {
+  std::vector<CandidateCost> all;
   for (size_t i = 0; i < c.subjects.size(); ++i) {
     const Convergence convergence = c.subjects[i].convergence(kAll);
     all.push_back({i, convergence.until_rms(rms, z), convergence.bias().root_at(-z) > rms});
@@ -81,18 +81,18 @@ std::vector<Offer> offers(const Comparison& c, double rms, double z) {
 
 double simultaneous_z(const Comparison& c) { return normal_upper_quantile(sidak_level(kRisk, 2 * c.subjects.size())); }
 
-std::vector<Reign> reigns(const Comparison& c) {
+std::vector<CheapestRange> cheapest_ranges(const Comparison& c) {
   double largest = std::numeric_limits<double>::infinity(), smallest = largest;
   for (const Subject& s : c.subjects) {
     largest = std::min(largest, s.rungs.front().errors[kAll][kTogether].total.root());
     smallest = std::min(smallest, s.rungs.back().errors[kAll][kTogether].total.root());
   }
-  std::vector<Reign> result;
+  std::vector<CheapestRange> result;
   if (!(smallest > 0)) return result;
   constexpr int kSteps = 400;
   for (int i = 0; i <= kSteps; ++i) {
     const double rms = largest * std::pow(smallest / largest, double(i) / kSteps);
-    const auto all = offers(c, rms, 0);
+    const auto all = candidate_costs(c, rms, 0);
     if (!all.front().effort) break;
     if (result.empty() || !holds(all, result.back().subject)) result.push_back({all.front().subject, rms, rms});
     result.back().rms_to = rms;

@@ -1,4 +1,4 @@
-#include "cli/specimen.h"
+#include "cli/measured_material.h"
 
 #include <fmt/ranges.h>
 
@@ -8,9 +8,9 @@
 #include "scene/resolver.h"
 
 namespace frond {
-Specimen::Specimen(const std::vector<std::string>& words, const Registry& registry,
-                   const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
-                   const std::filesystem::path& cache_dir)
+MeasuredMaterial::MeasuredMaterial(const std::vector<std::string>& words, const Registry& registry,
+                                   const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
+                                   const std::filesystem::path& cache_dir)
     : label_(fmt::format("{}", fmt::join(words, " "))) {
   SceneDescription description = scene_of_materials(registry);
   description.materials.push_back({"", parse_material(words, registry).plugin});

@@ -13,12 +13,13 @@ namespace frond {
 
 /// A material as a command line gives it, `abm specimen=soybean`, made without a scene and prepared for wavelengths one
 /// by one.
-class Specimen {
+class MeasuredMaterial {
  public:
   /// Throws InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not
   /// reach.
-  Specimen(const std::vector<std::string>& words, const Registry& registry, const std::vector<double>& wavelengths_nm,
-           ThreadPool& pool, const Log& log, const std::filesystem::path& cache_dir);
+  MeasuredMaterial(const std::vector<std::string>& words, const Registry& registry,
+                   const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
+                   const std::filesystem::path& cache_dir);
 
   const std::string& label() const { return label_; }
   /// Prepared for the wavelength of that index.
