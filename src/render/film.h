@@ -22,8 +22,8 @@ struct FilmFormat {
   size_t bands = 0;           ///< of a sensor; 0: the film has three colours
   ChannelList channels = {};  ///< of what camera rays met first, summed up too
   bool blocks = false;  ///< how blocks of a pixel's samples differ is summed up too: whole blocks have to be rendered
-  /// Values are kept in units of 2^exponent: near the picture's typical value, sums have 18 digits below it and 10
-  /// above, squares 6 below and 8 above. Brighter samples are cut off there, and counted.
+  /// Values are kept in units of 2^exponent: near the picture's typical value, of which samples may be 10^-18 to
+  /// 10^8. Brighter ones are cut off there, and counted; squares forget what is below 10^-6.
   int exponent = 0;
   Matrix3 color = Matrix3::diagonal({1, 1, 1});  ///< from a path's response to the film's colours
   Triple white = {1, 1, 1};  ///< the film's colours of a path of radiance 1: what an albedo of 1 is measured by

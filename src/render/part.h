@@ -13,11 +13,10 @@ namespace frond {
 struct PartHeader {
   Identity identity;
   PictureFormat picture;
-  std::string command;  ///< the command line without samples and pixels, which follow from the film
-  Crop scene_crop{};    ///< what the scene asks for
-  int pixel_scale = 1;  ///< from the film's pixels to the command line's: 2 where --quick has halved them
-  uint64_t request =
-      0;  ///< samples of each pixel that the whole render is to have; adaptive ones may have other numbers
+  std::string command;   ///< the command line without samples and pixels, which follow from the film
+  Crop scene_crop{};     ///< what the scene asks for
+  int pixel_scale = 1;   ///< from the film's pixels to the command line's: 2 where --quick has halved them
+  uint64_t request = 0;  ///< samples of each pixel that were asked for; adaptive renders may have other numbers
   bool adaptive = false;
   std::vector<uint64_t> tile_ends = {};  ///< of an adaptive render: what it is about to have, by tile
   int round = 0;                         ///< of an adaptive render: how often that was decided

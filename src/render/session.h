@@ -21,7 +21,7 @@ struct PictureRequest {
   std::string color_space = {};  ///< by linear name, where the scene names none; empty: as the wavelengths have it
   std::map<std::string, std::string> attributes = {};  ///< for the image's header
   bool adaptive = false;                               ///< the film is to know its noise, for Session::render_to
-  std::string command = {};  ///< the same, as people would ask for it, without samples and pixels; part of the identity
+  std::string command = {};  ///< what asks for all this, without samples and pixels: for the header, and the identity
 };
 
 /// A scene, ready to be rendered, with all that its picture is made of.
@@ -89,7 +89,6 @@ class Session {
   const Registry& registry() const { return registry_; }
   const Log& log() const { return log_; }
   ThreadPool& pool() { return pool_; }
-  const std::filesystem::path& cache() const { return options_.cache; }
 
   /// A scene file; "-" is standard input.
   SceneDescription read(const std::filesystem::path& path) const;
@@ -102,6 +101,7 @@ class Session {
   /// own statistics grow by it.
   RenderStatistics render(const LoadedScene& scene, SampleRange samples, RenderPart& part,
                           const RenderControl& control = {});
+  /// The same for some of the pixels, or other samples of each tile.
   RenderStatistics render_plan(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
                                const RenderControl& control = {});
   /// Adds samples where they do most against noise, until it is small enough with kNoiseConfidence (render/adaptive.h),

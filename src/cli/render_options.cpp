@@ -1,0 +1,141 @@
+#include "cli/render_options.h"
+
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "cli/common_options.h"
+#include "render/channels.h"
+
+namespace frond {
+namespace {
+
+std::string channels_doc() {
+  std::string doc = "What camera rays meet first, beside the image's colours:";
+  for (const ChannelInfo& channel : all_channels())
+    doc += fmt::format("{} {} ({})", doc.ends_with(':') ? "" : ",", channel.name, channel.doc);
+  return doc + '.';
+}
+
+/// "leaf=abm" or "leaf=abm,mode=analog".
+MaterialSwap parse_swap(const std::string& text) {
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    fail({}, "--swap takes MATERIAL=PLUGIN[,parameter=value...], \"{}\" was given", text);
+  const Location where{std::make_shared<const std::string>("--swap " + text)};
+  return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), where), where};
+}
+
+}  // namespace
+
+std::vector<MaterialSwap> swaps_of(const RenderOptions& options) {
+  std::vector<MaterialSwap> swaps;
+  for (const std::string& swap : options.swaps) swaps.push_back(parse_swap(swap));
+  return swaps;
+}
+
+Crop crop_of(const RenderOptions& o, const FilmSettings& film) {
+  if (o.crop.empty() && o.pixels.empty()) return film.crop;
+  const Crop crop = o.crop.empty() ? crop_of_pixels(o.pixels, film.width, film.height)
+                                   : crop_of_fractions(o.crop, film.width, film.height);
+  if (crop.width() <= 0 || crop.height() <= 0)
+    fail({}, "{} holds no pixel of the {} x {} film: it takes x0,x1,y0,y1",
+         o.crop.empty() ? fmt::format("--pixels {}", fmt::join(o.pixels, ","))
+                        : fmt::format("--crop {}", fmt::join(o.crop, ",")),
+         film.width, film.height);
+  return crop;
+}
+
+SceneOverrides overrides_of(const RenderOptions& options) {
+  SceneOverrides overrides;
+  overrides.wavelengths = options.wavelengths;
+  if (!options.integrator.empty()) overrides.integrator = parse_plugin_text(options.integrator, {});
+  overrides.seed = options.seed;
+  overrides.cache_dir = cache_directory(options.cache, options.no_cache);  // of pilots; the session has its own
+  overrides.quick = options.quick;
+  return overrides;
+}
+
+std::string command_line_of(const RenderOptions& o) {
+  std::string line = "frond render " + std::filesystem::path(o.scene).filename().string();
+  if (o.seed) line += fmt::format(" --seed {}", *o.seed);
+  if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
+  if (!o.integrator.empty()) line += " --integrator " + o.integrator;
+  for (const std::string& plugin : o.plugins) line += " --plugin " + std::filesystem::path(plugin).filename().string();
+  for (const std::string& swap : o.swaps) line += " --swap " + swap;
+  if (!o.channels.empty()) line += fmt::format(" --channels {}", fmt::join(ChannelList(o.channels).names(), ","));
+  if (o.quick) line += " --quick";
+  return line;
+}
+
+std::optional<SampleRange> range_of(const RenderOptions& options) {
+  if (options.range.empty()) return {};
+  const std::string& text = options.range;
+  SampleRange range;
+  const char *begin = text.data(), *end = begin + text.size();
+  const auto first = std::from_chars(begin, end, range.begin);
+  const bool has_colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
+  const auto last = std::from_chars(has_colon ? first.ptr + 1 : end, end, range.end);
+  if (!has_colon || last.ec != std::errc() || last.ptr != end || range.empty() || range.end > 1u << 30)
+    fail({}, "--samples takes FIRST:END, such as 64:128 for the 64 samples from number 64 on: \"{}\"", text);
+  return range;
+}
+
+void add_render_options(CLI::App& command, RenderOptions& o) {
+  command.add_option("scene", o.scene, "Scene file.")->required();
+  auto* output = command.add_option("-o,--output", o.output,
+                                    "Image: .exr (linear), .png or .jpg (through the display transform).");
+  add_count_option(command, "--spp", o.samples, 1 << 30, "Samples per pixel, in place of the scene's.");
+  command.add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
+  auto* crop = command.add_option("--crop,--cropwindow", o.crop,
+                                  "x0,x1,y0,y1 of what to render, as fractions of the film; ends are rounded up.");
+  crop->delimiter(',')->expected(4)->check(is_within({0, 1}));
+  auto* pixels = command.add_option("--pixels,--pixelbounds", o.pixels,
+                                    "x0,x1,y0,y1 of what to render, in pixels; x1 and y1 are not in it.");
+  pixels->delimiter(',')->expected(4)->check(is_pixel)->excludes(crop);
+  command.add_option("--wavelengths", o.wavelengths,
+                     "hero (also hero,lambdamin=400,lambdamax=700), meyer, smpte for the paper's three, or "
+                     "bands,wavelengths=450,550,850 (also bands,lambdamin=400,lambdamax=1000,step=10).");
+  command.add_option("--integrator", o.integrator,
+                     "PLUGIN[,parameter=value...]; one of the scene's kind keeps the scene's other parameters.");
+  command
+      .add_option("--swap", o.swaps,
+                  "MATERIAL=PLUGIN[,parameter=value...]: another model; \"*=PLUGIN\": for every leaf.")
+      ->allow_extra_args(false);
+  add_plugin_option(command, o.plugins);
+  command.add_option("--display", o.display.display, "Display of PNG and JPEG output; sRGB by default.");
+  command.add_option("--view", o.display.view, "View of that display.");
+  command.add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.");
+  command.add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
+  command.add_flag("--quick", o.quick, "A first look: half the resolution, a sixteenth of the samples.");
+  command.add_flag("--pilot", o.pilot, "Choose the models of open leaves, say which, and render nothing.");
+  command.add_flag("--json", o.json, "Print the statistics as JSON on standard output.");
+  command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");
+  auto* part = command.add_option(
+      "--part", o.part, "Write the sums, which frond merge adds to those of other parts, instead of an image.");
+  part->excludes(output);
+  auto* range = command.add_option("--samples", o.range,
+                                   "FIRST:END of the samples to render, as 64:128; from 0 to --spp by default.");
+  command
+      .add_option(
+          "--checkpoint", o.checkpoint_seconds,
+          "Every so many seconds, and when stopped by SIGINT or SIGTERM, keep what is done in OUTPUT.part, or in "
+          "FILE.checkpoint where --part asks for FILE.")
+      ->check(is_positive);
+  command.add_flag("--resume", o.resume,
+                   "Go on from OUTPUT.part, or --part's file, where there is one; keeps one too.");
+  command.add_option("--time-limit", o.time_limit_seconds, "End after so many seconds, with what there is then.")
+      ->check(is_positive);
+  command
+      .add_option("--max-rms", o.max_rms,
+                  "Render until the noise of the picture's linear colours is below this, with more samples where there "
+                  "is more; --spp is then the most that a pixel gets.")
+      ->check(is_positive)
+      ->excludes(range);
+  command.add_option("--channels", o.channels, channels_doc())->delimiter(',');
+}
+
+}  // namespace frond

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image/display_image.h"
+#include "render/work.h"
+#include "scene/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace frond {
+
+/// What `frond render` is told.
+struct RenderOptions {
+  std::string scene, output, part, wavelengths, integrator, cache, range;
+  std::vector<double> crop;
+  std::vector<int> pixels;
+  std::vector<std::string> swaps, plugins, channels;
+  DisplayChoice display;
+  int samples = 0, threads = 0;
+  std::optional<uint64_t> seed;
+  double checkpoint_seconds = 0, time_limit_seconds = 0, max_rms = 0;
+  bool quick = false, json = false, quiet = false, no_cache = false, pilot = false, resume = false;
+};
+
+/// Declares them; they are read into `options`, which must outlive the command.
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// Throws InputError for what is no "leaf=abm" or "leaf=abm,mode=analog".
+std::vector<MaterialSwap> swaps_of(const RenderOptions& options);
+
+/// What of the film the command line asks for; the scene's crop if it says nothing. Throws InputError where that is no
+/// pixel.
+Crop crop_of(const RenderOptions& options, const FilmSettings& film);
+
+SceneOverrides overrides_of(const RenderOptions& options);
+
+/// Of `--samples 64:128`, where it is given. Throws InputError.
+std::optional<SampleRange> range_of(const RenderOptions& options);
+
+/// What of the command decides the pixels, but for their number and that of their samples: threads, paths and what is
+/// printed do not belong in a file's header.
+std::string command_line_of(const RenderOptions& options);
+
+}  // namespace frond
