@@ -43,7 +43,7 @@ class Ready {
  public:
   Ready(const MaterialInfo& info, std::vector<float> nm)
       : wavelengths_(std::move(nm)), setup_(wavelengths_), material_(make(info, setup_.preparation)) {
-    const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .uv = {0.5f, 0.5f}};
+    const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}}};
     bsdf_ = material_->evaluate(hit, wavelengths_.sample(0), arena_);
   }
   const Bsdf& bsdf() const { return *bsdf_; }
@@ -157,7 +157,7 @@ void add_hit(const MaterialInfo& info) {
     const double theta = static_cast<double>(state.range(0)) * std::numbers::pi / 180;
     const Vec3 wo{static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
     const ReadyForEach& ready = ReadyForEach::get(info);
-    const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .uv = {0.5f, 0.5f}};
+    const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}}};
     const std::vector<Draw> all = draws();
     Arena arena;
     RandomStream rng(2);

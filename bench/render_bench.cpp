@@ -101,8 +101,8 @@ void replay_rays(benchmark::State& state, const std::string& file) {
     const std::clock_t start = std::clock();
     RTCRayHit query;
     for (const auto& [ray, shadow] : recorder.records())
-      benchmark::DoNotOptimize(shadow ? loaded.scene.accelerator().occluded(ray, 0)
-                                      : loaded.scene.accelerator().closest(ray, 0, query));
+      benchmark::DoNotOptimize(shadow ? loaded.scene.geometry().occluded(ray, 0)
+                                      : loaded.scene.geometry().closest(ray, 0, query));
     embree_seconds += double(std::clock() - start) / CLOCKS_PER_SEC;
   }
   const double rays = double(recorder.records().size()) * double(state.iterations());

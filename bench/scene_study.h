@@ -55,7 +55,7 @@ class SceneStudy {
   ThreadPool pool_;
   const Log& log_ = silent_log();
   compare::Study study_;
-  std::map<std::string, std::unique_ptr<Scene>> scenes_;
+  std::map<std::string, std::shared_ptr<const Scene>> scenes_;
   std::map<std::string, Accuracy> accuracies_;
   std::vector<Pictures> reference_;
 };

@@ -71,7 +71,7 @@ class Soil final : public Material {
     check_range(albedo_->range_nm(), preparation.wavelengths, albedo_where_, "albedo");
   }
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    SampledSpectrum albedo = albedo_->evaluate(hit.uv, lambda);
+    SampledSpectrum albedo = albedo_->evaluate(hit.at, lambda);
     for (int lane = 0; lane < kLanes; ++lane)
       if (!lambda.is_active(lane)) albedo[lane] = 0;
     return arena.make<SoilBsdf>(albedo, asymmetry_);

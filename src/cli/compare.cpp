@@ -113,14 +113,15 @@ std::string scene_name(const std::filesystem::path& scene) {
 /// What `frond render` would choose for leaves that ask for this error; "" where wavelengths have no colours.
 std::string leaf_by_leaf(double rms, const std::string& wavelengths, const compare::Study& study, const Plan& plan,
                          ThreadPool& pool, const Log& log) {
-  SceneDescription description = study.description();
+  SceneDescription description{study.description(), {}, {}, {}};  // what stands in it stands already
   const PluginText open{"leaf", {{"model", "auto"}, {"maxrms", fmt::format("{}", rms)}}};
   apply_swaps(description, study.swaps_to(open), study.registry(), silent_log());
   SceneOverrides overrides;
   overrides.wavelengths = wavelengths;
   overrides.seed = study.seed();
   overrides.cache_dir = plan.cache;
-  const choose::ChoiceTask subject{description, study.registry(), overrides, study.film(), plan.top_samples};
+  const choose::ChoiceTask subject{description,  study.registry(), overrides,
+                                   study.film(), plan.top_samples, study.any_scene().get()};
   const auto chosen = choose::choose_models(subject, choose::standard_ladder(study.registry()), pool, silent_log());
   if (!chosen) return {};
   log.info(choose::choice_text(chosen->choice));

@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 /// Writes what is chosen into the description and the overrides. The whole picture decides, whatever part of it is
 /// rendered: parts of one picture go together.
-std::optional<choose::Choice> choose_models(const RenderOptions& options, Session& session,
+std::optional<choose::Chosen> choose_models(const RenderOptions& options, Session& session,
                                             SceneDescription& description, SceneOverrides& overrides) {
   const choose::ChoiceTask task{description, session.registry(), overrides, session.film(description, options.quick),
                                 uint64_t(options.samples)};
@@ -34,9 +34,9 @@ std::optional<choose::Choice> choose_models(const RenderOptions& options, Sessio
   session.log().info(choose::choice_text(chosen->choice));
   if (const std::string warning = choose::choice_warning(chosen->choice); !warning.empty())
     session.log().warn({}, warning);
-  description.materials = std::move(chosen->materials);
+  description.materials = chosen->materials;
   overrides.wavelengths = chosen->wavelengths;
-  return chosen->choice;
+  return chosen;
 }
 
 /// In place of a render. People have it in the log.
@@ -70,7 +70,7 @@ class RenderCommand {
   /// What can be refused is refused now, not after an hour.
   void prepare() {
     description_ = session_.read(options_.scene);
-    apply_swaps(description_, swaps_of(options_), session_.registry(), log_);
+    apply_swaps(description_, swaps_of(options_.swaps), session_.registry(), log_);
     SceneOverrides overrides = overrides_of(options_);
     FilmSettings film = session_.film(description_, false);
     film.crop = crop_of(options_, film);
@@ -81,7 +81,11 @@ class RenderCommand {
                            .channels = options_.channels,
                            .adaptive = is_adaptive(),
                            .command = command_line_of(options_)};
-    choice_ = choose_models(options_, session_, description_, overrides);
+    std::shared_ptr<const Scene> pilot;
+    if (auto chosen = choose_models(options_, session_, description_, overrides)) {
+      choice_ = std::move(chosen->choice);
+      pilot = std::move(chosen->scene);
+    }
     if (options_.pilot) return print_choice(choice_, options_.json);
     if (choice_) {
       load_start_ = Clock::now();  // its time is told apart
@@ -89,7 +93,7 @@ class RenderCommand {
       // What is chosen shall not change the space.
       if (!choice_->answers.front().is_leaf) request.color_space = "linear sRGB";
     }
-    scene_.emplace(session_.load(std::move(description_), overrides, request));
+    scene_.emplace(session_.load(std::move(description_), overrides, request, pilot.get()));
     load_seconds_ = std::chrono::duration<double>(Clock::now() - load_start_).count();
     range_ = {0, options_.samples > 0 ? uint64_t(options_.samples) : scene_->samples()};
     if (const auto range = range_of(options_)) range_ = *range;

@@ -29,10 +29,10 @@ MaterialSwap parse_swap(const std::string& text) {
 
 }  // namespace
 
-std::vector<MaterialSwap> swaps_of(const RenderOptions& options) {
-  std::vector<MaterialSwap> swaps;
-  for (const std::string& swap : options.swaps) swaps.push_back(parse_swap(swap));
-  return swaps;
+std::vector<MaterialSwap> swaps_of(const std::vector<std::string>& swaps) {
+  std::vector<MaterialSwap> result;
+  for (const std::string& swap : swaps) result.push_back(parse_swap(swap));
+  return result;
 }
 
 Crop crop_of(const RenderOptions& o, const FilmSettings& film) {

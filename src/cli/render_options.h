@@ -31,7 +31,7 @@ struct RenderOptions {
 void add_render_options(CLI::App& command, RenderOptions& options);
 
 /// Throws InputError for what is no "leaf=abm" or "leaf=abm,mode=analog".
-std::vector<MaterialSwap> swaps_of(const RenderOptions& options);
+std::vector<MaterialSwap> swaps_of(const std::vector<std::string>& swaps);
 
 /// What of the film the command line asks for; the scene's crop if it says nothing. Throws InputError where that is no
 /// pixel.

@@ -13,6 +13,8 @@ class Camera {
   /// World-space ray, unit direction, through the film at `film` (pixels, y down); `lens` in [0, 1)^2.
   virtual Ray ray(Vec2 film, Vec2 lens) const = 0;
   virtual bool uses_lens() const = 0;
+  /// What its pixels see has nothing to do with what their neighbours do: a filter must not mix them.
+  virtual bool pixels_are_apart() const { return false; }
 };
 
 struct CameraPlacement {

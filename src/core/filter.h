@@ -14,6 +14,8 @@ class Filter {
   };
   virtual ~Filter() = default;
   virtual Sample sample(Vec2 u) const = 0;
+  /// Whether all samples fall into the pixel itself.
+  virtual bool stays_in_pixel() const { return false; }
 };
 
 struct FilterInfo : PluginInfo {

@@ -18,8 +18,9 @@ struct PathContext {
 struct FirstHit {
   bool is_hit = false;  ///< false: nothing, and the rest means nothing
   bool is_leaf = false;
-  uint32_t material = 0, instance = 0;  ///< as of a SurfacePoint
-  Vec3 p, n;                            ///< world space; the shading normal, unit
+  uint32_t material = 0;  ///< as of a SurfacePoint
+  uint64_t instance = 0;  ///< as of a SurfacePoint
+  Vec3 p, n;              ///< world space; the shading normal, unit
   /// The path's weight after it was scattered there: an unbiased estimate of the albedo, all that the surface gives
   /// back of light from -direction of the camera ray, on both sides.
   SampledSpectrum albedo;

@@ -21,6 +21,8 @@ class Light {
   virtual std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const = 0;
   /// Light through a point or from one direction: no ray meets it by chance.
   virtual bool is_delta() const = 0;
+  /// From outside the scene: the same at all of its points.
+  virtual bool is_distant() const { return false; }
   /// Photometric power up to a factor common to all lights of a scene of the given radius: how often to choose it.
   virtual double power(float scene_radius) const = 0;
   /// Spectrum of what it gives off, up to a factor; of an image's, that of its white.
@@ -48,6 +50,7 @@ class AreaLight : public Light {
 /// Light from outside the scene, met by every ray that leaves it.
 class EnvironmentLight : public Light {
  public:
+  bool is_distant() const override { return true; }
   virtual SampledSpectrum radiance(const Vec3& direction, const SampledWavelengths& lambda) const = 0;
   /// Density of `sample`, per solid angle.
   virtual float pdf(const Vec3& direction) const = 0;

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/plugin.h"
 #include "core/shared_work.h"
+#include "core/texture.h"
 #include "core/vec.h"
 #include "core/wavelengths.h"
 
@@ -15,10 +16,10 @@ namespace frond {
 
 /// What a material may know of the surface point that it is asked for.
 struct Hit {
-  Vec3 p;         ///< world space
-  Vec3 ng;        ///< geometric normal, unit, on the surface's front (a leaf's adaxial side) whichever side was hit
-  Frame shading;  ///< z: shading normal, in the hemisphere of ng
-  Vec2 uv;
+  Vec3 p;           ///< world space
+  Vec3 ng;          ///< geometric normal, unit, on the surface's front (a leaf's adaxial side) whichever side was hit
+  Frame shading;    ///< z: shading normal, in the hemisphere of ng
+  TexturePoint at;  ///< what textures need
   float extent =
       0;  ///< largest coordinate that went into `p`: its rounding error is some units of this one's last place
 };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstring>
+
 #include "core/params.h"
 #include "core/plugin.h"
 #include "core/spectrum.h"
@@ -7,21 +9,62 @@
 
 namespace frond {
 
-/// A number over a surface's (u, v).
+/// A column of numbers (32-bit floats) in a table of instances.
+struct InstanceColumn {
+  std::string name;
+  size_t offset;   ///< bytes from the beginning of a row
+  Interval range;  ///< bounds of its values
+};
+
+/// Rows of the tables that a copy of an object comes from, outermost first: a shoot's, then its leaf's.
+class InstanceRows {
+ public:
+  static constexpr uint32_t kMost = 4;
+
+  InstanceRows() {}  // NOLINT(modernize-use-equals-default): rows that are not there are not set to anything
+  void add(const std::vector<InstanceColumn>& columns, const std::byte* row) { rows_[count_++] = {&columns, row}; }
+  /// The number in the innermost table that has such a column; empty where none has.
+  std::optional<float> find(std::string_view column) const {
+    for (uint32_t i = count_; i-- > 0;)
+      for (const InstanceColumn& c : *rows_[i].columns)
+        if (c.name == column) {
+          float value;
+          std::memcpy(&value, rows_[i].bytes + c.offset, sizeof value);
+          return value;
+        }
+    return {};
+  }
+
+ private:
+  struct Row {
+    const std::vector<InstanceColumn>* columns;
+    const std::byte* bytes;
+  };
+  std::array<Row, kMost> rows_;
+  uint32_t count_ = 0;
+};
+
+/// What a texture may know of the point that it is asked for.
+struct TexturePoint {
+  Vec2 uv;
+  InstanceRows instance = {};
+};
+
+/// A number over a surface.
 class FloatTexture {
  public:
   virtual ~FloatTexture() = default;
-  virtual float evaluate(Vec2 uv) const = 0;
+  virtual float evaluate(const TexturePoint& at) const = 0;
   /// Bounds of the values.
   virtual Interval range() const = 0;
   bool is_constant() const { return range().min == range().max; }
 };
 
-/// A reflectance or transmittance over a surface's (u, v), in [0, 1] at every wavelength.
+/// A reflectance or transmittance over a surface, in [0, 1] at every wavelength.
 class SpectrumTexture {
  public:
   virtual ~SpectrumTexture() = default;
-  virtual SampledSpectrum evaluate(Vec2 uv, const SampledWavelengths& lambda) const = 0;
+  virtual SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const = 0;
   /// Wavelengths (nm) for which the data stand.
   virtual Interval range_nm() const = 0;
   /// Upper bound of the values.
@@ -32,7 +75,7 @@ class SpectrumTexture {
 class ConstantFloatTexture final : public FloatTexture {
  public:
   explicit ConstantFloatTexture(float value) : value_(value) {}
-  float evaluate(Vec2) const override { return value_; }
+  float evaluate(const TexturePoint&) const override { return value_; }
   Interval range() const override { return {value_, value_}; }
 
  private:
@@ -42,7 +85,9 @@ class ConstantFloatTexture final : public FloatTexture {
 class ConstantSpectrumTexture final : public SpectrumTexture {
  public:
   explicit ConstantSpectrumTexture(SpectrumPtr value) : value_(std::move(value)) {}
-  SampledSpectrum evaluate(Vec2, const SampledWavelengths& lambda) const override { return value_->sample(lambda); }
+  SampledSpectrum evaluate(const TexturePoint&, const SampledWavelengths& lambda) const override {
+    return value_->sample(lambda);
+  }
   Interval range_nm() const override { return value_->range_nm(); }
   float max_value() const override { return value_->max_value(); }
 

@@ -14,7 +14,7 @@ struct SurfacePoint {
   const Material* material = nullptr;
   const AreaLight* light = nullptr;  ///< nullptr: the surface gives off no light
   uint32_t material_id = 0;          ///< place of the material in the scene's description
-  uint32_t instance_id = 0;          ///< of its instances, counted from 1; 0: the shape stands for itself
+  uint64_t instance_id = 0;          ///< of the copy of an object, counted from 1; 0: the shape stands for itself
 };
 
 /// What an integrator sees of a scene. Thread-safe. `key` feeds the random numbers of partly transparent surfaces

@@ -29,7 +29,7 @@ const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
   Hit hit;
   hit.ng = {0, 0, 1};
   hit.shading = Frame::around(hit.ng);
-  hit.uv = {0.5f, 0.5f};
+  hit.at.uv = {0.5f, 0.5f};
   const Bsdf* bsdf = material.evaluate(hit, OneWavelength(beam.lambda_nm).sample(0), arena);
   if (!bsdf) fail({}, "the material says that it has no surface there: nothing can be measured");
   return *bsdf;

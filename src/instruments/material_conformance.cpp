@@ -11,7 +11,7 @@ namespace frond {
 namespace {
 
 Hit flat_hit() {
-  return {.p = {0.3f, 0.2f, 0.1f}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .uv = {0.5f, 0.5f}};
+  return {.p = {0.3f, 0.2f, 0.1f}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}}};
 }
 
 /// Where a shading normal leans away from the surface.

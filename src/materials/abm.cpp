@@ -166,7 +166,7 @@ class Abm final : public Material {
   void prepare(const Preparation& preparation) override { leaf_.check_wavelengths(preparation.wavelengths); }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    const LeafLanes lanes = leaf_at(hit.uv, lambda, arena);
+    const LeafLanes lanes = leaf_at(hit.at, lambda, arena);
     if (leaf_.from_light()) return arena.make<AbmFromLightBsdf>(lanes, absorption_);
     return arena.make<AbmBsdf>(lanes, absorption_);
   }
@@ -174,25 +174,25 @@ class Abm final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
-  LeafLanes leaf_at(Vec2 uv, const SampledWavelengths& lambda, Arena& arena) const {
+  LeafLanes leaf_at(const TexturePoint& at, const SampledWavelengths& lambda, Arena& arena) const {
     LeafLanes lanes;
     if (leaf_.is_constant()) {
       for (int lane = 0; lane < lambda.count; ++lane)
         if (lambda.is_active(lane)) lanes.add(lane, arena.make<Tissue>(model_.at(nm(lambda, lane))));
       return lanes;
     }
-    const leaf::LeafLobes lobes = lobes_at(uv, arena);
-    const auto depth = leaf_.depth().at(uv, lambda);
+    const leaf::LeafLobes lobes = lobes_at(at, arena);
+    const auto depth = leaf_.depth().at(at, lambda);
     for (int lane = 0; lane < lambda.count; ++lane)
       if (lambda.is_active(lane))
         lanes.add(lane, arena.make<Tissue>(model_.at(nm(lambda, lane), depth[static_cast<size_t>(lane)], lobes)));
     return lanes;
   }
 
-  leaf::LeafLobes lobes_at(Vec2 uv, Arena& arena) const {
+  leaf::LeafLobes lobes_at(const TexturePoint& at, Arena& arena) const {
     leaf::LeafLobes lobes = model_.lobes();
     const auto replace = [&](const leaf::Lobe*& lobe, const LeafParams::Aspect& aspect) {
-      if (aspect) lobe = arena.make<leaf::Lobe>(static_cast<double>(aspect->evaluate(uv)));
+      if (aspect) lobe = arena.make<leaf::Lobe>(static_cast<double>(aspect->evaluate(at)));
     };
     replace(lobes.cuticle, leaf_.cuticle_aspect());
     replace(lobes.epidermis, leaf_.epidermis_aspect());

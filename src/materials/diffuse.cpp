@@ -23,7 +23,7 @@ class Diffuse final : public Material {
     check_range(reflectance_->range_nm(), preparation.wavelengths, where_, "reflectance");
   }
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    return arena.make<LambertianBsdf>(reflectance_->evaluate(hit.uv, lambda) * lane_mask(lambda), SampledSpectrum());
+    return arena.make<LambertianBsdf>(reflectance_->evaluate(hit.at, lambda) * lane_mask(lambda), SampledSpectrum());
   }
   bool is_reciprocal() const override { return true; }
 

@@ -41,7 +41,7 @@ class DiffuseTransmission final : public Material {
     check_range(transmittance_->range_nm(), preparation.wavelengths, transmittance_where_, "transmittance");
   }
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    const auto [r, t] = shares(hit.uv, lambda);
+    const auto [r, t] = shares(hit.at, lambda);
     return arena.make<LambertianBsdf>(r, t);
   }
   bool is_reciprocal() const override { return true; }
@@ -50,9 +50,9 @@ class DiffuseTransmission final : public Material {
   struct Shares {
     SampledSpectrum reflected, transmitted;
   };
-  Shares shares(Vec2 uv, const SampledWavelengths& lambda) const {
+  Shares shares(const TexturePoint& at, const SampledWavelengths& lambda) const {
     const SampledSpectrum scale = scale_ * lane_mask(lambda);
-    return {reflectance_->evaluate(uv, lambda) * scale, transmittance_->evaluate(uv, lambda) * scale};
+    return {reflectance_->evaluate(at, lambda) * scale, transmittance_->evaluate(at, lambda) * scale};
   }
 
   /// Constants are looked at every 2 nm, textures also at 16 x 16 places: between these, an excess can hide.
@@ -64,8 +64,8 @@ class DiffuseTransmission final : public Material {
     for (double nm = both.min; nm <= both.max; nm += 2)
       for (int place = 0; place < 256; ++place) {
         const int column = place % 16, row = place / 16;
-        const Vec2 uv{(static_cast<float>(column) + 0.5f) / 16, (static_cast<float>(row) + 0.5f) / 16};
-        const auto [reflected, transmitted] = shares(uv, one_wavelength(static_cast<float>(nm)));
+        const TexturePoint at{{(static_cast<float>(column) + 0.5f) / 16, (static_cast<float>(row) + 0.5f) / 16}};
+        const auto [reflected, transmitted] = shares(at, one_wavelength(static_cast<float>(nm)));
         const float sum = reflected[0] + transmitted[0];
         if (sum > 1 + kRounding)
           fail(reflectance_where_,

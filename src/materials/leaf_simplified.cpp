@@ -98,9 +98,9 @@ class LeafSimplified final : public Material {
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const leaf::TableSelection selection =
-        varies_ ? lookup_->select(lambda, leaf_.depth().at(hit.uv, lambda)) : lookup_->select(lambda);
+        varies_ ? lookup_->select(lambda, leaf_.depth().at(hit.at, lambda)) : lookup_->select(lambda);
     const leaf::Lobe* surface =
-        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.uv))) : &surface_;
+        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at))) : &surface_;
     return arena.make<ThreeLobeBsdf>(LeafHit{lookup_.get(), selection, surface, lane_mask(lambda)}, manner_);
   }
 

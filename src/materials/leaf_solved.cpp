@@ -59,7 +59,7 @@ class LeafSolved final : public Material {
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const leaf::Lobe* surface =
-        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.uv))) : &surface_;
+        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at))) : &surface_;
     return arena.make<SolvedBsdf>(
         SolvedHit{table_.get(), selection(hit, lambda, arena), surface, lane_mask(lambda), leaf_.from_light()});
   }
@@ -70,7 +70,7 @@ class LeafSolved final : public Material {
   using Selection = leaf::BodyTable::Selection;
 
   const Selection* selection(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const {
-    if (varies_) return arena.make<Selection>(table_->select(lambda, leaf_.depth().at(hit.uv, lambda)));
+    if (varies_) return arena.make<Selection>(table_->select(lambda, leaf_.depth().at(hit.at, lambda)));
     return fixed_ ? &*fixed_ : arena.make<Selection>(table_->select(lambda));
   }
 

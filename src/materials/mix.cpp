@@ -29,7 +29,7 @@ class Mix final : public Material {
   }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    const float amount = std::clamp(amount_->evaluate(hit.uv), 0.f, 1.f);
+    const float amount = std::clamp(amount_->evaluate(hit.at), 0.f, 1.f);
     if (amount == 0) return materials_[0]->evaluate(hit, lambda, arena);
     if (amount == 1) return materials_[1]->evaluate(hit, lambda, arena);
     const Bsdf* first = materials_[0]->evaluate(hit, lambda, arena);

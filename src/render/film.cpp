@@ -1,13 +1,12 @@
 #include "render/film.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 
 #include "core/error.h"
+#include "system/memory.h"
 
 namespace frond {
 namespace {
@@ -299,7 +298,7 @@ void check_memory(const FilmFormat& format, size_t films, const Location& where,
                        double(format.channels.ids()) * (sizeof(double) + sizeof(float)) + sizeof(FilmTile::Hits) +
                        (format.blocks ? sizeof(FilmTile::BlockSums) : 0);
   const double bytes = double(crop.width()) * double(crop.height()) * double(films) * pixel;
-  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  const double memory = machine_memory();
   if (bytes <= memory) return;
   fail(where, "{} {} x {} pixels{} need {:.1f} GB of memory, this machine has {:.1f} GB: {}",
        films > 1 ? fmt::format("{} films of", films) : "the film's", crop.width(), crop.height(),

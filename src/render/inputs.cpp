@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
+#include <cstring>
 
 #include "core/random.h"
 #include "scene/plugin_library.h"
@@ -58,7 +59,16 @@ std::filesystem::path program_file() {
 }
 
 uint64_t hash_file(const std::filesystem::path& path, uint64_t seed) {
-  return hash_bytes(read_file_bytes(path, {}), seed);
+  const MappedFile file(path, {});
+  const std::span<const std::byte> bytes = file.bytes();
+  uint64_t hash = hash_key(seed, bytes.size());
+  size_t at = 0;
+  for (; at + sizeof(uint64_t) <= bytes.size(); at += sizeof(uint64_t)) {
+    uint64_t word;  // by words: tables of instances have gigabytes
+    std::memcpy(&word, bytes.data() + at, sizeof word);
+    hash = mix64(hash ^ word) + 1;
+  }
+  return hash_bytes({reinterpret_cast<const char*>(bytes.data()) + at, bytes.size() - at}, hash);
 }
 
 }  // namespace frond

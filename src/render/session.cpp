@@ -37,7 +37,7 @@ Triple white_of(const WavelengthStrategy& wavelengths, const Matrix3& color) {
 }
 
 /// What the image's R, G and B are in: what the scene's ColorSpace says, or what was asked for, or else the film's own.
-std::string space_of(const SceneDescription& description, const PictureRequest& request, std::string_view film_space) {
+std::string space_of(const SceneSettings& description, const PictureRequest& request, std::string_view film_space) {
   if (film_space.empty()) return {};
   std::string space = request.color_space;
   if (description.color_space_where.file)
@@ -54,14 +54,14 @@ std::array<std::array<double, 4>, 3> to_double_rows(const Transform& t) {
 }
 
 /// Names of materials, by the numbers of the channel that has them.
-void name_materials(const SceneDescription& description, PictureFormat& picture) {
+void name_materials(const SceneSettings& description, PictureFormat& picture) {
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
     picture.attributes[fmt::format("frond:material:{}", i + 1)] = m.name.empty() ? m.plugin.name : m.name;
   }
 }
 
-PictureFormat picture_of(const SceneDescription& description, const PictureRequest& request, const Scene& scene,
+PictureFormat picture_of(const SceneSettings& description, const PictureRequest& request, const Scene& scene,
                          const FilmSettings& film, const ChannelList& channels) {
   const auto bands = scene.wavelengths().bands();
   PictureFormat picture{.space = space_of(description, request, scene.wavelengths().film_space()),
@@ -83,7 +83,7 @@ std::string text_of(const ParsedPlugin& plugin) {
   return text;
 }
 
-uint64_t hash_materials(const SceneDescription& description) {
+uint64_t hash_materials(const SceneSettings& description) {
   uint64_t hash = 0;
   for (const MaterialDescription& m : description.materials) hash = hash_bytes(m.name + '\n' + text_of(m.plugin), hash);
   return hash;
@@ -183,7 +183,8 @@ FilmSettings Session::film(const SceneDescription& description, bool quick) cons
   return quick ? halved(settings) : settings;
 }
 
-LoadedScene Session::load(SceneDescription description, SceneOverrides overrides, const PictureRequest& request) {
+LoadedScene Session::load(SceneDescription description, SceneOverrides overrides, const PictureRequest& request,
+                          const Scene* other) {
   LoadedScene loaded;
   loaded.command_ = request.command;
   loaded.is_quick_ = overrides.quick;
@@ -197,7 +198,9 @@ LoadedScene Session::load(SceneDescription description, SceneOverrides overrides
   overrides.cache_dir = options_.cache;
   const auto [text, where] = wavelength_choice(description, overrides);
   loaded.wavelengths_ = wavelengths_plugin(text, where, registry_);
-  loaded.scene_ = std::make_unique<Scene>(description, registry_, overrides, pool_, log_);
+  SharedWork shared;
+  loaded.scene_ = other ? std::make_unique<Scene>(*other, description, registry_, overrides, pool_, log_, shared)
+                        : std::make_unique<Scene>(description, registry_, overrides, pool_, log_);
   FilmSettings film = loaded.scene_->film();
   loaded.scene_crop_ = film.crop;
   if (request.pixels) film.crop = *request.pixels;

@@ -44,7 +44,6 @@ class LoadedScene {
 
  private:
   friend class Session;
-  LoadedScene() = default;
 
   SceneDescription description_;
   ParsedPlugin wavelengths_;
@@ -94,8 +93,10 @@ class Session {
   SceneDescription read(const std::filesystem::path& path) const;
   /// The film that a scene asks for; half of it where a first look will do.
   FilmSettings film(const SceneDescription& description, bool quick) const;
-  /// The cache is the session's, whatever the overrides say.
-  LoadedScene load(SceneDescription description, SceneOverrides overrides, const PictureRequest& picture = {});
+  /// The cache is the session's, whatever the overrides say. `other`: a scene in which the same stands, which is then
+  /// not made again.
+  LoadedScene load(SceneDescription description, SceneOverrides overrides, const PictureRequest& picture = {},
+                   const Scene* other = nullptr);
 
   /// Adds these samples of all the part's pixels to it, but what it has already. Says what this call took; the part's
   /// own statistics grow by it.

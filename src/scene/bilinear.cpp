@@ -142,7 +142,7 @@ constexpr Param kBilinear[] = {
      .list = true},
     kAlphaParam};
 
-ShapeGeometry make_bilinear(const Params& p, const ShapePlacement& placement) {
+MadeShape make_bilinear(const Params& p, const ShapePlacement& placement) {
   return std::make_shared<const BilinearMesh>(p, placement);
 }
 

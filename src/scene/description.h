@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/params.h"
-#include "core/transform.h"
+#include "scene/affine_map.h"
 
 namespace frond {
 
@@ -41,20 +42,21 @@ struct LightDescription {
   Transform world_from_light;
 };
 
-/// ObjectBegin ... ObjectEnd. A point of a shape lands in the world by its own transform, then by the instance's.
+/// ObjectInstance by ObjectInstance: there may be very many.
+struct CopyList {
+  std::shared_ptr<std::vector<AffineMap>> maps = std::make_shared<std::vector<AffineMap>>();
+  std::vector<uint32_t> objects = {};  ///< in SceneDescription::objects
+};
+
+/// ObjectBegin ... ObjectEnd. A point of a shape lands in the world by its own transform, then by the copy's.
 struct ObjectDescription {
   std::string name;
   Location where;
   std::vector<ShapeDescription> shapes;
+  CopyList copies;
 };
 
-struct InstanceDescription {
-  Transform world_from_object;
-  size_t object = 0;  ///< in SceneDescription::objects
-  Location where;
-};
-
-/// What a scene file says but for what stands in the scene: enough to make its materials and its view.
+/// What a scene file says but for the shapes, which may be large.
 struct SceneSettings {
   // Options, with what holds where the file says nothing.
   ParsedPlugin camera{"perspective", {}, {}};
@@ -74,18 +76,17 @@ struct SceneSettings {
 
   std::vector<std::filesystem::path> files;  ///< the main file and what it includes, in the order of reading
   uint64_t content_hash = 0;                 ///< over the bytes of `files`, in order
+  std::vector<LightDescription> lights;
+  std::vector<ParsedPlugin> area_lights;
 
   /// A file name in the scene as a path: relative to the file that names it, or else to the main file.
   std::filesystem::path resolve(const std::string& name, const Location& where) const;
 };
 
-/// With its shapes and lights, which may be large.
 struct SceneDescription : SceneSettings {
-  std::vector<ParsedPlugin> area_lights;
   std::vector<ShapeDescription> shapes;
-  std::vector<LightDescription> lights;
   std::vector<ObjectDescription> objects;
-  std::vector<InstanceDescription> instances;
+  CopyList copies;
 };
 
 }  // namespace frond

@@ -154,7 +154,7 @@ DescriptionBuilder::Name& DescriptionBuilder::material_called(const std::string&
 
 DescriptionBuilder::Name& DescriptionBuilder::object_called(const std::string& name, const Location& where) {
   if (const auto found = objects_.find(name); found != objects_.end()) return found->second;
-  scene_.objects.push_back({name, {}, {}});
+  scene_.objects.push_back({name, {}, {}, {}});
   return objects_.emplace(name, Name{scene_.objects.size() - 1, where}).first->second;
 }
 
@@ -211,7 +211,8 @@ void DescriptionBuilder::light(ParsedPlugin plugin) {
 
 void DescriptionBuilder::object_begin(const std::string& name, const Location& where) {
   if (open_object_)
-    fail(where, "ObjectBegin inside object \"{}\"; objects cannot be nested", scene_.objects[*open_object_].name);
+    fail(where, "ObjectBegin inside object \"{}\"; ObjectInstance places one object in another",
+         scene_.objects[*open_object_].name);
   Name& entry = object_called(name, where);
   ObjectDescription& object = scene_.objects[entry.index];
   if (entry.is_defined) fail(where, "object \"{}\" is defined again; first at {}", name, place(object.where));
@@ -228,9 +229,13 @@ void DescriptionBuilder::object_end(const Location& where) {
 }
 
 void DescriptionBuilder::object_instance(const std::string& name, const Location& where) {
-  if (open_object_)
-    fail(where, "ObjectInstance inside object \"{}\"; objects cannot be nested", scene_.objects[*open_object_].name);
-  scene_.instances.push_back({state_.transform, object_called(name, where).index, where});
+  const AffineMap map{state_.transform.rows()};
+  if (const std::string problem = problem_of(map); !problem.empty())
+    fail(where, "this copy is not possible: {}", problem);
+  const auto object = uint32_t(object_called(name, where).index);
+  CopyList& copies = open_object_ ? scene_.objects[*open_object_].copies : scene_.copies;
+  copies.maps->push_back(map);
+  copies.objects.push_back(object);
 }
 
 }  // namespace frond

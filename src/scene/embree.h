@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "core/random.h"
+#include "core/texture.h"
 #include "core/vec.h"
 
 // The one place that knows which Embree this is: 3 and 4 differ in includes, in the default ray mask and in how a
@@ -26,8 +29,32 @@ struct Query {
   explicit Query(uint64_t random_key) : key(random_key) { rtcInitIntersectContext(&base); }
 #endif
   uint64_t key;
-  Vec3 p{};  ///< where the analytic shape that last reported a hit was met, in its group's space
+  Vec3 p{};  ///< where the analytic shape that last reported a hit was met, in its object's space
+
+  /// A row of some copies of objects.
+  struct Copy {
+    const void* copies;
+    uint32_t row;
+  };
+  /// The copies, from outside in, that traversal is in, and those of the nearest hit so far. How many the hit is in its
+  /// instID[0] says (level_of).
+  std::array<Copy, InstanceRows::kMost> inside, hit;
+  uint32_t depth = 0;
+
+  void enter(const Copy& copy) {
+    inside[depth] = copy;
+    base.instID[0] = ++depth;
+  }
+  void leave() { base.instID[0] = --depth == 0 ? RTC_INVALID_GEOMETRY_ID : depth; }
+  /// A key of the copy that traversal is in.
+  uint64_t place() const {
+    uint64_t place = RTC_INVALID_GEOMETRY_ID;
+    for (uint32_t i = 0; i < depth; ++i) place = hash_key(place, inside[i].row);
+    return place;
+  }
 };
+
+inline uint32_t level_of(const RTCHit& hit) { return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? 0 : hit.instID[0]; }
 
 inline void intersect(RTCScene scene, RTCRayHit& ray, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4

@@ -20,6 +20,7 @@ class BoxFilter final : public Filter {
  public:
   explicit BoxFilter(const Params& p) : radius_(radius_of(p)) {}
   Sample sample(Vec2 u) const override { return {{(2 * u.x - 1) * radius_.x, (2 * u.y - 1) * radius_.y}, 1}; }
+  bool stays_in_pixel() const override { return radius_.x <= 0.5f && radius_.y <= 0.5f; }
 
  private:
   Vec2 radius_;

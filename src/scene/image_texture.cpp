@@ -83,9 +83,9 @@ RgbImage load(const Params& p) {
 class ImageFloat final : public FloatTexture {
  public:
   explicit ImageFloat(const Params& p) : ImageFloat(p, load(p)) {}
-  float evaluate(Vec2 uv) const override {
+  float evaluate(const TexturePoint& at) const override {
     float sum = 0;
-    lookup_.each(uv, [&](size_t i, float weight) { sum += weight * values_[i]; });
+    lookup_.each(at.uv, [&](size_t i, float weight) { sum += weight * values_[i]; });
     return sum;
   }
   Interval range() const override { return range_; }
@@ -108,9 +108,9 @@ class ImageFloat final : public FloatTexture {
 class ImageSpectrum final : public SpectrumTexture {
  public:
   explicit ImageSpectrum(const Params& p) : ImageSpectrum(p, load(p)) {}
-  SampledSpectrum evaluate(Vec2 uv, const SampledWavelengths& lambda) const override {
+  SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
     SampledSpectrum sum;
-    lookup_.each(uv, [&](size_t i, float weight) {
+    lookup_.each(at.uv, [&](size_t i, float weight) {
       const SigmoidPolynomial& s = colors_[texels_[i]];
       for (int lane = 0; lane < lambda.count; ++lane) sum[lane] += weight * s.at(lambda.nm[size_t(lane)]);
     });

@@ -38,6 +38,7 @@ class DistantLight final : public Light {
     return LightSample{spectrum_->sample(lambda) * scale_, wi_, INFINITY, 1};
   }
   bool is_delta() const override { return true; }
+  bool is_distant() const override { return true; }
   double power(float r) const override {
     return photometric(*spectrum_) * double(scale_) * kPiD * double(r) * double(r);
   }

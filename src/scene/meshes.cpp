@@ -24,7 +24,7 @@ void orient(TriangleMesh& mesh, const ShapePlacement& placement) {
 }
 
 /// Winding counter-clockwise about the front, positions and normals in the scene's space.
-ShapeGeometry place(TriangleMesh mesh, const ShapePlacement& placement) {
+MadeShape place(TriangleMesh mesh, const ShapePlacement& placement) {
   for (Vec3& p : mesh.p) p = placement.to_scene.point(p);
   for (Vec3& n : mesh.n) {
     const Vec3 m = normalize_any(placement.to_scene.normal(normalize_any(n)));
@@ -42,7 +42,7 @@ void check_indices(const Params& p, const std::vector<int>& indices, size_t vert
       fail(p.where("indices"), "index {} is out of range: there are {} vertices", i, vertices);
 }
 
-ShapeGeometry make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
+MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
   TriangleMesh mesh{.p = p.vec3s("P"), .n = p.vec3s("N"), .uv = p.vec2s("uv"), .triangles = {}};
   auto indices = p.integers("indices");
   if (indices.empty() && mesh.p.size() == 3) indices = {0, 1, 2};
@@ -57,7 +57,7 @@ ShapeGeometry make_triangle_mesh(const Params& p, const ShapePlacement& placemen
   return place(std::move(mesh), placement);
 }
 
-ShapeGeometry make_ply_mesh(const Params& p, const ShapePlacement& placement) {
+MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
   try {
     return place(read_ply(p.file("filename")), placement);
   } catch (const InputError& error) {

@@ -33,6 +33,7 @@ class Quadric : public AnalyticShape {
     const Vec3 ng = normalize_any(to_scene_.normal(to_float(normalize_any(n))));
     return {to_scene_.point(to_float(p)), flip_ ? -ng : ng, uv, t};
   }
+  Vec3 to_scene_point(const Vec3& p) const { return to_scene_.point(p); }
   Vec3d local_point(const Vec3& p) const { return to_double(from_scene_.point(p)); }
   Vec3d local_vector(const Vec3& v) const { return to_double(from_scene_.vector(v)); }
   Bounds transformed_box(Vec3 lo, Vec3 hi) const {
@@ -131,6 +132,17 @@ class Disk final : public Quadric {
     return at(p, r, float(t));
   }
 
+  /// A polygon around it.
+  std::vector<Vec3> outline(unsigned) const override {
+    constexpr int kCorners = 16;
+    std::vector<Vec3> points;
+    for (int i = 0; i < kCorners; ++i) {
+      const double phi = kTau * i / kCorners, r = radius_ / std::cos(kTau / 2 / kCorners);
+      points.push_back(to_scene_point({float(r * std::cos(phi)), float(r * std::sin(phi)), float(height_)}));
+    }
+    return points;
+  }
+
   ShapePoint sample(Vec2 u) const override {
     const double r = std::sqrt(inner_ * inner_ + double(u.x) * (radius_ * radius_ - inner_ * inner_));
     const double phi = double(u.y) * phi_max();
@@ -171,7 +183,7 @@ constexpr Param kDisk[] = {
     kAlphaParam};
 
 template <class T>
-ShapeGeometry make_quadric(const Params& p, const ShapePlacement& placement) {
+MadeShape make_quadric(const Params& p, const ShapePlacement& placement) {
   return std::make_shared<const T>(p, placement);
 }
 
@@ -180,6 +192,15 @@ ShapeGeometry make_quadric(const Params& p, const ShapePlacement& placement) {
 void Bounds::add(const Vec3& p) {
   min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
   max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+}
+
+std::vector<Vec3> Bounds::corners() const {
+  std::vector<Vec3> points;
+  if (is_empty()) return points;
+  for (const float x : {min.x, max.x})
+    for (const float y : {min.y, max.y})
+      for (const float z : {min.z, max.z}) points.push_back({x, y, z});
+  return points;
 }
 
 extern const ShapeInfo sphere_shape{{"shape", "sphere", "Sphere or part of one.", "pbrt-v4", kSphere},

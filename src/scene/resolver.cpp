@@ -16,7 +16,7 @@ namespace {
 const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
 
 /// A name such as "stdillum-D65", or that of an .spd file.
-SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneDescription& description) {
+SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneSettings& description) {
   const auto& words = std::get<std::vector<std::string>>(p.values);
   if (words.size() != 1) fail(p.value_where, "\"{}\" takes one spectrum, {} names given", p.name, words.size());
   if (words[0].ends_with(".spd")) return read_spd(description.resolve(words[0], p.value_where), p.value_where);
@@ -50,7 +50,7 @@ SpectrumPtr normalized(SpectrumPtr s, const ParsedParam& p) {
 
 }  // namespace
 
-SceneResolver::SceneResolver(const SceneDescription& description, const Registry& registry,
+SceneResolver::SceneResolver(const SceneSettings& description, const Registry& registry,
                              const WavelengthStrategy& wavelengths)
     : description_(description),
       registry_(registry),

@@ -16,7 +16,7 @@ struct ColorSpace;
 /// when first asked for. A spectrum whose data do not reach the render's wavelengths is an error at its parameter.
 class SceneResolver final : public ParamResolver {
  public:
-  SceneResolver(const SceneDescription& description, const Registry& registry, const WavelengthStrategy& wavelengths);
+  SceneResolver(const SceneSettings& description, const Registry& registry, const WavelengthStrategy& wavelengths);
   ~SceneResolver() override;
 
   std::shared_ptr<const FloatTexture> float_texture(const std::string& name, const Location& where) override;
@@ -35,7 +35,7 @@ class SceneResolver final : public ParamResolver {
                                          TextureDescription::Value value, const PluginTable<Info>& table,
                                          std::map<std::string, std::shared_ptr<const Texture>>& made);
 
-  const SceneDescription& description_;
+  const SceneSettings& description_;
   const Registry& registry_;
   const WavelengthStrategy& wavelengths_;
   const ColorSpace& color_space_;

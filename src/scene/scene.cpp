@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/log.h"
-#include "scene/resolver.h"
+#include "scene/geometry_builder.h"
 
 namespace frond {
 namespace {
@@ -20,13 +19,18 @@ constexpr Param kOptionParams[] = {
      .kind = ParamKind::string,
      .default_value = std::string_view("hero"),
      .doc = "Wavelength strategy."},
+    {.name = "period",
+     .kind = ParamKind::real,
+     .range = {1e-6, 1e9},
+     .doc = "Two lengths: what stands in the scene is there again every so far along x and y, for ever.",
+     .list = true},
 };
 constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
 
 /// Binding of what can refer to files, but to nothing else of the scene.
 class OptionResolver final : public ParamResolver {
  public:
-  explicit OptionResolver(const SceneDescription& description) : description_(description) {}
+  explicit OptionResolver(const SceneSettings& description) : description_(description) {}
 
  private:
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
@@ -38,8 +42,14 @@ class OptionResolver final : public ParamResolver {
   }
   [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
 
-  const SceneDescription& description_;
+  const SceneSettings& description_;
 };
+
+bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
+  return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
+           return p.type == q.type && p.name == q.name && p.values == q.values;
+         });
+}
 
 bool is_mixture(const MaterialInfo& info) {
   return std::any_of(info.params.begin(), info.params.end(),
@@ -51,29 +61,70 @@ bool is_mixture(const MaterialInfo& info) {
 /// Turns the description into a scene, in the order of what depends on what.
 class SceneBuilder {
  public:
-  SceneBuilder(Scene& scene, const SceneDescription& description, const Registry& registry,
-               const SceneOverrides& overrides, ThreadPool& pool, const Log& log)
-      : scene_(scene), description_(description), registry_(registry), overrides_(overrides), pool_(pool), log_(log) {}
+  SceneBuilder(Scene& scene, const SceneSettings& settings, const Registry& registry, const SceneOverrides& overrides,
+               ThreadPool& pool, const Log& log)
+      : scene_(scene), description_(settings), registry_(registry), overrides_(overrides), pool_(pool), log_(log) {}
 
-  void build() {
+  /// With these shapes.
+  void build(const SceneDescription& description, SharedWork& shared) {
+    const auto resolver = build_settings();
+    check_declarations(*resolver);
+    build_lights(*resolver);
+    scene_.geometry_ = build_geometry(description, registry_, *resolver, pool_, log_);
+    build_area_lights(*resolver);
+    finish(*resolver, shared);
+  }
+
+  /// With what stands in the other, and as much of what that is made of as is the same.
+  void build(const Scene& other, SharedWork& shared) {
+    const auto resolver = build_settings();
+    scene_.geometry_ = other.geometry_;
+    const bool same_wavelengths = scene_.wavelengths_name_ == other.wavelengths_name_;
+    if (same_wavelengths) {
+      scene_.lights_ = other.lights_;
+    } else {
+      build_lights(*resolver);
+      build_area_lights(*resolver);
+    }
+    for (const auto& [place, material] : other.materials_) {
+      const ParsedPlugin& plugin = description_.materials[place].plugin;
+      if (same_wavelengths && same_plugin(plugin, other.material_plugins_.at(place)) &&
+          !is_mixture(registry_.materials.get(plugin.name, plugin.where)))
+        scene_.materials_.emplace(place, material);
+      else
+        resolver->material(place);
+    }
+    finish(*resolver, shared);
+  }
+
+ private:
+  std::unique_ptr<SceneResolver> build_settings() {
     apply_swaps(description_, overrides_.swaps, registry_, log_);
     if (const auto& text = overrides_.integrator)
       override_plugin(*text, registry_.integrators.get(text->name, {}), {}, description_.integrator);
     build_options();
-    SceneResolver resolver(description_, registry_, *scene_.wavelengths_);
-    check_declarations(resolver);
-    build_view(resolver);
-    build_lights(resolver);
-    build_surfaces(resolver);
-    scene_.materials_ = resolver.materials();
-    SharedWork shared;
+    auto resolver = std::make_unique<SceneResolver>(description_, registry_, *scene_.wavelengths_);
+    build_view(*resolver);
+    return resolver;
+  }
+
+  void finish(SceneResolver& resolver, SharedWork& shared) {
     const Preparation preparation{*scene_.wavelengths_, pool_, log_, overrides_.cache_dir, &shared};
-    for (const auto& [place, material] : scene_.materials_) material->prepare(preparation);
-    index_lights();
+    for (const auto& [place, material] : resolver.materials()) {
+      material->prepare(preparation);
+      scene_.materials_.emplace(place, material);
+    }
+    scene_.material_at_.resize(description_.materials.size());
+    for (const auto& [place, material] : scene_.materials_) {
+      scene_.material_at_[place] = material.get();
+      scene_.material_plugins_.emplace(place, description_.materials[place].plugin);
+    }
+    const Bounds b = scene_.geometry_->bounds();
+    scene_.radius_ = b.is_empty() ? 1 : length(b.max - b.min) / 2;
+    build_tiling();
     scene_.integrator_->prepare(scene_);
   }
 
- private:
   template <class Info, class... Args>
   auto make(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver, const Args&... args) {
     const Info& info = table.get(plugin.name, plugin.where);
@@ -103,8 +154,26 @@ class SceneBuilder {
     seed_ = overrides_.seed;
     if (!seed_ && p.given("seed")) seed_ = uint64_t(p.integer("seed"));
     const auto [text, where] = wavelength_choice(description_, overrides_);
+    if (p.given("period")) set_period(p);
     scene_.wavelengths_name_ = text;
     scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
+  }
+
+  void set_period(const Params& p) {
+    const std::vector<double> period = p.reals("period");
+    if (period.size() != 2) fail(p.where("period"), "\"period\" takes 2 values, {} given", period.size());
+    period_ = Vec2{float(period[0]), float(period[1])};
+    period_where_ = p.where("period");
+  }
+
+  /// Lights that stand in the scene would have to be there again too.
+  void build_tiling() {
+    if (!period_) return;
+    for (const Light* light : scene_.lights_->all)
+      if (!light->is_distant())
+        fail(period_where_, "a scene with a \"period\" takes light from outside alone: distant, infinite");
+    scene_.period_ = period_;
+    scene_.tiling_.emplace(*period_, scene_.geometry_->bounds());
   }
 
   void build_view(SceneResolver& resolver) {
@@ -118,6 +187,11 @@ class SceneBuilder {
     const int samples = scene_.sampler_->samples_per_pixel();
     scene_.samples_per_pixel_ = overrides_.quick ? std::max(1, samples / 16) : samples;
     scene_.filter_ = make(registry_.filters, description_.filter, resolver);
+    if (scene_.camera_->pixels_are_apart() && !scene_.filter_->stays_in_pixel())
+      fail(description_.filter.where.file ? description_.filter.where : description_.camera.where,
+           "the pixels of this camera have nothing to do with each other, and \"{}\" mixes them: PixelFilter \"box\" "
+           "does not",
+           description_.filter.name);
     scene_.integrator_ = make(registry_.integrators, description_.integrator, resolver);
   }
 
@@ -139,133 +213,75 @@ class SceneBuilder {
 
   void build_lights(SceneResolver& resolver) {
     for (const LightDescription& light : description_.lights)
-      scene_.owned_lights_.push_back(make(registry_.lights, light.plugin, resolver, light.world_from_light));
+      lights_->add(make(registry_.lights, light.plugin, resolver, light.world_from_light));
   }
 
-  void build_surfaces(SceneResolver& resolver) {
-    std::vector<Primitive> top = primitives(description_.shapes, resolver);
-    std::vector<std::vector<Primitive>> groups;
-    for (const ObjectDescription& object : description_.objects) groups.push_back(primitives(object.shapes, resolver));
-    std::vector<Placement> placements;
-    placements.reserve(description_.instances.size());
-    for (const InstanceDescription& instance : description_.instances) {
-      check_scale(instance);
-      placements.push_back({instance.world_from_object, instance.object});
+  /// One for each surface that gives off light. There are no lights after these.
+  void build_area_lights(SceneResolver& resolver) {
+    for (const Surface& surface : scene_.geometry_->surfaces()) {
+      lights_->of_surface.push_back(nullptr);
+      if (!surface.area_light) continue;
+      auto light =
+          make(registry_.area_lights, description_.area_lights[*surface.area_light], resolver, surface.geometry);
+      lights_->of_surface.back() = light.get();
+      lights_->add(std::move(light));
     }
-    scene_.accelerator_ = std::make_unique<Accelerator>(std::move(top), std::move(groups), placements, pool_.size());
-    const Bounds b = scene_.accelerator_->bounds();
-    scene_.radius_ = b.min.x <= b.max.x ? length(b.max - b.min) / 2 : 1;
-  }
-
-  std::vector<Primitive> primitives(const std::vector<ShapeDescription>& shapes, SceneResolver& resolver) {
-    std::vector<Primitive> result;
-    for (const ShapeDescription& shape : shapes) result.push_back(primitive(shape, resolver));
-    return result;
-  }
-
-  Primitive primitive(const ShapeDescription& shape, SceneResolver& resolver) {
-    const ShapeInfo& info = registry_.shapes.get(shape.plugin.name, shape.plugin.where);
-    const Params params(info, shape.plugin, resolver);
-    Primitive result{.geometry = info.make(params, {shape.world_from_object, shape.reverse_orientation}),
-                     .alpha = nullptr,
-                     .material_id = uint32_t(shape.material)};
-    check_extent(result.geometry, shape.plugin.where);
-    const auto alpha = params.float_texture("alpha");
-    if (!alpha->is_constant() || alpha->range().min < 1) result.alpha = alpha;
-    if (result.alpha && shape.area_light)
-      fail(params.where("alpha"), "\"alpha\" on a shape that gives off light is not supported yet");
-    const auto material = resolver.material(shape.material);
-    result.material = material.get();
-    if (shape.area_light)
-      result.light =
-          area_light(description_.area_lights[*shape.area_light], shape.plugin.where, result.geometry, resolver);
-    if (material->is_leaf()) warn_of_double_faces(result.geometry, shape.plugin.where);
-    return result;
-  }
-
-  /// Rays in the object's own space are longer or shorter by this; Embree's products of such numbers overflow or
-  /// vanish.
-  static void check_scale(const InstanceDescription& instance) {
-    constexpr Interval kScale{1e-9, 1e9};
-    for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
-      if (const double size = double(length(instance.world_from_object.vector(axis))); !kScale.contains(size))
-        fail(instance.where, "this instance scales by {:g}: {:g} to {:g} is the limit", size, kScale.min, kScale.max);
-  }
-
-  /// Embree leaves out what lies farther than 1.8e18, without a word.
-  static void check_extent(const ShapeGeometry& geometry, const Location& where) {
-    static constexpr float kFarthest = 1e18f;
-    const auto check = [&where](const Vec3& p) {
-      if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthest))
-        fail(where, "this shape reaches to ({:g}, {:g}, {:g}): {:g} units from the origin is the limit", p.x, p.y, p.z,
-             kFarthest);
-    };
-    if (const auto* mesh = std::get_if<MeshPtr>(&geometry)) {
-      std::for_each((*mesh)->p.begin(), (*mesh)->p.end(), check);
-      return;
-    }
-    const AnalyticShape& shape = *std::get<AnalyticShapePtr>(geometry);
-    for (unsigned i = 0; i < shape.count(); ++i) {
-      check(shape.bounds(i).min);
-      check(shape.bounds(i).max);
-    }
-  }
-
-  const AreaLight* area_light(const ParsedPlugin& plugin, const Location& where, const ShapeGeometry& geometry,
-                              SceneResolver& resolver) {
-    if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry); shape && !(*shape)->cannot_emit().empty())
-      fail(where, "this shape cannot give off light: {}; triangles can", (*shape)->cannot_emit());
-    auto light = make(registry_.area_lights, plugin, resolver, geometry);
-    const AreaLight* result = light.get();
-    scene_.owned_lights_.push_back(std::move(light));
-    return result;
-  }
-
-  /// Leaf meshes often carry each face twice, once for either side: a light path then meets two leaves in one.
-  void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where) {
-    const auto* mesh = std::get_if<MeshPtr>(&geometry);
-    if (!mesh) return;
-    std::set<std::array<std::array<float, 3>, 3>> faces;
-    size_t doubles = 0;
-    for (const auto& t : (*mesh)->triangles) {
-      std::array<std::array<float, 3>, 3> corners;
-      for (size_t k = 0; k < 3; ++k) corners[k] = {(*mesh)->p[t[k]].x, (*mesh)->p[t[k]].y, (*mesh)->p[t[k]].z};
-      std::sort(corners.begin(), corners.end());
-      doubles += !faces.insert(corners).second;
-    }
-    if (doubles > 0)
-      log_.warn(
-          where,
-          fmt::format("{} of {} faces of this leaf lie on one another: every ray passes two leaves there; a leaf has "
-                      "its two sides in one face",
-                      doubles, (*mesh)->triangles.size()));
-  }
-
-  void index_lights() {
-    for (const auto& light : scene_.owned_lights_) {
-      light->set_index(int(scene_.lights_.size()));
-      scene_.lights_.push_back(light.get());
-      if (const auto* environment = dynamic_cast<const EnvironmentLight*>(light.get()))
-        scene_.environment_.push_back(environment);
-    }
-    if (scene_.lights_.empty()) log_.warn({}, "the scene has no light: the image will be black");
+    if (lights_->all.empty()) log_.warn({}, "the scene has no light: the image will be black");
+    scene_.lights_ = std::move(lights_);
   }
 
   Scene& scene_;
   std::optional<uint64_t> seed_;  ///< of the command line or the scene's options; the sampler's own where there is none
-  SceneDescription description_;
+  std::optional<Vec2> period_;
+  Location period_where_;
+  SceneSettings description_;
   const Registry& registry_;
   const SceneOverrides& overrides_;
   ThreadPool& pool_;
   const Log& log_;
+  std::shared_ptr<LightTable> lights_ = std::make_shared<LightTable>();
 };
 
-const Material* Scene::material(size_t place) const {
-  const auto it = materials_.find(place);
-  return it == materials_.end() ? nullptr : it->second.get();
+void LightTable::add(std::unique_ptr<Light> light) {
+  light->set_index(int(all.size()));
+  all.push_back(light.get());
+  if (const auto* surrounding = dynamic_cast<const EnvironmentLight*>(light.get())) environment.push_back(surrounding);
+  owned.push_back(std::move(light));
 }
 
-WavelengthChoice wavelength_choice(const SceneDescription& description, const SceneOverrides& overrides) {
+bool Scene::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
+  GeometryHit at;
+  if (!meets(ray, key, at)) return false;
+  point.hit = at.hit;
+  point.material = material_at_[at.material];
+  point.light = at.surface ? lights_->of_surface[*at.surface] : nullptr;
+  point.material_id = at.material;
+  point.instance_id = at.instance;
+  return true;
+}
+
+bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest) const {
+  if (!tiling_) return geometry_->intersect(ray, key, nearest);
+  float distance = INFINITY;
+  return tiling_->march(ray, [&](const Tiling::Copy& copy) {
+    GeometryHit at;
+    Ray there = copy.ray;
+    there.t_max = std::min(there.t_max, distance - copy.distance);
+    if (!geometry_->intersect(there, key, at)) return false;
+    distance = copy.distance + at.t;
+    at.hit.p += copy.shift;
+    at.hit.extent = std::max(at.hit.extent, std::max(std::abs(at.hit.p.x), std::abs(at.hit.p.y)));
+    nearest = at;
+    return true;
+  });
+}
+
+bool Scene::occluded(const Ray& ray, uint64_t key) const {
+  if (!tiling_) return geometry_->occluded(ray, key);
+  return tiling_->march(ray, [&](const Tiling::Copy& copy) { return geometry_->occluded(copy.ray, key); });
+}
+
+WavelengthChoice wavelength_choice(const SceneSettings& description, const SceneOverrides& overrides) {
   OptionResolver resolver(description);
   const Params p(kOptions, {"Option", {}, description.options}, resolver);
   if (!overrides.wavelengths.empty()) return {overrides.wavelengths, {}};
@@ -280,20 +296,20 @@ ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, 
 }
 
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
-                                                     const SceneDescription& description, const Registry& registry) {
+                                                     const SceneSettings& description, const Registry& registry) {
   OptionResolver resolver(description);
   const ParsedPlugin plugin = wavelengths_plugin(text, where, registry);
   const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
   return info.make(Params(info, plugin, resolver));
 }
 
-FilmSettings Scene::film_settings(const SceneDescription& description, const Registry& registry) {
+FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry) {
   OptionResolver resolver(description);
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
   return info.make(Params(info, description.film, resolver));
 }
 
-std::vector<size_t> Scene::leaf_materials(const SceneDescription& description, const Registry& registry) {
+std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, const Registry& registry) {
   const auto wavelengths =
       make_wavelengths("smpte", {}, description, registry);  // what is a leaf does not hang on them
   SceneResolver resolver(description, registry, *wavelengths);
@@ -308,7 +324,13 @@ std::vector<size_t> Scene::leaf_materials(const SceneDescription& description, c
 
 Scene::Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
              ThreadPool& pool, const Log& log) {
-  SceneBuilder(*this, description, registry, overrides, pool, log).build();
+  SharedWork shared;
+  SceneBuilder(*this, description, registry, overrides, pool, log).build(description, shared);
+}
+
+Scene::Scene(const Scene& other, const SceneSettings& settings, const Registry& registry,
+             const SceneOverrides& overrides, ThreadPool& pool, const Log& log, SharedWork& shared) {
+  SceneBuilder(*this, settings, registry, overrides, pool, log).build(other, shared);
 }
 
 Scene::~Scene() = default;

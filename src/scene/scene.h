@@ -7,11 +7,12 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/world.h"
-#include "scene/accelerator.h"
 #include "scene/description.h"
+#include "scene/geometry.h"
 #include "scene/plugin_text.h"
 #include "scene/registry.h"
 #include "scene/swap.h"
+#include "scene/tiling.h"
 
 namespace frond {
 
@@ -31,36 +32,49 @@ struct WavelengthChoice {
   std::string text;  ///< a PluginText
   Location where;
 };
-WavelengthChoice wavelength_choice(const SceneDescription& description, const SceneOverrides& overrides);
+WavelengthChoice wavelength_choice(const SceneSettings& description, const SceneOverrides& overrides);
 
 /// A strategy, which a PluginText names, with its parameters as a scene file has them. Throws InputError at `where`.
 ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry);
 
 /// The strategy that a PluginText names, of the command line or else the scene's options. Throws InputError at `where`.
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
-                                                     const SceneDescription& description, const Registry& registry);
+                                                     const SceneSettings& description, const Registry& registry);
 
-/// A scene ready to be rendered.
+/// What gives off light in a scene.
+struct LightTable {
+  std::vector<std::unique_ptr<Light>> owned;
+  std::vector<const Light*> all;
+  std::vector<const EnvironmentLight*> environment;  ///< those that surround the scene
+  std::vector<const AreaLight*> of_surface;          ///< by Geometry::surfaces; nullptr: it gives off none
+
+  void add(std::unique_ptr<Light> light);
+};
+
+/// A scene ready to be rendered: a geometry, and what the things in it are made of.
 class Scene final : public World {
  public:
   /// What the scene says of its image, at its full size; throws InputError.
-  static FilmSettings film_settings(const SceneDescription& description, const Registry& registry);
+  static FilmSettings film_settings(const SceneSettings& description, const Registry& registry);
 
   /// Which of the description's materials are leaves (Material::is_leaf), by place. A mixture of others is none: its
   /// parts stand for themselves. Throws InputError.
-  static std::vector<size_t> leaf_materials(const SceneDescription& description, const Registry& registry);
+  static std::vector<size_t> leaf_materials(const SceneSettings& description, const Registry& registry);
 
   /// Throws InputError.
   Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
         ThreadPool& pool, const Log& log);
+  /// What stands in `other`, with other materials, wavelengths, integrator or view: the geometry is the same one, and
+  /// so are lights and materials as far as they do not differ. `settings` is the other's but for what stands in the
+  /// place of its materials. `shared` holds what such scenes have in common. Throws InputError.
+  Scene(const Scene& other, const SceneSettings& settings, const Registry& registry, const SceneOverrides& overrides,
+        ThreadPool& pool, const Log& log, SharedWork& shared);
   ~Scene() override;
 
-  bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override {
-    return accelerator_->intersect(ray, key, point);
-  }
-  bool occluded(const Ray& ray, uint64_t key) const override { return accelerator_->occluded(ray, key); }
-  std::span<const Light* const> lights() const override { return lights_; }
-  std::span<const EnvironmentLight* const> environment() const override { return environment_; }
+  bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override;
+  bool occluded(const Ray& ray, uint64_t key) const override;
+  std::span<const Light* const> lights() const override { return lights_->all; }
+  std::span<const EnvironmentLight* const> environment() const override { return lights_->environment; }
   float radius() const override { return radius_; }
 
   const WavelengthStrategy& wavelengths() const override { return *wavelengths_; }
@@ -71,15 +85,19 @@ class Scene final : public World {
   const Sampler& sampler() const { return *sampler_; }
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
-  const Accelerator& accelerator() const { return *accelerator_; }
+  const Geometry& geometry() const { return *geometry_; }
+  /// Along x and y, after which what stands in the scene is there again; empty: it is there once.
+  std::optional<Vec2> period() const { return period_; }
   /// That of the description at this place; nullptr where nothing is made of it.
-  const Material* material(size_t place) const;
+  const Material* material(size_t place) const { return material_at_[place]; }
   int samples_per_pixel() const { return samples_per_pixel_; }
   /// Of all random numbers.
   uint64_t seed() const { return sampler_->seed(); }
 
  private:
   friend class SceneBuilder;
+
+  bool meets(const Ray& ray, uint64_t key, GeometryHit& nearest) const;
 
   std::string wavelengths_name_;
   std::unique_ptr<WavelengthStrategy> wavelengths_;
@@ -89,10 +107,12 @@ class Scene final : public World {
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<Integrator> integrator_;
   std::map<size_t, std::shared_ptr<Material>> materials_;  ///< by their places in the description
-  std::vector<std::unique_ptr<Light>> owned_lights_;
-  std::vector<const Light*> lights_;
-  std::vector<const EnvironmentLight*> environment_;
-  std::unique_ptr<Accelerator> accelerator_;
+  std::map<size_t, ParsedPlugin> material_plugins_;        ///< what they were made from
+  std::vector<const Material*> material_at_;               ///< `materials_` for hits; nullptr where nothing is made
+  std::shared_ptr<const LightTable> lights_;
+  std::shared_ptr<const Geometry> geometry_;
+  std::optional<Vec2> period_;
+  std::optional<Tiling> tiling_;
   float radius_ = 0;
   int samples_per_pixel_ = 0;
 };

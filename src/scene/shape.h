@@ -1,7 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -15,6 +17,8 @@ namespace frond {
 struct Bounds {
   Vec3 min{INFINITY, INFINITY, INFINITY}, max{-INFINITY, -INFINITY, -INFINITY};
   void add(const Vec3& p);
+  bool is_empty() const { return !(min.x <= max.x); }
+  std::vector<Vec3> corners() const;
 };
 
 /// A point of a surface: unit geometric normal on the front, and the surface's (u, v).
@@ -30,6 +34,8 @@ class AnalyticShape {
   virtual ~AnalyticShape() = default;
   virtual unsigned count() const { return 1; }
   virtual Bounds bounds(unsigned primitive) const = 0;
+  /// Points around a primitive: it lies within their convex hull. The corners of its bounds, or some that lie closer.
+  virtual std::vector<Vec3> outline(unsigned primitive) const { return bounds(primitive).corners(); }
   /// The nearest point with t_min < t < ray.t_max.
   virtual std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray, float t_min) const = 0;
   /// Uniform over the area.
@@ -42,8 +48,17 @@ class AnalyticShape {
 using MeshPtr = std::shared_ptr<const TriangleMesh>;
 using AnalyticShapePtr = std::shared_ptr<const AnalyticShape>;
 
-/// What a shape plugin makes: triangles for Embree's own routines, or a surface with its own.
+/// A surface: triangles for Embree's own routines, or one with its own.
 using ShapeGeometry = std::variant<MeshPtr, AnalyticShapePtr>;
+
+/// Copies of an object of the scene.
+struct ObjectCopies {
+  std::string object;
+  std::filesystem::path table;  ///< of an InstanceTable
+};
+
+/// What a shape plugin makes.
+using MadeShape = std::variant<ShapeGeometry, ObjectCopies>;
 
 struct ShapePlacement {
   Transform to_scene;        ///< from the shape's space to that of the scene, or of the object it is defined in
@@ -51,7 +66,7 @@ struct ShapePlacement {
 };
 
 struct ShapeInfo : PluginInfo {
-  ShapeGeometry (*make)(const Params&, const ShapePlacement&);
+  MadeShape (*make)(const Params&, const ShapePlacement&);
 };
 
 /// The parameter that every shape has besides its own.

@@ -17,7 +17,7 @@ void leave_out_unknown(const MaterialInfo& info, ParsedPlugin& plugin, const Log
   });
 }
 
-void apply_swap_to_leaves(SceneDescription& description, const MaterialSwap& swap, const Registry& registry,
+void apply_swap_to_leaves(SceneSettings& description, const MaterialSwap& swap, const Registry& registry,
                           const Log& log) {
   const auto leaves = Scene::leaf_materials(description, registry);
   if (leaves.empty()) fail(swap.where, "swap: none of the scene's materials is a leaf");
@@ -34,7 +34,7 @@ void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& r
   plugin.name = to.name;
 }
 
-void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
+void apply_swaps(SceneSettings& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
                  const Log& log) {
   for (const MaterialSwap& swap : swaps) {
     if (swap.from == "*") {

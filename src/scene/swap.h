@@ -23,7 +23,7 @@ void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& r
                    const Location& where = {});
 
 /// In this order, each on what the last one left. Throws InputError where the scene has no such material.
-void apply_swaps(SceneDescription& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
+void apply_swaps(SceneSettings& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
                  const Log& log);
 
 }  // namespace frond

@@ -8,7 +8,7 @@ namespace {
 class ScaleFloat final : public FloatTexture {
  public:
   explicit ScaleFloat(const Params& p) : tex_(p.float_texture("tex")), scale_(p.float_texture("scale")) {}
-  float evaluate(Vec2 uv) const override { return tex_->evaluate(uv) * scale_->evaluate(uv); }
+  float evaluate(const TexturePoint& at) const override { return tex_->evaluate(at) * scale_->evaluate(at); }
   Interval range() const override {
     const Interval a = tex_->range(), b = scale_->range();
     const auto corners = {a.min * b.min, a.min * b.max, a.max * b.min, a.max * b.max};
@@ -26,8 +26,8 @@ class ScaleSpectrum final : public SpectrumTexture {
       fail(p.where("scale"), "\"scale\" takes \"tex\", up to {}, out of [0, 1]: it is {} to {}", max_of_tex(), r.min,
            r.max);
   }
-  SampledSpectrum evaluate(Vec2 uv, const SampledWavelengths& lambda) const override {
-    return tex_->evaluate(uv, lambda) * scale_->evaluate(uv);
+  SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
+    return tex_->evaluate(at, lambda) * scale_->evaluate(at);
   }
   Interval range_nm() const override { return tex_->range_nm(); }
   float max_value() const override { return max_of_tex() * float(scale_->range().max); }
@@ -42,9 +42,9 @@ class MixFloat final : public FloatTexture {
  public:
   explicit MixFloat(const Params& p)
       : a_(p.float_texture("tex1")), b_(p.float_texture("tex2")), amount_(p.float_texture("amount")) {}
-  float evaluate(Vec2 uv) const override {
-    const float t = amount_->evaluate(uv);
-    return (1 - t) * a_->evaluate(uv) + t * b_->evaluate(uv);
+  float evaluate(const TexturePoint& at) const override {
+    const float t = amount_->evaluate(at);
+    return (1 - t) * a_->evaluate(at) + t * b_->evaluate(at);
   }
   Interval range() const override {
     const Interval a = a_->range(), b = b_->range(), t = amount_->range();
@@ -64,9 +64,9 @@ class MixSpectrum final : public SpectrumTexture {
     if (const Interval r = amount_->range(); r.min < 0 || r.max > 1)
       fail(p.where("amount"), "\"amount\" is {} to {}, outside 0 to 1", r.min, r.max);
   }
-  SampledSpectrum evaluate(Vec2 uv, const SampledWavelengths& lambda) const override {
-    const float t = amount_->evaluate(uv);
-    return (1 - t) * a_->evaluate(uv, lambda) + t * b_->evaluate(uv, lambda);
+  SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
+    const float t = amount_->evaluate(at);
+    return (1 - t) * a_->evaluate(at, lambda) + t * b_->evaluate(at, lambda);
   }
   Interval range_nm() const override {
     const Interval a = a_->range_nm(), b = b_->range_nm();

@@ -4,6 +4,7 @@
 
 #include "spectra/cie.h"
 #include "spectra/illuminants.h"
+#include "spectra/solar.h"
 
 namespace frond {
 namespace {
@@ -12,7 +13,12 @@ struct Named {
   std::string_view name;
   SpectrumPtr (*get)();
 };
-constexpr Named kNamed[] = {{"stdillum-A", illuminant_a}, {"stdillum-D65", d65}, {"stdillum-E", illuminant_e}};
+constexpr Named kNamed[] = {{"solar-am0", solar_am0},
+                            {"solar-am1.5-direct", solar_am15_direct},
+                            {"solar-am1.5-global", solar_am15_global},
+                            {"stdillum-A", illuminant_a},
+                            {"stdillum-D65", d65},
+                            {"stdillum-E", illuminant_e}};
 
 /// Families of names that pbrt-v4 has built in.
 bool is_known_to_pbrt(std::string_view name) {

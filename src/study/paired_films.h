@@ -13,27 +13,23 @@ struct RenderCost {
 };
 
 /// The description's sampler, with a seed of its own.
-std::unique_ptr<Sampler> make_sampler(const SceneDescription& description, const Registry& registry,
+std::unique_ptr<Sampler> make_sampler(const SceneSettings& description, const Registry& registry,
                                       const WavelengthStrategy& wavelengths, uint64_t seed);
 
-/// What is rendered, and the scene that has the camera and all else that is no part of a world.
-struct RenderedWorld {
-  const World& world;
-  const WavelengthStrategy& wavelengths;
-  const Scene& view;
-};
+/// The unit of films of a scene (FilmFormat).
+int film_exponent(const Scene& scene);
 
 /// Two renders of one picture with seeds of their own, which tell noise from bias. They can be continued to more
 /// samples at any time, and then hold the very sums of a render that had all of them at once.
 class PairedFilms {
  public:
-  /// By the description's sampler; films of `rendered`'s wavelengths, with their colours as they are. `places`: as in a
-  /// RenderJob.
-  PairedFilms(const FilmSettings& film, std::array<uint64_t, 2> seeds, const SceneDescription& description,
-              const Registry& registry, const RenderedWorld& rendered, std::vector<PixelPlace> places = {});
+  /// By the description's sampler; films of the scene's wavelengths, with their colours as they are, in units of
+  /// 2^exponent. `places`: as in a RenderJob.
+  PairedFilms(const FilmSettings& film, int exponent, std::array<uint64_t, 2> seeds, const SceneSettings& description,
+              const Registry& registry, const Scene& scene, std::vector<PixelPlace> places = {});
 
-  /// Up to so many samples a pixel; nothing where there are as many. `rendered` is that of the constructor.
-  void advance_to(uint64_t samples, const RenderedWorld& rendered, const ThreadPool& pool, Progress* progress);
+  /// Up to so many samples a pixel; nothing where there are as many. `scene` is that of the constructor.
+  void advance_to(uint64_t samples, const Scene& scene, const ThreadPool& pool, Progress* progress);
   /// Goes on from what was kept of these two renders.
   void restore(std::array<Film, 2> films, uint64_t samples, const RenderCost& cost);
 
@@ -42,7 +38,7 @@ class PairedFilms {
   const Film& film(size_t half) const { return films_[half]; }
 
  private:
-  RenderJob job(size_t half, const RenderedWorld& rendered) const;
+  RenderJob job(size_t half, const Scene& scene) const;
 
   std::array<uint64_t, 2> seeds_;
   std::array<std::unique_ptr<Sampler>, 2> samplers_;

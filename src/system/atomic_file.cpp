@@ -26,46 +26,38 @@ fs::path follow_links(const fs::path& path) {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-/// A new file in the folder of the one that it may become; removed unless it does.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& target) : target_(target) {
-    for (int attempt = 0; descriptor_ < 0; ++attempt) {
-      path_ = folder_of(target) / fmt::format(".frond-{}-{}.tmp", getpid(), attempt);
-      descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ < 0 && (errno != EEXIST || attempt == 1000)) fail_to_write(target_, errno);
-    }
-  }
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-    if (!path_.empty()) unlink(path_.c_str());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  void write(std::span<const unsigned char> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) fail_to_write(target_, errno);
-      bytes = bytes.subspan(static_cast<size_t>(n));
-    }
-  }
-  void rename_to_target() {
-    if (fsync(descriptor_) != 0) fail_to_write(target_, errno);
-    const int descriptor = descriptor_;
-    descriptor_ = -1;
-    if (close(descriptor) != 0) fail_to_write(target_, errno);
-    if (rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
-    path_.clear();
-  }
-
- private:
-  fs::path target_, path_;
-  int descriptor_ = -1;
-};
-
 }  // namespace
+
+NewFile::NewFile(const fs::path& path) : target_(follow_links(path)) {
+  for (int attempt = 0; descriptor_ < 0; ++attempt) {
+    path_ = folder_of(target_) / fmt::format(".frond-{}-{}.tmp", getpid(), attempt);
+    descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && (errno != EEXIST || attempt == 1000)) fail_to_write(target_, errno);
+  }
+}
+
+NewFile::~NewFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+  if (!path_.empty()) unlink(path_.c_str());
+}
+
+void NewFile::write(std::span<const unsigned char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail_to_write(target_, errno);
+    bytes = bytes.subspan(static_cast<size_t>(n));
+  }
+}
+
+void NewFile::finish() {
+  if (fsync(descriptor_) != 0) fail_to_write(target_, errno);
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  if (close(descriptor) != 0) fail_to_write(target_, errno);
+  if (rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
+  path_.clear();
+}
 
 void check_replaceable(const fs::path& path) {
   const fs::path target = follow_links(path), folder = folder_of(target);
@@ -77,14 +69,14 @@ void check_replaceable(const fs::path& path) {
     if (!fs::is_regular_file(target, error)) fail({}, "cannot write \"{}\": it is no regular file", path.string());
     if (access(target.c_str(), W_OK) != 0) fail_to_write(path, errno);
   }
-  const TemporaryFile probe(target);
+  const NewFile probe(target);
 }
 
 void replace_file(const fs::path& path, std::span<const unsigned char> bytes) {
   check_replaceable(path);
-  TemporaryFile file(follow_links(path));
+  NewFile file(path);
   file.write(bytes);
-  file.rename_to_target();
+  file.finish();
 }
 
 }  // namespace frond

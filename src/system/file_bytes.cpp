@@ -1,5 +1,7 @@
 #include "system/file_bytes.h"
 
+#include <sys/mman.h>
+
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -73,6 +75,22 @@ std::string read_standard_input() {
   std::string bytes;
   append_rest(stdin, {"standard input", {}, {}}, bytes);
   return bytes;
+}
+
+MappedFile::MappedFile(const fs::path& path, const Location& where, std::string_view what) {
+  const Source source{path.string(), where, what};
+  const File file = open(source);
+  std::error_code error;
+  size_ = fs::file_size(path, error);
+  if (error) source.refuse("read", error.value());
+  if (size_ == 0) return;
+  void* mapped = mmap(nullptr, size_, PROT_READ, MAP_SHARED, fileno(file.get()), 0);
+  if (mapped == MAP_FAILED) source.refuse("map", errno);
+  data_ = static_cast<const std::byte*>(mapped);
+}
+
+MappedFile::~MappedFile() {
+  if (data_) munmap(const_cast<std::byte*>(data_), size_);
 }
 
 }  // namespace frond

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -13,5 +15,22 @@ namespace frond {
 std::string read_file_bytes(const std::filesystem::path& path, const Location& where, std::string_view what = {});
 /// The whole of standard input.
 std::string read_standard_input();
+
+/// A file's bytes, mapped into memory: read when they are looked at, and dropped where memory is short. The file must
+/// not be cut short meanwhile.
+class MappedFile {
+ public:
+  /// Throws InputError as read_file_bytes.
+  MappedFile(const std::filesystem::path& path, const Location& where, std::string_view what = {});
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  std::span<const std::byte> bytes() const { return {data_, size_}; }
+
+ private:
+  const std::byte* data_ = nullptr;
+  size_t size_ = 0;
+};
 
 }  // namespace frond

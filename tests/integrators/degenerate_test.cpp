@@ -112,7 +112,7 @@ TEST(Degenerate, WhatEmbreeWouldLeaveOutIsRefused) {
   expect_error("WorldBegin\nShape \"sphere\" \"float radius\" 1e20", "test.pbrt:2:7: this shape reaches to");
   expect_error("LookAt 0 -3e15 2 0 0 0 0 0 1\nCamera \"perspective\"\nWorldBegin", "test.pbrt:2:8: this camera");
   expect_error("WorldBegin ObjectBegin \"o\" ObjectEnd Scale 1e-12 1 1\nObjectInstance \"o\"",
-               "test.pbrt:2:16: this instance scales by 1e-12");
+               "test.pbrt:2:16: this copy is not possible: it scales by 1e-12");
   expect_error("Camera \"perspective\" \"float lensradius\" 1e30\nWorldBegin", "test.pbrt:1:8: this camera");
 }
 

@@ -6,7 +6,6 @@
 #include "image/image_file.h"
 #include "render/plugins.h"
 #include "scene/parser.h"
-#include "scene/scene_variant.h"
 #include "study/choose/choice_report.h"
 #include "tests/cli/command.h"
 #include "tests/planted/planted.h"
@@ -198,12 +197,12 @@ TEST_F(Choosing, AVariantRendersAsTheSceneItStandsFor) {
   const SceneOverrides overrides = with_smpte();
   const Scene scene(open, registry, overrides, pool, quiet), direct(closed, registry, overrides, pool, quiet);
   SharedWork shared;
-  const SceneVariant variant(scene, closed, registry, overrides, pool, quiet, shared);
+  const Scene variant(scene, closed, registry, overrides, pool, quiet, shared);
+  EXPECT_EQ(&variant.geometry(), &scene.geometry());
   const FilmSettings film = Scene::film_settings(open, registry);
-  const RenderedWorld first{variant, variant.wavelengths(), scene}, second{direct, direct.wavelengths(), scene};
-  PairedFilms a(film, {1, 2}, open, registry, first), b(film, {1, 2}, open, registry, second);
-  a.advance_to(2, first, pool, nullptr);
-  b.advance_to(2, second, pool, nullptr);
+  PairedFilms a(film, 0, {1, 2}, open, registry, variant), b(film, 0, {1, 2}, open, registry, direct);
+  a.advance_to(2, variant, pool, nullptr);
+  b.advance_to(2, direct, pool, nullptr);
   ASSERT_EQ(a.film(0), b.film(0));
 }
 

@@ -10,7 +10,7 @@ namespace frond::test {
 class Ramp final : public FloatTexture {
  public:
   Ramp(float low, float high) : low_(low), high_(high) {}
-  float evaluate(Vec2 uv) const override { return low_ + uv.x * (high_ - low_); }
+  float evaluate(const TexturePoint& at) const override { return low_ + at.uv.x * (high_ - low_); }
   Interval range() const override { return {double(std::min(low_, high_)), double(std::max(low_, high_))}; }
 
  private:

@@ -37,7 +37,7 @@ DepthMap::DepthMap(const TissueParams& constant, const std::vector<Varying>& var
   }
 }
 
-std::array<double, kLanes> DepthMap::at(Vec2 uv, const SampledWavelengths& lambda) const {
+std::array<double, kLanes> DepthMap::at(const TexturePoint& point, const SampledWavelengths& lambda) const {
   std::array<WavelengthGrid::Cell, kLanes> cells;
   std::array<double, kLanes> depth{};
   const auto lanes = static_cast<size_t>(lambda.count);
@@ -46,10 +46,10 @@ std::array<double, kLanes> DepthMap::at(Vec2 uv, const SampledWavelengths& lambd
     depth[i] = between(base_, cells[i]);
   }
   for (const Curve& curve : curves_) {
-    const auto concentration = double(curve.concentration->evaluate(uv));
+    const auto concentration = double(curve.concentration->evaluate(point));
     for (size_t i = 0; i < lanes; ++i) depth[i] += concentration * between(curve.absorption, cells[i]);
   }
-  const double way = thickness_.at(uv) * fraction_.at(uv);
+  const double way = thickness_.at(point) * fraction_.at(point);
   for (double& d : depth) d *= way;
   return depth;
 }

@@ -26,7 +26,7 @@ class DepthMap {
   bool is_constant() const { return curves_.empty() && !thickness_.texture && !fraction_.texture; }
 
   /// Lane by lane, in every lane in use.
-  std::array<double, kLanes> at(Vec2 uv, const SampledWavelengths& lambda) const;
+  std::array<double, kLanes> at(const TexturePoint& point, const SampledWavelengths& lambda) const;
   /// Bounds of what `at` returns at a wavelength.
   Interval range(double lambda_nm) const;
 
@@ -34,7 +34,7 @@ class DepthMap {
   struct Factor {
     double constant;
     std::shared_ptr<const FloatTexture> texture;  ///< nullptr: constant
-    double at(Vec2 uv) const { return texture ? double(texture->evaluate(uv)) : constant; }
+    double at(const TexturePoint& point) const { return texture ? double(texture->evaluate(point)) : constant; }
     Interval range() const { return texture ? texture->range() : Interval{constant, constant}; }
   };
   /// A concentration that varies, and the absorption of 1 kg/m^3 of it at kAbsorptionGrid.

@@ -300,7 +300,7 @@ std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& lad
   Chooser chooser(pilot, subject);
   const Configuration answers = chooser.run();
   return Chosen{chooser.choice(), answered(subject.description, subject.registry, pilot.questions(), answers),
-                wavelengths_of(pilot.questions(), answers, subject.overrides.wavelengths)};
+                wavelengths_of(pilot.questions(), answers, subject.overrides.wavelengths), pilot.scene()};
 }
 
 }  // namespace frond::choose

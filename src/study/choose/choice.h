@@ -82,6 +82,7 @@ struct Chosen {
   Choice choice;
   std::vector<MaterialDescription> materials;  ///< in place of the description's
   std::string wavelengths;                     ///< in place of the command line's
+  std::shared_ptr<const Scene> scene;          ///< in which what stands in the scene stands already
 };
 
 /// The cheapest answers to what the scene leaves open that meet its leaves' "maxrms", the smallest of them. Nothing

@@ -5,7 +5,6 @@
 #include <unordered_set>
 
 #include "core/random.h"
-#include "scene/scene_variant.h"
 #include "study/choose/pilot_pixels.h"
 #include "system/cpu_clock.h"
 
@@ -44,17 +43,22 @@ MeanSquare noise_of(const std::array<std::vector<float>, 2>& halves) {
 }  // namespace
 
 struct Pilot::Render {
-  std::unique_ptr<SceneVariant> world;
+  std::unique_ptr<Scene> scene;
   PairedFilms films;
   std::vector<ConvergencePoint> noise = {};
 };
 
 Pilot::Pilot(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool)
-    : subject_(subject), pool_(pool), start_cpu_seconds_(cpu_seconds()), variant_(without_shapes(subject.description)) {
+    : subject_(subject), pool_(pool), start_cpu_seconds_(cpu_seconds()), variant_(subject.description) {
   const bool named = !subject.overrides.wavelengths.empty() || names_wavelengths(subject.description);
   SceneOverrides overrides = subject.overrides;
   if (!named) overrides.wavelengths = ladder.wavelengths.back().name;
-  scene_ = std::make_unique<Scene>(subject.description, subject.registry, overrides, pool, quiet_);
+  if (subject.other)
+    scene_ = std::make_shared<const Scene>(*subject.other, subject.description, subject.registry, overrides, pool,
+                                           quiet_, shared_);
+  else
+    scene_ = std::make_shared<const Scene>(subject.description, subject.registry, overrides, pool, quiet_);
+  exponent_ = film_exponent(*scene_);
   if (!named) questions_.push_back({"wavelengths", {}, 0, ladder.wavelengths});
   const auto leaves = open_leaves(subject.description, subject.registry, scene_->wavelengths(), ladder);
   questions_.insert(questions_.end(), leaves.begin(), leaves.end());
@@ -79,11 +83,11 @@ Pilot::Render Pilot::make(const Configuration& answers) {
   SceneOverrides overrides = subject_.overrides;
   overrides.wavelengths = wavelengths_of(questions_, answers, overrides.wavelengths);
   variant_.materials = answered(subject_.description, subject_.registry, questions_, answers);
-  auto world = std::make_unique<SceneVariant>(*scene_, variant_, subject_.registry, overrides, pool_, quiet_, shared_);
+  auto scene = std::make_unique<Scene>(*scene_, variant_, subject_.registry, overrides, pool_, quiet_, shared_);
   const auto seed = [this](SeedUse use) { return hash_key(scene_->seed(), uint64_t{use}); };
-  PairedFilms films(row_of(subject_.film, pixels_.size()), {seed(kFirstHalf), seed(kSecondHalf)}, variant_,
-                    subject_.registry, {*world, world->wavelengths(), *scene_}, pixels_);
-  return {std::move(world), std::move(films)};
+  PairedFilms films(row_of(subject_.film, pixels_.size()), exponent_, {seed(kFirstHalf), seed(kSecondHalf)}, variant_,
+                    subject_.registry, *scene, pixels_);
+  return {std::move(scene), std::move(films)};
 }
 
 void Pilot::render(const Configuration& answers, uint64_t samples) {
@@ -92,7 +96,7 @@ void Pilot::render(const Configuration& answers, uint64_t samples) {
   Render& r = found->second;
   while (r.films.samples() < samples) {
     const uint64_t next = std::min(samples, std::bit_floor(r.films.samples()) * 2 + (r.films.samples() == 0));
-    r.films.advance_to(next, {*r.world, r.world->wavelengths(), *scene_}, pool_, nullptr);
+    r.films.advance_to(next, *r.scene, pool_, nullptr);
     r.noise.push_back({double(next), 0, noise_of(pictures(r))});
   }
 }
@@ -104,7 +108,7 @@ Pilot::Halves Pilot::pictures(const Render& render) const {
   for (size_t i = 0; i < 2; ++i) {
     for (int x = 0; x < int(pixels_.size()); ++x)
       for (const double value : render.films.film(i).mean(x, 0)) halves[i].push_back(float(value));
-    colors_.convert(halves[i], render.world->wavelengths().film_space(), "linear SMPTE-C");
+    colors_.convert(halves[i], render.scene->wavelengths().film_space(), "linear SMPTE-C");
   }
   return halves;
 }

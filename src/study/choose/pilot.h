@@ -17,7 +17,8 @@ struct ChoiceTask {
   const Registry& registry;
   const SceneOverrides& overrides;  ///< without swaps: the description has them
   FilmSettings film;
-  uint64_t samples;  ///< a pixel, of the render that the choice is for; 0: the scene's
+  uint64_t samples;              ///< a pixel, of the render that the choice is for; 0: the scene's
+  const Scene* other = nullptr;  ///< a scene in which the same stands, where there is one: that is not made again
 };
 
 /// What a pilot has cost.
@@ -38,6 +39,8 @@ class Pilot {
   const std::vector<OpenChoice>& questions() const { return questions_; }
   /// Wavelengths that have no colours cannot be compared.
   bool has_colors() const;
+  /// As it is with what counts as right.
+  const std::shared_ptr<const Scene>& scene() const { return scene_; }
   /// A pixel, of the render that the choice is for.
   uint64_t scene_samples() const;
   /// The last option of every question.
@@ -66,11 +69,13 @@ class Pilot {
   ChoiceTask subject_;
   ThreadPool& pool_;
   double start_cpu_seconds_;
-  SceneDescription variant_;         ///< the subject's without its shapes, as it was rendered last
+  SceneSettings variant_;            ///< the subject's, as it was rendered last
   const Log& quiet_ = silent_log();  ///< what there is to say the final render says
   SharedWork shared_;
   ColorManager colors_;
-  std::unique_ptr<Scene> scene_;  ///< with the wavelengths that count as right
+  std::shared_ptr<const Scene>
+      scene_;         ///< with the wavelengths that count as right; the renders share what stands in it
+  int exponent_ = 0;  ///< its films': those of leaves that do not differ have the same bits
   std::vector<OpenChoice> questions_;
   std::vector<PixelPlace> pixels_;
   std::map<Configuration, Render> renders_;

@@ -26,7 +26,7 @@ bool same_leaf(const ParsedPlugin& a, const ParsedPlugin& b) {
 }
 
 /// With the rungs that the leaf can take. Leaves the description as it is.
-void add_options(OpenChoice& question, SceneDescription& description, const Registry& registry,
+void add_options(OpenChoice& question, SceneSettings& description, const Registry& registry,
                  const WavelengthStrategy& wavelengths, const std::vector<ModelOption>& models) {
   const size_t place = question.materials.front();
   ParsedPlugin& plugin = description.materials[place].plugin;
@@ -46,17 +46,15 @@ void add_options(OpenChoice& question, SceneDescription& description, const Regi
 
 }  // namespace
 
-bool has_open_leaf(const SceneDescription& description) { return std::ranges::any_of(description.materials, is_open); }
+bool has_open_leaf(const SceneSettings& description) { return std::ranges::any_of(description.materials, is_open); }
 
-SceneDescription without_shapes(const SceneDescription& description) { return {description, {}, {}, {}, {}, {}}; }
+bool names_wavelengths(const SceneSettings& description) { return find(description.options, "wavelengths"); }
 
-bool names_wavelengths(const SceneDescription& description) { return find(description.options, "wavelengths"); }
-
-std::vector<OpenChoice> open_leaves(const SceneDescription& description, const Registry& registry,
+std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Registry& registry,
                                     const WavelengthStrategy& wavelengths, const Ladder& ladder) {
   std::vector<OpenChoice> leaves;
   SceneResolver resolver(description, registry, wavelengths);
-  SceneDescription tried = without_shapes(description);
+  SceneSettings tried = description;
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
     if (!is_open(m)) continue;
@@ -76,7 +74,7 @@ std::vector<OpenChoice> open_leaves(const SceneDescription& description, const R
   return leaves;
 }
 
-std::vector<MaterialDescription> answered(const SceneDescription& description, const Registry& registry,
+std::vector<MaterialDescription> answered(const SceneSettings& description, const Registry& registry,
                                           const std::vector<OpenChoice>& questions, const Configuration& answers) {
   std::vector<MaterialDescription> result = description.materials;
   for (size_t q = 0; q < questions.size(); ++q)

@@ -27,19 +27,17 @@ struct OpenChoice {
 /// An answer to each question: the place of an option.
 using Configuration = std::vector<size_t>;
 
-bool has_open_leaf(const SceneDescription& description);
-/// All but what stands in the scene, shapes and lights, which may be large: enough to make its materials.
-SceneDescription without_shapes(const SceneDescription& description);
+bool has_open_leaf(const SceneSettings& description);
 /// Whether the scene says which wavelengths it wants.
-bool names_wavelengths(const SceneDescription& description);
+bool names_wavelengths(const SceneSettings& description);
 
 /// Leaf by leaf; those without a name that are alike are one. Which models a leaf can take does not hang on the
 /// wavelengths: any will do. Throws InputError.
-std::vector<OpenChoice> open_leaves(const SceneDescription& description, const Registry& registry,
+std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Registry& registry,
                                     const WavelengthStrategy& wavelengths, const Ladder& ladder);
 
 /// The description's materials with these answers written into the leaves.
-std::vector<MaterialDescription> answered(const SceneDescription& description, const Registry& registry,
+std::vector<MaterialDescription> answered(const SceneSettings& description, const Registry& registry,
                                           const std::vector<OpenChoice>& questions, const Configuration& answers);
 
 /// What was answered to the question of wavelengths, as a PluginText; `otherwise` where that is no question.

@@ -14,7 +14,7 @@ class PairedRender {
 
   /// Up to so many samples a pixel; nothing where there are as many.
   void advance_to(uint64_t samples, const ThreadPool& pool, Progress* progress) {
-    films_.advance_to(samples, {*scene_, scene_->wavelengths(), *scene_}, pool, progress);
+    films_.advance_to(samples, *scene_, pool, progress);
   }
   /// Goes on from what was kept of these two renders.
   void restore(std::array<Film, 2> films, uint64_t samples, const RenderCost& cost) {
@@ -30,7 +30,7 @@ class PairedRender {
 
  private:
   double setup_cpu_seconds_;
-  std::unique_ptr<Scene> scene_;
+  std::shared_ptr<const Scene> scene_;
   PairedFilms films_;
 };
 

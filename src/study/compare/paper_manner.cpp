@@ -68,7 +68,7 @@ class CutoffRenders {
   const ThreadPool& pool_;
   uint64_t samples_;
   PluginText integrator_;
-  std::unique_ptr<Scene> scene_;
+  std::shared_ptr<const Scene> scene_;
   std::unique_ptr<Sampler> sampler_;
 };
 

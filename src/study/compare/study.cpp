@@ -37,13 +37,13 @@ void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
 std::string name_of(const MaterialDescription& m) { return m.name.empty() ? m.plugin.name : m.name; }
 
 /// Candidates answer what a leaf leaves open.
-void drop_requests(SceneDescription& description) {
+void drop_requests(SceneSettings& description) {
   for (MaterialDescription& m : description.materials)
     if (m.plugin.name == "leaf")
       std::erase_if(m.plugin.params, [](const ParsedParam& p) { return p.name == "maxrms" || p.name == "model"; });
 }
 
-std::vector<std::string> leaf_names(const SceneDescription& description, const Registry& registry) {
+std::vector<std::string> leaf_names(const SceneSettings& description, const Registry& registry) {
   std::vector<std::string> names;
   for (const size_t i : Scene::leaf_materials(description, registry))
     if (const std::string name = name_of(description.materials[i]); std::ranges::find(names, name) == names.end())
@@ -78,8 +78,11 @@ SceneOverrides Study::overrides_of(const Candidate& candidate) const {
   return overrides;
 }
 
-std::unique_ptr<Scene> Study::scene(const Candidate& candidate) const {
-  return std::make_unique<Scene>(description_, registry_, overrides_of(candidate), pool_, log_);
+std::shared_ptr<const Scene> Study::scene(const Candidate& candidate) const {
+  const SceneOverrides overrides = overrides_of(candidate);
+  if (!first_) return first_ = std::make_shared<const Scene>(description_, registry_, overrides, pool_, log_);
+  SharedWork shared;
+  return std::make_shared<const Scene>(*first_, description_, registry_, overrides, pool_, log_, shared);
 }
 
 std::vector<MaterialSwap> Study::swaps_to(const PluginText& material) const {

@@ -24,8 +24,10 @@ class Study {
   /// Throws InputError.
   Study(const StudyOptions& options, ThreadPool& pool, const Log& log);
 
-  /// With the candidate in place of the leaves. Throws InputError.
-  std::unique_ptr<Scene> scene(const Candidate& candidate) const;
+  /// With the candidate in place of the leaves; all of them have one geometry. Throws InputError.
+  std::shared_ptr<const Scene> scene(const Candidate& candidate) const;
+  /// One of those that have been made; nullptr where none has.
+  const std::shared_ptr<const Scene>& any_scene() const { return first_; }
   /// The scene's sampler, with a seed of its own.
   std::unique_ptr<Sampler> sampler(const Scene& scene, uint64_t seed) const;
   /// The scene's integrator with these over it.
@@ -34,7 +36,7 @@ class Study {
   /// From which those of all renders are made.
   uint64_t seed() const { return options_.seed.value_or(0); }
   const FilmSettings& film() const { return film_; }
-  const SceneDescription& description() const { return description_; }
+  const SceneSettings& description() const { return description_; }
   /// Which put a material in the leaves' place.
   std::vector<MaterialSwap> swaps_to(const PluginText& material) const;
   /// Names of the materials that candidates replace.
@@ -57,7 +59,8 @@ class Study {
   SceneDescription description_;
   FilmSettings film_;
   std::vector<std::string> leaves_;
-  std::vector<MaterialSwap> swaps_;  ///< without what they put in
+  std::vector<MaterialSwap> swaps_;             ///< without what they put in
+  mutable std::shared_ptr<const Scene> first_;  ///< that was asked for: the others share what stands in it
 };
 
 }  // namespace frond::compare

@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <numbers>
+
+#include "core/error.h"
+#include "scene/registry.h"
+
+namespace frond {
+namespace {
+
+/// A radiometer far away: each column of the film is a direction, and sees the same rectangle.
+class DistantCamera final : public Camera {
+ public:
+  DistantCamera(const Params& p, const CameraPlacement& placement) : world_from_camera_(placement.world_from_camera) {
+    const std::vector<double> zenith = p.reals("zenith"), azimuth = p.reals("azimuth"), target = p.reals("target");
+    if (target.size() != 5)
+      fail(p.where("target"), "\"target\" takes 5 values, x0 x1 y0 y1 z, {} given", target.size());
+    if (!(target[0] < target[1] && target[2] < target[3])) fail(p.where("target"), "\"target\" is empty");
+    if (zenith.empty()) fail(p.where("zenith"), "\"zenith\" has no value");
+    if (azimuth.size() > 1 && azimuth.size() != zenith.size())
+      fail(p.where("azimuth"), "\"azimuth\" takes one value, or as many as \"zenith\", which has {}: {} given",
+           zenith.size(), azimuth.size());
+    if (placement.width != int(zenith.size()))
+      fail(p.where(), "this camera has {} directions, a column of the film for each; \"xresolution\" is {}",
+           zenith.size(), placement.width);
+    for (size_t i = 0; i < zenith.size(); ++i) {
+      if (!(std::abs(zenith[i]) < 90)) fail(p.where("zenith"), "{} in \"zenith\" is not above the horizon", zenith[i]);
+      const double phi = azimuth.empty() ? 0 : azimuth[azimuth.size() == 1 ? 0 : i];
+      toward_.push_back(direction(zenith[i] * kDegree, phi * kDegree));
+    }
+    corner_ = {float(target[0]), float(target[2]), float(target[4])};
+    size_ = {float(target[1] - target[0]), float(target[3] - target[2])};
+    distance_ = float(p.real("distance"));
+  }
+
+  Ray ray(Vec2 film, Vec2 lens) const override {
+    const auto column = size_t(std::clamp(film.x, 0.f, float(toward_.size() - 1)));
+    const Vec3 on_target = corner_ + Vec3{lens.x * size_.x, lens.y * size_.y, 0};
+    const Vec3& toward = toward_[column];
+    return {world_from_camera_.point(on_target + toward * distance_),
+            normalize_any(world_from_camera_.vector(-toward))};
+  }
+  bool uses_lens() const override { return true; }
+  bool pixels_are_apart() const override { return true; }
+
+ private:
+  static constexpr double kDegree = std::numbers::pi / 180;
+
+  static Vec3 direction(double zenith, double azimuth) {
+    return {float(std::sin(zenith) * std::cos(azimuth)), float(std::sin(zenith) * std::sin(azimuth)),
+            float(std::cos(zenith))};
+  }
+
+  Transform world_from_camera_;
+  std::vector<Vec3> toward_;  ///< from the target to the sensor, unit
+  Vec3 corner_;
+  Vec2 size_;
+  float distance_;
+};
+
+constexpr Param kDistant[] = {
+    {.name = "zenith",
+     .kind = ParamKind::real,
+     .unit = "degrees",
+     .doc = "Of the directions that the sensor looks from, from +z; a negative one lies on the other side of z.",
+     .list = true,
+     .required = true},
+    {.name = "azimuth",
+     .kind = ParamKind::real,
+     .unit = "degrees",
+     .doc = "From +x toward +y; one for each direction, or one for all: 0 by default.",
+     .list = true},
+    {.name = "target",
+     .kind = ParamKind::real,
+     .doc = "x0 x1 y0 y1 z: the rectangle that is seen, evenly.",
+     .list = true,
+     .required = true},
+    {.name = "distance",
+     .kind = ParamKind::real,
+     .default_value = 0.0,
+     .range = kAtLeastZero,
+     .doc = "How far from the target rays begin: there must be nothing above."}};
+
+std::unique_ptr<Camera> make_distant(const Params& p, const CameraPlacement& film) {
+  return std::make_unique<DistantCamera>(p, film);
+}
+
+}  // namespace
+
+extern const CameraInfo distant_camera{
+    {"camera", "distant", "Parallel rays from far away, a direction for each column of the film.", "", kDistant},
+    make_distant};
+
+}  // namespace frond

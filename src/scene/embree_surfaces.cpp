@@ -1,0 +1,110 @@
+#include "scene/embree_surfaces.h"
+
+#include <algorithm>
+
+#include "scene/triangle.h"
+
+namespace frond::embree {
+namespace {
+
+Vec2 uv_at(const Surface& surface, const RTCHit& hit) {
+  if (!std::holds_alternative<MeshPtr>(surface.geometry)) return {hit.u, hit.v};
+  return Triangle(*std::get<MeshPtr>(surface.geometry), hit.primID, {hit.u, hit.v}).uv();
+}
+
+/// Whether a ray passes a partly transparent surface: decided for each ray and primitive, in whatever order Embree
+/// asks. `layer` counts the sheets of one primitive along the ray.
+bool passes(const Surface& surface, const Target& target, Vec2 uv, const Query& query, unsigned layer = 0) {
+  const float alpha = surface.alpha->evaluate({uv, {}});
+  if (alpha >= 1) return false;
+  RandomStream random(
+      hash_key(query.key, (uint64_t(target.geometry) << 32) | target.primitive, query.place(), uint64_t(layer)));
+  return random.uniform() >= alpha;
+}
+
+template <class Context>
+Query& query_of(Context* context) {
+  return *reinterpret_cast<Query*>(context);
+}
+
+void filter_alpha(const RTCFilterFunctionNArguments* args) {
+  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+  if (passes(surface, {hit.geomID, hit.primID}, uv_at(surface, hit), query_of(args->context))) args->valid[0] = 0;
+}
+
+void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
+  if (!args->valid[0]) return;
+  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  auto& ray = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+  Query& query = query_of(args->context);
+  const Target target{args->geomID, args->primID};
+  if (const auto point = meet(surface, target, to_ray(ray.ray), query)) report(*point, target, ray, query);
+}
+
+void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
+  if (!args->valid[0]) return;
+  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+  if (meet(surface, {args->geomID, args->primID}, to_ray(ray), query_of(args->context))) ray.tfar = -INFINITY;
+}
+
+void bounds_analytic(const RTCBoundsFunctionArguments* args) {
+  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  const Bounds b = std::get<AnalyticShapePtr>(surface.geometry)->bounds(args->primID);
+  *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
+}
+
+RTCGeometry mesh_geometry(RTCDevice device, const Surface& surface) {
+  const TriangleMesh& mesh = *std::get<MeshPtr>(surface.geometry);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                             sizeof(mesh.triangles[0]), mesh.triangles.size());
+  // Embree reads 16 bytes at the last vertex: a copy that it pads itself.
+  void* vertices =
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.p.size());
+  std::copy(mesh.p.begin(), mesh.p.end(), static_cast<Vec3*>(vertices));
+  if (surface.alpha) {
+    rtcSetGeometryIntersectFilterFunction(geometry, filter_alpha);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
+  }
+  return geometry;
+}
+
+RTCGeometry analytic_geometry(RTCDevice device, const Surface& surface) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, std::get<AnalyticShapePtr>(surface.geometry)->count());
+  rtcSetGeometryBoundsFunction(geometry, bounds_analytic, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect_analytic);
+  rtcSetGeometryOccludedFunction(geometry, occluded_analytic);
+  return geometry;
+}
+
+}  // namespace
+
+std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query) {
+  const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
+  auto point = shape.intersect(target.primitive, ray, 0);
+  for (unsigned layer = 0; point && surface.alpha && passes(surface, target, point->uv, query, layer); ++layer)
+    point = shape.intersect(target.primitive, ray, point->t);
+  return point;
+}
+
+void report(const ShapePoint& point, const Target& target, RTCRayHit& ray, Query& query) {
+  ray.ray.tfar = point.t;
+  query.p = point.p;
+  RTCHit& hit = ray.hit;
+  hit.Ng_x = point.ng.x, hit.Ng_y = point.ng.y, hit.Ng_z = point.ng.z;
+  hit.u = point.uv.x, hit.v = point.uv.y;
+  hit.primID = target.primitive, hit.geomID = target.geometry, hit.instID[0] = query.base.instID[0];
+}
+
+RTCGeometry new_geometry(RTCDevice device, const Surface& surface) {
+  RTCGeometry geometry = std::holds_alternative<MeshPtr>(surface.geometry) ? mesh_geometry(device, surface)
+                                                                           : analytic_geometry(device, surface);
+  rtcSetGeometryUserData(geometry, const_cast<Surface*>(&surface));
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+}  // namespace frond::embree

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "scene/embree.h"
+#include "scene/geometry.h"
+
+namespace frond::embree {
+
+/// One surface for Embree, which it must outlive. Its queries are those of this folder: Query.
+RTCGeometry new_geometry(RTCDevice device, const Surface& surface);
+
+inline Ray to_ray(const RTCRay& r) { return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar}; }
+inline RTCRay from_ray(const Ray& r) { return {r.o.x, r.o.y, r.o.z, 0, r.d.x, r.d.y, r.d.z, 0, r.t_max, ~0u, 0, 0}; }
+
+/// Which of Embree's things a hit is on.
+struct Target {
+  unsigned geometry, primitive;
+};
+
+/// The point where an analytic surface stops the ray, if it does: behind a sheet that lets it pass there may be
+/// another.
+std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query);
+
+/// Makes that point the ray's nearest.
+void report(const ShapePoint& point, const Target& target, RTCRayHit& ray, Query& query);
+
+}  // namespace frond::embree

@@ -1,0 +1,165 @@
+#include "scene/geometry_builder.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace frond {
+namespace {
+
+/// Embree leaves out what lies farther than 1.8e18, without a word.
+void check_extent(const ShapeGeometry& geometry, const Location& where) {
+  static constexpr float kFarthest = 1e18f;
+  const auto check = [&where](const Vec3& p) {
+    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthest))
+      fail(where, "this shape reaches to ({:g}, {:g}, {:g}): {:g} units from the origin is the limit", p.x, p.y, p.z,
+           kFarthest);
+  };
+  if (const auto* mesh = std::get_if<MeshPtr>(&geometry)) {
+    std::for_each((*mesh)->p.begin(), (*mesh)->p.end(), check);
+    return;
+  }
+  const AnalyticShape& shape = *std::get<AnalyticShapePtr>(geometry);
+  for (unsigned i = 0; i < shape.count(); ++i) {
+    check(shape.bounds(i).min);
+    check(shape.bounds(i).max);
+  }
+}
+
+void check_emitter(const ShapeGeometry& geometry, const Location& where) {
+  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry); shape && !(*shape)->cannot_emit().empty())
+    fail(where, "this shape cannot give off light: {}; triangles can", (*shape)->cannot_emit());
+}
+
+/// Leaf meshes often carry each face twice, once for either side: a light path then meets two leaves in one.
+void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where, const Log& log) {
+  const auto* mesh = std::get_if<MeshPtr>(&geometry);
+  if (!mesh) return;
+  std::set<std::array<std::array<float, 3>, 3>> faces;
+  size_t doubles = 0;
+  for (const auto& t : (*mesh)->triangles) {
+    std::array<std::array<float, 3>, 3> corners;
+    for (size_t k = 0; k < 3; ++k) corners[k] = {(*mesh)->p[t[k]].x, (*mesh)->p[t[k]].y, (*mesh)->p[t[k]].z};
+    std::sort(corners.begin(), corners.end());
+    doubles += !faces.insert(corners).second;
+  }
+  if (doubles > 0)
+    log.warn(where, fmt::format(
+                        "{} of {} faces of this leaf lie on one another: every ray passes two leaves there; a leaf has "
+                        "its two sides in one face",
+                        doubles, (*mesh)->triangles.size()));
+}
+
+/// Turns shapes into surfaces and copies, objects in the order in which they hold each other.
+class GeometryBuilder {
+ public:
+  GeometryBuilder(const SceneDescription& description, const Registry& registry, SceneResolver& resolver,
+                  const ThreadPool& pool, const Log& log)
+      : description_(description), registry_(registry), resolver_(resolver), pool_(pool), log_(log) {
+    for (size_t i = 0; i < description.objects.size(); ++i) by_name_.emplace(description.objects[i].name, i);
+    visits_.resize(description.objects.size());
+  }
+
+  std::shared_ptr<const Geometry> build() {
+    for (size_t i = 0; i < description_.objects.size(); ++i) visit(i);
+    ObjectParts world = parts_of(description_.shapes, description_.copies);
+    return std::make_shared<const Geometry>(std::move(objects_), std::move(world), pool_.size());
+  }
+
+ private:
+  /// Of an object of the description: where it stands in the order of building.
+  struct Visit {
+    bool is_open = false;
+    std::optional<uint32_t> place = {};
+  };
+
+  uint32_t visit(size_t index) {
+    const ObjectDescription& object = description_.objects[index];
+    if (visits_[index].is_open) fail(object.where, "object \"{}\" holds a copy of itself", object.name);
+    if (!visits_[index].place) {
+      visits_[index].is_open = true;
+      ObjectParts parts = parts_of(object.shapes, object.copies);
+      visits_[index] = {false, uint32_t(objects_.size())};
+      objects_.push_back(std::move(parts));
+    }
+    return *visits_[index].place;
+  }
+
+  ObjectParts parts_of(const std::vector<ShapeDescription>& shapes, const CopyList& copies) {
+    ObjectParts parts;
+    for (const ShapeDescription& shape : shapes) add(shape, parts);
+    if (copies.objects.empty()) return parts;
+    Instances instances{.table = std::make_shared<const InstanceTable>(copies.maps), .objects = {}, .placement = {}};
+    const bool is_one = std::ranges::all_of(copies.objects, [&](uint32_t o) { return o == copies.objects.front(); });
+    for (const uint32_t object : std::span(copies.objects).first(is_one ? 1 : copies.objects.size()))
+      instances.objects.push_back(visit(object));
+    parts.instances.push_back(std::move(instances));
+    return parts;
+  }
+
+  void add(const ShapeDescription& shape, ObjectParts& parts) {
+    const Location& where = shape.plugin.where;
+    const ShapeInfo& info = registry_.shapes.get(shape.plugin.name, where);
+    const Params params(info, shape.plugin, resolver_);
+    MadeShape made = info.make(params, {shape.world_from_object, shape.reverse_orientation});
+    if (const auto* copies = std::get_if<ObjectCopies>(&made))
+      parts.instances.push_back(instances(*copies, shape, params));
+    else
+      parts.surfaces.push_back(surface(std::move(std::get<ShapeGeometry>(made)), shape, params));
+  }
+
+  Surface surface(ShapeGeometry geometry, const ShapeDescription& shape, const Params& params) {
+    const Location& where = shape.plugin.where;
+    Surface result{.geometry = std::move(geometry), .material = uint32_t(shape.material), .alpha = nullptr};
+    check_extent(result.geometry, where);
+    const auto alpha = params.float_texture("alpha");
+    if (!alpha->is_constant() || alpha->range().min < 1) result.alpha = alpha;
+    if (shape.area_light) {
+      if (result.alpha) fail(params.where("alpha"), "\"alpha\" on a shape that gives off light is not supported yet");
+      check_emitter(result.geometry, where);
+      result.area_light = uint32_t(*shape.area_light);
+    }
+    if (resolver_.material(shape.material)->is_leaf()) warn_of_double_faces(result.geometry, where, log_);
+    return result;
+  }
+
+  Instances instances(const ObjectCopies& copies, const ShapeDescription& shape, const Params& params) {
+    if (shape.area_light)
+      fail(shape.plugin.where, "copies of objects cannot give off light: area lights inside objects are not supported");
+    const auto object = by_name_.find(copies.object);
+    if (object == by_name_.end()) fail_unknown(copies.object, params.where("object"));
+    auto& table = tables_[copies.table];
+    if (!table) table = std::make_shared<const InstanceTable>(copies.table, params.where("filename"), pool_);
+    Instances result{.table = table, .objects = {visit(object->second)}, .placement = {shape.world_from_object.rows()}};
+    result.is_placed = !(shape.world_from_object == Transform());
+    if (const std::string problem = problem_of(result.placement); !problem.empty())
+      fail(shape.plugin.where, "these copies are not possible: {}", problem);
+    return result;
+  }
+
+  [[noreturn]] void fail_unknown(const std::string& object, const Location& where) const {
+    std::vector<std::string_view> names;
+    for (const auto& [name, place] : by_name_) names.push_back(name);
+    fail(where, "there is no object \"{}\"{}", object,
+         names.empty() ? "; ObjectBegin makes them" : suggestion(object, names));
+  }
+
+  const SceneDescription& description_;
+  const Registry& registry_;
+  SceneResolver& resolver_;
+  const ThreadPool& pool_;
+  const Log& log_;
+  std::map<std::string, size_t, std::less<>> by_name_;
+  std::map<std::filesystem::path, std::shared_ptr<const InstanceTable>> tables_;
+  std::vector<Visit> visits_;
+  std::vector<ObjectParts> objects_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Geometry> build_geometry(const SceneDescription& description, const Registry& registry,
+                                               SceneResolver& resolver, const ThreadPool& pool, const Log& log) {
+  return GeometryBuilder(description, registry, resolver, pool, log).build();
+}
+
+}  // namespace frond
