@@ -36,6 +36,10 @@ int run(int argc, const char* const* argv) {
   add_list_command(app);
   add_describe_command(app);
   add_table_command(app);
+  add_brf_command(app);
+  add_flux_command(app);
+  add_canopy_command(app);
+  add_instances_command(app);
   add_conform_command(app);
   add_spectrophotometer_command(app);
   add_goniophotometer_command(app);

@@ -1,0 +1,127 @@
+#include "radiometry/brf.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+
+#include "cli/commands.h"
+#include "cli/number_list.h"
+#include "cli/progress.h"
+#include "cli/radiometer_options.h"
+#include "report/brf_chart.h"
+#include "report/gnuplot.h"
+#include "report/text_output.h"
+
+namespace frond {
+namespace {
+
+struct BrfOptions : RadiometerOptions {
+  std::string zenith = "-75:75:5", azimuth = "0", plot;
+  bool hemisphere = false;
+};
+
+/// Every direction of a hemisphere: rings of even steps.
+std::vector<ViewDirection> hemisphere() {
+  constexpr int kZenithStep = 5, kLast = 85, kAzimuthStep = 15;
+  std::vector<ViewDirection> views{{0, 0}};
+  for (int zenith = kZenithStep; zenith <= kLast; zenith += kZenithStep)
+    for (int azimuth = 0; azimuth < 360; azimuth += kAzimuthStep) views.push_back({double(zenith), double(azimuth)});
+  return views;
+}
+
+std::vector<ViewDirection> views_of(const BrfOptions& o) {
+  if (o.hemisphere) return hemisphere();
+  std::vector<ViewDirection> views;
+  for (const double azimuth : parse_numbers("--azimuth", o.azimuth))
+    for (const double zenith : parse_numbers("--zenith", o.zenith)) {
+      if (!(std::abs(zenith) < 90)) fail({}, "--zenith: {:g} is not above the horizon, which is at 90", zenith);
+      views.push_back({zenith, azimuth});
+    }
+  return views;
+}
+
+std::string csv_of(const BrfReading& reading) {
+  std::string text = "zenith_deg,azimuth_deg,wavelength_nm,brf,brf_se\n";
+  for (size_t view = 0; view < reading.views.size(); ++view)
+    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band) {
+      const BrfValue& v = reading.at(view, band);
+      text += fmt::format("{:g},{:g},{:g},{:.6g},{:.3g}\n", reading.views[view].zenith_deg,
+                          reading.views[view].azimuth_deg, reading.wavelengths_nm[band], v.mean, v.standard_error);
+    }
+  return text;
+}
+
+/// A row for each direction, a column for each wavelength.
+std::string table_of(const BrfReading& reading) {
+  std::string text = " zenith azimuth";
+  for (const double nm : reading.wavelengths_nm) text += fmt::format("{:>17}", fmt::format("{:g} nm", nm));
+  text += '\n';
+  for (size_t view = 0; view < reading.views.size(); ++view) {
+    text += fmt::format("{:7g} {:7g}", reading.views[view].zenith_deg, reading.views[view].azimuth_deg);
+    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
+      text += fmt::format("{:9.5f} ±{:.5f}", reading.at(view, band).mean, reading.at(view, band).standard_error);
+    text += '\n';
+  }
+  return text;
+}
+
+/// Renders until there are as many paths, or as small an error, as asked for, or the time is over.
+BrfReading measure(const BrfOptions& o, const BrfMeter& meter, Session& session) {
+  using Clock = std::chrono::steady_clock;
+  ProgressLine line(o.quiet);
+  RenderControl control{.progress = &line};
+  if (o.time_limit_seconds > 0)
+    control.deadline =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(o.time_limit_seconds));
+  constexpr uint64_t kFirst = 64, kMost = uint64_t{1} << 32;
+  const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
+  const auto asked = uint64_t(parse_count("--paths", o.paths, 1, int64_t(kMost)));
+  uint64_t samples = o.rms > 0 ? kFirst : (asked + BrfMeter::kRows - 1) / BrfMeter::kRows;
+  samples = std::max(samples, needed);
+  RenderPart part = meter.scene().empty_part();
+  for (;; samples *= 2) {
+    session.render(meter.scene(), {0, samples}, part, control);
+    const bool is_over = control.deadline && Clock::now() >= *control.deadline;
+    if (is_over && sample_count(part.film).least == 0)
+      fail({}, "--time-limit: the time was over before every direction had been seen");
+    BrfReading reading = meter.read(part.film);
+    if (is_over || o.rms == 0 || reading.relative_error() <= o.rms || samples >= kMost) return reading;
+  }
+}
+
+void run_brf(const BrfOptions& o) {
+  const ConsoleLog log(o.quiet);
+  if (!o.csv.empty()) check_text_output(o.csv);
+  if (!o.plot.empty()) check_chart(o.plot);
+  const BrfRequest request{views_of(o), target_of(o), period_of(o), wavelengths_of(o)};
+  Session session(log, session_options_of(o));
+  const BrfMeter meter(session, session.read(o.scene), overrides_of(o), request);
+  const BrfReading reading = measure(o, meter, session);
+  if (!o.csv.empty()) write_text(o.csv, csv_of(reading));
+  if (o.csv.empty()) write_text("-", table_of(reading));
+  if (!o.plot.empty()) {
+    const BrfChart chart = o.hemisphere ? brf_hemisphere_chart(reading) : brf_plane_chart(reading);
+    write_chart(o.plot, chart.width, chart.height, chart.script);
+  }
+  log.info(fmt::format("{} paths a direction; standard errors {:.2f} % of the BRF (RMS)", reading.paths,
+                       100 * reading.relative_error()));
+  if (o.rms > 0 && reading.relative_error() > o.rms) log.warn({}, fmt::format("--rms {:g} was not reached", o.rms));
+}
+
+}  // namespace
+
+void add_brf_command(CLI::App& app) {
+  auto o = std::make_shared<BrfOptions>();
+  auto* command = app.add_subcommand("brf", "Measure a scene's bidirectional reflectance factor from far away.");
+  add_radiometer_options(*command, *o, "Paths for each direction: 65536 by default.");
+  command->add_option("--zenith", o->zenith,
+                      "Degrees, as in -75:75:2; under one sun a negative zenith looks from its side.");
+  command->add_option("--azimuth", o->azimuth,
+                      "Degrees from the plane of the sun, or from +x toward +y where there is not one sun.");
+  command->add_flag("--hemisphere", o->hemisphere, "Directions from everywhere above, every 5 and 15 degrees.");
+  command->add_option("--plot", o->plot, "Chart against the zenith angle, or maps of a hemisphere: .svg or .png.");
+  command->callback([o] { run_brf(*o); });
+}
+
+}  // namespace frond

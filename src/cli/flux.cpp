@@ -1,0 +1,163 @@
+#include "radiometry/flux.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+
+#include "cli/commands.h"
+#include "cli/number_list.h"
+#include "cli/progress.h"
+#include "cli/radiometer_options.h"
+#include "radiometry/photons.h"
+#include "report/text_output.h"
+#include "spectra/named.h"
+#include "spectra/spd_file.h"
+
+namespace frond {
+namespace {
+
+struct FluxOptions : RadiometerOptions {
+  std::string by, irradiance = "solar-am1.5-global";
+};
+
+/// One line of the answer: what becomes of the light.
+struct Row {
+  std::string quantity, material;
+  const std::vector<FluxShare>& shares;
+};
+
+std::vector<Row> rows_of(const FluxReading& reading) {
+  std::vector<Row> rows{{"reflected", "", reading.reflected}, {"transmitted", "", reading.transmitted}};
+  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"absorbed", m.name, m.absorbed});
+  rows.push_back({"sum", "", reading.sum});
+  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"incident", m.name, m.incident});
+  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"uncollided", m.name, m.uncollided});
+  return rows;
+}
+
+/// Of photons: the error is at most this, for bands share their paths.
+FluxShare share_of_photons(std::span<const FluxShare> shares, const PhotonWeights& photons) {
+  FluxShare sum;
+  for (size_t band = 0; band < shares.size(); ++band) {
+    sum.mean += photons.weights[band] * shares[band].mean;
+    sum.standard_error += photons.weights[band] * shares[band].standard_error;
+  }
+  return sum;
+}
+
+std::string csv_of(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+  std::string text = "quantity,material,wavelength_nm,share,share_se\n";
+  for (const Row& row : rows_of(reading)) {
+    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
+      text += fmt::format("{},{},{:g},{:.7g},{:.3g}\n", row.quantity, csv_field(row.material),
+                          reading.wavelengths_nm[band], row.shares[band].mean, row.shares[band].standard_error);
+    if (!photons) continue;
+    const FluxShare par = share_of_photons(row.shares, *photons);
+    text +=
+        fmt::format("{},{},PAR,{:.7g},{:.3g}\n", row.quantity, csv_field(row.material), par.mean, par.standard_error);
+  }
+  return text;
+}
+
+std::string table_of(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+  std::string text = fmt::format("{:<12}{:<16}", "share", "");
+  if (photons) text += fmt::format("{:>18}", "PAR photons");
+  for (const double nm : reading.wavelengths_nm) text += fmt::format("{:>18}", fmt::format("{:g} nm", nm));
+  text += '\n';
+  const auto cell = [](const FluxShare& s) {
+    return fmt::format("  {:7.5f} ±{:.5f}", s.mean + 0.0 == 0 ? 0.0 : s.mean, s.standard_error);
+  };
+  for (const Row& row : rows_of(reading)) {
+    text += fmt::format("{:<12}{:<16}", row.quantity, row.material);
+    if (photons) text += cell(share_of_photons(row.shares, *photons));
+    for (const FluxShare& s : row.shares) text += cell(s);
+    text += '\n';
+  }
+  return text;
+}
+
+/// A row for each copy: its area, the light that it absorbs as a share of what falls in, and by photons.
+std::string instances_csv(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+  const size_t bands = reading.wavelengths_nm.size();
+  std::string text = "instance,area";
+  if (photons) text += ",par_umol_m2_s,par_umol_m2_s_se";
+  for (const double nm : reading.wavelengths_nm) text += fmt::format(",absorbed_{0:g},absorbed_{0:g}_se", nm);
+  text += '\n';
+  for (size_t i = 0; i < reading.by_instance.size() / bands; ++i) {
+    fmt::format_to(std::back_inserter(text), "{},{:.6g}", i + 1, reading.areas[i]);
+    if (photons) {
+      const FluxShare par = share_of_photons(std::span(reading.by_instance).subspan(i * bands, bands), *photons);
+      const double factor = photons->incident * reading.target_area / double(reading.areas[i]);
+      fmt::format_to(std::back_inserter(text), ",{:.6g},{:.3g}", par.mean * factor, par.standard_error * factor);
+    }
+    for (size_t band = 0; band < bands; ++band) {
+      const FluxShare& s = reading.by_instance[i * bands + band];
+      fmt::format_to(std::back_inserter(text), ",{:.6g},{:.3g}", s.mean, s.standard_error);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+FluxReading measure(const FluxOptions& o, FluxMeter& meter, Session& session) {
+  using Clock = std::chrono::steady_clock;
+  ProgressLine line(o.quiet);
+  RenderControl control{.progress = &line};
+  if (o.time_limit_seconds > 0)
+    control.deadline =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(o.time_limit_seconds));
+  constexpr uint64_t kFirst = 1 << 16, kMost = uint64_t{1} << 40;
+  uint64_t paths = o.rms > 0 ? kFirst : uint64_t(parse_count("--paths", o.paths, 1));
+  meter.trace(paths, session.pool(), control);
+  while (true) {
+    FluxReading reading = meter.read();
+    if (reading.paths == 0) fail({}, "--time-limit: the time was over before any light was followed");
+    const bool is_over = control.deadline && Clock::now() >= *control.deadline;
+    if (is_over || o.rms == 0 || reading.error() <= o.rms || paths >= kMost) return reading;
+    meter.trace(paths, session.pool(), control);
+    paths *= 2;
+  }
+}
+
+std::vector<double> bands_of(const Scene& scene) {
+  std::vector<double> nm;
+  for (const Band& band : scene.wavelengths().bands()) nm.push_back(band.nm);
+  return nm;
+}
+
+void run_flux(const FluxOptions& o) {
+  const ConsoleLog log(o.quiet);
+  if (!o.csv.empty()) check_text_output(o.csv);
+  Session session(log, session_options_of(o));
+  const SpectrumPtr irradiance =
+      o.irradiance.ends_with(".spd") ? read_spd(o.irradiance, {}) : named_spectrum(o.irradiance, {});
+  const bool by_instance = o.by == "instance";
+  FluxMeter meter(session, session.read(o.scene), overrides_of(o),
+                  {target_of(o), period_of(o), wavelengths_of(o), by_instance});
+  const auto photons = PhotonWeights::of(bands_of(meter.scene()), *irradiance);
+  const FluxReading reading = measure(o, meter, session);
+  if (by_instance && !photons)
+    log.info("no PAR: it takes bands from 400 to 700 nm, in steps of 50 nm at most (--wavelengths 400:700:20)");
+  if (by_instance)
+    write_text(o.csv.empty() ? "-" : o.csv, instances_csv(reading, photons));
+  else
+    write_text(o.csv.empty() ? "-" : o.csv, o.csv.empty() ? table_of(reading, photons) : csv_of(reading, photons));
+  log.info(fmt::format("{} paths; standard errors {:.2g} (RMS)", reading.paths, reading.error()));
+}
+
+}  // namespace
+
+void add_flux_command(CLI::App& app) {
+  auto o = std::make_shared<FluxOptions>();
+  auto* command = app.add_subcommand("flux", "Measure where the light that falls on a scene goes.");
+  o->paths = "1e6";
+  add_radiometer_options(*command, *o, "Paths of light: 1e6 by default.");
+  command->add_option("--by", o->by, "instance: a row for each copy of an object.")->check(CLI::IsMember({"instance"}));
+  command->add_option("--irradiance", o->irradiance,
+                      "Of the horizontal plane, W/(m2 nm), for photons: a spectrum's name or an .spd file; "
+                      "solar-am1.5-global by default.");
+  command->callback([o] { run_flux(*o); });
+}
+
+}  // namespace frond

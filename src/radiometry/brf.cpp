@@ -1,0 +1,82 @@
+#include "radiometry/brf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "radiometry/horizontal_irradiance.h"
+#include "radiometry/radiometer_scene.h"
+
+namespace frond {
+namespace {
+
+/// The angle of a view's plane from +x. Under one sun, azimuth 0 is the plane that it stands in, and a negative zenith
+/// lies on its side.
+double absolute_azimuth_deg(const ViewDirection& view, const std::optional<Vec3>& sun) {
+  if (!sun) return view.azimuth_deg;
+  const double away = std::atan2(-double(sun->y), -double(sun->x)) * 180 / std::numbers::pi;
+  return away + view.azimuth_deg;
+}
+
+ParsedPlugin camera_of(const BrfRequest& request, const Target& target, const Scene& scene,
+                       const std::optional<Vec3>& sun) {
+  std::vector<double> zenith, azimuth;
+  double distance = 0;
+  for (const ViewDirection& view : request.views) {
+    zenith.push_back(view.zenith_deg);
+    azimuth.push_back(absolute_azimuth_deg(view, sun));
+    const double cosine = std::cos(view.zenith_deg * std::numbers::pi / 180);
+    if (cosine > 0) distance = std::max(distance, distance_above(scene, target, cosine));
+  }
+  return {"distant",
+          {},
+          {parsed_numbers("float", "zenith", zenith), parsed_numbers("float", "azimuth", azimuth),
+           parsed_numbers("float", "target", {target.x0, target.x1, target.y0, target.y1, target.z}),
+           parsed_numbers("float", "distance", {distance})}};
+}
+
+}  // namespace
+
+double BrfReading::relative_error() const {
+  double sum = 0;
+  for (const BrfValue& v : values) sum += std::pow(v.mean > 0 ? v.standard_error / v.mean : 1.0, 2);
+  return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
+}
+
+BrfMeter::BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request)
+    : request_(request) {
+  prepare_for_radiometry(session, request.wavelengths, request.period, description, overrides);
+  const LoadedScene first = session.load(description, overrides);
+  const Scene& scene = first.scene();
+  const Target target = request.target ? *request.target : default_target(scene);
+  const std::optional<Vec3> sun = direction_to_sun(scene.lights());
+  description.camera = camera_of(request, target, scene, sun);
+  description.camera_from_world = {};
+  description.filter = {"box", {}, {}};
+  description.film = {"rgb",
+                      {},
+                      {parsed_numbers("integer", "xresolution", {double(request.views.size())}),
+                       parsed_numbers("integer", "yresolution", {double(kRows)})}};
+  scene_ = session.load(std::move(description), overrides, {}, &scene);
+  const HorizontalIrradiance irradiance(scene.lights(), scene.wavelengths());
+  for (const double e : irradiance.bands()) white_.push_back(e / std::numbers::pi);
+}
+
+BrfReading BrfMeter::read(const Film& film) const {
+  BrfReading reading{.views = request_.views, .wavelengths_nm = {}, .values = {}};
+  for (const Band& band : scene_.scene().wavelengths().bands()) reading.wavelengths_nm.push_back(band.nm);
+  for (int view = 0; view < film.settings().width; ++view)
+    for (size_t band = 0; band < film.bands(); ++band) {
+      double sum = 0, squares = 0;
+      for (int row = 0; row < kRows; ++row) {
+        const double value = film.band_mean(view, row, band).mean / white_[band];
+        sum += value, squares += value * value;
+      }
+      const double mean = sum / kRows, variance = std::max(0.0, squares / kRows - mean * mean) / (kRows - 1);
+      reading.values.push_back({mean, std::sqrt(variance)});
+    }
+  for (int row = 0; row < kRows; ++row) reading.paths += film.samples(0, row);
+  return reading;
+}
+
+}  // namespace frond

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "render/session.h"
+
+namespace frond {
+
+/// A direction that a scene is seen from.
+struct ViewDirection {
+  double zenith_deg;   ///< 0: from above; a negative one lies on the other side of the zenith
+  double azimuth_deg;  ///< of the plane that it lies in (BrfRequest::azimuth_of)
+};
+
+/// The horizontal rectangle of a scene that a sensor sees.
+struct Target {
+  double x0, x1, y0, y1, z;
+};
+
+/// What is asked of a bidirectional reflectance factor.
+struct BrfRequest {
+  std::vector<ViewDirection> views;
+  std::optional<Target> target = {};                 ///< empty: one period, or the scene's bounds, at its top
+  std::optional<std::array<double, 2>> period = {};  ///< in place of the scene's own
+  std::string wavelengths = {};                      ///< a PluginText of `bands`
+};
+
+/// One direction and band: the radiance toward it over that of a white Lambertian plane in the same light.
+struct BrfValue {
+  double mean = 0, standard_error = 0;
+};
+
+/// A scene's BRF, as far as it is known.
+struct BrfReading {
+  std::vector<ViewDirection> views;
+  std::vector<double> wavelengths_nm;
+  std::vector<BrfValue> values;  ///< view by view, band by band
+  uint64_t paths = 0;            ///< for each view
+  const BrfValue& at(size_t view, size_t band) const { return values[view * wavelengths_nm.size() + band]; }
+  /// Root mean square of the standard errors over views and bands, each relative to its mean.
+  double relative_error() const;
+};
+
+/// Renders a scene as a distant radiometer sees it. A film has a column for each view, and kRows rows that are
+/// independent of each other: how they differ tells the error, and knows how well a row's samples are spread.
+class BrfMeter {
+ public:
+  static constexpr int kRows = 32;
+
+  /// Throws InputError. Leaves for which the scene does not say what they take for incident take the light's
+  /// direction, as energy asks for.
+  BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request);
+
+  const LoadedScene& scene() const { return scene_; }
+  BrfReading read(const Film& film) const;
+
+ private:
+  BrfRequest request_;
+  LoadedScene scene_ = {};
+  std::vector<double> white_;  ///< radiance of a white plane, band by band
+};
+
+}  // namespace frond

@@ -1,0 +1,338 @@
+#include "radiometry/flux.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/random.h"
+#include "radiometry/horizontal_irradiance.h"
+#include "radiometry/radiometer_scene.h"
+#include "system/cpu_clock.h"
+#include "system/memory.h"
+
+namespace frond {
+namespace {
+
+using Lanes = SampledSpectrum;
+
+/// What is summed up of a path: places in its row of quantities. Three for each material follow.
+enum Quantity : size_t { kReflected, kTransmitted, kTotal, kFirstOfMaterials };
+enum OfMaterial : size_t { kAbsorbed, kIncident, kUncollided, kQuantitiesOfMaterial };
+
+/// Of one path: shares of the light that fell in, lane by lane.
+class PathRecord {
+ public:
+  explicit PathRecord(size_t quantities) : values_(quantities) {}
+  void clear() {
+    std::ranges::fill(values_, Lanes());
+    by_instance_.clear();
+  }
+  void add(size_t quantity, const Lanes& share) { values_[quantity] += share; }
+  /// Takes part in the whole.
+  void leave(size_t quantity, const Lanes& share) {
+    add(quantity, share);
+    add(kTotal, share);
+  }
+  void absorb(uint32_t material, uint64_t instance, const Lanes& share) {
+    leave(of_material(material, kAbsorbed), share);
+    if (instance == 0) return;
+    const auto known = std::ranges::find(by_instance_, instance, &std::pair<uint64_t, Lanes>::first);
+    if (known == by_instance_.end())
+      by_instance_.emplace_back(instance, share);
+    else
+      known->second += share;
+  }
+  static size_t of_material(uint32_t material, OfMaterial what) {
+    return kFirstOfMaterials + material * kQuantitiesOfMaterial + what;
+  }
+  const std::vector<Lanes>& values() const { return values_; }
+  const std::vector<std::pair<uint64_t, Lanes>>& by_instance() const { return by_instance_; }
+
+ private:
+  std::vector<Lanes> values_;
+  std::vector<std::pair<uint64_t, Lanes>> by_instance_;
+};
+
+/// Sum and sum of squares over paths.
+struct Moment {
+  double sum = 0, square = 0;
+  void add(double x) { sum += x, square += x * x; }
+  Moment& operator+=(const Moment& other) {
+    sum += other.sum, square += other.square;
+    return *this;
+  }
+  FluxShare share(uint64_t paths) const {
+    const auto n = double(paths);
+    if (paths == 0) return {};
+    const double mean = sum / n, variance = std::max(0.0, square / n - mean * mean);
+    return {mean, paths > 1 ? std::sqrt(variance / (n - 1)) : 0};
+  }
+};
+
+/// Moments of copies, which any thread adds to: whole numbers, so that the order does not matter.
+class InstanceSums {
+ public:
+  InstanceSums(uint64_t instances, size_t bands) : bands_(bands), cells_(instances * bands) {}
+  void add(uint64_t instance, size_t band, double share) {
+    Cell& cell = cells_[(instance - 1) * bands_ + band];
+    cell.sum.fetch_add(std::llrint(share * kUnits), std::memory_order_relaxed);
+    cell.square.fetch_add(std::llrint(share * share * kUnits), std::memory_order_relaxed);
+  }
+  size_t size() const { return cells_.size(); }
+  Moment at(size_t cell) const { return {double(cells_[cell].sum) / kUnits, double(cells_[cell].square) / kUnits}; }
+
+  static constexpr size_t kCellBytes = 16;
+
+ private:
+  static constexpr double kUnits = 0x1p36;
+  struct Cell {
+    std::atomic<int64_t> sum{0}, square{0};
+  };
+  size_t bands_;
+  std::vector<Cell> cells_;
+};
+
+/// Where light falls in: a direction of one of the lights, and its weight.
+class Incoming {
+ public:
+  Incoming(std::span<const Light* const> lights, const WavelengthStrategy& wavelengths)
+      : lights_(lights), irradiance_(lights, wavelengths) {}
+
+  struct Sample {
+    Vec3 direction;  ///< of the light's way, downward
+    Lanes weight;    ///< 1 on average
+  };
+  std::optional<Sample> sample(RandomStream& random, const SampledWavelengths& lambda) const {
+    const size_t count = lights_.size();
+    const size_t i = count == 1 ? 0 : std::min(size_t(random.uniform() * float(count)), count - 1);
+    const Vec2 u{random.uniform(), random.uniform()};
+    const auto s = lights_[i]->sample({}, u, lambda);
+    if (!s || s->wi.z <= 0 || s->pdf <= 0) return {};
+    Lanes weight;
+    const Lanes irradiance = irradiance_.at(lambda);
+    for (int lane = 0; lane < lambda.count; ++lane)
+      weight[lane] = s->radiance[lane] * s->wi.z / s->pdf * float(count) / irradiance[lane];
+    return Sample{-s->wi, weight};
+  }
+
+ private:
+  std::span<const Light* const> lights_;
+  HorizontalIrradiance irradiance_;
+};
+
+Lanes remainder(const Lanes& weight) {
+  Lanes rest;
+  for (int lane = 0; lane < kLanes; ++lane) rest[lane] = 1 - weight[lane];
+  return rest;
+}
+
+}  // namespace
+
+struct FluxMeter::State {
+  LoadedScene loaded;
+  Target target;
+  Incoming incoming;
+  size_t materials, bands;
+  std::vector<Moment> moments = {};  ///< quantity by quantity, band by band
+  std::vector<uint64_t> seen = {};   ///< paths, by band
+  std::unique_ptr<InstanceSums> by_instance = {};
+  uint64_t paths = 0;
+
+  size_t quantities() const { return kFirstOfMaterials + materials * kQuantitiesOfMaterial; }
+  const Scene& scene() const { return loaded.scene(); }
+};
+
+/// What one block of paths adds.
+class FluxMeter::Sums {
+ public:
+  static constexpr uint64_t kBlock = 1024;
+
+  explicit Sums(State& state)
+      : state_(state), record_(state.quantities()), moments(state.quantities() * state.bands), seen(state.bands) {}
+
+  void trace(uint64_t first, uint64_t count) {
+    const WavelengthStrategy& wavelengths = state_.scene().wavelengths();
+    for (uint64_t i = first; i < first + count; ++i) {
+      RandomStream random(hash_key(state_.scene().seed(), uint64_t{kStream}, i));
+      const SampledWavelengths lambda = wavelengths.sample_in_turn(i, random.uniform());
+      record_.clear();
+      follow(lambda, hash_key(state_.scene().seed(), uint64_t{kKeys}, i), random);
+      for (size_t q = 0; q < record_.values().size(); ++q) {
+        const SensorResponse response = wavelengths.sensor(record_.values()[q], lambda);
+        for (size_t k = 0; k < size_t(response.count); ++k)
+          moments[q * state_.bands + response.channel[k]].add(response.value[k]);
+      }
+      for (int lane = 0; lane < lambda.count; ++lane) ++seen[lambda.band[size_t(lane)]];
+      if (!state_.by_instance) continue;
+      for (const auto& [instance, share] : record_.by_instance())
+        for (size_t lane = 0; lane < size_t(lambda.count); ++lane)
+          state_.by_instance->add(instance, lambda.band[lane], double(share.v[lane]));
+    }
+  }
+
+ private:
+  enum Use : uint64_t { kStream = 0x666c7578, kKeys };
+
+  void follow(SampledWavelengths lambda, uint64_t key, RandomStream& random) {
+    constexpr int kMostPassed = 1000, kFirstRoulette = 3;
+    constexpr float kFull = 0.25f;  // of the light that fell in: a path that carries less may end
+    const Target& t = state_.target;
+    const Vec2 u{random.uniform(), random.uniform()};
+    const auto light = state_.incoming.sample(random, lambda);
+    if (!light) return;
+    const Vec3d on_target{std::lerp(t.x0, t.x1, double(u.x)), std::lerp(t.y0, t.y1, double(u.y)), t.z};
+    const Vec3d d = to_double(light->direction);
+    Ray ray{to_float(on_target - d * distance_above(state_.scene(), t, -d.z)), light->direction};
+    Lanes share = light->weight;
+    const float full = kFull * share.max();
+    for (int vertex = 0, depth = 0; vertex - depth <= kMostPassed; ++vertex) {
+      SurfacePoint point;
+      if (!state_.scene().intersect(ray, hash_key(key, uint64_t(vertex)), point)) {
+        record_.leave(ray.d.z > 0 ? kReflected : kTransmitted, share);
+        return;
+      }
+      arena_.reset();
+      const Bsdf* bsdf = point.material->evaluate(point.hit, lambda, arena_);
+      if (!bsdf) {
+        ray = {offset_origin(point.hit, ray.d), ray.d};
+        continue;
+      }
+      record_.add(PathRecord::of_material(point.material_id, kIncident), share);
+      if (depth++ == 0) record_.add(PathRecord::of_material(point.material_id, kUncollided), share);
+      const auto [direction, weight] = scatter(*bsdf, point.hit, ray.d, random);
+      record_.absorb(point.material_id, point.instance_id, share * remainder(weight));
+      share *= weight;
+      lambda.retire_black_lanes(share);
+      if (share.is_black()) return;
+      if (depth >= kFirstRoulette && share.max() < full) {
+        if (random.uniform() * full >= share.max()) return;
+        share *= full / share.max();
+      }
+      ray = {offset_origin(point.hit, direction), direction};
+    }
+  }
+
+  struct Onward {
+    Vec3 direction;
+    Lanes weight;
+  };
+  /// What leaves the surface of light that goes along `d`. Nothing does where shading and geometric normal disagree
+  /// about the side.
+  static Onward scatter(const Bsdf& bsdf, const Hit& hit, const Vec3& d, RandomStream& random) {
+    Frame frame = hit.shading;
+    if (dot(d, frame.z) * dot(d, hit.ng) <= 0) frame = Frame::around(hit.ng);
+    Scattered s;
+    bsdf.scatter(frame.to_local(-d), random, {&s, 1});
+    if (s.weight.is_black()) return {};
+    const Vec3 direction = frame.to_world(s.direction);
+    if (!(s.direction.z * dot(direction, hit.ng) > 0)) return {};
+    return {direction, s.weight};
+  }
+
+  State& state_;
+  Arena arena_;
+  PathRecord record_;
+
+ public:
+  std::vector<Moment> moments;
+  std::vector<uint64_t> seen;
+};
+
+FluxMeter::FluxMeter(Session& session, SceneDescription description, SceneOverrides overrides,
+                     const FluxRequest& request) {
+  prepare_for_radiometry(session, request.wavelengths, request.period, description, overrides);
+  LoadedScene loaded = session.load(std::move(description), overrides);
+  const Scene& scene = loaded.scene();
+  const Target target = request.target ? *request.target : default_target(scene);
+  Incoming incoming(scene.lights(), scene.wavelengths());
+  const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
+  state_ = std::make_unique<State>(State{std::move(loaded), target, std::move(incoming), materials, bands});
+  state_->moments.resize(state_->quantities() * bands);
+  state_->seen.resize(bands);
+  if (!request.by_instance) return;
+  const uint64_t instances = state_->scene().geometry().instances();
+  if (instances == 0) fail({}, "this scene has no copies of objects (ObjectInstance, Shape \"instances\")");
+  if (const double bytes = double(instances) * double(bands) * InstanceSums::kCellBytes; bytes > machine_memory())
+    fail({}, "{} copies and {} bands need {:.1f} GB of memory, this machine has {:.1f} GB: fewer bands take less",
+         instances, bands, bytes * 1e-9, machine_memory() * 1e-9);
+  state_->by_instance = std::make_unique<InstanceSums>(instances, bands);
+}
+
+FluxMeter::~FluxMeter() = default;
+
+const Scene& FluxMeter::scene() const { return state_->scene(); }
+
+void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control) {
+  constexpr uint64_t kBlocks = 256;  // that are traced before their sums are added, in their order
+  RenderStatistics statistics;
+  const double cpu = cpu_seconds();
+  for (uint64_t done = 0; done < paths;) {
+    if (control.stop.stop_requested()) break;
+    if (control.deadline && std::chrono::steady_clock::now() >= *control.deadline) break;
+    const uint64_t round = std::min(paths - done, kBlocks * Sums::kBlock);
+    const uint64_t blocks = (round + Sums::kBlock - 1) / Sums::kBlock;
+    std::vector<std::unique_ptr<Sums>> sums(blocks);
+    pool.for_each(int64_t(blocks), [&](int64_t block, int) {
+      const uint64_t begin = uint64_t(block) * Sums::kBlock;
+      auto one = std::make_unique<Sums>(*state_);
+      one->trace(state_->paths + begin, std::min(Sums::kBlock, round - begin));
+      sums[size_t(block)] = std::move(one);
+    });
+    for (const auto& one : sums) {
+      for (size_t i = 0; i < state_->moments.size(); ++i) state_->moments[i] += one->moments[i];
+      for (size_t i = 0; i < state_->seen.size(); ++i) state_->seen[i] += one->seen[i];
+    }
+    state_->paths += round;
+    done += round;
+    statistics.paths = done;
+    statistics.cpu_seconds = cpu_seconds() - cpu;
+    if (control.progress) control.progress->update(double(done) / double(paths), statistics);
+  }
+  if (control.progress) control.progress->finish();
+}
+
+FluxReading FluxMeter::read() const {
+  const State& s = *state_;
+  const auto shares = [&](size_t quantity) {
+    std::vector<FluxShare> result;
+    for (size_t band = 0; band < s.bands; ++band)
+      result.push_back(s.moments[quantity * s.bands + band].share(s.seen[band]));
+    return result;
+  };
+  FluxReading reading{.wavelengths_nm = {},
+                      .reflected = shares(kReflected),
+                      .transmitted = shares(kTransmitted),
+                      .materials = {},
+                      .sum = shares(kTotal),
+                      .paths = s.paths,
+                      .target_area = (s.target.x1 - s.target.x0) * (s.target.y1 - s.target.y0),
+                      .by_instance = {},
+                      .areas = {}};
+  for (const Band& band : s.scene().wavelengths().bands()) reading.wavelengths_nm.push_back(band.nm);
+  for (uint32_t m = 0; m < s.materials; ++m) {
+    const MaterialDescription& material = s.loaded.description().materials[m];
+    FluxReading::OfMaterial one{
+        material.name.empty() ? material.plugin.name : material.name, shares(PathRecord::of_material(m, kAbsorbed)),
+        shares(PathRecord::of_material(m, kIncident)), shares(PathRecord::of_material(m, kUncollided))};
+    if (std::ranges::any_of(one.incident, [](const FluxShare& share) { return share.mean > 0; }))
+      reading.materials.push_back(std::move(one));
+  }
+  if (s.by_instance) reading.areas = s.scene().geometry().areas();
+  if (s.by_instance)
+    for (size_t cell = 0; cell < s.by_instance->size(); ++cell)
+      reading.by_instance.push_back(s.by_instance->at(cell).share(s.seen[cell % s.bands]));
+  return reading;
+}
+
+double FluxReading::error() const {
+  double squares = 0;
+  size_t count = 0;
+  const auto add = [&](const std::vector<FluxShare>& shares) {
+    for (const FluxShare& s : shares) squares += s.standard_error * s.standard_error, ++count;
+  };
+  add(reflected);
+  for (const OfMaterial& m : materials) add(m.absorbed);
+  return count == 0 ? 0 : std::sqrt(squares / double(count));
+}
+
+}  // namespace frond

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "radiometry/brf.h"
+
+namespace frond {
+
+/// What is asked of the light that falls on a scene.
+struct FluxRequest {
+  std::optional<Target> target = {};                 ///< that light falls through; as of a BrfRequest
+  std::optional<std::array<double, 2>> period = {};  ///< in place of the scene's own
+  std::string wavelengths = {};                      ///< a PluginText of `bands`
+  bool by_instance = false;                          ///< what each copy of an object absorbs, too
+};
+
+/// A part of the light that falls through the target, and its standard error.
+struct FluxShare {
+  double mean = 0, standard_error = 0;
+};
+
+/// Where the light goes, band by band.
+struct FluxReading {
+  struct OfMaterial {
+    std::string name;
+    std::vector<FluxShare> absorbed;    ///< by its surfaces
+    std::vector<FluxShare> incident;    ///< that falls on them, on either side, every time that it does
+    std::vector<FluxShare> uncollided;  ///< of this what has met nothing before
+  };
+  std::vector<double> wavelengths_nm;
+  std::vector<FluxShare> reflected;    ///< leaves upward
+  std::vector<FluxShare> transmitted;  ///< leaves downward, where no ground is in its way
+  std::vector<OfMaterial> materials;   ///< those that light fell on
+  std::vector<FluxShare> sum;          ///< of all that is absorbed or leaves: 1 but for its noise
+  uint64_t paths = 0;
+  double target_area = 0;              ///< in the scene's unit of length, squared
+  std::vector<FluxShare> by_instance;  ///< absorbed by each copy, band by band, where it was asked for
+  std::vector<float> areas;            ///< of each copy, of one of its sides, where that was asked for
+  /// Root mean square of the standard errors of what is reflected and absorbed, relative to the light that falls in.
+  double error() const;
+};
+
+/// Sends light from a scene's sun and sky through a horizontal rectangle, and follows it as it is scattered and
+/// absorbed. The BSDFs are asked what becomes of light that comes from where it does come from, whatever a picture
+/// calls incident: no energy is lost or made.
+class FluxMeter {
+ public:
+  /// Throws InputError, also where copies are too many to count them one by one.
+  FluxMeter(Session& session, SceneDescription description, SceneOverrides overrides, const FluxRequest& request);
+  ~FluxMeter();
+
+  /// Follows so many paths more, or fewer where it is stopped or the time is over. The figures depend on their number
+  /// alone.
+  void trace(uint64_t paths, ThreadPool& pool, const RenderControl& control = {});
+  FluxReading read() const;
+  const Scene& scene() const;
+
+ private:
+  class Sums;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace frond

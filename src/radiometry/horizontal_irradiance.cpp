@@ -1,0 +1,118 @@
+#include "radiometry/horizontal_irradiance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace frond {
+namespace {
+
+/// Up to kLanes wavelengths of a list.
+SampledWavelengths lanes_at(std::span<const double> nm) {
+  SampledWavelengths lambda;
+  lambda.count = int(std::min<size_t>(nm.size(), kLanes));
+  for (size_t i = 0; i < size_t(lambda.count); ++i) {
+    lambda.nm[i] = float(nm[i]);
+    lambda.pdf[i] = 1;
+    lambda.active[i] = true;
+  }
+  return lambda;
+}
+
+float radical_inverse(uint32_t i) {
+  i = (i << 16) | (i >> 16);
+  i = ((i & 0x00ff00ff) << 8) | ((i & 0xff00ff00) >> 8);
+  i = ((i & 0x0f0f0f0f) << 4) | ((i & 0xf0f0f0f0) >> 4);
+  i = ((i & 0x33333333) << 2) | ((i & 0xcccccccc) >> 2);
+  i = ((i & 0x55555555) << 1) | ((i & 0xaaaaaaaa) >> 1);
+  return float(i >> 8) * 0x1p-24f;
+}
+
+/// Of one light.
+std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengths& lambda, int directions) {
+  std::array<double, kLanes> sum{};
+  const int count = light.is_delta() ? 1 : directions;
+  for (int i = 0; i < count; ++i) {
+    const Vec2 u{(float(i) + 0.5f) / float(count), radical_inverse(uint32_t(i))};
+    const auto s = light.sample({}, u, lambda);
+    if (!s || s->wi.z <= 0 || s->pdf <= 0) continue;
+    for (size_t lane = 0; lane < kLanes; ++lane) sum[lane] += double(s->radiance.v[lane] * s->wi.z / s->pdf) / count;
+  }
+  return sum;
+}
+
+}  // namespace
+
+HorizontalIrradiance::HorizontalIrradiance(std::span<const Light* const> lights,
+                                           const WavelengthStrategy& wavelengths) {
+  for (const Light* light : lights)
+    if (!light->is_distant())
+      fail({}, "a light stands in the scene: what light falls on it is known of distant and infinite ones alone");
+  const auto listed = wavelengths.listed_nm();
+  if (listed.empty()) {
+    const Interval range = wavelengths.range_nm();
+    for (double nm = std::floor(range.min); nm <= std::ceil(range.max); ++nm) nm_.push_back(nm);
+  } else {
+    nm_.assign(listed.begin(), listed.end());
+  }
+  for (size_t begin = 0; begin < nm_.size(); begin += kLanes) {
+    const SampledWavelengths lambda = lanes_at(std::span(nm_).subspan(begin));
+    std::array<double, kLanes> sum{};
+    for (const Light* light : lights) {
+      const auto one = irradiance(*light, lambda, kDirections);
+      for (size_t lane = 0; lane < kLanes; ++lane) sum[lane] += one[lane];
+    }
+    values_.insert(values_.end(), sum.begin(), sum.begin() + lambda.count);
+  }
+  for (size_t i = 0; i < nm_.size(); ++i)
+    if (!(values_[i] > 0)) fail({}, "no light falls on the scene from above at {:g} nm", nm_[i]);
+  sum_bands(wavelengths);
+}
+
+void HorizontalIrradiance::sum_bands(const WavelengthStrategy& wavelengths) {
+  const size_t count = wavelengths.bands().size();
+  if (!wavelengths.listed_nm().empty()) {
+    bands_ = values_;
+    return;
+  }
+  constexpr size_t kPaths = 4096;  // that see each band
+  std::vector<double> sum(count), seen(count);
+  for (size_t i = 0; i < kPaths * count; ++i) {
+    const float u = (float(i / count) + 0.5f) / float(kPaths);
+    const SampledWavelengths lambda = wavelengths.sample_in_turn(i, u);
+    const SensorResponse response = wavelengths.sensor(at(lambda), lambda);
+    for (size_t k = 0; k < size_t(response.count); ++k)
+      sum[response.channel[k]] += response.value[k], ++seen[response.channel[k]];
+  }
+  for (size_t b = 0; b < count; ++b) bands_.push_back(sum[b] / seen[b]);
+}
+
+SampledSpectrum HorizontalIrradiance::at(const SampledWavelengths& lambda) const {
+  SampledSpectrum result;
+  for (int i = 0; i < lambda.count; ++i) result[i] = float(at(double(lambda.nm[size_t(i)])));
+  return result;
+}
+
+double HorizontalIrradiance::at(double nm) const {
+  const auto above = std::ranges::lower_bound(nm_, nm);
+  if (above == nm_.begin()) return values_.front();
+  if (above == nm_.end()) return values_.back();
+  const auto i = size_t(above - nm_.begin());
+  return std::lerp(values_[i - 1], values_[i], (nm - nm_[i - 1]) / (nm_[i] - nm_[i - 1]));
+}
+
+std::optional<Vec3> direction_to_sun(std::span<const Light* const> lights) {
+  std::optional<Vec3> sun;
+  const std::vector<double> any{550};
+  for (const Light* light : lights) {
+    if (!light->is_distant() || !light->is_delta()) continue;
+    const auto sample = light->sample({}, {}, lanes_at(any));
+    if (!sample || sample->wi.z <= 0) continue;
+    if (sun) return {};
+    sun = sample->wi;
+  }
+  return sun;
+}
+
+}  // namespace frond

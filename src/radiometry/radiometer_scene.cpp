@@ -1,0 +1,71 @@
+#include "radiometry/radiometer_scene.h"
+
+#include <algorithm>
+
+#include "core/log.h"
+
+namespace frond {
+namespace {
+
+bool declares(const PluginInfo& info, std::string_view name) {
+  return std::ranges::any_of(info.params, [name](const Param& p) { return p.name == name; });
+}
+
+bool gives(const std::vector<ParsedParam>& params, std::string_view name) {
+  return std::ranges::any_of(params, [name](const ParsedParam& p) { return p.name == name; });
+}
+
+void set(std::vector<ParsedParam>& params, ParsedParam param) {
+  std::erase_if(params, [&param](const ParsedParam& p) { return p.name == param.name; });
+  params.push_back(std::move(param));
+}
+
+/// Energy is kept where the incident direction of a leaf is the light's.
+void take_light_for_incident(SceneDescription& description, const Registry& registry) {
+  for (MaterialDescription& m : description.materials)
+    if (declares(registry.materials.get(m.plugin.name, m.plugin.where), "incident") &&
+        !gives(m.plugin.params, "incident"))
+      m.plugin.params.push_back({"string", "incident", {}, {}, std::vector<std::string>{"light"}});
+}
+
+}  // namespace
+
+ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values) {
+  return {type, name, {}, {}, std::move(values)};
+}
+
+void prepare_for_radiometry(const Session& session, const std::string& wavelengths,
+                            const std::optional<std::array<double, 2>>& period, SceneDescription& description,
+                            SceneOverrides& overrides) {
+  constexpr double kDeepest = 1 << 20;
+  apply_swaps(description, overrides.swaps, session.registry(), session.log());
+  overrides.swaps.clear();
+  take_light_for_incident(description, session.registry());
+  if (!wavelengths.empty()) overrides.wavelengths = wavelengths;
+  if (period) set(description.options, parsed_numbers("float", "period", {(*period)[0], (*period)[1]}));
+  const IntegratorInfo& integrator =
+      session.registry().integrators.get(description.integrator.name, description.integrator.where);
+  if (!overrides.integrator && declares(integrator, "maxdepth"))
+    set(description.integrator.params, parsed_numbers("integer", "maxdepth", {kDeepest}));
+}
+
+Target default_target(const Scene& scene) {
+  const Bounds b = scene.geometry().bounds();
+  if (b.is_empty()) fail({}, "nothing stands in this scene: there is nothing to look at");
+  Target target{double(b.min.x), double(b.max.x), double(b.min.y), double(b.max.y), double(b.max.z)};
+  if (const auto period = scene.period()) {
+    target.x1 = target.x0 + double(period->x);
+    target.y1 = target.y0 + double(period->y);
+  }
+  if (!(target.x0 < target.x1 && target.y0 < target.y1))
+    fail({}, "this scene has no area from above: --target x0,x1,y0,y1,z says what to look at");
+  return target;
+}
+
+double distance_above(const Scene& scene, const Target& target, double cosine) {
+  constexpr double kClear = 1e-3;  // of the scene's size
+  const double top = double(scene.geometry().bounds().max.z) + kClear * double(scene.radius());
+  return std::max(0.0, top - target.z) / cosine;
+}
+
+}  // namespace frond

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+
+#include "radiometry/brf.h"
+#include "render/session.h"
+
+namespace frond {
+
+/// A parameter as a scene file has it.
+ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values);
+
+/// What radiometry asks of a scene that was made for pictures: swaps are carried out, and leaves for which nothing is
+/// said take the light's direction for incident; paths end by roulette alone, unless the overrides say how; the period
+/// and the wavelengths, a PluginText of `bands`, are those asked for. Throws InputError.
+void prepare_for_radiometry(const Session& session, const std::string& wavelengths,
+                            const std::optional<std::array<double, 2>>& period, SceneDescription& description,
+                            SceneOverrides& overrides);
+
+/// One period, or all that stands in the scene, at its top.
+Target default_target(const Scene& scene);
+
+/// How far along a direction, whose cosine with +z is given, a ray that passes the target begins: above all that stands
+/// in the scene, and not on it.
+double distance_above(const Scene& scene, const Target& target, double cosine);
+
+}  // namespace frond

@@ -1,0 +1,282 @@
+// Virtual radiometers, against closed forms and against each other.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "radiometry/brf.h"
+#include "radiometry/flux.h"
+#include "radiometry/horizontal_irradiance.h"
+#include "scene/homogeneous_canopy.h"
+#include "scene/instance_writer.h"
+#include "scene/parser.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Each comparison allows 4.5 standard errors: a false alarm of 7e-6 each, below 1e-3 for all of this file.
+constexpr double kZ = 4.5;
+
+const std::string kSun =
+    "LightSource \"distant\" \"point3 from\" [-0.5 0 0.8660254] \"point3 to\" [0 0 0] \"spectrum L\" \"stdillum-E\"\n";
+const std::string kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-E\"\n";
+
+std::string soil(double reflectance, double size = 2) {
+  return fmt::format(
+      "MakeNamedMaterial \"soil\" \"string type\" \"diffuse\" \"spectrum reflectance\" [300 {0} 2500 {0}]\n"
+      "NamedMaterial \"soil\" Shape \"bilinearmesh\" \"point3 P\" [0 0 0  {1} 0 0  0 {1} 0  {1} {1} 0]\n",
+      reflectance, size);
+}
+
+std::string lambertian(double reflectance, double transmittance) {
+  return fmt::format(
+      "MakeNamedMaterial \"leaf\" \"string type\" \"diffusetransmission\" \"spectrum reflectance\" [300 {0} 2500 {0}] "
+      "\"spectrum transmittance\" [300 {1} 2500 {1}]\nNamedMaterial \"leaf\"\n",
+      reflectance, transmittance);
+}
+
+class Radiometry : public ::testing::Test {
+ protected:
+  Radiometry() : folder_("radiometry") {}
+
+  SceneDescription description(const std::string& world, const std::string& options = "") const {
+    const auto path = folder_.write("scene.pbrt", options + "WorldBegin\n" + world);
+    return parse_scene(path, silent_log());
+  }
+  BrfReading brf(const std::string& world, const BrfRequest& request, uint64_t samples, int threads = 2) const {
+    Session session(silent_log(), {threads, {}, {}});
+    const BrfMeter meter(session, description(world), {}, request);
+    RenderPart part = meter.scene().empty_part();
+    session.render(meter.scene(), {0, samples}, part);
+    return meter.read(part.film);
+  }
+  FluxReading flux(const std::string& world, const FluxRequest& request, uint64_t paths, int threads = 2,
+                   const std::string& options = "") const {
+    Session session(silent_log(), {threads, {}, {}});
+    FluxMeter meter(session, description(world, options), {}, request);
+    meter.trace(paths, session.pool());
+    return meter.read();
+  }
+  /// Leaves of a canopy of this area index in a plot of 2 x 2 x 1.
+  std::string canopy(double lai, const std::string& leaf) const {
+    HomogeneousCanopy c{
+        .leaf_area_index = lai, .angles = &leaf_angle_distributions()[0], .scale = 0.04, .size = {2, 2}};
+    c.heights = {0.05, 1};
+    const LeafPlacer placer(c);
+    InstanceWriter writer(folder_.name_of("leaves.npy"), c.leaves(), {});
+    for (uint64_t i = 0; i < c.leaves(); ++i) writer.add(placer.place(i, {}), {});
+    writer.finish();
+    return leaf +
+           "ObjectBegin \"leaf\" Shape \"disk\" ObjectEnd\n"
+           "Shape \"instances\" \"string object\" \"leaf\" \"string filename\" \"leaves.npy\"\n";
+  }
+
+  TestFolder folder_;
+};
+
+const std::array<double, 2> kPlot{2, 2};
+
+TEST_F(Radiometry, TheIrradianceOfSunAndSkyIsTheClosedForm) {
+  Session session(silent_log(), {1, {}, {}});
+  const auto irradiance = [&](const std::string& lights) {
+    SceneOverrides overrides;
+    overrides.wavelengths = "bands,wavelengths=400,550,700,900,1500";
+    const LoadedScene loaded = session.load(description(lights + soil(0)), overrides);
+    const HorizontalIrradiance e(loaded.scene().lights(), loaded.scene().wavelengths());
+    EXPECT_EQ(e.bands().size(), 5u);
+    return e.bands()[1];
+  };
+  const double one = 1 / 106.856895;  // radiance of stdillum-E of luminance 1
+  EXPECT_NEAR(irradiance(kSun), one * 0.8660254, 1e-5 * one);
+  EXPECT_NEAR(irradiance(kSky), one * std::numbers::pi, 2e-4 * one);
+  EXPECT_NEAR(irradiance(kSun + kSky), one * (std::numbers::pi + 0.8660254), 2e-4 * one);
+  EXPECT_THAT(
+      error_of([&] { irradiance("LightSource \"point\" \"spectrum I\" \"stdillum-E\" \"point3 from\" [0 0 3]\n"); }),
+      HasSubstr("stands in the scene"));
+  EXPECT_THAT(
+      error_of([&] {
+        irradiance(
+            "LightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0] \"spectrum L\" \"stdillum-E\"\n");
+      }),
+      HasSubstr("no light falls on the scene from above"));
+}
+
+TEST_F(Radiometry, ALambertianPlaneHasItsReflectanceInEveryDirection) {
+  for (const std::string& light : {kSun, kSky, kSun + kSky}) {
+    const BrfReading reading = brf(
+        light + soil(0.3),
+        {.views = {{-60, 0}, {0, 0}, {30, 90}, {80, 10}}, .period = kPlot, .wavelengths = "bands,wavelengths=450,800"},
+        64);
+    for (size_t view = 0; view < 4; ++view)
+      for (size_t band = 0; band < 2; ++band) {
+        const BrfValue& v = reading.at(view, band);
+        EXPECT_NEAR(v.mean, 0.3, kZ * v.standard_error + 1e-4);  // the sky's irradiance is a sum
+        EXPECT_LT(v.standard_error, 0.01);
+      }
+  }
+}
+
+/// Walls that face the sun and turn their dark side on those who look from the other.
+TEST_F(Radiometry, ANegativeZenithLooksFromTheSunsSide) {
+  const std::string wall =
+      "MakeNamedMaterial \"w\" \"string type\" \"diffuse\" \"spectrum reflectance\" [300 1 2500 1] NamedMaterial "
+      "\"w\"\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [1 0 0  1 2 0  1 0 1  1 2 1]\n";
+  for (const double azimuth : {0.0, 73.0, 200.0}) {
+    const std::string turn = fmt::format("Rotate {} 0 0 1\n", azimuth);
+    const BrfReading reading = brf(
+        turn + kSun + wall,
+        {.views = {{-60, 0}, {60, 0}}, .target = Target{-3, 3, -3, 3, 1}, .wavelengths = "bands,wavelengths=550"}, 64);
+    EXPECT_GT(reading.at(0, 0).mean, 20 * reading.at(1, 0).mean) << azimuth;
+    EXPECT_GT(reading.at(0, 0).mean, 0.01);
+  }
+}
+
+/// Leaves that absorb nothing over such a soil send everything back.
+TEST_F(Radiometry, NothingIsLostInThePuristCorner) {
+  for (const double lai : {1.0, 2.0, 5.0}) {
+    const FluxReading reading = flux(kSun + soil(1) + canopy(lai, lambertian(0.5, 0.5)),
+                                     {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 20000);
+    EXPECT_NEAR(reading.reflected[0].mean, 1, 3 * reading.reflected[0].standard_error + 1e-5) << lai;
+    EXPECT_LT(reading.reflected[0].standard_error, 1e-3);
+    EXPECT_EQ(reading.transmitted[0].mean, 0);
+  }
+}
+
+/// Beer's law for spherical leaf angles: exp(-LAI / (2 cos 30)). That leaves are thrown at random, a fixed number of
+/// them, makes a binomial of it: exp(-x) (1 - x^2 / 2n).
+TEST_F(Radiometry, WhatReachesTheGroundUncollidedFollowsBeersLaw) {
+  for (const double lai : {1.0, 3.0}) {
+    const FluxReading reading = flux(kSun + soil(0) + canopy(lai, lambertian(0, 0)),
+                                     {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 200000);
+    const auto ground = std::ranges::find(reading.materials, "soil", &FluxReading::OfMaterial::name);
+    ASSERT_NE(ground, reading.materials.end());
+    const double expected = std::exp(-lai / 2 / std::cos(std::numbers::pi / 6));
+    // The leaves are one draw: the shares of gaps of plots so large vary by about 1 %.
+    EXPECT_NEAR(ground->uncollided[0].mean, expected, 0.04 * expected) << lai;
+    EXPECT_EQ(ground->absorbed[0].mean, ground->uncollided[0].mean);
+    EXPECT_NEAR(reading.sum[0].mean, 1, 1e-5);
+  }
+}
+
+/// A slab of horizontal leaves so thin that light meets it once: R and T of one layer.
+TEST_F(Radiometry, OneLeafOverNothingIsALeaf) {
+  const FluxReading reading =
+      flux(kSky + lambertian(0.4, 0.25) + "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  2 0 0  0 2 0  2 2 0]\n",
+           {.period = kPlot, .wavelengths = "bands,wavelengths=500,600,700,800,900"}, 50000);
+  for (size_t band = 0; band < 5; ++band) {
+    EXPECT_NEAR(reading.reflected[band].mean, 0.4, kZ * reading.reflected[band].standard_error + 1e-4);
+    EXPECT_NEAR(reading.transmitted[band].mean, 0.25, kZ * reading.transmitted[band].standard_error + 1e-4);
+    EXPECT_NEAR(reading.materials[0].absorbed[band].mean, 0.35,
+                kZ * reading.materials[0].absorbed[band].standard_error + 1e-4);
+    EXPECT_NEAR(reading.sum[band].mean, 1, kZ * reading.sum[band].standard_error + 1e-4);
+  }
+}
+
+/// Two Lambertian sheets with light between them: the doubling equations, in closed form.
+TEST_F(Radiometry, TwoLayersAddUpAsTheDoublingEquationsSay) {
+  constexpr double kR = 0.45, kT = 0.4, kSoil = 0.2;
+  const FluxReading reading = flux(
+      kSun + lambertian(kR, kT) + "Shape \"bilinearmesh\" \"point3 P\" [0 0 1  2 0 1  0 2 1  2 2 1]\n" + soil(kSoil),
+      {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 200000);
+  const double expected = kR + kT * kT * kSoil / (1 - kR * kSoil);
+  EXPECT_NEAR(reading.reflected[0].mean, expected, kZ * reading.reflected[0].standard_error);
+  EXPECT_NEAR(reading.sum[0].mean, 1, 3 * reading.sum[0].standard_error + 1e-4);
+}
+
+/// The albedo from below the light, and from what a sensor sees in directions that are even in their cosine's square.
+TEST_F(Radiometry, TheAlbedoIsTheSameFromTheSunAndFromTheSensor) {
+  const std::string world = kSun + soil(0.3) + canopy(2, lambertian(0.45, 0.4));
+  BrfRequest request{.views = {}, .period = kPlot, .wavelengths = "bands,wavelengths=800"};
+  constexpr int kRings = 8, kAzimuths = 12;
+  for (int i = 0; i < kRings; ++i)
+    for (int k = 0; k < kAzimuths; ++k)
+      request.views.push_back(
+          {std::asin(std::sqrt((i + 0.5) / kRings)) * 180 / std::numbers::pi, 360.0 * (k + 0.5) / kAzimuths});
+  const BrfReading seen = brf(world, request, 16);
+  double sum = 0, variance = 0;
+  for (const BrfValue& v : seen.values) sum += v.mean, variance += v.standard_error * v.standard_error;
+  const double albedo = sum / double(seen.values.size()), error = std::sqrt(variance) / double(seen.values.size());
+  const FluxShare sent = flux(world, {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 200000).reflected[0];
+  // The rings' sum over angles is off by less than 1e-3 for so smooth a function.
+  EXPECT_NEAR(albedo, sent.mean, kZ * std::hypot(error, sent.standard_error) + 1e-3);
+  EXPECT_LT(std::hypot(error, sent.standard_error), 2e-3) << "the test has lost its power";
+}
+
+/// The same for leaves that are not reciprocal: whichever way light is followed, it meets them along its own way.
+TEST_F(Radiometry, TheAlbedoOfRealLeavesIsTheSameBothWays) {
+  const std::string world =
+      kSun + soil(0.2) +
+      canopy(2, "MakeNamedMaterial \"leaf\" \"string type\" \"leaf_solved\" NamedMaterial \"leaf\"\n");
+  BrfRequest request{.views = {}, .period = kPlot, .wavelengths = "bands,wavelengths=550,800"};
+  constexpr int kRings = 8, kAzimuths = 12;
+  for (int i = 0; i < kRings; ++i)
+    for (int k = 0; k < kAzimuths; ++k)
+      request.views.push_back(
+          {std::asin(std::sqrt((i + 0.5) / kRings)) * 180 / std::numbers::pi, 360.0 * (k + 0.5) / kAzimuths});
+  const BrfReading seen = brf(world, request, 16);
+  const FluxReading sent = flux(world, {.period = kPlot, .wavelengths = "bands,wavelengths=550,800"}, 200000);
+  for (size_t band = 0; band < 2; ++band) {
+    double sum = 0, variance = 0;
+    for (size_t view = 0; view < request.views.size(); ++view)
+      sum += seen.at(view, band).mean, variance += std::pow(seen.at(view, band).standard_error, 2);
+    const auto n = double(request.views.size());
+    EXPECT_NEAR(sum / n, sent.reflected[band].mean,
+                kZ * std::hypot(std::sqrt(variance) / n, sent.reflected[band].standard_error) + 1e-3);
+    EXPECT_NEAR(sent.sum[band].mean, 1, 3 * sent.sum[band].standard_error + 1e-4);
+  }
+}
+
+TEST_F(Radiometry, WhatLeavesAbsorbAddsUpToTheWhole) {
+  const FluxReading reading =
+      flux(kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2)),
+           {.period = kPlot, .wavelengths = "bands,wavelengths=450,550,650,750,850", .by_instance = true}, 50000);
+  const auto leaf = std::ranges::find(reading.materials, "leaf", &FluxReading::OfMaterial::name);
+  ASSERT_NE(leaf, reading.materials.end());
+  for (size_t band = 0; band < 5; ++band) {
+    double sum = 0, variance = 0;
+    for (size_t i = band; i < reading.by_instance.size(); i += 5) {
+      sum += reading.by_instance[i].mean;
+      variance += std::pow(reading.by_instance[i].standard_error, 2);
+    }
+    EXPECT_NEAR(sum, leaf->absorbed[band].mean, 1e-6);
+    EXPECT_LT(std::sqrt(variance), 0.01);
+  }
+}
+
+TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
+  const std::string world = kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2));
+  const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .by_instance = true};
+  const FluxReading one = flux(world, request, 5000, 1), three = flux(world, request, 5000, 3);
+  EXPECT_EQ(one.reflected[0].mean, three.reflected[0].mean);
+  EXPECT_EQ(one.reflected[1].standard_error, three.reflected[1].standard_error);
+  for (size_t i = 0; i < one.by_instance.size(); ++i) {
+    EXPECT_EQ(one.by_instance[i].mean, three.by_instance[i].mean);
+    EXPECT_EQ(one.by_instance[i].standard_error, three.by_instance[i].standard_error);
+  }
+  const BrfRequest views{.views = {{10, 0}, {40, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=450"};
+  EXPECT_EQ(brf(world, views, 16, 1).at(1, 0).mean, brf(world, views, 16, 3).at(1, 0).mean);
+}
+
+TEST_F(Radiometry, WhatCannotBeMeasuredIsRefused) {
+  EXPECT_THAT(error_of([&] {
+                brf(kSun, {.views = {{0, 0}}, .wavelengths = "bands,wavelengths=450"}, 1);
+              }),
+              HasSubstr("nothing stands in this scene"));
+  EXPECT_THAT(error_of([&] {
+                flux(kSun + soil(0.1), {.period = kPlot, .wavelengths = "bands,wavelengths=450", .by_instance = true},
+                     1);
+              }),
+              HasSubstr("no copies of objects"));
+  EXPECT_THAT(error_of([&] {
+                brf(kSun + soil(0.1), {.views = {{95, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=450"}, 1);
+              }),
+              HasSubstr("not above the horizon"));
+}
+
+}  // namespace
+}  // namespace frond
