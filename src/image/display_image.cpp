@@ -1,5 +1,7 @@
 #include "image/display_image.h"
 
+#include <array>
+
 #include "core/error.h"
 #include "image/image_file.h"
 
@@ -14,10 +16,7 @@ void check_display_choice(const std::string& path, const ColorManager& colors, c
 void write_display_image(const std::string& path, const Image& image, std::string_view space,
                          const ColorManager& colors, const DisplayChoice& choice,
                          const std::map<std::string, std::string>& text) {
-  Image shown(image.width, image.height, {"R", "G", "B"});
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      for (size_t c = 0; c < 3; ++c) shown.at(x, y, c) = image.at(x, y, c);
+  Image shown = image.selected(std::array<size_t, 3>{0, 1, 2}, {"R", "G", "B"});
   colors.display(shown.pixels, space, choice.display, choice.view);
   write_image(path, shown, {.color_space = "", .text = text});
 }

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "image/image.h"
+#include "core/image.h"
 #include "spectra/color_management.h"
 
 namespace frond {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "image/image.h"
+#include "core/image.h"
 #include "spectra/color_space.h"
 
 namespace frond {

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -91,12 +92,10 @@ Image false_color_image(const ImageFile& file, const std::string& path, std::spa
   const auto channels = spectral_channels(file.image);
   if (channels.empty()) fail({}, "{} has no bands: frond render --wavelengths bands makes images that do", path);
   const auto per_radiance = float(photometric(ConstantSpectrum(1)));
-  Image image(file.image.width, file.image.height, {"R", "G", "B"});
-  for (size_t c = 0; c < 3; ++c) {
-    const size_t channel = nearest_channel(channels, nm[c], path);
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) image.at(x, y, c) = file.image.at(x, y, channel) * per_radiance;
-  }
+  std::array<size_t, 3> nearest{};
+  for (size_t c = 0; c < 3; ++c) nearest[c] = nearest_channel(channels, nm[c], path);
+  Image image = file.image.selected(nearest, {"R", "G", "B"});
+  for (float& v : image.pixels) v *= per_radiance;
   return image;
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/image.h"
 #include "core/wavelengths.h"
-#include "image/image.h"
 #include "render/film.h"
 
 namespace frond {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,11 @@ struct Image {
   std::optional<size_t> channel(std::string_view name) const;
   const float& at(int x, int y, size_t channel) const { return pixels[index(x, y, channel)]; }
   float& at(int x, int y, size_t channel) { return pixels[index(x, y, channel)]; }
+
+  /// One channel's values, pixel by pixel.
+  std::vector<float> plane(size_t channel) const;
+  /// An image of some of the channels, each as often as it is there, under other names.
+  Image selected(std::span<const size_t> which, std::vector<std::string> names) const;
 
  private:
   size_t index(int x, int y, size_t channel) const {
