@@ -2,7 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "image/linear_image.h"
+#include "image/rgb_file.h"
 #include "image/spectral_layout.h"
 #include "render/image_output.h"
 
@@ -17,7 +17,7 @@ struct ConvertOptions {
   double exposure = 0;
 };
 
-LinearImage read(const std::string& path, const std::vector<double>& bands_nm) {
+LinearFile read(const std::string& path, const std::vector<double>& bands_nm) {
   if (bands_nm.empty()) return read_linear(path);
   return {path, "linear sRGB", false_color_image(read_image(path, {}), path, bands_nm), {}, {}};
 }
@@ -26,9 +26,9 @@ void convert(const ConvertOptions& options) {
   check_writable(options.output);
   const ColorManager colors;
   check_display_choice(options.output, colors, options.display);
-  LinearImage mean = read(options.inputs[0], options.bands_nm);
+  LinearFile mean = read(options.inputs[0], options.bands_nm);
   for (size_t i = 1; i < options.inputs.size(); ++i) {
-    const LinearImage next = read(options.inputs[i], options.bands_nm);
+    const LinearFile next = read(options.inputs[i], options.bands_nm);
     check_same_size(mean, next);
     if (next.space != mean.space)
       fail({}, "{} is in {}, {} in {}: only images of one colour space are averaged", mean.path, mean.space, next.path,

@@ -4,7 +4,7 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "core/log.h"
-#include "image/linear_image.h"
+#include "image/rgb_file.h"
 #include "instruments/image_error.h"
 #include "render/image_output.h"
 #include "study/smpte_luminance.h"
@@ -26,13 +26,6 @@ float luminance(const Image& image, int x, int y) {
   return smpte_luminance(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2));
 }
 
-std::vector<float> channel_of(const Image& image, size_t channel) {
-  std::vector<float> values;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) values.push_back(image.at(x, y, channel));
-  return values;
-}
-
 /// Signed difference in false colour: blue where `b` is brighter, red where `a` is, white where they agree. The ends
 /// are told apart by those who see no red or green as well.
 std::array<float, 3> false_color(float t) {
@@ -44,7 +37,7 @@ std::array<float, 3> false_color(float t) {
   return c;
 }
 
-void write_difference(const std::string& path, const std::vector<LinearImage>& halves, double scale) {
+void write_difference(const std::string& path, const std::vector<LinearFile>& halves, double scale) {
   const Image& size = halves[0].image;
   Image picture(size.width, size.height, {"R", "G", "B"});
   for (int y = 0; y < size.height; ++y)
@@ -56,9 +49,9 @@ void write_difference(const std::string& path, const std::vector<LinearImage>& h
   write_image(path, picture, {"", {{"frond:difference_scale", fmt::format("{}", scale)}}});
 }
 
-std::vector<LinearImage> read_halves(const std::vector<std::string>& paths) {
+std::vector<LinearFile> read_halves(const std::vector<std::string>& paths) {
   const ColorManager colors;
-  std::vector<LinearImage> halves;
+  std::vector<LinearFile> halves;
   for (const std::string& path : paths) {
     halves.push_back(read_linear(path));
     check_same_size(halves[0], halves.back());
@@ -67,13 +60,13 @@ std::vector<LinearImage> read_halves(const std::vector<std::string>& paths) {
   return halves;
 }
 
-bool have_the_same_noise(const LinearImage& a, const LinearImage& b) {
+bool have_the_same_noise(const LinearFile& a, const LinearFile& b) {
   return a.path == b.path || (!a.seed.empty() && a.seed == b.seed);
 }
 
 /// Bias is told from noise by (A1 - B1)(A2 - B2): what is on both sides of the product has to be independent. The same
 /// seed within one side of it, as in A1 and B1, does no harm.
-void warn_of_same_noise(const std::vector<LinearImage>& halves) {
+void warn_of_same_noise(const std::vector<LinearFile>& halves) {
   for (const auto& [i, j] : {std::pair{0u, 1u}, {2u, 3u}, {0u, 3u}, {1u, 2u}})
     if (have_the_same_noise(halves[i], halves[j]))
       ConsoleLog().warn(
@@ -84,11 +77,11 @@ void warn_of_same_noise(const std::vector<LinearImage>& halves) {
 }
 
 /// Adds "rms_red" and so on, with `prefix` before each name.
-void add_errors(nlohmann::ordered_json& j, const std::string& prefix, const std::vector<LinearImage>& halves,
+void add_errors(nlohmann::ordered_json& j, const std::string& prefix, const std::vector<LinearFile>& halves,
                 std::span<const float> use) {
   for (size_t c = 0; c < 3; ++c) {
     std::array<std::vector<float>, 4> v;
-    for (size_t i = 0; i < 4; ++i) v[i] = channel_of(halves[i].image, c);
+    for (size_t i = 0; i < 4; ++i) v[i] = halves[i].image.plane(c);
     const ImageError e = image_error(v[0], v[1], v[2], v[3], use);
     const auto put = [&](const char* name, double value) {
       j[fmt::format("{}{}_{}", prefix, name, kChannels[c])] = value;

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/texture.h"
-#include "image/rgb_image.h"
+#include "image/rgb_file.h"
 #include "scene/registry.h"
 #include "spectra/color_space.h"
 #include "spectra/rgb_upsampling.h"
@@ -66,18 +66,18 @@ class Lookup {
 };
 
 /// Reads the file's R G B (or its one channel, three times), linear, scaled and inverted as the parameters say.
-RgbImage load(const Params& p) {
-  RgbImage image = read_rgb(p.file("filename"), p.where("filename"));
-  const std::string encoding = p.given("encoding") ? p.string("encoding") : image.is_eight_bit ? "sRGB" : "linear";
+Image load(const Params& p) {
+  ImageFile file = read_rgb(p.file("filename"), p.where("filename"));
+  const std::string encoding = p.given("encoding") ? p.string("encoding") : file.eight_bit ? "sRGB" : "linear";
   const float scale = float(p.real("scale"));
   const bool invert = p.boolean("invert");
-  if (encoding == "sRGB") decode_srgb(image);
-  for (float& v : image.rgb) {
+  if (encoding == "sRGB") decode_srgb(file.image);
+  for (float& v : file.image.pixels) {
     v *= scale;
     if (invert) v = 1 - v;
     if (!std::isfinite(v)) fail(p.where("scale"), "\"scale\" {} makes values of the image infinite", scale);
   }
-  return image;
+  return std::move(file.image);
 }
 
 class ImageFloat final : public FloatTexture {
@@ -91,9 +91,9 @@ class ImageFloat final : public FloatTexture {
   Interval range() const override { return range_; }
 
  private:
-  ImageFloat(const Params& p, const RgbImage& image) : lookup_(p, image.width, image.height) {
-    for (size_t i = 0; i < image.rgb.size(); i += 3)
-      values_.push_back((image.rgb[i] + image.rgb[i + 1] + image.rgb[i + 2]) / 3);
+  ImageFloat(const Params& p, const Image& image) : lookup_(p, image.width, image.height) {
+    for (size_t i = 0; i < image.pixels.size(); i += 3)
+      values_.push_back((image.pixels[i] + image.pixels[i + 1] + image.pixels[i + 2]) / 3);
     const auto [low, high] = std::minmax_element(values_.begin(), values_.end());
     range_ = {double(*low), double(*high)};
     if (p.string("wrap") == "black") range_ = {std::min(range_.min, 0.0), std::max(range_.max, 0.0)};
@@ -120,11 +120,11 @@ class ImageSpectrum final : public SpectrumTexture {
   float max_value() const override { return max_; }
 
  private:
-  ImageSpectrum(const Params& p, const RgbImage& image) : lookup_(p, image.width, image.height) {
+  ImageSpectrum(const Params& p, const Image& image) : lookup_(p, image.width, image.height) {
     const ColorSpace& space = *find_color_space("srgb");
     std::map<std::array<float, 3>, uint32_t> known;
-    for (size_t i = 0; i < image.rgb.size(); i += 3) {
-      const std::array<float, 3> c{image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]};
+    for (size_t i = 0; i < image.pixels.size(); i += 3) {
+      const std::array<float, 3> c{image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]};
       const auto [it, is_new] = known.emplace(c, uint32_t(colors_.size()));
       if (is_new) add_color(c, space, p.where("filename"));
       texels_.push_back(it->second);

@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "core/sampling.h"
-#include "image/rgb_image.h"
+#include "image/rgb_file.h"
 #include "scene/distribution.h"
 #include "scene/registry.h"
 #include "spectra/cie.h"
@@ -89,13 +89,13 @@ class ImageEnvironment final : public EnvironmentLight {
     float scale;
   };
 
-  static RgbImage load(const Params& p) {
-    RgbImage image = read_rgb(p.file("filename"), p.where("filename"));
-    if (image.is_eight_bit) decode_srgb(image);
-    return image;
+  static Image load(const Params& p) {
+    ImageFile file = read_rgb(p.file("filename"), p.where("filename"));
+    if (file.eight_bit) decode_srgb(file.image);
+    return std::move(file.image);
   }
 
-  ImageEnvironment(const Params& p, const Transform& world_from_light, const RgbImage& image)
+  ImageEnvironment(const Params& p, const Transform& world_from_light, const Image& image)
       : world_from_light_(world_from_light),
         light_from_world_(world_from_light.inverse()),
         size_(image.width),
@@ -107,8 +107,8 @@ class ImageEnvironment final : public EnvironmentLight {
            image.height);
     const float scale = float(p.real("scale"));
     std::map<std::array<float, 3>, uint32_t> known;
-    for (size_t i = 0; i < image.rgb.size(); i += 3) {
-      const std::array<float, 3> c{image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]};
+    for (size_t i = 0; i < image.pixels.size(); i += 3) {
+      const std::array<float, 3> c{image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]};
       const auto [it, is_new] = known.emplace(c, uint32_t(colors_.size()));
       if (is_new) colors_.push_back(color(c, scale, p.where("filename")));
       texels_.push_back(it->second);
@@ -129,12 +129,12 @@ class ImageEnvironment final : public EnvironmentLight {
         fit_reflectance(color_space("srgb", {}), {double(c[0]) / peak, double(c[1]) / peak, double(c[2]) / peak});
     return {fit.reflectance, float(peak) * scale};
   }
-  static std::vector<float> luminances(const RgbImage& image) {
+  static std::vector<float> luminances(const Image& image) {
     const Triple& y = color_space("srgb", {}).xyz_from_rgb.row[1];
     std::vector<float> result;
-    for (size_t i = 0; i < image.rgb.size(); i += 3)
-      result.push_back(
-          std::max(0.f, float(y[0]) * image.rgb[i] + float(y[1]) * image.rgb[i + 1] + float(y[2]) * image.rgb[i + 2]));
+    for (size_t i = 0; i < image.pixels.size(); i += 3)
+      result.push_back(std::max(
+          0.f, float(y[0]) * image.pixels[i] + float(y[1]) * image.pixels[i + 1] + float(y[2]) * image.pixels[i + 2]));
     return result;
   }
   static double mean_of(const std::vector<float>& values) {

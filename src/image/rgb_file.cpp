@@ -1,0 +1,68 @@
+#include "image/rgb_file.h"
+
+#include <array>
+#include <cmath>
+
+#include "image/spectral_layout.h"
+
+namespace frond {
+namespace {
+
+constexpr std::array<const char*, 3> kRgb{"R", "G", "B"};
+
+Image rgb_of(const Image& image, const std::filesystem::path& path, const Location& where) {
+  std::array<size_t, 3> channels{};
+  for (size_t c = 0; c < 3; ++c) {
+    const auto channel = image.channel(kRgb[c]);
+    if (!channel) fail(where, "{} has no channel {}", path.string(), kRgb[c]);
+    channels[c] = *channel;
+  }
+  return image.selected(channels, {kRgb.begin(), kRgb.end()});
+}
+
+[[noreturn]] void refuse_without_colors(const std::string& path, const Image& image) {
+  const auto bands = bands_of(image);
+  if (bands.empty()) fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
+  fail({},
+       "{} holds bands from {} to {} nm and no colours; frond convert --bands {},{},{} shows three of them, and frond "
+       "compare --wavelengths bands,... tells errors band by band",
+       path, bands.front(), bands.back(), bands.back(), bands[bands.size() / 2], bands.front());
+}
+
+}  // namespace
+
+ImageFile read_rgb(const std::filesystem::path& path, const Location& where) {
+  ImageFile file = read_image(path, where);
+  if (file.image.channels.size() > 2)
+    file.image = rgb_of(file.image, path, where);
+  else
+    file.image = file.image.selected(std::array<size_t, 3>{}, {kRgb.begin(), kRgb.end()});
+  for (int y = 0; y < file.image.height; ++y)
+    for (int x = 0; x < file.image.width; ++x)
+      for (size_t c = 0; c < 3; ++c)
+        if (const float v = file.image.at(x, y, c); !std::isfinite(v))
+          fail(where, "{} holds the value {} in column {}, row {}", path.string(), v, x, y);
+  return file;
+}
+
+void decode_srgb(Image& image) {
+  for (float& v : image.pixels) v = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
+
+LinearFile read_linear(const std::string& path) {
+  const ImageFile file = read_image(path, {});
+  if (file.eight_bit) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
+  if (file.header.color_space.empty()) refuse_without_colors(path, file.image);
+  LinearFile result{path, file.header.color_space, rgb_of(file.image, path, {}), {}, {}};
+  if (const auto leaf = file.image.channel("leaf")) result.leaf = file.image.plane(*leaf);
+  if (const auto seed = file.header.text.find("frond:seed"); seed != file.header.text.end()) result.seed = seed->second;
+  return result;
+}
+
+void check_same_size(const LinearFile& a, const LinearFile& b) {
+  if (a.image.width != b.image.width || a.image.height != b.image.height)
+    fail({}, "{} is {} x {}, {} is {} x {}: images of one size are needed", a.path, a.image.width, a.image.height,
+         b.path, b.image.width, b.image.height);
+}
+
+}  // namespace frond

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "image/image_file.h"
+
+namespace frond {
+
+/// An image file with R, G and B in place of its channels, or with its only colour three times; for textures and
+/// lights. Throws InputError at `where`, for values that are not finite too.
+ImageFile read_rgb(const std::filesystem::path& path, const Location& where);
+
+/// To linear values, by the curve of IEC 61966-2-1.
+void decode_srgb(Image& image);
+
+/// What a linear image file says: of a render, if it has a leaf channel and a seed.
+struct LinearFile {
+  std::string path, space;
+  Image image;              ///< R G B
+  std::vector<float> leaf;  ///< share of leaf of each pixel; empty: not in the file
+  std::string seed;         ///< of the render, as its header says; empty: it does not
+};
+
+/// Throws InputError when the file is not linear or lacks a channel.
+LinearFile read_linear(const std::string& path);
+
+void check_same_size(const LinearFile& a, const LinearFile& b);
+
+}  // namespace frond
