@@ -22,7 +22,7 @@ compare::StudyOptions options(const std::string& name) {
           .cache = cache()};
 }
 
-std::array<compare::Picture, 2> pictures_of(const PairedRender& render, const ColorManager& colors) {
+std::array<Image, 2> pictures_of(const PairedRender& render, const ColorManager& colors) {
   const Scene& scene = render.scene();
   const compare::ChannelList channels = compare::channels_of(scene);
   return {compare::picture_of(render.film(0), scene, channels, colors),
@@ -36,17 +36,18 @@ Estimate offset_of(const RenderPair& renders, const RenderPair& reference, const
           (error.noise.value / 2 + error.reference_noise.value) / pixels};
 }
 
-RenderPair channel_of(const std::array<compare::Picture, 2>& pair, size_t c) {
-  return {pair[0].channels[c], pair[1].channels[c]};
+std::array<std::vector<float>, 2> planes_of(const std::array<Image, 2>& pair, size_t c) {
+  return {pair[0].plane(c), pair[1].plane(c)};
 }
 
 /// Of one channel, mean of the repeats.
-ChannelAccuracy accuracy_of(std::span<const std::array<compare::Picture, 2>> candidate,
-                            std::span<const std::array<compare::Picture, 2>> reference, size_t c) {
+ChannelAccuracy accuracy_of(std::span<const std::array<Image, 2>> candidate,
+                            std::span<const std::array<Image, 2>> reference, size_t c) {
   std::vector<RenderError> errors;
   Estimate sum;
   for (size_t i = 0; i < candidate.size(); ++i) {
-    const RenderPair renders = channel_of(candidate[i], c), truth = channel_of(reference[i], c);
+    const auto rendered = planes_of(candidate[i], c), right = planes_of(reference[i], c);
+    const RenderPair renders{rendered[0], rendered[1]}, truth{right[0], right[1]};
     errors.push_back(render_error(renders, truth));
     sum += offset_of(renders, truth, errors.back());
   }

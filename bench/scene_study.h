@@ -46,7 +46,7 @@ class SceneStudy {
  private:
   /// No candidate shares a seed with the reference.
   enum SeedUse : uint64_t { kCandidateSeed = 1, kReferenceSeed = 3 };
-  using Pictures = std::array<compare::Picture, 2>;
+  using Pictures = std::array<Image, 2>;
 
   Accuracy measure(const std::string& material);
   const std::vector<Pictures>& reference();

@@ -16,7 +16,8 @@ namespace {
 constexpr double kQc = 0.7, kPc = 0.4, kPt = 0.95;  // colour: exponent, and where its range is bent
 constexpr double kQf = 0.5, kFeatureWidth_deg = 0.082;
 
-using Planes = std::array<Plane, 3>;
+/// One channel each.
+using Planes = std::array<Image, 3>;
 
 double cube_root_or_line(double t) {
   constexpr double kDelta = 6.0 / 29;
@@ -85,27 +86,28 @@ double sum_of(std::span<const double> v) {
   return sum;
 }
 
-Plane perceived(const Plane& channel, const Sensitivity& s, double pixels_per_degree) {
+Image perceived(const Image& channel, const Sensitivity& s, double pixels_per_degree) {
   const auto g1 = gaussian(s.b1, pixels_per_degree), g2 = gaussian(s.b2, pixels_per_degree);
   // In two dimensions the kernel's total is the square of a line's, and so is the factor sqrt(pi / b).
   double w1 = s.a1 * std::numbers::pi / s.b1, w2 = s.a2 * std::numbers::pi / s.b2;
   const double total = w1 * sum_of(g1) * sum_of(g1) + w2 * sum_of(g2) * sum_of(g2);
   w1 /= total, w2 /= total;
-  Plane result = separable_filter(channel, g1, g1);
-  const Plane second = s.a2 > 0 ? separable_filter(channel, g2, g2) : Plane{};
-  for (size_t i = 0; i < result.v.size(); ++i)
-    result.v[i] = static_cast<float>(w1 * static_cast<double>(result.v[i]) +
-                                     (s.a2 > 0 ? w2 * static_cast<double>(second.v[i]) : 0));
+  Image result = separable_filter(channel, g1, g1);
+  const Image second = s.a2 > 0 ? separable_filter(channel, g2, g2) : Image();
+  for (size_t i = 0; i < result.pixels.size(); ++i)
+    result.pixels[i] = static_cast<float>(w1 * static_cast<double>(result.pixels[i]) +
+                                          (s.a2 > 0 ? w2 * static_cast<double>(second.pixels[i]) : 0));
   return result;
 }
 
-Planes opponent_planes(const DisplayImage& image, const Colorimetry& colors) {
-  Planes planes;
-  for (Plane& p : planes) p = {image.width, image.height, {}};
-  for (size_t i = 0; i < image.rgb.size(); i += 3) {
-    const auto shown = [&](size_t c) { return std::clamp(static_cast<double>(image.rgb[i + c]), 0.0, 1.0); };
+Planes opponent_planes(const Image& image, const Colorimetry& colors) {
+  assert(image.channels.size() == 3);
+  Planes planes{Image(image.width, image.height, {"Y"}), Image(image.width, image.height, {"Cx"}),
+                Image(image.width, image.height, {"Cz"})};
+  for (size_t i = 0; i < planes[0].pixels.size(); ++i) {
+    const auto shown = [&](size_t c) { return std::clamp(static_cast<double>(image.pixels[3 * i + c]), 0.0, 1.0); };
     const Triple opponent = colors.ycxcz({shown(0), shown(1), shown(2)});
-    for (size_t c = 0; c < 3; ++c) planes[c].v.push_back(static_cast<float>(opponent[c]));
+    for (size_t c = 0; c < 3; ++c) planes[c].pixels[i] = static_cast<float>(opponent[c]);
   }
   return planes;
 }
@@ -120,10 +122,10 @@ double redistributed(double difference, double largest) {
 std::vector<Triple> filtered_lab(const Planes& opponent, const Colorimetry& colors, double pixels_per_degree) {
   Planes seen;
   for (size_t c = 0; c < 3; ++c) seen[c] = perceived(opponent[c], kSensitivities[c], pixels_per_degree);
-  std::vector<Triple> lab(seen[0].v.size());
+  std::vector<Triple> lab(seen[0].pixels.size());
   for (size_t i = 0; i < lab.size(); ++i) {
-    Triple rgb = colors.rgb_of_ycxcz(
-        {static_cast<double>(seen[0].v[i]), static_cast<double>(seen[1].v[i]), static_cast<double>(seen[2].v[i])});
+    Triple rgb = colors.rgb_of_ycxcz({static_cast<double>(seen[0].pixels[i]), static_cast<double>(seen[1].pixels[i]),
+                                      static_cast<double>(seen[2].pixels[i])});
     for (double& v : rgb) v = std::clamp(v, 0.0, 1.0);
     lab[i] = colors.hunt_lab(rgb);
   }
@@ -155,19 +157,19 @@ FeatureKernel feature_kernel(bool points, double pixels_per_degree) {
 }
 
 /// How strong edges or points are, whichever way they run.
-std::vector<double> feature_strength(const Plane& lightness, const FeatureKernel& k) {
-  const Plane x = separable_filter(lightness, k.derivative, k.gaussian);
-  const Plane y = separable_filter(lightness, k.gaussian, k.derivative);
-  std::vector<double> strength(x.v.size());
+std::vector<double> feature_strength(const Image& lightness, const FeatureKernel& k) {
+  const Image x = separable_filter(lightness, k.derivative, k.gaussian);
+  const Image y = separable_filter(lightness, k.gaussian, k.derivative);
+  std::vector<double> strength(x.pixels.size());
   for (size_t i = 0; i < strength.size(); ++i)
-    strength[i] = std::hypot(static_cast<double>(x.v[i]), static_cast<double>(y.v[i]));
+    strength[i] = std::hypot(static_cast<double>(x.pixels[i]), static_cast<double>(y.pixels[i]));
   return strength;
 }
 
-std::vector<double> feature_difference(Plane reference, Plane test, double pixels_per_degree) {
-  for (Plane* p : {&reference, &test})
-    for (float& v : p->v) v = (v + 16) / 116;
-  std::vector<double> largest(reference.v.size());
+std::vector<double> feature_difference(Image reference, Image test, double pixels_per_degree) {
+  for (Image* p : {&reference, &test})
+    for (float& v : p->pixels) v = (v + 16) / 116;
+  std::vector<double> largest(reference.pixels.size());
   for (const bool points : {false, true}) {
     const FeatureKernel k = feature_kernel(points, pixels_per_degree);
     const auto a = feature_strength(reference, k), b = feature_strength(test, k);
@@ -179,7 +181,7 @@ std::vector<double> feature_difference(Plane reference, Plane test, double pixel
 
 }  // namespace
 
-std::vector<float> flip_map(const DisplayImage& reference, const DisplayImage& test, double pixels_per_degree) {
+std::vector<float> flip_map(const Image& reference, const Image& test, double pixels_per_degree) {
   assert(reference.width == test.width && reference.height == test.height);
   const Colorimetry colors;
   const Planes a = opponent_planes(reference, colors), b = opponent_planes(test, colors);
@@ -194,7 +196,7 @@ std::vector<float> flip_map(const DisplayImage& reference, const DisplayImage& t
   return map;
 }
 
-double mean_flip(const DisplayImage& reference, const DisplayImage& test, double pixels_per_degree) {
+double mean_flip(const Image& reference, const Image& test, double pixels_per_degree) {
   const auto map = flip_map(reference, test, pixels_per_degree);
   double sum = 0;
   for (const float v : map) sum += static_cast<double>(v);

@@ -1,27 +1,22 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
-namespace frond {
+#include "core/image.h"
 
-/// Pixels of a display image, rows from the top: linear red, green and blue with the primaries of sRGB. Values outside
-/// [0, 1] are clipped, as a display does.
-struct DisplayImage {
-  int width = 0, height = 0;
-  std::vector<float> rgb;  ///< three a pixel
-};
+namespace frond {
 
 /// Where people watch from: 0.7 m before a display 0.7 m and 3840 pixels wide.
 inline constexpr double kPixelsPerDegree = 67;
 
 /// LDR-FLIP, the difference that a person sees who flips between two images of one size, pixel by pixel: 0, none, to 1.
+/// The images are linear red, green and blue with the primaries of sRGB; what lies outside [0, 1] is clipped, as a
+/// display does.
 /// P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. D. Fairchild, "FLIP: A Difference Evaluator
 /// for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020.
-std::vector<float> flip_map(const DisplayImage& reference, const DisplayImage& test,
-                            double pixels_per_degree = kPixelsPerDegree);
+std::vector<float> flip_map(const Image& reference, const Image& test, double pixels_per_degree = kPixelsPerDegree);
 
 /// The mean of the map: the paper's one number for two images.
-double mean_flip(const DisplayImage& reference, const DisplayImage& test, double pixels_per_degree = kPixelsPerDegree);
+double mean_flip(const Image& reference, const Image& test, double pixels_per_degree = kPixelsPerDegree);
 
 }  // namespace frond

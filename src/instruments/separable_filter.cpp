@@ -1,6 +1,7 @@
 #include "instruments/separable_filter.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace frond {
 namespace {
@@ -26,10 +27,13 @@ std::vector<float> filter_lines(const std::vector<float>& in, int count, int len
 
 }  // namespace
 
-Plane separable_filter(const Plane& image, std::span<const double> along_x, std::span<const double> along_y) {
+Image separable_filter(const Image& image, std::span<const double> along_x, std::span<const double> along_y) {
+  assert(image.channels.size() == 1);
   const auto width = static_cast<size_t>(image.width);
-  const auto rows = filter_lines(image.v, image.height, image.width, width, 1, along_x);
-  return {image.width, image.height, filter_lines(rows, image.width, image.height, 1, width, along_y)};
+  const auto rows = filter_lines(image.pixels, image.height, image.width, width, 1, along_x);
+  Image result(image.width, image.height, image.channels);
+  result.pixels = filter_lines(rows, image.width, image.height, 1, width, along_y);
+  return result;
 }
 
 }  // namespace frond

@@ -10,19 +10,19 @@ namespace {
 
 constexpr int kWidth = 40, kHeight = 24;
 
-DisplayImage uniform(std::array<float, 3> rgb) {
-  DisplayImage image{kWidth, kHeight, {}};
-  for (int i = 0; i < kWidth * kHeight; ++i) image.rgb.insert(image.rgb.end(), rgb.begin(), rgb.end());
+Image uniform(std::array<float, 3> rgb) {
+  Image image(kWidth, kHeight, {"R", "G", "B"});
+  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = rgb[i % 3];
   return image;
 }
 
 /// Loud texture of 17 levels.
-DisplayImage pattern(int seed) {
-  DisplayImage image{kWidth, kHeight, {}};
+Image pattern(int seed) {
+  Image image(kWidth, kHeight, {"R", "G", "B"});
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
       for (int c = 0; c < 3; ++c)
-        image.rgb.push_back(float((x * 7 + y * 13 + c * 5 + seed * (x * y + 3 * c)) % 17) / 16);
+        image.at(x, y, size_t(c)) = float((x * 7 + y * 13 + c * 5 + seed * (x * y + 3 * c)) % 17) / 16;
   return image;
 }
 

@@ -173,7 +173,11 @@ TEST_F(CompareCommand, TheReportRunsInABrowser) {
 
 TEST(FittingExposure, BringsTheBrightestTenthToTheMiddleOfTheScale) {
   using compare::fitting_exposure;
-  const auto grey = [](float value) { return compare::Picture{10, 1, {3, std::vector<float>(10, value)}}; };
+  const auto grey = [](float value) {
+    Image image(10, 1, {"R", "G", "B"});
+    std::ranges::fill(image.pixels, value);
+    return image;
+  };
   EXPECT_EQ(fitting_exposure(grey(0.3f)), 0);
   EXPECT_EQ(fitting_exposure(grey(0.3f / 8)), 3);
   EXPECT_EQ(fitting_exposure(grey(0.3f * 4)), -2);

@@ -43,7 +43,7 @@ struct Subject {
   double setup_cpu_seconds = 0;
   std::vector<Rung> rungs = {};
   std::optional<PaperTiming> paper = {};
-  Picture early = {}, late = {};  ///< as shown: one render at `Comparison::early_samples`; both after the last rung
+  Image early = {}, late = {};  ///< as shown: one render at `Comparison::early_samples`; both after the last rung
 
   /// Bias is that of the last rung, where noise hides the least of it.
   Convergence convergence(Region region, size_t channel = kTogether) const;
@@ -56,7 +56,7 @@ struct Reference {
   RenderCost cost;                                           ///< of one render
   std::array<std::vector<MeanSquare>, kRegions> noise = {};  ///< of the mean of the two, by place in the ChannelList
   std::optional<double> flip = {};  ///< between the two: twice the noise of what candidates are compared with
-  Picture picture = {};             ///< as shown
+  Image picture = {};               ///< as shown
 };
 
 /// What the user wants to know.

@@ -5,6 +5,7 @@
 
 #include "core/log.h"
 #include "core/random.h"
+#include "instruments/flip.h"
 #include "study/compare/paper_manner.h"
 #include "study/compare/picture.h"
 #include "study/compare/reference_store.h"
@@ -21,15 +22,18 @@ PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use
 }
 
 /// The two renders of a method as pictures.
-using PicturePair = std::array<Picture, 2>;
+using PicturePair = std::array<Image, 2>;
 
-std::vector<RenderError> errors_of(const PicturePair& renders, const PicturePair& reference, size_t film_channels,
-                                   std::span<const float> use) {
-  std::vector<RenderError> errors(kFirst);
-  for (size_t c = 0; c < renders[0].channels.size(); ++c)
-    errors.push_back(render_error({renders[0].channels[c], renders[1].channels[c]},
-                                  {reference[0].channels[c], reference[1].channels[c]}, use));
-  errors[kTogether] = frond::mean_of(std::span(errors).subspan(kFirst, film_channels));
+ErrorTable errors_of(const PicturePair& renders, const PicturePair& reference, size_t film_channels,
+                     std::span<const float> leaf) {
+  ErrorTable errors{std::vector<RenderError>(kFirst), std::vector<RenderError>(kFirst)};
+  for (size_t c = 0; c < renders[0].channels.size(); ++c) {
+    const auto a1 = renders[0].plane(c), a2 = renders[1].plane(c);
+    const auto b1 = reference[0].plane(c), b2 = reference[1].plane(c);
+    errors[kAll].push_back(render_error({a1, a2}, {b1, b2}));
+    errors[kLeaf].push_back(render_error({a1, a2}, {b1, b2}, leaf));
+  }
+  for (auto& region : errors) region[kTogether] = frond::mean_of(std::span(region).subspan(kFirst, film_channels));
   return errors;
 }
 
@@ -47,8 +51,8 @@ class Bench {
     const PicturePair pair = pictures(render);
     return {render.samples(), render.cost(), errors(pair), flip(display_, pair[0])};
   }
-  Picture shown_first(const PairedRender& render) const { return shown(pictures(render)[0], channels_); }
-  Picture shown_mean(const PairedRender& render) const { return shown_mean(pictures(render)); }
+  Image shown_first(const PairedRender& render) const { return shown(pictures(render)[0], channels_); }
+  Image shown_mean(const PairedRender& render) const { return shown_mean(pictures(render)); }
 
   Reference described(const Candidate& candidate, const PairedRender& render) const {
     Reference r{.candidate = candidate, .samples = render.samples(), .cost = render.cost()};
@@ -67,14 +71,13 @@ class Bench {
     return {picture_of(render.film(0), render.scene(), channels_, colors_),
             picture_of(render.film(1), render.scene(), channels_, colors_)};
   }
-  Picture shown_mean(const PicturePair& pair) const { return shown(mean_of(pair[0], pair[1]), channels_); }
+  Image shown_mean(const PicturePair& pair) const { return shown(mean_of(pair[0], pair[1]), channels_); }
   ErrorTable errors(const PicturePair& pictures) const {
-    const size_t count = channels_.film_channels();
-    return {errors_of(pictures, reference_, count, {}), errors_of(pictures, reference_, count, leaf_)};
+    return errors_of(pictures, reference_, channels_.film_channels(), leaf_);
   }
-  DisplayImage display(const Picture& shown) const { return display_image(shown, exposure_stops_, colors_); }
+  Image display(const Image& shown) const { return display_image(shown, exposure_stops_, colors_); }
   /// The eye has no say in bands.
-  std::optional<double> flip(const DisplayImage& reference, const Picture& picture) const {
+  std::optional<double> flip(const Image& reference, const Image& picture) const {
     if (channels_.are_bands()) return {};
     return mean_flip(reference, display(shown(picture, channels_)));
   }
@@ -84,7 +87,7 @@ class Bench {
   PicturePair reference_;
   std::vector<float> leaf_;
   double exposure_stops_;
-  DisplayImage display_;  ///< the reference's
+  Image display_;  ///< the reference's
 };
 
 /// Kept on disk from time to time: what was rendered is not lost when the program is ended. Returns how many samples

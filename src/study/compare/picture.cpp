@@ -16,68 +16,60 @@ void for_each_pixel(const Film& film, const Each& each) {
     for (int x = crop.x0; x < crop.x1; ++x) each(x, y);
 }
 
-Picture picture_of_colors(const Film& film, std::string_view film_space, const ColorManager& colors) {
+Image picture_of_colors(const Film& film, std::string_view film_space, const ColorManager& colors) {
   std::vector<float> rgb;
   for_each_pixel(film, [&](int x, int y) {
     for (const double v : film.mean(x, y)) rgb.push_back(float(v));
   });
   colors.convert(rgb, film_space, kErrorSpace);
   const Crop& crop = film.settings().crop;
-  Picture picture{crop.width(), crop.height(), std::vector<std::vector<float>>(4)};
-  for (size_t i = 0; i < rgb.size(); i += 3) {
-    for (size_t c = 0; c < 3; ++c) picture.channels[c].push_back(rgb[i + c]);
-    picture.channels[3].push_back(smpte_luminance(rgb[i], rgb[i + 1], rgb[i + 2]));
+  Image picture(crop.width(), crop.height(), {"R", "G", "B", "Y"});
+  auto to = picture.pixels.begin();
+  for (auto from = rgb.begin(); from != rgb.end(); from += 3) {
+    to = std::copy_n(from, 3, to);
+    *to++ = smpte_luminance(from[0], from[1], from[2]);
   }
   return picture;
 }
 
-Picture picture_of_bands(const Film& film, const ChannelList& list) {
+Image picture_of_bands(const Film& film, const ChannelList& list) {
   const Crop& crop = film.settings().crop;
-  Picture picture{crop.width(), crop.height(), std::vector<std::vector<float>>(list.bands.size())};
+  Image picture(crop.width(), crop.height(), {list.names.begin() + kFirst, list.names.end()});
+  auto to = picture.pixels.begin();
   for_each_pixel(film, [&](int x, int y) {
-    for (size_t b = 0; b < list.bands.size(); ++b)
-      picture.channels[b].push_back(float(film.band_mean(x, y, b).mean / list.white[b]));
+    for (size_t b = 0; b < list.bands.size(); ++b) *to++ = float(film.band_mean(x, y, b).mean / list.white[b]);
   });
   return picture;
 }
 
 }  // namespace
 
-Picture picture_of(const Film& film, const Scene& scene, const ChannelList& list, const ColorManager& colors) {
+Image picture_of(const Film& film, const Scene& scene, const ChannelList& list, const ColorManager& colors) {
   return list.are_bands() ? picture_of_bands(film, list)
                           : picture_of_colors(film, scene.wavelengths().film_space(), colors);
 }
 
-Picture shown(const Picture& picture, const ChannelList& list) {
-  const size_t pixels = picture.channels[0].size();
-  Picture rgb{picture.width, picture.height, {3, std::vector<float>(pixels)}};
+Image shown(const Image& picture, const ChannelList& list) {
+  const size_t pixels = size_t(picture.width) * size_t(picture.height), channels = picture.channels.size();
+  Image rgb(picture.width, picture.height, {"R", "G", "B"});
   for (size_t c = 0; c < list.film_channels(); ++c)
     for (size_t k = 0; k < 3; ++k)
       if (const auto share = float(list.shown[c][k]); share != 0)
-        for (size_t i = 0; i < pixels; ++i) rgb.channels[k][i] += share * picture.channels[c][i];
+        for (size_t i = 0; i < pixels; ++i) rgb.pixels[3 * i + k] += share * picture.pixels[channels * i + c];
   return rgb;
 }
 
-Picture mean_of(const Picture& a, const Picture& b) {
-  Picture mean = a;
-  for (size_t c = 0; c < mean.channels.size(); ++c)
-    for (size_t i = 0; i < mean.channels[c].size(); ++i)
-      mean.channels[c][i] = (a.channels[c][i] + b.channels[c][i]) / 2;
+Image mean_of(const Image& a, const Image& b) {
+  Image mean = a;
+  for (size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = (a.pixels[i] + b.pixels[i]) / 2;
   return mean;
 }
 
-std::vector<float> interleaved(const Picture& picture) {
-  std::vector<float> rgb;
-  for (size_t i = 0; i < picture.channels[0].size(); ++i)
-    for (size_t c = 0; c < 3; ++c) rgb.push_back(picture.channels[c][i]);
-  return rgb;
-}
-
-double fitting_exposure(const Picture& shown) {
+double fitting_exposure(const Image& shown) {
   constexpr double kTarget = 0.3, kBrightest = 0.1, kMostStops = 20;
   std::vector<float> lit;
-  for (size_t i = 0; i < shown.channels[0].size(); ++i)
-    if (const float y = smpte_luminance(shown.channels[0][i], shown.channels[1][i], shown.channels[2][i]); y > 0)
+  for (size_t i = 0; i < shown.pixels.size(); i += 3)
+    if (const float y = smpte_luminance(shown.pixels[i], shown.pixels[i + 1], shown.pixels[i + 2]); y > 0)
       lit.push_back(y);
   if (lit.empty()) return 0;
   const auto place = lit.begin() + ptrdiff_t(double(lit.size() - 1) * (1 - kBrightest));
@@ -85,11 +77,11 @@ double fitting_exposure(const Picture& shown) {
   return std::clamp(std::round(std::log2(kTarget / double(*place))), -kMostStops, kMostStops);
 }
 
-DisplayImage display_image(const Picture& picture, double exposure_stops, const ColorManager& colors) {
-  DisplayImage image{picture.width, picture.height, interleaved(picture)};
+Image display_image(const Image& shown, double exposure_stops, const ColorManager& colors) {
+  Image image = shown;
   const float factor = float(std::exp2(exposure_stops));
-  for (float& v : image.rgb) v *= factor;
-  colors.convert(image.rgb, kErrorSpace, "linear sRGB");
+  for (float& v : image.pixels) v *= factor;
+  colors.convert(image.pixels, kErrorSpace, "linear sRGB");
   return image;
 }
 

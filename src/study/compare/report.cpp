@@ -42,8 +42,8 @@ std::string figures(const std::filesystem::path& folder, const std::vector<Chart
   return html;
 }
 
-nlohmann::ordered_json picture_json(const std::string& name, const Picture& picture) {
-  return {{"name", name}, {"rgb", half_floats(interleaved(picture))}};
+nlohmann::ordered_json picture_json(const std::string& name, const Image& picture) {
+  return {{"name", name}, {"rgb", half_floats(picture.pixels)}};
 }
 
 std::vector<double> srgb_from_smpte() {
