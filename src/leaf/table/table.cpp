@@ -5,6 +5,7 @@
 #include <cassert>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "leaf/walk/batch_walk.h"
 
@@ -56,9 +57,8 @@ void fill_by_monte_carlo(Table& table, const TissueModel& model, const TableRequ
 
 /// First, middle and last: where the error of solutions is judged.
 std::vector<size_t> samples_of(size_t count) {
-  std::vector<size_t> samples{0, count / 2, count - 1};
-  samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
-  return samples;
+  const std::set<size_t> samples{0, count / 2, count - 1};
+  return {samples.begin(), samples.end()};
 }
 
 void fill_by_solving(Table& table, const TissueModel& model, int asked_nodes, const ThreadPool& pool) {
