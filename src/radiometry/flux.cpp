@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "core/sampling.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"
 #include "system/cpu_clock.h"
@@ -96,27 +97,59 @@ class InstanceSums {
 class Incoming {
  public:
   Incoming(std::span<const Light* const> lights, const WavelengthStrategy& wavelengths)
-      : lights_(lights), irradiance_(lights, wavelengths) {}
+      : lights_(lights), irradiance_(lights, wavelengths) {
+    const SampledWavelengths lambda = wavelengths.sample(0.5f);
+    for (const Light* light : lights) {
+      const auto* sky = dynamic_cast<const EnvironmentLight*>(light);
+      evenly_.push_back(sky && spread(*light, sky, lambda) < spread(*light, nullptr, lambda) ? sky : nullptr);
+    }
+  }
 
   struct Sample {
     Vec3 direction;  ///< of the light's way, downward
     Lanes weight;    ///< 1 on average
   };
   std::optional<Sample> sample(RandomStream& random, const SampledWavelengths& lambda) const {
-    const size_t count = lights_.size();
-    const size_t i = count == 1 ? 0 : std::min(size_t(random.uniform() * float(count)), count - 1);
-    const Vec2 u{random.uniform(), random.uniform()};
-    const auto s = lights_[i]->sample({}, u, lambda);
-    if (!s || s->wi.z <= 0 || s->pdf <= 0) return {};
+    const std::vector<double>& shares = irradiance_.shares();
+    double choice = random.uniform_double();
+    size_t i = 0;
+    while (i + 1 < shares.size() && choice >= shares[i]) choice -= shares[i++];
+    const auto s = sample_one(*lights_[i], evenly_[i], {random.uniform(), random.uniform()}, lambda);
+    if (!s) return {};
     Lanes weight;
     const Lanes irradiance = irradiance_.at(lambda);
     for (int lane = 0; lane < lambda.count; ++lane)
-      weight[lane] = s->radiance[lane] * s->wi.z / s->pdf * float(count) / irradiance[lane];
-    return Sample{-s->wi, weight};
+      weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
+    return Sample{s->direction, weight};
   }
 
  private:
+  /// Weighted by the irradiance of all directions. Of an even sky directions are drawn as they count on the plane.
+  static std::optional<Sample> sample_one(const Light& light, const EnvironmentLight* evenly, Vec2 u,
+                                          const SampledWavelengths& lambda) {
+    if (evenly) {
+      const Vec3 wi = sample_cosine_hemisphere(u);
+      return Sample{-wi, evenly->radiance(wi, lambda) * kPi};
+    }
+    const auto s = light.sample({}, u, lambda);
+    if (!s || s->wi.z <= 0 || s->pdf <= 0) return {};
+    return Sample{-s->wi, s->radiance * (s->wi.z / s->pdf)};
+  }
+
+  /// Variance of the weights, relative to their mean's square.
+  static double spread(const Light& light, const EnvironmentLight* evenly, const SampledWavelengths& lambda) {
+    constexpr int kPoints = 4096;
+    RandomStream random(1);
+    Moment moment;
+    for (int i = 0; i < kPoints; ++i) {
+      const auto s = sample_one(light, evenly, {random.uniform(), random.uniform()}, lambda);
+      moment.add(s ? double(s->weight[0]) : 0);
+    }
+    return moment.sum > 0 ? moment.square / (moment.sum * moment.sum) : INFINITY;
+  }
+
   std::span<const Light* const> lights_;
+  std::vector<const EnvironmentLight*> evenly_;  ///< the lights themselves, where that spreads weights less
   HorizontalIrradiance irradiance_;
 };
 

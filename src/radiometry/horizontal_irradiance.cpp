@@ -56,13 +56,18 @@ HorizontalIrradiance::HorizontalIrradiance(std::span<const Light* const> lights,
   } else {
     nm_.assign(listed.begin(), listed.end());
   }
+  shares_.resize(lights.size());
   for (size_t begin = 0; begin < nm_.size(); begin += kLanes) {
     const SampledWavelengths lambda = lanes_at(std::span(nm_).subspan(begin));
     std::array<double, kLanes> sum{};
+    std::vector<std::array<double, kLanes>> each;
     for (const Light* light : lights) {
-      const auto one = irradiance(*light, lambda, kDirections);
-      for (size_t lane = 0; lane < kLanes; ++lane) sum[lane] += one[lane];
+      each.push_back(irradiance(*light, lambda, kDirections));
+      for (size_t lane = 0; lane < kLanes; ++lane) sum[lane] += each.back()[lane];
     }
+    for (size_t i = 0; i < each.size(); ++i)
+      for (size_t lane = 0; lane < size_t(lambda.count); ++lane)
+        if (sum[lane] > 0) shares_[i] += each[i][lane] / sum[lane] / double(nm_.size());
     values_.insert(values_.end(), sum.begin(), sum.begin() + lambda.count);
   }
   for (size_t i = 0; i < nm_.size(); ++i)

@@ -18,6 +18,8 @@ class HorizontalIrradiance {
   HorizontalIrradiance(std::span<const Light* const> lights, const WavelengthStrategy& wavelengths);
 
   SampledSpectrum at(const SampledWavelengths& lambda) const;
+  /// What part of it each light gives, on average over the wavelengths.
+  const std::vector<double>& shares() const { return shares_; }
   /// What a sensor's bands say of it.
   const std::vector<double>& bands() const { return bands_; }
 
@@ -28,7 +30,7 @@ class HorizontalIrradiance {
   void sum_bands(const WavelengthStrategy& wavelengths);
 
   std::vector<double> nm_, values_;
-  std::vector<double> bands_;
+  std::vector<double> shares_, bands_;
 };
 
 /// Direction toward the scene's only light of one direction, as far as it stands above the horizon; empty where there

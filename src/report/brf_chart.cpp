@@ -15,6 +15,15 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
+/// Bands that differ by more than this have no room on one even scale.
+constexpr double kLogarithmic = 8;
+
+/// The largest value over the smallest.
+double spread(const BrfReading& reading) {
+  const auto [least, most] = std::ranges::minmax(reading.values, {}, &BrfValue::mean);
+  return least.mean > 0 ? most.mean / least.mean : 1;
+}
+
 std::string wavelength(double nm) { return fmt::format("{:g} nm", nm); }
 
 /// Blue to yellow by way of green (viridis, by van der Walt and Smith).
@@ -74,10 +83,11 @@ std::string map_data(const Rings& rings) {
 BrfChart brf_plane_chart(const BrfReading& reading) {
   std::string script =
       "set xlabel 'zenith angle of the view (degrees)'\nset ylabel 'BRF'\nset xtics 15\nset mxtics 3\n"
-      "set yrange [0:*]\nset key outside right top\nset grid lc rgb '#d0d0d0' lw 0.5\n";
+      "set key outside right top\nset grid lc rgb '#d0d0d0' lw 0.5\n";
   // A plane for each azimuth that is there.
   std::map<double, std::vector<size_t>> planes;
   for (size_t i = 0; i < reading.views.size(); ++i) planes[reading.views[i].azimuth_deg].push_back(i);
+  script += spread(reading) > kLogarithmic ? "set logscale y\nset yrange [*:*]\n" : "set yrange [0:*]\n";
   std::string plots;
   size_t curve = 0;
   for (const auto& [azimuth, views] : planes)
@@ -91,7 +101,8 @@ BrfChart brf_plane_chart(const BrfReading& reading) {
           wavelength(reading.wavelengths_nm[band]) + (planes.size() > 1 ? fmt::format(", {:g}°", azimuth) : "");
       const std::string_view color = kSeriesColors[curve % kSeriesColors.size()];
       plots += fmt::format(
-          "{0}$c{1} with lines lw 2 lc rgb '{2}' title {3}, $c{1} with yerrorbars pt 0 lw 1 lc rgb '{2}' notitle",
+          "{0}$c{1} with lines lw 2 lc rgb '{2}' title {3}, $c{1} with yerrorbars pt 7 ps 0.4 lw 1 lc rgb '{2}' "
+          "notitle",
           plots.empty() ? "plot " : ", ", curve, color, gnuplot_text(title));
     }
   return {script + plots + "\n", 900, 560};
@@ -105,14 +116,19 @@ BrfChart brf_hemisphere_chart(const BrfReading& reading) {
   std::string script = fmt::format("set multiplot layout {},{}\n{}", rows, columns, kPalette);
   script +=
       "set size ratio -1\nset pm3d map corners2color mean\nunset key\nunset border\nunset tics\nset cbtics\n"
-      "set lmargin 1\nset rmargin 6\nset tmargin 3\nset bmargin 1\nset xrange [-92:92]\nset yrange [-92:92]\n"
-      "set cbrange [0:*]\n";
+      "set xrange [-92:92]\nset yrange [-92:92]\n"
+      "set cbrange [*:*]\n";
   for (const int radius : {30, 60, 90})
     script += fmt::format(
         "set object {0} circle at 0,0 size {0} front fs empty border lc rgb '#ffffff' lw 0.7\n"
         "set label {0} '{0}°' at 1,{1} left front font ',9' textcolor rgb '{2}'\n",
         radius, radius - 6, radius == 90 ? "#000000" : "#ffffff");
   for (size_t band = 0; band < bands; ++band) {
+    const double left = double(int(band) % columns) / columns, bottom = 1 - double(int(band) / columns + 1) / rows;
+    script += fmt::format("set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\n", left + 0.02 / columns,
+                          left + 0.80 / columns);
+    script += fmt::format("set bmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n", bottom + 0.03 / rows,
+                          bottom + 0.89 / rows);
     script += fmt::format("$m{} << EOD\n{}EOD\nset title {}\n", band, map_data(Rings(reading, band)),
                           gnuplot_text("BRF at " + wavelength(reading.wavelengths_nm[band])));
     script += fmt::format("splot $m{} using 1:2:3 with pm3d\n", band);

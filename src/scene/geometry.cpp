@@ -374,6 +374,23 @@ class Geometry::Areas {
   std::map<const Surface*, double> own_;
 };
 
+std::vector<InstanceColumn> Geometry::columns() const {
+  std::vector<InstanceColumn> all;
+  const auto add = [&all](const Object& object) {
+    for (const Instances& set : object.parts.instances)
+      for (const InstanceColumn& c : set.table->columns()) {
+        const auto known = std::ranges::find(all, c.name, &InstanceColumn::name);
+        if (known == all.end())
+          all.push_back(c);
+        else
+          known->range = {std::min(known->range.min, c.range.min), std::max(known->range.max, c.range.max)};
+      }
+  };
+  for (const auto& object : objects_) add(*object);
+  add(*world_);
+  return all;
+}
+
 std::vector<float> Geometry::areas() const {
   std::vector<float> areas(instances());
   Areas(areas).visit(*world_, Transform(), 0);

@@ -77,6 +77,8 @@ class Geometry {
   const std::vector<Surface>& surfaces() const;
   /// The largest id of a GeometryHit.
   uint64_t instances() const;
+  /// Columns of all tables, each name once: its range is that of all of that name.
+  std::vector<InstanceColumn> columns() const;
   /// Areas of what has a number, of one of its sides, by the number less 1.
   std::vector<float> areas() const;
 

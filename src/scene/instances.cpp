@@ -1,3 +1,7 @@
+#include "scene/instances.h"
+
+#include <algorithm>
+
 #include "core/error.h"
 #include "scene/registry.h"
 #include "scene/shape.h"
@@ -5,6 +9,9 @@
 // Copies of an object by the million, and textures that follow their numbers.
 
 namespace frond {
+
+extern const FloatTextureInfo instance_float_texture;
+
 namespace {
 
 constexpr Param kInstances[] = {{.name = "object",
@@ -58,7 +65,32 @@ constexpr Param kInstanceTexture[] = {
 
 std::unique_ptr<FloatTexture> make_instance_texture(const Params& p) { return std::make_unique<InstanceTexture>(p); }
 
+const ParsedParam* find(const ParsedPlugin& plugin, std::string_view name) {
+  const auto found = std::ranges::find(plugin.params, name, &ParsedParam::name);
+  return found == plugin.params.end() ? nullptr : &*found;
+}
+
 }  // namespace
+
+void check_instance_textures(const SceneSettings& description, const Geometry& geometry, const Log& log) {
+  const std::vector<InstanceColumn> columns = geometry.columns();
+  std::vector<std::string_view> names;
+  for (const InstanceColumn& c : columns) names.push_back(c.name);
+  for (const TextureDescription& texture : description.textures) {
+    if (texture.plugin.name != instance_float_texture.name) continue;
+    const ParsedParam& name = *find(texture.plugin, "column");  // it is required, and a single one
+    const std::string& wanted = std::get<std::vector<std::string>>(name.values).front();
+    const auto column = std::ranges::find(columns, wanted, &InstanceColumn::name);
+    if (column == columns.end())
+      fail(name.value_where, "no table of copies has a column \"{}\"{}", wanted,
+           names.empty() ? ": none has any numbers beside \"transform\"" : suggestion(wanted, names));
+    const auto& range = std::get<std::vector<double>>(find(texture.plugin, "range")->values);
+    if (column->range.min < range[0] || column->range.max > range[1])
+      log.warn(name.value_where,
+               fmt::format("column \"{}\" goes from {:g} to {:g}: what is beyond \"range\" is taken as its ends",
+                           wanted, column->range.min, column->range.max));
+  }
+}
 
 extern const ShapeInfo instances_shape{
     {"shape", "instances", "Copies of an object, a row of a table for each.", "", kInstances}, make_instances};

@@ -5,6 +5,7 @@
 
 #include "core/log.h"
 #include "scene/geometry_builder.h"
+#include "scene/instances.h"
 
 namespace frond {
 namespace {
@@ -71,6 +72,7 @@ class SceneBuilder {
     check_declarations(*resolver);
     build_lights(*resolver);
     scene_.geometry_ = build_geometry(description, registry_, *resolver, pool_, log_);
+    check_instance_textures(description_, *scene_.geometry_, log_);
     build_area_lights(*resolver);
     finish(*resolver, shared);
   }

@@ -267,6 +267,21 @@ Translate 9 0 0 Shape "disk")");
   }
 }
 
+TEST_F(Instances, AColumnThatNoTableHasIsAnError) {
+  InstanceWriter writer(file("leaves.npy"), 1, {"chlorophyll"});
+  writer.add({{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}}, std::vector<float>{3});
+  writer.finish();
+  const std::string texture =
+      "Texture \"t\" \"float\" \"instance\" \"string column\" \"clorophyll\" \"float range\" [0 5]\n";
+  const std::string leaves =
+      "ObjectBegin \"leaf\" Shape \"disk\" ObjectEnd\n"
+      "Shape \"instances\" \"string object\" \"leaf\" \"string filename\" \"leaves.npy\"";
+  EXPECT_THAT(
+      error_of([&] { scene(texture + leaves); }),
+      HasSubstr("scene.pbrt:3:48: no table of copies has a column \"clorophyll\"; did you mean \"chlorophyll\"?"));
+  EXPECT_THAT(error_of([&] { scene(texture); }), HasSubstr("none has any numbers"));
+}
+
 /// The leaf area index and the mean projection of leaf normals, in closed form: G(vertical) = E|cos theta|.
 TEST(HomogeneousCanopy, LeavesLeanAsTheDistributionSays) {
   for (const LeafAngles& angles : leaf_angle_distributions()) {

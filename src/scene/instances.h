@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/log.h"
+#include "scene/description.h"
+#include "scene/geometry.h"
+
+namespace frond {
+
+/// Throws InputError where a Texture "instance" asks for a column that no table of copies has; warns where the column
+/// goes beyond the texture's range.
+void check_instance_textures(const SceneSettings& description, const Geometry& geometry, const Log& log);
+
+}  // namespace frond
