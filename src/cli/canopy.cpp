@@ -62,9 +62,9 @@ void run_canopy(CanopyOptions o) {
   if (leaves == 0 || leaves > kMost) fail({}, "these are {} leaves: 1 to {} can be", leaves, kMost);
   check_replaceable(o.output);
   InstanceWriter writer(o.output, leaves, names);
-  const LeafPlacer placer(canopy);
+  LeafPlacer placer(canopy);
   std::vector<float> values(names.size());
-  for (uint64_t leaf = 0; leaf < leaves; ++leaf) writer.add(placer.place(leaf, values), values);
+  for (uint64_t leaf = 0; leaf < leaves; ++leaf) writer.add(placer.place(values), values);
   writer.finish();
   const double area = double(leaves) * canopy.leaf_area * canopy.scale * canopy.scale;
   const std::string index =
@@ -96,6 +96,9 @@ void add_canopy_command(CLI::App& app) {
       ->delimiter(',')
       ->check(is_positive);
   command->add_option("--heights", c.heights, "Least and largest height of the leaves' middles.")->delimiter(',');
+  command
+      ->add_option("--apart", c.apart, "Least distance of leaves' middles; they know nothing of each other by default.")
+      ->check(is_positive);
   command
       ->add_option("--column", o->columns,
                    "NAME=LEAST:MOST of a number that each leaf has, for Texture \"instance\"; may be given again.")

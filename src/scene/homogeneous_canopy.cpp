@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/error.h"
 #include "scene/instance_writer.h"
 
 namespace frond {
@@ -61,10 +62,33 @@ Vec3d LeafPlacer::position(RandomStream& random) const {
   return Vec3d{ring * std::cos(phi), ring * std::sin(phi), z} * r;
 }
 
-AffineMap LeafPlacer::place(uint64_t leaf, std::span<float> values) const {
-  RandomStream random(hash_key(canopy_.seed, leaf));
+LeafPlacer::Cell LeafPlacer::cell_of(const Vec3d& p) const {
+  const auto at = [this](double x) { return int64_t(std::floor(x / canopy_.apart)); };
+  return {at(p.x), at(p.y), at(p.z)};
+}
+
+bool LeafPlacer::takes_room(const Vec3d& p) {
+  if (canopy_.apart == 0) return true;
+  const Cell middle = cell_of(p);
+  for (int64_t i = -1; i <= 1; ++i)
+    for (int64_t j = -1; j <= 1; ++j)
+      for (int64_t k = -1; k <= 1; ++k)
+        if (const auto cell = there_.find({middle[0] + i, middle[1] + j, middle[2] + k}); cell != there_.end())
+          for (const Vec3d& other : cell->second)
+            if (length(other - p) < canopy_.apart) return false;
+  there_[middle].push_back(p);
+  return true;
+}
+
+AffineMap LeafPlacer::place(std::span<float> values) {
+  constexpr int kMostTries = 100000;
+  RandomStream random(hash_key(canopy_.seed, next_++));
   const auto between = [&random](double a, double b) { return std::lerp(a, b, random.uniform_double()); };
-  const Vec3d at_position = position(random);
+  Vec3d at_position = position(random);
+  for (int i = 1; !takes_room(at_position); ++i) {
+    if (i == kMostTries) fail({}, "there is no room for leaf {}: they are to be {:g} apart", next_, canopy_.apart);
+    at_position = position(random);
+  }
   const double at = random.uniform_double() * double(angle_at_.size() - 1);
   const auto i = std::min(size_t(at), angle_at_.size() - 2);
   const double theta = std::lerp(angle_at_[i], angle_at_[i + 1], at - double(i)), phi = between(0, 2 * kPiD);

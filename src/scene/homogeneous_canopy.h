@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "core/random.h"
@@ -22,7 +23,7 @@ struct LeafAngles {
 /// Those of de Wit 1965 as Goel and Strebel 1984 write them (Agronomy Journal 76:800-802), and the spherical one.
 std::span<const LeafAngles> leaf_angle_distributions();
 
-/// Leaves at random in a layer, or in a ball: none knows of another.
+/// Leaves at random in a layer, or in a ball.
 struct HomogeneousCanopy {
   double leaf_area_index = 3;              ///< one-sided area of leaves over that of ground
   uint64_t count = 0;                      ///< of leaves, in place of what the leaf area index asks for
@@ -32,6 +33,7 @@ struct HomogeneousCanopy {
   std::array<double, 2> size = {10, 10};   ///< of the plot, along x and y
   std::array<double, 2> heights = {0, 1};  ///< of the leaves' middles
   double ball = 0;                         ///< radius of a ball around the origin, in place of the plot; 0: the plot
+  double apart = 0;                        ///< least distance of leaves' middles; 0: none knows of another
   /// Numbers that textures may ask for, even between two bounds.
   struct Column {
     std::string name;
@@ -48,14 +50,24 @@ struct HomogeneousCanopy {
 class LeafPlacer {
  public:
   explicit LeafPlacer(const HomogeneousCanopy& canopy);
-  /// Its columns' numbers go into `values`.
-  AffineMap place(uint64_t leaf, std::span<float> values) const;
+  /// The next leaf; its columns' numbers go into `values`. Throws InputError where there is no room for it.
+  AffineMap place(std::span<float> values);
 
  private:
+  using Cell = std::array<int64_t, 3>;
+  struct CellHash {
+    size_t operator()(const Cell& c) const { return hash_key(uint64_t(c[0]), c[1], c[2]); }
+  };
+
   Vec3d position(RandomStream& random) const;
+  /// Whether leaves that are there leave room; then one is there.
+  bool takes_room(const Vec3d& p);
+  Cell cell_of(const Vec3d& p) const;
 
   const HomogeneousCanopy& canopy_;
-  std::vector<double> angle_at_;  ///< quantiles of the leaf angle
+  std::vector<double> angle_at_;                                  ///< quantiles of the leaf angle
+  std::unordered_map<Cell, std::vector<Vec3d>, CellHash> there_;  ///< where leaves keep apart
+  uint64_t next_ = 0;
 };
 
 }  // namespace frond

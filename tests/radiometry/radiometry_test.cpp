@@ -66,9 +66,9 @@ class Radiometry : public ::testing::Test {
     HomogeneousCanopy c{
         .leaf_area_index = lai, .angles = &leaf_angle_distributions()[0], .scale = 0.04, .size = {2, 2}};
     c.heights = {0.05, 1};
-    const LeafPlacer placer(c);
+    LeafPlacer placer(c);
     InstanceWriter writer(folder_.name_of("leaves.npy"), c.leaves(), {});
-    for (uint64_t i = 0; i < c.leaves(); ++i) writer.add(placer.place(i, {}), {});
+    for (uint64_t i = 0; i < c.leaves(); ++i) writer.add(placer.place({}), {});
     writer.finish();
     return leaf +
            "ObjectBegin \"leaf\" Shape \"disk\" ObjectEnd\n"

@@ -288,11 +288,11 @@ TEST(HomogeneousCanopy, LeavesLeanAsTheDistributionSays) {
     HomogeneousCanopy canopy{.leaf_area_index = 2, .angles = &angles};
     canopy.seed = 3;
     EXPECT_EQ(canopy.leaves(), uint64_t(std::llround(200 / (std::numbers::pi * 0.0025))));
-    const LeafPlacer placer(canopy);
+    LeafPlacer placer(canopy);
     constexpr int kLeaves = 20000;
     double sum = 0, squares = 0;
     for (int i = 0; i < kLeaves; ++i) {
-      const AffineMap map = placer.place(uint64_t(i), {});
+      const AffineMap map = placer.place({});
       const Vec3 normal = normalize(map.vector({0, 0, 1}));
       EXPECT_NEAR(length(map.vector({1, 0, 0})), 0.05f, 1e-6f);
       const double c = std::abs(double(normal.z));
@@ -308,6 +308,24 @@ TEST(HomogeneousCanopy, LeavesLeanAsTheDistributionSays) {
     const double mean = sum / kLeaves, error = std::sqrt((squares / kLeaves - mean * mean) / kLeaves);
     EXPECT_LE(std::abs(mean - expected), 4.5 * error + 1e-6) << angles.name;  // false alarms: 7e-6 for each
   }
+}
+
+TEST(HomogeneousCanopy, LeavesKeepApartWhereTheyAreToldTo) {
+  HomogeneousCanopy canopy{.angles = &leaf_angle_distributions()[0]};
+  canopy.count = 2000, canopy.ball = 1, canopy.apart = 0.1;
+  LeafPlacer placer(canopy);
+  std::vector<Vec3> middles;
+  for (uint64_t i = 0; i < canopy.leaves(); ++i) middles.push_back(placer.place({}).translation());
+  for (size_t i = 0; i < middles.size(); ++i) {
+    EXPECT_LE(length(middles[i]), 1.00001f);
+    for (size_t j = 0; j < i; ++j) ASSERT_GT(length(middles[i] - middles[j]), 0.09999f);
+  }
+  canopy.apart = 0.5;
+  LeafPlacer crowded(canopy);
+  EXPECT_THAT(error_of([&] {
+                for (uint64_t i = 0; i < canopy.leaves(); ++i) crowded.place({});
+              }),
+              HasSubstr("there is no room for leaf"));
 }
 
 }  // namespace
