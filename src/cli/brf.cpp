@@ -3,22 +3,38 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <memory>
 
 #include "cli/commands.h"
+#include "cli/common_options.h"
 #include "cli/number_list.h"
 #include "cli/progress.h"
 #include "cli/radiometer_options.h"
+#include "radiometry/brf_comparison.h"
 #include "report/brf_chart.h"
 #include "report/gnuplot.h"
 #include "report/text_output.h"
+#include "study/compare/candidate.h"
+#include "system/cpu_clock.h"
 
 namespace frond {
 namespace {
 
 struct BrfOptions : RadiometerOptions {
   std::string zenith = "-75:75:5", azimuth = "0", plot;
+  std::vector<std::string> compare;
+  std::string reference = "leaf_solved";
+  double within = 0.02;
   bool hemisphere = false;
+};
+
+/// A leaf model's BRF, and what it took.
+struct ModelReading {
+  compare::Candidate model;
+  BrfReading brf;
+  double cpu_us_per_path = 0;
 };
 
 /// Every direction of a hemisphere: rings of even steps.
@@ -39,6 +55,43 @@ std::vector<ViewDirection> views_of(const BrfOptions& o) {
       views.push_back({zenith, azimuth});
     }
   return views;
+}
+
+std::string differences_csv(const ModelReading& reference, const std::vector<ModelReading>& models) {
+  std::string text =
+      "model,zenith_deg,azimuth_deg,wavelength_nm,brf,brf_se,relative_difference,relative_difference_se\n";
+  const auto add = [&](const ModelReading& m) {
+    const auto differences = relative_to(reference.brf, m.brf);
+    const size_t bands = m.brf.wavelengths_nm.size();
+    for (size_t i = 0; i < differences.size(); ++i)
+      text += fmt::format("{},{:g},{:g},{:g},{:.6g},{:.3g},{:.5g},{:.3g}\n", csv_field(m.model.label),
+                          m.brf.views[i / bands].zenith_deg, m.brf.views[i / bands].azimuth_deg,
+                          m.brf.wavelengths_nm[i % bands], m.brf.values[i].mean, m.brf.values[i].standard_error,
+                          differences[i].mean, differences[i].standard_error);
+  };
+  add(reference);
+  for (const ModelReading& m : models) add(m);
+  return text;
+}
+
+/// A line for each model, the cheapest first, and which of them is enough.
+std::string verdict_of(const ModelReading& reference, const std::vector<ModelReading>& models, double within) {
+  using Answer = BrfVerdict::Answer;
+  std::string text = fmt::format("BRF relative to {} ({:.2f} µs a path), within {:g} % everywhere?\n",
+                                 reference.model.label, reference.cpu_us_per_path, 100 * within);
+  const ModelReading* enough = nullptr;
+  for (const ModelReading& m : models) {
+    const BrfVerdict v = judge(reference.brf, m.brf, within);
+    const char* answer = v.answer == Answer::enough       ? "yes"
+                         : v.answer == Answer::not_enough ? "no"
+                         : m.brf.has_heavy_tails          ? "not known: its noise has no bound"
+                                                          : "not known: more paths tell";
+    text += fmt::format("  {:<24} {:6.2f} µs a path  {:+8.2f} ±{:.2f} % at {:g}°, {:g} nm; {:.2f} % at most: {}\n",
+                        m.model.label, m.cpu_us_per_path, 100 * v.worst.mean, 100 * v.worst.standard_error,
+                        m.brf.views[v.view].zenith_deg, m.brf.wavelengths_nm[v.band], 100 * v.upper, answer);
+    if (v.answer == Answer::enough && !enough) enough = &m;
+  }
+  return text + fmt::format("Enough, and the cheapest: {}\n", enough ? enough->model.label : reference.model.label);
 }
 
 std::string csv_of(const BrfReading& reading) {
@@ -90,11 +143,43 @@ BrfReading measure(const BrfOptions& o, const BrfMeter& meter, Session& session)
   }
 }
 
+/// The scene with one leaf model in place of its leaves, and then with the others.
+void run_comparison(const BrfOptions& o, const BrfRequest& request, const ConsoleLog& log) {
+  Session session(log, session_options_of(o));
+  const SceneDescription description = session.read(o.scene);
+  std::unique_ptr<BrfMeter> first;
+  const auto measured = [&](const compare::Candidate& model) {
+    if (!model.wavelengths.empty() || model.integrator)
+      fail({}, "--compare takes materials alone: \"{}\" has an @", model.text);
+    SceneOverrides overrides = overrides_of(o);
+    overrides.swaps.push_back({"*", model.material});
+    auto meter =
+        std::make_unique<BrfMeter>(session, description, overrides, request, first ? &first->scene().scene() : nullptr);
+    const double start = cpu_seconds();
+    ModelReading result{model, measure(o, *meter, session)};
+    const double paths = double(result.brf.paths) * double(result.brf.views.size());
+    result.cpu_us_per_path = (cpu_seconds() - start) * 1e6 / paths;
+    if (!first) first = std::move(meter);
+    return result;
+  };
+  const auto models = compare::parse_candidates(o.compare);
+  const ModelReading reference = measured(compare::parse_candidate(o.reference));
+  std::vector<ModelReading> readings;
+  for (const compare::Candidate& model : models) readings.push_back(measured(model));
+  std::ranges::sort(readings, {}, &ModelReading::cpu_us_per_path);
+  if (!o.csv.empty()) write_text(o.csv, differences_csv(reference, readings));
+  if (o.csv != "-") write_text("-", verdict_of(reference, readings, o.within));
+}
+
 void run_brf(const BrfOptions& o) {
   const ConsoleLog log(o.quiet);
   if (!o.csv.empty()) check_text_output(o.csv);
   if (!o.plot.empty()) check_chart(o.plot);
   const BrfRequest request{views_of(o), target_of(o), period_of(o), wavelengths_of(o)};
+  if (!o.compare.empty()) {
+    if (!o.plot.empty()) fail({}, "--plot is of one model's BRF: --csv has those of --compare");
+    return run_comparison(o, request, log);
+  }
   Session session(log, session_options_of(o));
   const BrfMeter meter(session, session.read(o.scene), overrides_of(o), request);
   const BrfReading reading = measure(o, meter, session);
@@ -121,6 +206,14 @@ void add_brf_command(CLI::App& app) {
                       "Degrees from the plane of the sun, or from +x toward +y where there is not one sun.");
   command->add_flag("--hemisphere", o->hemisphere, "Directions from everywhere above, every 5 and 15 degrees.");
   command->add_option("--plot", o->plot, "Chart against the zenith angle, or maps of a hemisphere: .svg or .png.");
+  command
+      ->add_option(
+          "--compare", o->compare,
+          "MODEL[,parameter=value...],... in place of the scene's leaves, as in frond compare: which is enough?")
+      ->allow_extra_args(false);
+  command->add_option("--reference", o->reference, "The model that counts as right; leaf_solved by default.");
+  command->add_option("--within", o->within, "Largest relative difference that is enough; 0.02 by default.")
+      ->check(is_positive);
   command->callback([o] { run_brf(*o); });
 }
 

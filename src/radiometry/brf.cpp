@@ -35,6 +35,21 @@ ParsedPlugin camera_of(const BrfRequest& request, const Target& target, const Sc
            parsed_numbers("float", "distance", {distance})}};
 }
 
+/// Walks that are followed from the sensor, but whose incident direction is the light's, are weighted by numbers
+/// without a bound (docs/conventions.md).
+bool has_heavy_tails(const Scene& scene, size_t materials) {
+  const SampledWavelengths lambda = scene.wavelengths().sample(0.5f);
+  const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}, {}}};
+  for (size_t place = 0; place < materials; ++place) {
+    const Material* material = scene.material(place);
+    if (!material) continue;
+    Arena arena;
+    const Bsdf* bsdf = material->evaluate(hit, lambda, arena);
+    if (bsdf && any(bsdf->flags() & Lobes::stochastic) && any(bsdf->flags() & Lobes::from_light)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 double BrfReading::relative_error() const {
@@ -43,10 +58,11 @@ double BrfReading::relative_error() const {
   return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
 }
 
-BrfMeter::BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request)
+BrfMeter::BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request,
+                   const Scene* other)
     : request_(request) {
   prepare_for_radiometry(session, request.wavelengths, request.period, description, overrides);
-  const LoadedScene first = session.load(description, overrides);
+  const LoadedScene first = session.load(description, overrides, {}, other);
   const Scene& scene = first.scene();
   const Target target = request.target ? *request.target : default_target(scene);
   const std::optional<Vec3> sun = direction_to_sun(scene.lights());
@@ -58,18 +74,26 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, SceneOverride
                       {parsed_numbers("integer", "xresolution", {double(request.views.size())}),
                        parsed_numbers("integer", "yresolution", {double(kRows)})}};
   scene_ = session.load(std::move(description), overrides, {}, &scene);
+  has_heavy_tails_ = has_heavy_tails(scene, scene_.description().materials.size());
+  if (has_heavy_tails_)
+    session.log().warn(
+        {},
+        "a leaf's random walk (abm) takes the light's direction for incident: its noise has no bound, and "
+        "what is printed as standard error is too small; leaf_solved is the same leaf without noise");
   const HorizontalIrradiance irradiance(scene.lights(), scene.wavelengths());
   for (const double e : irradiance.bands()) white_.push_back(e / std::numbers::pi);
 }
 
 BrfReading BrfMeter::read(const Film& film) const {
-  BrfReading reading{.views = request_.views, .wavelengths_nm = {}, .values = {}};
+  BrfReading reading{.views = request_.views, .wavelengths_nm = {}, .values = {}, .rows = {}};
+  reading.has_heavy_tails = has_heavy_tails_;
   for (const Band& band : scene_.scene().wavelengths().bands()) reading.wavelengths_nm.push_back(band.nm);
   for (int view = 0; view < film.settings().width; ++view)
     for (size_t band = 0; band < film.bands(); ++band) {
       double sum = 0, squares = 0;
       for (int row = 0; row < kRows; ++row) {
         const double value = film.band_mean(view, row, band).mean / white_[band];
+        reading.rows.push_back(value);
         sum += value, squares += value * value;
       }
       const double mean = sum / kRows, variance = std::max(0.0, squares / kRows - mean * mean) / (kRows - 1);

@@ -36,7 +36,10 @@ struct BrfReading {
   std::vector<ViewDirection> views;
   std::vector<double> wavelengths_nm;
   std::vector<BrfValue> values;  ///< view by view, band by band
+  std::vector<double> rows;      ///< of each of the values: its BrfMeter::kRows independent ones
   uint64_t paths = 0;            ///< for each view
+  /// Standard errors are not to be trusted: a few paths that are hardly ever drawn carry much of the mean.
+  bool has_heavy_tails = false;
   const BrfValue& at(size_t view, size_t band) const { return values[view * wavelengths_nm.size() + band]; }
   /// Root mean square of the standard errors over views and bands, each relative to its mean.
   double relative_error() const;
@@ -50,7 +53,9 @@ class BrfMeter {
 
   /// Throws InputError. Leaves for which the scene does not say what they take for incident take the light's
   /// direction, as energy asks for.
-  BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request);
+  /// `other`: a scene in which the same stands, which is then not made again.
+  BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request,
+           const Scene* other = nullptr);
 
   const LoadedScene& scene() const { return scene_; }
   BrfReading read(const Film& film) const;
@@ -59,6 +64,7 @@ class BrfMeter {
   BrfRequest request_;
   LoadedScene scene_ = {};
   std::vector<double> white_;  ///< radiance of a white plane, band by band
+  bool has_heavy_tails_ = false;
 };
 
 }  // namespace frond

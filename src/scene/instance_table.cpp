@@ -43,6 +43,9 @@ InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& 
   if (!found)
     fail(where, "{}: no field \"transform\" of {} numbers: the three rows of a matrix, four numbers each",
          path.string(), kMapNumbers);
+  constexpr size_t kMost = 0xfffffffe;  // of one geometry, in Embree
+  if (layout.rows > kMost)
+    fail(where, "{}: {} rows, {} is the limit: tables of tables hold more", path.string(), layout.rows, kMost);
   first_ = file_->bytes().data() + layout.begin;
   size_ = layout.rows;
   stride_ = layout.row_bytes;

@@ -24,7 +24,7 @@ const Layers kAllowed{
     {"integrators", {"core", "spectra", "scene"}},
     {"render", {"core", "system", "spectra", "image", "scene", "integrators", "materials", "instruments"}},
     {"instruments", {"core", "spectra"}},
-    {"radiometry", {"core", "system", "spectra", "scene", "render"}},
+    {"radiometry", {"core", "system", "spectra", "scene", "instruments", "render"}},
     {"report", {"core", "system", "spectra", "instruments", "radiometry"}},
     {"study", {"core", "system", "spectra", "image", "scene", "render", "instruments", "report"}},
     {"cli",

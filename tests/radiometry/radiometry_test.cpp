@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "radiometry/brf.h"
+#include "radiometry/brf_comparison.h"
 #include "radiometry/flux.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "scene/homogeneous_canopy.h"
@@ -260,6 +261,32 @@ TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
   }
   const BrfRequest views{.views = {{10, 0}, {40, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=450"};
   EXPECT_EQ(brf(world, views, 16, 1).at(1, 0).mean, brf(world, views, 16, 3).at(1, 0).mean);
+}
+
+/// A model against itself, and against soils that are brighter by 3 and by 1 %.
+TEST_F(Radiometry, TheVerdictKnowsWhatIsWithinTheLimit) {
+  using Answer = BrfVerdict::Answer;
+  const BrfRequest request{
+      .views = {{-40, 0}, {0, 0}, {40, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=550,800"};
+  const BrfReading reference = brf(kSun + soil(0.3), request, 64), brighter = brf(kSun + soil(0.309), request, 64),
+                   little = brf(kSun + soil(0.303), request, 64);
+  EXPECT_EQ(judge(reference, reference, 0.02).answer, Answer::enough);
+  EXPECT_EQ(judge(reference, brighter, 0.02).answer, Answer::not_enough);
+  EXPECT_EQ(judge(reference, little, 0.02).answer, Answer::enough);
+  EXPECT_NEAR(judge(reference, little, 0.02).worst.mean, 0.01, 1e-5);
+  const BrfReading few = brf(kSun + soil(0.3) + canopy(1, lambertian(0.4, 0.4)), request, 2),
+                   other = brf(kSun + soil(0.3) + canopy(1, lambertian(0.41, 0.4)), request, 2);
+  EXPECT_EQ(judge(few, other, 0.02).answer, Answer::unknown);
+}
+
+TEST_F(Radiometry, WalksThatAreFollowedFromTheSensorAreNotJudged) {
+  const BrfRequest request{.views = {{0, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=550"};
+  const auto read = [&](const std::string& name) {
+    return brf(kSun + soil(0.3) + canopy(1, "Material \"" + name + "\"\n"), request, 1);
+  };
+  EXPECT_TRUE(read("abm").has_heavy_tails);
+  EXPECT_FALSE(read("leaf_solved").has_heavy_tails);
+  EXPECT_EQ(judge(read("leaf_solved"), read("abm"), 0.5).answer, BrfVerdict::Answer::unknown);
 }
 
 TEST_F(Radiometry, WhatCannotBeMeasuredIsRefused) {

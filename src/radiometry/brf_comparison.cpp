@@ -1,0 +1,53 @@
+#include "radiometry/brf_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "instruments/statistics.h"
+
+namespace frond {
+namespace {
+
+/// Upper quantile of Student's distribution from the normal one's (Cornish and Fisher; Abramowitz and Stegun 26.7.5).
+double student_quantile(double z, double freedom) {
+  const double z3 = z * z * z, z5 = z3 * z * z;
+  return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * freedom * freedom);
+}
+
+}  // namespace
+
+std::vector<RelativeDifference> relative_to(const BrfReading& reference, const BrfReading& reading) {
+  constexpr int kRows = BrfMeter::kRows;
+  std::vector<RelativeDifference> differences;
+  for (size_t i = 0; i < reading.values.size(); ++i) {
+    const double b = reference.values[i].mean, ratio = reading.values[i].mean / b;
+    double squares = 0;
+    for (size_t row = 0; row < kRows; ++row) {
+      const double rest = (reading.rows[i * kRows + row] - ratio * reference.rows[i * kRows + row]) / b;
+      squares += rest * rest;
+    }
+    differences.push_back({ratio - 1, std::sqrt(squares / (kRows * (kRows - 1)))});
+  }
+  return differences;
+}
+
+BrfVerdict judge(const BrfReading& reference, const BrfReading& reading, double within) {
+  constexpr double kRate = 0.05;
+  const auto differences = relative_to(reference, reading);
+  const double z =
+      student_quantile(normal_upper_quantile(sidak_level(kRate, differences.size()) / 2), BrfMeter::kRows - 1);
+  const auto upper = [z](const RelativeDifference& d) { return std::abs(d.mean) + z * d.standard_error; };
+  const auto worst = std::ranges::max_element(differences, {}, upper);
+  const bool beyond = std::ranges::any_of(
+      differences, [&](const RelativeDifference& d) { return std::abs(d.mean) - z * d.standard_error > within; });
+  const auto place = size_t(worst - differences.begin());
+  const bool is_known = !reading.has_heavy_tails && !reference.has_heavy_tails;
+  const auto answer = !is_known                 ? BrfVerdict::Answer::unknown
+                      : beyond                  ? BrfVerdict::Answer::not_enough
+                      : upper(*worst) <= within ? BrfVerdict::Answer::enough
+                                                : BrfVerdict::Answer::unknown;
+  const size_t bands = reading.wavelengths_nm.size();
+  return {answer, place / bands, place % bands, *worst, upper(*worst)};
+}
+
+}  // namespace frond
