@@ -122,9 +122,11 @@ def chart(canopies):
             script += block(f"d{panel}_{i}", points)
             color = COLORS[1 + ANGLES.index(canopy.angles)]
             dash = 1 if model == "leaf_lambert" else 2
-            plots.append(f"$d{panel}_{i} with lines lw 2 dt {dash} lc rgb '{color}', "
-                         f"$d{panel}_{i} with yerrorbars pt 0 lw 1 lc rgb '{color}'")
-        script += f"set title '{band} nm'\nplot {', '.join(plots)}\n"
+            name = f"{canopy.angles}, {model}".replace("_", r"\\_")
+            plots.append(f"$d{panel}_{i} with lines lw 2 dt {dash} lc rgb '{color}' title \"{name}\", "
+                         f"$d{panel}_{i} with yerrorbars pt 7 ps 0.3 lw 1 lc rgb '{color}' notitle")
+        key = "set key top right font ',10' samplen 3" if panel == 0 else "set key off"
+        script += f"{key}\nset title '{band} nm'\nplot {', '.join(plots)}\n"
     gnuplot(ROOT / "docs/images/canopy.svg", script + "unset multiplot\n", (1200, 760))
 
 

@@ -123,9 +123,10 @@ in the world is tried against the object's own before it goes in.
 
 
 def draw(results):
-    script = "set multiplot layout 1,3\nset logscale x\nset format x '10^{%L}'\nset xlabel 'leaves'\nset key top left\n"
-    panels = [("load, s", "load", 1), ("bytes a leaf", "bytes", 1), ("µs a path", "us", 1)]
-    for title, key, _ in panels:
+    script = "set multiplot layout 1,3\nset logscale x\nset format x '10^{%L}'\nset xlabel 'leaves'\nset xrange [1e3:1e8]\n"
+    panels = [("load, s", "load", "top left"), ("bytes a leaf, for itself", "bytes", "center right"), ("µs of CPU a path", "us", "top left")]
+    for title, key, place in panels:
+        script += f"set key {place}\n"
         script += "set logscale y\n" if key == "load" else "unset logscale y\nset yrange [0:*]\n"
         script += f"set ylabel '{title}'\n"
         plots = []
