@@ -84,7 +84,8 @@ void HorizontalIrradiance::sum_bands(const WavelengthStrategy& wavelengths) {
   constexpr size_t kPaths = 4096;  // that see each band
   std::vector<double> sum(count), seen(count);
   for (size_t i = 0; i < kPaths * count; ++i) {
-    const float u = (float(i / count) + 0.5f) / float(kPaths);
+    const size_t turn = i / count;
+    const float u = (float(turn) + 0.5f) / float(kPaths);
     const SampledWavelengths lambda = wavelengths.sample_in_turn(i, u);
     const SensorResponse response = wavelengths.sensor(at(lambda), lambda);
     for (size_t k = 0; k < size_t(response.count); ++k)

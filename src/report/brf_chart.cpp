@@ -124,7 +124,8 @@ BrfChart brf_hemisphere_chart(const BrfReading& reading) {
         "set label {0} '{0}°' at 1,{1} left front font ',9' textcolor rgb '{2}'\n",
         radius, radius - 6, radius == 90 ? "#000000" : "#ffffff");
   for (size_t band = 0; band < bands; ++band) {
-    const double left = double(int(band) % columns) / columns, bottom = 1 - double(int(band) / columns + 1) / rows;
+    const int column = int(band) % columns, row = int(band) / columns;
+    const double left = double(column) / columns, bottom = 1 - double(row + 1) / rows;
     script += fmt::format("set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\n", left + 0.02 / columns,
                           left + 0.80 / columns);
     script += fmt::format("set bmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n", bottom + 0.03 / rows,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <ranges>
 
 #include "core/error.h"
 #include "scene/embree_surfaces.h"
@@ -54,7 +53,8 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
     }
   };
   add_chain(points);
-  add_chain(std::views::reverse(points));
+  std::ranges::reverse(points);
+  add_chain(points);
   return hull;
 }
 
