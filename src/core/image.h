@@ -17,7 +17,7 @@ struct Image {
 
   Image() = default;
   /// Black.
-  Image(int width, int height, std::vector<std::string> channels);
+  Image(int w, int h, std::vector<std::string> names);
 
   std::optional<size_t> channel(std::string_view name) const;
   const float& at(int x, int y, size_t channel) const { return pixels[index(x, y, channel)]; }

@@ -47,14 +47,14 @@ void add_all(std::vector<Sums>& to, size_t at, const std::vector<Sums>& from, si
 
 }  // namespace
 
-FilmTile::Pixel& FilmTile::Pixel::operator+=(const Pixel& b) {
-  for (size_t c = 0; c < 3; ++c) sum[c] += b.sum[c], square[c] += b.square[c];
-  weight += b.weight, samples += b.samples, leaf += b.leaf, not_finite += b.not_finite;
+FilmTile::Pixel& FilmTile::Pixel::operator+=(const Pixel& other) {
+  for (size_t c = 0; c < 3; ++c) sum[c] += other.sum[c], square[c] += other.square[c];
+  weight += other.weight, samples += other.samples, leaf += other.leaf, not_finite += other.not_finite;
   return *this;
 }
 
-FilmTile::BandSums& FilmTile::BandSums::operator+=(const BandSums& b) {
-  sum += b.sum, square += b.square, samples += b.samples;
+FilmTile::BandSums& FilmTile::BandSums::operator+=(const BandSums& other) {
+  sum += other.sum, square += other.square, samples += other.samples;
   return *this;
 }
 
@@ -68,9 +68,9 @@ Features::Features(const ChannelList& channels, const CameraHit& hit) {
   }
 }
 
-FilmTile::BlockSums& FilmTile::BlockSums::operator+=(const BlockSums& b) {
-  for (size_t c = 0; c < 3; ++c) square[c] += b.square[c];
-  blocks += b.blocks;
+FilmTile::BlockSums& FilmTile::BlockSums::operator+=(const BlockSums& other) {
+  for (size_t c = 0; c < 3; ++c) square[c] += other.square[c];
+  blocks += other.blocks;
   return *this;
 }
 

@@ -12,7 +12,7 @@ namespace frond {
 
 /// The files that the parameters of the scene and of its wavelength strategy name (meshes, images, spectra), as far as
 /// they exist.
-std::vector<std::filesystem::path> input_files(const SceneDescription& description, const ParsedPlugin& wavelengths);
+std::vector<std::filesystem::path> input_files(const SceneDescription& scene, const ParsedPlugin& wavelengths);
 
 /// The plug-ins that load_registry loads.
 std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plugins);

@@ -95,7 +95,7 @@ class Session {
   FilmSettings film(const SceneDescription& description, bool quick) const;
   /// The cache is the session's, whatever the overrides say. `other`: a scene in which the same stands, which is then
   /// not made again.
-  LoadedScene load(SceneDescription description, SceneOverrides overrides, const PictureRequest& picture = {},
+  LoadedScene load(SceneDescription description, SceneOverrides overrides, const PictureRequest& request = {},
                    const Scene* other = nullptr);
 
   /// Adds these samples of all the part's pixels to it, but what it has already. Says what this call took; the part's

@@ -16,7 +16,7 @@ struct Directive {
 
   Token quoted() const { return read_quoted(context.tokens, name); }
   std::string text(const Token& token) const { return context.tokens.text_of(token); }
-  Location place(const Token& token) { return context.tokens.where(token); }
+  Location place(const Token& token) const { return context.tokens.where(token); }
   DescriptionBuilder& scene() { return context.scene; }
 
   /// A plugin's quoted name and its parameters.

@@ -58,7 +58,7 @@ class Chooser {
     }
     // Every combination against the reference and every single answer against the base, each at every look, from
     // above and from below: whatever the pilot comes to compare is among them.
-    choice_.comparisons = 2 * 2 * kLooks * count_combinations(questions_);
+    choice_.comparisons = size_t{2} * 2 * kLooks * count_combinations(questions_);
     z_ = normal_upper_quantile(sidak_level(1 - kConfidence, choice_.comparisons));
     choice_.samples = pilot.scene_samples();
     weights_ = weights();
