@@ -2,6 +2,7 @@
 
 import random
 
+import field
 import leaflet
 import plant
 import vec
@@ -93,4 +94,5 @@ def files():
         out[f"{scene}/stems.ply"] = ply_bytes(grown.tubes, "stem, petioles and petiolules")
         out[f"{scene}/plant.pbrt"] = plant.pbrt_text(grown.leaflets, "stems.ply", MESHES).encode("ascii")
     out["hundred-leaves/leaves.pbrt"] = plant.pbrt_text(list(hundred()), None, MESHES).encode("ascii")
+    out |= field.files(LEAFLETS)
     return out
