@@ -13,6 +13,7 @@
 #include "cli/progress.h"
 #include "cli/radiometer_options.h"
 #include "radiometry/brf_comparison.h"
+#include "render/part_file.h"
 #include "report/brf_chart.h"
 #include "report/gnuplot.h"
 #include "report/text_output.h"
@@ -119,8 +120,21 @@ std::string table_of(const BrfReading& reading) {
   return text;
 }
 
-/// Renders until there are as many paths, or as small an error, as asked for, or the time is over.
-BrfReading measure(const BrfOptions& o, const BrfMeter& meter, Session& session) {
+/// Nothing, or what an earlier run has left. Throws InputError for what is of another measurement.
+RenderPart first_part(const BrfOptions& o, const BrfMeter& meter, const KeptFile* kept) {
+  RenderPart fresh = meter.scene().empty_part();
+  const auto path = kept ? kept->found(o.resume) : std::nullopt;
+  if (!path) return fresh;
+  RenderPart part = read_part(*path);
+  const std::string difference =
+      fresh.header.identity.difference(part.header.identity, "this command", "\"" + path->string() + "\"");
+  if (!difference.empty()) fail({}, "--resume: this is another measurement. {}", difference);
+  return part;
+}
+
+/// Renders until there are as many paths, or as small an error, as asked for, or the time is over; `kept` may be
+/// nullptr.
+BrfReading measure(const BrfOptions& o, const BrfMeter& meter, Session& session, const KeptFile* kept) {
   using Clock = std::chrono::steady_clock;
   ProgressLine line(o.quiet);
   RenderControl control{.progress = &line};
@@ -132,10 +146,21 @@ BrfReading measure(const BrfOptions& o, const BrfMeter& meter, Session& session)
   const auto asked = uint64_t(parse_count("--paths", o.paths, 1, int64_t(kMost)));
   uint64_t samples = o.rms > 0 ? kFirst : (asked + BrfMeter::kRows - 1) / BrfMeter::kRows;
   samples = std::max(samples, needed);
-  RenderPart part = meter.scene().empty_part();
+  RenderPart part = first_part(o, meter, kept);
+  if (o.rms > 0)  // whoever has more has looked at fewer, and has gone on
+    while (samples < sample_count(part.film).most) samples *= 2;
+  std::optional<Checkpointer> checkpointer;
+  if (kept) {
+    checkpointer.emplace(kept->checkpoint(), o.checkpoint_seconds > 0 ? o.checkpoint_seconds : KeptFile::kSeconds, part,
+                         &line, session.log());
+    control.progress = &*checkpointer;
+    control.stop = kept->stop();
+  }
   for (;; samples *= 2) {
     session.render(meter.scene(), {0, samples}, part, control);
-    const bool is_over = control.deadline && Clock::now() >= *control.deadline;
+    const bool is_over = control.stop.stop_requested() || (control.deadline && Clock::now() >= *control.deadline);
+    if (checkpointer) checkpointer->write();
+    if (kept && kept->was_stopped()) return {};
     if (is_over && sample_count(part.film).least == 0)
       fail({}, "--time-limit: the time was over before every direction had been seen");
     BrfReading reading = meter.read(part.film);
@@ -156,7 +181,7 @@ void run_comparison(const BrfOptions& o, const BrfRequest& request, const Consol
     auto meter =
         std::make_unique<BrfMeter>(session, description, overrides, request, first ? &first->scene().scene() : nullptr);
     const double start = cpu_seconds();
-    ModelReading result{model, measure(o, *meter, session)};
+    ModelReading result{model, measure(o, *meter, session, nullptr)};
     const double paths = double(result.brf.paths) * double(result.brf.views.size());
     result.cpu_us_per_path = (cpu_seconds() - start) * 1e6 / paths;
     if (!first) first = std::move(meter);
@@ -171,18 +196,23 @@ void run_comparison(const BrfOptions& o, const BrfRequest& request, const Consol
   if (o.csv != "-") write_text("-", verdict_of(reference, readings, o.within));
 }
 
-void run_brf(const BrfOptions& o) {
+/// Returns the program's exit code.
+int run_brf(const BrfOptions& o) {
   const ConsoleLog log(o.quiet);
   if (!o.csv.empty()) check_text_output(o.csv);
   if (!o.plot.empty()) check_chart(o.plot);
   const BrfRequest request{views_of(o), target_of(o), period_of(o), wavelengths_of(o)};
   if (!o.compare.empty()) {
     if (!o.plot.empty()) fail({}, "--plot is of one model's BRF: --csv has those of --compare");
-    return run_comparison(o, request, log);
+    if (o.checkpoint_seconds > 0 || o.resume) fail({}, "--checkpoint and --resume are of one model's BRF");
+    run_comparison(o, request, log);
+    return 0;
   }
+  const auto kept = kept_file_of(o, log);
   Session session(log, session_options_of(o));
   const BrfMeter meter(session, session.read(o.scene), overrides_of(o), request);
-  const BrfReading reading = measure(o, meter, session);
+  const BrfReading reading = measure(o, meter, session, kept.get());
+  if (kept && kept->was_stopped()) return kept->say_how_to_go_on();
   if (!o.csv.empty()) write_text(o.csv, csv_of(reading));
   if (o.csv.empty()) write_text("-", table_of(reading));
   if (!o.plot.empty()) {
@@ -192,6 +222,7 @@ void run_brf(const BrfOptions& o) {
   log.info(fmt::format("{} paths a direction; standard errors {:.2f} % of the BRF (RMS)", reading.paths,
                        100 * reading.relative_error()));
   if (o.rms > 0 && reading.relative_error() > o.rms) log.warn({}, fmt::format("--rms {:g} was not reached", o.rms));
+  return 0;
 }
 
 }  // namespace
@@ -214,7 +245,10 @@ void add_brf_command(CLI::App& app) {
   command->add_option("--reference", o->reference, "The model that counts as right; leaf_solved by default.");
   command->add_option("--within", o->within, "Largest relative difference that is enough; 0.02 by default.")
       ->check(is_positive);
-  command->callback([o] { run_brf(*o); });
+  command->callback([o] {
+    const int code = run_brf(*o);
+    if (code != 0) throw CLI::RuntimeError(code);
+  });
 }
 
 }  // namespace frond

@@ -100,7 +100,24 @@ std::string instances_csv(const FluxReading& reading, const std::optional<Photon
   return text;
 }
 
-FluxReading measure(const FluxOptions& o, FluxMeter& meter, Session& session) {
+/// Writes a checkpoint where the last one is long ago.
+std::function<void()> keeper(const FluxOptions& o, const FluxMeter& meter, const KeptFile& kept, const Log& log) {
+  using Clock = std::chrono::steady_clock;
+  const std::chrono::duration<double> interval(o.checkpoint_seconds > 0 ? o.checkpoint_seconds : KeptFile::kSeconds);
+  return [&meter, &kept, &log, interval, last = Clock::now()]() mutable {
+    if (Clock::now() - last < interval) return;
+    try {
+      meter.save(kept.checkpoint());
+    } catch (const InputError& error) {
+      log.warn({}, fmt::format("no checkpoint was written, measuring goes on: {}", error.what()));
+    }
+    last = Clock::now();
+  };
+}
+
+/// Traces until there are as many paths, or as small an error, as asked for, or the time is over; `kept` may be
+/// nullptr.
+FluxReading measure(const FluxOptions& o, FluxMeter& meter, Session& session, const KeptFile* kept) {
   using Clock = std::chrono::steady_clock;
   ProgressLine line(o.quiet);
   RenderControl control{.progress = &line};
@@ -109,14 +126,22 @@ FluxReading measure(const FluxOptions& o, FluxMeter& meter, Session& session) {
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(o.time_limit_seconds));
   constexpr uint64_t kFirst = 1 << 16, kMost = uint64_t{1} << 40;
   uint64_t paths = o.rms > 0 ? kFirst : uint64_t(parse_count("--paths", o.paths, 1));
-  meter.trace(paths, session.pool(), control);
-  while (true) {
+  std::function<void()> keep;
+  if (kept) {
+    control.stop = kept->stop();
+    if (const auto path = kept->found(o.resume)) meter.resume(*path);
+    keep = keeper(o, meter, *kept, session.log());
+  }
+  if (o.rms > 0)  // whoever has more has looked at fewer, and has gone on
+    while (paths < meter.paths()) paths *= 2;
+  for (;; paths *= 2) {
+    if (meter.paths() < paths) meter.trace(paths - meter.paths(), session.pool(), control, keep);
+    if (kept) meter.save(kept->last());
+    if (kept && kept->was_stopped()) return {};
     FluxReading reading = meter.read();
     if (reading.paths == 0) fail({}, "--time-limit: the time was over before any light was followed");
     const bool is_over = control.deadline && Clock::now() >= *control.deadline;
     if (is_over || o.rms == 0 || reading.error() <= o.rms || paths >= kMost) return reading;
-    meter.trace(paths, session.pool(), control);
-    paths *= 2;
   }
 }
 
@@ -126,9 +151,11 @@ std::vector<double> bands_of(const Scene& scene) {
   return nm;
 }
 
-void run_flux(const FluxOptions& o) {
+/// Returns the program's exit code.
+int run_flux(const FluxOptions& o) {
   const ConsoleLog log(o.quiet);
   if (!o.csv.empty()) check_text_output(o.csv);
+  const auto kept = kept_file_of(o, log);
   Session session(log, session_options_of(o));
   const SpectrumPtr irradiance =
       o.irradiance.ends_with(".spd") ? read_spd(o.irradiance, {}) : named_spectrum(o.irradiance, {});
@@ -136,7 +163,8 @@ void run_flux(const FluxOptions& o) {
   FluxMeter meter(session, session.read(o.scene), overrides_of(o),
                   {target_of(o), period_of(o), wavelengths_of(o), by_instance});
   const auto photons = PhotonWeights::of(bands_of(meter.scene()), *irradiance);
-  const FluxReading reading = measure(o, meter, session);
+  const FluxReading reading = measure(o, meter, session, kept.get());
+  if (kept && kept->was_stopped()) return kept->say_how_to_go_on();
   if (by_instance && !photons)
     log.info("no PAR: it takes bands from 400 to 700 nm, in steps of 50 nm at most (--wavelengths 400:700:20)");
   if (by_instance)
@@ -144,6 +172,7 @@ void run_flux(const FluxOptions& o) {
   else
     write_text(o.csv.empty() ? "-" : o.csv, o.csv.empty() ? table_of(reading, photons) : csv_of(reading, photons));
   log.info(fmt::format("{} paths; standard errors {:.2g} (RMS)", reading.paths, reading.error()));
+  return 0;
 }
 
 }  // namespace
@@ -157,7 +186,10 @@ void add_flux_command(CLI::App& app) {
   command->add_option("--irradiance", o->irradiance,
                       "Of the horizontal plane, W/(m2 nm), for photons: a spectrum's name or an .spd file; "
                       "solar-am1.5-global by default.");
-  command->callback([o] { run_flux(*o); });
+  command->callback([o] {
+    const int code = run_flux(*o);
+    if (code != 0) throw CLI::RuntimeError(code);
+  });
 }
 
 }  // namespace frond

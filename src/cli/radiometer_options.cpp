@@ -7,6 +7,7 @@
 #include "cli/common_options.h"
 #include "cli/number_list.h"
 #include "cli/render_options.h"
+#include "system/atomic_file.h"
 
 namespace frond {
 
@@ -28,7 +29,13 @@ void add_radiometer_options(CLI::App& command, RadiometerOptions& o, const std::
       ->check(is_positive);
   command.add_option("--time-limit", o.time_limit_seconds, "End after so many seconds, with what there is then.")
       ->check(is_positive);
-  command.add_option("--csv", o.csv, "CSV file; - is standard output.");
+  auto* csv = command.add_option("--csv", o.csv, "CSV file; - is standard output.");
+  command
+      .add_option("--checkpoint", o.checkpoint_seconds,
+                  "Every so many seconds, and when stopped by SIGINT or SIGTERM, keep what is done in CSV.part.")
+      ->needs(csv)
+      ->check(is_positive);
+  command.add_flag("--resume", o.resume, "Go on from CSV.part, where there is one; keeps one too.")->needs(csv);
   command
       .add_option("--swap", o.swaps,
                   "MATERIAL=PLUGIN[,parameter=value...]: another model; \"*=PLUGIN\": for every leaf.")
@@ -70,6 +77,14 @@ SceneOverrides overrides_of(const RadiometerOptions& o) {
 
 SessionOptions session_options_of(const RadiometerOptions& o) {
   return {o.threads, cache_directory(o.cache, o.no_cache), o.plugins};
+}
+
+std::unique_ptr<KeptFile> kept_file_of(const RadiometerOptions& o, const Log& log) {
+  if (o.checkpoint_seconds == 0 && !o.resume) return {};
+  if (o.csv == "-") fail({}, "--checkpoint and --resume keep a file beside that of --csv: standard output has none");
+  const std::string part = o.csv + ".part";
+  check_replaceable(part);
+  return std::make_unique<KeptFile>(KeptFile::Names{part, part}, log);
 }
 
 }  // namespace frond

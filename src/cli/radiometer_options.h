@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/kept_file.h"
 #include "radiometry/brf.h"
 
 namespace CLI {
@@ -19,9 +21,9 @@ struct RadiometerOptions {
   std::vector<double> target, period;
   std::vector<std::string> swaps, plugins;
   std::optional<uint64_t> seed;
-  double rms = 0, time_limit_seconds = 0;
+  double rms = 0, time_limit_seconds = 0, checkpoint_seconds = 0;
   int threads = 0;
-  bool no_cache = false, quiet = false;
+  bool no_cache = false, quiet = false, resume = false;
 };
 
 /// Declares them; they are read into `options`, which must outlive the command. `paths`: what --paths is of.
@@ -33,5 +35,7 @@ std::optional<Target> target_of(const RadiometerOptions& options);
 std::optional<std::array<double, 2>> period_of(const RadiometerOptions& options);
 SceneOverrides overrides_of(const RadiometerOptions& options);
 SessionOptions session_options_of(const RadiometerOptions& options);
+/// The file beside that of --csv that checkpoints are kept in; empty where none are asked for.
+std::unique_ptr<KeptFile> kept_file_of(const RadiometerOptions& options, const Log& log);
 
 }  // namespace frond

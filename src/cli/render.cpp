@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/interrupt.h"
+#include "cli/kept_file.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/render_report.h"
@@ -57,11 +57,11 @@ class RenderCommand {
   int run() {
     prepare();
     if (options_.pilot) return 0;
-    if (keeps_part()) lock_.emplace(part_path_);
+    if (names_) kept_.emplace(*names_, log_);
     RenderPart part = first_part();
-    const int signal = fill(part);
-    if (keeps_part()) keep(part, signal != 0);
-    if (signal != 0) return say_how_to_go_on(signal);
+    fill(part);
+    if (kept_) keep(part);
+    if (kept_ && kept_->was_stopped()) return kept_->say_how_to_go_on();
     finish(part);
     return 0;
   }
@@ -107,14 +107,13 @@ class RenderCommand {
   void find_paths(const std::string& scene_output) {
     if (!options_.part.empty()) {
       check_replaceable(options_.part);
-      part_path_ = checkpoint_path_ = options_.part;
-      checkpoint_path_ += ".checkpoint";  // where there is a part of this name, it is finished
+      names_ = {options_.part, options_.part + ".checkpoint"};  // where there is a part of this name, it is finished
       return;
     }
     output_.emplace(options_.output.empty() ? scene_output : options_.output, options_.display);
     if (options_.checkpoint_seconds == 0 && !options_.resume) return;
-    part_path_ = checkpoint_path_ = output_->path() + ".part";
-    check_replaceable(part_path_);
+    names_ = {output_->path() + ".part", output_->path() + ".part"};
+    check_replaceable(names_->finished);
   }
 
   /// Before anything is chosen or loaded.
@@ -125,21 +124,15 @@ class RenderCommand {
   }
 
   bool is_adaptive() const { return options_.max_rms > 0; }
-  bool keeps_part() const { return !part_path_.empty(); }
 
   /// What an earlier run has left, or nothing.
   RenderPart first_part() const {
-    std::error_code error;
     RenderPart fresh = scene_->empty_part();
     fresh.header.request = range_.end;
-    if (!keeps_part()) return fresh;
-    const bool finished = std::filesystem::exists(part_path_, error);
-    const std::filesystem::path& path = finished ? part_path_ : checkpoint_path_;
-    if (!std::filesystem::exists(path, error)) return fresh;
-    if (!options_.resume)
-      fail({}, "\"{}\" is there already: --resume goes on from it; delete it to begin anew", path.string());
-    RenderPart part = read_part(path);
-    check_same_render(fresh, part, path);
+    const auto path = kept_ ? kept_->found(options_.resume) : std::nullopt;
+    if (!path) return fresh;
+    RenderPart part = read_part(*path);
+    check_same_render(fresh, part, *path);
     part.header.request = range_.end;
     return part;
   }
@@ -154,24 +147,19 @@ class RenderCommand {
       fail({}, "--resume: \"{}\" is of other pixels than this command asks for", path.string());
   }
 
-  /// Renders what is missing. Returns the signal that ended it, or 0.
-  int fill(RenderPart& part) {
+  /// Renders what is missing.
+  void fill(RenderPart& part) {
     ProgressLine line(options_.quiet);
     RenderControl control{.progress = &line};
     if (options_.time_limit_seconds > 0)
       control.deadline = start_ + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(options_.time_limit_seconds));
-    if (!keeps_part()) {
-      render(part, control, nullptr);
-      return 0;
-    }
-    interrupt_.emplace();
-    control.stop = interrupt_->token();
-    const double seconds = options_.checkpoint_seconds > 0 ? options_.checkpoint_seconds : kCheckpointSeconds;
-    Checkpointer checkpointer(checkpoint_path_, seconds, part, &line, log_);
+    if (!kept_) return render(part, control, nullptr);
+    control.stop = kept_->stop();
+    const double seconds = options_.checkpoint_seconds > 0 ? options_.checkpoint_seconds : KeptFile::kSeconds;
+    Checkpointer checkpointer(kept_->checkpoint(), seconds, part, &line, log_);
     control.progress = &checkpointer;
     render(part, control, &checkpointer);
-    return interrupt_->signal();
   }
 
   void render(RenderPart& part, const RenderControl& control, Checkpointer* checkpointer) {
@@ -186,18 +174,12 @@ class RenderCommand {
   }
 
   /// The last checkpoint, or what was asked for. Where the picture is done, it is not lost with its checkpoint.
-  void keep(const RenderPart& part, bool stopped) const try {
-    write_part(stopped ? checkpoint_path_ : part_path_, part.header, part.film);
-    if (!stopped && checkpoint_path_ != part_path_) std::filesystem::remove(checkpoint_path_);
+  void keep(const RenderPart& part) const try {
+    write_part(kept_->last(), part.header, part.film);
+    kept_->remove_checkpoint();
   } catch (const InputError& error) {
-    if (stopped || !output_) throw;
+    if (kept_->was_stopped() || !output_) throw;
     log_.warn({}, fmt::format("no checkpoint was written: {}", error.what()));
-  }
-
-  int say_how_to_go_on(int signal) const {
-    log_.info(fmt::format("stopped; what was rendered is in {}: the same command with --resume goes on from there",
-                          checkpoint_path_.string()));
-    return 128 + signal;
   }
 
   void finish(const RenderPart& part) const {
@@ -221,7 +203,7 @@ class RenderCommand {
                   .samples = samples,
                   .foliar_ratio = part.film.foliar_ratio(),
                   .choice = choice_,
-                  .output = output_ ? output_->path() : part_path_.string()},
+                  .output = output_ ? output_->path() : names_->finished.string()},
                  options_.json);
   }
 
@@ -235,19 +217,15 @@ class RenderCommand {
                                 noise.upper_rms(), options_.max_rms));
   }
 
-  static constexpr double kCheckpointSeconds = 60;
-
   const RenderOptions& options_;
   const Clock::time_point start_ = Clock::now();
   Clock::time_point load_start_ = start_;
   ConsoleLog log_;
   Session session_;
   SceneDescription description_;
-  std::optional<ImageOutput> output_;      ///< empty: a part is asked for
-  std::filesystem::path part_path_;        ///< empty: no part is kept
-  std::filesystem::path checkpoint_path_;  ///< what is not finished
-  std::optional<PartLock> lock_;
-  std::optional<Interrupt> interrupt_;  ///< until all is written: signals come while the last part is
+  std::optional<ImageOutput> output_;     ///< empty: a part is asked for
+  std::optional<KeptFile::Names> names_;  ///< empty: no part is kept
+  std::optional<KeptFile> kept_;          ///< until all is written: signals come while the last part is
   std::optional<choose::Choice> choice_;
   std::optional<LoadedScene> scene_;
   SampleRange range_;

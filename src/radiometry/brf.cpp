@@ -1,5 +1,7 @@
 #include "radiometry/brf.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -33,6 +35,12 @@ ParsedPlugin camera_of(const BrfRequest& request, const Target& target, const Sc
           {parsed_numbers("float", "zenith", zenith), parsed_numbers("float", "azimuth", azimuth),
            parsed_numbers("float", "target", {target.x0, target.x1, target.y0, target.y1, target.z}),
            parsed_numbers("float", "distance", {distance})}};
+}
+
+std::string text_of(const std::vector<ViewDirection>& views) {
+  std::string text = "brf";
+  for (const ViewDirection& view : views) text += fmt::format(" {},{}", view.zenith_deg, view.azimuth_deg);
+  return text;
 }
 
 /// Walks that are followed from the sensor, but whose incident direction is the light's, are weighted by numbers
@@ -73,7 +81,8 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, SceneOverride
                       {},
                       {parsed_numbers("integer", "xresolution", {double(request.views.size())}),
                        parsed_numbers("integer", "yresolution", {double(kRows)})}};
-  scene_ = session.load(std::move(description), overrides, {}, &scene);
+  scene_ = session.load(std::move(description), overrides,
+                        {.command = measurement_text(text_of(request.views), request.target, request.period)}, &scene);
   has_heavy_tails_ = has_heavy_tails(scene, scene_.description().materials.size());
   if (has_heavy_tails_)
     session.log().warn(

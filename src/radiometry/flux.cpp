@@ -8,6 +8,7 @@
 #include "core/sampling.h"
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"
+#include "radiometry/sums_file.h"
 #include "system/cpu_clock.h"
 #include "system/memory.h"
 
@@ -76,10 +77,11 @@ class InstanceSums {
   InstanceSums(uint64_t instances, size_t bands) : bands_(bands), cells_(instances * bands) {}
   void add(uint64_t instance, size_t band, double share) {
     Cell& cell = cells_[(instance - 1) * bands_ + band];
-    cell.sum.fetch_add(std::llrint(share * kUnits), std::memory_order_relaxed);
-    cell.square.fetch_add(std::llrint(share * share * kUnits), std::memory_order_relaxed);
+    std::atomic_ref(cell.sum).fetch_add(std::llrint(share * kUnits), std::memory_order_relaxed);
+    std::atomic_ref(cell.square).fetch_add(std::llrint(share * share * kUnits), std::memory_order_relaxed);
   }
   size_t size() const { return cells_.size(); }
+  std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
   Moment at(size_t cell) const { return {double(cells_[cell].sum) / kUnits, double(cells_[cell].square) / kUnits}; }
 
   static constexpr size_t kCellBytes = 16;
@@ -87,7 +89,7 @@ class InstanceSums {
  private:
   static constexpr double kUnits = 0x1p36;
   struct Cell {
-    std::atomic<int64_t> sum{0}, square{0};
+    int64_t sum = 0, square = 0;
   };
   size_t bands_;
   std::vector<Cell> cells_;
@@ -173,6 +175,14 @@ struct FluxMeter::State {
 
   size_t quantities() const { return kFirstOfMaterials + materials * kQuantitiesOfMaterial; }
   const Scene& scene() const { return loaded.scene(); }
+  /// All that hangs on the paths.
+  std::vector<std::span<std::byte>> sums() {
+    std::vector<std::span<std::byte>> arrays{std::as_writable_bytes(std::span(&paths, 1)),
+                                             std::as_writable_bytes(std::span(moments)),
+                                             std::as_writable_bytes(std::span(seen))};
+    if (by_instance) arrays.push_back(by_instance->bytes());
+    return arrays;
+  }
 };
 
 /// What one block of paths adds.
@@ -274,7 +284,9 @@ class FluxMeter::Sums {
 FluxMeter::FluxMeter(Session& session, SceneDescription description, SceneOverrides overrides,
                      const FluxRequest& request) {
   prepare_for_radiometry(session, request.wavelengths, request.period, description, overrides);
-  LoadedScene loaded = session.load(std::move(description), overrides);
+  const char* what = request.by_instance ? "flux by instance" : "flux";
+  LoadedScene loaded = session.load(std::move(description), overrides,
+                                    {.command = measurement_text(what, request.target, request.period)});
   const Scene& scene = loaded.scene();
   const Target target = request.target ? *request.target : default_target(scene);
   Incoming incoming(scene.lights(), scene.wavelengths());
@@ -295,7 +307,8 @@ FluxMeter::~FluxMeter() = default;
 
 const Scene& FluxMeter::scene() const { return state_->scene(); }
 
-void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control) {
+void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control,
+                      const std::function<void()>& after_round) {
   constexpr uint64_t kBlocks = 256;  // that are traced before their sums are added, in their order
   RenderStatistics statistics;
   const double cpu = cpu_seconds();
@@ -320,8 +333,20 @@ void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& con
     statistics.paths = done;
     statistics.cpu_seconds = cpu_seconds() - cpu;
     if (control.progress) control.progress->update(double(done) / double(paths), statistics);
+    if (after_round) after_round();
   }
   if (control.progress) control.progress->finish();
+}
+
+uint64_t FluxMeter::paths() const { return state_->paths; }
+
+void FluxMeter::save(const std::filesystem::path& path) const {
+  const auto sums = state_->sums();
+  write_sums(path, state_->loaded.identity(), {sums.begin(), sums.end()});
+}
+
+void FluxMeter::resume(const std::filesystem::path& path) {
+  read_sums(path, state_->loaded.identity(), state_->sums());
 }
 
 FluxReading FluxMeter::read() const {

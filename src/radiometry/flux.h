@@ -1,7 +1,8 @@
 #pragma once
 
 #include <array>
-#include <chrono>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -56,8 +57,16 @@ class FluxMeter {
 
   /// Follows so many paths more, or fewer where it is stopped or the time is over. The figures depend on their number
   /// alone.
-  void trace(uint64_t paths, ThreadPool& pool, const RenderControl& control = {});
+  /// `after_round` is called from time to time, when what has been followed can be saved; may be empty.
+  void trace(uint64_t paths, ThreadPool& pool, const RenderControl& control = {},
+             const std::function<void()>& after_round = {});
   FluxReading read() const;
+  uint64_t paths() const;  ///< that have been followed
+  /// Writes what there is, whole or not at all. Throws InputError with the system's reason.
+  void save(const std::filesystem::path& path) const;
+  /// Goes on from what `save` has written: the figures are those of a meter that has never been stopped. Throws
+  /// InputError for a file of another measurement, or one that is cut short or damaged.
+  void resume(const std::filesystem::path& path);
   const Scene& scene() const;
 
  private:

@@ -1,5 +1,7 @@
 #include "radiometry/radiometer_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/log.h"
@@ -47,6 +49,14 @@ void prepare_for_radiometry(const Session& session, const std::string& wavelengt
       session.registry().integrators.get(description.integrator.name, description.integrator.where);
   if (!overrides.integrator && declares(integrator, "maxdepth"))
     set(description.integrator.params, parsed_numbers("integer", "maxdepth", {kDeepest}));
+}
+
+std::string measurement_text(const std::string& what, const std::optional<Target>& target,
+                             const std::optional<std::array<double, 2>>& period) {
+  std::string text = what;
+  if (target) text += fmt::format(" target {},{},{},{},{}", target->x0, target->x1, target->y0, target->y1, target->z);
+  if (period) text += fmt::format(" period {},{}", (*period)[0], (*period)[1]);
+  return text;
 }
 
 Target default_target(const Scene& scene) {

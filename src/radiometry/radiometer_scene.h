@@ -17,6 +17,11 @@ void prepare_for_radiometry(const Session& session, const std::string& wavelengt
                             const std::optional<std::array<double, 2>>& period, SceneDescription& description,
                             SceneOverrides& overrides);
 
+/// A measurement in words: with the scene's own identity all that decides its figures. `what`: its kind, and whatever
+/// else it asks for.
+std::string measurement_text(const std::string& what, const std::optional<Target>& target,
+                             const std::optional<std::array<double, 2>>& period);
+
 /// One period, or all that stands in the scene, at its top.
 Target default_target(const Scene& scene);
 

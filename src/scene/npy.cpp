@@ -23,8 +23,7 @@ struct Source {
 std::string to_json(std::string_view python) {
   std::string json;
   bool quoted = false;
-  for (size_t i = 0; i < python.size(); ++i) {
-    const char c = python[i];
+  for (const char c : python) {
     if (c == '\'') quoted = !quoted;
     if (quoted && c != '\'') {
       json += c;

@@ -13,12 +13,13 @@ no more than the picture has.
 
 import os
 import random
+import re
 import signal
 import subprocess
 import time
 import unittest
 
-from frond_program import PIXELS, SLOW, THREADS, FrondTest, part_header
+from frond_program import FROND, PIXELS, SLOW, THREADS, FrondTest, part_header
 
 INTERVAL = 0.2
 KILLS = 100 if SLOW else 20
@@ -160,6 +161,75 @@ class Kill(FrondTest):
                 if line.startswith("SigCgt:"):
                     return bool(int(line.split()[1], 16) >> (number - 1) & 1)
         return False
+
+
+class Radiometers(FrondTest):
+    """frond brf and frond flux keep what they have measured."""
+
+    COMMANDS = (("brf", "--zenith=-30:30:30"), ("flux",), ("flux", "--by", "instance"), ("brf", "--rms", "0.0004"))
+
+    def setUp(self):
+        super().setUp()
+        ball = 'ObjectBegin "ball" Shape "sphere" "float radius" .1 ObjectEnd\n'
+        copies = "".join(f'AttributeBegin Translate {i} 1 0 ObjectInstance "ball" AttributeEnd\n' for i in (-1, 0, 1))
+        self.scene = self.write("field.pbrt", self.scene.read_text(encoding="utf-8") + ball + copies)
+        self.csv = self.folder / "measured.csv"
+        self.part = self.folder / "measured.csv.part"
+
+    def command(self, name, *words):
+        common = ("--no-cache", "--threads", THREADS, "--wavelengths", "450,650", "--target=-2,2,-2,2,2")
+        return [FROND, name, str(self.scene), *map(str, (*common, *words))]
+
+    def paths_in(self, seconds, words):
+        """How many paths a run of so many seconds gets to here and now."""
+        _, err = self.run_to_end(self.command(*words, "--paths", "4e9", "--time-limit", seconds, "--csv", self.csv))
+        self.csv.unlink()
+        return int(re.search(r"(\d+) paths", err)[1])
+
+    def test_go_on_where_they_were_ended(self):
+        moments = random.Random(3)
+        for words in self.COMMANDS:
+            with self.subTest(words=words):
+                if "--rms" not in words:
+                    words = (*words, "--paths", 2 * self.paths_in(0.7, words))
+                expected, _ = self.run_to_end(self.command(*words, "--csv", "-", "-q"))
+                kept = self.command(*words, "--csv", self.csv, "--checkpoint", 0.1, "--resume")
+                killed = 0
+                for i in range(KILLS // 4):
+                    process = self.start(kept)
+                    try:
+                        process.wait(timeout=moments.uniform(0.1, LONGEST))
+                    except subprocess.TimeoutExpired:
+                        killed += 1
+                        process.send_signal(signal.SIGTERM if i % 2 else signal.SIGKILL)
+                        _, err = process.communicate()
+                        if process.returncode == 143:
+                            self.assertIn("--resume goes on from there", err)
+                            self.assertIn(str(self.part), err)
+                self.assertGreater(killed, 0)
+                self.run_to_end(kept)
+                self.assertEqual(self.csv.read_text(encoding="utf-8"), expected)
+                self.csv.unlink()
+                self.part.unlink()
+
+    def test_do_not_mix_measurements(self):
+        for name, other in (("brf", ("--zenith", 10)), ("flux", ("--seed", 3)), ("flux", ("--by", "instance"))):
+            with self.subTest(name=name, other=other):
+                paths = ("--paths", 1000, "--csv", self.csv)
+                self.run_to_end(self.command(name, *paths, "--checkpoint", 9))
+                _, err = self.run_to_end(self.command(name, *paths, "--checkpoint", 9), code=1)
+                self.assertIn("is there already", err)
+                _, err = self.run_to_end(self.command(name, *other, *paths, "--resume"), code=1)
+                self.assertIn("another measurement", err)
+                self.part.write_bytes(self.part.read_bytes()[:-20])
+                _, err = self.run_to_end(self.command(name, *paths, "--resume"), code=1)
+                self.assertRegex(err, "cut short|damaged")
+                self.part.unlink()
+
+    def test_need_a_file_to_stand_beside(self):
+        for words in ((), ("--csv", "-")):
+            _, err = self.run_to_end(self.command("flux", "--checkpoint", 1, *words), code=1)
+            self.assertIn("--csv", err)
 
 
 if __name__ == "__main__":

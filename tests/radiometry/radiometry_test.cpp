@@ -12,6 +12,7 @@
 #include "scene/homogeneous_canopy.h"
 #include "scene/instance_writer.h"
 #include "scene/parser.h"
+#include "system/file_bytes.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -261,6 +262,43 @@ TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
   }
   const BrfRequest views{.views = {{10, 0}, {40, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=450"};
   EXPECT_EQ(brf(world, views, 16, 1).at(1, 0).mean, brf(world, views, 16, 3).at(1, 0).mean);
+}
+
+TEST_F(Radiometry, AMeterGoesOnFromItsFileAsIfItHadNotBeenStopped) {
+  const std::string world = kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2));
+  const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .by_instance = true};
+  const FluxReading whole = flux(world, request, 5120);
+  Session session(silent_log(), {2, {}, {}});
+  const auto meter = [&](const FluxRequest& r) { return FluxMeter(session, description(world), {}, r); };
+  const auto file = folder_.name_of("flux.part");
+  FluxMeter first = meter(request);
+  first.trace(2048, session.pool());
+  first.save(file);
+  FluxMeter second = meter(request);
+  second.trace(1024, session.pool());  // is forgotten
+  second.resume(file);
+  EXPECT_EQ(second.paths(), 2048u);
+  second.trace(5120 - 2048, session.pool());
+  EXPECT_EQ(second.read().reflected[1].mean, whole.reflected[1].mean);
+  EXPECT_EQ(second.read().reflected[1].standard_error, whole.reflected[1].standard_error);
+  for (size_t i = 0; i < whole.by_instance.size(); ++i)
+    EXPECT_EQ(second.read().by_instance[i].mean, whole.by_instance[i].mean);
+
+  FluxRequest other = request;
+  other.by_instance = false;
+  EXPECT_THAT(error_of([&] { meter(other).resume(file); }), HasSubstr("another measurement. command: "));
+  const std::string bytes = read_file_bytes(file, {});
+  const auto error_of_bytes = [&](std::string_view changed) {
+    const auto path = folder_.write("changed.part", std::string(changed));
+    return error_of([&] { second.resume(path); });
+  };
+  for (const size_t size : {size_t(20), bytes.size() / 2, bytes.size() - 1})
+    EXPECT_THAT(error_of_bytes(bytes.substr(0, size)), HasSubstr("cut short"));
+  std::string damaged = bytes;
+  damaged[bytes.size() - 100] ^= 1;
+  EXPECT_THAT(error_of_bytes(damaged), HasSubstr("is damaged"));
+  EXPECT_THAT(error_of_bytes("450,850"), HasSubstr("no measurement"));
+  EXPECT_EQ(second.paths(), 5120u);
 }
 
 /// A model against itself, and against soils that are brighter by 3 and by 1 %.

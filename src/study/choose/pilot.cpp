@@ -49,7 +49,10 @@ struct Pilot::Render {
 };
 
 Pilot::Pilot(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool)
-    : subject_(subject), pool_(pool), start_cpu_seconds_(cpu_seconds()), variant_(subject.description) {
+    : subject_(subject),
+      pool_(pool),
+      start_cpu_seconds_(cpu_seconds()),
+      variant_(static_cast<const SceneSettings&>(subject.description)) {
   const bool named = !subject.overrides.wavelengths.empty() || names_wavelengths(subject.description);
   SceneOverrides overrides = subject.overrides;
   if (!named) overrides.wavelengths = ladder.wavelengths.back().name;

@@ -1,0 +1,27 @@
+#include "cli/kept_file.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace frond {
+
+std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
+  std::error_code error;
+  const auto& path = std::filesystem::exists(names_.finished, error) ? names_.finished : names_.checkpoint;
+  if (!std::filesystem::exists(path, error)) return {};
+  if (!resume) fail({}, "\"{}\" is there already: --resume goes on from it; delete it to begin anew", path.string());
+  return path;
+}
+
+void KeptFile::remove_checkpoint() const {
+  if (!was_stopped() && names_.checkpoint != names_.finished) std::filesystem::remove(names_.checkpoint);
+}
+
+int KeptFile::say_how_to_go_on() const {
+  log_.info(fmt::format("stopped; what was done is in {}: the same command with --resume goes on from there",
+                        names_.checkpoint.string()));
+  return 128 + interrupt_.signal();
+}
+
+}  // namespace frond
