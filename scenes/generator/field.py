@@ -20,7 +20,7 @@ ROW = 0.70  # between rows
 ROWS, LENGTH = 16, 12.0
 PERIOD = (ROWS * ROW, LENGTH)
 SPACING = 0.08  # between plants of a row
-SUN = 142.0  # azimuth that leaves turn to: +x is 0, +y is 90
+FACING = 75.0  # azimuth that leaves turn to: +x is 0, +y is 90
 KINDS = 7
 STEP = 2.0**-22  # what the tables' numbers are rounded to, as in mesh.py
 
@@ -55,8 +55,8 @@ def leaves_of(draw, height):
 def health(draw, t, young):
     """Lower leaves grow old and yellow, the youngest are not green yet."""
     old = max(0.0, 1 - t / 0.42)
-    share = (1 - 0.80 * old**1.2) * (1 - 0.38 * young)
-    if draw.random() < 0.10:
+    share = (1 - 0.55 * old**1.2) * (1 - 0.30 * young)
+    if draw.random() < 0.03:
         share *= draw.uniform(0.15, 0.45)
     return share * draw.uniform(0.84, 1.10)
 
@@ -90,8 +90,8 @@ def grow(kind):
         reach = lean * t * t
         stem.append((reach * math.cos(bearing) + zigzag, reach * math.sin(bearing) - 0.5 * zigzag, height * t - 0.03 * (i == 0)))
     leaves, shares = zip(*leaves_of(draw, height))
-    facing = vec.direction(SUN, 24)
-    grown = FieldPlant(stem, leaves, radius=0.0042, facing=facing, facing_weight=0.40).grow()
+    facing = vec.direction(FACING, 24)
+    grown = FieldPlant(stem, leaves, radius=0.0042, facing=facing, facing_weight=0.33).grow()
     shapes = {name: 1 + (kind >> bit & 1) for bit, name in enumerate(("terminal", "left", "right"))}
     grown.leaflets = [replace(p, kind=f"{p.kind.split('-')[0]}-{shapes[p.kind.split('-')[0]]}") for p in grown.leaflets]
     return grown, [shares[i // 3] * draw.uniform(0.95, 1.05) for i in range(len(grown.leaflets))]
@@ -121,7 +121,7 @@ def plants():
                 continue  # did not come up
             size = (1 + waves(x, y, HEIGHT)) * min(1.25, max(0.72, draw.gauss(1.0, 0.085)))
             turn, tilt, toward = draw.gauss(0, 40), draw.gauss(0, 4), draw.uniform(0, 360)
-            vigour = min(1.15, max(0.45, (0.82 + waves(x, y, VIGOUR)) * draw.gauss(1.0, 0.10)))
+            vigour = min(1.15, max(0.45, (0.95 + waves(x, y, VIGOUR)) * draw.gauss(1.0, 0.10)))
             axis = vec.direction(toward, 0)
             frame = [vec.rotate(vec.direction(turn, 0), axis, math.radians(tilt)),
                      vec.rotate(vec.direction(turn + 90, 0), axis, math.radians(tilt)),
@@ -293,20 +293,20 @@ def png_bytes(lines):
 
 # Sky
 
-SUN_ELEVATION = 27.0
-SKY_SIZE = 320
+SUN_AZIMUTH, SUN_ELEVATION = 32.0, 42.0
+SKY_SIZE = 512
 
 
 def sky(direction):
     """Linear sRGB: blue overhead, pale at the hazy horizon, warm about the sun."""
     up = max(0.0, direction[2])
-    haze = math.exp(-up / 0.10)
-    pale = math.exp(-up / 0.32)
-    near = vec.dot(direction, vec.direction(SUN, SUN_ELEVATION))
+    haze = math.exp(-up / 0.12)
+    pale = math.exp(-up / 0.40)
+    near = vec.dot(direction, vec.direction(SUN_AZIMUTH, SUN_ELEVATION))
     glow = math.exp((near - 1) / 0.16)
     core = math.exp((near - 1) / 0.018)
     color = []
-    for zenith, horizon, mist, warm in zip((0.13, 0.25, 0.52), (0.50, 0.62, 0.76), (1.15, 0.90, 0.62), (1.0, 0.72, 0.40)):
+    for zenith, horizon, mist, warm in zip((0.10, 0.24, 0.60), (0.34, 0.54, 0.86), (0.50, 0.66, 0.92), (1.0, 0.80, 0.55)):
         c = zenith + (horizon - zenith) * pale
         c += (mist - c) * 0.75 * haze * (0.45 + 0.55 * (1 + near) / 2)
         color.append(c + warm * (0.75 * glow * (0.3 + 0.7 * pale) + 1.6 * core))
