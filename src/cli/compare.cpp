@@ -174,8 +174,8 @@ void add_options(CLI::App& command, CompareOptions& o) {
                      "ambient for the paper's.");
   command.add_flag("--relative", o.relative,
                    "Errors relative to the reference: of each channel the RMS over pixels divided by the reference's "
-                   "mean over these pixels; --rms 0.05 is 5 %. FLIP stays as it is; --target, and what --rms asks of "
-                   "each leaf alone, are of absolute errors.");
+                   "mean over these pixels; --rms 0.05 is 5 %. FLIP stays as it is; --target is refused and leaves are "
+                   "not chosen for one by one, which is by absolute errors.");
   command.add_option("--leaf", o.leaves, "Material to replace; may be given again. Every leaf by default.")
       ->allow_extra_args(false);
   command.add_option("--wavelengths", o.wavelengths, "In place of the scene's; smpte for the paper's three.");
