@@ -36,7 +36,7 @@ struct CompareOptions {
   uint64_t seed = 0;
   std::optional<double> exposure;
   std::vector<double> rms;
-  bool quick = false, quiet = false, no_cache = false, seed_given = false;
+  bool quick = false, quiet = false, no_cache = false, relative = false, seed_given = false;
 };
 
 /// What holds where nothing is said, in a first look and otherwise.
@@ -73,7 +73,7 @@ std::array<double, 3> target_of(const std::string& text) {
 }
 
 Request request_of(const CompareOptions& o) {
-  Request request{.rms = o.rms, .exposure_stops = o.exposure};
+  Request request{.rms = o.rms, .exposure_stops = o.exposure, .relative = o.relative};
   if (!o.target.empty()) request.target = target_of(o.target);
   return request;
 }
@@ -102,7 +102,7 @@ std::string command_line_of(const CompareOptions& o) {
   for (const double rms : o.rms) add_number("--rms", rms);
   add_number("--exposure", o.exposure.value_or(0));
   if (o.seed_given) line += fmt::format(" --seed {}", o.seed);
-  return line + (o.quick ? " --quick" : "");
+  return line + (o.relative ? " --relative" : "") + (o.quick ? " --quick" : "");
 }
 
 std::string scene_name(const std::filesystem::path& scene) {
@@ -139,7 +139,8 @@ void run_compare(const CompareOptions& o) {
   ThreadPool pool(o.threads);
   const compare::Study study(study_options(o, plan), pool, log);
   Comparison result = compare::measure(study, plan, request, pool, log);
-  for (const double rms : request.rms)
+  // The chooser knows absolute errors alone.
+  for (const double rms : request.relative ? std::vector<double>{} : request.rms)
     result.leaf_by_leaf +=
         (result.leaf_by_leaf.empty() ? "" : "\n") + leaf_by_leaf(rms, o.wavelengths, study, plan, pool, log);
   result.scene = scene_name(o.scene);
@@ -171,6 +172,10 @@ void add_options(CLI::App& command, CompareOptions& o) {
   command.add_option("--target", o.target,
                      "RMS of red, green and blue for speed-up (c): numbers, or front, back, "
                      "ambient for the paper's.");
+  command.add_flag("--relative", o.relative,
+                   "Errors relative to the reference: of each channel the RMS over pixels divided by the reference's "
+                   "mean over these pixels; --rms 0.05 is 5 %. FLIP stays as it is; --target is refused and leaves are "
+                   "not chosen for one by one, which is by absolute errors.");
   command.add_option("--leaf", o.leaves, "Material to replace; may be given again. Every leaf by default.")
       ->allow_extra_args(false);
   command.add_option("--wavelengths", o.wavelengths, "In place of the scene's; smpte for the paper's three.");

@@ -66,6 +66,19 @@ RenderError render_error(const RenderPair& renders, const RenderPair& reference,
   return {total.result(), clipped.result(), noise.result(), bias, reference_noise.result()};
 }
 
+double mean_of(const RenderPair& renders, std::span<const float> use) {
+  BoundedMean mean;
+  for (size_t i = 0; i < renders.first.size(); ++i)
+    if (use.empty() || use[i] > 0.5f)
+      mean.add((static_cast<double>(renders.first[i]) + static_cast<double>(renders.second[i])) / 2);
+  return mean.result().value;
+}
+
+RenderError in_units_of(double unit, RenderError error) {
+  scale(error, 1 / square(unit));
+  return error;
+}
+
 RenderError mean_of(std::span<const RenderError> channels) {
   RenderError sum;
   for (const RenderError& e : channels) sum += e;

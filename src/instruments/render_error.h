@@ -26,6 +26,12 @@ struct RenderError {
 /// pixels) picks pixels by a weight above 0.5. No pixels: all 0.
 RenderError render_error(const RenderPair& renders, const RenderPair& reference, std::span<const float> use = {});
 
+/// The mean of both renders over the pixels that `use` picks as above. No pixels: 0.
+double mean_of(const RenderPair& renders, std::span<const float> use = {});
+
+/// In units of `unit` (above 0): mean squares over its square, so that roots are over it.
+RenderError in_units_of(double unit, RenderError error);
+
 /// Of several channels together, each with the same weight. Their errors may hang together in any way.
 RenderError mean_of(std::span<const RenderError> channels);
 

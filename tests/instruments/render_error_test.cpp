@@ -64,6 +64,24 @@ TEST(RenderError, CountsThePixelsThatAreUsed) {
   EXPECT_EQ(error_of(p, none).total.value, 0);
 }
 
+/// Over the true mean, 0.3: noise of either method leaves the relative figures what they are.
+TEST(RenderError, InUnitsOfTheReferencesMeanIsRelative) {
+  const Pictures p = pictures(0.04, 0.05, 0.03);
+  const RenderError e = in_units_of(mean_of({p.r1, p.r2}), error_of(p));
+  const double bias = 0.04 * 0.04 / 2, noise = 0.05 * 0.05, mean_squared = 0.3 * 0.3;
+  expect_near(e.bias, bias / mean_squared);
+  expect_near(e.noise, noise / mean_squared);
+  expect_near(e.total, (bias + noise) / mean_squared);
+  expect_near(e.reference_noise, 0.03 * 0.03 / 2 / mean_squared);
+}
+
+TEST(RenderError, AMeanIsOfBothRendersAndThePixelsThatAreUsed) {
+  const std::vector<float> first{1, 2, 4}, second{3, 4, 8}, some{1, 1, 0}, none(3);
+  EXPECT_DOUBLE_EQ(mean_of({first, second}), 11.0 / 3);
+  EXPECT_DOUBLE_EQ(mean_of({first, second}, some), 2.5);
+  EXPECT_EQ(mean_of({first, second}, none), 0);
+}
+
 TEST(RenderError, ChannelsTogetherAreTheirMean) {
   RenderError a, b;
   a.noise = {1, 0.1}, b.noise = {3, 0.3};

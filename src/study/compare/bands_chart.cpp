@@ -15,13 +15,14 @@ struct BandError {
   bool is_biased() const { return low > 0; }
 };
 
-std::vector<BandError> band_errors(const Subject& subject, const ChannelList& channels) {
+/// As the axis has them.
+std::vector<BandError> band_errors(const Subject& subject, const ChannelList& channels, const ErrorUnit& unit) {
   std::vector<BandError> errors;
   const auto& all = subject.rungs.back().errors[kAll];
   for (size_t b = 0; b < channels.bands.size(); ++b) {
     const RenderError& e = all[kFirst + b];
-    errors.push_back(
-        {channels.bands[b].nm, e.bias.root(), e.bias.root_at(-kZ95), e.bias.root_at(kZ95), e.noise.root()});
+    errors.push_back({channels.bands[b].nm, unit.on_axis(e.bias.root()), unit.on_axis(e.bias.root_at(-kZ95)),
+                      unit.on_axis(e.bias.root_at(kZ95)), unit.on_axis(e.noise.root())});
   }
   return errors;
 }
@@ -66,10 +67,11 @@ double mean_step_nm(const ChannelList& channels) {
 }  // namespace
 
 std::string bands_chart(const Comparison& c) {
+  const ErrorUnit unit = c.request.error_unit();
   std::vector<std::vector<BandError>> all;
   AxisRange y;
   for (const Subject& s : c.subjects) {
-    all.push_back(band_errors(s, c.channels));
+    all.push_back(band_errors(s, c.channels, unit));
     for (const BandError& e : all.back())
       for (const double v : {e.low, e.high, e.noise})
         if (v > 0) y.include(v);
@@ -83,8 +85,8 @@ std::string bands_chart(const Comparison& c) {
     script += data_block(i, all[i], y);
     plot += curve(i, step_nm * 0.5 * ((double(i) + 0.5) / double(all.size()) - 0.5), c.subjects[i].candidate.label);
   }
-  return script + log_axis('y', y, fmt::format("bias and noise ({})", c.channels.unit)) + key_below(all.size() + 2) +
-         "plot " + plot + bars_explained() +
+  return script + log_axis('y', y, fmt::format("bias and noise ({})", unit.of_axis(c.channels))) +
+         key_below(all.size() + 2) + "plot " + plot + bars_explained() +
          fmt::format("NaN with lines lc rgb '#000000' dt 3 lw 2 title 'noise of one render of {} samples'\n",
                      c.subjects.front().rungs.back().samples);
 }

@@ -16,11 +16,11 @@ int height_of(const Comparison& c, size_t more_lines) {
 std::string rms_caption(const Comparison& c) {
   return fmt::format(
       "One point for each doubling of samples per pixel, from {} to {}; bars are 95 % intervals. Error is against what "
-      "the reference converges to: its noise, {:.2g}, is taken out. A cross and the dotted line after it: from there "
+      "the reference converges to: its noise, {}, is taken out. A cross and the dotted line after it: from there "
       "on noise is below the candidate’s bias, and more samples help little. A curve without one has no bias that "
       "could be told from none.",
       c.subjects.front().rungs.front().samples, c.subjects.front().rungs.back().samples,
-      c.reference.noise[kAll][kTogether].root());
+      c.request.error_unit().rounded(c.reference.noise[kAll][kTogether].root()));
 }
 
 std::string flip_caption(const Comparison& c) {

@@ -8,6 +8,7 @@
 #include "study/compare/candidate.h"
 #include "study/compare/channels.h"
 #include "study/compare/cutoff.h"
+#include "study/compare/error_unit.h"
 #include "study/compare/paired_render.h"
 #include "study/compare/picture.h"
 
@@ -19,6 +20,9 @@ inline constexpr std::array<const char*, kRegions> kRegionNames{"all", "leaf"};
 
 /// By region and place in a ChannelList.
 using ErrorTable = std::array<std::vector<RenderError>, kRegions>;
+
+/// By region and the channels of a picture (those of a ChannelList from kFirst on). Of a region without pixels: none.
+using MeanTable = std::array<std::vector<double>, kRegions>;
 
 /// One candidate after so many samples a pixel.
 struct Rung {
@@ -55,6 +59,7 @@ struct Reference {
   uint64_t cached_samples = 0;                               ///< of these, from the cache
   RenderCost cost;                                           ///< of one render
   std::array<std::vector<MeanSquare>, kRegions> noise = {};  ///< of the mean of the two, by place in the ChannelList
+  MeanTable mean = {};              ///< in the ChannelList's unit, where errors are relative to it; else empty
   std::optional<double> flip = {};  ///< between the two: twice the noise of what candidates are compared with
   Image picture = {};               ///< as shown
 };
@@ -64,6 +69,9 @@ struct Request {
   std::vector<double> rms = {};                      ///< errors to meet, over all channels and all pixels
   std::optional<std::array<double, 3>> target = {};  ///< RMS of red, green and blue for speed-up (c)
   std::optional<double> exposure_stops = {};
+  bool relative = false;  ///< errors, `rms` among them, over the reference's mean (error_unit.h); not with `target`
+
+  ErrorUnit error_unit() const { return ErrorUnit(relative); }
 };
 
 /// Everything that a report tells.

@@ -14,18 +14,19 @@ struct Point {
   double seconds, value, low, high;
 };
 
-Point point_of(const Rung& rung, Measure measure) {
+/// Errors as the axis has them.
+Point point_of(const Rung& rung, Measure measure, const ErrorUnit& unit) {
   const double t = rung.cost.cpu_seconds;
   if (measure == Measure::flip) return {t, rung.flip.value_or(0), rung.flip.value_or(0), rung.flip.value_or(0)};
   const MeanSquare& e = rung.errors[measure == Measure::rms_leaf ? kLeaf : kAll][kTogether].total;
-  return {t, e.root(), e.root_at(-kZ95), e.root_at(kZ95)};
+  return {t, unit.on_axis(e.root()), unit.on_axis(e.root_at(-kZ95)), unit.on_axis(e.root_at(kZ95))};
 }
 
 /// Those that a logarithmic axis can show.
-std::vector<Point> points_of(const Subject& subject, Measure measure) {
+std::vector<Point> points_of(const Subject& subject, Measure measure, const ErrorUnit& unit) {
   std::vector<Point> points;
   for (const Rung& rung : subject.rungs)
-    if (const Point p = point_of(rung, measure); p.seconds > 0 && p.value > 0) points.push_back(p);
+    if (const Point p = point_of(rung, measure, unit); p.seconds > 0 && p.value > 0) points.push_back(p);
   return points;
 }
 
@@ -48,9 +49,9 @@ std::string frontier_block(const std::vector<std::vector<Point>>& curves) {
 
 std::string axes(const AxisRange& x, const AxisRange& y, Measure measure, const Comparison& c) {
   const std::string error =
-      measure == Measure::flip
-          ? "mean FLIP"
-          : fmt::format("RMS error, {} pixels ({})", measure == Measure::rms_leaf ? "leaf" : "all", c.channels.unit);
+      measure == Measure::flip ? "mean FLIP"
+                               : fmt::format("RMS error, {} pixels ({})", measure == Measure::rms_leaf ? "leaf" : "all",
+                                             c.request.error_unit().of_axis(c.channels));
   return chart_frame() + log_axis('x', x, fmt::format("CPU time of one {} × {} render (s)", c.width, c.height)) +
          log_axis('y', y, error);
 }
@@ -76,27 +77,29 @@ std::optional<Plateau> plateau_of(const Subject& subject, Measure measure) {
   return Plateau{c.bias().root(), effort->seconds};
 }
 
-std::string title(const Subject& subject, const std::optional<Plateau>& plateau) {
+std::string title(const Subject& subject, const std::optional<Plateau>& plateau, const ErrorUnit& unit) {
   if (!plateau) return subject.candidate.label;
-  return fmt::format("{}: bias {:.2g}, noise below it from {} s", subject.candidate.label, plateau->bias,
+  return fmt::format("{}: bias {}, noise below it from {} s", subject.candidate.label, unit.rounded(plateau->bias),
                      figures(plateau->seconds, 2));
 }
 
 }  // namespace
 
 bool has_curves(const Comparison& c, Measure measure) {
-  return std::ranges::any_of(c.subjects, [measure](const Subject& s) { return !points_of(s, measure).empty(); });
+  const ErrorUnit unit = c.request.error_unit();
+  return std::ranges::any_of(c.subjects, [&](const Subject& s) { return !points_of(s, measure, unit).empty(); });
 }
 
 std::string curves_chart(const Comparison& c, Measure measure) {
+  const ErrorUnit unit = c.request.error_unit();
   std::vector<std::vector<Point>> curves;
   std::vector<std::optional<Plateau>> plateaus;
   AxisRange x, y;
   for (const Subject& s : c.subjects) {
-    curves.push_back(points_of(s, measure));
+    curves.push_back(points_of(s, measure, unit));
     plateaus.push_back(plateau_of(s, measure));
     for (const Point& p : curves.back()) x.include(p.seconds), y.include(p.value);
-    if (plateaus.back()) y.include(plateaus.back()->bias), x.include(plateaus.back()->seconds);
+    if (plateaus.back()) y.include(unit.on_axis(plateaus.back()->bias)), x.include(plateaus.back()->seconds);
   }
   x = x.widened(), y = y.widened();
   std::string script, marks, plot;
@@ -106,13 +109,14 @@ std::string curves_chart(const Comparison& c, Measure measure) {
     const auto& p = plateaus[i];
     if (p) {
       const double from = std::clamp(p->seconds, x.low, x.high);
-      script += fmt::format("$p{} << EOD\n{} {}\n{} {}\nEOD\n", i, from, p->bias, x.high, p->bias);
+      const double level = unit.on_axis(p->bias);
+      script += fmt::format("$p{} << EOD\n{} {}\n{} {}\nEOD\n", i, from, level, x.high, level);
       marks += fmt::format(
           ", $p{0} using 1:2 with lines lc rgb '{1}' dt 3 lw 2 notitle, $p{0} using 1:2 every ::0::0 with points lc "
           "rgb '{1}' pt 2 ps 1.3 lw 2 notitle",
           i, kSeriesColors[i]);
     }
-    plot += curve(i, title(c.subjects[i], p));
+    plot += curve(i, title(c.subjects[i], p, unit));
   }
   return script +
          "plot $frontier using 1:2 with lines lc rgb '#d9d9d9' lw 9 title 'Pareto frontier: nothing measured "

@@ -11,13 +11,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string notes(const ChannelList& channels) {
+std::string notes(const ChannelList& channels, const ErrorUnit& unit) {
   return fmt::format(
       "# One render of so many samples per pixel: its time, and how far it is from what the reference converges to.\n"
       "# Unit: {}; {}: root of the mean square of all the film's channels; leaf: pixels that see a leaf.\n"
       "# rms = bias and noise; rms_clipped: of pictures clipped to [0, 1]; _low, _high: 95 % intervals; flip: mean "
       "FLIP{}.\n",
-      channels.unit, channels.names[kTogether], channels.are_bands() ? ", none of bands" : "");
+      unit.of_data(channels), channels.names[kTogether], channels.are_bands() ? ", none of bands" : "");
 }
 
 struct Column {
@@ -110,6 +110,10 @@ Json reference_json(const ChannelList& channels, const Reference& r) {
   for_each_entry(channels, r.noise, [&json](const char* region, const std::string& channel, const MeanSquare& noise) {
     json["noise"][region][channel] = interval(noise);
   });
+  for (size_t region = 0; region < kRegions; ++region)
+    for (size_t i = 0; i < r.mean[region].size(); ++i)
+      json["mean"][kRegionNames[region]][channels.names[kFirst + i]] = r.mean[region][i];
+  if (json.contains("mean")) json["mean_unit"] = channels.unit;
   return json;
 }
 
@@ -117,7 +121,7 @@ Json reference_json(const ChannelList& channels, const Reference& r) {
 
 std::string comparison_csv(const Comparison& c) {
   std::string csv = fmt::format("# {}\n# frond {}\n", c.command, FROND_VERSION);
-  csv += notes(c.channels);
+  csv += notes(c.channels, c.request.error_unit());
   csv += "candidate,samples,cpu_seconds,wall_seconds,flip,region,channel";
   for (const Column& column : kColumns) csv += fmt::format(",{0},{0}_low,{0}_high", column.name);
   csv += '\n';
@@ -143,7 +147,7 @@ std::string comparison_json(const Comparison& c) {
             {"width", c.width},
             {"height", c.height},
             {"foliar_ratio", c.foliar_ratio},
-            {"unit", c.channels.unit},
+            {"unit", c.request.error_unit().of_data(c.channels)},
             {"channels", c.channels.names},
             {"leaf_materials", c.leaves},
             {"wall_seconds", c.wall_seconds},

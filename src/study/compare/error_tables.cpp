@@ -8,39 +8,49 @@
 namespace frond::compare {
 namespace {
 
+constexpr int kDecimals = 4;
+
 /// The value, and the upper end of its interval.
-std::string bounded(const MeanSquare& m) { return fmt::format("{:.4f} (≤ {:.4f})", m.root(), m.root_at(kZ95)); }
+std::string bounded(const ErrorUnit& unit, const MeanSquare& m) {
+  return fmt::format("{} (≤ {})", unit.fixed(m.root(), kDecimals), unit.fixed(m.root_at(kZ95), kDecimals));
+}
 
 /// A row of the table of errors: what is told of one candidate in one region.
 using Errors = std::vector<RenderError>;
 struct ErrorColumn {
   const char* title;
-  std::string (*text)(const ChannelList&, const Errors&);
+  std::string (*text)(const Comparison&, const Errors&);
 };
 
 /// Red, green and blue.
 template <MeanSquare RenderError::*value>
-std::string triple(const ChannelList&, const Errors& e) {
-  return fmt::format("{:.4f} {:.4f} {:.4f}", (e[kFirst].*value).root(), (e[kFirst + 1].*value).root(),
-                     (e[kFirst + 2].*value).root());
-}
-std::string bias_bounds(const ChannelList&, const Errors& e) {
-  return fmt::format("{:.4f} {:.4f} {:.4f}", e[kFirst].bias.root_at(kZ95), e[kFirst + 1].bias.root_at(kZ95),
-                     e[kFirst + 2].bias.root_at(kZ95));
+std::string triple_at(const Comparison& c, const Errors& e, double z) {
+  const ErrorUnit unit = c.request.error_unit();
+  const auto text = [&](size_t channel) { return unit.fixed((e[kFirst + channel].*value).root_at(z), kDecimals); };
+  return fmt::format("{} {} {}", text(0), text(1), text(2));
 }
 template <MeanSquare RenderError::*value>
-std::string together(const ChannelList&, const Errors& e) {
-  return fmt::format("{:.4f}", (e[kTogether].*value).root());
+std::string triple(const Comparison& c, const Errors& e) {
+  return triple_at<value>(c, e, 0);
 }
-std::string bias_together(const ChannelList&, const Errors& e) { return bounded(e[kTogether].bias); }
-std::string luminance_bias(const ChannelList& c, const Errors& e) { return bounded(e[c.luminance()].bias); }
-std::string luminance_rms(const ChannelList& c, const Errors& e) {
-  return fmt::format("{:.4f}", e[c.luminance()].total.root());
+std::string bias_bounds(const Comparison& c, const Errors& e) { return triple_at<&RenderError::bias>(c, e, kZ95); }
+template <MeanSquare RenderError::*value>
+std::string together(const Comparison& c, const Errors& e) {
+  return c.request.error_unit().fixed((e[kTogether].*value).root(), kDecimals);
 }
-std::string worst_band(const ChannelList& c, const Errors& e) {
-  const auto films = std::span(e).subspan(kFirst, c.film_channels());
+std::string bias_together(const Comparison& c, const Errors& e) {
+  return bounded(c.request.error_unit(), e[kTogether].bias);
+}
+std::string luminance_bias(const Comparison& c, const Errors& e) {
+  return bounded(c.request.error_unit(), e[c.channels.luminance()].bias);
+}
+std::string luminance_rms(const Comparison& c, const Errors& e) {
+  return c.request.error_unit().fixed(e[c.channels.luminance()].total.root(), kDecimals);
+}
+std::string worst_band(const Comparison& c, const Errors& e) {
+  const auto films = std::span(e).subspan(kFirst, c.channels.film_channels());
   const auto worst = std::ranges::max_element(films, {}, [](const RenderError& r) { return r.bias.value; });
-  return c.names[kFirst + size_t(worst - films.begin())] + ": " + bounded(worst->bias);
+  return c.channels.names[kFirst + size_t(worst - films.begin())] + ": " + bounded(c.request.error_unit(), worst->bias);
 }
 
 constexpr std::array<ErrorColumn, 7> kColorColumns{{{"RMS, clipped<br>R G B", triple<&RenderError::clipped>},
@@ -55,21 +65,26 @@ constexpr std::array<ErrorColumn, 4> kBandColumns{{{"RMS<br>all bands", together
                                                    {"bias<br>all bands", bias_together},
                                                    {"largest bias<br>of a band", worst_band}}};
 
-std::span<const ErrorColumn> columns_of(const ChannelList& channels) {
-  return channels.are_bands() ? std::span<const ErrorColumn>(kBandColumns) : kColorColumns;
+/// What is clipped is compared with the paper, whose errors are absolute.
+std::span<const ErrorColumn> columns_of(const Comparison& c) {
+  if (c.channels.are_bands()) return kBandColumns;
+  return std::span(kColorColumns).subspan(c.request.relative ? 1 : 0);
 }
 
 std::string error_row(const Comparison& c, const Subject& s, Region region) {
   const Rung& r = s.rungs.back();
   std::string row = "<tr>" + cell(html_text(s.candidate.label));
-  for (const ErrorColumn& column : columns_of(c.channels)) row += cell(column.text(c.channels, r.errors[region]));
+  for (const ErrorColumn& column : columns_of(c)) row += cell(column.text(c, r.errors[region]));
   return row + (region == kAll && r.flip ? cell(fmt::format("{:.4f}", *r.flip)) : "") + "</tr>\n";
 }
 
-std::string error_note(const ChannelList& channels) {
+std::string error_note(const Comparison& c) {
+  if (c.request.relative)
+    return std::string(kRelativeExplained) +
+           " The reference’s noise is taken out. Bias is what no number of samples takes away.";
   const std::string unit =
-      channels.are_bands() ? "Radiance over that of a white diffuse surface of luminance 1 in the light of the scene."
-                           : "Linear SMPTE-C.";
+      c.channels.are_bands() ? "Radiance over that of a white diffuse surface of luminance 1 in the light of the scene."
+                             : "Linear SMPTE-C.";
   return unit +
          " The paper’s RMS is that of clipped pictures, of two renders that are both noisy; here the reference’s "
          "noise is taken out. Bias is what no number of samples takes away.";
@@ -79,11 +94,11 @@ std::string error_table(const Comparison& c, Region region) {
   std::string rows;
   for (const Subject& s : c.subjects) rows += error_row(c, s, region);
   std::vector<std::string> titles{"candidate"};
-  for (const ErrorColumn& column : columns_of(c.channels)) titles.emplace_back(column.title);
+  for (const ErrorColumn& column : columns_of(c)) titles.emplace_back(column.title);
   if (region == kAll && !c.channels.are_bands()) titles.emplace_back("FLIP");
   return table(fmt::format("Error of one render of {} samples per pixel, {} pixels",
                            c.subjects.front().rungs.back().samples, region == kAll ? "all" : "leaf"),
-               head(titles), rows, error_note(c.channels));
+               head(titles), rows, error_note(c));
 }
 
 /// Band by band; folded away, as there may be many.
@@ -94,7 +109,8 @@ std::string band_table(const Comparison& c) {
   std::string rows;
   for (size_t b = 0; b < c.channels.bands.size(); ++b) {
     rows += "<tr>" + cell(c.channels.names[kFirst + b]);
-    for (const Subject& s : c.subjects) rows += cell(bounded(s.rungs.back().errors[kAll][kFirst + b].bias));
+    for (const Subject& s : c.subjects)
+      rows += cell(bounded(c.request.error_unit(), s.rungs.back().errors[kAll][kFirst + b].bias));
     rows += "</tr>\n";
   }
   return "<details><summary>Bias band by band</summary>" +

@@ -24,8 +24,27 @@ PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use
 /// The two renders of a method as pictures.
 using PicturePair = std::array<Image, 2>;
 
+/// What relative errors are relative to. Throws InputError for what nothing can be relative to: a mean that is not
+/// above 0.
+MeanTable means_of(const PicturePair& reference, const ChannelList& channels, std::span<const float> leaf) {
+  MeanTable means;
+  const std::array<std::span<const float>, kRegions> uses{std::span<const float>{}, leaf};
+  for (size_t region = 0; region < kRegions; ++region) {
+    if (!uses[region].empty() && std::ranges::none_of(uses[region], [](float share) { return share > 0.5f; })) continue;
+    for (size_t c = 0; c < reference[0].channels.size(); ++c) {
+      means[region].push_back(frond::mean_of({reference[0].plane(c), reference[1].plane(c)}, uses[region]));
+      if (!(means[region].back() > 0))
+        fail({},
+             "the reference's mean in {} over {} pixels is {:.3g}: no error is relative to that, leave out --relative",
+             channels.names[kFirst + c], kRegionNames[region], means[region].back());
+    }
+  }
+  return means;
+}
+
+/// Over the reference's means, where there are any.
 ErrorTable errors_of(const PicturePair& renders, const PicturePair& reference, size_t film_channels,
-                     std::span<const float> leaf) {
+                     std::span<const float> leaf, const MeanTable& means) {
   ErrorTable errors{std::vector<RenderError>(kFirst), std::vector<RenderError>(kFirst)};
   for (size_t c = 0; c < renders[0].channels.size(); ++c) {
     const auto a1 = renders[0].plane(c), a2 = renders[1].plane(c);
@@ -33,6 +52,11 @@ ErrorTable errors_of(const PicturePair& renders, const PicturePair& reference, s
     errors[kAll].push_back(render_error({a1, a2}, {b1, b2}));
     errors[kLeaf].push_back(render_error({a1, a2}, {b1, b2}, leaf));
   }
+  for (size_t region = 0; region < kRegions; ++region)
+    for (size_t c = 0; c < means[region].size(); ++c) {
+      RenderError& error = errors[region][kFirst + c];
+      error = in_units_of(means[region][c], error);
+    }
   for (auto& region : errors) region[kTogether] = frond::mean_of(std::span(region).subspan(kFirst, film_channels));
   return errors;
 }
@@ -40,11 +64,13 @@ ErrorTable errors_of(const PicturePair& renders, const PicturePair& reference, s
 /// Measures against one reference.
 class Bench {
  public:
-  Bench(const PairedRender& reference, const std::optional<double>& exposure_stops)
+  Bench(const PairedRender& reference, const Request& request)
       : channels_(channels_of(reference.scene())),
         reference_(pictures(reference)),
         leaf_(leaf_mask(reference.film(0))),
-        exposure_stops_(exposure_stops.value_or(fitting_exposure(shown_mean(reference_)))),
+        error_unit_(request.error_unit()),
+        means_(error_unit_.is_relative() ? means_of(reference_, channels_, leaf_) : MeanTable{}),
+        exposure_stops_(request.exposure_stops.value_or(fitting_exposure(shown_mean(reference_)))),
         display_(display(shown_mean(reference_))) {}
 
   Rung rung(const PairedRender& render) const {
@@ -59,11 +85,13 @@ class Bench {
     const ErrorTable table = errors(reference_);
     for (size_t region = 0; region < kRegions; ++region)
       for (const RenderError& e : table[region]) r.noise[region].push_back(e.reference_noise);
+    r.mean = means_;
     r.flip = flip(display(shown(reference_[0], channels_)), reference_[1]);
     r.picture = shown_mean(reference_);
     return r;
   }
   const ChannelList& channels() const { return channels_; }
+  const ErrorUnit& error_unit() const { return error_unit_; }
   double exposure_stops() const { return exposure_stops_; }
 
  private:
@@ -73,7 +101,7 @@ class Bench {
   }
   Image shown_mean(const PicturePair& pair) const { return shown(mean_of(pair[0], pair[1]), channels_); }
   ErrorTable errors(const PicturePair& pictures) const {
-    return errors_of(pictures, reference_, channels_.film_channels(), leaf_);
+    return errors_of(pictures, reference_, channels_.film_channels(), leaf_, means_);
   }
   Image display(const Image& shown) const { return display_image(shown, exposure_stops_, colors_); }
   /// The eye has no say in bands.
@@ -86,6 +114,8 @@ class Bench {
   ChannelList channels_;
   PicturePair reference_;
   std::vector<float> leaf_;
+  ErrorUnit error_unit_;
+  MeanTable means_;
   double exposure_stops_;
   Image display_;  ///< the reference's
 };
@@ -114,6 +144,8 @@ void check_channels(const PairedRender& render, const Candidate& candidate, cons
 }
 
 void check_request(const Request& request, const Plan& plan, const Scene& scene) {
+  if (request.target && request.relative)
+    fail({}, "--target is an absolute RMS, as the paper's: it does not go with --relative, where --rms is relative");
   if (request.target && !scene.wavelengths().bands().empty())
     fail({}, "--target is an RMS of red, green and blue, wavelengths \"{}\" give bands: --rms is of all channels",
          scene.wavelengths_name());
@@ -151,8 +183,8 @@ void step_to(uint64_t samples, PairedRender& render, const Plan& plan, const Ben
   render.advance_to(samples, pool, plan.progress);
   subject.rungs.push_back(bench.rung(render));
   const Rung& r = subject.rungs.back();
-  log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {:.5f}{}", subject.candidate.label, samples,
-                       r.cost.cpu_seconds, r.errors[kAll][kTogether].total.root(),
+  log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {}{}", subject.candidate.label, samples,
+                       r.cost.cpu_seconds, bench.error_unit().fixed(r.errors[kAll][kTogether].total.root(), 5),
                        r.flip ? fmt::format(", FLIP {:.4f}", *r.flip) : ""));
 }
 
@@ -201,16 +233,16 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request,
   const ReferenceStore store(plan.cache, study.identity(plan.reference), log);
   const uint64_t cached = render_reference(reference_render, store, plan, pool);
   warn_of_lost_samples(reference_render, plan.reference, log);
-  const Bench bench(reference_render, request.exposure_stops);
+  const Bench bench(reference_render, request);
   result.channels = bench.channels();
   result.exposure_stops = bench.exposure_stops();
   result.reference = bench.described(plan.reference, reference_render);
   result.reference.cached_samples = cached;
   result.width = result.reference.picture.width, result.height = result.reference.picture.height;
   result.foliar_ratio = reference_render.film(0).foliar_ratio();
-  log.info(fmt::format("reference {}: 2 x {} samples ({} from the cache), its own noise RMS {:.5f}, taken out below",
+  log.info(fmt::format("reference {}: 2 x {} samples ({} from the cache), its own noise RMS {}, taken out below",
                        plan.reference.text, result.reference.samples, cached,
-                       result.reference.noise[kAll][kTogether].root()));
+                       bench.error_unit().fixed(result.reference.noise[kAll][kTogether].root(), 5)));
   for (size_t i = 0; i < renders.size(); ++i)
     result.subjects.push_back({.candidate = plan.candidates[i],
                                .wavelengths = renders[i].scene().wavelengths_name(),

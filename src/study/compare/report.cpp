@@ -71,11 +71,13 @@ std::string viewer_data(const Comparison& c) {
 }
 
 std::string setting(const Comparison& c) {
+  const ErrorUnit unit = c.request.error_unit();
   return html_text(fmt::format(
       "{}×{} pixels, leaves in {:.1f} % of the view, materials replaced: {}. Reference: {}, two renders of {} samples; "
-      "its own noise, an RMS of {:.2g}, is taken out of all figures.",
+      "its own noise, {} of {}, is taken out of all figures.{}",
       c.width, c.height, 100 * c.foliar_ratio, fmt::join(c.leaves, ", "), c.reference.candidate.text,
-      c.reference.samples, c.reference.noise[kAll][kTogether].root()));
+      c.reference.samples, unit.rms(), unit.rounded(c.reference.noise[kAll][kTogether].root()),
+      unit.is_relative() ? fmt::format(" {}", kRelativeExplained) : ""));
 }
 
 std::string values_note(const ChannelList& channels) {

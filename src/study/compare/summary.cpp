@@ -9,6 +9,8 @@ namespace frond::compare {
 std::string summary_text(const Comparison& c) {
   size_t width = 10;
   for (const Subject& s : c.subjects) width = std::max(width, s.candidate.label.size());
+  const ErrorUnit unit = c.request.error_unit();
+  const auto fixed = [&unit](double error) { return unit.fixed(error, 5); };
   std::string text =
       fmt::format("{:<{}}  CPU s/sample  bias (95 %)                   noise of {:<5}  FLIP    (a)    (c*)   (d)\n",
                   "candidate", width, c.subjects.front().rungs.back().samples);
@@ -18,12 +20,14 @@ std::string summary_text(const Comparison& c) {
     const RenderError& e = r.errors[kAll][kTogether];
     const SpeedUps v = speed_ups(c, i);
     const bool told = v.equal_error_at_bias && v.equal_error_at_bias->value > 0;
-    text += fmt::format("{:<{}}  {:<12.3g}  {:.5f} ({:.5f} to {:.5f})  {:<14.5f}  {:<6}  {:<5.2f}  {:<5}  {:.2f}\n",
-                        s.candidate.label, width, r.cost.cpu_seconds / double(r.samples), e.bias.root(),
-                        e.bias.root_at(-kZ95), e.bias.root_at(kZ95), e.noise.root(),
+    const std::string bias =
+        fmt::format("{} ({} to {})", fixed(e.bias.root()), fixed(e.bias.root_at(-kZ95)), fixed(e.bias.root_at(kZ95)));
+    text += fmt::format("{:<{}}  {:<12.3g}  {:<28}  {:<14}  {:<6}  {:<5.2f}  {:<5}  {:.2f}\n", s.candidate.label, width,
+                        r.cost.cpu_seconds / double(r.samples), bias, fixed(e.noise.root()),
                         r.flip ? fmt::format("{:.4f}", *r.flip) : "-", v.equal_samples,
                         told ? fmt::format("{:.2f}", v.equal_error_at_bias->value) : "-", v.equal_noise);
   }
+  if (unit.is_relative()) text += fmt::format("{}\n", kRelativeExplained);
   return text +
          "Speed-up by CPU time: (a) at equal samples, (c*) at an RMS of 1.5 times the bias, (d) at equal noise.\n";
 }

@@ -66,9 +66,10 @@ std::string paper_note(const Comparison& c) {
 std::string speed_table(const Comparison& c) {
   std::string rows;
   for (size_t i = 0; i < c.subjects.size(); ++i) rows += speed_row(c, i);
-  const std::string target = c.request.target ? fmt::format("an RMS of {:g} / {:g} / {:g}", (*c.request.target)[0],
-                                                            (*c.request.target)[1], (*c.request.target)[2])
-                                              : "an RMS that --target gives";
+  const std::string target = c.request.target     ? fmt::format("an RMS of {:g} / {:g} / {:g}", (*c.request.target)[0],
+                                                                (*c.request.target)[1], (*c.request.target)[2])
+                             : c.request.relative ? "an RMS that --target gives without --relative"
+                                                  : "an RMS that --target gives";
   return table(
       "Speed",
       head({"candidate", "CPU s<br>per sample", "CPU s to<br>make ready", "noise below<br>bias from",
@@ -96,9 +97,9 @@ std::string table_2_row(const Comparison& c, size_t i) {
          cell(ratio_text(v.equal_error)) + cell(ratio_text(v.equal_noise)) + "</tr>\n";
 }
 
-/// Of colours.
+/// Of absolute errors of colours, as the paper's are.
 std::string table_2(const Comparison& c) {
-  if (c.channels.are_bands()) return "";
+  if (c.channels.are_bands() || c.request.relative) return "";
   std::string rows;
   for (size_t i = 0; i < c.subjects.size(); ++i) rows += table_2_row(c, i);
   return table(
@@ -118,7 +119,10 @@ std::string offer_table(const Comparison& c, double rms, const char* note) {
                    cell(fmt::format("{}{}", figures(o.effort->seconds, 3), o.effort->measured ? "" : " (extrapolated)"))
              : cell(o.never ? "never" : "not known") + cell("–")) +
         "</tr>\n";
-  return table(fmt::format("An RMS of {:g}", rms), head({"candidate", "samples per pixel", "CPU s"}), rows, note);
+  const ErrorUnit unit = c.request.error_unit();
+  const char* kind = unit.is_relative() ? "A relative RMS" : "An RMS";
+  return table(fmt::format("{} of {}", kind, unit.as_asked(rms)), head({"candidate", "samples per pixel", "CPU s"}),
+               rows, note);
 }
 
 constexpr const char* kOffersNote =

@@ -31,6 +31,7 @@ bool holds(const std::vector<CandidateCost>& all, size_t subject) {
 }
 
 std::string answer(const Comparison& c, double rms) {
+  const ErrorUnit unit = c.request.error_unit();
   const double z = simultaneous_z(c);
   const auto all = candidate_costs(c, rms, z);
   const CandidateCost& best = all.front();
@@ -38,12 +39,11 @@ std::string answer(const Comparison& c, double rms) {
     const auto most = [z](const Subject& s) { return s.convergence(kAll).bias().root_at(z); };
     const auto least = std::ranges::min_element(c.subjects, {}, most);
     return fmt::format(
-        "None of the candidates meets an RMS of {:g} with 95 % confidence: the bias of {}, the least, may be up to "
-        "{:.2g}.",
-        rms, least->candidate.label, most(*least));
+        "None of the candidates meets {} of {} with 95 % confidence: the bias of {}, the least, may be up to {}.",
+        unit.rms(), unit.as_asked(rms), least->candidate.label, unit.rounded(most(*least)));
   }
-  std::string text = fmt::format("{} is enough for an RMS of {:g}, with 95 % confidence: {}", label(c, best.subject),
-                                 rms, effort_text(*best.effort));
+  std::string text = fmt::format("{} is enough for {} of {}, with 95 % confidence: {}", label(c, best.subject),
+                                 unit.rms(), unit.as_asked(rms), effort_text(*best.effort));
   for (const CandidateCost& other : all) {
     if (other.subject == best.subject) continue;
     text += "; " + label(c, other.subject);
@@ -55,14 +55,16 @@ std::string answer(const Comparison& c, double rms) {
 }
 
 std::string overview(const Comparison& c) {
+  const ErrorUnit unit = c.request.error_unit();
   std::string text;
   for (const CheapestRange& reign : cheapest_ranges(c)) {
     const Subject& s = c.subjects[reign.subject];
     const auto effort = s.convergence(kAll).until_rms(reign.rms_to);
     const std::string price = effort ? fmt::format(" ({})", effort_text(*effort)) : "";
     text += text.empty()
-                ? fmt::format("{} is the cheapest down to an RMS of {:.2g}{}", s.candidate.label, reign.rms_to, price)
-                : fmt::format("; from there {} down to {:.2g}{}", s.candidate.label, reign.rms_to, price);
+                ? fmt::format("{} is the cheapest down to {} of {}{}", s.candidate.label, unit.rms(),
+                              unit.rounded(reign.rms_to), price)
+                : fmt::format("; from there {} down to {}{}", s.candidate.label, unit.rounded(reign.rms_to), price);
   }
   return text + '.';
 }

@@ -1,0 +1,27 @@
+#include "study/compare/error_unit.h"
+
+#include "study/compare/figures.h"
+
+namespace frond::compare {
+
+std::string ErrorUnit::of_data(const ChannelList& channels) const {
+  return relative_ ? "mean of the reference over the same pixels in the same channel (0.01 is 1 %)" : channels.unit;
+}
+
+std::string ErrorUnit::of_axis(const ChannelList& channels) const {
+  return relative_ ? "% of the reference’s mean" : channels.unit;
+}
+
+std::string ErrorUnit::fixed(double error, int decimals) const {
+  return relative_ ? fmt::format("{:.2f} %", 100 * error) : fmt::format("{:.{}f}", error, decimals);
+}
+
+std::string ErrorUnit::rounded(double error) const {
+  return relative_ ? figures(100 * error, 2) + " %" : fmt::format("{:.2g}", error);
+}
+
+std::string ErrorUnit::as_asked(double error) const {
+  return relative_ ? fmt::format("{:g} %", 100 * error) : fmt::format("{:g}", error);
+}
+
+}  // namespace frond::compare
