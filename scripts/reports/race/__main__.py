@@ -110,7 +110,7 @@ def main():
             folder = pathlib.Path(temporary)
             scene = scenes.SCENES[name](folder)
             for leaf in setting.leaves:
-                able = [p for p in running if p.can(leaf)]
+                able = [p for p in running if p.can(scene, leaf)]
                 for program in able:
                     program.open(scene, leaf, setting, folder)
                 results += race(name, leaf, able, setting, folder)

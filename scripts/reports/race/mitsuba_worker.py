@@ -73,11 +73,6 @@ def matrix(values):
     return mi.ScalarTransform4f([values[i:i + 4] for i in (0, 4, 8, 12)])
 
 
-def has_normals(path):
-    with open(path, "rb") as file:
-        return b"property float nx" in file.read(2000).split(b"end_header")[0]
-
-
 def shape_of(shape, materials):
     transform = matrix(shape["to_world"])
     p = shape["parameters"]
@@ -89,8 +84,7 @@ def shape_of(shape, materials):
         if shape["reversed"]:
             transform = transform @ mi.ScalarTransform4f().rotate([1, 0, 0], 180)
         return made | {"type": "disk", "to_world": transform}
-    file = p["filename"]
-    return made | {"type": "ply", "filename": file, "to_world": transform, "face_normals": not has_normals(file)}
+    return made | {"type": "ply", "filename": p["filename"], "to_world": transform, "face_normals": True}
 
 
 def load(scene):

@@ -2,9 +2,10 @@
 
 import statistics
 
-from tools import table
+from tools import table, thousands
 
 from . import scenes
+from .programs import MOST_TRACED
 
 PAGE = """# Beside others
 
@@ -16,11 +17,12 @@ up to {load:.1f}.
 {tables}
 ## What is measured
 
-- **The same**: meshes and instances, camera, lights, paths of up to {depth} scattering events, filter, samples a pixel, and
+- **The same**: meshes (flat triangles: programs differ in what they make of vertices' normals) and instances, camera, lights, paths of up to {depth} scattering events, filter, samples a pixel, and
   low-discrepancy samplers: `paddedsobol` of frond and pbrt-v4, Mitsuba's `ldsampler`. All materials are grey, light is D65: so
   the picture is the same by three wavelengths, by colours and by spectra. Opaque leaves reflect {opaque} on both sides. The
   others reflect {reflectance} and transmit {transmittance}: `diffusetransmission` in frond and pbrt-v4. Mitsuba has none; it runs
   one of a page of Python (`scripts/reports/race/mitsuba_worker.py`), which its LLVM variants compile; scalar variants are left out.
+  LLVM variants are left out where there are more than {most_traced} instances: they make code for each of them.
   Roulette is each program's own. The Gaussian has a sigma of {sigma} pixels and a radius of {radius}: Mitsuba's default.
 - **Two groups**: three values a path, which is colours in Mitsuba's `rgb` variants and `--wavelengths smpte` in frond; and four
   wavelengths chosen along the spectrum anew for each path, as all others do. The reference of a group is frond.
@@ -91,5 +93,5 @@ def page(about, results):
     return PAGE.format(machine=about["machine"], system=about["system"], load=about["load"], missing=missing, tables=tables,
                        versions="; ".join(v for v in about["versions"] if not v.startswith("frond")), threads=threads,
                        size=setting["size"], samples=setting["samples"], rounds=setting["rounds"], depth=scenes.DEPTH,
-                       opaque=scenes.LEAVES["opaque"][0], reflectance=reflectance, transmittance=transmittance,
+                       most_traced=thousands(MOST_TRACED), opaque=scenes.LEAVES["opaque"][0], reflectance=reflectance, transmittance=transmittance,
                        **scenes.GAUSSIAN)

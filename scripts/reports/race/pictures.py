@@ -132,24 +132,3 @@ def difference(a, b):
     square = statistics.fmean((x.mean - y.mean)**2 - x.mean_variance - y.mean_variance for x, y in zip(a.blocks, b.blocks))
     return Difference(a.mean / b.mean - 1, math.hypot(a.mean_error, b.mean_error) / b.mean,
                       math.sqrt(max(0, square)) / b.mean)
-
-
-def check():
-    """Made-up pictures whose statistics are known."""
-    import random
-    rng = random.Random(1)
-    make = lambda offset: [[[1 + offset + rng.gauss(0, 0.1) for _ in range(68)] for _ in range(68)] for _ in range(4)]
-    a, b = measure(make(0)), measure(make(0.01))
-    assert abs(a.variance - 0.01) < 5 * a.variance_error < 0.002
-    d = difference(b, a)
-    assert abs(d.mean - 0.01) < 0.002 and abs(d.blocks - 0.01) < 0.003, d
-    data = bytes(range(7, 200))
-    plain = data[0::2] + data[1::2]
-    filtered = bytes([plain[0]] + [(plain[i] - plain[i - 1] + 128) & 255 for i in range(1, len(plain))])
-    assert unfiltered(filtered) == data
-    pfm = b"PF\n2 2\n-1.0\n" + struct.pack("<12f", *[1] * 6, *[2] * 6)
-    assert [round(v, 5) for row in read_pfm(pfm) for v in row] == [2, 2, 1, 1]
-
-
-if __name__ == "__main__":
-    check()

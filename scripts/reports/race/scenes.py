@@ -82,7 +82,7 @@ def directives(path):
     return found
 
 
-def read(path):
+def read(path, folder):
     """The narrow part of the format that our scenes are written in; whatever else is there is an error."""
     scene, stack = Scene(), []
     here = {"ctm": IDENTITY, "material": None, "reversed": False, "radiance": 0}
@@ -134,7 +134,7 @@ def read(path):
             elif name == "Shape" and plain[0] in ("plymesh", "trianglemesh", "disk"):
                 values = {key.split()[1]: value for key, value in parameters.items()}
                 if "filename" in values:
-                    values["filename"] = str((path.parent / values["filename"][0]).resolve())
+                    values["filename"] = without_normals(path.parent / values["filename"][0], folder)
                 scene.shapes.append(Shape(plain[0], values, here["ctm"], here["material"] or "backdrop", current,
                                           here["reversed"], here["radiance"]))
             else:
@@ -157,31 +157,31 @@ def lamp(toward, distance, radius):
     return Shape("disk", {"radius": [radius]}, matrix, "backdrop", radiance=(distance**2 + radius**2) / radius**2)
 
 
-def hundred_front(_):
+def hundred_front(folder):
     """A hundred leaves before a wall, under a lamp; all pixels see a surface."""
-    scene = read(ROOT / "scenes/hundred-leaves/closed.pbrt")
+    scene = read(ROOT / "scenes/hundred-leaves/closed.pbrt", folder)
     [(toward, _)] = scene.distant
     scene.distant = []
     scene.shapes.append(lamp(toward, 4, 0.5))
     return scene
 
 
-def hundred_ambient(_):
+def hundred_ambient(folder):
     """The same leaves without a wall, under an even sky."""
-    scene = read(ROOT / "scenes/hundred-leaves/scene.pbrt")
+    scene = read(ROOT / "scenes/hundred-leaves/scene.pbrt", folder)
     scene.distant, scene.sky = [], 1
     return scene
 
 
 def soybean(name):
-    def make(_):
-        return read(ROOT / f"scenes/soybean-{name}/scene.pbrt")
+    def make(folder):
+        return read(ROOT / f"scenes/soybean-{name}/scene.pbrt", folder)
     make.__doc__ = {"front": "A soybean plant, lit from the front by a lamp.", "back": "A soybean plant, lit from behind.",
                     "ambient": "A soybean plant on soil under an even sky."}[name]
     return make
 
 
-LEAF_AREA = 0.0038  # of leaflet-speed.ply, about: what the leaf area index is by
+LEAF_AREA = 0.00491  # of leaflet-speed.ply, one-sided
 CANOPY_LEAVES = 100_000
 
 
@@ -194,7 +194,7 @@ def canopy(folder):
     middle = side / 2
     return Scene(
         camera={"look": [[middle, middle - 4, 5], [middle, middle, 1], [0, 0, 1]], "fov": 40},
-        shapes=[Shape("plymesh", {"filename": str(ROOT / "scenes/meshes/leaflet-speed.ply")}, IDENTITY, "leaf", "leaf"),
+        shapes=[Shape("plymesh", {"filename": without_normals(ROOT / "scenes/meshes/leaflet-speed.ply", folder)}, IDENTITY, "leaf", "leaf"),
                 Shape("trianglemesh", {"indices": [0, 1, 2, 0, 2, 3],
                                        "P": [0, 0, 0, side, 0, 0, side, side, 0, 0, side, 0]}, IDENTITY, "soil")],
         instances=[("leaf", matrix) for matrix in rows_of(table)], table=("leaf", str(table)),
@@ -204,10 +204,10 @@ def canopy(folder):
 def rows_of(path):
     """The matrices of a table without columns of its own."""
     data = path.read_bytes()
-    size = int.from_bytes(data[8:10], "little")
-    if data[6] != 1 or b"(3, 4)" not in data[10:10 + size]:
-        raise SystemExit(f"{path}: the race cannot read this table: {data[10:10 + size]}")
-    values = array.array("f", data[10 + size:])
+    start = 10 + int.from_bytes(data[8:10], "little")
+    if data[6] != 1 or not re.search(rb"\[\('transform', '<f4', \(3, 4,? *\)\),? *\]", data[10:start]):
+        raise SystemExit(f"{path}: the race cannot read this table: {data[10:start]}")
+    values = array.array("f", data[start:])
     return [tuple(values[i:i + 12]) + (0, 0, 0, 1) for i in range(0, len(values), 12)]
 
 
@@ -217,6 +217,25 @@ SCENES = {"front": hundred_front, "ambient": hundred_ambient, "soybean-front": s
 
 def numbers(values):
     return " ".join(f"{v:.9g}" for v in values)
+
+
+def without_normals(path, folder):
+    """A copy of a mesh of ours whose triangles are flat: programs differ in what they do where the normals of the vertices and
+    that of the triangle see a direction on different sides, and so do their pictures."""
+    head, body = path.read_bytes().split(b"end_header\n", 1)
+    lines = head.decode("ascii").splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("element vertex"))
+    last = next(i for i, line in enumerate(lines) if line.startswith("element face"))
+    names = [line.removeprefix("property float ") for line in lines[first + 1:last]]
+    values = array.array("f", body[:4 * len(names) * int(lines[first].split()[2])])
+    kept = [i for i, name in enumerate(names) if name not in ("nx", "ny", "nz")]
+    out = array.array("f", bytes(4 * len(kept) * (len(values) // len(names))))
+    for to, source in enumerate(kept):
+        out[to::len(kept)] = values[source::len(names)]
+    lines = [line for line in lines if line not in ("property float nx", "property float ny", "property float nz")]
+    copy = folder / path.name
+    copy.write_bytes("\n".join(lines + ["end_header", ""]).encode("ascii") + out.tobytes() + body[4 * len(values):])
+    return str(copy)
 
 
 def grey(value):
