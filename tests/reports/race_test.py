@@ -25,7 +25,8 @@ class PicturesTest(unittest.TestCase):
 
     def test_a_shift_is_seen_in_the_mean_and_in_the_blocks(self):
         found = pictures.difference(pictures.measure(noisy(1.01, 0.1, 2)), pictures.measure(noisy(1, 0.1, 3)))
-        self.assertAlmostEqual(found.mean, 0.01, delta=5 * 0.1 * (2 / 4 / 64**2)**0.5)
+        self.assertAlmostEqual(found.mean, 0.01, delta=5 * found.error)
+        self.assertAlmostEqual(found.error, 0.1 * (2 / 4 / 64**2)**0.5, delta=0.4 * found.error)
         self.assertAlmostEqual(found.blocks, 0.01, delta=0.003)
 
     def test_light_in_another_place_is_seen_in_the_blocks_alone(self):

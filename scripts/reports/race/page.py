@@ -33,8 +33,8 @@ up to {load:.1f}.
   outermost, relative to the picture's mean, with the standard error of that.
 - **Efficiency**: 1 / (variance × CPU time), the group's frond = 1: median over the rounds (least to largest), with the times of
   the same round. Above 1 a program gets to an error sooner than frond.
-- **Mean**: of the picture, less that of the group's frond, with the standard error from the spread between seeds. **Blocks**: the
-  same within blocks of 16 × 16 pixels, root mean square, less what noise makes of it: where the light is in another place.
+- **Mean**: of the picture, less that of the group's frond, with the standard error from the spread between seeds, block by block.
+  **Blocks**: the same within blocks of 16 × 16 pixels, root mean square, less what noise makes of it: light in another place.
   Renders that differ by more than four standard errors and 0.1 % are marked **!**: their efficiency means little.
 
 How close frond is to Embree alone is not measured here: `replay_rays` of [the benchmarks](benchmarks.md) is what there is.

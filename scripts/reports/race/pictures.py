@@ -91,7 +91,7 @@ class Block:
 class Statistics:
     """Of the pictures of several seeds."""
     mean: float
-    mean_error: float  # standard error
+    mean_error: float  # standard error, from the spread of each block between seeds
     variance: float  # of one picture's pixel, mean over pixels
     variance_error: float  # standard error, from the spread over blocks of pixels
     blocks: list
@@ -105,7 +105,6 @@ class Statistics:
 def measure(pictures):
     count = len(pictures)
     height, width = len(pictures[0]), len(pictures[0][0])
-    means = [statistics.fmean(v for row in p[BORDER:-BORDER] for v in row[BORDER:-BORDER]) for p in pictures]
     blocks = []
     for y in range(BORDER, height - BORDER - BLOCK + 1, BLOCK):
         for x in range(BORDER, width - BORDER - BLOCK + 1, BLOCK):
@@ -116,8 +115,8 @@ def measure(pictures):
             within = (squares - sum(t * t for t in total) / count) / (count - 1) / BLOCK**2
             blocks.append(Block(statistics.fmean(sums), statistics.variance(sums) / count, max(0, within)))
     variances = [b.pixel_variance for b in blocks]
-    return Statistics(statistics.fmean(means), statistics.stdev(means) / math.sqrt(count), statistics.fmean(variances),
-                      statistics.stdev(variances) / math.sqrt(len(blocks)), blocks, count)
+    return Statistics(statistics.fmean(b.mean for b in blocks), math.sqrt(sum(b.mean_variance for b in blocks)) / len(blocks),
+                      statistics.fmean(variances), statistics.stdev(variances) / math.sqrt(len(blocks)), blocks, count)
 
 
 @dataclasses.dataclass
