@@ -118,7 +118,7 @@ def load(scene):
     for name, reconstruction in (("box", {"type": "box"}), ("gaussian", {"type": "gaussian", "stddev": scene["gaussian"]["sigma"]})):
         world[f"sensor-{name}"] = {
             "type": "perspective", "id": name, "fov": scene["camera"]["fov"], "fov_axis": "smaller",
-            "near_clip": 1e-3, "far_clip": 1e4,
+            "near_clip": 0.1, "far_clip": 1e6,
             "to_world": mi.ScalarTransform4f().look_at(origin=origin, target=target, up=up),
             "sampler": {"type": "ldsampler"},
             "film": {"type": "hdrfilm", "width": scene["size"], "height": scene["size"], "rfilter": reconstruction,

@@ -17,8 +17,9 @@ up to {load:.1f}.
 {tables}
 ## What is measured
 
-- **The same**: meshes (flat triangles: programs differ in what they make of vertices' normals) and instances, camera, lights, paths of up to {depth} scattering events, filter, samples a pixel, and
-  low-discrepancy samplers: `paddedsobol` of frond and pbrt-v4, Mitsuba's `ldsampler`. All materials are grey, light is D65: so
+- **The same**: meshes and instances, camera, lights, paths of up to {depth} scattering events, filter, samples a pixel, and
+  low-discrepancy samplers: `paddedsobol` of frond and pbrt-v4, Mitsuba's `ldsampler`. Triangles are flat, since programs differ in
+  what they make of vertices' normals; Mitsuba has lengths in centimetres, the others in metres. All materials are grey, light is D65: so
   the picture is the same by three wavelengths, by colours and by spectra. Opaque leaves reflect {opaque} on both sides. The
   others reflect {reflectance} and transmit {transmittance}: `diffusetransmission` in frond and pbrt-v4. Mitsuba has none; it runs
   one of a page of Python (`scripts/reports/race/mitsuba_worker.py`), which its LLVM variants compile; scalar variants are left out.

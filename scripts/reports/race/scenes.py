@@ -18,6 +18,7 @@ GREY = {"wall": 0.5, "petiole": 0.3, "backdrop": 0.1, "soil": 0.2}
 LEAVES = {"opaque": (0.5, 0), "leaf": (0.45, 0.4)}
 DEPTH = 16  # scattering events
 GAUSSIAN = {"sigma": 0.5, "radius": 2}  # Mitsuba's, which has no other radius; frond's and pbrt-v4's is 1.5 where nothing is said
+MITSUBA_UNITS = 100  # a metre in its: its rays start 0.1 mm off a surface and more where lengths are small
 IDENTITY = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)  # matrices: row after row
 
 
@@ -298,7 +299,13 @@ def write_json(scene, path, leaf, size):
     """For mitsuba_worker.py."""
     document = dataclasses.asdict(scene) | {"grey": GREY, "leaf": LEAVES[leaf], "depth": DEPTH, "size": size,
                                             "gaussian": GAUSSIAN}
+    larger = (MITSUBA_UNITS, 0, 0, 0, 0, MITSUBA_UNITS, 0, 0, 0, 0, MITSUBA_UNITS, 0, 0, 0, 0, 1)
+    place, target, up = scene.camera["look"]
+    document["camera"] = scene.camera | {"look": [[MITSUBA_UNITS * v for v in place], [MITSUBA_UNITS * v for v in target], up]}
+    document["instances"] = [(name, product(larger, matrix)) for name, matrix in scene.instances]
     for i, shape in enumerate(document["shapes"]):
+        if not shape["object"]:
+            shape["to_world"] = product(larger, shape["to_world"])
         if shape["kind"] == "trianglemesh":
             mesh = path.with_name(f"{path.stem}-{i}.ply")
             write_ply(mesh, shape["parameters"]["indices"], shape["parameters"]["P"])
