@@ -35,7 +35,8 @@ def arguments():
     parser.add_argument("--only", action="append", choices=list(scenes.SCENES), metavar="SCENE",
                         help="this scene, may be given again: " + ", ".join(scenes.SCENES))
     parser.add_argument("--quick", action="store_true", help="a first look: small pictures, two rounds, front and ambient")
-    parser.add_argument("--programs", metavar="WORD", action="append", help="programs whose names hold this word; may be given again")
+    parser.add_argument("--programs", metavar="WORD", action="append",
+                        help="frond and programs whose names hold this word; may be given again")
     parser.add_argument("--leaves", choices=list(scenes.LEAVES), help="one of both kinds of leaves")
     parser.add_argument("--filters", choices=["box", "gaussian"], help="one of both filters")
     parser.add_argument("--rounds", type=int, metavar="N", help="renders of each kind, each with a seed of its own: 5")
@@ -52,7 +53,7 @@ def setting_of(options):
     chosen = {name: getattr(options, name) for name in ("rounds", "samples", "size", "threads")}
     chosen |= {name: (value,) if value else None for name in ("leaves", "filters") for value in [getattr(options, name)]}
     setting = dataclasses.replace(QUICK if options.quick else Setting(), **{k: v for k, v in chosen.items() if v})
-    if setting.rounds < 2 or setting.samples & (setting.samples - 1) or setting.samples.bit_length() % 2 == 0 or setting.samples < 4:
+    if setting.rounds < 2 or setting.samples not in [4**n for n in range(1, 9)]:
         raise SystemExit("two rounds at least, and samples that are a power of four: 4, 16, 64, 256")
     return setting
 
@@ -84,7 +85,7 @@ def figures(program, reconstruction, base, costs, own, reference, setting):
     paths = setting.size**2 * (setting.samples - 1)
     cpu = [(cost.cpu - base.cpu) / paths * 1e6 for cost in costs]
     wall = [(cost.wall - base.wall) / paths * 1e6 for cost in costs]
-    before, path = program.before(reconstruction, setting.samples), setting.size**2 / 1e6
+    before, path = program.before(reconstruction), setting.size**2 / 1e6
     beside = pictures.difference(own, reference)
     return {"program": program.name, "cpu": cpu, "wall": wall,
             "set_up_cpu": before.cpu + base.cpu - statistics.median(cpu) * path,

@@ -115,7 +115,8 @@ def load(scene):
         world["sky"] = {"type": "constant", "radiance": spectrum(scene["sky"], light=True)}
     origin, target, up = scene["camera"]["look"]
     # The gaussian's radius is four times its stddev, always.
-    for name, reconstruction in (("box", {"type": "box"}), ("gaussian", {"type": "gaussian", "stddev": scene["gaussian"]["sigma"]})):
+    filters = {"box": {"type": "box"}, "gaussian": {"type": "gaussian", "stddev": scene["gaussian"]["sigma"]}}
+    for name, reconstruction in filters.items():
         world[f"sensor-{name}"] = {
             "type": "perspective", "id": name, "fov": scene["camera"]["fov"], "fov_axis": "smaller",
             "near_clip": 0.1, "far_clip": 1e6,

@@ -11,16 +11,16 @@ PAGE = """# Beside others
 
 Written by `scripts/race`: the same scenes by frond, Mitsuba 3 and pbrt-v4, in turn, in one run.
 
-{machine}, {system}; {versions}. {threads}; {size} × {size} pixels, {samples} samples each, {rounds} rounds. The machine's load was
-up to {load:.1f}.
+{machine}, {system}; {versions}. {threads}; {size} × {size} pixels, {samples} samples each, {rounds} rounds.
+The machine's load was up to {load:.1f}.
 {missing}
 {tables}
 ## What is measured
 
 - **The same**: meshes and instances, camera, lights, paths of up to {depth} scattering events, filter, samples a pixel, and
   low-discrepancy samplers: `paddedsobol` of frond and pbrt-v4, Mitsuba's `ldsampler`. Triangles are flat, since programs differ in
-  what they make of vertices' normals; Mitsuba has lengths in centimetres, the others in metres. All materials are grey, light is D65: so
-  the picture is the same by three wavelengths, by colours and by spectra. Opaque leaves reflect {opaque} on both sides. The
+  what they make of vertices' normals; Mitsuba has lengths in centimetres, the others in metres. All materials are grey, light is
+  D65: so the picture is the same by three wavelengths, by colours and by spectra. Opaque leaves reflect {opaque} on both sides. The
   others reflect {reflectance} and transmit {transmittance}: `diffusetransmission` in frond and pbrt-v4. Mitsuba has none; it runs
   one of a page of Python (`scripts/reports/race/mitsuba_worker.py`), which its LLVM variants compile; scalar variants are left out.
   LLVM variants are left out where there are more than {most_traced} instances: they make code for each of them.
@@ -75,8 +75,8 @@ def scene_tables(name, what, results):
             for r in chosen:
                 reference = next(x for x in chosen if x["program"] == r["reference"])
                 own = r is reference
-                body.append([r["program"], span(r["cpu"], ".2f"), f"{statistics.median(r['wall']):.2f}", f"{r['set_up_cpu']:.1f} s",
-                             noise(r), "1" if own else span(efficiencies(r, reference), ".2f"), "" if own else mean(r),
+                body.append([r["program"], span(r["cpu"], ".2f"), f"{statistics.median(r['wall']):.2f}",
+                             f"{max(0, r['set_up_cpu']):.1f} s", noise(r), "1" if own else span(efficiencies(r, reference), ".2f"), "" if own else mean(r),
                              "" if own else f"{100 * r['blocks']:.2f} %"])
             kind = "opaque leaves" if leaf == "opaque" else "leaves that transmit"
             head = [f"{kind}, {reconstruction}", "CPU, µs", "wall, µs", "set-up", "noise", "efficiency", "mean", "blocks"]
@@ -94,5 +94,6 @@ def page(about, results):
     return PAGE.format(machine=about["machine"], system=about["system"], load=about["load"], missing=missing, tables=tables,
                        versions="; ".join(v for v in about["versions"] if not v.startswith("frond")), threads=threads,
                        size=setting["size"], samples=setting["samples"], rounds=setting["rounds"], depth=scenes.DEPTH,
-                       most_traced=thousands(MOST_TRACED), opaque=scenes.LEAVES["opaque"][0], reflectance=reflectance, transmittance=transmittance,
+                       most_traced=thousands(MOST_TRACED), opaque=scenes.LEAVES["opaque"][0],
+                       reflectance=reflectance, transmittance=transmittance,
                        **scenes.GAUSSIAN)

@@ -192,10 +192,10 @@ def canopy(folder):
     table = folder / "canopy.npy"
     frond("canopy", "-q", "-o", table, "--count", CANOPY_LEAVES, "--leaf-area", LEAF_AREA, "--size", f"{side},{side}",
           "--heights", "0.05,2", "--seed", 1)
-    middle = side / 2
+    middle, mesh = side / 2, without_normals(ROOT / "scenes/meshes/leaflet-speed.ply", folder)
     return Scene(
         camera={"look": [[middle, middle - 4, 5], [middle, middle, 1], [0, 0, 1]], "fov": 40},
-        shapes=[Shape("plymesh", {"filename": without_normals(ROOT / "scenes/meshes/leaflet-speed.ply", folder)}, IDENTITY, "leaf", "leaf"),
+        shapes=[Shape("plymesh", {"filename": mesh}, IDENTITY, "leaf", "leaf"),
                 Shape("trianglemesh", {"indices": [0, 1, 2, 0, 2, 3],
                                        "P": [0, 0, 0, side, 0, 0, side, side, 0, 0, side, 0]}, IDENTITY, "soil")],
         instances=[("leaf", matrix) for matrix in rows_of(table)], table=("leaf", str(table)),
