@@ -1,0 +1,135 @@
+"""scripts/race"""
+
+import argparse
+import dataclasses
+import json
+import os
+import pathlib
+import platform
+import statistics
+import tempfile
+
+from tools import ROOT, machine
+
+from . import page, pictures, programs, scenes
+
+DOCUMENT = ROOT / "docs" / "race.md"
+FIGURES = ROOT / "build" / "race" / "figures.json"
+
+
+@dataclasses.dataclass
+class Setting:
+    size: int = 512
+    samples: int = 64  # a power of four: Mitsuba's ldsampler takes no other number
+    rounds: int = 5
+    threads: int = 1
+    filters: tuple = ("box", "gaussian")
+    leaves: tuple = tuple(scenes.LEAVES)
+
+
+QUICK = Setting(size=256, samples=16, rounds=2)
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="scripts/race", description="Renders the same scenes with frond and others, in turn.")
+    parser.add_argument("--only", action="append", choices=list(scenes.SCENES), metavar="SCENE",
+                        help="this scene, may be given again: " + ", ".join(scenes.SCENES))
+    parser.add_argument("--quick", action="store_true", help="a first look: small pictures, two rounds, front and ambient")
+    parser.add_argument("--programs", metavar="WORD", action="append",
+                        help="frond and programs whose names hold this word; may be given again")
+    parser.add_argument("--leaves", choices=list(scenes.LEAVES), help="one of both kinds of leaves")
+    parser.add_argument("--filters", choices=["box", "gaussian"], help="one of both filters")
+    parser.add_argument("--rounds", type=int, metavar="N", help="renders of each kind, each with a seed of its own: 5")
+    parser.add_argument("--samples", type=int, metavar="N", help="per pixel, a power of four: 64")
+    parser.add_argument("--size", type=int, metavar="N", help="pixels along each side: 512")
+    parser.add_argument("--threads", type=int, metavar="N", help="of every program: 1")
+    parser.add_argument("--pbrt", metavar="PATH", help="pbrt-v4's program; the pbrt on the PATH by default")
+    parser.add_argument("--mitsuba", metavar="PYTHON", help="a Python that has mitsuba; that of build/race by default")
+    parser.add_argument("--no-docs", action="store_true", help="print the page, write none")
+    return parser.parse_args()
+
+
+def setting_of(options):
+    chosen = {name: getattr(options, name) for name in ("rounds", "samples", "size", "threads")}
+    chosen |= {name: (value,) if value else None for name in ("leaves", "filters") for value in [getattr(options, name)]}
+    setting = dataclasses.replace(QUICK if options.quick else Setting(), **{k: v for k, v in chosen.items() if v})
+    if setting.rounds < 2 or setting.samples not in [4**n for n in range(1, 9)]:
+        raise SystemExit("two rounds at least, and samples that are a power of four: 4, 16, 64, 256")
+    return setting
+
+
+def race(name, leaf, running, setting, folder):
+    """One kind of picture by all programs in turn: for each filter and program a dictionary of figures."""
+    results = []
+    for reconstruction in setting.filters:
+        costs, images, base = {}, {}, {}
+        for program in running:
+            base[program.name] = program.render(reconstruction, 1, 0, folder / f"base{program.suffix}")
+            costs[program.name], images[program.name] = [], []
+        for index in range(setting.rounds):
+            for program in running if index % 2 == 0 else reversed(running):
+                out = folder / f"picture{program.suffix}"
+                costs[program.name].append(program.render(reconstruction, setting.samples, index + 1, out))
+                images[program.name].append(pictures.read(out))
+        measured = {program.name: pictures.measure(images[program.name]) for program in running}
+        for program in running:
+            first = next(p for p in running if p.spectral == program.spectral)
+            results.append(figures(program, reconstruction, base[program.name], costs[program.name],
+                                   measured[program.name], measured[first.name], setting)
+                           | {"scene": name, "leaf": leaf, "filter": reconstruction, "reference": first.name})
+            print(name, leaf, reconstruction, page.short(results[-1]), flush=True)
+    return results
+
+
+def figures(program, reconstruction, base, costs, own, reference, setting):
+    paths = setting.size**2 * (setting.samples - 1)
+    cpu = [(cost.cpu - base.cpu) / paths * 1e6 for cost in costs]
+    wall = [(cost.wall - base.wall) / paths * 1e6 for cost in costs]
+    before, path = program.before(reconstruction), setting.size**2 / 1e6
+    beside = pictures.difference(own, reference)
+    return {"program": program.name, "cpu": cpu, "wall": wall,
+            "set_up_cpu": before.cpu + base.cpu - statistics.median(cpu) * path,
+            "set_up_wall": before.wall + base.wall - statistics.median(wall) * path,
+            "mean": own.mean, "mean_error": own.mean_error,
+            "variance": own.relative_variance, "variance_error": own.variance_error / own.mean**2,
+            "difference": beside.mean, "difference_error": beside.error, "blocks": beside.blocks}
+
+
+def main():
+    options = arguments()
+    setting = setting_of(options)
+    running, missing = programs.present(options.pbrt, options.mitsuba)
+    for text in missing:
+        print(f"Left out: {text}", flush=True)
+    if options.programs:
+        running = [p for p in running if p.name.startswith("frond") or any(word in p.name for word in options.programs)]
+    names = options.only or (["front", "ambient"] if options.quick else list(scenes.SCENES))
+    results = []
+    load = os.getloadavg()[0]
+    for name in names:
+        with tempfile.TemporaryDirectory(prefix="frond_race.", dir=os.environ.get("TMPDIR")) as temporary:
+            folder = pathlib.Path(temporary)
+            scene = scenes.SCENES[name](folder)
+            for leaf in setting.leaves:
+                able = [p for p in running if p.can(scene, leaf)]
+                for program in able:
+                    program.open(scene, leaf, setting, folder)
+                results += race(name, leaf, able, setting, folder)
+                for program in able:
+                    program.close()
+                load = max(load, os.getloadavg()[0])
+    about = {"machine": machine(), "system": f"{platform.system()} {platform.machine()}", "load": load, "missing": missing,
+             "versions": sorted({program.version() for program in running}), "setting": dataclasses.asdict(setting),
+             "scenes": {name: scenes.SCENES[name].__doc__ for name in names}}
+    FIGURES.parent.mkdir(parents=True, exist_ok=True)
+    FIGURES.write_text(json.dumps({"about": about, "results": results}, indent=1), encoding="utf-8")
+    text = page.page(about, results)
+    if options.no_docs:
+        print(text)
+    else:
+        DOCUMENT.write_text(text, encoding="utf-8")
+        print(f"Written: {DOCUMENT}")
+
+
+if __name__ == "__main__":
+    main()

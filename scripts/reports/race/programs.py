@@ -1,0 +1,184 @@
+"""The programs of the race: how each renders a scene, and what CPU time that took."""
+
+import dataclasses
+import glob
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import time
+
+from tools import FROND, ROOT, run
+
+from . import scenes
+
+VENV = ROOT / "build" / "race"
+MOST_TRACED = 10_000  # instances for Mitsuba's LLVM variants: with 100,000 the first picture is not there after five minutes
+
+
+@dataclasses.dataclass
+class Cost:
+    cpu: float  # seconds
+    wall: float
+
+
+def timed(words):
+    """What a program took as a whole."""
+    start = time.perf_counter()
+    with subprocess.Popen(list(map(str, words)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as program:
+        text = program.stdout.read()
+        _, status, used = os.wait4(program.pid, 0)
+        program.returncode = os.waitstatus_to_exitcode(status)
+    if program.returncode != 0:
+        raise SystemExit(f"{' '.join(map(str, words))}\n{text}")
+    return Cost(used.ru_utime + used.ru_stime, time.perf_counter() - start)
+
+
+class Command:
+    """A program that renders one picture and ends."""
+
+    suffix = ".pfm"
+
+    def __init__(self, name):
+        self.name = name
+
+    def open(self, scene, leaf, setting, folder):
+        self.setting, self.folder = setting, folder
+        self.files = {f: folder / f"{self.name.replace(' ', '-')}-{leaf}-{f}.pbrt" for f in setting.filters}
+        for reconstruction, file in self.files.items():
+            scenes.write_pbrt(scene, file, leaf, reconstruction == "box", setting.size, tables=self.tables)
+
+    def render(self, reconstruction, samples, seed, out):
+        """CPU and wall time of the whole process."""
+        return timed(self.words(self.files[reconstruction], samples, seed, out))
+
+    def before(self, reconstruction):
+        """What was done before the first of the renders that are measured."""
+        return Cost(0, 0)
+
+    def can(self, scene, leaf):
+        return True
+
+    def close(self):
+        pass
+
+
+class Frond(Command):
+    suffix, tables = ".exr", True
+
+    def __init__(self, name, wavelengths):
+        super().__init__(name)
+        self.wavelengths, self.spectral = wavelengths, wavelengths == "hero"
+
+    def version(self):
+        return run(FROND, "--version").strip()
+
+    def words(self, file, samples, seed, out):
+        return [FROND, "render", file, "-q", "--threads", self.setting.threads, "--spp", samples, "--seed", seed,
+                "--wavelengths", self.wavelengths, "-o", out]
+
+
+class Pbrt(Command):
+    tables, spectral = False, True
+
+    def __init__(self, path):
+        super().__init__("pbrt-v4")
+        self.path = path
+
+    def version(self):
+        return "pbrt-v4"
+
+    def words(self, file, samples, seed, out):
+        return [self.path, "--quiet", "--nthreads", self.setting.threads, "--spp", samples, "--seed", seed, "--outfile",
+                out, file]
+
+
+class Mitsuba:
+    """A process for each scene, which goes on from render to render; LLVM variants compile at their first."""
+
+    suffix = ".pfm"
+
+    def __init__(self, python, variant):
+        self.python, self.variant, self.name = python, variant, f"Mitsuba {variant}"
+        self.spectral = variant.endswith("spectral")
+
+    def version(self):
+        return "Mitsuba " + run(self.python, "-c", "import mitsuba; print(mitsuba.__version__)").strip()
+
+    def can(self, scene, leaf):
+        if self.variant.startswith("scalar"):
+            return not scenes.LEAVES[leaf][1]
+        return len(scene.instances) <= MOST_TRACED
+
+    def open(self, scene, leaf, setting, folder):
+        file = folder / f"{self.variant}-{leaf}.json"
+        scenes.write_json(scene, file, leaf, setting.size)
+        home = folder / f"home-{self.variant}"  # without kernels that were compiled before
+        home.mkdir(exist_ok=True)
+        words = [self.python, pathlib.Path(__file__).with_name("mitsuba_worker.py"), self.variant, file, setting.threads]
+        self.process = subprocess.Popen(list(map(str, words)), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                                        env=os.environ | {"HOME": str(home)})
+        self.loaded, self.compiling = self.answer(), {}
+
+    def answer(self):
+        for line in self.process.stdout:
+            if line.startswith("{"):
+                took = json.loads(line)
+                return Cost(took["cpu"], took["wall"])
+        raise SystemExit(f"{self.name} ended with {self.process.wait()}")
+
+    def ask(self, reconstruction, samples, seed, out):
+        question = {"filter": reconstruction, "samples": samples, "seed": seed, "out": str(out)}
+        self.process.stdin.write(json.dumps(question) + "\n")
+        self.process.stdin.flush()
+        return self.answer()
+
+    def render(self, reconstruction, samples, seed, out):
+        """The second of its kind: the first of each number of samples may compile."""
+        if (reconstruction, samples) in self.compiling:
+            return self.ask(reconstruction, samples, seed, out)
+        first, second = (self.ask(reconstruction, samples, seed, out) for _ in range(2))
+        self.compiling[reconstruction, samples] = Cost(first.cpu - second.cpu, first.wall - second.wall)
+        return second
+
+    def before(self, reconstruction):
+        """Loading, and compiling once."""
+        cost = max((cost for (name, _), cost in self.compiling.items() if name == reconstruction), key=lambda cost: cost.cpu)
+        return Cost(self.loaded.cpu + max(0, cost.cpu), self.loaded.wall + max(0, cost.wall))
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
+
+
+def libllvm():
+    """Where Dr.Jit finds LLVM; 14 and 15 abort."""
+    found = [path for version in (19, 22, 16) for path in sorted(glob.glob(f"/usr/lib/*/libLLVM-{version}.so"))]
+    return os.environ.get("DRJIT_LIBLLVM_PATH") or next(iter(found), None)
+
+
+def present(pbrt, python):
+    """The programs that are there, and a word on each that is not."""
+    programs, missing = [Frond("frond, three wavelengths", "smpte"), Frond("frond, hero wavelengths", "hero")], []
+    python = python or VENV / "bin" / "python"
+    code = "import mitsuba; print(*mitsuba.variants())"
+    done = subprocess.run([str(python), "-c", code], capture_output=True, text=True, check=False) \
+        if pathlib.Path(python).exists() else None
+    there = done.stdout.split() if done and done.returncode == 0 else []
+    llvm = libllvm()
+    if llvm:
+        os.environ["DRJIT_LIBLLVM_PATH"] = llvm
+    for variant in ("llvm_ad_rgb", "scalar_rgb", "llvm_ad_spectral", "scalar_spectral"):
+        if variant not in there:
+            missing.append(f"Mitsuba {variant}: not installed")
+        elif variant.startswith("llvm") and not llvm:
+            missing.append(f"Mitsuba {variant}: there is no LLVM library (DRJIT_LIBLLVM_PATH)")
+        else:
+            programs.append(Mitsuba(python, variant))
+    found = pbrt or shutil.which("pbrt")
+    if found:
+        programs.append(Pbrt(found))
+    else:
+        missing.append("pbrt-v4: no pbrt on the PATH, none given by --pbrt")
+    return programs, missing

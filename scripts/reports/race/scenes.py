@@ -1,0 +1,313 @@
+"""The scenes of the race: our own, in grey, as every program can show them.
+
+A scene file is read into plain data, what the programs do not share is replaced (materials, sampler, film), and written
+again: for pbrt-v4 and frond in their format, for Mitsuba as JSON that mitsuba_worker.py loads.
+"""
+
+import array
+import dataclasses
+import json
+import math
+import re
+
+from tools import ROOT, frond
+
+# Reflectance of what is no leaf; leaves: reflectance and transmittance. Grey, so that three wavelengths, colours and spectra
+# have the same picture.
+GREY = {"wall": 0.5, "petiole": 0.3, "backdrop": 0.1, "soil": 0.2}
+LEAVES = {"opaque": (0.5, 0), "leaf": (0.45, 0.4)}
+DEPTH = 16  # scattering events
+GAUSSIAN = {"sigma": 0.5, "radius": 2}  # Mitsuba's, which has no other radius; frond's and pbrt-v4's is 1.5 where nothing is said
+MITSUBA_UNITS = 100  # a metre in its: its rays start 0.1 mm off a surface and more where lengths are small
+IDENTITY = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)  # matrices: row after row
+
+
+@dataclasses.dataclass
+class Shape:
+    kind: str  # plymesh, trianglemesh, disk
+    parameters: dict
+    to_world: tuple
+    material: str
+    object: str = None  # which it is a part of
+    reversed: bool = False
+    radiance: float = 0  # of the front
+
+
+@dataclasses.dataclass
+class Scene:
+    camera: dict = dataclasses.field(default_factory=dict)
+    shapes: list = dataclasses.field(default_factory=list)
+    instances: list = dataclasses.field(default_factory=list)  # of (object, matrix)
+    table: tuple = None  # (object, file): frond's own way to say the instances
+    distant: list = dataclasses.field(default_factory=list)  # of (direction to the light, irradiance)
+    sky: float = 0
+
+
+def product(a, b):
+    return tuple(sum(a[4 * i + k] * b[4 * k + j] for k in range(4)) for i in range(4) for j in range(4))
+
+
+def translation(x, y, z):
+    return (1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1)
+
+
+def rotation(degrees, *axis):
+    length = math.hypot(*axis)
+    x, y, z = (v / length for v in axis)
+    s, c = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+    t = 1 - c
+    return (t * x * x + c, t * x * y - s * z, t * x * z + s * y, 0,
+            t * x * y + s * z, t * y * y + c, t * y * z - s * x, 0,
+            t * x * z - s * y, t * y * z + s * x, t * z * z + c, 0, 0, 0, 0, 1)
+
+
+def directives(path):
+    """Name, strings and numbers, and parameters, of each directive of a scene file."""
+    words = re.findall(r'"[^"]*"|[\[\]]|[^\s\[\]"]+', re.sub(r"#.*", "", path.read_text(encoding="utf-8")))
+    found, i = [], 0
+    while i < len(words):
+        name, plain, parameters, key = words[i], [], {}, None
+        i += 1
+        while i < len(words) and not words[i][0].isalpha():
+            word = words[i]
+            i += 1
+            if word in "[]":
+                continue
+            value = word[1:-1] if word[0] == '"' else float(word)
+            if isinstance(value, str) and " " in value:
+                key = value
+                parameters[key] = []
+            else:
+                (plain if key is None else parameters[key]).append(value)
+        found.append((name, plain, parameters))
+    return found
+
+
+def read(path, folder):
+    """The narrow part of the format that our scenes are written in; whatever else is there is an error."""
+    scene, stack = Scene(), []
+    here = {"ctm": IDENTITY, "material": None, "reversed": False, "radiance": 0}
+    current = None
+
+    def follow(path):
+        nonlocal here, current
+        for name, plain, parameters in directives(path):
+            if name in ("Film", "Sampler", "Integrator", "PixelFilter", "MakeNamedMaterial"):
+                continue
+            if name == "WorldBegin":
+                here["ctm"] = IDENTITY
+            elif name == "Scale" and plain == [-1, 1, 1] and not scene.camera:
+                continue  # right-handed space, as all our scenes
+            elif name == "LookAt":
+                scene.camera["look"] = [plain[0:3], plain[3:6], plain[6:9]]
+            elif name == "Camera" and plain == ["perspective"]:
+                scene.camera["fov"] = parameters["float fov"][0]
+            elif name == "Include":
+                follow(path.parent / plain[0])
+            elif name == "AttributeBegin":
+                stack.append(dict(here))
+            elif name == "AttributeEnd":
+                here = stack.pop()
+            elif name == "Translate":
+                here["ctm"] = product(here["ctm"], translation(*plain))
+            elif name == "Rotate":
+                here["ctm"] = product(here["ctm"], rotation(*plain))
+            elif name == "Transform":
+                here["ctm"] = tuple(plain[4 * j + i] for i in range(4) for j in range(4))
+            elif name == "ReverseOrientation":
+                here["reversed"] = not here["reversed"]
+            elif name == "NamedMaterial":
+                here["material"] = plain[0]
+            elif name == "AreaLightSource":
+                here["radiance"] = parameters["float scale"][0]
+            elif name == "LightSource" and plain == ["infinite"]:
+                scene.sky = parameters.get("float scale", [1])[0]
+            elif name == "LightSource" and plain == ["distant"]:
+                toward = [a - b for a, b in zip(parameters["point3 from"], parameters["point3 to"])]
+                scene.distant.append((toward, parameters["float scale"][0]))
+            elif name == "ObjectBegin":
+                stack.append(dict(here))
+                current = plain[0]
+            elif name == "ObjectEnd":
+                here, current = stack.pop(), None
+            elif name == "ObjectInstance":
+                scene.instances.append((plain[0], here["ctm"]))
+            elif name == "Shape" and plain[0] in ("plymesh", "trianglemesh", "disk"):
+                values = {key.split()[1]: value for key, value in parameters.items()}
+                if "filename" in values:
+                    values["filename"] = without_normals(path.parent / values["filename"][0], folder)
+                scene.shapes.append(Shape(plain[0], values, here["ctm"], here["material"] or "backdrop", current,
+                                          here["reversed"], here["radiance"]))
+            else:
+                raise SystemExit(f"{path}: the race knows no {name} {' '.join(map(str, plain))}")
+
+    follow(path)
+    return scene
+
+
+def lamp(toward, distance, radius):
+    """A disk that faces the origin, as bright as makes a white surface there have the value 1."""
+    length = math.hypot(*toward)
+    z = [-v / length for v in toward]
+    x = [z[1], -z[0], 0]
+    norm = math.hypot(*x)
+    x = [v / norm for v in x]
+    y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]]
+    place = [-distance * v for v in z]
+    matrix = tuple(v for i in range(3) for v in (x[i], y[i], z[i], place[i])) + (0, 0, 0, 1)
+    return Shape("disk", {"radius": [radius]}, matrix, "backdrop", radiance=(distance**2 + radius**2) / radius**2)
+
+
+def hundred_front(folder):
+    """A hundred leaves before a wall, under a lamp; all pixels see a surface."""
+    scene = read(ROOT / "scenes/hundred-leaves/closed.pbrt", folder)
+    [(toward, _)] = scene.distant
+    scene.distant = []
+    scene.shapes.append(lamp(toward, 4, 0.5))
+    return scene
+
+
+def hundred_ambient(folder):
+    """The same leaves without a wall, under an even sky."""
+    scene = read(ROOT / "scenes/hundred-leaves/scene.pbrt", folder)
+    scene.distant, scene.sky = [], 1
+    return scene
+
+
+def soybean(name):
+    def make(folder):
+        return read(ROOT / f"scenes/soybean-{name}/scene.pbrt", folder)
+    make.__doc__ = {"front": "A soybean plant, lit from the front by a lamp.", "back": "A soybean plant, lit from behind.",
+                    "ambient": "A soybean plant on soil under an even sky."}[name]
+    return make
+
+
+LEAF_AREA = 0.00491  # of leaflet-speed.ply, one-sided
+CANOPY_LEAVES = 100_000
+
+
+def canopy(folder):
+    """100,000 leaves of 2,000 triangles over soil, leaf area index 3, under the sun and an even sky."""
+    side = math.sqrt(CANOPY_LEAVES * LEAF_AREA / 3)
+    table = folder / "canopy.npy"
+    frond("canopy", "-q", "-o", table, "--count", CANOPY_LEAVES, "--leaf-area", LEAF_AREA, "--size", f"{side},{side}",
+          "--heights", "0.05,2", "--seed", 1)
+    middle, mesh = side / 2, without_normals(ROOT / "scenes/meshes/leaflet-speed.ply", folder)
+    return Scene(
+        camera={"look": [[middle, middle - 4, 5], [middle, middle, 1], [0, 0, 1]], "fov": 40},
+        shapes=[Shape("plymesh", {"filename": mesh}, IDENTITY, "leaf", "leaf"),
+                Shape("trianglemesh", {"indices": [0, 1, 2, 0, 2, 3],
+                                       "P": [0, 0, 0, side, 0, 0, side, side, 0, 0, side, 0]}, IDENTITY, "soil")],
+        instances=[("leaf", matrix) for matrix in rows_of(table)], table=("leaf", str(table)),
+        distant=[((-0.5, 0, 0.8660254), 3)], sky=0.17)
+
+
+def rows_of(path):
+    """The matrices of a table without columns of its own."""
+    data = path.read_bytes()
+    start = 10 + int.from_bytes(data[8:10], "little")
+    if data[6] != 1 or not re.search(rb"\[\('transform', '<f4', \(3, 4,? *\)\),? *\]", data[10:start]):
+        raise SystemExit(f"{path}: the race cannot read this table: {data[10:start]}")
+    values = array.array("f", data[start:])
+    return [tuple(values[i:i + 12]) + (0, 0, 0, 1) for i in range(0, len(values), 12)]
+
+
+SCENES = {"front": hundred_front, "ambient": hundred_ambient, "soybean-front": soybean("front"),
+          "soybean-back": soybean("back"), "soybean-ambient": soybean("ambient"), "canopy": canopy}
+
+
+def numbers(values):
+    return " ".join(f"{v:.9g}" for v in values)
+
+
+def without_normals(path, folder):
+    """A copy of a mesh of ours whose triangles are flat: programs differ in what they do where the normals of the vertices and
+    that of the triangle see a direction on different sides, and so do their pictures."""
+    head, body = path.read_bytes().split(b"end_header\n", 1)
+    lines = head.decode("ascii").splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("element vertex"))
+    last = next(i for i, line in enumerate(lines) if line.startswith("element face"))
+    names = [line.removeprefix("property float ") for line in lines[first + 1:last]]
+    values = array.array("f", body[:4 * len(names) * int(lines[first].split()[2])])
+    kept = [i for i, name in enumerate(names) if name not in ("nx", "ny", "nz")]
+    out = array.array("f", bytes(4 * len(kept) * (len(values) // len(names))))
+    for to, source in enumerate(kept):
+        out[to::len(kept)] = values[source::len(names)]
+    lines = [line for line in lines if line not in ("property float nx", "property float ny", "property float nz")]
+    copy = folder / path.name
+    copy.write_bytes("\n".join(lines + ["end_header", ""]).encode("ascii") + out.tobytes() + body[4 * len(values):])
+    return str(copy)
+
+
+def grey(value):
+    return f"[ 300 {value} 2500 {value} ]"
+
+
+def write_pbrt(scene, path, leaf, box, size, tables=False):
+    """For pbrt-v4 and frond; with `tables` instances are named as frond's table."""
+    transposed = lambda m: numbers(m[4 * j + i] for i in range(4) for j in range(4))
+    white = '"spectrum L" "stdillum-D65"'
+    lines = ["Scale -1 1 1", "LookAt " + " ".join(map(numbers, scene.camera["look"])),
+             f'Camera "perspective" "float fov" {scene.camera["fov"]}',
+             f'Film "rgb" "integer xresolution" {size} "integer yresolution" {size}',
+             f'Sampler "paddedsobol" "integer pixelsamples" 1', f'Integrator "path" "integer maxdepth" {DEPTH}',
+             'PixelFilter "box"' if box else
+             'PixelFilter "gaussian" "float sigma" {sigma} "float xradius" {radius} "float yradius" {radius}'.format(**GAUSSIAN),
+             "WorldBegin"]
+    for toward, irradiance in scene.distant:
+        lines.append(f'LightSource "distant" "point3 from" [ {numbers(toward)} ] "point3 to" [ 0 0 0 ] {white} '
+                     f'"float scale" {irradiance}')
+    if scene.sky:
+        lines.append(f'LightSource "infinite" {white} "float scale" {scene.sky}')
+    for name, value in GREY.items():
+        lines.append(f'MakeNamedMaterial "{name}" "string type" "diffuse" "spectrum reflectance" {grey(value)}')
+    reflectance, transmittance = LEAVES[leaf]
+    kind = f'"diffusetransmission" "spectrum transmittance" {grey(transmittance)}' if transmittance else '"diffuse"'
+    lines.append(f'MakeNamedMaterial "leaf" "string type" {kind} "spectrum reflectance" {grey(reflectance)}')
+    for shape in scene.shapes:
+        lines.append(f'ObjectBegin "{shape.object}"' if shape.object else "AttributeBegin")
+        lines.append(f"Transform [ {transposed(shape.to_world)} ]")
+        lines.append(f'NamedMaterial "{shape.material}"')
+        if shape.reversed:
+            lines.append("ReverseOrientation")
+        if shape.radiance:
+            lines.append(f'AreaLightSource "diffuse" {white} "float scale" {shape.radiance}')
+        p = shape.parameters
+        lines.append({"disk": lambda: f'Shape "disk" "float radius" {p["radius"][0]}',
+                      "plymesh": lambda: f'Shape "plymesh" "string filename" "{p["filename"]}"',
+                      "trianglemesh": lambda: f'Shape "trianglemesh" "integer indices" [ {numbers(p["indices"])} ] '
+                                              f'"point3 P" [ {numbers(p["P"])} ]'}[shape.kind]())
+        lines.append("ObjectEnd" if shape.object else "AttributeEnd")
+    if tables and scene.table:
+        lines.append('Shape "instances" "string object" "{}" "string filename" "{}"'.format(*scene.table))
+    else:
+        for name, matrix in scene.instances:
+            lines.append(f'AttributeBegin Transform [ {transposed(matrix)} ] ObjectInstance "{name}" AttributeEnd')
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def write_ply(path, indices, points):
+    """A mesh as text: Mitsuba loads meshes from files."""
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(points) // 3}", "property float x", "property float y",
+             "property float z", f"element face {len(indices) // 3}", "property list uchar int vertex_indices", "end_header"]
+    lines += [numbers(points[i:i + 3]) for i in range(0, len(points), 3)]
+    lines += ["3 " + numbers(indices[i:i + 3]) for i in range(0, len(indices), 3)]
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def write_json(scene, path, leaf, size):
+    """For mitsuba_worker.py."""
+    document = dataclasses.asdict(scene) | {"grey": GREY, "leaf": LEAVES[leaf], "depth": DEPTH, "size": size,
+                                            "gaussian": GAUSSIAN}
+    larger = (MITSUBA_UNITS, 0, 0, 0, 0, MITSUBA_UNITS, 0, 0, 0, 0, MITSUBA_UNITS, 0, 0, 0, 0, 1)
+    place, target, up = scene.camera["look"]
+    document["camera"] = scene.camera | {"look": [[MITSUBA_UNITS * v for v in place], [MITSUBA_UNITS * v for v in target], up]}
+    document["instances"] = [(name, product(larger, matrix)) for name, matrix in scene.instances]
+    for i, shape in enumerate(document["shapes"]):
+        if not shape["object"]:
+            shape["to_world"] = product(larger, shape["to_world"])
+        if shape["kind"] == "trianglemesh":
+            mesh = path.with_name(f"{path.stem}-{i}.ply")
+            write_ply(mesh, shape["parameters"]["indices"], shape["parameters"]["P"])
+            shape |= {"kind": "plymesh", "parameters": {"filename": str(mesh)}}
+    path.write_text(json.dumps(document), encoding="utf-8")
