@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -26,7 +27,7 @@ struct Path {
   SampledSpectrum throughput{1};
   /// Density of the last direction, for the balance with light sampling; infinite where no light sample competes.
   float scatter_pdf = INFINITY;
-  Vec3 previous = ray.o;  ///< the last vertex
+  LightSelector::Place previous{ray.o, {0, 0, 1}};  ///< the last vertex
   PathResult result;
 
   void add(const SampledSpectrum& radiance, float weight) { result.radiance += throughput * radiance * weight; }
@@ -71,7 +72,7 @@ class LocalBsdf {
 };
 
 constexpr std::string_view kTerminations[] = {"roulette", "attenuation"};
-constexpr std::string_view kLightSamplers[] = {"power", "uniform"};
+constexpr std::string_view kLightSamplers[] = {"uniform", "power", "bvh"};
 constexpr Param kPath[] = {
     {.name = "maxdepth",
      .kind = ParamKind::integer,
@@ -84,8 +85,8 @@ constexpr Param kPath[] = {
      .doc = "Sample the lights at every hit; false: follow scattered rays alone."},
     {.name = "lightsampler",
      .kind = ParamKind::string,
-     .default_value = std::string_view("power"),
-     .doc = "How a hit chooses its light.",
+     .default_value = std::string_view("bvh"),
+     .doc = "How a hit chooses its light. bvh: by what lights may give there.",
      .choices = kLightSamplers},
     {.name = "termination",
      .kind = ParamKind::string,
@@ -106,11 +107,12 @@ class PathIntegrator final : public Integrator {
   explicit PathIntegrator(const Params& p)
       : max_depth_(p.integer("maxdepth")),
         sample_lights_(p.boolean("sampledirect")),
-        select_by_power_(p.string("lightsampler") == "power"),
+        strategy_(
+            LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers)),
         cut_off_attenuation_(p.string("termination") == "attenuation"),
         cutoff_(float(p.real("cutoff"))) {}
 
-  void prepare(const World& world) override { selector_ = LightSelector(world, select_by_power_); }
+  void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
 
   PathResult trace(const World& world, const Ray& camera_ray, SampledWavelengths lambda,
                    PathContext& context) const override {
@@ -158,19 +160,19 @@ class PathIntegrator final : public Integrator {
 
   void add_environment(const World& world, Path& path) const {
     for (const EnvironmentLight* light : world.environment())
-      path.add(light->radiance(path.ray.d, path.lambda), weight_of(*light, path.scatter_pdf, light->pdf(path.ray.d)));
+      path.add(light->radiance(path.ray.d, path.lambda), weight_of(*light, path, light->competing_pdf(path.ray.d)));
   }
 
   void add_emission(const SurfacePoint& point, Path& path) const {
     const AreaLight& light = *point.light;
-    const float pdf = light.pdf(point.hit.ng, path.ray.d, length(point.hit.p - path.previous));
-    path.add(light.radiance(point.hit.ng, -path.ray.d, path.lambda), weight_of(light, path.scatter_pdf, pdf));
+    const float pdf = light.pdf(point.hit.ng, path.ray.d, length(point.hit.p - path.previous.p));
+    path.add(light.radiance(point.hit.ng, -path.ray.d, path.lambda), weight_of(light, path, pdf));
   }
 
   /// Weight of light met by a scattered ray.
-  float weight_of(const Light& light, float scatter_pdf, float light_pdf) const {
-    if (std::isinf(scatter_pdf)) return 1;
-    return power_heuristic(scatter_pdf, light_pdf * selector_.probability(light));
+  float weight_of(const Light& light, const Path& path, float light_pdf) const {
+    if (std::isinf(path.scatter_pdf)) return 1;
+    return power_heuristic(path.scatter_pdf, light_pdf * selector_.probability(light, path.previous));
   }
 
   void add_sampled_light(const World& world, const Hit& hit, const LocalBsdf& bsdf, VertexKey key, Path& path,
@@ -178,8 +180,10 @@ class PathIntegrator final : public Integrator {
     // Numbers that no light of the scene would read are not made; which are made is the same for every sample.
     const float choice = selector_.has_choice() ? context.sampler.get1d() : 0;
     const Vec2 u = selector_.has_extent() ? context.sampler.get2d() : Vec2{};
-    const auto [light, probability] = selector_.choose(choice);
-    const auto sample = light->sample(hit.p, u, path.lambda);
+    const auto chosen = selector_.choose({hit.p, hit.ng}, choice);
+    if (!chosen) return;
+    const auto [light, probability] = *chosen;
+    const auto sample = light->sample_competing(hit.p, u, path.lambda);
     if (!sample || sample->radiance.is_black()) return;
     float scatter_pdf = 0;
     const SampledSpectrum f_cos = bsdf.f_cos(sample->wi, key.stream(Use::light_bsdf), scatter_pdf);
@@ -202,7 +206,7 @@ class PathIntegrator final : public Integrator {
   /// lies behind.
   static void pass(const Hit& hit, Path& path) {
     path.scatter_pdf = INFINITY;
-    path.previous = hit.p;
+    path.previous = {hit.p, hit.ng};
     path.ray = {offset_origin(hit, path.ray.d), path.ray.d};
   }
 
@@ -216,12 +220,13 @@ class PathIntegrator final : public Integrator {
     path.throughput *= weight;
     path.lambda.retire_black_lanes(path.throughput);
     if (!sample_lights_ || any(sample->flags & Lobes::specular)) path.scatter_pdf = INFINITY;
-    path.previous = hit.p;
+    path.previous = {hit.p, hit.ng};
     path.ray = {offset_origin(hit, sample->wi), sample->wi};
     return true;
   }
 
-  /// Whether the path ends here; roulette rewards the survivors.
+  /// Whether the path ends here; roulette rewards the survivors. It begins after the third scattering: what is left to
+  /// scattered rays, as an even sky is, is found by those before.
   bool ends(const World& world, int depth, VertexKey key, Path& path) const {
     if (path.throughput.is_black()) return true;
     if (cut_off_attenuation_) return attenuation(world, path) < cutoff_;
@@ -245,7 +250,9 @@ class PathIntegrator final : public Integrator {
   static constexpr int kMostPassed = 1000;
 
   int max_depth_;
-  bool sample_lights_, select_by_power_, cut_off_attenuation_;
+  bool sample_lights_;
+  LightSelector::Strategy strategy_;
+  bool cut_off_attenuation_;
   float cutoff_;
   LightSelector selector_;
 };

@@ -35,4 +35,30 @@ ShapePoint EmittingSurface::sample(Vec2 u) const {
   return {p, {float(n.x), float(n.y), float(n.z)}, {}, 0};
 }
 
+LightBounds EmittingSurface::bounds() const {
+  Bounds box;
+  LightBounds result;
+  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) {
+    for (unsigned i = 0; i < (*shape)->count(); ++i) {
+      const Bounds one = (*shape)->bounds(i);
+      box.add(one.min), box.add(one.max);
+    }
+  } else {
+    const TriangleMesh& mesh = *std::get<MeshPtr>(geometry_);
+    Vec3d sum;
+    for (const auto& t : mesh.triangles) {
+      for (const uint32_t i : t) box.add(mesh.p[i]);
+      sum += edge_cross(mesh, t);
+    }
+    if (const Vec3d axis = normalize_any(sum); dot(axis, axis) > 0) {
+      double least = 1;
+      for (const auto& t : mesh.triangles) least = std::min(least, dot(axis, normalize_any(edge_cross(mesh, t))));
+      result.axis = to_float(axis);
+      result.cos_spread = float(std::max(-1.0, least - 0x1p-20));
+    }
+  }
+  result.min = box.min, result.max = box.max;
+  return result;
+}
+
 }  // namespace frond

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/light.h"
 #include "scene/distribution.h"
 #include "scene/shape.h"
 
@@ -14,6 +15,7 @@ class EmittingSurface {
   explicit EmittingSurface(const ShapeGeometry& geometry);
   ShapePoint sample(Vec2 u) const;
   double area() const { return area_; }
+  LightBounds bounds() const;
 
  private:
   ShapeGeometry geometry_;

@@ -25,6 +25,8 @@ class ConstantEnvironment final : public EnvironmentLight {
     return spectrum_->sample(lambda) * scale_;
   }
   float pdf(const Vec3&) const override { return kUniformPdf; }
+  /// Scattered rays go where a surface weighs the sky most; uniform ones do not.
+  double competing_share() const override { return 0; }
   bool is_delta() const override { return false; }
   double power(float radius) const override {
     constexpr double pi = std::numbers::pi;
@@ -66,15 +68,19 @@ class ImageEnvironment final : public EnvironmentLight {
       : ImageEnvironment(p, world_from_light, load(p)) {}
 
   std::optional<LightSample> sample(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
-    const auto [uv, density] = texels_by_power_.sample(u);
-    if (!(density > 0)) return {};
-    return LightSample{at(uv, lambda), normalize(world_from_light_.vector(sphere_from_square(uv))), INFINITY,
-                       density * kPerSphere};
+    return sample_from(texels_by_power_, u, lambda);
+  }
+  std::optional<LightSample> sample_competing(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
+    return sample_from(texels_by_excess_, u, lambda);
   }
   SampledSpectrum radiance(const Vec3& direction, const SampledWavelengths& lambda) const override {
     return at(to_square(direction), lambda);
   }
   float pdf(const Vec3& direction) const override { return texels_by_power_.pdf(to_square(direction)) * kPerSphere; }
+  float competing_pdf(const Vec3& direction) const override {
+    return texels_by_excess_.pdf(to_square(direction)) * kPerSphere;
+  }
+  double competing_share() const override { return excess_share_; }
   bool is_delta() const override { return false; }
   double power(float radius) const override {
     constexpr double pi = std::numbers::pi;
@@ -84,6 +90,7 @@ class ImageEnvironment final : public EnvironmentLight {
 
  private:
   static constexpr float kPerSphere = 0.25f * kInvPi;
+  static constexpr double kLeastExcess = 0.01;  ///< what is as even as this is left to scattered rays
   struct Color {
     SigmoidPolynomial reflectance;
     float scale;
@@ -100,7 +107,8 @@ class ImageEnvironment final : public EnvironmentLight {
         light_from_world_(world_from_light.inverse()),
         size_(image.width),
         white_(unit_d65()),
-        texels_by_power_(luminances(image), image.width) {
+        texels_by_power_(luminances(image), image.width),
+        texels_by_excess_(excesses(image), image.width) {
     if (image.width != image.height)
       fail(p.where("filename"),
            "the image is {} x {}: an environment is square, in pbrt-v4's equal-area map of the sphere", image.width,
@@ -113,7 +121,10 @@ class ImageEnvironment final : public EnvironmentLight {
       if (is_new) colors_.push_back(color(c, scale, p.where("filename")));
       texels_.push_back(it->second);
     }
-    mean_luminance_ = double(scale) * mean_of(luminances(image));
+    const double mean = mean_of(luminances(image));
+    mean_luminance_ = double(scale) * mean;
+    excess_share_ = mean > 0 ? mean_of(excesses(image)) / mean : 1;
+    if (excess_share_ < kLeastExcess) excess_share_ = 0;
     if (p.given("illuminance"))
       fail(p.where("illuminance"), "\"illuminance\" of an image is not supported yet: use \"scale\"");
   }
@@ -137,10 +148,24 @@ class ImageEnvironment final : public EnvironmentLight {
           0.f, float(y[0]) * image.pixels[i] + float(y[1]) * image.pixels[i + 1] + float(y[2]) * image.pixels[i + 2]));
     return result;
   }
+  /// What is above the mean: scattered rays find an even light as well (Karlík et al. 2019, "MIS Compensation:
+  /// Optimizing Sampling Techniques in Multiple Importance Sampling").
+  static std::vector<float> excesses(const Image& image) {
+    std::vector<float> result = luminances(image);
+    const auto mean = float(mean_of(result));
+    for (float& v : result) v = std::max(0.f, v - mean);
+    return result;
+  }
   static double mean_of(const std::vector<float>& values) {
     double sum = 0;
     for (const float v : values) sum += double(v);
     return sum / double(values.size());
+  }
+  std::optional<LightSample> sample_from(const Distribution2D& texels, Vec2 u, const SampledWavelengths& lambda) const {
+    const auto [uv, density] = texels.sample(u);
+    if (!(density > 0)) return {};
+    return LightSample{at(uv, lambda), normalize(world_from_light_.vector(sphere_from_square(uv))), INFINITY,
+                       density * kPerSphere};
   }
   Vec2 to_square(const Vec3& direction) const {
     return square_from_sphere(normalize(light_from_world_.vector(direction)));
@@ -159,10 +184,10 @@ class ImageEnvironment final : public EnvironmentLight {
   Transform world_from_light_, light_from_world_;
   int size_;
   SpectrumPtr white_;
-  Distribution2D texels_by_power_;
+  Distribution2D texels_by_power_, texels_by_excess_;
   std::vector<uint32_t> texels_;
   std::vector<Color> colors_;
-  double mean_luminance_ = 0;
+  double mean_luminance_ = 0, excess_share_ = 0;
 };
 
 constexpr Param kInfinite[] = {

@@ -64,6 +64,7 @@ class PointLight final : public Light {
   }
   bool is_delta() const override { return true; }
   double power(float) const override { return photometric(*spectrum_) * double(scale_) * 4 * kPiD; }
+  std::optional<LightBounds> bounds() const override { return LightBounds{.min = position_, .max = position_}; }
   const Spectrum& emission() const override { return *spectrum_; }
 
  private:
@@ -97,6 +98,11 @@ class SpotLight final : public Light {
   }
   bool is_delta() const override { return true; }
   double power(float) const override { return photometric(*spectrum_) * double(scale_) * solid_angle(); }
+  std::optional<LightBounds> bounds() const override {
+    // It faces all of its cone; the reach leaves room for rounding at the rim.
+    return LightBounds{
+        .min = position_, .max = position_, .axis = axis_, .cos_spread = cos_outer_, .cos_reach = 1 - 0x1p-10f};
+  }
   const Spectrum& emission() const override { return *spectrum_; }
 
  private:
@@ -141,6 +147,11 @@ class DiffuseAreaLight final : public AreaLight {
   bool is_delta() const override { return false; }
   double power(float) const override {
     return photometric(*spectrum_) * double(scale_) * kPiD * surface_.area() * sides();
+  }
+  std::optional<LightBounds> bounds() const override {
+    LightBounds bounds = surface_.bounds();
+    bounds.two_sided = two_sided_;
+    return bounds;
   }
   const Spectrum& emission() const override { return *spectrum_; }
 

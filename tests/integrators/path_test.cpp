@@ -184,7 +184,7 @@ LightSource "point" "point3 from" [0 0 2] "spectrum I" "stdillum-D65" "float sca
 LightSource "infinite" "spectrum L" "stdillum-D65" "float scale" .5
 )";
   const double expected = 0.4 * (2 + 8 / 4.0 + 0.5 * std::numbers::pi) / std::numbers::pi;
-  for (const char* selector : {"power", "uniform"}) {
+  for (const char* selector : {"power", "uniform", "bvh"}) {
     const std::string integrator = fmt::format("\"integer maxdepth\" 1 \"string lightsampler\" \"{}\"", selector);
     const Film film = render_text(looking_down(kGrey + kPlane + lights, 1e-4, 16, integrator), {.samples = 256});
     EXPECT_LT(expect_mean(film, expected), 0.02) << selector;
