@@ -31,12 +31,12 @@ class OvercastSky {
  public:
   TowardLight sample(Vec2 u) const {
     const float cosine = (std::sqrt(1 + 8 * u.x) - 1) / 2;  // (c + c^2) / 2 = u
-    return at(on_sphere(cosine, std::sqrt(std::max(0.f, 1 - cosine * cosine)), u.y));
+    return shining(on_sphere(cosine, std::sqrt(std::max(0.f, 1 - cosine * cosine)), u.y));
   }
-  TowardLight at(const Vec3& w) const {
-    if (!(w.z > 0)) return {w, 0, 0};
-    return {w, 3.f / 7 * (1 + 2 * w.z), (1 + 2 * w.z) * kInvPi / 4};
-  }
+  TowardLight at(const Vec3& w) const { return w.z > 0 ? shining(w) : TowardLight{w, 0, 0}; }
+
+ private:
+  static TowardLight shining(const Vec3& w) { return {w, 3.f / 7 * (1 + 2 * w.z), (1 + 2 * w.z) * kInvPi / 4}; }
 };
 
 class SunDisc {

@@ -51,6 +51,7 @@ void expect_near(const Estimate& found, double expected, const char* what) {
   EXPECT_NEAR(found.mean, expected, kErrors * found.standard_error()) << what;
 }
 
+/// To rounding, unless a direction lies in the surface itself, as one of 2^23 does: this seed draws none.
 TEST(SampleWorth, ALambertiansAlbedoTakesOneSample) {
   for (const double theta : {0., 80., 135.}) {
     const Worth albedo = worth_of("diffuse", theta, 10000).albedo;
@@ -94,11 +95,11 @@ TEST(SampleWorth, ALambertianUnderTheSunVariesAsTheCosineOverTheDisc) {
   expect_near(sun.variance, 0.25 * of_cosine / (mean_cosine * mean_cosine), "variance");
 }
 
-/// R = T = 1/4 of it by a coin: the albedo still takes one sample; light comes from the front alone.
+/// R = T = 1/4; light comes from the front alone. 1e-5 has room for the one direction of 2^23 that scatters nothing.
 TEST(SampleWorth, LightThatIsTransmittedIsSeenFromTheBack) {
   const SampleWorth front = worth_of("diffusetransmission", 45, 200000),
                     back = worth_of("diffusetransmission", 135, 200000);
-  EXPECT_LT(front.albedo.variance.mean, 1e-13);
+  EXPECT_LT(front.albedo.variance.mean, 1e-5);
   expect_near(front.sky.mean, 0.25, "front");
   expect_near(back.sky.mean, 0.25, "back");
   expect_near(back.sun.mean, 0.25, "back");
