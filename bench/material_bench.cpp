@@ -1,9 +1,9 @@
 #include <benchmark/benchmark.h>
 
 #include <map>
-#include <numbers>
 
-#include "core/sampling.h"
+#include "instruments/beam.h"
+#include "instruments/bsdf_calls.h"
 #include "instruments/given_wavelengths.h"
 #include "instruments/sweep.h"
 #include "render/plugins.h"
@@ -43,8 +43,7 @@ class Ready {
  public:
   Ready(const MaterialInfo& info, std::vector<float> nm)
       : wavelengths_(std::move(nm)), setup_(wavelengths_), material_(make(info, setup_.preparation)) {
-    const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}}};
-    bsdf_ = material_->evaluate(hit, wavelengths_.sample(0), arena_);
+    bsdf_ = material_->evaluate(flat_hit(), wavelengths_.sample(0), arena_);
   }
   const Bsdf& bsdf() const { return *bsdf_; }
 
@@ -52,17 +51,11 @@ class Ready {
   static const Ready& get(const MaterialInfo& info, int64_t lanes) {
     static std::map<std::pair<const MaterialInfo*, int64_t>, std::unique_ptr<Ready>> all;
     auto& entry = all[{&info, lanes}];
-    if (!entry) entry = std::make_unique<Ready>(info, wavelengths(lanes));
+    if (!entry) entry = std::make_unique<Ready>(info, benchmark_wavelengths(static_cast<int>(lanes)));
     return *entry;
   }
 
  private:
-  static std::vector<float> wavelengths(int64_t lanes) {
-    if (lanes == 1) return {551};
-    if (lanes == 3) return {608, 551, 455};
-    return {430, 500, 570, 640};
-  }
-
   GivenWavelengths wavelengths_;
   test::Setup setup_;
   std::unique_ptr<Material> material_;
@@ -70,39 +63,15 @@ class Ready {
   const Bsdf* bsdf_ = nullptr;
 };
 
-/// What varies from call to call, drawn beforehand.
-struct Draw {
-  Vec3 wi;  ///< uniform over the sphere
-  Vec3 wo;  ///< on either side, by its cosine
-  float uc;
-  Vec2 u;
-};
-
-std::vector<Draw> draws() {
-  std::vector<Draw> all(1024);
-  RandomStream rng(1);
-  for (Draw& draw : all) {
-    const float z = 2 * rng.uniform() - 1, phi = 2 * kPi * rng.uniform(), r = std::sqrt(1 - z * z);
-    draw.wi = {r * std::cos(phi), r * std::sin(phi), z};
-    draw.uc = rng.uniform();
-    draw.u = {rng.uniform(), rng.uniform()};
-    draw.wo = sample_cosine_hemisphere({rng.uniform(), rng.uniform()});
-    if (rng.uniform() < 0.5f) draw.wo.z = -draw.wo.z;
-  }
-  return all;
-}
-
 /// call(bsdf, wo, draw, rng) is what is measured.
 template <class Call>
 void add(const MaterialInfo& info, const std::string& operation, const Call& call) {
   const auto run = [&info, call](benchmark::State& state) {
-    const double theta = static_cast<double>(state.range(0)) * std::numbers::pi / 180;
-    const Vec3 wo{static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
+    const Vec3 wo = viewer_at(static_cast<double>(state.range(0)));
     const Bsdf& bsdf = Ready::get(info, state.range(1)).bsdf();
-    const std::vector<Draw> all = draws();
+    CallDraws draws;
     RandomStream rng(2);
-    size_t i = 0;
-    for (auto _ : state) benchmark::DoNotOptimize(call(bsdf, wo, all[i++ % all.size()], rng));
+    for (auto _ : state) benchmark::DoNotOptimize(call(bsdf, wo, draws.next(), rng));
   };
   const std::string name = "bsdf/" + std::string(info.name) + "/" + operation;
   benchmark::RegisterBenchmark(name.c_str(), run)
@@ -114,11 +83,10 @@ void add(const MaterialInfo& info, const std::string& operation, const Call& cal
 void add_sample_from_everywhere(const MaterialInfo& info) {
   const auto run = [&info](benchmark::State& state) {
     const Bsdf& bsdf = Ready::get(info, state.range(0)).bsdf();
-    const std::vector<Draw> all = draws();
+    CallDraws draws;
     RandomStream rng(2);
-    size_t i = 0;
     for (auto _ : state) {
-      const Draw& draw = all[i++ % all.size()];
+      const CallDraws::Draw& draw = draws.next();
       benchmark::DoNotOptimize(bsdf.sample(draw.wo, draw.uc, draw.u, rng));
     }
   };
@@ -154,16 +122,14 @@ class ReadyForEach {
 /// path.
 void add_hit(const MaterialInfo& info) {
   const auto run = [&info](benchmark::State& state) {
-    const double theta = static_cast<double>(state.range(0)) * std::numbers::pi / 180;
-    const Vec3 wo{static_cast<float>(std::sin(theta)), 0, static_cast<float>(std::cos(theta))};
+    const Vec3 wo = viewer_at(static_cast<double>(state.range(0)));
     const ReadyForEach& ready = ReadyForEach::get(info);
-    const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}}};
-    const std::vector<Draw> all = draws();
+    const Hit hit = flat_hit();
+    CallDraws draws;
     Arena arena;
     RandomStream rng(2);
-    size_t i = 0;
     for (auto _ : state) {
-      const Draw& draw = all[i++ % all.size()];
+      const CallDraws::Draw& draw = draws.next();
       arena.reset();
       const Bsdf* bsdf = ready.material().evaluate(hit, ready.wavelengths().sample(draw.uc), arena);
       benchmark::DoNotOptimize(bsdf->sample(wo, draw.u.x, {draw.u.y, draw.uc}, rng));
@@ -180,13 +146,15 @@ void add_hit(const MaterialInfo& info) {
   for (const MaterialInfo* info : materials().all()) {
     add_hit(*info);
     add_sample_from_everywhere(*info);
-    add(*info, "sample", [](const Bsdf& bsdf, const Vec3& wo, const Draw& draw, RandomStream& rng) {
+    add(*info, "sample", [](const Bsdf& bsdf, const Vec3& wo, const CallDraws::Draw& draw, RandomStream& rng) {
       return bsdf.sample(wo, draw.uc, draw.u, rng);
     });
-    add(*info, "f",
-        [](const Bsdf& bsdf, const Vec3& wo, const Draw& draw, RandomStream& rng) { return bsdf.f(wo, draw.wi, rng); });
-    add(*info, "pdf",
-        [](const Bsdf& bsdf, const Vec3& wo, const Draw& draw, RandomStream&) { return bsdf.pdf(wo, draw.wi); });
+    add(*info, "f", [](const Bsdf& bsdf, const Vec3& wo, const CallDraws::Draw& draw, RandomStream& rng) {
+      return bsdf.f(wo, draw.wi, rng);
+    });
+    add(*info, "pdf", [](const Bsdf& bsdf, const Vec3& wo, const CallDraws::Draw& draw, RandomStream&) {
+      return bsdf.pdf(wo, draw.wi);
+    });
   }
   return true;
 }();

@@ -21,6 +21,7 @@ void add_flux_command(CLI::App& app);
 void add_canopy_command(CLI::App& app);
 void add_instances_command(CLI::App& app);
 void add_conform_command(CLI::App& app);
+void add_bench_command(CLI::App& app);
 void add_spectrophotometer_command(CLI::App& app);
 void add_goniophotometer_command(CLI::App& app);
 

@@ -11,7 +11,6 @@
 #include "render/plugins.h"
 #include "report/gnuplot.h"
 #include "report/text_output.h"
-#include "scene/words.h"
 
 namespace frond {
 namespace {
@@ -42,21 +41,10 @@ void check_outputs(const InstrumentOptions& o) {
   if (!o.plot.empty()) check_chart(o.plot);
 }
 
-std::vector<std::string> words_of(const std::string& text) {
-  auto words = split(text, ' ');
-  std::erase(words, "");
-  if (words.empty()) fail({}, "--with takes a material, as in --with \"abm specimen=maize\"");
-  return words;
-}
-
 }  // namespace
 
 void add_instrument_options(CLI::App& command, InstrumentOptions& o) {
-  command.add_option("material", o.material, "NAME [parameter=value ...] (frond list, frond describe NAME).")
-      ->required();
-  command
-      .add_option("--with", o.with, "One more material to measure, \"NAME [parameter=value ...]\"; may be given again.")
-      ->allow_extra_args(false);
+  add_specimen_options(command, o);
   command
       .add_option("--angles,--angle", o.angles,
                   "Angles of incidence in degrees, 0,8,30 or first:last:step; 8 by default. Above 90 the back is lit.")
@@ -69,13 +57,6 @@ void add_instrument_options(CLI::App& command, InstrumentOptions& o) {
       "As a renderer shows the material: light along wi, seen along wo, though the model call wo incident.");
   command.add_option("--csv", o.csv, "Write CSV to a file, or - for standard output.");
   command.add_option("--json", o.json, "Write JSON to a file, or - for standard output.");
-  add_plugin_option(command, o.plugins);
-  command.add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
-  command.add_option("--threads", o.threads, "Threads; all by default. The figures do not depend on it.")
-      ->check(CLI::Range(1, 1024));
-  command.add_option("--cache", o.cache, "Folder for tables that materials compute; ~/.cache/frond by default.");
-  command.add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
-  command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors and what was asked for.");
 }
 
 InstrumentBench::InstrumentBench(const InstrumentOptions& o)
@@ -86,10 +67,8 @@ InstrumentBench::InstrumentBench(const InstrumentOptions& o)
       angles_deg_(angles_of(o)),
       wavelengths_nm_(wavelengths_of(o)) {
   check_outputs(o);
-  std::vector<std::vector<std::string>> materials{o.material};
-  for (const std::string& text : o.with) materials.push_back(words_of(text));
   const Registry registry = load_registry(o.plugins);
-  for (const auto& words : materials)
+  for (const auto& words : specimen_words(o))
     specimens_.emplace_back(words, registry, wavelengths_nm_, pool_, log_, cache_directory(o.cache, o.no_cache));
   check_exposures();
 }

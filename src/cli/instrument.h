@@ -1,27 +1,19 @@
 #pragma once
 
 #include "cli/measured_material.h"
+#include "cli/specimen_options.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "instruments/beam.h"
 #include "instruments/rays.h"
 
-namespace CLI {
-class App;
-}
-
 namespace frond {
 
 /// What both instruments are told on the command line.
-struct InstrumentOptions {
-  std::vector<std::string> material;  ///< NAME parameter=value ...
-  std::vector<std::string> with;      ///< further materials, each in one word
-  std::vector<std::string> plugins;   ///< shared objects
+struct InstrumentOptions : SpecimenOptions {
   std::vector<std::string> angles = {"8"}, wavelengths;
-  std::string rays, csv, json, plot, cache;
-  uint64_t seed = 0;
-  int threads = 0;
-  bool as_rendered = false, no_cache = false, quiet = false;
+  std::string rays, csv, json, plot;
+  bool as_rendered = false;
 };
 
 void add_instrument_options(CLI::App& command, InstrumentOptions& options);

@@ -8,18 +8,24 @@
 #include "scene/resolver.h"
 
 namespace frond {
+
+std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, const Registry& registry,
+                                         const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
+                                         const std::filesystem::path& cache_dir) {
+  SceneDescription description = scene_of_materials(registry);
+  description.materials.push_back({"", parse_material(words, registry).plugin});
+  SceneResolver resolver(description, registry, wavelengths);
+  auto material = resolver.material(description.materials.size() - 1);
+  material->prepare({wavelengths, pool, log, cache_dir});
+  return material;
+}
+
 MeasuredMaterial::MeasuredMaterial(const std::vector<std::string>& words, const Registry& registry,
                                    const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
                                    const std::filesystem::path& cache_dir)
     : label_(fmt::format("{}", fmt::join(words, " "))) {
-  SceneDescription description = scene_of_materials(registry);
-  description.materials.push_back({"", parse_material(words, registry).plugin});
-  for (const double nm : wavelengths_nm) {
-    const OneWavelength wavelength(nm);
-    SceneResolver resolver(description, registry, wavelength);
-    materials_.push_back(resolver.material(description.materials.size() - 1));
-    materials_.back()->prepare({wavelength, pool, log, cache_dir});
-  }
+  for (const double nm : wavelengths_nm)
+    materials_.push_back(ready_material(words, registry, OneWavelength(nm), pool, log, cache_dir));
 }
 
 }  // namespace frond

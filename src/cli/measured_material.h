@@ -11,12 +11,17 @@
 
 namespace frond {
 
+/// A material as the words of a command line give it, made without a scene and prepared for these wavelengths. Throws
+/// InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not reach.
+std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, const Registry& registry,
+                                         const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
+                                         const std::filesystem::path& cache_dir);
+
 /// A material as a command line gives it, `abm specimen=soybean`, made without a scene and prepared for wavelengths one
 /// by one.
 class MeasuredMaterial {
  public:
-  /// Throws InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not
-  /// reach.
+  /// Throws as ready_material does.
   MeasuredMaterial(const std::vector<std::string>& words, const Registry& registry,
                    const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
                    const std::filesystem::path& cache_dir);

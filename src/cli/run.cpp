@@ -43,6 +43,7 @@ int run(int argc, const char* const* argv) {
   add_conform_command(app);
   add_spectrophotometer_command(app);
   add_goniophotometer_command(app);
+  add_bench_command(app);
   try {
     app.parse(argc, argv);
     return 0;

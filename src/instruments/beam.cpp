@@ -25,12 +25,16 @@ void check_rays(int64_t rays) {
   if (rays < 2) fail({}, "a measurement takes 2 rays at least, for its standard error; {} were asked for", rays);
 }
 
-const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
+Hit flat_hit() {
   Hit hit;
   hit.ng = {0, 0, 1};
   hit.shading = Frame::around(hit.ng);
   hit.at.uv = {0.5f, 0.5f};
-  const Bsdf* bsdf = material.evaluate(hit, OneWavelength(beam.lambda_nm).sample(0), arena);
+  return hit;
+}
+
+const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
+  const Bsdf* bsdf = material.evaluate(flat_hit(), OneWavelength(beam.lambda_nm).sample(0), arena);
   if (!bsdf) fail({}, "the material says that it has no surface there: nothing can be measured");
   return *bsdf;
 }

@@ -30,6 +30,9 @@ void check_beam(const Beam& beam);
 /// Throws InputError for fewer than 2 rays: one has no standard error.
 void check_rays(int64_t rays);
 
+/// The middle of a flat specimen, its front up.
+Hit flat_hit();
+
 /// The BSDF in the middle of a flat specimen. Throws InputError where the material says that there is no surface.
 const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena);
 
