@@ -99,7 +99,8 @@ class FullDisk(FrondTest):
         self.assertIn("no checkpoint was written", err)
         self.assertIn(os.strerror(errno.EFBIG), err)
         self.assertEqual(image.read_bytes(), expected)
-        self.assertEqual(self.files(), ["a.exr", "scene.pbrt"])
+        # One from the beginning, when little had been rendered, may have fitted.
+        self.assertEqual([name for name in self.files() if name != "a.exr.part"], ["a.exr", "scene.pbrt"])
 
     def test_a_stopped_render_whose_part_does_not_fit_fails(self):
         image = self.folder / "a.exr"

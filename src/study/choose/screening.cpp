@@ -39,6 +39,7 @@ Configuration Screening::base() const {
 }
 
 Configuration Screening::cheapest(const Configuration& floor, double rms) const {
+  constexpr double kAlike = 1e-3;  // less than a pilot can tell: then the simpler model, of a leaf that is hardly seen
   Configuration best = base();
   for (bool better = true; better;) {
     better = false;
@@ -50,6 +51,12 @@ Configuration Screening::cheapest(const Configuration& floor, double rms) const 
         if (cost(other, rms) < cost(best, rms)) best = other, better = true;
       }
   }
+  for (size_t q = 0; q < best.size(); ++q)
+    for (size_t option = floor[q]; option < best[q]; ++option) {
+      Configuration other = best;
+      other[q] = option;
+      if (cost(other, rms) <= cost(best, rms) * (1 + kAlike)) best = other;
+    }
   return best;
 }
 
