@@ -132,9 +132,9 @@ RenderPart first_part(const BrfOptions& o, const BrfMeter& meter, const KeptFile
   return part;
 }
 
-/// Renders until there are as many paths, or as small an error, as asked for, or the time is over; `kept` may be
-/// nullptr.
-BrfReading measure(const BrfOptions& o, const BrfMeter& meter, Session& session, const KeptFile* kept) {
+/// Renders until there are as many paths, or as small an error, as asked for, or the time is over. Nothing where it was
+/// stopped; `kept` may be nullptr.
+std::optional<BrfReading> measure(const BrfOptions& o, const BrfMeter& meter, Session& session, const KeptFile* kept) {
   using Clock = std::chrono::steady_clock;
   ProgressLine line(o.quiet);
   RenderControl control{.progress = &line};
@@ -158,13 +158,16 @@ BrfReading measure(const BrfOptions& o, const BrfMeter& meter, Session& session,
   }
   for (;; samples *= 2) {
     session.render(meter.scene(), {0, samples}, part, control);
-    const bool is_over = control.stop.stop_requested() || (control.deadline && Clock::now() >= *control.deadline);
-    if (checkpointer) checkpointer->write();
-    if (kept && kept->was_stopped()) return {};
+    const bool is_over = control.deadline && Clock::now() >= *control.deadline;
+    const bool stopped = control.stop.stop_requested();
+    if (stopped) kept->keep(false, false, [&checkpointer](const auto&) { checkpointer->write(); });
+    if (stopped) return {};
     if (is_over && sample_count(part.film).least == 0)
       fail({}, "--time-limit: the time was over before every direction had been seen");
     BrfReading reading = meter.read(part.film);
-    if (is_over || o.rms == 0 || reading.relative_error() <= o.rms || samples >= kMost) return reading;
+    if (!is_over && o.rms > 0 && reading.relative_error() > o.rms && samples < kMost) continue;
+    if (kept) kept->keep(true, false, [&checkpointer](const auto&) { checkpointer->write(); });
+    return reading;
   }
 }
 
@@ -181,7 +184,7 @@ void run_comparison(const BrfOptions& o, const BrfRequest& request, const Consol
     auto meter =
         std::make_unique<BrfMeter>(session, description, overrides, request, first ? &first->scene().scene() : nullptr);
     const double start = cpu_seconds();
-    ModelReading result{model, measure(o, *meter, session, nullptr)};
+    ModelReading result{model, *measure(o, *meter, session, nullptr)};
     const double paths = double(result.brf.paths) * double(result.brf.views.size());
     result.cpu_us_per_path = (cpu_seconds() - start) * 1e6 / paths;
     if (!first) first = std::move(meter);
@@ -211,8 +214,9 @@ int run_brf(const BrfOptions& o) {
   const auto kept = kept_file_of(o, log);
   Session session(log, session_options_of(o));
   const BrfMeter meter(session, session.read(o.scene), overrides_of(o), request);
-  const BrfReading reading = measure(o, meter, session, kept.get());
-  if (kept && kept->was_stopped()) return kept->say_how_to_go_on();
+  const auto measured = measure(o, meter, session, kept.get());
+  if (!measured) return kept->say_how_to_go_on();
+  const BrfReading& reading = *measured;
   if (!o.csv.empty()) write_text(o.csv, csv_of(reading));
   if (o.csv.empty()) write_text("-", table_of(reading));
   if (!o.plot.empty()) {

@@ -115,9 +115,9 @@ std::function<void()> keeper(const FluxOptions& o, const FluxMeter& meter, const
   };
 }
 
-/// Traces until there are as many paths, or as small an error, as asked for, or the time is over; `kept` may be
-/// nullptr.
-FluxReading measure(const FluxOptions& o, FluxMeter& meter, Session& session, const KeptFile* kept) {
+/// Traces until there are as many paths, or as small an error, as asked for, or the time is over. Nothing where it was
+/// stopped; `kept` may be nullptr.
+std::optional<FluxReading> measure(const FluxOptions& o, FluxMeter& meter, Session& session, const KeptFile* kept) {
   using Clock = std::chrono::steady_clock;
   ProgressLine line(o.quiet);
   RenderControl control{.progress = &line};
@@ -136,12 +136,15 @@ FluxReading measure(const FluxOptions& o, FluxMeter& meter, Session& session, co
     while (paths < meter.paths()) paths *= 2;
   for (;; paths *= 2) {
     if (meter.paths() < paths) meter.trace(paths - meter.paths(), session.pool(), control, keep);
-    if (kept) meter.save(kept->last());
-    if (kept && kept->was_stopped()) return {};
+    const bool stopped = control.stop.stop_requested();
+    if (stopped) kept->keep(false, false, [&meter](const auto& path) { meter.save(path); });
+    if (stopped) return {};
     FluxReading reading = meter.read();
     if (reading.paths == 0) fail({}, "--time-limit: the time was over before any light was followed");
     const bool is_over = control.deadline && Clock::now() >= *control.deadline;
-    if (is_over || o.rms == 0 || reading.error() <= o.rms || paths >= kMost) return reading;
+    if (!is_over && o.rms > 0 && reading.error() > o.rms && paths < kMost) continue;
+    if (kept) kept->keep(true, false, [&meter](const auto& path) { meter.save(path); });
+    return reading;
   }
 }
 
@@ -163,8 +166,9 @@ int run_flux(const FluxOptions& o) {
   FluxMeter meter(session, session.read(o.scene), overrides_of(o),
                   {target_of(o), period_of(o), wavelengths_of(o), by_instance});
   const auto photons = PhotonWeights::of(bands_of(meter.scene()), *irradiance);
-  const FluxReading reading = measure(o, meter, session, kept.get());
-  if (kept && kept->was_stopped()) return kept->say_how_to_go_on();
+  const auto measured = measure(o, meter, session, kept.get());
+  if (!measured) return kept->say_how_to_go_on();
+  const FluxReading& reading = *measured;
   if (by_instance && !photons)
     log.info("no PAR: it takes bands from 400 to 700 nm, in steps of 50 nm at most (--wavelengths 400:700:20)");
   if (by_instance)

@@ -14,8 +14,13 @@ std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
   return path;
 }
 
-void KeptFile::remove_checkpoint() const {
-  if (!was_stopped() && names_.checkpoint != names_.finished) std::filesystem::remove(names_.checkpoint);
+void KeptFile::keep(bool is_complete, bool is_result,
+                    const std::function<void(const std::filesystem::path&)>& write) const try {
+  write(is_complete ? names_.finished : names_.checkpoint);
+  if (is_complete && names_.checkpoint != names_.finished) std::filesystem::remove(names_.checkpoint);
+} catch (const InputError& error) {
+  if (!is_complete || is_result) throw;
+  log_.warn({}, fmt::format("no checkpoint was written: {}", error.what()));
 }
 
 int KeptFile::say_how_to_go_on() const {

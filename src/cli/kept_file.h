@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "cli/interrupt.h"
@@ -27,10 +28,9 @@ class KeptFile {
   std::stop_token stop() const { return interrupt_.token(); }
   bool was_stopped() const { return interrupt_.signal() != 0; }
   const std::filesystem::path& checkpoint() const { return names_.checkpoint; }
-  /// Where what is done belongs at the end.
-  const std::filesystem::path& last() const { return was_stopped() ? names_.checkpoint : names_.finished; }
-  /// After what is done has been written there.
-  void remove_checkpoint() const;
+  /// What is done at the end, by `write`, which is told where. Where all of it is done, a write that fails is a
+  /// warning, unless the file is the result itself.
+  void keep(bool is_complete, bool is_result, const std::function<void(const std::filesystem::path&)>& write) const;
   /// Tells people, who have stopped the command. Returns the program's exit code.
   int say_how_to_go_on() const;
 

@@ -60,8 +60,10 @@ class RenderCommand {
     if (names_) kept_.emplace(*names_, log_);
     RenderPart part = first_part();
     fill(part);
-    if (kept_) keep(part);
-    if (kept_ && kept_->was_stopped()) return kept_->say_how_to_go_on();
+    const bool stopped = kept_ && kept_->was_stopped();
+    if (kept_)  // a picture that is done is not lost with its checkpoint
+      kept_->keep(!stopped, !output_, [&part](const auto& path) { write_part(path, part.header, part.film); });
+    if (stopped) return kept_->say_how_to_go_on();
     finish(part);
     return 0;
   }
@@ -171,15 +173,6 @@ class RenderCommand {
     if (options_.samples > 0) request.most_samples = uint64_t(options_.samples);
     if (checkpointer) request.planned = [checkpointer](const PartHeader& header) { checkpointer->set_header(header); };
     statistics_ = session_.render_to(*scene_, request, part, control);
-  }
-
-  /// The last checkpoint, or what was asked for. Where the picture is done, it is not lost with its checkpoint.
-  void keep(const RenderPart& part) const try {
-    write_part(kept_->last(), part.header, part.film);
-    kept_->remove_checkpoint();
-  } catch (const InputError& error) {
-    if (kept_->was_stopped() || !output_) throw;
-    log_.warn({}, fmt::format("no checkpoint was written: {}", error.what()));
   }
 
   void finish(const RenderPart& part) const {

@@ -29,9 +29,9 @@ class LightSelector {
   LightSelector() = default;
   LightSelector(const World& world, Strategy strategy);
 
-  bool empty() const { return lights_.empty(); }
+  bool empty() const { return count_ == 0; }
   /// More than one light: `choose` reads its number.
-  bool has_choice() const { return lights_.size() > 1; }
+  bool has_choice() const { return count_ > 1; }
   /// Some light has points or directions to sample: all but delta lights.
   bool has_extent() const { return has_extent_; }
   /// Nothing where no light reaches the place.
@@ -42,13 +42,14 @@ class LightSelector {
   /// Of all at this place, that one of the tree is chosen.
   float tree_share(const Place& place) const;
 
-  std::vector<const Light*> lights_;  ///< those that are chosen the same way everywhere, then those of the tree
-  std::vector<float> probability_;    ///< by index of all of the scene's lights: among the former; else 0
-  std::vector<float> cumulative_;     ///< of the former
-  float irradiance_ = 0;              ///< of the former together
-  LightTree tree_;
-  std::vector<const Light*> of_tree_;  ///< by its numbers, which are indices of the scene's lights
+  std::vector<const Light*> lights_;  ///< of the scene; their places are the numbers of the tree
+  size_t count_ = 0;                  ///< of those that are chosen at all
   bool has_extent_ = false;
+  LightTree tree_;
+  std::vector<size_t> everywhere_;  ///< places of those that are chosen the same way everywhere
+  std::vector<float> cumulative_;   ///< probabilities of these, one among another
+  std::vector<float> probability_;  ///< the same by place; 0 for others
+  float irradiance_ = 0;            ///< of these together
 };
 
 }  // namespace frond

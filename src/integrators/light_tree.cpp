@@ -63,7 +63,9 @@ double orientation_measure(const LightBounds& b) {
 /// What a cluster costs: the smaller, the more alike its lights.
 double cost(const LightBounds& b, double power, double stretch) {
   const Vec3d d = to_double(b.max) - to_double(b.min);
-  return power * stretch * orientation_measure(b) * (d.x * d.y + d.y * d.z + d.z * d.x);
+  constexpr double kLine = 1e-3;  // lights in a line have no area
+  const double size = d.x * d.y + d.y * d.z + d.z * d.x + kLine * dot(d, d);
+  return power * stretch * orientation_measure(b) * size;
 }
 
 /// Cosine of the difference of two angles, or 1 where the second is the larger.
@@ -80,10 +82,11 @@ struct Cluster {
   LightBounds bounds{};
   double power = 0;
   size_t count = 0;
-  void add(const LightBounds& other, double other_power) {
-    bounds = count == 0 ? other : union_of(bounds, other);
-    power += other_power;
-    ++count;
+  void add(const Cluster& other) {
+    if (other.count == 0) return;
+    bounds = count == 0 ? other.bounds : union_of(bounds, other.bounds);
+    power += other.power;
+    count += other.count;
   }
 };
 
@@ -107,16 +110,10 @@ size_t partition(std::span<Entry> entries) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(extent[axis] > 0)) continue;
     std::array<Cluster, kBins> bins;
-    for (const Entry& e : entries) bins[size_t(bin_of(e, axis))].add(e.bounds, e.power);
+    for (const Entry& e : entries) bins[size_t(bin_of(e, axis))].add({e.bounds, e.power, 1});
     for (int cut = 1; cut < kBins; ++cut) {
       Cluster before, after;
-      for (int i = 0; i < kBins; ++i)
-        if (const Cluster& bin = bins[size_t(i)]; bin.count > 0) {
-          Cluster& side = i < cut ? before : after;
-          const size_t count = side.count + bin.count;
-          side.add(bin.bounds, bin.power);
-          side.count = count;
-        }
+      for (int i = 0; i < kBins; ++i) (i < cut ? before : after).add(bins[size_t(i)]);
       if (before.count == 0 || after.count == 0) continue;
       const double stretch = double(longest) / double(extent[axis]);
       const double c = cost(before.bounds, before.power, stretch) + cost(after.bounds, after.power, stretch);
@@ -176,7 +173,7 @@ float LightTree::importance(const Node& node, const Vec3& p, const Vec3& n) {
   if (cos_least <= b.cos_reach) return 0;
   const float cos_in = std::abs(dot(w, n));
   const float cos_incident = cos_of_difference(sine(cos_in), cos_in, sin_size, cos_size);
-  return std::max(0.f, node.intensity * cos_least * cos_incident / distance2);
+  return std::clamp(node.intensity * cos_least * cos_incident / distance2, 0.f, 1e30f);
 }
 
 std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n, float u) const {
