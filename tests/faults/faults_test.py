@@ -106,6 +106,19 @@ class FullDisk(FrondTest):
             (self.folder / "a.exr.part").unlink()
         self.assertEqual(self.files(), ["a.exr", "scene.pbrt"])
 
+    def test_a_measurement_whose_part_does_not_fit_is_written(self):
+        csv = self.folder / "a.csv"
+        for name in ("brf", "flux"):
+            with self.subTest(name=name):
+                words = [FROND, name, str(self.scene), "--no-cache", "--wavelengths", "450,650", "--paths", "1000"]
+                expected, _ = self.run_to_end([*words, "--csv", "-", "-q"])
+                limit = len(expected) + 16
+                _, err = self.run_to_end([*words, "--csv", str(csv), "--checkpoint", "60"], preexec_fn=limit_files(limit))
+                self.assertIn("no checkpoint was written", err)
+                self.assertEqual(csv.read_text(encoding="utf-8"), expected)
+                self.assertEqual(self.files(), ["a.csv", "scene.pbrt"])
+                csv.unlink()
+
     def test_a_stopped_render_whose_part_does_not_fit_fails(self):
         image = self.folder / "a.exr"
         command = self.command(image, "--wavelengths", BANDS, "--spp", 1 << 20, "--checkpoint", 0.05)
