@@ -190,7 +190,7 @@ def canopy(folder):
     """100,000 leaves of 2,000 triangles over soil, leaf area index 3, under the sun and an even sky."""
     side = math.sqrt(CANOPY_LEAVES * LEAF_AREA / 3)
     table = folder / "canopy.npy"
-    frond("canopy", "-q", "-o", table, "--count", CANOPY_LEAVES, "--leaf-area", LEAF_AREA, "--size", f"{side},{side}",
+    frond("canopy", "-q", "-o", table, "--count", CANOPY_LEAVES, "--scale", 1, "--leaf-area", LEAF_AREA, "--size", f"{side},{side}",
           "--heights", "0.05,2", "--seed", 1)
     middle, mesh = side / 2, without_normals(ROOT / "scenes/meshes/leaflet-speed.ply", folder)
     return Scene(
