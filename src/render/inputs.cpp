@@ -1,13 +1,13 @@
 #include "render/inputs.h"
 
-#include <dlfcn.h>
-
 #include <cstdlib>
 #include <cstring>
 
 #include "core/random.h"
+#include "image/image_codec.h"
 #include "scene/plugin_library.h"
 #include "system/file_bytes.h"
+#include "system/shared_object.h"
 
 namespace frond {
 namespace {
@@ -49,14 +49,7 @@ std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plu
   return files;
 }
 
-std::filesystem::path program_file() {
-  Dl_info info;
-  static const char kHere = 0;
-  if (dladdr(&kHere, &info) == 0 || !info.dli_fname) return "/proc/self/exe";
-  std::error_code error;
-  const auto path = std::filesystem::canonical(info.dli_fname, error);
-  return error ? std::filesystem::path("/proc/self/exe") : path;  // of a program, the name that it was called by
-}
+uint64_t hash_program(uint64_t seed) { return hash_file(image_codec_file(), hash_file(own_file(), seed)); }
 
 uint64_t hash_file(const std::filesystem::path& path, uint64_t seed) {
   const MappedFile file(path, {});

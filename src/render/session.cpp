@@ -143,7 +143,7 @@ RenderJob LoadedScene::job() const {
 Identity LoadedScene::identity() const {
   Identity id;
   const FilmSettings& film = format_.settings;
-  id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_file(program_file(), 0))));
+  id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_program(0))));
   id.add("instruction set", instruction_set());
   for (const auto& plugin : plugins_)
     id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_file(plugin, 0)));
