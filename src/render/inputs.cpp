@@ -24,6 +24,17 @@ void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::v
   }
 }
 
+uint64_t hash_words(std::span<const std::byte> bytes, uint64_t seed) {
+  uint64_t hash = hash_key(seed, bytes.size());
+  size_t at = 0;
+  for (; at + sizeof(uint64_t) <= bytes.size(); at += sizeof(uint64_t)) {
+    uint64_t word;  // by words: tables of instances have gigabytes
+    std::memcpy(&word, bytes.data() + at, sizeof word);
+    hash = mix64(hash ^ word) + 1;
+  }
+  return hash_bytes({reinterpret_cast<const char*>(bytes.data()) + at, bytes.size() - at}, hash);
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> input_files(const SceneDescription& scene, const ParsedPlugin& wavelengths) {
@@ -49,19 +60,16 @@ std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plu
   return files;
 }
 
-uint64_t hash_program(uint64_t seed) { return hash_file(image_codec_file(), hash_file(own_file(), seed)); }
+uint64_t hash_program(uint64_t seed) { return hash_library(image_codec_file(), hash_library(own_file(), seed)); }
+
+uint64_t hash_library(const std::filesystem::path& path, uint64_t seed) {
+  const std::string bytes = read_file_bytes(path, {});
+  return hash_words(std::as_bytes(std::span(bytes)), seed);
+}
 
 uint64_t hash_file(const std::filesystem::path& path, uint64_t seed) {
   const MappedFile file(path, {});
-  const std::span<const std::byte> bytes = file.bytes();
-  uint64_t hash = hash_key(seed, bytes.size());
-  size_t at = 0;
-  for (; at + sizeof(uint64_t) <= bytes.size(); at += sizeof(uint64_t)) {
-    uint64_t word;  // by words: tables of instances have gigabytes
-    std::memcpy(&word, bytes.data() + at, sizeof word);
-    hash = mix64(hash ^ word) + 1;
-  }
-  return hash_bytes({reinterpret_cast<const char*>(bytes.data()) + at, bytes.size() - at}, hash);
+  return hash_words(file.bytes(), seed);
 }
 
 }  // namespace frond

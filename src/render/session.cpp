@@ -146,7 +146,7 @@ Identity LoadedScene::identity() const {
   id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_program(0))));
   id.add("instruction set", instruction_set());
   for (const auto& plugin : plugins_)
-    id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_file(plugin, 0)));
+    id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_library(plugin, 0)));
   id.add("seed", std::to_string(scene_->seed()));
   id.add("wavelengths", scene_->wavelengths_name());
   id.add("integrator", text_of(description_.integrator));
