@@ -4,6 +4,7 @@ set(frond_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/frond")
 
 install(TARGETS frond RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(TARGETS libfrond frond_plugin EXPORT frond LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS frond_image_codec LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}")
 foreach(layer IN LISTS frond_layers)
   install(DIRECTORY "src/${layer}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond" FILES_MATCHING PATTERN "*.h")

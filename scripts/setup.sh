@@ -21,7 +21,7 @@ FROND="$FROND_BUILD/frond"
 # Debian's packages that the project needs to build; callers add their own.
 build_packages=(
   g++ cmake ninja-build pkg-config ccache
-  libembree-dev libopenimageio-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
+  libembree-dev libopenimageio-dev libopenexr-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
   libzstd-dev libboost-dev libgmock-dev libbenchmark-dev
 )
 

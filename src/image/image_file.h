@@ -13,6 +13,9 @@
 
 namespace frond {
 
+/// The attribute that has a file's colour space.
+inline constexpr const char* kColorSpaceKey = "frond:colorspace";
+
 /// What an image file says beside its pixels.
 struct ImageHeader {
   std::string color_space;                  ///< linear name of spectra/color_space.h; empty: unknown

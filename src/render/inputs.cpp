@@ -1,13 +1,13 @@
 #include "render/inputs.h"
 
-#include <dlfcn.h>
-
 #include <cstdlib>
 #include <cstring>
 
 #include "core/random.h"
+#include "image/image_codec.h"
 #include "scene/plugin_library.h"
 #include "system/file_bytes.h"
+#include "system/shared_object.h"
 
 namespace frond {
 namespace {
@@ -22,6 +22,17 @@ void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::v
       if (std::filesystem::is_regular_file(path, error)) files.push_back(path);
     }
   }
+}
+
+uint64_t hash_words(std::span<const std::byte> bytes, uint64_t seed) {
+  uint64_t hash = hash_key(seed, bytes.size());
+  size_t at = 0;
+  for (; at + sizeof(uint64_t) <= bytes.size(); at += sizeof(uint64_t)) {
+    uint64_t word;  // by words: tables of instances have gigabytes
+    std::memcpy(&word, bytes.data() + at, sizeof word);
+    hash = mix64(hash ^ word) + 1;
+  }
+  return hash_bytes({reinterpret_cast<const char*>(bytes.data()) + at, bytes.size() - at}, hash);
 }
 
 }  // namespace
@@ -49,26 +60,16 @@ std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plu
   return files;
 }
 
-std::filesystem::path program_file() {
-  Dl_info info;
-  static const char kHere = 0;
-  if (dladdr(&kHere, &info) == 0 || !info.dli_fname) return "/proc/self/exe";
-  std::error_code error;
-  const auto path = std::filesystem::canonical(info.dli_fname, error);
-  return error ? std::filesystem::path("/proc/self/exe") : path;  // of a program, the name that it was called by
+uint64_t hash_program(uint64_t seed) { return hash_library(image_codec_file(), hash_library(own_file(), seed)); }
+
+uint64_t hash_library(const std::filesystem::path& path, uint64_t seed) {
+  const std::string bytes = read_file_bytes(path, {});
+  return hash_words(std::as_bytes(std::span(bytes)), seed);
 }
 
 uint64_t hash_file(const std::filesystem::path& path, uint64_t seed) {
   const MappedFile file(path, {});
-  const std::span<const std::byte> bytes = file.bytes();
-  uint64_t hash = hash_key(seed, bytes.size());
-  size_t at = 0;
-  for (; at + sizeof(uint64_t) <= bytes.size(); at += sizeof(uint64_t)) {
-    uint64_t word;  // by words: tables of instances have gigabytes
-    std::memcpy(&word, bytes.data() + at, sizeof word);
-    hash = mix64(hash ^ word) + 1;
-  }
-  return hash_bytes({reinterpret_cast<const char*>(bytes.data()) + at, bytes.size() - at}, hash);
+  return hash_words(file.bytes(), seed);
 }
 
 }  // namespace frond

@@ -143,10 +143,10 @@ RenderJob LoadedScene::job() const {
 Identity LoadedScene::identity() const {
   Identity id;
   const FilmSettings& film = format_.settings;
-  id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_file(program_file(), 0))));
+  id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_program(0))));
   id.add("instruction set", instruction_set());
   for (const auto& plugin : plugins_)
-    id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_file(plugin, 0)));
+    id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_library(plugin, 0)));
   id.add("seed", std::to_string(scene_->seed()));
   id.add("wavelengths", scene_->wavelengths_name());
   id.add("integrator", text_of(description_.integrator));

@@ -1,37 +1,17 @@
 #include "scene/plugin_library.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 
 #include "core/plugin_module.h"
+#include "system/shared_object.h"
 
 namespace frond {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Why the last call of the loader failed.
-std::string loader_error() {
-  const char* text = dlerror();
-  return text ? text : "unknown reason";
-}
-
-void* open_library(const fs::path& file) {
-  std::error_code error;
-  if (!fs::exists(file, error)) fail({}, "plug-in \"{}\": there is no such file", file.string());
-  // Absolute: the loader would look for a bare name in its own folders. Now, not at the first call: nothing that is
-  // missing shall be found out in the middle of a render.
-  void* library = dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library) return library;
-  const std::string reason = loader_error();
-  const bool lacks_symbol = reason.find("undefined symbol") != std::string::npos;
-  fail({}, "plug-in \"{}\" cannot be loaded: {}{}", file.string(), reason,
-       lacks_symbol ? "; it uses what this frond does not export, or was built for another one" : "");
-}
-
-const PluginModule& module_of(void* library, const fs::path& file) {
-  const auto function = reinterpret_cast<decltype(&frond_plugin)>(dlsym(library, "frond_plugin"));
+const PluginModule& module_of(const SharedObject& library, const fs::path& file) {
+  const auto function = library.find<decltype(frond_plugin)>("frond_plugin");
   if (!function) fail({}, "plug-in \"{}\" has no function frond_plugin (core/plugin_module.h)", file.string());
   const PluginModule* module = function();
   if (!module) fail({}, "plug-in \"{}\": frond_plugin returned nothing", file.string());
@@ -59,7 +39,7 @@ void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTab
 }  // namespace
 
 void load_plugin(const fs::path& file, Registry& registry) {
-  const PluginModule& module = module_of(open_library(file), file);
+  const PluginModule& module = module_of(SharedObject(file, "plug-in", SharedObject::Binding::now), file);
   add_all(module.materials, file, registry.materials);
   add_all(module.integrators, file, registry.integrators);
   add_all(module.wavelengths, file, registry.wavelengths);

@@ -20,6 +20,7 @@ const Layers kAllowed{
     {"leaf", {"core", "system", "spectra"}},
     {"materials", {"core", "system", "spectra", "leaf"}},
     {"image", {"core", "system", "spectra"}},
+    {"openimageio", {"core", "system", "image"}},
     {"scene", {"core", "system", "spectra", "image"}},
     {"integrators", {"core", "spectra", "scene"}},
     {"render", {"core", "system", "spectra", "image", "scene", "integrators", "materials", "instruments"}},
@@ -66,12 +67,26 @@ TEST(Architecture, AnIncludeTheOtherWayIsFound) {
 
 TEST(Architecture, ImageAndColourLibrariesStayInTheFilesThatNeedThem) {
   static const std::regex heavy(
-      R"re(#include\s+["<](OpenImageIO/|OpenColorIO/|CLI/|nlohmann/|embree[34]/|scene/embree))re");
+      R"re(#include\s+["<](OpenImageIO/|OpenEXR/|OpenColorIO/|CLI/|nlohmann/|embree[34]/|scene/embree))re");
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FROND_SOURCE_DIR "/src")) {
     if (entry.path().extension() != ".h" || entry.path().filename().string().starts_with("embree")) continue;
     std::ifstream in(entry.path());
     for (std::string line; std::getline(in, line);) EXPECT_FALSE(std::regex_search(line, heavy)) << entry.path();
   }
+}
+
+// Linking it takes 0.3 s: it is opened where a picture needs it (image/image_codec.h).
+TEST(Architecture, OpenImageIOIsCalledByItsRoomAlone) {
+  int includes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(FROND_SOURCE_DIR "/src")) {
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);)
+      if (line.starts_with("#include <OpenImageIO/")) {
+        ++includes;
+        EXPECT_EQ(entry.path().parent_path().filename(), "openimageio") << entry.path();
+      }
+  }
+  EXPECT_GE(includes, 1);
 }
 
 // A file that is compiled for instructions which a machine may lack must not bring inline functions that the linker

@@ -109,6 +109,29 @@ TEST_F(ImageFiles, HalfFloatsAreAskedForByName) {
     ASSERT_NEAR(back.image.pixels[i], image.pixels[i], std::abs(image.pixels[i]) * 0x1p-11f + 0x1p-25f);
 }
 
+TEST_F(ImageFiles, WhatHalvesCannotHoldBecomesInfinite) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Image image(6, 1, {"Y", "id"});
+  image.pixels = {65504, 1e6f, 65519, 1e6f, 65520, 1e6f, -1e30f, 1e6f, kInfinity, 1e6f, std::nanf(""), 1e6f};
+  ImageHeader header;
+  header.full_precision = {"id"};
+  write_image(folder_ / "a.exr", image, header, ExrDepth::half);
+  const Image back = read_image(folder_ / "a.exr", {}).image;
+  const auto at = [&](int x, const char* name) { return back.at(x, 0, *back.channel(name)); };
+  const float expected[] = {65504, 65504, kInfinity, -kInfinity, kInfinity};
+  for (int x = 0; x < 5; ++x) EXPECT_EQ(at(x, "Y"), expected[x]) << x;
+  EXPECT_TRUE(std::isnan(at(5, "Y")));
+  for (int x = 0; x < 6; ++x) EXPECT_EQ(at(x, "id"), 1e6f);
+}
+
+TEST_F(ImageFiles, WhatOpenExrRefusesIsAnInputError) {
+  EXPECT_THAT(error_of([&] {
+                write_image(folder_ / "a.exr", sample({"Y"}), {.color_space = "", .text = {{"", "no name"}}});
+              }),
+              HasSubstr("cannot encode an EXR: "));
+  EXPECT_THAT(files(), IsEmpty());
+}
+
 TEST_F(ImageFiles, ExrSaysItsColorSpaceAndChromaticities) {
   for (const char* name : {"linear SMPTE-C", "linear sRGB", "ACEScg", "XYZ"}) {
     write_image(folder_ / "a.exr", sample({"R", "G", "B"}), {.color_space = name, .text = {}});

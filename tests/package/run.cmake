@@ -28,6 +28,17 @@ run("${frond}" describe ${plugin} soil)
 run("${frond}" conform ${plugin} soil --sweep --samples 2000)
 run("${frond}" render ${plugin} "${example}/scene.pbrt" -o "${WORK_DIR}/soil.png" --quick)
 
+# Without the shared object for image files, what reads or writes none works, and renders are refused by a word of it.
+file(GLOB codec "${prefix}/lib*/libfrond_image.so.*" "${prefix}/lib*/*/libfrond_image.so.*")
+file(RENAME "${codec}" "${codec}.away")
+run("${frond}" list)
+execute_process(COMMAND "${frond}" render ${plugin} "${example}/scene.pbrt" -o "${WORK_DIR}/without.png" --quick
+                RESULT_VARIABLE result ERROR_VARIABLE message)
+file(RENAME "${codec}.away" "${codec}")
+if(NOT result EQUAL 1 OR NOT message MATCHES "libfrond_image.so.*there is no such file")
+  message(FATAL_ERROR "without libfrond_image.so: ${result}\n${message}")
+endif()
+
 # A limit on the size of files is told, and no half-written file is left.
 execute_process(COMMAND sh -c "ulimit -f 1; exec \"$0\" \"$@\"" "${frond}" render ${plugin} "${example}/scene.pbrt"
                         -o "${WORK_DIR}/limited.exr" --quick

@@ -56,8 +56,8 @@ class FrondTest(unittest.TestCase):
         words = ("--threads", THREADS, "-o", output, *words)
         return [FROND, "render", str(self.scene), "--no-cache", *map(str, words)]
 
-    def start(self, command, **more):
-        environment = dict(os.environ, SOURCE_DATE_EPOCH="0")
+    def start(self, command, environment=None, **more):
+        environment = dict(environment or os.environ, SOURCE_DATE_EPOCH="0")
         process = subprocess.Popen(
             command, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **more
         )

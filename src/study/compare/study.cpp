@@ -122,7 +122,7 @@ uint64_t Study::identity(const Candidate& candidate) const {
   for (const std::string& leaf : options_.leaves) choices += '\n' + leaf;
   uint64_t hash = hash_bytes(choices, description_.content_hash);
   for (const auto& file : input_files(candidate)) hash = hash_file(file, hash);
-  hash = hash_file(program_file(), hash);
+  hash = hash_program(hash);
   for (const auto& file : plugin_files(options_.plugins)) hash = hash_file(file, hash);
   return hash;
 }

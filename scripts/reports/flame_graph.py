@@ -1,0 +1,94 @@
+"""Draws ways through a program as a flame graph: SVG that needs no script and no other file."""
+
+from html import escape
+
+WIDTH, MARGIN, ROW, LETTER = 1200, 12, 18, 7.23  # of DejaVu Sans Mono at 12 pixels
+LEAST = 0.8  # pixels of a frame that is drawn
+# Light, for black letters; names and the legend say the same.
+COLORS = {
+    "integrators": "#f6b26b", "scene": "#a9d08e", "materials": "#ffd966", "leaf": "#d6e39a", "render": "#9fc5e8",
+    "spectra": "#d5b8ea", "core": "#e8c7a0", "Embree": "#8fd0c8", "libm": "#f2a6bd", "dynamic linking": "#f28b82",
+    "image": "#b4c7f0", "openimageio": "#b4c7f0", "OpenEXR": "#c9d6f5", "OpenColorIO": "#c0b8d8", "cli": "#e0e0d0",
+    "kernel": "#c4c4c4", "C and C++ library": "#dadada",
+}
+OTHER = "#ececec"
+
+
+class Node:
+    def __init__(self):
+        self.count = 0
+        self.children = {}
+
+
+def tree(ways):
+    root = Node()
+    for way, count in ways.items():
+        node = root
+        node.count += count
+        for frame in way:
+            node = node.children.setdefault(frame, Node())
+            node.count += count
+    return root
+
+
+def clipped(text, width):
+    """As many letters as fit."""
+    fitting = int((width - 4) / LETTER)
+    if len(text) <= fitting:
+        return text
+    return text[: fitting - 1] + "…" if fitting >= 3 else ""
+
+
+def boxes(node, scale, x=0.0, depth=0):
+    """(x, width, depth, frame, count), the most frequent to the left."""
+    for frame, child in sorted(node.children.items(), key=lambda item: (-item[1].count, item[0])):
+        width = child.count * scale
+        if width >= LEAST:
+            yield x, width, depth, frame, child.count
+            yield from boxes(child, scale, x, depth + 1)
+        x += width
+
+
+def legend(rooms, top):
+    """Rooms in lines that fit; and the height that takes."""
+    parts, x, y = [], MARGIN, top
+    for room in rooms:
+        width = 18 + (len(room) + 2) * LETTER
+        if x + width > WIDTH - MARGIN:
+            x, y = MARGIN, y + ROW
+        parts.append(f'<rect x="{x:.1f}" y="{y}" width="12" height="12" fill="{COLORS.get(room, OTHER)}" stroke="#888"/>'
+                     f'<text x="{x + 17:.1f}" y="{y + 10.5}">{escape(room)}</text>')
+        x += width
+    return parts, y + ROW - top
+
+
+def svg(ways, title, notes):
+    """`ways`: counts by tuples of (name, room), outermost first. The program's begin is above."""
+    root = tree(ways)
+    drawn = list(boxes(root, (WIDTH - 2 * MARGIN) / max(root.count, 1)))
+    count = {}
+    for way, samples in ways.items():
+        count[way[-1][1]] = count.get(way[-1][1], 0) + samples
+    for *_, (_, room), _ in drawn:
+        count.setdefault(room, 0)
+    head = [f'<text x="{MARGIN}" y="26" class="title">{escape(clipped(title, (WIDTH - 2 * MARGIN) * 12 / 16))}</text>']
+    top = 36
+    for note in notes:
+        head.append(f'<text x="{MARGIN}" y="{top + 12}">{escape(clipped(note, WIDTH - 2 * MARGIN))}</text>')
+        top += ROW
+    entries, high = legend(sorted(count, key=lambda room: (-count[room], room)), top + 6)
+    top += 6 + high + 6
+    body = []
+    for x, width, depth, (name, room), samples in drawn:
+        y = top + depth * ROW
+        share = f"{100 * samples / root.count:.1f} %"
+        label = clipped(name, width)
+        text = f'<text x="{MARGIN + x + 2:.2f}" y="{y + 13}">{escape(label)}</text>' if label else ""
+        body.append(f'<g><title>{escape(name)}: {share}, {samples} samples ({escape(room)})</title>'
+                    f'<rect x="{MARGIN + x:.2f}" y="{y}" width="{width:.2f}" height="{ROW - 1}" '
+                    f'fill="{COLORS.get(room, OTHER)}" stroke="#fff" stroke-width="0.4"/>{text}</g>')
+    height = top + ROW * (1 + max((depth for _, _, depth, _, _ in drawn), default=0)) + MARGIN
+    return "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" viewBox="0 0 {WIDTH} {height}">',
+        '<style>text { font: 12px "DejaVu Sans Mono", monospace; white-space: pre } .title { font-size: 16px }</style>',
+        f'<rect width="{WIDTH}" height="{height}" fill="#fff"/>', *head, *entries, *body, "</svg>"]) + "\n"

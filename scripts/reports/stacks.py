@@ -1,0 +1,187 @@
+"""Stacks that perf sampled: whose code they are in, and how often."""
+
+import collections
+import pathlib
+import re
+import subprocess
+from dataclasses import dataclass
+
+import tools
+
+# Not ours: by the name of the file that holds the code, first match.
+STRANGERS = [
+    (r"libembree|libtbb", "Embree"),  # Embree builds its trees on TBB's threads
+    (r"libm\.|libmvec\.", "libm"),
+    (r"ld-linux|ld-musl", "dynamic linking"),
+    (r"\[kernel|\[guest|\[vdso\]|\.ko$", "kernel"),
+    (r"libc\.|libstdc\+\+|libgcc|libpthread", "C and C++ library"),
+    (r"libOpenEXR|libIex|libIlmThread|libImath|libz\.", "OpenEXR"),
+    (r"libOpenColorIO|libyaml|libexpat|libpystring", "OpenColorIO"),
+]
+OURS = re.compile(r"^(libfrond.*\.so.*|frond(_bench)?)$")
+OTHERS = "other libraries"
+NO_ROOM = "frond"  # code of ours that no room is known of
+CUT = "cut off"
+# Where a program and its threads begin.
+PROGRAM = re.compile(r"^(_start|_dl_start_user)$")
+THREAD = re.compile(r"^(__)?clone3?$|^start_thread$|^ret_from_fork")
+BLOCK = 1024  # bytes of code without symbols that count as one function
+
+
+@dataclass(frozen=True)
+class Frame:
+    symbol: str  # as the linker knows it; empty: unknown
+    file: str  # the name of the file that holds its code
+    block: int = 0  # where in it, if the symbol is unknown
+
+
+def parse(text):
+    """Of `perf script -F comm,ip,sym,dso`: stacks, outermost frame first."""
+    stacks = []
+    for block in text.split("\n\n"):
+        frames = []
+        for line in block.strip("\n").splitlines()[1:]:
+            match = re.match(r"\s+([0-9a-f]+) (.*) \((.*)\)$", line)
+            if not match or match[3] == "[unknown]":
+                continue
+            file = pathlib.PurePath(match[3]).name
+            known = match[2] != "[unknown]"
+            frames.append(Frame(match[2].split("@")[0], file) if known else Frame("", file, int(match[1], 16) // BLOCK))
+        if frames:
+            stacks.append(tuple(reversed(frames)))
+    return stacks
+
+
+def ways_to(stacks):
+    """By frame: how stacks came to it, and how often."""
+    ways = collections.defaultdict(collections.Counter)
+    for stack in stacks:
+        seen = set()
+        for i, frame in enumerate(stack):
+            if frame not in seen:
+                ways[frame][stack[:i]] += 1
+                seen.add(frame)
+    return ways
+
+
+def joined(stack, ways, fits=lambda frame: True):
+    """The stack from its first frame on that others have, below the way by which most of them came; None: they have none."""
+    for i, frame in enumerate(stack):
+        if frame in ways and fits(frame):
+            [(way, _)] = ways[frame].most_common(1)
+            return way + stack[i:]
+    return None
+
+
+def is_whole(stack):
+    return PROGRAM.match(stack[0].symbol) or THREAD.match(stack[0].symbol)
+
+
+def graft(stacks):
+    """perf copies so many bytes of each stack, and deeper ones lack their outer frames. They get those of whole stacks that
+    came through the same function, or one frame that says so. Also: how many were cut off, and how many stayed so."""
+    cut = sum(not is_whole(stack) for stack in stacks)
+    for _ in range(2):  # what has become whole leads others on
+        ways = ways_to(filter(is_whole, stacks))
+        stacks = [stack if is_whole(stack) else joined(stack, ways) or stack for stack in stacks]
+    lost = sum(not is_whole(stack) for stack in stacks)
+    return [stack if is_whole(stack) else (Frame(CUT, ""), *stack) for stack in stacks], cut, lost
+
+
+def join_threads(stacks):
+    """Puts what threads do below the call that they do it for: where the main thread does the same."""
+    ways = ways_to(stack for stack in stacks if PROGRAM.match(stack[0].symbol))
+    ours = lambda frame: OURS.match(frame.file)
+    return [THREAD.match(stack[0].symbol) and joined(stack, ways, ours) or stack for stack in stacks]
+
+
+class Rooms:
+    """Which room of the house a symbol is compiled in: where the object files of one room alone have it. What several have
+    (templates, inline functions) belongs to whoever calls it."""
+
+    def __init__(self, rooms_of_symbol):
+        self.rooms = {symbol: next(iter(rooms)) for symbol, rooms in rooms_of_symbol.items() if len(rooms) == 1}
+
+    @classmethod
+    def of_build(cls, build):
+        rooms = collections.defaultdict(set)
+        for folder in sorted(pathlib.Path(build).glob("CMakeFiles/frond*.dir/src/*/")):
+            objects = sorted(folder.rglob("*.o"))
+            names = tools.run("nm", "--defined-only", "-P", "-A", *objects) if objects else ""
+            for line in names.splitlines():
+                symbol, kind = line.split(": ", 1)[1].split()[:2]
+                if kind in "tTwWi":
+                    rooms[symbol].add(folder.name)
+        return cls(rooms)
+
+    def of_stack(self, stack):
+        """A room, or what stands in for one, for each frame."""
+        result = []
+        for frame in stack:
+            stranger = next((name for pattern, name in STRANGERS if re.search(pattern, frame.file)), None)
+            if frame.symbol == CUT:
+                room = CUT
+            elif PROGRAM.match(frame.symbol):
+                room = "C and C++ library"
+            elif OURS.match(frame.file):
+                callers = [r for r, f in zip(result, stack) if OURS.match(f.file)]
+                room = self.rooms.get(frame.symbol) or (callers[-1] if callers else NO_ROOM)
+            else:
+                room = stranger or OTHERS
+            result.append(room)
+        return result
+
+
+def readable(symbols):
+    """Names for people by symbol, by binutils' c++filt."""
+    symbols = sorted(symbols)
+    done = subprocess.run(["c++filt"], input="\n".join(symbols), capture_output=True, text=True, check=True)
+    return dict(zip(symbols, map(short, done.stdout.splitlines())))
+
+
+def short(name):
+    """A function without its arguments, its namespaces and what its template is made for."""
+    wrapped = re.match(r"std::_Function_handler<.*?\), (.*)>::_M_invoke\(", name)
+    name = wrapped[1] if wrapped else name
+    name = re.sub(r"\[(clone|abi:)[^\]]*\]", "", name)
+    name = re.sub(r"\{lambda\(.*?\)#\d+\}", "lambda", name).replace("(anonymous namespace)", "")
+    name = name.replace("operator()", "operator{}").replace("operator<", "operator{<}").replace("operator>", "operator{>}")
+    for pattern in (r"<[^<>]*>", r"\([^()]*\)"):
+        while (less := re.sub(pattern, "", name)) != name:
+            name = less
+    name = re.sub(r"operator\{(.*?)\}", lambda m: "operator" + (m[1] or "()"), name)
+    name = re.sub(r"( const| volatile|&|\.(isra|constprop|part|cold|lto_priv)\.?\d*)+(?=::|$|\s*$)", "", name.strip())
+    return re.sub(r"(^|\s|::)(frond::|::)+", r"\1", name).split(" ")[-1] if "operator " not in name else name
+
+
+def fold(stacks, rooms):
+    """Counts of ways through the program: tuples of (name, room). Neighbours of one name become one frame: code without symbols
+    has the name of its file, Embree's libraries that of Embree, and what the kernel does inside is not asked."""
+    names = readable({frame.symbol for stack in stacks for frame in stack if frame.symbol not in ("", CUT)}) | {CUT: CUT}
+    ways = collections.Counter()
+    for stack in stacks:
+        way = []
+        for frame, room in zip(stack, rooms.of_stack(stack)):
+            name = room if room == "kernel" else names.get(frame.symbol) or (room if room == "Embree" else frame.file)
+            if not way or way[-1] != (name, room):
+                way.append((name, room))
+        ways[tuple(way)] += 1
+    return ways
+
+
+def shares(ways):
+    """By room: samples in it, and samples in it or in what it calls."""
+    itself, below = collections.Counter(), collections.Counter()
+    for way, count in ways.items():
+        itself[way[-1][1]] += count
+        for room in {room for _, room in way}:
+            below[room] += count
+    return itself, below
+
+
+def functions(ways):
+    """Samples in each function itself, by (name, room)."""
+    count = collections.Counter()
+    for way, samples in ways.items():
+        count[way[-1]] += samples
+    return count

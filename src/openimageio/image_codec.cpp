@@ -1,0 +1,114 @@
+#include "image/image_codec.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cstring>
+
+#include "system/file_bytes.h"
+
+namespace frond {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file of some bytes that claims an image of terabytes is refused before memory is asked for; no compression of
+/// pictures does better than this.
+void check_size(const OIIO::ImageSpec& spec, uintmax_t file_size, const Location& where, const fs::path& path) {
+  constexpr uintmax_t kMostCompression = 4096, kAlwaysAllowed = 64u << 20;
+  if (spec.image_bytes(true) > file_size * kMostCompression + kAlwaysAllowed)
+    fail(where, "image \"{}\" of {} bytes claims {} x {} pixels of {} channels", path.string(), file_size, spec.width,
+         spec.height, spec.nchannels);
+}
+
+std::optional<Chromaticities> read_chromaticities(const OIIO::ImageSpec& spec) {
+  const auto* attribute = spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+  if (!attribute) return {};
+  const auto* v = static_cast<const float*>(attribute->data());
+  const auto xy = [v](size_t i) { return Chromaticity{double(v[2 * i]), double(v[2 * i + 1])}; };
+  return Chromaticities{xy(0), xy(1), xy(2), xy(3)};
+}
+
+ImageHeader read_header(const OIIO::ImageSpec& spec) {
+  ImageHeader header;
+  header.color_space = spec.get_string_attribute(kColorSpaceKey);
+  for (const auto& attribute : spec.extra_attribs)
+    if (attribute.type() == OIIO::TypeDesc::STRING && attribute.name() != kColorSpaceKey)
+      header.text[attribute.name().string()] = attribute.get_string();
+  return header;
+}
+
+/// libjpeg fills what is missing with grey and reports success: a whole file has its end marker after its last scan.
+bool is_whole_jpeg(const std::string& bytes) {
+  const size_t last_scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
+  return last_scan != std::string::npos && end != std::string::npos && end > last_scan;
+}
+
+/// OpenImageIO can take a PNG for whole that ends in its pixels.
+bool is_whole_png(const std::string& bytes) {
+  constexpr size_t kAfterName = 8;  // name and checksum
+  const size_t end = bytes.rfind("IEND");
+  return end != std::string::npos && end + kAfterName <= bytes.size();
+}
+
+uintmax_t size_of_file(const fs::path& path, const Location& where) {
+  std::error_code error;
+  const uintmax_t size = fs::file_size(path, error);
+  if (error) fail(where, "cannot read image \"{}\": {}", path.string(), error.message());
+  return size;
+}
+
+class OpenImageIOCodec final : public ImageCodec {
+ public:
+  ImageFile read(const fs::path& path, const Location& where) const override {
+    const uintmax_t file_size = size_of_file(path, where);
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    const auto in = OIIO::ImageInput::open(path.string(), &config);
+    if (!in) fail(where, "cannot read image \"{}\": {}", path.string(), OIIO::geterror());
+    const OIIO::ImageSpec& spec = in->spec();
+    check_size(spec, file_size, where, path);
+    if (spec.depth > 1 || spec.deep) fail(where, "image \"{}\" is a volume, or deep", path.string());
+    const bool is_jpeg = std::strcmp(in->format_name(), "jpeg") == 0,
+               is_png = std::strcmp(in->format_name(), "png") == 0;
+    if ((is_jpeg && !is_whole_jpeg(read_file_bytes(path, where))) ||
+        (is_png && !is_whole_png(read_file_bytes(path, where))))
+      fail(where, "cannot read image \"{}\": the file ends too soon", path.string());
+    ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
+                   spec.format == OIIO::TypeDesc::UINT8};
+    if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.pixels.data()))
+      fail(where, "cannot read image \"{}\": {}", path.string(), in->geterror());
+    return file;
+  }
+
+  /// OpenImageIO does not notice a full disk: it writes to memory.
+  std::vector<unsigned char> encode(const fs::path& path, const Image& image,
+                                    const std::map<std::string, std::string>& text) const override {
+    const auto check = [&path](bool good, const std::string& why) {
+      if (!good) fail({}, "cannot encode \"{}\": {}", path.string(), why);
+    };
+    OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeDesc::UINT8);
+    spec.channelnames = image.channels;
+    spec.attribute("oiio:UnassociatedAlpha", 1);  // no division by alpha on the way to a PNG
+    for (const auto& [key, value] : text) spec.attribute(key, value);
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const auto out = OIIO::ImageOutput::create(path.filename().string());
+    check(out != nullptr, OIIO::geterror());
+    check(out->supports("ioproxy") && out->set_ioproxy(&memory), "OpenImageIO cannot write this format to memory");
+    if (std::strcmp(out->format_name(), "jpeg") == 0) spec.attribute("Compression", "jpeg:95");
+    check(out->open(path.filename().string(), spec), out->geterror());
+    check(out->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data()), out->geterror());
+    check(out->close(), out->geterror());
+    return bytes;
+  }
+};
+
+}  // namespace
+}  // namespace frond
+
+const frond::ImageCodecModule* frond_image_codec() {
+  static const frond::OpenImageIOCodec codec;
+  static const frond::ImageCodecModule module{.codec = &codec};
+  return &module;
+}
