@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include <bit>
 #include <ctime>
 
 #include "core/log.h"
@@ -19,6 +20,10 @@ class RecordingWorld final : public World {
     Ray ray;
     bool shadow;
   };
+  struct PacketRecord {
+    RayPacket packet;
+    bool shadow;
+  };
   explicit RecordingWorld(const World& world) : world_(world) {}
   bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override {
     records_.push_back({ray, false});
@@ -28,15 +33,30 @@ class RecordingWorld final : public World {
     records_.push_back({ray, true});
     return world_.occluded(ray, key);
   }
+  uint32_t intersect(const RayPacket& packet, SurfacePoint* points) const override {
+    packets_.push_back({packet, false});
+    return world_.intersect(packet, points);
+  }
+  uint32_t occluded(const RayPacket& packet) const override {
+    packets_.push_back({packet, true});
+    return world_.occluded(packet);
+  }
   std::span<const Light* const> lights() const override { return world_.lights(); }
   std::span<const EnvironmentLight* const> environment() const override { return world_.environment(); }
   float radius() const override { return world_.radius(); }
   const WavelengthStrategy& wavelengths() const override { return world_.wavelengths(); }
   const std::vector<Record>& records() const { return records_; }
+  const std::vector<PacketRecord>& packets() const { return packets_; }
+  size_t rays() const {
+    size_t rays = records_.size();
+    for (const PacketRecord& p : packets_) rays += size_t(std::popcount(p.packet.lanes));
+    return rays;
+  }
 
  private:
   const World& world_;
   mutable std::vector<Record> records_;
+  mutable std::vector<PacketRecord> packets_;
 };
 
 /// One scene, loaded once for all the benchmarks on it, on one thread.
@@ -88,24 +108,29 @@ void render_paths(benchmark::State& state, const std::string& file, const std::v
   state.counters["rays_per_path"] = double(total.rays) / double(total.paths);
 }
 
-/// The render's own rays, through Embree alone: what share of the render's CPU time is ray tracing.
+/// The render's own rays, one by one and in packets as it traces them, through Embree alone: what share of the render's
+/// CPU time is ray tracing.
 void replay_rays(benchmark::State& state, const std::string& file) {
+  const WorkPlan plan{{160, 160, 352, 352}, {0, 16}};  // enough rays, and they fit into memory
   const LoadedScene loaded(file, kSolved);
   const RecordingWorld recorder(loaded.scene);
   Film film = loaded.film();
-  render(loaded.job(recorder), plan_of(film, {0, 1}), film, loaded.pool);
+  render(loaded.job(recorder), plan, film, loaded.pool);
   double render_seconds = 0, embree_seconds = 0;
   for (auto _ : state) {
     Film again = loaded.film();
-    render_seconds += render(loaded.job(loaded.scene), plan_of(again, {0, 1}), again, loaded.pool).cpu_seconds;
+    render_seconds += render(loaded.job(loaded.scene), plan, again, loaded.pool).cpu_seconds;
     const std::clock_t start = std::clock();
+    const Geometry& geometry = loaded.scene.geometry();
     RTCRayHit query;
     for (const auto& [ray, shadow] : recorder.records())
-      benchmark::DoNotOptimize(shadow ? loaded.scene.geometry().occluded(ray, 0)
-                                      : loaded.scene.geometry().closest(ray, 0, query));
+      benchmark::DoNotOptimize(shadow ? geometry.occluded(ray, 0) : geometry.closest(ray, 0, query));
+    RTCRayHit8 queries;
+    for (const auto& [packet, shadow] : recorder.packets())
+      benchmark::DoNotOptimize(shadow ? geometry.occluded(packet) : geometry.closest(packet, queries));
     embree_seconds += double(std::clock() - start) / CLOCKS_PER_SEC;
   }
-  const double rays = double(recorder.records().size()) * double(state.iterations());
+  const double rays = double(recorder.rays()) * double(state.iterations());
   state.counters["embree_ns_per_ray"] = embree_seconds / rays * 1e9;
   state.counters["embree_share"] = embree_seconds / render_seconds;
 }

@@ -77,9 +77,15 @@ class Spectrum {
   virtual Interval range_nm() const = 0;
   virtual float max_value() const = 0;
 
-  SampledSpectrum sample(const SampledWavelengths& lambda) const {
+  /// At the wavelengths of a path. What is asked for at every hit does it in one call.
+  virtual SampledSpectrum sample(const SampledWavelengths& lambda) const { return sample_by(*this, lambda); }
+
+ protected:
+  /// By `at` of the class that is named, without a call where that is final.
+  template <class T>
+  static SampledSpectrum sample_by(const T& spectrum, const SampledWavelengths& lambda) {
     SampledSpectrum s;
-    for (int i = 0; i < lambda.count; ++i) s[i] = at(lambda.nm[static_cast<size_t>(i)]);
+    for (int i = 0; i < lambda.count; ++i) s[i] = spectrum.at(lambda.nm[static_cast<size_t>(i)]);
     return s;
   }
 };

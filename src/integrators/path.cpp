@@ -10,13 +10,14 @@ namespace frond {
 namespace {
 
 /// Streams of one path vertex, told apart by what they are for.
-enum class Use : uint64_t { shadow_ray, light_bsdf, bsdf, roulette };
+enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette };
 
 /// Keys of the random numbers of one vertex: those of its rays, and streams by use.
 struct VertexKey {
   uint64_t value;
 
-  uint64_t of(Use use) const { return hash_key(value, uint64_t(use)); }
+  /// Streams count on from their keys in other steps.
+  uint64_t of(Use use) const { return value + uint64_t(use) * 0xd1342543de82ef95ull; }
   RandomStream stream(Use use) const { return RandomStream(of(use)); }
 };
 
@@ -24,20 +25,20 @@ struct VertexKey {
 struct Path {
   Ray ray;
   SampledWavelengths lambda;
-  SampledSpectrum throughput{1};
+  SampledSpectrum throughput;
   /// Density of the last direction, for the balance with light sampling; infinite where no light sample competes.
-  float scatter_pdf = INFINITY;
-  LightSelector::Place previous{ray.o, {0, 0, 1}};  ///< the last vertex
-  PathResult result;
-
-  void add(const SampledSpectrum& radiance, float weight) { result.radiance += throughput * radiance * weight; }
+  float scatter_pdf;
+  int depth;                      ///< scattering events so far
+  LightSelector::Place previous;  ///< the last vertex
+  VertexKey key;                  ///< of the vertex that it is at
 };
 
 /// A BSDF at a hit, in world space. The geometric normal decides the side: where the shading normal would put a
 /// direction on the other one, nothing is scattered there.
 class LocalBsdf {
  public:
-  LocalBsdf(const Bsdf& bsdf, const Hit& hit, const Vec3& wo) : bsdf_(bsdf), hit_(hit), frame_(hit.shading) {
+  LocalBsdf() = default;
+  LocalBsdf(const Bsdf& bsdf, const Hit& hit, const Vec3& wo) : bsdf_(&bsdf), ng_(hit.ng), frame_(hit.shading) {
     // A shading normal that turns away from the viewer is bent back to the side that the ray met.
     if (dot(wo, frame_.z) * dot(wo, hit.ng) <= 0) frame_ = Frame::around(hit.ng);
     wo_ = frame_.to_local(wo);
@@ -46,29 +47,43 @@ class LocalBsdf {
   SampledSpectrum f_cos(const Vec3& wi_world, RandomStream rng, float& pdf) const {
     const Vec3 wi = frame_.to_local(wi_world);
     if (!agrees(wi_world, wi)) return {};
-    pdf = bsdf_.pdf(wo_, wi);
-    return pdf > 0 ? bsdf_.f(wo_, wi, rng) * std::abs(wi.z) : SampledSpectrum();
+    pdf = bsdf_->pdf(wo_, wi);
+    return pdf > 0 ? bsdf_->f(wo_, wi, rng) * std::abs(wi.z) : SampledSpectrum();
   }
 
   /// `sample.wi` comes back in world space.
   std::optional<BsdfSample> sample(float uc, Vec2 u, RandomStream rng, SampledSpectrum& weight, float& mis_pdf) const {
-    auto s = bsdf_.sample(wo_, uc, u, rng);
+    auto s = bsdf_->sample(wo_, uc, u, rng);
     if (!s) return {};
     const Vec3 local = s->wi;
     s->wi = frame_.to_world(local);
     if (!agrees(s->wi, local)) return {};
     weight = s->f * (std::abs(local.z) / s->pdf);
-    mis_pdf = s->pdf_is_approximate ? bsdf_.pdf(wo_, local) : s->pdf;
+    mis_pdf = s->pdf_is_approximate ? bsdf_->pdf(wo_, local) : s->pdf;
     return s;
   }
 
  private:
-  bool agrees(const Vec3& world, const Vec3& local) const { return local.z * dot(world, hit_.ng) > 0; }
+  bool agrees(const Vec3& world, const Vec3& local) const { return local.z * dot(world, ng_) > 0; }
 
-  const Bsdf& bsdf_;
-  const Hit& hit_;
+  const Bsdf* bsdf_ = nullptr;
+  Vec3 ng_;
   Frame frame_;
   Vec3 wo_;
+};
+
+/// Places in a bundle, ascending.
+class LaneList {
+ public:
+  void add(size_t lane) { lanes_[count_++] = uint8_t(lane); }
+  bool empty() const { return count_ == 0; }
+  size_t size() const { return count_; }
+  const uint8_t* begin() const { return lanes_.data(); }
+  const uint8_t* end() const { return lanes_.data() + count_; }
+
+ private:
+  std::array<uint8_t, PathBundle::kMost> lanes_;
+  size_t count_ = 0;
 };
 
 constexpr std::string_view kTerminations[] = {"roulette", "attenuation"};
@@ -101,53 +116,113 @@ constexpr Param kPath[] = {
      .doc = "Attenuation below which a path ends."},
 };
 
-/// Unidirectional path tracing; light sampling and BSDF sampling combined by the power heuristic.
-class PathIntegrator final : public Integrator {
+/// What the parameters say.
+struct PathSettings {
+  int max_depth;
+  bool sample_lights;
+  bool cut_off_attenuation;
+  float cutoff;
+};
+
+/// The paths of a bundle, from vertex to vertex side by side.
+class PathTracer final : public Tracer {
  public:
-  explicit PathIntegrator(const Params& p)
-      : max_depth_(p.integer("maxdepth")),
-        sample_lights_(p.boolean("sampledirect")),
-        strategy_(
-            LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers)),
-        cut_off_attenuation_(p.string("termination") == "attenuation"),
-        cutoff_(float(p.real("cutoff"))) {}
+  PathTracer(const World& world, const LightSelector& selector, const PathSettings& settings)
+      : world_(world), selector_(selector), settings_(settings) {}
 
-  void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
-
-  PathResult trace(const World& world, const Ray& camera_ray, SampledWavelengths lambda,
-                   PathContext& context) const override {
-    Path path{.ray = camera_ray, .lambda = lambda, .result = {}};
-    // Vertices are counted for their random numbers, scattering events for the depth: a surface that is not there makes
-    // the one without the other.
-    for (int vertex = 0, depth = 0; vertex - depth <= kMostPassed; ++vertex) {
-      const VertexKey key{hash_key(context.key, uint64_t(vertex))};
-      SurfacePoint point;
-      ++context.rays;
-      if (!world.intersect(path.ray, key.value, point)) {
-        add_environment(world, path);
-        path.result.escaped = true;
-        break;
-      }
-      if (point.light) add_emission(point, path);
-      context.arena.reset();
-      const Bsdf* bsdf = point.material->evaluate(point.hit, path.lambda, context.arena);
-      if (!bsdf) {
-        pass(point.hit, path);
-        continue;
-      }
-      if (depth == 0) path.result.first = first_hit(point);
-      if (depth >= max_depth_) break;
-      const LocalBsdf local(*bsdf, point.hit, -path.ray.d);
-      if (sample_lights_ && !selector_.empty()) add_sampled_light(world, point.hit, local, key, path, context);
-      if (!scatter(point.hit, local, key, path, context)) break;
-      if (depth == 0) path.result.first.albedo = path.throughput;
-      if (ends(world, depth, key, path)) break;
-      path.result.scatterings = ++depth;
+  void trace(PathBundle& bundle) override {
+    bundle_ = &bundle;
+    LaneList alive = begin();
+    for (vertex_ = 0; !alive.empty(); ++vertex_) {
+      const LaneList met = vertex_ == 0 ? meet_first(alive) : meet(alive);
+      arena_.reset();
+      LaneList passed;
+      const LaneList scattering = look(met, passed);
+      if (settings_.sample_lights && !selector_.empty()) add_sampled_lights(scattering);
+      alive = scatter(scattering, passed);
     }
-    return path.result;
   }
 
  private:
+  static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
+
+  LaneList begin() {
+    LaneList lanes;
+    for (size_t i = 0; i < kMost; ++i) {
+      if (!(bundle_->wanted >> i & 1)) continue;
+      lanes.add(i);
+      Path& path = paths_[i];
+      path.ray = bundle_->rays[i];
+      path.lambda = bundle_->lambda[i];
+      path.throughput = SampledSpectrum(1);
+      path.scatter_pdf = INFINITY;
+      path.depth = 0;
+      path.previous = {path.ray.o, {0, 0, 1}};
+      bundle_->results[i] = {};
+    }
+    return lanes;
+  }
+
+  /// Streams of this vertex of a path.
+  VertexKey key_of(size_t lane) const { return {hash_key(bundle_->keys[lane], uint64_t(vertex_))}; }
+
+  /// Camera rays, in packets that hold the same rays whichever results are wanted.
+  LaneList meet_first(const LaneList& alive) {
+    uint32_t hits = 0;
+    for (size_t first = 0; first < kMost; first += kWidth) {
+      constexpr uint32_t kAll = (1u << kWidth) - 1;
+      if ((bundle_->wanted >> first & kAll) == 0) continue;
+      const RayPacket packet{&bundle_->rays[first], &bundle_->keys[first], bundle_->lanes >> first & kAll};
+      hits |= world_.intersect(packet, &points_[first]) << first;
+    }
+    bundle_->traced += alive.size();
+    return after_rays(alive, hits);
+  }
+
+  LaneList meet(const LaneList& alive) {
+    uint32_t hits = 0;
+    for (const size_t i : alive)
+      if (world_.intersect(paths_[i].ray, key_of(i).of(Use::ray), points_[i])) hits |= 1u << i;
+    bundle_->traced += alive.size();
+    return after_rays(alive, hits);
+  }
+
+  /// Those that met something.
+  LaneList after_rays(const LaneList& alive, uint32_t hits) {
+    LaneList met;
+    for (const size_t i : alive) {
+      if (hits >> i & 1) {
+        met.add(i);
+        continue;
+      }
+      add_environment(i);
+      bundle_->results[i].escaped = true;
+    }
+    return met;
+  }
+
+  /// Those that may be scattered. Where a surface is not there, the path goes straight on.
+  LaneList look(const LaneList& met, LaneList& passed) {
+    LaneList scattering;
+    for (const size_t i : met) {
+      const SurfacePoint& point = points_[i];
+      Path& path = paths_[i];
+      path.key = key_of(i);
+      if (point.light) add_emission(i);
+      const Bsdf* bsdf = point.material->evaluate(point.hit, path.lambda, arena_);
+      if (!bsdf) {
+        pass(point.hit, path);
+        if (vertex_ - path.depth < kMostPassed) passed.add(i);
+        continue;
+      }
+      if (path.depth == 0) bundle_->results[i].first = first_hit(point);
+      if (path.depth >= settings_.max_depth) continue;
+      bsdfs_[i] = LocalBsdf(*bsdf, point.hit, -path.ray.d);
+      scattering.add(i);
+    }
+    return scattering;
+  }
+
   static FirstHit first_hit(const SurfacePoint& point) {
     return {.is_hit = true,
             .is_leaf = point.material->is_leaf(),
@@ -158,41 +233,87 @@ class PathIntegrator final : public Integrator {
             .albedo = {}};
   }
 
-  void add_environment(const World& world, Path& path) const {
-    for (const EnvironmentLight* light : world.environment())
-      path.add(light->radiance(path.ray.d, path.lambda), weight_of(*light, path, light->competing_pdf(path.ray.d)));
+  void add(size_t lane, const SampledSpectrum& radiance, float weight) {
+    bundle_->results[lane].radiance += paths_[lane].throughput * radiance * weight;
   }
 
-  void add_emission(const SurfacePoint& point, Path& path) const {
+  void add_environment(size_t lane) {
+    const Path& path = paths_[lane];
+    for (const EnvironmentLight* light : world_.environment())
+      add(lane, light->radiance(path.ray.d, path.lambda),
+          weight_of(*light, path, [&] { return light->competing_pdf(path.ray.d); }));
+  }
+
+  void add_emission(size_t lane) {
+    const SurfacePoint& point = points_[lane];
+    const Path& path = paths_[lane];
     const AreaLight& light = *point.light;
-    const float pdf = light.pdf(point.hit.ng, path.ray.d, length(point.hit.p - path.previous.p));
-    path.add(light.radiance(point.hit.ng, -path.ray.d, path.lambda), weight_of(light, path, pdf));
+    add(lane, light.radiance(point.hit.ng, -path.ray.d, path.lambda), weight_of(light, path, [&] {
+          return light.pdf(point.hit.ng, path.ray.d, length(point.hit.p - path.previous.p));
+        }));
   }
 
   /// Weight of light met by a scattered ray.
-  float weight_of(const Light& light, const Path& path, float light_pdf) const {
+  template <class Pdf>
+  float weight_of(const Light& light, const Path& path, const Pdf& light_pdf) const {
     if (std::isinf(path.scatter_pdf)) return 1;
-    return power_heuristic(path.scatter_pdf, light_pdf * selector_.probability(light, path.previous));
+    return power_heuristic(path.scatter_pdf, light_pdf() * selector_.probability(light, path.previous));
   }
 
-  void add_sampled_light(const World& world, const Hit& hit, const LocalBsdf& bsdf, VertexKey key, Path& path,
-                         PathContext& context) const {
-    // Numbers that no light of the scene would read are not made; which are made is the same for every sample.
-    const float choice = selector_.has_choice() ? context.sampler.get1d() : 0;
-    const Vec2 u = selector_.has_extent() ? context.sampler.get2d() : Vec2{};
-    const auto chosen = selector_.choose({hit.p, hit.ng}, choice);
-    if (!chosen) return;
-    const auto [light, probability] = *chosen;
-    const auto sample = light->sample_competing(hit.p, u, path.lambda);
-    if (!sample || sample->radiance.is_black()) return;
-    float scatter_pdf = 0;
-    const SampledSpectrum f_cos = bsdf.f_cos(sample->wi, key.stream(Use::light_bsdf), scatter_pdf);
-    if (f_cos.is_black()) return;
-    ++context.rays;
-    if (world.occluded(shadow_ray(hit, *sample), key.of(Use::shadow_ray))) return;
-    const float light_pdf = sample->pdf * probability;
-    const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
-    path.add(f_cos * sample->radiance, weight / light_pdf);
+  /// What a light would add to a path, were nothing in the way.
+  struct Lit {
+    SampledSpectrum radiance;
+    float weight;
+  };
+
+  void add_sampled_lights(const LaneList& lanes) {
+    // Numbers that no light of the scene would read are not made.
+    if (selector_.has_choice()) draw(lanes, Number::light, numbers_);
+    if (selector_.has_extent()) draw(lanes, Number::on_light, pairs_);
+    LaneList lit;
+    bool alike = vertex_ == 0;
+    for (const size_t i : lanes) {
+      const SurfacePoint& point = points_[i];
+      const Path& path = paths_[i];
+      const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, selector_.has_choice() ? numbers_[i] : 0.f);
+      if (!chosen) continue;
+      const auto [light, probability] = *chosen;
+      const auto sample =
+          light->sample_competing(point.hit.p, selector_.has_extent() ? pairs_[i] : Vec2{}, path.lambda);
+      if (!sample || sample->radiance.is_black()) continue;
+      float scatter_pdf = 0;
+      const SampledSpectrum f_cos = bsdfs_[i].f_cos(sample->wi, path.key.stream(Use::light_bsdf), scatter_pdf);
+      if (f_cos.is_black()) continue;
+      const float light_pdf = sample->pdf * probability;
+      const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
+      lit_[i] = {f_cos * sample->radiance, weight / light_pdf};
+      shadow_rays_[i] = shadow_ray(point.hit, *sample);
+      shadow_keys_[i] = path.key.of(Use::shadow_ray);
+      lit.add(i);
+      alike = alike && (light->is_delta() || !light->is_distant());
+    }
+    bundle_->traced += lit.size();
+    const uint32_t dark = alike ? occluded_alike(lit) : occluded(lit);
+    for (const size_t i : lit)
+      if (!(dark >> i & 1)) add(i, lit_[i].radiance, lit_[i].weight);
+  }
+
+  uint32_t occluded(const LaneList& lit) const {
+    uint32_t dark = 0;
+    for (const size_t i : lit)
+      if (world_.occluded(shadow_rays_[i], shadow_keys_[i])) dark |= 1u << i;
+    return dark;
+  }
+
+  uint32_t occluded_alike(const LaneList& lit) const {
+    uint32_t dark = 0;
+    for (size_t first = 0; first < kMost; first += kWidth) {
+      RayPacket packet{&shadow_rays_[first], &shadow_keys_[first]};
+      for (const size_t i : lit)
+        if (i >= first && i < first + kWidth) packet.lanes |= 1u << (i - first);
+      if (packet.lanes != 0) dark |= world_.occluded(packet) << first;
+    }
+    return dark;
   }
 
   /// From the lifted origin to the same point of the light, and just short of its surface.
@@ -210,16 +331,35 @@ class PathIntegrator final : public Integrator {
     path.ray = {offset_origin(hit, path.ray.d), path.ray.d};
   }
 
-  /// Turns the path into the next direction. False where nothing is scattered.
-  bool scatter(const Hit& hit, const LocalBsdf& bsdf, VertexKey key, Path& path, PathContext& context) const {
-    const float uc = context.sampler.get1d();
-    const Vec2 u = context.sampler.get2d();
+  /// Turns paths into their next directions. Those that go on, with those that were passed through.
+  LaneList scatter(const LaneList& lanes, const LaneList& passed) {
+    draw(lanes, Number::lobe, numbers_);
+    draw(lanes, Number::direction, pairs_);
+    uint32_t alive = 0;
+    for (const size_t i : passed) alive |= 1u << i;
+    for (const size_t i : lanes) {
+      Path& path = paths_[i];
+      FirstHit& first = bundle_->results[i].first;
+      if (!scatter(points_[i].hit, bsdfs_[i], numbers_[i], pairs_[i], path)) continue;
+      if (path.depth == 0) first.albedo = path.throughput;
+      if (ends(path)) continue;
+      bundle_->results[i].scatterings = ++path.depth;
+      alive |= 1u << i;
+    }
+    LaneList next;
+    for (size_t i = 0; i < kMost; ++i)
+      if (alive >> i & 1) next.add(i);
+    return next;
+  }
+
+  /// False where nothing is scattered.
+  bool scatter(const Hit& hit, const LocalBsdf& bsdf, float uc, Vec2 u, Path& path) const {
     SampledSpectrum weight;
-    const auto sample = bsdf.sample(uc, u, key.stream(Use::bsdf), weight, path.scatter_pdf);
+    const auto sample = bsdf.sample(uc, u, path.key.stream(Use::bsdf), weight, path.scatter_pdf);
     if (!sample) return false;
     path.throughput *= weight;
     path.lambda.retire_black_lanes(path.throughput);
-    if (!sample_lights_ || any(sample->flags & Lobes::specular)) path.scatter_pdf = INFINITY;
+    if (!settings_.sample_lights || any(sample->flags & Lobes::specular)) path.scatter_pdf = INFINITY;
     path.previous = {hit.p, hit.ng};
     path.ray = {offset_origin(hit, sample->wi), sample->wi};
     return true;
@@ -227,33 +367,83 @@ class PathIntegrator final : public Integrator {
 
   /// Whether the path ends here; roulette rewards the survivors. It begins after the third scattering: what is left to
   /// scattered rays, as an even sky is, is found by those before.
-  bool ends(const World& world, int depth, VertexKey key, Path& path) const {
+  bool ends(Path& path) const {
     if (path.throughput.is_black()) return true;
-    if (cut_off_attenuation_) return attenuation(world, path) < cutoff_;
+    if (settings_.cut_off_attenuation) return attenuation(path) < settings_.cutoff;
     const float survival = path.throughput.max();
-    if (depth < 2 || survival >= 1) return false;
-    if (key.stream(Use::roulette).uniform() >= survival) return true;
+    if (path.depth < 2 || survival >= 1) return false;
+    if (path.key.stream(Use::roulette).uniform() >= survival) return true;
     path.throughput *= 1 / survival;
     return false;
   }
 
   /// The paper's luminance of the attenuation where the lanes are its three colours; the mean elsewhere.
-  static float attenuation(const World& world, const Path& path) {
-    const auto shares = world.wavelengths().luminance_shares();
+  float attenuation(const Path& path) const {
+    const auto shares = world_.wavelengths().luminance_shares();
     if (shares.empty()) return mean(path.throughput, path.lambda);
     float sum = 0;
     for (size_t i = 0; i < shares.size(); ++i) sum += shares[i] * path.throughput.v[i];
     return sum;
   }
 
+  /// What the sampler's numbers of a vertex are for.
+  enum class Number : uint32_t { light, on_light, lobe, direction, count };
+
+  void get(const PixelSamples& samples, uint32_t dimension, float* u) const {
+    bundle_->sampler.get1d(samples, dimension, u);
+  }
+  void get(const PixelSamples& samples, uint32_t dimension, Vec2* u) const {
+    bundle_->sampler.get2d(samples, dimension, u);
+  }
+
+  /// For these lanes; for all at once where that is as cheap.
+  template <class T>
+  void draw(const LaneList& lanes, Number number, std::array<T, kMost>& u) const {
+    constexpr size_t kFew = 4;
+    const uint32_t dimension = bundle_->dimension + uint32_t(vertex_) * uint32_t(Number::count) + uint32_t(number);
+    if (lanes.size() > kFew) return get(bundle_->samples, dimension, u.data());
+    const PixelSamples& s = bundle_->samples;
+    for (const size_t i : lanes) get({s.x, s.y, s.first + i, 1}, dimension, &u[i]);
+  }
+
   /// Surfaces that are not there, in one path: rounding might have a ray meet the same one for ever.
   static constexpr int kMostPassed = 1000;
 
-  int max_depth_;
-  bool sample_lights_;
+  const World& world_;
+  const LightSelector& selector_;
+  const PathSettings& settings_;
+  PathBundle* bundle_ = nullptr;  ///< the one that is being traced
+  Arena arena_;
+  /// Counts for random numbers: a surface that is not there makes one too.
+  int vertex_ = 0;
+  std::array<Path, kMost> paths_;
+  std::array<SurfacePoint, kMost> points_;
+  std::array<LocalBsdf, kMost> bsdfs_;
+  std::array<Lit, kMost> lit_;
+  std::array<Ray, kMost> shadow_rays_;
+  std::array<uint64_t, kMost> shadow_keys_;
+  std::array<float, kMost> numbers_;
+  std::array<Vec2, kMost> pairs_;
+};
+
+/// Unidirectional path tracing; light sampling and BSDF sampling combined by the power heuristic.
+class PathIntegrator final : public Integrator {
+ public:
+  explicit PathIntegrator(const Params& p)
+      : settings_{p.integer("maxdepth"), p.boolean("sampledirect"), p.string("termination") == "attenuation",
+                  float(p.real("cutoff"))},
+        strategy_(
+            LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers)) {}
+
+  void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
+
+  std::unique_ptr<Tracer> tracer(const World& world) const override {
+    return std::make_unique<PathTracer>(world, selector_, settings_);
+  }
+
+ private:
+  PathSettings settings_;
   LightSelector::Strategy strategy_;
-  bool cut_off_attenuation_;
-  float cutoff_;
   LightSelector selector_;
 };
 

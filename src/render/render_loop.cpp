@@ -61,7 +61,8 @@ class Worker {
   Worker(const RenderJob& job, const Film& film)
       : job_(job),
         format_(film.format()),
-        sampler_(job.sampler.clone()),
+        tracer_(job.integrator.tracer(job.world)),
+        bundle_{.sampler = job.sampler},
         tile_(film.format(), {}),
         axis_(job.camera.ray({float(format_.settings.width) / 2, float(format_.settings.height) / 2}, {0.5f, 0.5f}).d) {
   }
@@ -88,16 +89,50 @@ class Worker {
   }
 
   void render_pixel(int x, int y, SampleRange samples) {
-    if (!format_.blocks) {
-      for (uint64_t s = samples.begin; s < samples.end; ++s) render_sample(x, y, s);
-      return;
+    assert(!format_.blocks || (samples.begin % FilmTile::kBlock == 0 && samples.end % FilmTile::kBlock == 0));
+    for (uint64_t first = samples.begin / kBundle * kBundle; first < samples.end; first += kBundle) {
+      const uint64_t begin = std::max(samples.begin, first), end = std::min(samples.end, first + kBundle);
+      trace_bundle(place_of(x, y), first, uint32_t(((1u << (end - first)) - 1) & ~((1u << (begin - first)) - 1)));
+      const FilmTile::Pixel before = format_.blocks ? tile_.pixel(x, y) : FilmTile::Pixel{};
+      for (size_t i = size_t(begin - first); i < size_t(end - first); ++i) add(x, y, i);
+      if (format_.blocks) tile_.add_block(x, y, before);
     }
-    assert(samples.begin % FilmTile::kBlock == 0 && samples.end % FilmTile::kBlock == 0);
-    for (uint64_t s = samples.begin; s < samples.end;) {
-      const FilmTile::Pixel before = tile_.pixel(x, y);
-      for (const uint64_t end = s + FilmTile::kBlock; s < end; ++s) render_sample(x, y, s);
-      tile_.add_block(x, y, before);
+    statistics_.rays += bundle_.traced;
+    tile_.add_rays(bundle_.traced);
+    bundle_.traced = 0;
+  }
+
+  /// Camera rays are made for whole packets, so that what is wanted does not decide what is traced together.
+  static uint32_t whole_packets(uint32_t wanted) {
+    constexpr uint32_t kPacket = (1u << RayPacket::kWidth) - 1;
+    uint32_t lanes = 0;
+    for (uint32_t packet = kPacket; packet < 1u << kBundle; packet <<= RayPacket::kWidth)
+      if (wanted & packet) lanes |= packet;
+    return lanes;
+  }
+
+  void trace_bundle(PixelPlace at, uint64_t first, uint32_t wanted) {
+    const Sampler& sampler = job_.sampler;
+    PathBundle& b = bundle_;
+    b.samples = {at.x, at.y, first, kBundle};
+    b.wanted = wanted;
+    b.lanes = whole_packets(wanted);
+    uint32_t dimension = 0;
+    std::array<float, kBundle> u;
+    std::array<Vec2, kBundle> on_filter, on_lens{};
+    sampler.get1d(b.samples, dimension++, u.data());
+    sampler.get2d(b.samples, dimension++, on_filter.data());
+    if (job_.camera.uses_lens()) sampler.get2d(b.samples, dimension++, on_lens.data());
+    b.dimension = dimension;
+    for (size_t i = 0; i < kBundle; ++i) {
+      if (!(b.lanes >> i & 1)) continue;
+      filter_[i] = job_.filter.sample(on_filter[i]);
+      const Vec2 film_point{float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
+      b.rays[i] = job_.camera.ray(film_point, on_lens[i]);
+      b.lambda[i] = job_.wavelengths.sample_in_turn(first + i, u[i]);
+      b.keys[i] = sample_key(job_.seed, at.x, at.y, first + i);
     }
+    tracer_->trace(b);
   }
 
   Triple albedo(const FirstHit& first, const SampledWavelengths& lambda) const {
@@ -106,30 +141,27 @@ class Worker {
     return {color[0] / format_.white[0], color[1] / format_.white[1], color[2] / format_.white[2]};
   }
 
-  void render_sample(int x, int y, uint64_t index) {
-    const PixelPlace at = place_of(x, y);
-    sampler_->start(at.x, at.y, index);
-    const SampledWavelengths lambda = job_.wavelengths.sample_in_turn(index, sampler_->get1d());
-    const auto [offset, weight] = job_.filter.sample(sampler_->get2d());
-    const Vec2 film_point{float(at.x) + 0.5f + offset.x, float(at.y) + 0.5f + offset.y};
-    const Ray ray = job_.camera.ray(film_point, job_.camera.uses_lens() ? sampler_->get2d() : Vec2{});
-    PathContext context{*sampler_, sample_key(job_.seed, at.x, at.y, index), arena_};
-    const PathResult path = job_.integrator.trace(job_.world, ray, lambda, context);
+  void add(int x, int y, size_t i) {
+    const PathResult& path = bundle_.results[i];
+    const SampledWavelengths& lambda = bundle_.lambda[i];
+    const auto& [offset, weight] = filter_[i];
     tile_.add(format_, x, y, job_.wavelengths.sensor(path.radiance, lambda), double(weight), path.first.is_leaf);
     if (path.first.is_hit && format_.channels.means() + format_.channels.ids() > 0) {
-      Features features(format_.channels, {path.first, ray, axis_, albedo(path.first, lambda)});
-      features.from_center = std::hypot(offset.x, offset.y), features.sample = index;
+      Features features(format_.channels, {path.first, bundle_.rays[i], axis_, albedo(path.first, lambda)});
+      features.from_center = std::hypot(offset.x, offset.y), features.sample = bundle_.samples.first + i;
       tile_.add(x, y, features);
     }
-    statistics_.rays += context.rays;
-    tile_.add_rays(context.rays);
     statistics_.ends.add(path);
   }
 
+  static constexpr uint32_t kBundle = PathBundle::kMost;
+  static_assert(kBundle == FilmTile::kBlock);
+
   const RenderJob& job_;
   const FilmFormat& format_;
-  std::unique_ptr<Sampler> sampler_;
-  Arena arena_;
+  std::unique_ptr<Tracer> tracer_;
+  PathBundle bundle_;
+  std::array<Filter::Sample, kBundle> filter_;  ///< of the bundle's samples
   FilmTile tile_;
   Vec3 axis_;  ///< along which depth is measured
   RenderStatistics statistics_;
@@ -173,18 +205,20 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
 
 int film_exponent(const RenderJob& job, const FilmSettings& settings) {
   constexpr uint64_t kPaths = 256;
-  const auto sampler = job.sampler.clone();
-  Arena arena;
+  const auto tracer = job.integrator.tracer(job.world);
   std::vector<double> brightest;
   for (uint64_t i = 0; i < kPaths; ++i) {
     RandomStream place(hash_key(job.seed, i));
     const int x = int(place.uniform() * float(settings.width)), y = int(place.uniform() * float(settings.height));
-    sampler->start(x, y, i);
-    const SampledWavelengths lambda = job.wavelengths.sample_in_turn(i, sampler->get1d());
-    const Ray ray = job.camera.ray({float(x) + 0.5f, float(y) + 0.5f}, {0.5f, 0.5f});
-    PathContext context{*sampler, sample_key(job.seed, x, y, i), arena};
-    const SensorResponse r =
-        job.wavelengths.sensor(job.integrator.trace(job.world, ray, lambda, context).radiance, lambda);
+    PathBundle bundle{
+        .sampler = job.sampler, .dimension = 1, .samples = {x, y, i, PathBundle::kMost}, .lanes = 1, .wanted = 1};
+    float u;
+    job.sampler.get1d({x, y, i}, 0, &u);
+    bundle.lambda[0] = job.wavelengths.sample_in_turn(i, u);
+    bundle.rays[0] = job.camera.ray({float(x) + 0.5f, float(y) + 0.5f}, {0.5f, 0.5f});
+    bundle.keys[0] = sample_key(job.seed, x, y, i);
+    tracer->trace(bundle);
+    const SensorResponse r = job.wavelengths.sensor(bundle.results[0].radiance, bundle.lambda[0]);
     const double value = std::max({r[0], r[1], r[2], r[3]}) * settings.exposure;
     if (value > 0 && std::isfinite(value)) brightest.push_back(value);
   }

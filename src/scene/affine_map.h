@@ -22,13 +22,19 @@ struct AffineMap {
     const float sign = dot(row(0), c0) < 0 ? -1.f : 1.f;
     return Vec3{dot(c0, n), dot(c1, n), dot(c2, n)} * sign;
   }
-  /// The ray in the object's own space; distances along it stay the same.
-  Ray to_object(const Ray& ray) const {
-    const Vec3 x = column(0), y = column(1), z = column(2), yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
+  /// Into the object's own space; distances along rays stay the same.
+  struct Inverse {
+    std::array<Vec3, 3> rows;
+    Vec3 translation;  ///< that of the map, which comes off first
+
+    Vec3 vector(const Vec3& v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
+    Vec3 point(const Vec3& p) const { return vector(p - translation); }
+    Ray ray(const Ray& r) const { return {point(r.o), vector(r.d), r.t_max}; }
+  };
+  Inverse inverse() const {
+    const Vec3 x = column(0), y = column(1), z = column(2), yz = cross(y, z);
     const float scale = 1 / dot(x, yz);
-    const Vec3 o = ray.o - translation();
-    return {Vec3{dot(yz, o), dot(zx, o), dot(xy, o)} * scale,
-            Vec3{dot(yz, ray.d), dot(zx, ray.d), dot(xy, ray.d)} * scale, ray.t_max};
+    return {{yz * scale, cross(z, x) * scale, cross(x, y) * scale}, translation()};
   }
   /// Bound of the image's largest coordinate over the point's, without translation.
   float largest_stretch() const {

@@ -19,26 +19,32 @@
 
 namespace frond::embree {
 
+/// A row of some copies of objects.
+struct Copy {
+  const void* copies;
+  uint32_t row;
+};
+
+/// What is known of one ray of a query beside what Embree knows.
+struct Lane {
+  uint64_t key;
+  Vec3 p;  ///< where the analytic shape that last reported a hit was met, in its object's space
+  /// Copies, from outside in, of the nearest hit so far. How many the hit is in its instID[0] says (level_of).
+  std::array<Copy, InstanceRows::kMost> hit;
+};
+
 /// A query's context: Embree's own first, so that a filter function gets ours by a cast.
 struct Query {
 #if FROND_EMBREE_MAJOR >= 4
   RTCRayQueryContext base;
-  explicit Query(uint64_t random_key) : key(random_key) { rtcInitRayQueryContext(&base); }
+  explicit Query(Lane* of) : lane(of) { rtcInitRayQueryContext(&base); }
 #else
   RTCIntersectContext base;
-  explicit Query(uint64_t random_key) : key(random_key) { rtcInitIntersectContext(&base); }
+  explicit Query(Lane* of) : lane(of) { rtcInitIntersectContext(&base); }
 #endif
-  uint64_t key;
-  Vec3 p{};  ///< where the analytic shape that last reported a hit was met, in its object's space
-
-  /// A row of some copies of objects.
-  struct Copy {
-    const void* copies;
-    uint32_t row;
-  };
-  /// The copies, from outside in, that traversal is in, and those of the nearest hit so far. How many the hit is in its
-  /// instID[0] says (level_of).
-  std::array<Copy, InstanceRows::kMost> inside, hit;
+  Lane* lane;  ///< as many as the query has rays
+  /// The copies, from outside in, that traversal is in.
+  std::array<Copy, InstanceRows::kMost> inside;
   uint32_t depth = 0;
 
   void enter(const Copy& copy) {
@@ -56,26 +62,55 @@ struct Query {
 
 inline uint32_t level_of(const RTCHit& hit) { return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? 0 : hit.instID[0]; }
 
+#if FROND_EMBREE_MAJOR >= 4
+template <class Arguments>
+Arguments arguments_of(Query& query, void (*init)(Arguments*), RTCRayQueryFlags flags) {
+  Arguments arguments;
+  init(&arguments);
+  arguments.context = &query.base;
+  arguments.flags = flags;
+  return arguments;
+}
+#endif
+
 inline void intersect(RTCScene scene, RTCRayHit& ray, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &query.base;
+  auto arguments = arguments_of(query, rtcInitIntersectArguments, RTC_RAY_QUERY_FLAG_INCOHERENT);
   rtcIntersect1(scene, &ray, &arguments);
 #else
   rtcIntersect1(scene, &query.base, &ray);
 #endif
 }
 
+/// Rays that go nearly the same way; those whose `valid` is not -1 are left alone.
+inline void intersect(const int* valid, RTCScene scene, RTCRayHit8& rays, Query& query) {
+#if FROND_EMBREE_MAJOR >= 4
+  auto arguments = arguments_of(query, rtcInitIntersectArguments, RTC_RAY_QUERY_FLAG_COHERENT);
+  rtcIntersect8(valid, scene, &rays, &arguments);
+#else
+  query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &query.base, &rays);
+#endif
+}
+
 /// Sets ray.tfar to minus infinity if anything is in the way.
 inline void occluded(RTCScene scene, RTCRay& ray, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.context = &query.base;
+  auto arguments = arguments_of(query, rtcInitOccludedArguments, RTC_RAY_QUERY_FLAG_INCOHERENT);
   rtcOccluded1(scene, &ray, &arguments);
 #else
   rtcOccluded1(scene, &query.base, &ray);
+#endif
+}
+
+/// The same of rays that go nearly the same way.
+inline void occluded(const int* valid, RTCScene scene, RTCRay8& rays, Query& query) {
+#if FROND_EMBREE_MAJOR >= 4
+  auto arguments = arguments_of(query, rtcInitOccludedArguments, RTC_RAY_QUERY_FLAG_COHERENT);
+  rtcOccluded8(valid, scene, &rays, &arguments);
+#else
+  query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded8(valid, scene, &query.base, &rays);
 #endif
 }
 

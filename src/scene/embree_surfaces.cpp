@@ -14,11 +14,12 @@ Vec2 uv_at(const Surface& surface, const RTCHit& hit) {
 
 /// Whether a ray passes a partly transparent surface: decided for each ray and primitive, in whatever order Embree
 /// asks. `layer` counts the sheets of one primitive along the ray.
-bool passes(const Surface& surface, const Target& target, Vec2 uv, const Query& query, unsigned layer = 0) {
+bool passes(const Surface& surface, const Target& target, Vec2 uv, const Query& query, const Lane& lane,
+            unsigned layer = 0) {
   const float alpha = surface.alpha->evaluate({uv, {}});
   if (alpha >= 1) return false;
   RandomStream random(
-      hash_key(query.key, (uint64_t(target.geometry) << 32) | target.primitive, query.place(), uint64_t(layer)));
+      hash_key(lane.key, (uint64_t(target.geometry) << 32) | target.primitive, query.place(), uint64_t(layer)));
   return random.uniform() >= alpha;
 }
 
@@ -29,24 +30,36 @@ Query& query_of(Context* context) {
 
 void filter_alpha(const RTCFilterFunctionNArguments* args) {
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
-  const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-  if (passes(surface, {hit.geomID, hit.primID}, uv_at(surface, hit), query_of(args->context))) args->valid[0] = 0;
+  const Query& query = query_of(args->context);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const RTCHit hit = rtcGetHitFromHitN(args->hit, args->N, i);
+    if (passes(surface, {hit.geomID, hit.primID}, uv_at(surface, hit), query, query.lane[i])) args->valid[i] = 0;
+  }
 }
 
 void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
-  if (!args->valid[0]) return;
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
-  auto& ray = *reinterpret_cast<RTCRayHit*>(args->rayhit);
   Query& query = query_of(args->context);
   const Target target{args->geomID, args->primID};
-  if (const auto point = meet(surface, target, to_ray(ray.ray), query)) report(*point, target, ray, query);
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const Ray ray = to_ray(rtcGetRayFromRayN(rays, args->N, i));
+    if (const auto point = meet(surface, target, ray, query, query.lane[i]))
+      report(*point, target, args->rayhit, args->N, i, query);
+  }
 }
 
 void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
-  if (!args->valid[0]) return;
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
-  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-  if (meet(surface, {args->geomID, args->primID}, to_ray(ray), query_of(args->context))) ray.tfar = -INFINITY;
+  const Query& query = query_of(args->context);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const Ray ray = to_ray(rtcGetRayFromRayN(args->ray, args->N, i));
+    if (meet(surface, {args->geomID, args->primID}, ray, query, query.lane[i]))
+      RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+  }
 }
 
 void bounds_analytic(const RTCBoundsFunctionArguments* args) {
@@ -82,21 +95,23 @@ RTCGeometry analytic_geometry(RTCDevice device, const Surface& surface) {
 
 }  // namespace
 
-std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query) {
+std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query,
+                               const Lane& lane) {
   const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
   auto point = shape.intersect(target.primitive, ray, 0);
-  for (unsigned layer = 0; point && surface.alpha && passes(surface, target, point->uv, query, layer); ++layer)
+  for (unsigned layer = 0; point && surface.alpha && passes(surface, target, point->uv, query, lane, layer); ++layer)
     point = shape.intersect(target.primitive, ray, point->t);
   return point;
 }
 
-void report(const ShapePoint& point, const Target& target, RTCRayHit& ray, Query& query) {
-  ray.ray.tfar = point.t;
-  query.p = point.p;
-  RTCHit& hit = ray.hit;
-  hit.Ng_x = point.ng.x, hit.Ng_y = point.ng.y, hit.Ng_z = point.ng.z;
-  hit.u = point.uv.x, hit.v = point.uv.y;
-  hit.primID = target.primitive, hit.geomID = target.geometry, hit.instID[0] = query.base.instID[0];
+void report(const ShapePoint& point, const Target& target, RTCRayHitN* rays, unsigned n, unsigned i, Query& query) {
+  RTCRayN_tfar(RTCRayHitN_RayN(rays, n), n, i) = point.t;
+  query.lane[i].p = point.p;
+  RTCHitN* hit = RTCRayHitN_HitN(rays, n);
+  RTCHitN_Ng_x(hit, n, i) = point.ng.x, RTCHitN_Ng_y(hit, n, i) = point.ng.y, RTCHitN_Ng_z(hit, n, i) = point.ng.z;
+  RTCHitN_u(hit, n, i) = point.uv.x, RTCHitN_v(hit, n, i) = point.uv.y;
+  RTCHitN_primID(hit, n, i) = target.primitive, RTCHitN_geomID(hit, n, i) = target.geometry;
+  RTCHitN_instID(hit, n, i, 0) = query.base.instID[0];
 }
 
 RTCGeometry new_geometry(RTCDevice device, const Surface& surface) {

@@ -16,11 +16,12 @@ struct Target {
   unsigned geometry, primitive;
 };
 
-/// The point where an analytic surface stops the ray, if it does: behind a sheet that lets it pass there may be
-/// another.
-std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query);
+/// The point where an analytic surface stops a ray of the query, if it does: behind a sheet that lets it pass there may
+/// be another.
+std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query,
+                               const Lane& lane);
 
-/// Makes that point the ray's nearest.
-void report(const ShapePoint& point, const Target& target, RTCRayHit& ray, Query& query);
+/// Makes that point the nearest of ray i of N.
+void report(const ShapePoint& point, const Target& target, RTCRayHitN* rays, unsigned n, unsigned i, Query& query);
 
 }  // namespace frond::embree

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <map>
 
 #include "core/error.h"
@@ -101,8 +102,8 @@ Bounds bounds_of(RTCScene scene) {
 Vec3 face_forward(const Vec3& n, const Vec3& reference) { return dot(n, reference) < 0 ? -n : n; }
 
 /// Where the surface is so small, or its vertex normals so contrary, that there is no normal, the next best: no NaN.
-void set_frame(Hit& hit, const Vec3& ng, const Vec3& ns, const Vec3& direction) {
-  const Vec3 geometric = normalize_any(ng), shading = normalize_any(ns);
+void set_frame(Hit& hit, const Vec3* ns, const Vec3& direction) {
+  const Vec3 geometric = normalize_any(hit.ng), shading = ns ? normalize_any(*ns) : geometric;
   hit.ng = geometric == Vec3{} ? -direction : geometric;
   hit.shading = Frame::around(shading == Vec3{} ? hit.ng : face_forward(shading, hit.ng));
 }
@@ -128,30 +129,105 @@ bool passes(const Ray& ray, const Bounds& box) {
   return enter <= leave * (1 + 0x1p-20f);
 }
 
-/// In the space of the object that the surface is part of.
-void fill(const Surface& surface, const RTCHit& at, const embree::Query& query, Hit& hit, Vec3& ns) {
+using Float8 = float __attribute__((vector_size(32), may_alias));
+
+Float8& lanes(float* x) { return *reinterpret_cast<Float8*>(x); }
+const Float8& lanes(const float* x) { return *reinterpret_cast<const Float8*>(x); }
+
+/// Both may be the same rays.
+void transform(const AffineMap::Inverse& map, const RTCRay8& in, RTCRay8& out) {
+  const Vec3 &x = map.rows[0], &y = map.rows[1], &z = map.rows[2], &t = map.translation;
+  const Float8 px = lanes(in.org_x) - t.x, py = lanes(in.org_y) - t.y, pz = lanes(in.org_z) - t.z;
+  lanes(out.org_x) = x.x * px + x.y * py + x.z * pz;
+  lanes(out.org_y) = y.x * px + y.y * py + y.z * pz;
+  lanes(out.org_z) = z.x * px + z.y * py + z.z * pz;
+  const Float8 dx = lanes(in.dir_x), dy = lanes(in.dir_y), dz = lanes(in.dir_z);
+  lanes(out.dir_x) = x.x * dx + x.y * dy + x.z * dz;
+  lanes(out.dir_y) = y.x * dx + y.y * dy + y.z * dz;
+  lanes(out.dir_z) = z.x * dx + z.y * dy + z.z * dz;
+  lanes(out.tnear) = lanes(in.tnear);
+  lanes(out.tfar) = lanes(in.tfar);
+  lanes(out.time) = lanes(in.time);
+  std::memcpy(out.mask, in.mask, sizeof out.mask);
+  std::memcpy(out.id, in.id, sizeof out.id);
+  std::memcpy(out.flags, in.flags, sizeof out.flags);
+}
+
+/// As `passes` of one ray. Whether any does.
+bool passes(const RTCRay8& rays, const Bounds& box, const int* valid, int* passing) {
+  Float8 enter{}, leave = lanes(rays.tfar);
+  const auto clip = [&](const float* origins, const float* directions, float low, float high) {
+    const Float8 inverse = 1 / lanes(directions);
+    const Float8 a = (low - lanes(origins)) * inverse, b = (high - lanes(origins)) * inverse;
+    const Float8 near = a < b ? a : b, far = a < b ? b : a;
+    enter = near > enter ? near : enter;
+    leave = far < leave ? far : leave;
+  };
+  clip(rays.org_x, rays.dir_x, box.min.x, box.max.x);
+  clip(rays.org_y, rays.dir_y, box.min.y, box.max.y);
+  clip(rays.org_z, rays.dir_z, box.min.z, box.max.z);
+  const auto inside = enter <= leave * (1 + 0x1p-20f);
+  int any = 0;
+  for (int i = 0; i < RayPacket::kWidth; ++i) any |= passing[i] = valid[i] & inside[i];
+  return any != 0;
+}
+
+RTCRay8 from_packet(const RayPacket& packet) {
+  RTCRay8 rays;
+  for (size_t i = 0; i < RayPacket::kWidth; ++i) {
+    const Ray& r = packet.rays[i];
+    rays.org_x[i] = r.o.x, rays.org_y[i] = r.o.y, rays.org_z[i] = r.o.z;
+    rays.dir_x[i] = r.d.x, rays.dir_y[i] = r.d.y, rays.dir_z[i] = r.d.z;
+    rays.tfar[i] = r.t_max;
+  }
+  std::ranges::fill(rays.tnear, 0.f);
+  std::ranges::fill(rays.time, 0.f);
+  std::ranges::fill(rays.mask, ~0u);
+  std::ranges::fill(rays.id, 0u);
+  std::ranges::fill(rays.flags, 0u);
+  return rays;
+}
+
+/// What Embree, and we, know of a packet's rays.
+struct PacketQuery {
+  alignas(32) std::array<int, RayPacket::kWidth> valid;
+  std::array<embree::Lane, RayPacket::kWidth> lanes;
+  embree::Query query{lanes.data()};
+
+  explicit PacketQuery(const RayPacket& packet) {
+    for (size_t i = 0; i < RayPacket::kWidth; ++i) {
+      valid[i] = -int(packet.lanes >> i & 1);
+      lanes[i].key = packet.keys[i];
+    }
+  }
+};
+
+/// In the space of the object that the surface is part of. Whether the shading normal is not the geometric one.
+bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hit& hit, Vec3& ns) {
   hit.extent = 0;
   if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry)) {
     const Triangle t(**mesh, at.primID, {at.u, at.v});
     hit.p = t.p();
     for (const uint32_t i : t.corners()) hit.extent = std::max(hit.extent, largest_coordinate((*mesh)->p[i]));
     hit.ng = t.ng();
-    ns = t.ns();
     hit.at.uv = t.uv();
-  } else {
-    hit.ng = ns = {at.Ng_x, at.Ng_y, at.Ng_z};
-    hit.at.uv = {at.u, at.v};
-    hit.p = query.p;
-    hit.extent = largest_coordinate(hit.p);
+    if ((*mesh)->n.empty()) return false;
+    ns = t.ns();
+    return true;
   }
+  hit.ng = {at.Ng_x, at.Ng_y, at.Ng_z};
+  hit.at.uv = {at.u, at.v};
+  hit.p = lane.p;
+  hit.extent = largest_coordinate(hit.p);
+  return false;
 }
 
-/// Out of an object into the space where a copy of it stands.
-void place(const AffineMap& map, Hit& hit, Vec3& ns) {
+/// Out of an object into the space where a copy of it stands. `ns` is nullptr where it is that of the hit.
+void place(const AffineMap& map, Hit& hit, Vec3* ns) {
   hit.p = map.point(hit.p);
   hit.extent = map.largest_stretch() * hit.extent + largest_coordinate(map.translation());
   hit.ng = map.normal(normalize_any(hit.ng));
-  ns = map.normal(normalize_any(ns));
+  if (ns) *ns = map.normal(normalize_any(*ns));
 }
 
 }  // namespace
@@ -163,25 +239,43 @@ struct GeometryCallbacks {
 
   static Ray to_object(const Copies& copies, uint32_t row, const Ray& ray) {
     const Instances& i = copies.instances;
-    return i.table->map(row).to_object(i.is_placed ? i.placement.to_object(ray) : ray);
+    return i.table->map(row).inverse().ray(i.is_placed ? i.placement.inverse().ray(ray) : ray);
   }
 
   static void intersect(const RTCIntersectFunctionNArguments* args) {
-    if (!args->valid[0]) return;
     const auto& copies = *static_cast<const Copies*>(args->geometryUserPtr);
-    auto& ray = *reinterpret_cast<RTCRayHit*>(args->rayhit);
     auto& query = *reinterpret_cast<embree::Query*>(args->context);
-    const Object& object = copies.object(args->primID);
-    const Ray inner = to_object(copies, args->primID, embree::to_ray(ray.ray));
+    const embree::Copy copy{&copies, args->primID};
+    if (args->N == RayPacket::kWidth) {
+      intersect(copy, args->valid, *reinterpret_cast<RTCRayHit8*>(args->rayhit), query);
+    } else if (args->valid[0]) {
+      intersect(copy, *reinterpret_cast<RTCRayHit*>(args->rayhit), query);
+    }
+  }
+
+  static void occluded(const RTCOccludedFunctionNArguments* args) {
+    const auto& copies = *static_cast<const Copies*>(args->geometryUserPtr);
+    auto& query = *reinterpret_cast<embree::Query*>(args->context);
+    const embree::Copy copy{&copies, args->primID};
+    if (args->N == RayPacket::kWidth) {
+      occluded(copy, args->valid, *reinterpret_cast<RTCRay8*>(args->ray), query);
+    } else if (args->valid[0]) {
+      occluded(copy, *reinterpret_cast<RTCRay*>(args->ray), query);
+    }
+  }
+
+  static void intersect(const embree::Copy& copy, RTCRayHit& ray, embree::Query& query) {
+    const auto& copies = *static_cast<const Copies*>(copy.copies);
+    const Object& object = copies.object(copy.row);
+    const Ray inner = to_object(copies, copy.row, embree::to_ray(ray.ray));
     if (!passes(inner, object.bounds)) return;
     const uint32_t level = query.depth;
-    const embree::Query::Copy copy{&copies, args->primID};
     query.enter(copy);
     if (object.only_primitive) {
       constexpr embree::Target kOnly{0, 0};
-      if (const auto point = embree::meet(*object.only_primitive, kOnly, inner, query)) {
-        embree::report(*point, kOnly, ray, query);
-        query.hit[level] = copy;
+      if (const auto point = embree::meet(*object.only_primitive, kOnly, inner, query, *query.lane)) {
+        embree::report(*point, kOnly, reinterpret_cast<RTCRayHitN*>(&ray), 1, 0, query);
+        query.lane->hit[level] = copy;
       }
     } else {
       RTCRayHit nested;
@@ -191,29 +285,71 @@ struct GeometryCallbacks {
       if (nested.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
         ray.ray.tfar = nested.ray.tfar;
         ray.hit = nested.hit;
-        query.hit[level] = copy;
+        query.lane->hit[level] = copy;
       }
     }
     query.leave();
   }
 
-  static void occluded(const RTCOccludedFunctionNArguments* args) {
-    if (!args->valid[0]) return;
-    const auto& copies = *static_cast<const Copies*>(args->geometryUserPtr);
-    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-    auto& query = *reinterpret_cast<embree::Query*>(args->context);
-    const Object& object = copies.object(args->primID);
-    const Ray inner = to_object(copies, args->primID, embree::to_ray(ray));
+  static void occluded(const embree::Copy& copy, RTCRay& ray, embree::Query& query) {
+    const auto& copies = *static_cast<const Copies*>(copy.copies);
+    const Object& object = copies.object(copy.row);
+    const Ray inner = to_object(copies, copy.row, embree::to_ray(ray));
     if (!passes(inner, object.bounds)) return;
-    query.enter({&copies, args->primID});
+    query.enter(copy);
     if (object.only_primitive) {
-      if (embree::meet(*object.only_primitive, {0, 0}, inner, query)) ray.tfar = -INFINITY;
+      if (embree::meet(*object.only_primitive, {0, 0}, inner, query, *query.lane)) ray.tfar = -INFINITY;
     } else {
       RTCRay nested = embree::from_ray(inner);
       embree::occluded(object.scene.get(), nested, query);
       if (nested.tfar < 0) ray.tfar = -INFINITY;
     }
     query.leave();
+  }
+
+  /// The rays of a packet in the object's space, and which of them pass its box. False where none does.
+  static bool to_object(const embree::Copy& copy, const int* valid, const RTCRay8& rays, RTCRay8& inner, int* passing) {
+    const Copies& copies = *static_cast<const Copies*>(copy.copies);
+    const Instances& i = copies.instances;
+    const AffineMap::Inverse map = i.table->map(copy.row).inverse();
+    if (i.is_placed) {
+      transform(i.placement.inverse(), rays, inner);
+      transform(map, inner, inner);
+    } else {
+      transform(map, rays, inner);
+    }
+    return passes(inner, copies.object(copy.row).bounds, valid, passing);
+  }
+
+  static void intersect(const embree::Copy& copy, const int* valid, RTCRayHit8& rays, embree::Query& query) {
+    RTCRayHit8 inner;
+    alignas(32) std::array<int, RayPacket::kWidth> passing;
+    if (!to_object(copy, valid, rays.ray, inner.ray, passing.data())) return;
+    std::ranges::fill(inner.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+    const uint32_t level = query.depth;
+    query.enter(copy);
+    embree::intersect(passing.data(), static_cast<const Copies*>(copy.copies)->object(copy.row).scene.get(), inner,
+                      query);
+    query.leave();
+    for (unsigned i = 0; i < RayPacket::kWidth; ++i) {
+      if (!passing[i] || inner.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      rays.ray.tfar[i] = inner.ray.tfar[i];
+      const RTCHit at = rtcGetHitFromHitN(reinterpret_cast<RTCHitN*>(&inner.hit), RayPacket::kWidth, i);
+      rtcCopyHitToHitN(reinterpret_cast<RTCHitN*>(&rays.hit), &at, RayPacket::kWidth, i);
+      query.lane[i].hit[level] = copy;
+    }
+  }
+
+  static void occluded(const embree::Copy& copy, const int* valid, RTCRay8& rays, embree::Query& query) {
+    RTCRay8 inner;
+    alignas(32) std::array<int, RayPacket::kWidth> passing;
+    if (!to_object(copy, valid, rays, inner, passing.data())) return;
+    query.enter(copy);
+    embree::occluded(passing.data(), static_cast<const Copies*>(copy.copies)->object(copy.row).scene.get(), inner,
+                     query);
+    query.leave();
+    for (unsigned i = 0; i < RayPacket::kWidth; ++i)
+      if (passing[i] && inner.tfar[i] < 0) rays.tfar[i] = -INFINITY;
   }
 
   static void bounds(const RTCBoundsFunctionArguments* args) {
@@ -398,7 +534,9 @@ std::vector<float> Geometry::areas() const {
 }
 
 bool Geometry::closest(const Ray& ray, uint64_t key, RTCRayHit& query) const {
-  embree::Query context(key);
+  embree::Lane lane;
+  lane.key = key;
+  embree::Query context(&lane);
   return closest(ray, context, query);
 }
 
@@ -409,40 +547,87 @@ bool Geometry::closest(const Ray& ray, embree::Query& context, RTCRayHit& query)
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-bool Geometry::intersect(const Ray& ray, uint64_t key, GeometryHit& hit) const {
+bool Geometry::intersect(const Ray& ray, uint64_t key, GeometryHit& met, Hit& hit) const {
   RTCRayHit query;
-  embree::Query context(key);
+  embree::Lane lane;
+  lane.key = key;
+  embree::Query context(&lane);
   if (!closest(ray, context, query)) return false;
+  met.t = query.ray.tfar;
+  describe(query.hit, lane, ray, met, hit);
+  return true;
+}
+
+uint32_t Geometry::closest(const RayPacket& packet, embree::Query& context, const int* valid, RTCRayHit8& query) const {
+  query.ray = from_packet(packet);
+  std::ranges::fill(query.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+  std::ranges::fill(query.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+  embree::intersect(valid, world_->scene.get(), query, context);
+  uint32_t hits = 0;
+  for (size_t i = 0; i < RayPacket::kWidth; ++i)
+    if (valid[i] && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) hits |= 1u << i;
+  return hits;
+}
+
+uint32_t Geometry::closest(const RayPacket& packet, RTCRayHit8& query) const {
+  PacketQuery context(packet);
+  return closest(packet, context.query, context.valid.data(), query);
+}
+
+uint32_t Geometry::intersect(const RayPacket& packet, GeometryHit* met, SurfacePoint* points) const {
+  PacketQuery context(packet);
+  RTCRayHit8 query;
+  const uint32_t hits = closest(packet, context.query, context.valid.data(), query);
+  for (unsigned i = 0; i < RayPacket::kWidth; ++i)
+    if (hits >> i & 1) {
+      const RTCHit at = rtcGetHitFromHitN(reinterpret_cast<RTCHitN*>(&query.hit), RayPacket::kWidth, i);
+      met[i].t = query.ray.tfar[i];
+      describe(at, context.lanes[i], packet.rays[i], met[i], points[i].hit);
+    }
+  return hits;
+}
+
+void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, GeometryHit& met, Hit& hit) const {
   const Object* object = world_.get();
-  const uint32_t level = embree::level_of(query.hit);
-  hit.hit.at.instance = {};
-  hit.instance = 0;
+  const uint32_t level = embree::level_of(at);
+  hit.at.instance = {};
+  met.instance = 0;
   for (uint32_t i = 0; i < level; ++i) {
-    const auto& copies = *static_cast<const Copies*>(context.hit[i].copies);
-    const uint32_t row = context.hit[i].row;
+    const auto& copies = *static_cast<const Copies*>(lane.hit[i].copies);
+    const uint32_t row = lane.hit[i].row;
     const InstanceTable& table = *copies.instances.table;
     object = &copies.object(row);
-    hit.instance += copies.ids.empty() ? copies.first_id + row * object->ids : copies.ids[row];
-    if (!table.columns().empty()) hit.hit.at.instance.add(table.columns(), table.bytes(row));
+    met.instance += copies.ids.empty() ? copies.first_id + row * object->ids : copies.ids[row];
+    if (!table.columns().empty()) hit.at.instance.add(table.columns(), table.bytes(row));
   }
-  const Surface& surface = object->parts.surfaces[query.hit.geomID];
-  Vec3 ns;
-  fill(surface, query.hit, context, hit.hit, ns);
+  const Surface& surface = object->parts.surfaces[at.geomID];
+  Vec3 own_normal;
+  Vec3* const ns = fill(surface, at, lane, hit, own_normal) ? &own_normal : nullptr;
   for (uint32_t i = level; i-- > 0;) {
-    const Instances& instances = static_cast<const Copies*>(context.hit[i].copies)->instances;
-    place(instances.table->map(context.hit[i].row), hit.hit, ns);
-    if (instances.is_placed) place(instances.placement, hit.hit, ns);
+    const Instances& instances = static_cast<const Copies*>(lane.hit[i].copies)->instances;
+    place(instances.table->map(lane.hit[i].row), hit, ns);
+    if (instances.is_placed) place(instances.placement, hit, ns);
   }
-  set_frame(hit.hit, hit.hit.ng, ns, ray.d);
-  hit.t = query.ray.tfar;
-  hit.material = surface.material;
-  hit.surface = level == 0 ? std::optional(query.hit.geomID) : std::nullopt;
-  return true;
+  set_frame(hit, ns, ray.d);
+  met.material = surface.material;
+  met.surface = level == 0 ? std::optional(at.geomID) : std::nullopt;
+}
+
+uint32_t Geometry::occluded(const RayPacket& packet) const {
+  PacketQuery context(packet);
+  RTCRay8 query = from_packet(packet);
+  embree::occluded(context.valid.data(), world_->scene.get(), query, context.query);
+  uint32_t hits = 0;
+  for (size_t i = 0; i < RayPacket::kWidth; ++i)
+    if (context.valid[i] && query.tfar[i] < 0) hits |= 1u << i;
+  return hits;
 }
 
 bool Geometry::occluded(const Ray& ray, uint64_t key) const {
   RTCRay query = embree::from_ray(ray);
-  embree::Query context(key);
+  embree::Lane lane;
+  lane.key = key;
+  embree::Query context(&lane);
   embree::occluded(world_->scene.get(), query, context);
   return query.tfar < 0;
 }

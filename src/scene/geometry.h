@@ -12,10 +12,13 @@
 struct RTCDeviceTy;
 struct RTCSceneTy;
 struct RTCRayHit;
+struct RTCRayHit8;
+struct RTCHit;
 
 namespace frond {
 
 namespace embree {
+struct Lane;
 struct Query;
 struct Release {
   void operator()(RTCDeviceTy* device) const;
@@ -47,9 +50,8 @@ struct ObjectParts {
   std::vector<Instances> instances;
 };
 
-/// What a ray met, and where: which things the numbers stand for, the scene knows.
+/// What a ray met: which things the numbers stand for, the scene knows.
 struct GeometryHit {
-  Hit hit;
   float t = 0;                      ///< along the ray
   uint32_t material = 0;            ///< as of a Surface
   std::optional<uint32_t> surface;  ///< of Geometry::surfaces, where the shape stands for itself
@@ -67,10 +69,14 @@ class Geometry {
   Geometry(const Geometry&) = delete;
   Geometry& operator=(const Geometry&) = delete;
 
-  bool intersect(const Ray& ray, uint64_t key, GeometryHit& hit) const;
+  bool intersect(const Ray& ray, uint64_t key, GeometryHit& met, Hit& hit) const;
   /// Embree's part of `intersect` alone.
   bool closest(const Ray& ray, uint64_t key, RTCRayHit& query) const;
   bool occluded(const Ray& ray, uint64_t key) const;
+  /// As World's of packets. Sets the points' hits alone.
+  uint32_t intersect(const RayPacket& packet, GeometryHit* met, SurfacePoint* points) const;
+  uint32_t closest(const RayPacket& packet, RTCRayHit8& query) const;
+  uint32_t occluded(const RayPacket& packet) const;
   Bounds bounds() const;
 
   /// Surfaces that stand for themselves, which alone can give off light.
@@ -89,6 +95,8 @@ class Geometry {
   class Areas;
 
   bool closest(const Ray& ray, embree::Query& context, RTCRayHit& query) const;
+  uint32_t closest(const RayPacket& packet, embree::Query& context, const int* valid, RTCRayHit8& query) const;
+  void describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, GeometryHit& met, Hit& hit) const;
   std::unique_ptr<Object> build(ObjectParts parts, uint64_t first_id);
   void attach(Object& object);
   void check() const;

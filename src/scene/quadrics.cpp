@@ -128,8 +128,10 @@ class Disk final : public Quadric {
     if (!within(t, t_min, ray)) return {};
     const Vec3d p{o.x + t * d.x, o.y + t * d.y, height_};
     const double r = std::hypot(p.x, p.y);
-    if (r > radius_ || r < inner_ || azimuth(p) > phi_max()) return {};
-    return at(p, r, float(t));
+    if (r > radius_ || r < inner_) return {};
+    const double phi = azimuth(p);
+    if (phi > phi_max()) return {};
+    return at(p, r, phi, float(t));
   }
 
   /// A polygon around it.
@@ -146,13 +148,13 @@ class Disk final : public Quadric {
   ShapePoint sample(Vec2 u) const override {
     const double r = std::sqrt(inner_ * inner_ + double(u.x) * (radius_ * radius_ - inner_ * inner_));
     const double phi = double(u.y) * phi_max();
-    return at({r * std::cos(phi), r * std::sin(phi), height_}, r, 0);
+    return at({r * std::cos(phi), r * std::sin(phi), height_}, r, phi, 0);
   }
   double area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_) * area_scale(); }
 
  private:
-  ShapePoint at(const Vec3d& p, double r, float t) const {
-    return to_scene(p, {0, 0, 1}, {float(azimuth(p) / phi_max()), float((radius_ - r) / (radius_ - inner_))}, t);
+  ShapePoint at(const Vec3d& p, double r, double phi, float t) const {
+    return to_scene(p, {0, 0, 1}, {float(phi / phi_max()), float((radius_ - r) / (radius_ - inner_))}, t);
   }
 
   double radius_, inner_, height_;

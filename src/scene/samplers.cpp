@@ -1,4 +1,5 @@
-#include <cmath>
+#include <algorithm>
+#include <array>
 
 #include "core/sampler.h"
 #include "scene/registry.h"
@@ -35,20 +36,26 @@ class SamplerBase : public Sampler {
 class IndependentSampler final : public SamplerBase {
  public:
   using SamplerBase::SamplerBase;
-  void start(int x, int y, uint64_t index) override { stream_ = RandomStream(sample_key(seed(), x, y, index)); }
-  float get1d() override { return stream_.uniform(); }
-  Vec2 get2d() override {
-    const float x = stream_.uniform();
-    return {x, stream_.uniform()};
+  void get1d(const PixelSamples& samples, uint32_t dimension, float* u) const override {
+    for (uint32_t i = 0; i < samples.count; ++i) u[i] = stream(samples, i, dimension).uniform();
   }
-  std::unique_ptr<Sampler> clone() const override { return std::make_unique<IndependentSampler>(*this); }
+  void get2d(const PixelSamples& samples, uint32_t dimension, Vec2* u) const override {
+    for (uint32_t i = 0; i < samples.count; ++i) {
+      RandomStream numbers = stream(samples, i, dimension);
+      u[i].x = numbers.uniform();
+      u[i].y = numbers.uniform();
+    }
+  }
 
  private:
-  RandomStream stream_{0};
+  RandomStream stream(const PixelSamples& samples, uint32_t i, uint32_t dimension) const {
+    return RandomStream(hash_key(sample_key(seed(), samples.x, samples.y, samples.first + i), dimension));
+  }
 };
 
 constexpr uint32_t reverse_bits(uint32_t v) {
-  v = __builtin_bswap32(v);
+  v = v << 16 | v >> 16;
+  v = (v & 0x00ff00ffu) << 8 | (v >> 8 & 0x00ff00ffu);
   v = (v & 0x0f0f0f0fu) << 4 | (v >> 4 & 0x0f0f0f0fu);
   v = (v & 0x33333333u) << 2 | (v >> 2 & 0x33333333u);
   return (v & 0x55555555u) << 1 | (v >> 1 & 0x55555555u);
@@ -76,37 +83,87 @@ constexpr uint32_t sobol_second(uint32_t v) {
 
 constexpr float to_unit(uint32_t v) { return static_cast<float>(v >> 8) * 0x1p-24f; }
 
-/// The first two dimensions of Sobol's sequence, Owen-scrambled, padded: every request shuffles the sample order anew
+/// How one dimension of one pixel is scrambled.
+struct Scramble {
+  uint32_t order, seed_first, seed_second;
+
+  /// Where in the sequence a sample stands, bits reversed.
+  uint32_t place(uint32_t index) const { return reverse_bits(owen_hash(reverse_bits(index), order)); }
+  float first(uint32_t place) const { return to_unit(reverse_bits(owen_hash(place, seed_first))); }
+  float second(uint32_t place) const { return to_unit(reverse_bits(owen_hash(sobol_second(place), seed_second))); }
+};
+
+/// Samples that are made at once: the compiler makes vectors of loops of this length.
+constexpr uint32_t kBlock = 16;
+
+[[gnu::always_inline]] inline void make_block(const Scramble& s, uint32_t index, float* u) {
+  for (uint32_t i = 0; i < kBlock; ++i) u[i] = s.first(s.place(index + i));
+}
+[[gnu::always_inline]] inline void make_block(const Scramble& s, uint32_t index, Vec2* u) {
+  std::array<float, kBlock> x, y;
+  for (uint32_t i = 0; i < kBlock; ++i) {
+    const uint32_t place = s.place(index + i);
+    x[i] = s.first(place);
+    y[i] = s.second(place);
+  }
+  for (uint32_t i = 0; i < kBlock; ++i) u[i] = {x[i], y[i]};
+}
+
+/// The same once more for wider instructions, chosen at run time: whole numbers, so the same bits.
+template <class T>
+void block_any(const Scramble& s, uint32_t index, T* u) {
+  make_block(s, index, u);
+}
+#if defined(__x86_64__)
+template <class T>
+[[gnu::target("avx2")]] void block_avx2(const Scramble& s, uint32_t index, T* u) {
+  make_block(s, index, u);
+}
+template <class T>
+void block(const Scramble& s, uint32_t index, T* u) {
+  static const auto make = __builtin_cpu_supports("avx2") ? block_avx2<T> : block_any<T>;
+  make(s, index, u);
+}
+#else
+template <class T>
+void block(const Scramble& s, uint32_t index, T* u) {
+  block_any(s, index, u);
+}
+#endif
+
+void one(const Scramble& s, uint32_t index, float& u) { u = s.first(s.place(index)); }
+void one(const Scramble& s, uint32_t index, Vec2& u) {
+  const uint32_t place = s.place(index);
+  u = {s.first(place), s.second(place)};
+}
+
+/// The first two dimensions of Sobol's sequence, Owen-scrambled, padded: every dimension shuffles the sample order anew
 /// (Burley 2020, "Practical Hash-based Owen Scrambling").
 class PaddedSobolSampler final : public SamplerBase {
  public:
   using SamplerBase::SamplerBase;
-  void start(int x, int y, uint64_t index) override {
-    reversed_index_ = reverse_bits(static_cast<uint32_t>(index));
-    pixel_key_ = sample_key(seed(), x, y, index >> 32);  // sequences of 2^32 samples, one after the other
-    dimension_ = 0;
-  }
-  float get1d() override {
-    const uint64_t key = next_key();
-    const uint32_t index = shuffled_index(key);
-    return to_unit(reverse_bits(owen_hash(index, static_cast<uint32_t>(mix64(key)))));
-  }
-  Vec2 get2d() override {
-    const uint64_t key = next_key(), seeds = mix64(key);
-    const uint32_t index = shuffled_index(key);
-    return {to_unit(reverse_bits(owen_hash(index, static_cast<uint32_t>(seeds)))),
-            to_unit(reverse_bits(owen_hash(sobol_second(index), static_cast<uint32_t>(seeds >> 32))))};
-  }
-  std::unique_ptr<Sampler> clone() const override { return std::make_unique<PaddedSobolSampler>(*this); }
+  void get1d(const PixelSamples& samples, uint32_t dimension, float* u) const override { get(samples, dimension, u); }
+  void get2d(const PixelSamples& samples, uint32_t dimension, Vec2* u) const override { get(samples, dimension, u); }
 
  private:
-  uint64_t next_key() { return mix64(pixel_key_ + ++dimension_ * 0x9e3779b97f4a7c15ull); }
-  uint32_t shuffled_index(uint64_t key) const {
-    return reverse_bits(owen_hash(reversed_index_, static_cast<uint32_t>(key >> 32)));
+  template <class T>
+  void get(const PixelSamples& samples, uint32_t dimension, T* u) const {
+    for (uint32_t at = 0; at < samples.count;) {
+      const uint64_t index = samples.first + at;
+      const auto first = uint32_t(index);  // sequences of 2^32 samples follow each other
+      const auto end = uint32_t(std::min<uint64_t>(samples.count, at + ((uint64_t{1} << 32) - first)));
+      const Scramble s = scramble(samples, index >> 32, dimension);
+      uint32_t i = at;
+      for (; i + kBlock <= end; i += kBlock) block(s, first + (i - at), u + i);
+      for (; i < end; ++i) one(s, first + (i - at), u[i]);
+      at = end;
+    }
   }
-
-  uint64_t pixel_key_ = 0, dimension_ = 0;
-  uint32_t reversed_index_ = 0;
+  Scramble scramble(const PixelSamples& samples, uint64_t sequence, uint32_t dimension) const {
+    const uint64_t pixel = sample_key(seed(), samples.x, samples.y, sequence);
+    const uint64_t key = mix64(pixel + (uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull), seeds = mix64(key);
+    return {uint32_t(key >> 32), uint32_t(seeds), uint32_t(seeds >> 32)};
+  }
 };
 
 template <class T>

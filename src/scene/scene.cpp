@@ -253,27 +253,41 @@ void LightTable::add(std::unique_ptr<Light> light) {
 
 bool Scene::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
   GeometryHit at;
-  if (!meets(ray, key, at)) return false;
-  point.hit = at.hit;
+  if (!meets(ray, key, at, point.hit)) return false;
+  describe(at, point);
+  return true;
+}
+
+uint32_t Scene::intersect(const RayPacket& packet, SurfacePoint* points) const {
+  if (tiling_) return World::intersect(packet, points);
+  std::array<GeometryHit, RayPacket::kWidth> at;
+  const uint32_t hits = geometry_->intersect(packet, at.data(), points);
+  for (size_t i = 0; i < RayPacket::kWidth; ++i)
+    if (hits >> i & 1) describe(at[i], points[i]);
+  return hits;
+}
+
+void Scene::describe(const GeometryHit& at, SurfacePoint& point) const {
   point.material = material_at_[at.material];
   point.light = at.surface ? lights_->of_surface[*at.surface] : nullptr;
   point.material_id = at.material;
   point.instance_id = at.instance;
-  return true;
 }
 
-bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest) const {
-  if (!tiling_) return geometry_->intersect(ray, key, nearest);
+bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const {
+  if (!tiling_) return geometry_->intersect(ray, key, nearest, hit);
   float distance = INFINITY;
   return tiling_->march(ray, [&](const Tiling::Copy& copy) {
     GeometryHit at;
+    Hit there_hit;
     Ray there = copy.ray;
     there.t_max = std::min(there.t_max, distance - copy.distance);
-    if (!geometry_->intersect(there, key, at)) return false;
+    if (!geometry_->intersect(there, key, at, there_hit)) return false;
     distance = copy.distance + at.t;
-    at.hit.p += copy.shift;
-    at.hit.extent = std::max(at.hit.extent, std::max(std::abs(at.hit.p.x), std::abs(at.hit.p.y)));
+    there_hit.p += copy.shift;
+    there_hit.extent = std::max(there_hit.extent, std::max(std::abs(there_hit.p.x), std::abs(there_hit.p.y)));
     nearest = at;
+    hit = there_hit;
     return true;
   });
 }
@@ -281,6 +295,10 @@ bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest) const {
 bool Scene::occluded(const Ray& ray, uint64_t key) const {
   if (!tiling_) return geometry_->occluded(ray, key);
   return tiling_->march(ray, [&](const Tiling::Copy& copy) { return geometry_->occluded(copy.ray, key); });
+}
+
+uint32_t Scene::occluded(const RayPacket& packet) const {
+  return tiling_ ? World::occluded(packet) : geometry_->occluded(packet);
 }
 
 WavelengthChoice wavelength_choice(const SceneSettings& description, const SceneOverrides& overrides) {

@@ -73,6 +73,8 @@ class Scene final : public World {
 
   bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override;
   bool occluded(const Ray& ray, uint64_t key) const override;
+  uint32_t intersect(const RayPacket& packet, SurfacePoint* points) const override;
+  uint32_t occluded(const RayPacket& packet) const override;
   std::span<const Light* const> lights() const override { return lights_->all; }
   std::span<const EnvironmentLight* const> environment() const override { return lights_->environment; }
   float radius() const override { return radius_; }
@@ -97,7 +99,8 @@ class Scene final : public World {
  private:
   friend class SceneBuilder;
 
-  bool meets(const Ray& ray, uint64_t key, GeometryHit& nearest) const;
+  bool meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const;
+  void describe(const GeometryHit& at, SurfacePoint& point) const;
 
   std::string wavelengths_name_;
   std::unique_ptr<WavelengthStrategy> wavelengths_;

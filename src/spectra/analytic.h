@@ -15,6 +15,7 @@ class ConstantSpectrum final : public Spectrum {
  public:
   explicit ConstantSpectrum(float value, Interval range_nm = kEveryWavelength) : value_(value), range_nm_(range_nm) {}
   float at(float) const override { return value_; }
+  SampledSpectrum sample(const SampledWavelengths& lambda) const override { return sample_by(*this, lambda); }
   Interval range_nm() const override { return range_nm_; }
   float max_value() const override { return value_; }
 
@@ -41,6 +42,7 @@ class ScaledSpectrum final : public Spectrum {
  public:
   ScaledSpectrum(SpectrumPtr base, double scale) : base_(std::move(base)), scale_(static_cast<float>(scale)) {}
   float at(float lambda_nm) const override { return scale_ * base_->at(lambda_nm); }
+  SampledSpectrum sample(const SampledWavelengths& lambda) const override { return scale_ * base_->sample(lambda); }
   Interval range_nm() const override { return base_->range_nm(); }
   float max_value() const override { return scale_ * base_->max_value(); }
 
