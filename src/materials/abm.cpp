@@ -163,7 +163,15 @@ class Abm final : public Material {
         model_(leaf_.tissue()),
         absorption_(p.string("mode") == "analog" ? leaf::Absorption::analog : leaf::Absorption::weighted) {}
 
-  void prepare(const Preparation& preparation) override { leaf_.check_wavelengths(preparation.wavelengths); }
+  void prepare(const Preparation& preparation) override {
+    const WavelengthStrategy& wavelengths = preparation.wavelengths;
+    leaf_.check_wavelengths(wavelengths);
+    made_.clear();
+    if (!leaf_.is_constant()) return;
+    fixed_ = !wavelengths.fixed_nm().empty();
+    for (const float nm : fixed_ ? wavelengths.fixed_nm() : wavelengths.listed_nm())
+      made_.push_back({nm, model_.at(double(nm))});
+  }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const LeafLanes lanes = leaf_at(hit.at, lambda, arena);
@@ -178,7 +186,7 @@ class Abm final : public Material {
     LeafLanes lanes;
     if (leaf_.is_constant()) {
       for (int lane = 0; lane < lambda.count; ++lane)
-        if (lambda.is_active(lane)) lanes.add(lane, arena.make<Tissue>(model_.at(nm(lambda, lane))));
+        if (lambda.is_active(lane)) lanes.add(lane, constant_tissue(lambda, static_cast<size_t>(lane), arena));
       return lanes;
     }
     const leaf::LeafLobes lobes = lobes_at(at, arena);
@@ -187,6 +195,12 @@ class Abm final : public Material {
       if (lambda.is_active(lane))
         lanes.add(lane, arena.make<Tissue>(model_.at(nm(lambda, lane), depth[static_cast<size_t>(lane)], lobes)));
     return lanes;
+  }
+
+  const Tissue* constant_tissue(const SampledWavelengths& lambda, size_t lane, Arena& arena) const {
+    const size_t place = fixed_ ? lane : lambda.band[lane];
+    if (place < made_.size() && made_[place].nm == lambda.nm[lane]) return &made_[place].tissue;
+    return arena.make<Tissue>(model_.at(double(lambda.nm[lane])));
   }
 
   leaf::LeafLobes lobes_at(const TexturePoint& at, Arena& arena) const {
@@ -203,9 +217,16 @@ class Abm final : public Material {
 
   static double nm(const SampledWavelengths& lambda, int lane) { return lambda.nm[static_cast<size_t>(lane)]; }
 
+  struct Made {
+    float nm;
+    Tissue tissue;
+  };
+
   LeafParams leaf_;
   leaf::TissueModel model_;
   leaf::Absorption absorption_;
+  std::vector<Made> made_;  ///< of a constant leaf, where paths' wavelengths are fixed, lane by lane, or listed
+  bool fixed_ = false;
 };
 
 }  // namespace
