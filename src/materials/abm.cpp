@@ -189,7 +189,7 @@ class Abm final : public Material {
         if (lambda.is_active(lane)) lanes.add(lane, constant_tissue(lambda, static_cast<size_t>(lane), arena));
       return lanes;
     }
-    const leaf::LeafLobes lobes = lobes_at(at, arena);
+    const leaf::InterfaceLobes& lobes = lobes_at(at, arena);
     const auto depth = leaf_.depth().at(at, lambda);
     for (int lane = 0; lane < lambda.count; ++lane)
       if (lambda.is_active(lane))
@@ -203,8 +203,9 @@ class Abm final : public Material {
     return arena.make<Tissue>(model_.at(double(lambda.nm[lane])));
   }
 
-  leaf::LeafLobes lobes_at(const TexturePoint& at, Arena& arena) const {
-    leaf::LeafLobes lobes = model_.lobes();
+  const leaf::InterfaceLobes& lobes_at(const TexturePoint& at, Arena& arena) const {
+    if (leaf_.aspects_are_constant()) return model_.lobes();
+    leaf::LeafLobes lobes = model_.leaf_lobes();
     const auto replace = [&](const leaf::Lobe*& lobe, const LeafParams::Aspect& aspect) {
       if (aspect) lobe = arena.make<leaf::Lobe>(static_cast<double>(aspect->evaluate(at)));
     };
@@ -212,7 +213,7 @@ class Abm final : public Material {
     replace(lobes.epidermis, leaf_.epidermis_aspect());
     replace(lobes.spongy, leaf_.spongy_aspect());
     replace(lobes.palisade, leaf_.palisade_aspect());
-    return lobes;
+    return *arena.make<leaf::InterfaceLobes>(model_.arrange(lobes));
   }
 
   static double nm(const SampledWavelengths& lambda, int lane) { return lambda.nm[static_cast<size_t>(lane)]; }

@@ -208,7 +208,7 @@ class Walker {
 
   template <class Connect>
   void turn(bool refracts, const Crossings& crossings, DiskPoint p, const Connect& connect) {
-    const Lobe* lobe = tissue().lobes[up_ ? medium_ - 1 : medium_][up_][refracts];
+    const Lobe* lobe = tissue().lobe(up_ ? medium_ - 1 : medium_, up_, refracts);
     if (refracts) {
       for (size_t i = 0; i < K; ++i) {
         const double ratio = eta(i), z = crossings[i].cos_t;
