@@ -21,7 +21,7 @@ class Lobe {
 
   /// 1/sr at cos_alpha from the axis, before the cut.
   double density(double cos_alpha) const {
-    return cos_alpha > 0 ? (exponent_ + 1) / (2 * std::numbers::pi) * power(cos_alpha) : 0;
+    return cos_alpha > 0 ? peak_ * power(cos_alpha) : 0;
   }
 
   /// Share of the lobe on its axis's side of the wall, in [1/2, 1]; cos_axis in [0, 1] is the axis's to the wall's
@@ -78,6 +78,7 @@ class Lobe {
   }
 
   double exponent_;
+  double peak_;                       ///< density on the axis
   int whole_;                         ///< the exponent where it is a small whole number, else -1
   int maxima_;                        ///< (e + 1) / 2 for small odd exponents, else 0
   const KeptTable* table_ = nullptr;  ///< not owned
