@@ -147,7 +147,7 @@ class AbmFromLightBsdf final : public AbmBsdf {
     if (wo.z == 0 || is_empty()) return {};
     const float share = surface_share(wo), reflected = (1 + share) / 2;
     const bool off_surface = uc < share, reflects = uc < reflected;
-    Vec3 wi = off_surface ? surface().sample(wo, u, rng).wi : sample_cosine_hemisphere(u);
+    Vec3 wi = off_surface ? surface().sample(wo, u, rng) : sample_cosine_hemisphere(u);
     if (!off_surface && (wo.z > 0) != reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};
     const Lobes side = reflects ? Lobes::reflection : Lobes::transmission;

@@ -36,16 +36,13 @@ class SolvedBsdf final : public Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
     if (std::abs(wo.z) < kLeastCosine) return {};
     const Choice& choice = choice_at(wo);
-    if (uc < choice.surface) {
-      const auto [wi, lobe] = surface_.sample(wo, u, rng);
-      return sampled(wo, wi, lobe, Lobes::reflection | Lobes::glossy | Lobes::surface);
-    }
+    if (uc < choice.surface)
+      return sampled(wo, surface_.sample(wo, u, rng), Lobes::reflection | Lobes::glossy | Lobes::surface);
     const bool reflects = uc < choice.surface + choice.reflected;
     Vec3 wi = sample_cosine_hemisphere(u);
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};
-    return sampled(wo, wi, surface_.spread(wo, wi),
-                   Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission));
+    return sampled(wo, wi, Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission));
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
@@ -126,9 +123,9 @@ class SolvedBsdf final : public Bsdf {
   }
 
   /// Nothing where f is black.
-  std::optional<BsdfSample> sampled(const Vec3& wo, const Vec3& wi, float lobe, Lobes from) const {
+  std::optional<BsdfSample> sampled(const Vec3& wo, Vec3 wi, Lobes from) const {
     std::optional<BsdfSample> result;
-    const float density = leaf_pdf(wo, wi, lobe);
+    const float lobe = surface_.spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
     if (density == 0) return result;
     // Made in its place: a copy would wait for its parts to be stored.
     BsdfSample& sample = result.emplace();
