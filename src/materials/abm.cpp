@@ -147,7 +147,7 @@ class AbmFromLightBsdf final : public AbmBsdf {
     if (wo.z == 0 || is_empty()) return {};
     const float share = surface_share(wo), reflected = (1 + share) / 2;
     const bool off_surface = uc < share, reflects = uc < reflected;
-    Vec3 wi = off_surface ? surface().sample(wo, u, rng).wi : sample_cosine_hemisphere(u);
+    Vec3 wi = off_surface ? surface().sample(wo, u, rng) : sample_cosine_hemisphere(u);
     if (!off_surface && (wo.z > 0) != reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};
     const Lobes side = reflects ? Lobes::reflection : Lobes::transmission;
@@ -163,7 +163,15 @@ class Abm final : public Material {
         model_(leaf_.tissue()),
         absorption_(p.string("mode") == "analog" ? leaf::Absorption::analog : leaf::Absorption::weighted) {}
 
-  void prepare(const Preparation& preparation) override { leaf_.check_wavelengths(preparation.wavelengths); }
+  void prepare(const Preparation& preparation) override {
+    const WavelengthStrategy& wavelengths = preparation.wavelengths;
+    leaf_.check_wavelengths(wavelengths);
+    made_.clear();
+    if (!leaf_.is_constant()) return;
+    fixed_ = !wavelengths.fixed_nm().empty();
+    for (const float nm : fixed_ ? wavelengths.fixed_nm() : wavelengths.listed_nm())
+      made_.push_back({nm, model_.at(double(nm))});
+  }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const LeafLanes lanes = leaf_at(hit.at, lambda, arena);
@@ -178,10 +186,10 @@ class Abm final : public Material {
     LeafLanes lanes;
     if (leaf_.is_constant()) {
       for (int lane = 0; lane < lambda.count; ++lane)
-        if (lambda.is_active(lane)) lanes.add(lane, arena.make<Tissue>(model_.at(nm(lambda, lane))));
+        if (lambda.is_active(lane)) lanes.add(lane, constant_tissue(lambda, static_cast<size_t>(lane), arena));
       return lanes;
     }
-    const leaf::LeafLobes lobes = lobes_at(at, arena);
+    const leaf::InterfaceLobes& lobes = lobes_at(at, arena);
     const auto depth = leaf_.depth().at(at, lambda);
     for (int lane = 0; lane < lambda.count; ++lane)
       if (lambda.is_active(lane))
@@ -189,8 +197,15 @@ class Abm final : public Material {
     return lanes;
   }
 
-  leaf::LeafLobes lobes_at(const TexturePoint& at, Arena& arena) const {
-    leaf::LeafLobes lobes = model_.lobes();
+  const Tissue* constant_tissue(const SampledWavelengths& lambda, size_t lane, Arena& arena) const {
+    const size_t place = fixed_ ? lane : lambda.band[lane];
+    if (place < made_.size() && made_[place].nm == lambda.nm[lane]) return &made_[place].tissue;
+    return arena.make<Tissue>(model_.at(double(lambda.nm[lane])));
+  }
+
+  const leaf::InterfaceLobes& lobes_at(const TexturePoint& at, Arena& arena) const {
+    if (leaf_.aspects_are_constant()) return model_.lobes();
+    leaf::LeafLobes lobes = model_.leaf_lobes();
     const auto replace = [&](const leaf::Lobe*& lobe, const LeafParams::Aspect& aspect) {
       if (aspect) lobe = arena.make<leaf::Lobe>(static_cast<double>(aspect->evaluate(at)));
     };
@@ -198,14 +213,21 @@ class Abm final : public Material {
     replace(lobes.epidermis, leaf_.epidermis_aspect());
     replace(lobes.spongy, leaf_.spongy_aspect());
     replace(lobes.palisade, leaf_.palisade_aspect());
-    return lobes;
+    return *arena.make<leaf::InterfaceLobes>(model_.arrange(lobes));
   }
 
   static double nm(const SampledWavelengths& lambda, int lane) { return lambda.nm[static_cast<size_t>(lane)]; }
 
+  struct Made {
+    float nm;
+    Tissue tissue;
+  };
+
   LeafParams leaf_;
   leaf::TissueModel model_;
   leaf::Absorption absorption_;
+  std::vector<Made> made_;  ///< of a constant leaf, where paths' wavelengths are fixed, lane by lane, or listed
+  bool fixed_ = false;
 };
 
 }  // namespace

@@ -93,8 +93,9 @@ class LeafParams {
   const leaf::TissueParams& tissue() const { return tissue_; }
   const leaf::DepthMap& depth() const { return depth_; }
   /// Whether nothing varies over the leaf.
-  bool is_constant() const {
-    return depth_.is_constant() && std::all_of(aspects_.begin(), aspects_.end(), [](const Aspect& a) { return !a; });
+  bool is_constant() const { return depth_.is_constant() && aspects_are_constant(); }
+  bool aspects_are_constant() const {
+    return std::all_of(aspects_.begin(), aspects_.end(), [](const Aspect& a) { return !a; });
   }
   /// nullptr where the aspect ratio is constant.
   using Aspect = std::shared_ptr<const FloatTexture>;

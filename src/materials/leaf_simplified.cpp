@@ -71,7 +71,7 @@ class LeafSimplified final : public Material {
       : leaf_(p),
         varies_(!leaf_.depth().is_constant() && !p.given("tablefile")),
         surface_texture_(p.given("oblateness") ? nullptr : leaf_.cuticle_aspect()),
-        surface_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
+        exponent_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
         manner_{p.boolean("surfacedirect"), leaf_.from_light()},
         file_(p, kOfTable) {
     request_.params = leaf_.tissue();
@@ -85,6 +85,8 @@ class LeafSimplified final : public Material {
 
   void prepare(const Preparation& preparation) override {
     file_.warn(preparation.log);
+    surface_ = preparation.share<leaf::CutLobe>(fmt::format("surface lobe {}", exponent_),
+                                                [&] { return leaf::CutLobe(exponent_); });
     if (file_.is_given())
       lookup_ = preparation.share<leaf::TableLookup>(
           wavelengths_key(preparation.wavelengths) + "leaf table file " + file_.path().string(),
@@ -99,8 +101,9 @@ class LeafSimplified final : public Material {
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const leaf::TableSelection selection =
         varies_ ? lookup_->select(lambda, leaf_.depth().at(hit.at, lambda)) : lookup_->select(lambda);
-    const leaf::Lobe* surface =
-        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at))) : &surface_;
+    const leaf::Lobe* surface = surface_texture_
+                                    ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at)))
+                                    : surface_.get();
     return arena.make<ThreeLobeBsdf>(LeafHit{lookup_.get(), selection, surface, lane_mask(lambda)}, manner_);
   }
 
@@ -161,8 +164,9 @@ class LeafSimplified final : public Material {
   bool varies_;  ///< the depth does, from place to place
   leaf::TableRequest request_;
   std::shared_ptr<const leaf::TableLookup> lookup_;
-  LeafParams::Aspect surface_texture_;  ///< nullptr: surface_
-  leaf::TabulatedLobe surface_;
+  LeafParams::Aspect surface_texture_;            ///< nullptr: surface_
+  double exponent_;                               ///< of the surface, where no texture says it
+  std::shared_ptr<const leaf::CutLobe> surface_;  ///< with that exponent
   LeafManner manner_;
   TableFileParam file_;
 };

@@ -38,7 +38,7 @@ class LeafSolved final : public Material {
       : leaf_(p),
         varies_(!leaf_.depth().is_constant() && !p.given("tablefile")),
         surface_texture_(leaf_.cuticle_aspect()),
-        surface_(leaf_.tissue().cuticle_aspect),
+        exponent_(leaf_.tissue().cuticle_aspect),
         tolerance_(p.real("tolerance")),
         file_(p, {}) {
     if (!file_.is_given()) leaf_.refuse_wall_textures(p);
@@ -46,6 +46,8 @@ class LeafSolved final : public Material {
 
   void prepare(const Preparation& preparation) override {
     file_.warn(preparation.log);
+    surface_ = preparation.share<leaf::CutLobe>(fmt::format("surface lobe {}", exponent_),
+                                                [&] { return leaf::CutLobe(exponent_); });
     fixed_.reset();
     if (file_.is_given())
       table_ = preparation.share<leaf::BodyTable>(
@@ -58,8 +60,9 @@ class LeafSolved final : public Material {
   }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    const leaf::Lobe* surface =
-        surface_texture_ ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at))) : &surface_;
+    const leaf::Lobe* surface = surface_texture_
+                                    ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at)))
+                                    : surface_.get();
     return arena.make<SolvedBsdf>(
         SolvedHit{table_.get(), selection(hit, lambda, arena), surface, lane_mask(lambda), leaf_.from_light()});
   }
@@ -111,9 +114,10 @@ class LeafSolved final : public Material {
   }
 
   LeafParams leaf_;
-  bool varies_;                         ///< the depth does, from place to place
-  LeafParams::Aspect surface_texture_;  ///< nullptr: surface_
-  leaf::TabulatedLobe surface_;
+  bool varies_;                                   ///< the depth does, from place to place
+  LeafParams::Aspect surface_texture_;            ///< nullptr: surface_
+  double exponent_;                               ///< of the surface, where no texture says it
+  std::shared_ptr<const leaf::CutLobe> surface_;  ///< with that exponent
   double tolerance_;
   TableFileParam file_;
   std::shared_ptr<const leaf::BodyTable> table_;

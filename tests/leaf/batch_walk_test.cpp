@@ -357,7 +357,8 @@ TEST(WalkBatch, EqualIndicesLetAllThrough) {
 TEST(WalkBatch, WithoutLobesDirectionsAreIdeal) {
   const TissueModel model = model_of("soybean");
   Tissue tissue = model.at(800);
-  tissue.lobes = {};
+  const InterfaceLobes smooth{};
+  tissue.lobes = &smooth;
   for (const Vec3d& wo : {Vec3d{0.48, 0.64, 0.6}, Vec3d{0, 0, -1}, Vec3d{-0.6, 0, -0.8}}) {
     for (const BatchRay& ray : batch(tissue, wo, Absorption::analog, 5000)) {
       if (ray.fate == Fate::absorbed) continue;
@@ -402,7 +403,9 @@ TEST(WalkBatch, HasAlwaysGivenTheseBits) {
   const Lobe cosine(1), narrow(5);
   tissue.n = {1, 1.5, 1.375, 1, 1.25, 1.5, 1};
   tissue.optical_depth = {0, 0, 0.5, 0, 0, 0, 0};
-  for (auto& interface : tissue.lobes) interface = {{{&narrow, &cosine}, {&cosine, nullptr}}};
+  InterfaceLobes lobes;
+  lobes.fill({{{&narrow, &cosine}, {&cosine, nullptr}}});
+  tissue.lobes = &lobes;
   uint64_t hash = 0;
   for (const Absorption absorption : {Absorption::analog, Absorption::weighted})
     for (const BatchRay& ray : batch(tissue, {0.6, 0, 0.8}, absorption, 1000))

@@ -101,7 +101,7 @@ TEST(BodyTable, HoldsTheSolversEnergy) {
           const Tissue tissue = model.at(request.wavelengths_nm[static_cast<size_t>(lane)]);
           const Shares expected = solve(tissue, std::array{below ? 180 - theta : theta})[0];
           const auto nodes = table.nodes(static_cast<float>(std::sin(theta * kPi / 180)));
-          SampledSpectrum light;
+          Float4 light{};
           light[lane] = static_cast<float>(1 - expected.surface);
           const BodyTable::Ways ways = table.ways(below, nodes, light, selection.columns);
           const BodyTable::Ways other = table.ways(!below, nodes, light, selection.columns);
@@ -168,8 +168,7 @@ TEST(BodyTable, NeverGivesLessThanNothing) {
       for (float c = -1; c <= 1; c += 0.25f)
         for (const bool below : {false, true})
           for (const bool crosses : {false, true}) {
-            const SampledSpectrum s =
-                table.series(below, crosses, table.nodes(a), table.nodes(b), c, selection.columns);
+            const Float4 s = table.series(below, crosses, table.nodes(a), table.nodes(b), c, selection.columns);
             for (int lane = 0; lane < 3; ++lane) EXPECT_GE(s[lane], 0);
           }
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/special_functions/beta.hpp>
 #include <numbers>
 
 #include "core/vec.h"
@@ -80,6 +81,33 @@ TEST(Lobe, SamplesTheCosineOfItsDensity) {
     EXPECT_LT(std::abs(first.mean() - (e + 1) / (e + 2)), limit * first.standard_error()) << e;
     EXPECT_LT(std::abs(second.mean() - (e + 1) / (e + 3)), limit * second.standard_error()) << e;
   }
+}
+
+TEST(PowerQuantile, IsTheInverseOfItsIntegral) {
+  for (const double e : kExponents)
+    for (const double a : {e / 2 + 0.5, e / 2 + 1}) {
+      const PowerQuantile quantile(a);
+      for (float share = 1e-6f; share < 1; share += 0.00037f) {
+        const auto [sine, cosine] = quantile.at(share);
+        ASSERT_NEAR(sine * sine + cosine * cosine, 1, 1e-6) << a << " " << share;
+        // Near the ends the sine has no digits for it, elsewhere the cosine.
+        const double c = static_cast<double>(cosine), s = std::abs(static_cast<double>(sine));
+        const double beyond = boost::math::ibeta(a, a, s < 0.7 ? (1 - s) / 2 : c * c / (2 * (1 + s)));
+        const auto exact = static_cast<double>(share);
+        ASSERT_NEAR(beyond, std::min(exact, 1 - exact), 1e-6 + 1e-7 * std::sqrt(a)) << a << " " << share;
+      }
+    }
+}
+
+TEST(PowerQuantile, EndsLieAtRightAnglesAndTheMiddleAhead) {
+  for (const double a : {0.5, 1.0, 3.5, 501.0}) {
+    const PowerQuantile quantile(a);
+    EXPECT_EQ(quantile.at(0.5f).cosine, 1) << a;
+    EXPECT_EQ(quantile.at(0.5f).sine, 0) << a;
+    EXPECT_EQ(quantile.at(0).sine, -quantile.at(1).sine) << a;
+    EXPECT_GE(quantile.at(0).cosine, 0) << a;
+  }
+  EXPECT_LT(PowerQuantile(0.5).at(0).cosine, 1e-6f);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ class PlainWalk {
       const double n_from = tissue_.n[size_t(from)], n_to = tissue_.n[size_t(to)];
       const bool refracted = uniform() >= fresnel(n_from, n_to, std::abs(v.z));
       v = refracted ? refract(v, n_from / n_to) : Vec3d{v.x, v.y, -v.z};
-      if (const leaf::Lobe* lobe = tissue_.lobes[size_t(interface)][up][refracted]) v = perturb(v, lobe->exponent());
+      if (const leaf::Lobe* lobe = tissue_.lobe(size_t(interface), up, refracted)) v = perturb(v, lobe->exponent());
 
       interface += v.z > 0 ? -1 : 1;
       if (interface >= 0 && interface <= 5) continue;

@@ -154,9 +154,10 @@ void add_beer(Theme& theme, double exponent, double depth) {
   Tissue tissue{};
   tissue.n.fill(1);
   tissue.optical_depth[2] = depth;
-  for (auto& at_interface : tissue.lobes) at_interface = {};
-  tissue.lobes[0][0] = {&lobe, &lobe};
-  tissue.lobes[5][1] = {&lobe, &lobe};
+  leaf::InterfaceLobes lobes{};
+  lobes[0][0] = {&lobe, &lobe};
+  lobes[5][1] = {&lobe, &lobe};
+  tissue.lobes = &lobes;
   // The mean of exp(-depth / c) over the lobe's (e + 1) c^e is an exponential integral.
   const double t = (exponent + 1) * boost::math::expint(static_cast<unsigned>(exponent) + 2, depth);
   const Lit lit{{0, 180}, {{0, 0, t}, {0, 0, t}}};

@@ -137,7 +137,7 @@ Interval exponents_inside(const Tissue& tissue) {
   for (size_t m = Chain::kFirst; m <= Chain::kLast; ++m)
     for (const bool up : {false, true})
       for (const bool refracts : {false, true})
-        if (const Lobe* lobe = tissue.lobes[up ? m - 1 : m][up][refracts]) {
+        if (const Lobe* lobe = tissue.lobe(up ? m - 1 : m, up, refracts)) {
           range.min = std::min(range.min, lobe->exponent());
           range.max = std::max(range.max, lobe->exponent());
         }

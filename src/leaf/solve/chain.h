@@ -60,7 +60,7 @@ class Chain {
   };
   static size_t next(size_t medium, bool up) { return up ? medium - 1 : medium + 1; }
   const Lobe* lobe(size_t medium, bool up, bool refracts) const {
-    return tissue_.lobes[up ? medium - 1 : medium][up][refracts];
+    return tissue_.lobe(up ? medium - 1 : medium, up, refracts);
   }
   const Kernel& kernel(const Lobe& lobe, size_t medium) const {
     return kernels_.at({lobe.exponent(), tissue_.n[medium]});

@@ -48,7 +48,7 @@ class Port {
   }
 
  private:
-  const Lobe& lobe() const { return *chain_.tissue().lobes[0][false][true]; }
+  const Lobe& lobe() const { return *chain_.tissue().lobe(0, false, true); }
   const Directions& epidermis() const { return chain_.directions(kFirst); }
 
   const Chain& chain_;
@@ -99,7 +99,7 @@ int mode_nodes(const Tissue& tissue) {
 }
 
 BodyModes solve_modes(const Tissue& tissue, std::span<const double> sines, double tolerance, int nodes) {
-  const size_t most = most_modes(tissue.lobes[0][false][true]->exponent());
+  const size_t most = most_modes(tissue.lobe(0, false, true)->exponent());
   const Chain chain(tissue, nodes, most);
   const double n = tissue.n_cuticle();
   const Port port(chain, inner_cosines(sines, n), most);

@@ -47,7 +47,7 @@ class LeafSolver {
  public:
   LeafSolver(const Tissue& tissue, std::span<const double> theta_deg, int nodes)
       : chain_(tissue, nodes, 1), sources_(leaving(chain_)), solver_(chain_, 0, sources_), places_(2 * nodes) {
-    const Lobe& lobe = *tissue.lobes[0][false][true];
+    const Lobe& lobe = *tissue.lobe(0, false, true);
     std::map<double, size_t> known;  // both epidermes are of one index: each angle serves both sides
     for (const double theta : theta_deg) {
       const bool above = theta <= 90;

@@ -21,7 +21,7 @@ std::vector<double> exit_weights(double index, size_t cells, const std::vector<Q
     const double mu = x * x;  // dense at grazing, where the chance to leave is like a square root
     const Crossing out = fresnel(mu, 1 / index);
     const double whole = weight * 2 * x * mu * 2 * std::numbers::pi * (1 - out.reflectance) / out.cos_t;
-    const SineNodes nodes(static_cast<float>(std::sqrt(1 - mu * mu)), cells);
+    const SineNodes nodes(static_cast<float>(std::sqrt(1 - mu * mu)), static_cast<int>(cells));
     for (size_t k = 0; k < 4; ++k) weights[nodes.first + k] += whole * static_cast<double>(nodes.weight[k]);
   }
   return weights;
@@ -85,7 +85,7 @@ BodyTable::Selection BodyTable::with_index(const TableSelection& columns) const 
   return selection;
 }
 
-BodyTable::Ways BodyTable::ways(bool from_below, const Nodes& incident, const SampledSpectrum& light,
+BodyTable::Ways BodyTable::ways(bool from_below, const Nodes& incident, Float4 light,
                                 const TableSelection& columns) const {
   Float4 sum{};
   for (size_t l = 0; l < static_cast<size_t>(columns.lane_count); ++l)
@@ -93,7 +93,7 @@ BodyTable::Ways BodyTable::ways(bool from_below, const Nodes& incident, const Sa
       const Float4* shares = &ways_[from_below][columns.lanes[l].column[c] * (cells_ + 3) + incident.first];
       Float4 between{};
       for (size_t i = 0; i < 4; ++i) between += incident.weight[i] * shares[i];
-      sum += light.v[l] * columns.lanes[l].weight[c] * between;
+      sum += light[l] * columns.lanes[l].weight[c] * between;
     }
   sum = larger(sum, Float4{});
   return {sum[0], sum[1], sum[2]};

@@ -28,11 +28,11 @@ class BodyTable {
 
   using Nodes = SineNodes;
   /// Around a sine in [0, 1].
-  Nodes nodes(float sine) const { return {sine, cells_}; }
+  Nodes nodes(float sine) const { return {sine, static_cast<int>(cells_)}; }
 
   /// The sum over modes of BodyModes, lane by lane. Where interpolation and missing modes leave less than nothing: 0.
-  SampledSpectrum series(bool from_below, bool crosses, const Nodes& incident, const Nodes& leaving, float cos_phi,
-                         const TableSelection& columns) const {
+  Float4 series(bool from_below, bool crosses, const Nodes& incident, const Nodes& leaving, float cos_phi,
+                const TableSelection& columns) const {
     const SeriesTable& table = series_[from_below][crosses];
     return lanes_are_columns() ? table.at(incident, leaving, cos_phi) : table.at(incident, leaving, cos_phi, columns);
   }
@@ -43,7 +43,7 @@ class BodyTable {
     float across_to;  ///< where it met the other side: crosses to this one
   };
   /// Sums over the lanes of `light`, which has come in, times these shares.
-  Ways ways(bool from_below, const Nodes& incident, const SampledSpectrum& light, const TableSelection& columns) const;
+  Ways ways(bool from_below, const Nodes& incident, Float4 light, const TableSelection& columns) const;
 
   size_t bytes() const;
 

@@ -16,10 +16,11 @@ struct SineNodes {
   size_t first;
 
   SineNodes() = default;
-  SineNodes(float sine, size_t cells) {
+  SineNodes(float sine, int cells) {
     const float x = sine * static_cast<float>(cells);
-    first = std::min(static_cast<size_t>(x), cells - 1);
-    const float t = x - static_cast<float>(first);
+    const int below = std::min(static_cast<int>(x), cells - 1);
+    first = static_cast<size_t>(below);
+    const float t = x - static_cast<float>(below);
     // Lagrange's polynomials through -1, 0, 1, 2.
     weight = Float4{0, 1, 0, 0};
     weight += t * (Float4{-2, -3, 6, -1} + t * (Float4{3, -6, 3, 0} + t * Float4{-1, 3, -3, 1})) * (1.f / 6);
@@ -37,18 +38,19 @@ class SeriesTable {
   SeriesTable(const BodySpectrum& spectrum, bool from_below, bool crosses, double tolerance);
 
   /// In the lanes that look at `columns`; not below 0.
-  SampledSpectrum at(const SineNodes& incident, const SineNodes& leaving, float cos_phi,
-                     const TableSelection& columns) const {
+  Float4 at(const SineNodes& incident, const SineNodes& leaving, float cos_phi, const TableSelection& columns) const {
     const Sums sums = functions_at(incident, leaving, cos_phi);
     Float4 lanes{};
     for (int lane = 0; lane < columns.lane_count; ++lane)
       lanes[lane] =
           mixture(sums, columns.lanes[static_cast<size_t>(lane)], static_cast<size_t>(columns.columns_per_lane));
-    return to_spectrum(larger(lanes, Float4{}));
+    return larger(lanes, Float4{});
   }
-  /// The same where the lanes are the table's columns, one by one.
-  SampledSpectrum at(const SineNodes& incident, const SineNodes& leaving, float cos_phi) const {
-    return to_spectrum(larger(functions_at(incident, leaving, cos_phi)[0], Float4{}));
+  /// The same where the lanes are the table's columns, one by one: then these are the functions.
+  Float4 at(const SineNodes& incident, const SineNodes& leaving, float cos_phi) const {
+    const Cosines cosines(cos_phi, modes_);
+    const Block block{first_term(incident, leaving), needed(incident, leaving)[0]};
+    return larger(sum_block(block, cosines, incident.weight, leaving.weight), Float4{});
   }
 
   size_t bytes() const { return values_.size() * sizeof(Float4) + weights_.size() * sizeof(Float4); }
@@ -66,19 +68,39 @@ class SeriesTable {
   std::vector<double> size_of(const ReducedBasis& basis, size_t block, size_t mode) const;
   double around(const std::vector<double>& size, size_t incident, size_t leaving) const;
 
-  Sums functions_at(const SineNodes& incident, const SineNodes& leaving, float cos_phi) const {
-    std::array<float, kMostModes> cosines;  // cos m phi, by Chebyshev's recurrence
-    cosines[0] = 1, cosines[1] = cos_phi;
-    for (size_t m = 2; m < modes_; ++m) cosines[m] = 2 * cos_phi * cosines[m - 1] - cosines[m - 2];
-    Sums sums;
-    const Float4* term = values_.data() + (incident.first * side() + leaving.first) * terms_;
-    const uint8_t* needed = &needed_[(incident.first * cells_ + leaving.first) * blocks_];
-    for (size_t b = 0; b < blocks_; term += most_modes_[b++]) {
-      sums[b] = Float4{};
-      for (size_t m = 0; m < needed[b]; ++m)
-        sums[b] += cosines[m] * sum_patch(term + m, incident.weight, leaving.weight);
+  /// cos m phi, by Chebyshev's recurrence.
+  struct Cosines {
+    std::array<float, kMostModes> of;
+    Cosines(float cos_phi, size_t modes) {
+      of[0] = 1, of[1] = cos_phi;
+      for (size_t m = 2; m < modes; ++m) of[m] = 2 * cos_phi * of[m - 1] - of[m - 2];
     }
+  };
+  struct Block {
+    const Float4* terms;  ///< of the first of sixteen nodes
+    size_t modes;
+  };
+
+  const Float4* first_term(const SineNodes& incident, const SineNodes& leaving) const {
+    return values_.data() + (incident.first * side() + leaving.first) * terms_;
+  }
+  const uint8_t* needed(const SineNodes& incident, const SineNodes& leaving) const {
+    return &needed_[(incident.first * cells_ + leaving.first) * blocks_];
+  }
+
+  Sums functions_at(const SineNodes& incident, const SineNodes& leaving, float cos_phi) const {
+    const Cosines cosines(cos_phi, modes_);
+    Sums sums;
+    const Float4* terms = first_term(incident, leaving);
+    for (size_t b = 0; b < blocks_; terms += most_modes_[b++])
+      sums[b] = sum_block({terms, needed(incident, leaving)[b]}, cosines, incident.weight, leaving.weight);
     return sums;
+  }
+
+  Float4 sum_block(const Block& block, const Cosines& cosines, Float4 incident, Float4 leaving) const {
+    Float4 sum{};
+    for (size_t m = 0; m < block.modes; ++m) sum += cosines.of[m] * sum_patch(block.terms + m, incident, leaving);
+    return sum;
   }
 
   Float4 sum_patch(const Float4* node, Float4 incident, Float4 leaving) const {

@@ -35,7 +35,11 @@ int maxima(double exponent) {
 
 }  // namespace
 
-Lobe::Lobe(double exponent) : exponent_(exponent), whole_(small_whole(exponent)), maxima_(maxima(exponent)) {}
+Lobe::Lobe(double exponent)
+    : exponent_(exponent),
+      peak_((exponent + 1) / (2 * std::numbers::pi)),
+      whole_(small_whole(exponent)),
+      maxima_(maxima(exponent)) {}
 
 double Lobe::kept_exactly(double cos_axis) const {
   // The integral of `edge` in theta, over the whole of it: a regularised incomplete beta function of sin^2 theta. Its

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "leaf/tissue/lobe_quantiles.h"
 
 namespace frond::leaf {
 
@@ -20,13 +21,14 @@ class Lobe {
   double exponent() const { return exponent_; }
 
   /// 1/sr at cos_alpha from the axis, before the cut.
-  double density(double cos_alpha) const {
-    return cos_alpha > 0 ? (exponent_ + 1) / (2 * std::numbers::pi) * power(cos_alpha) : 0;
-  }
+  double density(double cos_alpha) const { return cos_alpha > 0 ? peak_ * power(cos_alpha) : 0; }
 
   /// Share of the lobe on its axis's side of the wall, in [1/2, 1]; cos_axis in [0, 1] is the axis's to the wall's
   /// normal. What is left after the cut has density() / kept(). Quick for a TabulatedLobe alone.
   double kept(double cos_axis) const { return table_ ? table_->at(cos_axis) : kept_exactly(cos_axis); }
+
+  /// For directions after the cut; nullptr but in a CutLobe.
+  const LobeQuantiles* quantiles() const { return quantiles_; }
 
   /// Cosine to the axis from one uniform number.
   float cos_from_uniform(float uniform) const { return std::pow(uniform, static_cast<float>(1 / (exponent_ + 1))); }
@@ -67,6 +69,8 @@ class Lobe {
 
   Lobe(double exponent, const KeptTable* table) : Lobe(exponent) { table_ = table; }
 
+  const LobeQuantiles* quantiles_ = nullptr;  ///< not owned
+
  private:
   double kept_exactly(double cos_axis) const;
   double power(double c) const {
@@ -78,13 +82,14 @@ class Lobe {
   }
 
   double exponent_;
+  double peak_;                       ///< density on the axis
   int whole_;                         ///< the exponent where it is a small whole number, else -1
   int maxima_;                        ///< (e + 1) / 2 for small odd exponents, else 0
   const KeptTable* table_ = nullptr;  ///< not owned
 };
 
 /// A lobe that is asked often for what the cut keeps. Plain lobes that are copied from it must not outlive it.
-class TabulatedLobe final : public Lobe {
+class TabulatedLobe : public Lobe {
  public:
   explicit TabulatedLobe(double exponent) : TabulatedLobe(exponent, std::make_shared<const KeptTable>(exponent)) {}
 
@@ -93,6 +98,17 @@ class TabulatedLobe final : public Lobe {
       : Lobe(exponent, table.get()), table_(std::move(table)) {}
 
   std::shared_ptr<const KeptTable> table_;
+};
+
+/// A lobe that many directions are drawn from after the cut.
+class CutLobe final : public TabulatedLobe {
+ public:
+  explicit CutLobe(double exponent) : TabulatedLobe(exponent), owned_(std::make_shared<const LobeQuantiles>(exponent)) {
+    quantiles_ = owned_.get();
+  }
+
+ private:
+  std::shared_ptr<const LobeQuantiles> owned_;
 };
 
 }  // namespace frond::leaf

@@ -14,23 +14,26 @@ struct LeafLobes {
   const Lobe *cuticle, *epidermis, *spongy, *palisade;
 };
 
+/// Where they do: [interface][ray goes up][refracted]; nullptr: the ideal direction is kept.
+using InterfaceLobes = std::array<std::array<std::array<const Lobe*, 2>, 2>, 6>;
+
 /// A leaf at one wavelength, as a ray meets it. Interfaces 0 to 5 count from the adaxial side. Medium i lies above
 /// interface i: 0 is the air over the leaf, 6 the air under it, both of index 1; the epidermes, media 1 and 5, are
 /// alike, and so are both parts of a mesophyll in which the air space moves. The lobes belong to the TissueModel that
 /// made it.
 struct Tissue {
-  static constexpr size_t kInterfaces = 6, kMedia = 7, kBeneath = 6;
+  static constexpr size_t kInterfaces = std::tuple_size_v<InterfaceLobes>, kMedia = 7, kBeneath = 6;
 
   std::array<double, kMedia> n;              ///< refractive indices
   std::array<double, kMedia> optical_depth;  ///< of a straight way through; where the air space moves, of both together
-  /// [interface][ray goes up][refracted]; nullptr: the ideal direction is kept.
-  std::array<std::array<std::array<const Lobe*, 2>, 2>, kInterfaces> lobes;
+  const InterfaceLobes* lobes;               ///< not owned
   /// The air space (medium 3) lies anywhere in the mesophyll: media 2 and 4 share the depth as p to 1 - p, p uniform.
   bool air_space_moves;
   bool sieve_and_detour;
 
   double n_cuticle() const { return n[1]; }
-  const Lobe& surface_lobe() const { return *lobes[0][0][0]; }
+  const Lobe* lobe(size_t interface, bool up, bool refracted) const { return (*lobes)[interface][up][refracted]; }
+  const Lobe& surface_lobe() const { return *lobe(0, false, false); }
 };
 
 /// A leaf at all wavelengths. Must outlive the tissues that it makes; copies share their lobes.
@@ -39,27 +42,31 @@ class TissueModel {
   explicit TissueModel(const TissueParams& params);
 
   const TissueParams& params() const { return params_; }
-  LeafLobes lobes() const& { return {&lobes_->cuticle, &lobes_->epidermis, &lobes_->spongy, &lobes_->palisade}; }
+  LeafLobes leaf_lobes() const& { return {&lobes_->cuticle, &lobes_->epidermis, &lobes_->spongy, &lobes_->palisade}; }
+  const InterfaceLobes& lobes() const& { return lobes_->at_interfaces; }
+  /// Others, where this leaf has its own.
+  InterfaceLobes arrange(const LeafLobes& lobes) const;
 
   /// lambda_nm within kConstantsRange_nm. Quick enough for the render loop.
   Tissue at(double lambda_nm) const&;
   Tissue at(double lambda_nm) && = delete;
   /// With another optical depth of the mesophyll, or other lobes: for leaves that vary from place to place.
-  Tissue at(double lambda_nm, double optical_depth, const LeafLobes& lobes) const;
+  Tissue at(double lambda_nm, double optical_depth, const InterfaceLobes& lobes) const;
 
  private:
   struct Lobes {
     TabulatedLobe cuticle, epidermis, spongy, palisade;
+    InterfaceLobes at_interfaces{};
   };
   /// What varies with the wavelength.
   struct Optics {
     double n_cuticle, n_mesophyll, n_antidermal_wall, depth;
   };
   Optics optics_at(double lambda_nm) const;
-  Tissue build(const Optics& optics, const LeafLobes& lobes) const;
+  Tissue build(const Optics& optics, const InterfaceLobes& lobes) const;
 
   TissueParams params_;
-  std::shared_ptr<const Lobes> lobes_;
+  std::shared_ptr<Lobes> lobes_;
   std::vector<Optics> optics_;  ///< at kAbsorptionGrid: linear between, like the constants that they come from
 };
 

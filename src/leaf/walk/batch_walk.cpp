@@ -30,8 +30,8 @@ Tables tables_of(const Tissue& tissue) {
     const bool moves = tissue.air_space_moves;
     t.depth[state] = moves && from == 2 ? 0 : depth;
     t.depth_slope[state] = !moves ? 0 : from == 2 ? depth : from == 4 ? -depth : 0;
-    t.narrowness_reflected[state] = narrowness(tissue.lobes[interface][up][0]);
-    t.narrowness_refracted[state] = narrowness(tissue.lobes[interface][up][1]);
+    t.narrowness_reflected[state] = narrowness(tissue.lobe(interface, up, false));
+    t.narrowness_refracted[state] = narrowness(tissue.lobe(interface, up, true));
   }
   return t;
 }
@@ -72,7 +72,7 @@ class Batch {
     constexpr double kRounding = 1e-6;  // of the sine's square
     std::vector<Trap> traps;
     for (size_t medium = 1; medium < Tissue::kBeneath; ++medium) {
-      const bool smooth = !tissue.lobes[medium - 1][1][0] && !tissue.lobes[medium][0][0];
+      const bool smooth = !tissue.lobe(medium - 1, true, false) && !tissue.lobe(medium, false, false);
       const double critical = std::max(tissue.n[medium - 1], tissue.n[medium + 1]) / tissue.n[medium];
       const auto interface = static_cast<int32_t>(medium);
       if (smooth && tissue.optical_depth[medium] == 0 && critical < 1)

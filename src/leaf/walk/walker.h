@@ -208,7 +208,7 @@ class Walker {
 
   template <class Connect>
   void turn(bool refracts, const Crossings& crossings, DiskPoint p, const Connect& connect) {
-    const Lobe* lobe = tissue().lobes[up_ ? medium_ - 1 : medium_][up_][refracts];
+    const Lobe* lobe = tissue().lobe(up_ ? medium_ - 1 : medium_, up_, refracts);
     if (refracts) {
       for (size_t i = 0; i < K; ++i) {
         const double ratio = eta(i), z = crossings[i].cos_t;
@@ -229,12 +229,23 @@ class Walker {
     const Vec3d drawn = perturb(lobe, direction(), up_, p, rng_);
     if constexpr (K > 1) {
       last_ = {&lobe, v_, density_};
-      const double hero_density = lobe_density(lobe, direction(), drawn);
-      for (size_t i = 0; i < K; ++i)
-        if (i != hero_ && hero_density > 0 && density_[i] > 0 && v_[i] != direction())
-          density_[i] *= lobe_density(lobe, v_[i], drawn) / hero_density;
+      if (axes_differ()) weigh_axes(lobe, drawn);
     }
     v_.fill(drawn);
+  }
+
+  /// Rarely inside one medium: a direction that was drawn is every wavelength's.
+  bool axes_differ() const {
+    for (size_t i = 0; i < K; ++i)
+      if (v_[i] != direction()) return true;
+    return false;
+  }
+
+  void weigh_axes(const Lobe& lobe, const Vec3d& drawn) {
+    const double hero_density = lobe_density(lobe, direction(), drawn);
+    for (size_t i = 0; i < K; ++i)
+      if (i != hero_ && hero_density > 0 && density_[i] > 0 && v_[i] != direction())
+        density_[i] *= lobe_density(lobe, v_[i], drawn) / hero_density;
   }
 
   Tissues tissues_;

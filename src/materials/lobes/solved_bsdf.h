@@ -30,22 +30,19 @@ class SolvedBsdf final : public Bsdf {
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
-    return leaf_scatters(wo, wi) ? leaf_f(wo, wi, surface_.spread(wo, wi)) : SampledSpectrum();
+    return leaf_scatters(wo, wi) ? to_spectrum(leaf_f(wo, wi, surface_.spread(wo, wi))) : SampledSpectrum();
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
     if (std::abs(wo.z) < kLeastCosine) return {};
     const Choice& choice = choice_at(wo);
-    if (uc < choice.surface) {
-      const auto [wi, lobe] = surface_.sample(wo, u, rng);
-      return sampled(wo, wi, lobe, Lobes::reflection | Lobes::glossy | Lobes::surface);
-    }
+    if (uc < choice.surface)
+      return sampled(wo, surface_.sample(wo, u, rng), Lobes::reflection | Lobes::glossy | Lobes::surface);
     const bool reflects = uc < choice.surface + choice.reflected;
     Vec3 wi = sample_cosine_hemisphere(u);
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};
-    return sampled(wo, wi, surface_.spread(wo, wi),
-                   Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission));
+    return sampled(wo, wi, Lobes::diffuse | (reflects ? Lobes::reflection : Lobes::transmission));
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
@@ -72,8 +69,8 @@ class SolvedBsdf final : public Bsdf {
     Vec3 direction{std::numeric_limits<float>::quiet_NaN(), 0, 0};
     float sine;
     leaf::SineNodes nodes;
-    SampledSpectrum reflectance;  ///< of the surface; 0 in lanes that are not active
-    SampledSpectrum enters;       ///< 1 - reflectance, likewise
+    Float4 reflectance;  ///< of the surface; 0 in lanes that are not active
+    Float4 enters;       ///< 1 - reflectance, likewise
   };
 
   /// Light of some direction outside at the surface, where it always finds a way through.
@@ -101,9 +98,8 @@ class SolvedBsdf final : public Bsdf {
     in.sine = std::sqrt(sine2(incident));
     in.nodes = hit_.table->nodes(in.sine);
     const Float4 active = to_float4(hit_.active);
-    const Float4 enters = active * passage(incident).through;
-    in.enters = to_spectrum(enters);
-    in.reflectance = to_spectrum(active - enters);
+    in.enters = active * passage(incident).through;
+    in.reflectance = active - in.enters;
     return in;
   }
 
@@ -113,7 +109,7 @@ class SolvedBsdf final : public Bsdf {
     choice_.cos_theta = wo.z;
     const Incidence& in = incidence_at(wo);
     const auto ways = hit_.table->ways(wo.z < 0, in.nodes, in.enters, hit_.selection->columns);
-    const float surface = sum(to_float4(in.reflectance));
+    const float surface = sum(in.reflectance);
     float reflected = ways.back, transmitted = hit_.from_light ? ways.across_to : ways.across;
     constexpr float kLeastPart = 0.01f;
     const float least = kLeastPart * (surface + reflected + transmitted);
@@ -127,27 +123,35 @@ class SolvedBsdf final : public Bsdf {
   }
 
   /// Nothing where f is black.
-  std::optional<BsdfSample> sampled(const Vec3& wo, const Vec3& wi, float lobe, Lobes from) const {
-    const float density = leaf_pdf(wo, wi, lobe);
-    if (density == 0) return {};
-    return BsdfSample{leaf_f(wo, wi, lobe), wi, density, from};
-  }
-
-  SampledSpectrum leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
-    const Vec3 &incident = hit_.from_light ? wi : wo, &leaving = hit_.from_light ? wo : wi;
-    const Incidence& in = incidence_at(incident);
-    SampledSpectrum result = body_f(in, incident, leaving);
-    if (lobe > 0) result += in.reflectance * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
+  std::optional<BsdfSample> sampled(const Vec3& wo, Vec3 wi, Lobes from) const {
+    std::optional<BsdfSample> result;
+    const float lobe = surface_.spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
+    if (density == 0) return result;
+    // Made in its place: a copy would wait for its parts to be stored.
+    BsdfSample& sample = result.emplace();
+    sample.f = to_spectrum(leaf_f(wo, wi, lobe));
+    sample.wi = wi;
+    sample.pdf = density;
+    sample.flags = from;
     return result;
   }
 
-  SampledSpectrum body_f(const Incidence& in, const Vec3& incident, const Vec3& leaving) const {
+  Float4 leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
+    const Vec3 &incident = hit_.from_light ? wi : wo, &leaving = hit_.from_light ? wo : wi;
+    const Incidence& in = incidence_at(incident);
+    const Float4 body = body_f(in, incident, leaving);
+    if (lobe == 0) return body;
+    return body + in.reflectance * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
+  }
+
+  Float4 body_f(const Incidence& in, const Vec3& incident, const Vec3& leaving) const {
+    const Float4 leaves = passage(leaving).over_cosine;
     const float sine_o = std::sqrt(sine2(leaving)), both = in.sine * sine_o;
     const float cos_phi =
         both > 0 ? std::clamp(-(incident.x * leaving.x + incident.y * leaving.y) / both, -1.f, 1.f) : 1;
-    const SampledSpectrum series = hit_.table->series(incident.z < 0, !same_side(incident, leaving), in.nodes,
-                                                      hit_.table->nodes(sine_o), cos_phi, hit_.selection->columns);
-    return to_spectrum(to_float4(in.enters * series) * passage(leaving).over_cosine);
+    return in.enters * leaves *
+           hit_.table->series(incident.z < 0, !same_side(incident, leaving), in.nodes, hit_.table->nodes(sine_o),
+                              cos_phi, hit_.selection->columns);
   }
 
   float leaf_pdf(const Vec3& wo, const Vec3& wi, float lobe) const {

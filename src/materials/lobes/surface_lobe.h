@@ -41,23 +41,42 @@ class SurfaceLobe {
   }
 
   /// What makes good the cut, by the cosine of the direction that is mirrored.
-  float made_good(float cos_theta) const {
-    if (made_good_at_ != cos_theta) {
-      made_good_at_ = cos_theta;
-      made_good_ = 1 / static_cast<float>(lobe_->kept(std::abs(cos_theta)));
-    }
-    return made_good_;
-  }
+  float made_good(float cos_theta) const { return cut_at(cos_theta).made_good; }
 
   /// Of `sample`, 1/sr.
   float pdf(const Vec3& wo, const Vec3& wi) const { return spread(wo, wi) * made_good(wo.z); }
 
-  struct Sample {
-    Vec3 wi;
-    float spread;  ///< of wi
+  Vec3 sample(const Vec3& wo, Vec2 u, RandomStream& rng) const {
+    return lobe_->quantiles() ? sample_angles(wo, u, *lobe_->quantiles()) : sample_by_trials(wo, u, rng);
+  }
+
+ private:
+  /// What depends on the direction that is mirrored.
+  struct Cut {
+    float cos_theta = std::numeric_limits<float>::quiet_NaN();
+    float kept, made_good;
   };
+
+  const Cut& cut_at(float cos_theta) const {
+    if (cut_.cos_theta == cos_theta) return cut_;
+    cut_.cos_theta = cos_theta;
+    cut_.kept = static_cast<float>(lobe_->kept(std::abs(cos_theta)));
+    cut_.made_good = 1 / cut_.kept;
+    return cut_;
+  }
+
+  Vec3 sample_angles(const Vec3& wo, Vec2 u, const leaf::LobeQuantiles& quantiles) const {
+    const auto across = quantiles.across.at(u.y), along = quantiles.along.at(u.x * cut_at(wo.z).kept);
+    const float sine = std::sqrt(wo.x * wo.x + wo.y * wo.y), cosine = std::abs(wo.z);
+    const float forward = across.cosine * (along.sine * cosine + along.cosine * sine);
+    const float up = across.cosine * (along.cosine * cosine - along.sine * sine);
+    const Vec2 ahead = sine > 0 ? Vec2{wo.x, wo.y} * (-1 / sine) : Vec2{1, 0};
+    return {forward * ahead.x - across.sine * ahead.y, forward * ahead.y + across.sine * ahead.x,
+            std::copysign(std::max(up, kLeastCosine), wo.z)};
+  }
+
   /// The first try takes `u`; where the cut refuses it, others follow by numbers that are cheaper to make.
-  Sample sample(const Vec3& wo, Vec2 u, RandomStream& rng) const {
+  Vec3 sample_by_trials(const Vec3& wo, Vec2 u, RandomStream& rng) const {
     const Frame frame = Frame::around(mirror(wo));
     const float side = std::copysign(1.f, wo.z);
     float cos_alpha = lobe_->cos_from_uniform(1 - u.x);
@@ -65,15 +84,14 @@ class SurfaceLobe {
       const float sin_alpha = std::sqrt(std::max(0.f, 1 - cos_alpha * cos_alpha));
       const Vec2 d = unit_circle(u.y);
       const Vec3 wi = frame.to_world({sin_alpha * d.x, sin_alpha * d.y, cos_alpha});
-      if (side * wi.z >= kLeastCosine) return {wi, static_cast<float>(lobe_->density(static_cast<double>(cos_alpha)))};
+      if (side * wi.z >= kLeastCosine) return wi;
     }
   }
 
- private:
   static Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 
   const leaf::Lobe* lobe_;
-  mutable float made_good_at_ = std::numeric_limits<float>::quiet_NaN(), made_good_ = 1;  ///< asked in turn for one
+  mutable Cut cut_;  ///< asked in turn for one
 };
 
 }  // namespace frond

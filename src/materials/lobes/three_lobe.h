@@ -47,11 +47,11 @@ class ThreeLobeBsdf final : public Bsdf {
     const bool reflects = uc < choice.surface + choice.subsurface;
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};
-    if (reflects) return reflected(wo, wi, spread(wo, wi), Lobes::reflection | Lobes::diffuse);
+    if (reflects) return reflected(wo, wi, Lobes::reflection | Lobes::diffuse);
     const float density = choice.transmitted * std::abs(wi.z) * kInvPi;
     if (density == 0) return {};  // black
-    return BsdfSample{shares_at(manner_.from_light ? wi.z : wo.z).transmitted * kInvPi, wi, density,
-                      Lobes::transmission | Lobes::diffuse};
+    return made(shares_at(manner_.from_light ? wi.z : wo.z).transmitted * kInvPi, wi, density,
+                Lobes::transmission | Lobes::diffuse);
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
@@ -135,17 +135,27 @@ class ThreeLobeBsdf final : public Bsdf {
   }
 
   /// Both on one side. Nothing where f is black.
-  std::optional<BsdfSample> reflected(const Vec3& wo, const Vec3& wi, float lobe, Lobes from) const {
-    const float density = leaf_pdf(wo, wi, lobe);
-    if (density == 0) return {};
-    return BsdfSample{leaf_f(wo, wi, lobe), wi, density, from};
+  std::optional<BsdfSample> reflected(const Vec3& wo, Vec3 wi, Lobes from) const {
+    const float lobe = spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
+    return density == 0 ? std::nullopt : made(leaf_f(wo, wi, lobe), wi, density, from);
+  }
+
+  /// Made in its place: a copy would wait for its parts to be stored.
+  static std::optional<BsdfSample> made(const SampledSpectrum& f, Vec3 wi, float density, Lobes from) {
+    std::optional<BsdfSample> result;
+    BsdfSample& sample = result.emplace();
+    sample.f = f;
+    sample.wi = wi;
+    sample.pdf = density;
+    sample.flags = from;
+    return result;
   }
 
   std::optional<BsdfSample> sample_surface(const Choice& choice, const Vec3& wo, Vec2 u, RandomStream& rng) const {
     constexpr Lobes kLobe = Lobes::reflection | Lobes::glossy | Lobes::surface;
-    const auto [wi, lobe] = surface_.sample(wo, u, rng);
+    const Vec3 wi = surface_.sample(wo, u, rng);
     if (!manner_.surface_direct) return BsdfSample{as_delta(wo, wi), wi, choice.surface, kLobe | Lobes::specular};
-    return reflected(wo, wi, lobe, kLobe);
+    return reflected(wo, wi, kLobe);
   }
 
   /// f of the surface lobe where wi, drawn from it, counts as a delta lobe's only direction.
