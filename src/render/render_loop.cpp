@@ -69,7 +69,7 @@ class Worker {
 
   /// Renders an item, all that it has not got yet. It is then what `tile` holds.
   void render(const WorkItem& item, const Coverage& covered) {
-    tile_.clear(item.pixels);
+    tile_.clear(item.empty() ? Crop{} : item.pixels);
     statistics_ = {};
     for (const WorkItem& piece : covered.missing(item)) {
       for (int y = piece.pixels.y0; y < piece.pixels.y1; ++y)
