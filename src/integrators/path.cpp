@@ -365,13 +365,13 @@ class PathTracer final : public Tracer {
     return true;
   }
 
-  /// Whether the path ends here; roulette rewards the survivors. It begins after the third scattering: what is left to
-  /// scattered rays, as an even sky is, is found by those before.
+  /// Whether the path ends here; roulette rewards the survivors. It begins after the fifth scattering: earlier, the few
+  /// that go on make more noise in dark places than the others save time.
   bool ends(Path& path) const {
     if (path.throughput.is_black()) return true;
     if (settings_.cut_off_attenuation) return attenuation(path) < settings_.cutoff;
     const float survival = path.throughput.max();
-    if (path.depth < 2 || survival >= 1) return false;
+    if (path.depth < kSafeScatterings - 1 || survival >= 1) return false;
     if (path.key.stream(Use::roulette).uniform() >= survival) return true;
     path.throughput *= 1 / survival;
     return false;
@@ -405,6 +405,8 @@ class PathTracer final : public Tracer {
     const PixelSamples& s = bundle_->samples;
     for (const size_t i : lanes) get({s.x, s.y, s.first + i, 1}, dimension, &u[i]);
   }
+
+  static constexpr int kSafeScatterings = 5;  ///< which roulette follows
 
   /// Surfaces that are not there, in one path: rounding might have a ray meet the same one for ever.
   static constexpr int kMostPassed = 1000;
