@@ -11,11 +11,12 @@ import struct
 import subprocess
 import sys
 
-MAGIC, END = b"frond part 1\n", b"frond part end\n"
+MAGIC, END = b"frond part 2\n", b"frond part end\n"
 TILE = 16
 ITEM = struct.Struct("<4i2Q")  # x0 y0 x1 y1, first sample, end
 PIXEL_BYTES, BAND_BYTES, BLOCK_BYTES = 128, 48, 64
 HITS_BYTES, MEAN_BYTES, ID_BYTES = 24, 16, 8
+SPLAT_BYTES, BAND_SPLAT_BYTES, SPLAT_BLOCK_BYTES = 64, 32, 128
 
 
 def decompressed(frame):
@@ -52,9 +53,10 @@ def split(data):
     return json.loads(text), decompressed(data[begin + size + 8 : -len(END)])
 
 
-def tiles_of(crop):
-    """Rectangles of the tiles, in the file's order: a grid from pixel (0, 0) of the whole picture, cut to the crop."""
-    x0, y0, x1, y1 = crop
+def tiles_of(pixels):
+    """Rectangles of the tiles, in the file's order: a grid from pixel (0, 0) of the whole picture, cut to the pixels
+    whose samples the part has."""
+    x0, y0, x1, y1 = pixels
     for top in range(y0 // TILE * TILE, y1, TILE):
         for left in range(x0 // TILE * TILE, x1, TILE):
             yield max(left, x0), max(top, y0), min(left + TILE, x1), min(top + TILE, y1)
@@ -74,28 +76,106 @@ class Pixel:
         return [s / 2**60 * (2.0**exponent * 2**30 / self.weight) for s in self.sum]
 
 
+def integer(record, at):
+    return int.from_bytes(record[at : at + 16], "little", signed=True)
+
+
+class Splat:
+    """What the samples of a tile give to a pixel that they reach, each times its weight."""
+
+    def __init__(self, record):
+        self.sum = [integer(record, 16 * c) for c in range(3)]
+        (self.weight,) = struct.unpack_from("<q", record, 48)
+
+
+def samples_of_pixel(tile):
+    """Mean over a tile's pixels."""
+    (x0, y0, x1, y1), coverage = tile["rectangle"], tile["coverage"]
+    taken = sum((item[2] - item[0]) * (item[3] - item[1]) * (item[5] - item[4]) for item in coverage)
+    return taken / ((x1 - x0) * (y1 - y0))
+
+
 def read(path):
-    """The header, and for each tile its rectangle, its coverage and its pixels."""
+    """The header, and for each tile its rectangle, its coverage, its pixels by (x, y), and where samples are shared what
+    they give to pixels, by (x, y) too."""
     with open(path, "rb") as file:
         header, data = split(file.read())
     film = header["film"]
+    splatting = film["splatting"]
+    reach = [axis["reach"] for axis in splatting["axes"]] if splatting else None
     features = film["means"] * MEAN_BYTES + film["ids"] * ID_BYTES
     of_pixel = (PIXEL_BYTES + film["bands"] * BAND_BYTES + (features + HITS_BYTES if features else 0) +
-                film["blocks"] * BLOCK_BYTES)
+                (film["blocks"] and not splatting) * BLOCK_BYTES)
+    of_splat = SPLAT_BYTES + film["bands"] * BAND_SPLAT_BYTES + film["blocks"] * SPLAT_BLOCK_BYTES
     tiles, at = [], 0
-    for rectangle in tiles_of(film["crop"]):
+    for rectangle in tiles_of(splatting["sampled"] if splatting else film["crop"]):
         (items,) = struct.unpack_from("<Q", data, at)
         at += 8
         coverage = [ITEM.unpack_from(data, at + ITEM.size * i) for i in range(items)]
         at += ITEM.size * items
         x0, y0, x1, y1 = rectangle
-        count = (x1 - x0) * (y1 - y0)
-        pixels = [Pixel(data[at + PIXEL_BYTES * i : at + PIXEL_BYTES * (i + 1)]) for i in range(count)]
-        at += count * of_pixel + 8  # the rays come last
-        tiles.append((rectangle, coverage, pixels))
+        places = [(x, y) for y in range(y0, y1) for x in range(x0, x1)]
+        pixels = {place: Pixel(data[at + PIXEL_BYTES * i : at + PIXEL_BYTES * (i + 1)]) for i, place in enumerate(places)}
+        at += len(places) * of_pixel
+        splats = {}
+        if splatting:
+            columns = range(max(x0 - reach[0], 0), min(x1 + reach[0], film["width"]))
+            rows = range(max(y0 - reach[1], 0), min(y1 + reach[1], film["height"]))
+            places = [(x, y) for y in rows for x in columns]
+            for i, place in enumerate(places):
+                splats[place] = Splat(data[at + SPLAT_BYTES * i : at + SPLAT_BYTES * (i + 1)])
+            at += len(places) * of_splat
+        at += 8  # rays
+        tiles.append({"rectangle": rectangle, "coverage": coverage, "pixels": pixels, "splats": splats})
     if at != len(data):
         raise SystemExit("the part is damaged")
     return header, tiles
+
+
+def expected_weight(splatting, tiles, place):
+    """What the samples that were taken weigh in a pixel, were they spread evenly: means of weights, by distance."""
+    x, y = place
+    (reach_x, mean_x), (reach_y, mean_y) = ((axis["reach"], axis["mean"]) for axis in splatting["axes"])
+    weight = 0.0
+    for tile in tiles:
+        for py in range(y - reach_y, y + reach_y + 1):
+            for px in range(x - reach_x, x + reach_x + 1):
+                if (px, py) in tile["pixels"]:
+                    share = tile["pixels"][px, py].samples / samples_of_pixel(tile)
+                    weight += share * mean_x[x - px + reach_x] * mean_y[y - py + reach_y]
+    return weight
+
+
+def mean_colors(header, tiles):
+    """The mean colour of each pixel of the crop, by (x, y), and its own samples."""
+    film = header["film"]
+    x0, y0, x1, y1 = film["crop"]
+    means = {}
+    if not film["splatting"]:
+        for tile in tiles:
+            for place, pixel in tile["pixels"].items():
+                means[place] = pixel.mean(film["exponent"]), pixel.samples
+        return means
+    gathered = {(x, y): [0.0] * 4 for y in range(y0, y1) for x in range(x0, x1)}
+    samples = {}
+    for tile in tiles:
+        count = samples_of_pixel(tile)
+        if count == 0:
+            continue
+        samples.update((place, pixel.samples) for place, pixel in tile["pixels"].items())
+        for place, splat in tile["splats"].items():
+            if place in gathered:
+                sums = gathered[place]
+                for c in range(3):
+                    sums[c] += splat.sum[c] / 2**60 / count
+                sums[3] += splat.weight / 2**30 / count
+    for place, (*sums, weight) in gathered.items():
+        if film["splatting"]["has_negative_weights"]:
+            expected = expected_weight(film["splatting"], tiles, place)
+            weight = weight if weight >= expected / 4 else max(expected, 0.0)
+        scale = 2.0 ** film["exponent"] / weight if weight > 0 else 0.0
+        means[place] = [s * scale for s in sums], samples.get(place, 0)
+    return means
 
 
 def print_summary(header, tiles):
@@ -107,8 +187,8 @@ def print_summary(header, tiles):
                                               f"{film['bands']} bands" if film["bands"] else header["picture"]["space"]))
     print("coverage:")
     covered = {}  # rectangles that have the same samples
-    for _, coverage, _ in tiles:
-        for x0, y0, x1, y1, first, end in coverage:
+    for tile in tiles:
+        for x0, y0, x1, y1, first, end in tile["coverage"]:
             covered[first, end] = covered.get((first, end), 0) + (x1 - x0) * (y1 - y0)
     for (first, end), pixels in sorted(covered.items()):
         print(f"  samples {first}:{end} of {pixels} pixels")
@@ -124,10 +204,8 @@ def main():
         return
     if header["film"]["bands"]:
         raise SystemExit("a film of bands has no colours")
-    for (x0, y0, x1, _), _, pixels in tiles:
-        for i, pixel in enumerate(pixels):
-            x, y = x0 + i % (x1 - x0), y0 + i // (x1 - x0)
-            print(x, y, *(f"{v:.9g}" for v in pixel.mean(header["film"]["exponent"])), pixel.samples)
+    for (x, y), (color, samples) in sorted(mean_colors(header, tiles).items(), key=lambda item: item[0][::-1]):
+        print(x, y, *(f"{v:.9g}" for v in color), samples)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,11 @@ struct ConvertOptions {
 
 LinearFile read(const std::string& path, const std::vector<double>& bands_nm) {
   if (bands_nm.empty()) return read_linear(path);
-  return {path, "linear sRGB", false_color_image(read_image(path, {}), path, bands_nm), {}, {}};
+  return {.path = path,
+          .space = "linear sRGB",
+          .image = false_color_image(read_image(path, {}), path, bands_nm),
+          .leaf = {},
+          .seed = {}};
 }
 
 void convert(const ConvertOptions& options) {
@@ -33,12 +37,15 @@ void convert(const ConvertOptions& options) {
     if (next.space != mean.space)
       fail({}, "{} is in {}, {} in {}: only images of one colour space are averaged", mean.path, mean.space, next.path,
            next.space);
+    mean.correlated_pixels = std::max(mean.correlated_pixels, next.correlated_pixels);
     for (size_t k = 0; k < mean.image.pixels.size(); ++k) mean.image.pixels[k] += next.image.pixels[k];
   }
   const float scale = float(std::exp2(options.exposure) / double(options.inputs.size()));
   for (float& v : mean.image.pixels) v *= scale;
+  std::map<std::string, std::string> attributes{{"frond:version", FROND_VERSION}};
+  if (mean.correlated_pixels > 1) attributes["frond:correlated_pixels"] = fmt::format("{:.3f}", mean.correlated_pixels);
   if (is_exr(options.output))
-    write_image(options.output, mean.image, {mean.space, {{"frond:version", FROND_VERSION}}});
+    write_image(options.output, mean.image, {mean.space, attributes});
   else
     write_display_image(options.output, mean.image, mean.space, colors, options.display, {});
 }

@@ -79,10 +79,12 @@ void warn_of_same_noise(const std::vector<LinearFile>& halves) {
 /// Adds "rms_red" and so on, with `prefix` before each name.
 void add_errors(nlohmann::ordered_json& j, const std::string& prefix, const std::vector<LinearFile>& halves,
                 std::span<const float> use) {
+  double correlated = 1;
+  for (const LinearFile& half : halves) correlated = std::max(correlated, half.correlated_pixels);
   for (size_t c = 0; c < 3; ++c) {
     std::array<std::vector<float>, 4> v;
     for (size_t i = 0; i < 4; ++i) v[i] = halves[i].image.plane(c);
-    const ImageError e = image_error(v[0], v[1], v[2], v[3], use);
+    const ImageError e = image_error(v[0], v[1], v[2], v[3], use, correlated);
     const auto put = [&](const char* name, double value) {
       j[fmt::format("{}{}_{}", prefix, name, kChannels[c])] = value;
     };

@@ -37,6 +37,10 @@ void merge(const MergeOptions& o) {
   // More parts may still come to what becomes a part again.
   if (output) {
     check_holes(whole, o.allow_holes, log);
+    if (lacks_neighbors(whole.film))
+      log.warn({},
+               "pixels at the edges lack samples of those beside them, which the filter reaches: other parts of the "
+               "picture have them");
     output->write(whole.film, finished_picture(whole));
   } else {
     write_part(o.part, whole.header, whole.film);

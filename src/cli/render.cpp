@@ -80,6 +80,7 @@ class RenderCommand {
     find_paths(film.filename);
     check_bands(overrides);
     PictureRequest request{.pixels = film.crop,
+                           .is_piece = !options_.part.empty(),
                            .channels = options_.channels,
                            .adaptive = is_adaptive(),
                            .command = command_line_of(options_)};
@@ -145,7 +146,7 @@ class RenderCommand {
     if (!difference.empty()) fail({}, "--resume: this is another render. {}", difference);
     if (found.film.format().blocks != wanted.film.format().blocks)
       fail({}, "--resume: \"{}\" was made {} --max-rms", path.string(), is_adaptive() ? "without" : "with");
-    if (found.film.settings().crop != wanted.film.settings().crop)
+    if (found.film.settings().crop != wanted.film.settings().crop || found.film.sampled() != wanted.film.sampled())
       fail({}, "--resume: \"{}\" is of other pixels than this command asks for", path.string());
   }
 

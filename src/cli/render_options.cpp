@@ -51,6 +51,7 @@ SceneOverrides overrides_of(const RenderOptions& options) {
   SceneOverrides overrides;
   overrides.wavelengths = options.wavelengths;
   if (!options.integrator.empty()) overrides.integrator = parse_plugin_text(options.integrator, {});
+  if (!options.filter.empty()) overrides.filter = parse_plugin_text(options.filter, {});
   overrides.seed = options.seed;
   overrides.cache_dir = cache_directory(options.cache, options.no_cache);  // of pilots; the session has its own
   overrides.quick = options.quick;
@@ -62,6 +63,7 @@ std::string command_line_of(const RenderOptions& o) {
   if (o.seed) line += fmt::format(" --seed {}", *o.seed);
   if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
   if (!o.integrator.empty()) line += " --integrator " + o.integrator;
+  if (!o.filter.empty()) line += " --filter " + o.filter;
   for (const std::string& plugin : o.plugins) line += " --plugin " + std::filesystem::path(plugin).filename().string();
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
   if (!o.channels.empty()) line += fmt::format(" --channels {}", fmt::join(ChannelList(o.channels).names(), ","));
@@ -101,6 +103,9 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
                      "bands,wavelengths=450,550,850 (also bands,lambdamin=400,lambdamax=1000,step=10).");
   command.add_option("--integrator", o.integrator,
                      "PLUGIN[,parameter=value...]; one of the scene's kind keeps the scene's other parameters.");
+  command.add_option("--filter", o.filter,
+                     "Pixel filter: PLUGIN[,parameter=value...]; one of the scene's kind keeps the scene's other "
+                     "parameters. gaussian,reconstruction=importance: pixels share no samples.");
   command
       .add_option("--swap", o.swaps,
                   "MATERIAL=PLUGIN[,parameter=value...]: another model; \"*=PLUGIN\": for every leaf.")

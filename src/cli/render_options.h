@@ -16,7 +16,7 @@ namespace frond {
 
 /// What `frond render` is told.
 struct RenderOptions {
-  std::string scene, output, part, wavelengths, integrator, cache, range;
+  std::string scene, output, part, wavelengths, integrator, filter, cache, range;
   std::vector<double> crop;
   std::vector<int> pixels;
   std::vector<std::string> swaps, plugins, channels;

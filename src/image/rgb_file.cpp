@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "image/spectral_layout.h"
 
@@ -53,9 +54,13 @@ LinearFile read_linear(const std::string& path) {
   const ImageFile file = read_image(path, {});
   if (file.eight_bit) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
   if (file.header.color_space.empty()) refuse_without_colors(path, file.image);
-  LinearFile result{path, file.header.color_space, rgb_of(file.image, path, {}), {}, {}};
+  LinearFile result{
+      .path = path, .space = file.header.color_space, .image = rgb_of(file.image, path, {}), .leaf = {}, .seed = {}};
   if (const auto leaf = file.image.channel("leaf")) result.leaf = file.image.plane(*leaf);
   if (const auto seed = file.header.text.find("frond:seed"); seed != file.header.text.end()) result.seed = seed->second;
+  if (const auto pixels = file.header.text.find("frond:correlated_pixels"); pixels != file.header.text.end())
+    if (const double given = std::strtod(pixels->second.c_str(), nullptr); given >= 1 && std::isfinite(given))
+      result.correlated_pixels = given;
   return result;
 }
 

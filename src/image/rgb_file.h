@@ -14,9 +14,10 @@ void decode_srgb(Image& image);
 /// What a linear image file says: of a render, if it has a leaf channel and a seed.
 struct LinearFile {
   std::string path, space;
-  Image image;              ///< R G B
-  std::vector<float> leaf;  ///< share of leaf of each pixel; empty: not in the file
-  std::string seed;         ///< of the render, as its header says; empty: it does not
+  Image image;                   ///< R G B
+  std::vector<float> leaf;       ///< share of leaf of each pixel; empty: not in the file
+  std::string seed;              ///< of the render, as its header says; empty: it does not
+  double correlated_pixels = 1;  ///< that share the noise of one, as the header says
 };
 
 /// Throws InputError when the file is not linear or lacks a channel.

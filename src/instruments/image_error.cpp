@@ -15,7 +15,7 @@ double ImageError::bias() const { return bias_squared.root(); }
 double ImageError::bias_upper() const { return bias_squared.root_at(kZ95); }
 
 ImageError image_error(std::span<const float> a1, std::span<const float> a2, std::span<const float> b1,
-                       std::span<const float> b2, std::span<const float> use) {
+                       std::span<const float> b2, std::span<const float> use, double correlated_pixels) {
   double n = 0, total = 0, clipped = 0, product = 0, product_variance = 0, difference = 0, gap_a = 0, gap_b = 0;
   for (size_t i = 0; i < a1.size(); ++i) {
     if (!use.empty() && !(use[i] > 0.5f)) continue;
@@ -35,7 +35,8 @@ ImageError image_error(std::span<const float> a1, std::span<const float> a2, std
   if (n == 0) return e;
   e.rms = std::sqrt(total / n);
   e.rms_clipped = std::sqrt(clipped / n);
-  e.bias_squared = {product / n, std::sqrt(std::max(0.0, product_variance)) / n};
+  // Variances of pixels add up as if they were independent; covariances make the sum larger by the factor at most.
+  e.bias_squared = {product / n, std::sqrt(std::max(0.0, product_variance) * correlated_pixels) / n};
   e.noise = std::sqrt(std::max(0.0, total / n - std::max(0.0, e.bias_squared.value)));
   e.noise_a = std::sqrt(gap_a / n) / 2;
   e.noise_b = std::sqrt(gap_b / n) / 2;

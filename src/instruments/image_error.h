@@ -36,8 +36,9 @@ struct ImageError {
 };
 
 /// The four halves, pixel by pixel, of one channel. `use` (as long, or empty for all pixels) picks pixels by a weight
-/// above 0.5.
+/// above 0.5. `correlated_pixels`: how many share the noise of one (Splatting::correlated_pixels); the standard error
+/// grows by its root.
 ImageError image_error(std::span<const float> a1, std::span<const float> a2, std::span<const float> b1,
-                       std::span<const float> b2, std::span<const float> use = {});
+                       std::span<const float> b2, std::span<const float> use = {}, double correlated_pixels = 1);
 
 }  // namespace frond

@@ -29,8 +29,14 @@ TileNoise noise_of(const Film& film, size_t i) {
   const FilmTile& tile = film.tile(i);
   const Crop& c = tile.pixels();
   double noise = 0;
-  for (int y = c.y0; y < c.y1; ++y)
-    for (int x = c.x0; x < c.x1; ++x) noise += noise_of(film, x, y);
+  if (film.format().splatting) {
+    const Crop reached = intersection(tile.reached(), film.settings().crop);
+    for (int y = reached.y0; y < reached.y1; ++y)
+      for (int x = reached.x0; x < reached.x1; ++x) noise += film.block_variance_by(i, x, y);
+  } else {
+    for (int y = c.y0; y < c.y1; ++y)
+      for (int x = c.x0; x < c.x1; ++x) noise += noise_of(film, x, y);
+  }
   const double pixels = pixels_of(c), samples = double(tile.pixel(c.x0, c.y0).samples);
   return {pixels, samples, noise / pixels * samples, double(tile.rays()) / (pixels * samples) + 1};
 }
@@ -63,15 +69,14 @@ NoiseEstimate picture_noise(const Film& film, double z) {
       const double noise = noise_of(film, x, y);
       sum += noise, squares += noise * noise;
     }
-  const double pixels = pixels_of(c);
-  return {sum / pixels, (sum + z * std::sqrt(squares)) / pixels};
+  const double pixels = pixels_of(c), alike = film.format().splatting ? film.format().splatting->correlated_pixels : 1;
+  return {sum / pixels, (sum + z * std::sqrt(squares * alike)) / pixels};
 }
 
 double noise_z() { return normal_upper_quantile(sidak_level(1 - kNoiseConfidence, kNoiseLooks)); }
 
 SamplePlan first_plan(const Film& film) {
-  return {std::vector<uint64_t>(film.tiles(), kLeastAdaptive),
-          uint64_t(pixels_of(film.settings().crop)) * kLeastAdaptive};
+  return {std::vector<uint64_t>(film.tiles(), kLeastAdaptive), uint64_t(pixels_of(film.sampled())) * kLeastAdaptive};
 }
 
 SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples) {

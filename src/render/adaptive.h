@@ -14,7 +14,7 @@ struct NoiseEstimate {
 };
 
 /// Of a film that has blocks. `z`: standard errors up to the upper bound; a pixel's own estimate is taken to be
-/// uncertain by all of itself.
+/// uncertain by all of itself, and as many of them as share their samples to be wrong together.
 NoiseEstimate picture_noise(const Film& film, double z);
 
 /// Confidence that a picture's noise is no more than what was asked for, all looks at it together.

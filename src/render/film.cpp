@@ -38,7 +38,20 @@ double held(double value) {
   return std::isfinite(value) ? std::clamp(value, -kMost, kMost) : 0;
 }
 
-int floor_to_tile(int pixel) { return pixel / Film::kTile; }  // pixels are not negative
+/// Samples that are shared may lie a little outside of the picture.
+int floor_to_tile(int pixel) {
+  static_assert(Film::kTile == 16);
+  return pixel >> 4;
+}
+
+/// Samples and what follows from them: how many, their mean, and the sum of squared distances from it.
+struct SampleMoments {
+  double count, mean, spread;
+};
+SampleMoments moments_of(double sum, double square, double count) {
+  if (count == 0) return {0, 0, 0};
+  return {count, sum / count, std::max(square - sum * sum / count, 0.0)};
+}
 
 template <class Sums>
 void add_all(std::vector<Sums>& to, size_t at, const std::vector<Sums>& from, size_t from_at, size_t count) {
@@ -55,6 +68,23 @@ FilmTile::Pixel& FilmTile::Pixel::operator+=(const Pixel& other) {
 
 FilmTile::BandSums& FilmTile::BandSums::operator+=(const BandSums& other) {
   sum += other.sum, square += other.square, samples += other.samples;
+  return *this;
+}
+
+FilmTile::Splat& FilmTile::Splat::operator+=(const Splat& other) {
+  for (size_t c = 0; c < 3; ++c) sum[c] += other.sum[c];
+  weight += other.weight;
+  return *this;
+}
+
+FilmTile::BandSplat& FilmTile::BandSplat::operator+=(const BandSplat& other) {
+  sum += other.sum, weight += other.weight;
+  return *this;
+}
+
+FilmTile::SplatBlocks& FilmTile::SplatBlocks::operator+=(const SplatBlocks& other) {
+  for (size_t c = 0; c < 3; ++c) square[c] += other.square[c], product[c] += other.product[c];
+  weight_square += other.weight_square, blocks += other.blocks;
   return *this;
 }
 
@@ -78,7 +108,10 @@ FilmTile::FilmTile(const FilmFormat& format, const Crop& pixels)
     : band_count_(format.bands),
       mean_count_(format.channels.means()),
       id_count_(format.channels.ids()),
-      has_blocks_(format.blocks) {
+      has_blocks_(format.blocks),
+      width_(format.settings.width),
+      height_(format.settings.height) {
+  if (const auto& s = format.splatting) reach_x_ = s->reach_x(), reach_y_ = s->reach_y();
   clear(pixels);
 }
 
@@ -90,12 +123,20 @@ void FilmTile::clear(const Crop& pixels) {
   hits_.assign(mean_count_ + id_count_ > 0 ? count : 0, {});
   mean_sums_.assign(count * mean_count_, {});
   ids_.assign(count * id_count_, 0);
-  blocks_.assign(has_blocks_ ? count : 0, {});
+  blocks_.assign(has_blocks_ && !shares_samples() ? count : 0, {});
+  reached_ = {};
+  if (shares_samples() && count > 0)
+    reached_ = intersection(widened(pixels, reach_x_, reach_y_), {0, 0, width_, height_});
+  const size_t reached = size_t(reached_.width()) * size_t(reached_.height());
+  splats_.assign(reached, {});
+  band_splats_.assign(reached * band_count_, {});
+  splat_blocks_.assign(has_blocks_ ? reached : 0, {});
   rays_ = 0;
   coverage_ = {};
 }
 
-void FilmTile::add(const FilmFormat& format, int x, int y, SensorResponse sensor, double weight, bool leaf) {
+void FilmTile::add(const FilmFormat& format, int x, int y, SensorResponse sensor, double weight, bool leaf,
+                   const SplatKernel::Weights* splat) {
   const size_t at = index(x, y);
   assert(at < pixels_.size());
   Pixel& pixel = pixels_[at];
@@ -122,10 +163,38 @@ void FilmTile::add(const FilmFormat& format, int x, int y, SensorResponse sensor
     band.square.add(sensor[i] * sensor[i]);
     ++band.samples;
   }
+  if (splat) add_splats(x, y, sensor, *splat);
   pixel.weight += static_cast<int64_t>(weight * kWeightUnit);
   pixel.leaf += leaf ? 1 : 0;
   pixel.not_finite += is_lost ? 1 : 0;
   ++pixel.samples;
+}
+
+void FilmTile::add_splats(int x, int y, const SensorResponse& sensor, const SplatKernel::Weights& weights) {
+  std::array<Int128, kLanes> value{};
+  Int128 any = 0;
+  for (size_t i = 0; i < size_t(sensor.count); ++i) any |= value[i] = ExactSum<60>::units(sensor[i]);
+  const int left = x - reach_x_, top = y - reach_y_;
+  for (int py = std::max(top, reached_.y0); py < std::min(y + reach_y_ + 1, reached_.y1); ++py) {
+    const int64_t along_y = weights.y[size_t(py - top)];
+    if (along_y == 0) continue;
+    for (int px = std::max(left, reached_.x0); px < std::min(x + reach_x_ + 1, reached_.x1); ++px) {
+      const int64_t weight = (along_y * weights.x[size_t(px - left)]) >> 30;
+      if (weight == 0) continue;
+      const size_t at = reached_index(px, py);
+      Splat& splat = splats_[at];
+      splat.weight += weight;
+      if (band_count_ == 0) {
+        for (size_t c = 0; c < 3 && any != 0; ++c) splat.sum[c].add_weighted(value[c], weight);
+        continue;
+      }
+      for (size_t i = 0; i < size_t(sensor.count); ++i) {
+        BandSplat& band = band_splats_[at * band_count_ + sensor.channel[i]];
+        band.sum.add_weighted(value[i], weight);
+        band.weight += weight;
+      }
+    }
+  }
 }
 
 void FilmTile::add(int x, int y, const Features& f) {
@@ -161,6 +230,37 @@ void FilmTile::add_block(int x, int y, const Pixel& before) {
   ++block.blocks;
 }
 
+void FilmTile::add_block(const std::vector<Splat>& before) {
+  for (size_t i = 0; i < splats_.size(); ++i) {
+    SplatBlocks& block = splat_blocks_[i];
+    const double c = double(splats_[i].weight - before[i].weight) / (kWeightUnit * double(kBlock));
+    for (size_t k = 0; k < 3; ++k) {
+      const double b = (splats_[i].sum[k].value() - before[i].sum[k].value()) / double(kBlock);
+      block.square[k].add(held(b * b));
+      block.product[k].add(held(b * c));
+    }
+    block.weight_square.add(c * c);
+    ++block.blocks;
+  }
+}
+
+double FilmTile::samples_per_pixel() const {
+  uint64_t samples = 0;
+  for (const WorkItem& item : coverage_.items()) samples += item.paths();
+  return double(samples) / (double(crop_.width()) * double(crop_.height()));
+}
+
+void FilmTile::merge_splats(const FilmTile& other) {
+  const Crop& c = other.reached_;
+  const auto width = size_t(c.width());
+  for (int y = c.y0; y < c.y1; ++y) {
+    const size_t to = reached_index(c.x0, y), from = other.reached_index(c.x0, y);
+    add_all(splats_, to, other.splats_, from, width);
+    add_all(band_splats_, to * band_count_, other.band_splats_, from * band_count_, width * band_count_);
+    if (has_blocks_) add_all(splat_blocks_, to, other.splat_blocks_, from, width);
+  }
+}
+
 bool FilmTile::merge(const FilmTile& other) {
   Coverage both = coverage_;
   for (const WorkItem& item : other.coverage_.items())
@@ -173,21 +273,22 @@ bool FilmTile::merge(const FilmTile& other) {
     add_all(pixels_, to, other.pixels_, from, width);
     add_all(bands_, to * band_count_, other.bands_, from * band_count_, width * band_count_);
     for (size_t i = 0; i < (hits_.empty() ? 0 : width); ++i) add_features(to + i, other, from + i);
-    if (has_blocks_) add_all(blocks_, to, other.blocks_, from, width);
+    if (!blocks_.empty()) add_all(blocks_, to, other.blocks_, from, width);
   }
+  if (shares_samples()) merge_splats(other);
   rays_ += other.rays_;
   return true;
 }
 
 Film::Film(const FilmFormat& format, const Location& where)
     : format_(format),
-      first_column_(floor_to_tile(format.settings.crop.x0)),
-      first_row_(floor_to_tile(format.settings.crop.y0)),
-      columns_(floor_to_tile(format.settings.crop.x1 - 1) - first_column_ + 1),
+      first_column_(floor_to_tile(format.sampled().x0)),
+      first_row_(floor_to_tile(format.sampled().y0)),
+      columns_(floor_to_tile(format.sampled().x1 - 1) - first_column_ + 1),
       unit_(power_of_two(format.exponent)),
       locks_(std::make_unique<std::array<std::mutex, kLocks>>()) {
   check_memory(format, 1, where, "--crop renders a part");
-  const Crop& crop = format.settings.crop;
+  const Crop& crop = format.sampled();
   for (int row = first_row_; row * kTile < crop.y1; ++row)
     for (int column = first_column_; column * kTile < crop.x1; ++column)
       tiles_.emplace_back(format_, Crop{std::max(column * kTile, crop.x0), std::max(row * kTile, crop.y0),
@@ -195,7 +296,7 @@ Film::Film(const FilmFormat& format, const Location& where)
 }
 
 size_t Film::tile_at(int x, int y) const {
-  [[maybe_unused]] const Crop& c = format_.settings.crop;
+  [[maybe_unused]] const Crop& c = sampled();
   assert(x >= c.x0 && x < c.x1 && y >= c.y0 && y < c.y1);
   return size_t(floor_to_tile(y) - first_row_) * size_t(columns_) + size_t(floor_to_tile(x) - first_column_);
 }
@@ -215,7 +316,95 @@ bool Film::merge(size_t i, const FilmTile& part) {
   return tiles_[i].merge(part);
 }
 
+template <class Each>
+void Film::for_each_reaching_tile(int x, int y, const Each& each) const {
+  const Crop pixels = format_.splatting->reaching({x, y, x + 1, y + 1});
+  for (int row = floor_to_tile(pixels.y0); row <= floor_to_tile(pixels.y1 - 1); ++row)
+    for (int column = floor_to_tile(pixels.x0); column <= floor_to_tile(pixels.x1 - 1); ++column)
+      each(tiles_[size_t(row - first_row_) * size_t(columns_) + size_t(column - first_column_)]);
+}
+
+template <class Each>
+void Film::for_each_reaching_pixel(int x, int y, const Each& each) const {
+  for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
+    const double samples = tile.samples_per_pixel();
+    if (samples == 0) return;
+    const Crop all = format_.splatting->reaching({x, y, x + 1, y + 1}), &own = tile.pixels();
+    for (int py = std::max(all.y0, own.y0); py < std::min(all.y1, own.y1); ++py)
+      for (int px = std::max(all.x0, own.x0); px < std::min(all.x1, own.x1); ++px) each(tile, px, py, samples);
+  });
+}
+
+Film::Gathered Film::gathered(int x, int y) const {
+  Gathered all;
+  for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
+    const double samples = tile.samples_per_pixel();
+    if (samples == 0) return;
+    const FilmTile::Splat& splat = tile.splat(x, y);
+    for (size_t c = 0; c < 3; ++c) all.sum[c] += splat.sum[c].value() / samples;
+    all.weight += double(splat.weight) / kWeightUnit / samples;
+  });
+  all.weight = enough_weight(x, y, all.weight,
+                             [](const FilmTile& tile, int px, int py) { return double(tile.pixel(px, py).samples); });
+  return all;
+}
+
+Film::Gathered Film::gathered(int x, int y, size_t band) const {
+  Gathered all;
+  for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
+    const double samples = tile.samples_per_pixel();
+    if (samples == 0) return;
+    const FilmTile::BandSplat& splat = tile.band_splat(x, y, band);
+    all.sum[0] += splat.sum.value() / samples;
+    all.weight += double(splat.weight) / kWeightUnit / samples;
+  });
+  all.weight = enough_weight(x, y, all.weight, [band](const FilmTile& tile, int px, int py) {
+    return double(tile.band(px, py, band).samples);
+  });
+  return all;
+}
+
+template <class Count>
+double Film::enough_weight(int x, int y, double weight, const Count& count) const {
+  if (!format_.splatting->has_negative_weights) return weight;
+  double expected = 0;
+  for_each_reaching_pixel(x, y, [&](const FilmTile& tile, int px, int py, double samples) {
+    expected += count(tile, px, py) / samples * format_.splatting->mean(x - px, y - py);
+  });
+  constexpr double kLeast = 0.25;
+  return weight >= kLeast * expected ? weight : std::max(expected, 0.0);
+}
+
+template <class Moments>
+double Film::splatted_variance(int x, int y, double mean, double weight, const Moments& moments) const {
+  if (weight <= 0) return 0;
+  double variance = 0, spread = 0, degrees = 0, of_single_samples = 0;
+  for_each_reaching_pixel(x, y, [&](const FilmTile& tile, int px, int py, double samples) {
+    const SampleMoments m = moments(tile, px, py);
+    if (m.count == 0) return;
+    // Of one sample's w (L - mean), w and L independent of each other.
+    const double w = format_.splatting->mean(x - px, y - py), ww = format_.splatting->square(x - px, y - py),
+                 share = m.count / (samples * samples), step = m.mean - mean;
+    variance += share * (ww - w * w) * step * step;
+    if (m.count < 2) {
+      of_single_samples += share * ww;
+      return;
+    }
+    variance += share * ww * m.spread / (m.count - 1);
+    spread += m.spread, degrees += m.count - 1;
+  });
+  if (degrees == 0) return 0;
+  variance += of_single_samples * spread / degrees;  // what a single sample does not tell its neighbours do
+  return variance / (weight * weight);
+}
+
 Triple Film::mean(int x, int y) const {
+  if (format_.splatting) {
+    const Gathered all = gathered(x, y);
+    if (all.weight <= 0) return {};
+    const double scale = unit_ / all.weight;
+    return {all.sum[0] * scale, all.sum[1] * scale, all.sum[2] * scale};
+  }
   const FilmTile::Pixel& p = pixel(x, y);
   if (p.weight == 0) return {};
   const double scale = unit_ * kWeightUnit / double(p.weight);
@@ -225,13 +414,54 @@ Triple Film::mean(int x, int y) const {
 Triple Film::variance(int x, int y) const {
   const FilmTile::Pixel& p = pixel(x, y);
   Triple v{};
+  if (format_.splatting) {
+    const Gathered all = gathered(x, y);
+    for (size_t c = 0; c < 3; ++c)
+      v[c] = unit_ * unit_ *
+             splatted_variance(x, y, all.weight > 0 ? all.sum[c] / all.weight : 0, all.weight,
+                               [c](const FilmTile& tile, int px, int py) {
+                                 const FilmTile::Pixel& own = tile.pixel(px, py);
+                                 return moments_of(own.sum[c].value(), own.square[c].value(), double(own.samples));
+                               });
+    return v;
+  }
   for (size_t c = 0; c < 3; ++c)
     v[c] = unit_ * unit_ *
            variance_of_mean(p.sum[c].value(), p.square[c].value(), double(p.samples), double(p.weight) / kWeightUnit);
   return v;
 }
 
+Triple Film::block_variance_by(const FilmTile& tile, int x, int y, const Gathered& all) const {
+  const double samples = tile.samples_per_pixel();
+  if (samples == 0 || all.weight <= 0) return {};
+  const FilmTile::SplatBlocks& b = tile.splat_blocks(x, y);
+  const FilmTile::Splat& splat = tile.splat(x, y);
+  constexpr auto kBlock = double(FilmTile::kBlock);
+  Triple v{};
+  for (size_t c = 0; c < 3; ++c) {
+    const double mean = all.sum[c] / all.weight;
+    const double rest = (splat.sum[c].value() - mean * double(splat.weight) / kWeightUnit) / kBlock;
+    const double square = b.square[c].value() - 2 * mean * b.product[c].value() + mean * mean * b.weight_square.value();
+    v[c] = unit_ * unit_ * variance_of_mean(rest, square, double(b.blocks), all.weight * samples / kBlock);
+  }
+  return v;
+}
+
+double Film::block_variance_by(size_t tile, int x, int y) const {
+  const Triple v = block_variance_by(tiles_[tile], x, y, gathered(x, y));
+  return (v[0] + v[1] + v[2]) / 3;
+}
+
 Triple Film::block_variance(int x, int y) const {
+  if (format_.splatting) {
+    const Gathered all = gathered(x, y);
+    Triple v{};
+    for_each_reaching_tile(x, y, [&](const FilmTile& tile) {
+      const Triple by_tile = block_variance_by(tile, x, y, all);
+      for (size_t c = 0; c < 3; ++c) v[c] += by_tile[c];
+    });
+    return v;
+  }
   const FilmTile::Pixel& p = pixel(x, y);
   const FilmTile::BlockSums& b = tiles_[tile_at(x, y)].blocks(x, y);
   const double weight = double(p.weight) / kWeightUnit / double(FilmTile::kBlock);
@@ -245,6 +475,19 @@ Triple Film::block_variance(int x, int y) const {
 Film::BandMean Film::band_mean(int x, int y, size_t band) const {
   const FilmTile::Pixel& p = pixel(x, y);
   const FilmTile::BandSums& b = tiles_[tile_at(x, y)].band(x, y, band);
+  if (format_.splatting) {
+    const Gathered all = gathered(x, y, band);
+    if (all.weight <= 0) return {};
+    const double mean = all.sum[0] / all.weight;
+    return {unit_ * mean,
+            unit_ * unit_ *
+                splatted_variance(x, y, mean, all.weight,
+                                  [band](const FilmTile& tile, int px, int py) {
+                                    const FilmTile::BandSums& own = tile.band(px, py, band);
+                                    return moments_of(own.sum.value(), own.square.value(), double(own.samples));
+                                  }),
+            b.samples};
+  }
   if (b.samples == 0 || p.weight == 0) return {};
   // Few samples see a band, and filter weights may be negative: those of all samples say what one weighs.
   const double n = double(b.samples), weight = n * (double(p.weight) / kWeightUnit) / double(p.samples);
@@ -269,12 +512,9 @@ double Film::leaf_fraction(int x, int y) const {
 
 double Film::foliar_ratio() const {
   double leaf = 0, samples = 0;
-  for (const FilmTile& tile : tiles_) {
-    const Crop& c = tile.pixels();
-    for (int y = c.y0; y < c.y1; ++y)
-      for (int x = c.x0; x < c.x1; ++x)
-        leaf += double(tile.pixel(x, y).leaf), samples += double(tile.pixel(x, y).samples);
-  }
+  const Crop& c = settings().crop;
+  for (int y = c.y0; y < c.y1; ++y)
+    for (int x = c.x0; x < c.x1; ++x) leaf += double(pixel(x, y).leaf), samples += double(pixel(x, y).samples);
   return samples > 0 ? leaf / samples : 0;
 }
 
@@ -296,8 +536,13 @@ void check_memory(const FilmFormat& format, size_t films, const Location& where,
                        double(format.bands) * (sizeof(FilmTile::BandSums) + kBandBytes) +
                        double(format.channels.means()) * (sizeof(ExactSum<40>) + sizeof(float)) +
                        double(format.channels.ids()) * (sizeof(double) + sizeof(float)) + sizeof(FilmTile::Hits) +
-                       (format.blocks ? sizeof(FilmTile::BlockSums) : 0);
-  const double bytes = double(crop.width()) * double(crop.height()) * double(films) * pixel;
+                       (format.blocks && !format.splatting ? sizeof(FilmTile::BlockSums) : 0);
+  double bytes = double(crop.width()) * double(crop.height()) * double(films) * pixel;
+  if (const auto& s = format.splatting)
+    bytes += double(crop.width()) * double(crop.height()) * double(films) * (1 + 2.0 * s->reach_x() / Film::kTile) *
+             (1 + 2.0 * s->reach_y() / Film::kTile) *
+             (sizeof(FilmTile::Splat) + double(format.bands) * sizeof(FilmTile::BandSplat) +
+              (format.blocks ? sizeof(FilmTile::SplatBlocks) : 0));
   const double memory = machine_memory();
   if (bytes <= memory) return;
   fail(where, "{} {} x {} pixels{} need {:.1f} GB of memory, this machine has {:.1f} GB: {}",

@@ -10,6 +10,7 @@
 #include "core/vec.h"
 #include "core/wavelengths.h"
 #include "render/channels.h"
+#include "render/splatting.h"
 #include "render/work.h"
 #include "scene/film_settings.h"
 #include "spectra/matrix3.h"
@@ -27,6 +28,10 @@ struct FilmFormat {
   int exponent = 0;
   Matrix3 color = Matrix3::diagonal({1, 1, 1});  ///< from a path's response to the film's colours
   Triple white = {1, 1, 1};  ///< the film's colours of a path of radiance 1: what an albedo of 1 is measured by
+  std::optional<Splatting> splatting = {};  ///< nothing: a pixel has its own samples alone
+
+  /// Pixels whose samples are in the sums.
+  const Crop& sampled() const { return splatting ? splatting->sampled : settings.crop; }
 };
 
 /// Values of a film's channels, of one sample that met something.
@@ -40,7 +45,8 @@ struct Features {
 };
 
 /// Sums over the samples of some pixels, exact and so the same in any order: of three colours, or of a sensor's bands,
-/// of which a sample need not see all.
+/// of which a sample need not see all. Where samples are shared, also what they give to these pixels and to those
+/// around that they reach: a tile has what its own samples give, all of it, and nothing of other tiles' samples.
 class FilmTile {
  public:
   struct Pixel {
@@ -78,17 +84,46 @@ class FilmTile {
     friend bool operator==(const BlockSums&, const BlockSums&) = default;
   };
 
+  /// What the tile's samples give to a pixel that they reach, each times its weight.
+  struct Splat {
+    std::array<ExactSum<60>, 3> sum{};  ///< of colours
+    int64_t weight = 0, unused = 0;     ///< in units of 2^-30
+    Splat& operator+=(const Splat& other);
+    friend bool operator==(const Splat&, const Splat&) = default;
+  };
+  /// The same of those samples that saw a band.
+  struct BandSplat {
+    ExactSum<60> sum;
+    int64_t weight = 0, unused = 0;
+    BandSplat& operator+=(const BandSplat& other);
+    friend bool operator==(const BandSplat&, const BandSplat&) = default;
+  };
+  /// Over blocks of kBlock samples of each of the tile's pixels, which give b and weigh c in a pixel that they reach,
+  /// on average of these samples: how b - m c differs from block to block, m the pixel's value, tells its noise.
+  struct SplatBlocks {
+    std::array<ExactSum<40>, 3> square{};   ///< of b
+    std::array<ExactSum<40>, 3> product{};  ///< of b c
+    ExactSum<40> weight_square{};           ///< of c
+    uint64_t blocks = 0, unused = 0;
+    SplatBlocks& operator+=(const SplatBlocks& other);
+    friend bool operator==(const SplatBlocks&, const SplatBlocks&) = default;
+  };
+
   FilmTile(const FilmFormat& format, const Crop& pixels);
   /// Black again, of other pixels.
   void clear(const Crop& pixels);
 
   /// Adds one sample: sensor response, filter weight, and whether the camera ray met a leaf. A response that is no
   /// finite number counts as black, one too bright for the film as the brightest that it can hold; both are counted.
-  void add(const FilmFormat& format, int x, int y, SensorResponse sensor, double weight, bool leaf);
+  /// `splat`: what it weighs in the pixels that it reaches, of a film of shared samples; its own weight is then 1.
+  void add(const FilmFormat& format, int x, int y, SensorResponse sensor, double weight, bool leaf,
+           const SplatKernel::Weights* splat = nullptr);
   /// What a sample's camera ray met, of a film that has channels for it.
   void add(int x, int y, const Features& features);
   /// That the last kBlock samples of a pixel, which began at `before`, are a block of a film that has blocks.
   void add_block(int x, int y, const Pixel& before);
+  /// The same of shared samples: the last kBlock samples of each of the tile's pixels, before which it had `before`.
+  void add_block(const std::vector<Splat>& before);
   void add_rays(uint64_t rays) { rays_ += rays; }
   /// The sums of pixels that lie in this tile. False, and nothing changes, where both hold a sample of the same pixel.
   bool merge(const FilmTile& other);
@@ -104,6 +139,16 @@ class FilmTile {
   const ExactSum<40>& mean_sum(int x, int y, size_t i) const { return mean_sums_[index(x, y) * mean_count_ + i]; }
   double id(int x, int y, size_t i) const { return ids_[index(x, y) * id_count_ + i]; }
   const BlockSums& blocks(int x, int y) const { return blocks_[index(x, y)]; }
+  /// Pixels of the picture that its samples reach; none where samples are not shared.
+  const Crop& reached() const { return reached_; }
+  const Splat& splat(int x, int y) const { return splats_[reached_index(x, y)]; }
+  const std::vector<Splat>& splats() const { return splats_; }
+  const BandSplat& band_splat(int x, int y, size_t band) const {
+    return band_splats_[reached_index(x, y) * band_count_ + band];
+  }
+  const SplatBlocks& splat_blocks(int x, int y) const { return splat_blocks_[reached_index(x, y)]; }
+  /// On average of its pixels.
+  double samples_per_pixel() const;
   /// Traced for its samples.
   uint64_t rays() const { return rays_; }
   friend bool operator==(const FilmTile&, const FilmTile&) = default;
@@ -111,24 +156,35 @@ class FilmTile {
  private:
   friend class PartFile;  // keeps them as they are
 
+  bool shares_samples() const { return reach_x_ >= 0; }
   void add_features(size_t at, const FilmTile& other, size_t from);
+  void add_splats(int x, int y, const SensorResponse& sensor, const SplatKernel::Weights& weights);
+  void merge_splats(const FilmTile& other);
   size_t index(int x, int y) const { return size_t(y - crop_.y0) * size_t(crop_.width()) + size_t(x - crop_.x0); }
+  size_t reached_index(int x, int y) const {
+    return size_t(y - reached_.y0) * size_t(reached_.width()) + size_t(x - reached_.x0);
+  }
 
-  Crop crop_;
+  Crop crop_, reached_{};
   size_t band_count_, mean_count_, id_count_;
   bool has_blocks_;
+  int reach_x_ = -1, reach_y_ = -1;  ///< of a sample; below 0: samples are not shared
+  int width_, height_;               ///< of the picture
   uint64_t rays_ = 0;
   std::vector<Pixel> pixels_;
-  std::vector<BandSums> bands_;          ///< [pixel][band]
-  std::vector<Hits> hits_;               ///< [pixel], where there are means or ids
-  std::vector<ExactSum<40>> mean_sums_;  ///< [pixel][value]
-  std::vector<double> ids_;              ///< [pixel][value]
-  std::vector<BlockSums> blocks_;        ///< [pixel]
+  std::vector<BandSums> bands_;            ///< [pixel][band]
+  std::vector<Hits> hits_;                 ///< [pixel], where there are means or ids
+  std::vector<ExactSum<40>> mean_sums_;    ///< [pixel][value]
+  std::vector<double> ids_;                ///< [pixel][value]
+  std::vector<BlockSums> blocks_;          ///< [pixel]
+  std::vector<Splat> splats_;              ///< [pixel that is reached]
+  std::vector<BandSplat> band_splats_;     ///< [pixel that is reached][band]
+  std::vector<SplatBlocks> splat_blocks_;  ///< [pixel that is reached]
   Coverage coverage_;
 };
 
-/// The tiles of a picture's crop. Its tiles lie on a grid that begins at pixel (0, 0) of the whole picture, so that
-/// those of its parts match.
+/// The tiles of a picture's crop; of shared samples, also of the pixels around whose samples reach into it. Its tiles
+/// lie on a grid that begins at pixel (0, 0) of the whole picture, so that those of its parts match.
 class Film {
  public:
   static constexpr int kTile = 16;
@@ -139,6 +195,7 @@ class Film {
   const FilmFormat& format() const { return format_; }
   const FilmSettings& settings() const { return format_.settings; }
   size_t bands() const { return format_.bands; }
+  const Crop& sampled() const { return format_.sampled(); }
 
   size_t tiles() const { return tiles_.size(); }
   /// Of the grid, whose rows follow each other.
@@ -159,14 +216,17 @@ class Film {
     tiles_[tile_at(x, y)].add(format_, x, y, sensor, weight, leaf);
   }
 
-  /// Mean colour.
+  /// Mean colour; of shared samples that weighed by the filter.
   Triple mean(int x, int y) const;
   /// Estimated variance of `mean`; 0 with less than two samples. With low-discrepancy samples it is an upper bound: it
-  /// does not know that they repel each other.
+  /// does not know that they repel each other. Of shared samples it follows from how each pixel's own differ, by the
+  /// weights that they have in the mean; there it takes a sample's place for independent of what it sees in its pixel.
   Triple variance(int x, int y) const;
   /// The same from how blocks of samples differ, of a film that has them: they know in part how samples repel each
   /// other.
   Triple block_variance(int x, int y) const;
+  /// What of it, mean over colours, the samples of one tile make, of shared samples.
+  double block_variance_by(size_t tile, int x, int y) const;
   /// Mean of the samples that saw a band, and its estimated variance, 0 with less than two of them.
   struct BandMean {
     double mean = 0, variance = 0;
@@ -190,7 +250,26 @@ class Film {
   friend bool operator==(const Film& a, const Film& b) { return a.tiles_ == b.tiles_; }
 
  private:
+  /// Shared samples that reach a pixel: sum of values times weights, and of weights. Each tile's count by how many
+  /// samples its pixels have, so that those which have more do not draw the pixel's centre to their side.
+  struct Gathered {
+    Triple sum{};
+    double weight = 0;
+  };
+
   const FilmTile::Pixel& pixel(int x, int y) const { return tiles_[tile_at(x, y)].pixel(x, y); }
+  template <class Each>
+  void for_each_reaching_tile(int x, int y, const Each& each) const;
+  template <class Each>
+  void for_each_reaching_pixel(int x, int y, const Each& each) const;
+  Gathered gathered(int x, int y) const;
+  Gathered gathered(int x, int y, size_t band) const;
+  /// The sum of weights, or what it is on average where negative ones leave too little of it.
+  template <class Count>
+  double enough_weight(int x, int y, double weight, const Count& count) const;
+  template <class Moments>
+  double splatted_variance(int x, int y, double mean, double weight, const Moments& moments) const;
+  Triple block_variance_by(const FilmTile& tile, int x, int y, const Gathered& all) const;
 
   FilmFormat format_;
   int first_column_, first_row_, columns_;

@@ -49,7 +49,7 @@ bool contains(const Crop& c, int x, int y) { return x >= c.x0 && x < c.x1 && y >
     for (size_t t = 0; t < b.tiles(); ++t) {
       const Crop c = b.tile_pixels(t);
       for (const auto& [x, y] : {std::pair{c.x0, c.y0}, {c.x1 - 1, c.y0}, {c.x0, c.y1 - 1}, {c.x1 - 1, c.y1 - 1}}) {
-        if (!contains(a.settings().crop, x, y)) continue;
+        if (!contains(a.sampled(), x, y)) continue;
         if (const auto item = common(a.tile(a.tile_at(x, y)), b.tile(t)))
           fail({}, "\"{}\" and \"{}\" both have {}: each sample counts once", files[i].string(), files[last].string(),
                text_of(*item));
@@ -63,7 +63,7 @@ bool contains(const Crop& c, int x, int y) { return x >= c.x0 && x < c.x1 && y >
 
 SampleCount sample_count(const Film& film) {
   SampleCount count{std::numeric_limits<uint64_t>::max(), 0};
-  for_each_pixel(film.settings().crop, [&](int x, int y) {
+  for_each_pixel(film.sampled(), [&](int x, int y) {
     const uint64_t n = film.samples(x, y);
     count = {std::min(count.least, n), std::max(count.most, n)};
   });
@@ -72,14 +72,23 @@ SampleCount sample_count(const Film& film) {
 
 std::string what_is_missing(const RenderPart& part) {
   const uint64_t most = sample_count(part.film).most;
+  std::string beside;  // shared samples of pixels outside of the picture
   for (size_t i = 0; i < part.film.tiles(); ++i) {
     const FilmTile& tile = part.film.tile(i);
     uint64_t end = part.header.adaptive ? 0 : most;
     for (const WorkItem& item : tile.coverage().items()) end = std::max(end, item.samples.end);
-    const auto missing = tile.coverage().missing({tile.pixels(), {0, std::max<uint64_t>(end, 1)}});
-    if (!missing.empty()) return text_of(missing.front());
+    for (const WorkItem& item : tile.coverage().missing({tile.pixels(), {0, std::max<uint64_t>(end, 1)}})) {
+      const WorkItem inside{intersection(item.pixels, part.film.settings().crop), item.samples};
+      if (!inside.empty()) return text_of(inside);
+      if (beside.empty()) beside = text_of(item);
+    }
   }
-  return {};
+  return beside;
+}
+
+bool lacks_neighbors(const Film& film) {
+  const auto& s = film.format().splatting;
+  return s && s->sampled != widened(film.settings().crop, s->reach_x(), s->reach_y());
 }
 
 RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
@@ -98,6 +107,7 @@ RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
       fail({}, "\"{}\" was made with --max-rms, \"{}\" without: they do not add up",
            (format.blocks ? files.front() : file).string(), (format.blocks ? file : files.front()).string());
     format.settings.crop = around(format.settings.crop, head.film.settings.crop);
+    if (format.splatting) format.splatting->sampled = around(format.sampled(), head.film.sampled());
     header.request = std::max(header.request, head.header.request);
     header.adaptive |= head.header.adaptive;
     header.statistics += head.header.statistics;

@@ -40,6 +40,9 @@ SampleCount sample_count(const Film& film);
 /// before another's: then what is missing, for people. Else "".
 std::string what_is_missing(const RenderPart& part);
 
+/// Whether pixels at the crop's edges lack shared samples of those beside it, which other parts of the picture have.
+bool lacks_neighbors(const Film& film);
+
 /// Adds parts up; the film's crop is the rectangle around all of theirs. Throws InputError that names the two files and
 /// what they have in common, or the field in which they differ.
 RenderPart merge_parts(const std::vector<std::filesystem::path>& files);

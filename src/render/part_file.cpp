@@ -23,6 +23,9 @@ class PartFile {
  public:
   static_assert(std::has_unique_object_representations_v<FilmTile::Pixel>, "no byte of a file is left to chance");
   static_assert(std::has_unique_object_representations_v<FilmTile::BandSums>);
+  static_assert(std::has_unique_object_representations_v<FilmTile::Splat>);
+  static_assert(std::has_unique_object_representations_v<FilmTile::BandSplat>);
+  static_assert(std::has_unique_object_representations_v<FilmTile::SplatBlocks>);
   static_assert(sizeof(FilmTile::Hits) == 24);
 
   /// calls each(pointer, bytes) for every array.
@@ -35,6 +38,9 @@ class PartFile {
     array(tile.mean_sums_);
     array(tile.ids_);
     array(tile.blocks_);
+    array(tile.splats_);
+    array(tile.band_splats_);
+    array(tile.splat_blocks_);
     each(&tile.rays_, sizeof tile.rays_);
   }
 };
@@ -43,7 +49,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "frond part 1\n", kEnd = "frond part end\n";
+constexpr std::string_view kMagic = "frond part 2\n", kEnd = "frond part end\n";
 
 [[noreturn]] void fail_to_read(const fs::path& path, std::string_view why) {
   fail({}, "\"{}\" {}: render it again", path.string(), why);
@@ -72,6 +78,36 @@ std::vector<Band> bands_of(const Json& list) {
   return bands;
 }
 
+Json json_of(const std::optional<Splatting>& s) {
+  if (!s) return {};
+  Json axes = Json::array();
+  for (const SplatAxis& axis : s->axes)
+    axes.push_back({{"reach", axis.reach}, {"mean", axis.mean}, {"square", axis.square}});
+  return {{"sampled", json_of(s->sampled)},
+          {"axes", axes},
+          {"has_negative_weights", s->has_negative_weights},
+          {"correlated_pixels", s->correlated_pixels}};
+}
+std::optional<Splatting> splatting_of(const Json& j, const Crop& crop) {
+  if (j.is_null()) return {};
+  Splatting s;
+  for (size_t i = 0; i < 2; ++i) {
+    const Json& axis = j.at("axes").at(i);
+    s.axes[i] = {axis.at("reach"), axis.at("mean").get<std::vector<double>>(),
+                 axis.at("square").get<std::vector<double>>()};
+    const auto width = size_t(2 * s.axes[i].reach + 1);
+    if (s.axes[i].reach < 0 || s.axes[i].reach > kMostReach || s.axes[i].mean.size() != width ||
+        s.axes[i].square.size() != width)
+      throw Json::other_error::create(501, "a filter that reaches too far", &j);
+  }
+  s.has_negative_weights = j.at("has_negative_weights"), s.correlated_pixels = j.at("correlated_pixels");
+  s.sampled = crop_of(j.at("sampled"));
+  if (intersection(s.sampled, crop) != crop ||
+      intersection(s.sampled, widened(crop, s.reach_x(), s.reach_y())) != s.sampled)
+    throw Json::other_error::create(501, "samples of other pixels", &j);
+  return s;
+}
+
 Json json_of(const FilmFormat& f) {
   const FilmSettings& s = f.settings;
   return {{"width", s.width},
@@ -87,7 +123,8 @@ Json json_of(const FilmFormat& f) {
           {"blocks", f.blocks},
           {"exponent", f.exponent},
           {"color", f.color.row},
-          {"white", f.white}};
+          {"white", f.white},
+          {"splatting", json_of(f.splatting)}};
 }
 FilmFormat film_format_of(const Json& j) {
   FilmFormat f;
@@ -102,6 +139,7 @@ FilmFormat film_format_of(const Json& j) {
   if (s.crop.x0 < 0 || s.crop.y0 < 0 || s.crop.x1 > s.width || s.crop.y1 > s.height || s.crop.width() <= 0 ||
       s.crop.height() <= 0)
     throw Json::other_error::create(501, "a film without pixels", &j);
+  f.splatting = splatting_of(j.at("splatting"), s.crop);
   return f;
 }
 
@@ -269,7 +307,7 @@ uint64_t take_number(std::string_view& bytes) {
 uint64_t take_header_size(std::string_view& bytes, const fs::path& path) {
   if (!bytes.starts_with(kMagic.substr(0, 11))) fail({}, "\"{}\" is no part of a render", path.string());
   if (!bytes.starts_with(kMagic))
-    fail({}, "\"{}\" is a part in another version of the format: this frond reads version 1", path.string());
+    fail({}, "\"{}\" is a part in another version of the format: this frond reads version 2", path.string());
   bytes.remove_prefix(kMagic.size());
   if (bytes.size() < sizeof(uint64_t)) fail_to_read(path, "is cut short");
   return take_number(bytes);

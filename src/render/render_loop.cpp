@@ -32,7 +32,9 @@ class WorkItems {
   WorkItems(const WorkPlan& plan, const Film& film) : plan_(plan), film_(film) {
     // Enough paths in a block that what it costs to add it to the film is nothing beside them.
     constexpr uint64_t kLeastSamples = 16, kPaths = 4096;
-    const auto pixels = uint64_t(film.tile_pixels(0).width() * film.tile_pixels(0).height());
+    uint64_t pixels = 0;  // of the largest tile: those at a picture's edges are cut
+    for (size_t i = 0; i < film.tiles(); ++i)
+      pixels = std::max(pixels, uint64_t(film.tile_pixels(i).width() * film.tile_pixels(i).height()));
     block_ = std::max(kLeastSamples, std::bit_floor(kPaths / std::min(kPaths, pixels)));
     first_block_ = plan.samples.begin / block_;
     uint64_t end = plan.tile_ends.empty() ? plan.samples.end : 0;
@@ -65,6 +67,7 @@ class Worker {
         bundle_{.sampler = job.sampler},
         tile_(film.format(), {}),
         axis_(job.camera.ray({float(format_.settings.width) / 2, float(format_.settings.height) / 2}, {0.5f, 0.5f}).d) {
+    if (format_.splatting) kernel_.emplace(job.filter);
   }
 
   /// Renders an item, all that it has not got yet. It is then what `tile` holds.
@@ -72,8 +75,10 @@ class Worker {
     tile_.clear(item.empty() ? Crop{} : item.pixels);
     statistics_ = {};
     for (const WorkItem& piece : covered.missing(item)) {
-      for (int y = piece.pixels.y0; y < piece.pixels.y1; ++y)
-        for (int x = piece.pixels.x0; x < piece.pixels.x1; ++x) render_pixel(x, y, piece.samples);
+      if (kernel_ && format_.blocks)
+        render_shared_blocks(piece);
+      else
+        render_pixels(piece.pixels, piece.samples);
       tile_.cover(piece);
       statistics_.paths += piece.paths();
     }
@@ -88,14 +93,29 @@ class Worker {
     return job_.places[size_t(y - crop.y0) * size_t(crop.width()) + size_t(x - crop.x0)];
   }
 
+  void render_pixels(const Crop& pixels, SampleRange samples) {
+    for (int y = pixels.y0; y < pixels.y1; ++y)
+      for (int x = pixels.x0; x < pixels.x1; ++x) render_pixel(x, y, samples);
+  }
+
+  /// A block is one of all pixels that share their samples.
+  void render_shared_blocks(const WorkItem& piece) {
+    for (uint64_t s = piece.samples.begin; s < piece.samples.end; s += FilmTile::kBlock) {
+      const std::vector<FilmTile::Splat> before = tile_.splats();
+      render_pixels(piece.pixels, {s, s + FilmTile::kBlock});
+      tile_.add_block(before);
+    }
+  }
+
   void render_pixel(int x, int y, SampleRange samples) {
     assert(!format_.blocks || (samples.begin % FilmTile::kBlock == 0 && samples.end % FilmTile::kBlock == 0));
     for (uint64_t first = samples.begin / kBundle * kBundle; first < samples.end; first += kBundle) {
       const uint64_t begin = std::max(samples.begin, first), end = std::min(samples.end, first + kBundle);
       trace_bundle(place_of(x, y), first, uint32_t(((1u << (end - first)) - 1) & ~((1u << (begin - first)) - 1)));
-      const FilmTile::Pixel before = format_.blocks ? tile_.pixel(x, y) : FilmTile::Pixel{};
+      const bool own_blocks = format_.blocks && !kernel_;
+      const FilmTile::Pixel before = own_blocks ? tile_.pixel(x, y) : FilmTile::Pixel{};
       for (size_t i = size_t(begin - first); i < size_t(end - first); ++i) add(x, y, i);
-      if (format_.blocks) tile_.add_block(x, y, before);
+      if (own_blocks) tile_.add_block(x, y, before);
     }
     statistics_.rays += bundle_.traced;
     tile_.add_rays(bundle_.traced);
@@ -126,7 +146,8 @@ class Worker {
     b.dimension = dimension;
     for (size_t i = 0; i < kBundle; ++i) {
       if (!(b.lanes >> i & 1)) continue;
-      filter_[i] = job_.filter.sample(on_filter[i]);
+      const Vec2 on = on_filter[i];
+      filter_[i] = kernel_ ? Filter::Sample{{on.x - 0.5f, on.y - 0.5f}, 1} : job_.filter.sample(on);
       const Vec2 film_point{float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
       b.rays[i] = job_.camera.ray(film_point, on_lens[i]);
       b.lambda[i] = job_.wavelengths.sample_in_turn(first + i, u[i]);
@@ -145,7 +166,13 @@ class Worker {
     const PathResult& path = bundle_.results[i];
     const SampledWavelengths& lambda = bundle_.lambda[i];
     const auto& [offset, weight] = filter_[i];
-    tile_.add(format_, x, y, job_.wavelengths.sensor(path.radiance, lambda), double(weight), path.first.is_leaf);
+    const SensorResponse response = job_.wavelengths.sensor(path.radiance, lambda);
+    if (kernel_) {
+      const SplatKernel::Weights splat = kernel_->at({offset.x + 0.5f, offset.y + 0.5f});
+      tile_.add(format_, x, y, response, 1, path.first.is_leaf, &splat);
+    } else {
+      tile_.add(format_, x, y, response, double(weight), path.first.is_leaf);
+    }
     if (path.first.is_hit && format_.channels.means() + format_.channels.ids() > 0) {
       Features features(format_.channels, {path.first, bundle_.rays[i], axis_, albedo(path.first, lambda)});
       features.from_center = std::hypot(offset.x, offset.y), features.sample = bundle_.samples.first + i;
@@ -159,6 +186,7 @@ class Worker {
 
   const RenderJob& job_;
   const FilmFormat& format_;
+  std::optional<SplatKernel> kernel_;  ///< of shared samples
   std::unique_ptr<Tracer> tracer_;
   PathBundle bundle_;
   std::array<Filter::Sample, kBundle> filter_;  ///< of the bundle's samples
@@ -169,7 +197,7 @@ class Worker {
 
 }  // namespace
 
-WorkPlan plan_of(const Film& film, SampleRange samples) { return {film.settings().crop, samples}; }
+WorkPlan plan_of(const Film& film, SampleRange samples) { return {film.sampled(), samples}; }
 
 RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
                         const RenderControl& control) {

@@ -31,18 +31,19 @@ struct RenderJob {
   const Sampler& sampler;
   uint64_t seed;
   /// Which pixels of the picture the film's stand for, row by row: some of them, drawn from all. Empty: themselves.
+  /// Pixels that share samples stand for themselves.
   std::span<const PixelPlace> places = {};
 };
 
 /// Which samples of which of a film's pixels are to be rendered.
 struct WorkPlan {
-  Crop pixels;          ///< within the film's
+  Crop pixels;          ///< within those whose samples the film takes
   SampleRange samples;  ///< of each of them
   std::vector<uint64_t> tile_ends =
       {};  ///< by tile of the film, in place of the range's end; empty: everywhere the same
 };
 
-/// All of a film's pixels.
+/// All pixels whose samples a film takes.
 WorkPlan plan_of(const Film& film, SampleRange samples);
 
 /// How a render is watched and ended. It ends between work items.

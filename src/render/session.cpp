@@ -100,6 +100,21 @@ const char* instruction_set() {
 #endif
 }
 
+/// Nothing where pixels have samples of their own.
+std::optional<Splatting> splatting_of(const Scene& scene, const Crop& whole, const Crop& pixels, bool is_piece) {
+  if (scene.camera().pixels_are_apart() || !splats(scene.filter())) return {};
+  Splatting splatting = SplatKernel(scene.filter()).splatting();
+  splatting.sampled = widened(pixels, splatting.reach_x(), splatting.reach_y());
+  if (is_piece) {  // beside it are other pieces, but where the whole ends
+    Crop& sampled = splatting.sampled;
+    if (pixels.x0 > whole.x0) sampled.x0 = pixels.x0;
+    if (pixels.y0 > whole.y0) sampled.y0 = pixels.y0;
+    if (pixels.x1 < whole.x1) sampled.x1 = pixels.x1;
+    if (pixels.y1 < whole.y1) sampled.y1 = pixels.y1;
+  }
+  return splatting;
+}
+
 std::string hexadecimal(uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 bool has_all(const Film& film, const std::vector<uint64_t>& tile_ends) {
@@ -150,6 +165,8 @@ Identity LoadedScene::identity() const {
   id.add("seed", std::to_string(scene_->seed()));
   id.add("wavelengths", scene_->wavelengths_name());
   id.add("integrator", text_of(description_.integrator));
+  id.add("filter",
+         fmt::format("{}, {}", text_of(description_.filter), format_.splatting ? "splatting" : "importance sampling"));
   id.add("resolution", fmt::format("{} x {}", film.width, film.height));
   id.add("film", fmt::format("exposure {}, maxcomponentvalue {}", film.exposure, film.max_component));
   id.add("channels", fmt::format("{}", fmt::join(format_.channels.names(), ",")));
@@ -195,6 +212,10 @@ LoadedScene Session::load(SceneDescription description, SceneOverrides overrides
     override_plugin(*own, registry_.integrators.get(own->name, {}), {}, description.integrator);
     overrides.integrator.reset();
   }
+  if (const auto& own = overrides.filter) {
+    override_plugin(*own, registry_.filters.get(own->name, {}), {}, description.filter);
+    overrides.filter.reset();
+  }
   overrides.cache_dir = options_.cache;
   const auto [text, where] = wavelength_choice(description, overrides);
   loaded.wavelengths_ = wavelengths_plugin(text, where, registry_);
@@ -206,11 +227,14 @@ LoadedScene Session::load(SceneDescription description, SceneOverrides overrides
   if (request.pixels) film.crop = *request.pixels;
   FilmFormat& format = loaded.format_;
   format.settings = film;
+  format.splatting = splatting_of(*loaded.scene_, loaded.scene_crop_, film.crop, request.is_piece);
   std::vector<std::string> channels = film.channels;
   if (!loaded.scene_->wavelengths().bands().empty()) std::erase(channels, "albedo");  // a colour; bands have none
   channels.insert(channels.end(), request.channels.begin(), request.channels.end());
   format.channels = ChannelList(channels);
   loaded.picture_ = picture_of(description, request, *loaded.scene_, film, format.channels);
+  if (format.splatting)
+    loaded.picture_.attributes["frond:correlated_pixels"] = fmt::format("{:.3f}", format.splatting->correlated_pixels);
   loaded.description_ = std::move(description);
   const WavelengthStrategy& wavelengths = loaded.scene_->wavelengths();
   format.bands = wavelengths.bands().size();
@@ -252,7 +276,7 @@ RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest
   for (;;) {
     if (request.planned) request.planned(header);
     progress.plan(statistics.paths, plan.predicted_paths);
-    statistics += render_plan(scene, {part.film.settings().crop, {}, header.tile_ends}, part, each);
+    statistics += render_plan(scene, {part.film.sampled(), {}, header.tile_ends}, part, each);
     if (!has_all(part.film, header.tile_ends)) return statistics;  // ended early
     if (picture_noise(part.film, noise_z()).upper_rms() <= request.max_rms) return statistics;
     plan = next_plan(part.film, request.max_rms, request.most_samples);

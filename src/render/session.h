@@ -16,7 +16,11 @@ namespace frond {
 
 /// What is said of the picture over what the scene says.
 struct PictureRequest {
-  std::optional<Crop> pixels = {};         ///< of the film, which --quick has halved
+  std::optional<Crop> pixels = {};  ///< of the film, which --quick has halved
+  /// The other pixels of the scene's crop are rendered elsewhere, to be merged with these: samples that are shared are
+  /// taken of these pixels alone, and of those around the whole. Else of all that reach these pixels, which are then
+  /// the whole picture's.
+  bool is_piece = false;
   std::vector<std::string> channels = {};  ///< beside those of the scene's film: names of render/channels.h
   std::string color_space = {};  ///< by linear name, where the scene names none; empty: as the wavelengths have it
   std::map<std::string, std::string> attributes = {};  ///< for the image's header

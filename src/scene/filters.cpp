@@ -1,4 +1,5 @@
 #include <cmath>
+#include <functional>
 
 #include "core/filter.h"
 #include "scene/distribution.h"
@@ -8,6 +9,8 @@ namespace frond {
 namespace {
 
 constexpr Interval kPositive{1e-6, 1e6};
+/// So that a pixel's samples reach no further than half a tile.
+constexpr float kWidestSplat = 8.5f;
 
 /// The quantile of a triangle on [-1, 1].
 float sample_tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(std::max(0.f, 2 - 2 * u)); }
@@ -16,30 +19,57 @@ Vec2 radius_of(const Params& p) {
   return {static_cast<float>(p.real("xradius")), static_cast<float>(p.real("yradius"))};
 }
 
-class BoxFilter final : public Filter {
+/// All of ours are products of a function along x and one along y, of the same shape.
+class ProductFilter : public Filter {
  public:
-  explicit BoxFilter(const Params& p) : radius_(radius_of(p)) {}
-  Sample sample(Vec2 u) const override { return {{(2 * u.x - 1) * radius_.x, (2 * u.y - 1) * radius_.y}, 1}; }
-  bool stays_in_pixel() const override { return radius_.x <= 0.5f && radius_.y <= 0.5f; }
+  explicit ProductFilter(const Params& p) : radius_(radius_of(p)) {
+    const std::string word = p.string("reconstruction");
+    if (word == "auto") return;
+    reconstruction_ = word == "splatting" ? Reconstruction::splatting : Reconstruction::importance;
+    if (reconstruction_ == Reconstruction::splatting && std::max(radius_.x, radius_.y) > kWidestSplat)
+      fail(p.where("reconstruction"), "\"splatting\" takes filters with radii of {} pixels at most", kWidestSplat);
+  }
+  bool stays_in_pixel() const final { return radius_.x <= 0.5f && radius_.y <= 0.5f; }
+  Vec2 radius() const final { return radius_; }
+  Vec2 along(Vec2 offset) const final { return {along(offset.x, radius_.x), along(offset.y, radius_.y)}; }
+  std::optional<Reconstruction> reconstruction() const final { return reconstruction_; }
+
+ protected:
+  /// At an offset within the radius; pixels.
+  virtual double value(double offset, double radius) const = 0;
 
  private:
+  float along(float offset, float radius) const {
+    return std::abs(offset) > radius ? 0 : float(value(double(offset), double(radius)));
+  }
   Vec2 radius_;
+  std::optional<Reconstruction> reconstruction_;
 };
 
-class TriangleFilter final : public Filter {
+class BoxFilter final : public ProductFilter {
  public:
-  explicit TriangleFilter(const Params& p) : radius_(radius_of(p)) {}
-  Sample sample(Vec2 u) const override { return {{sample_tent(u.x) * radius_.x, sample_tent(u.y) * radius_.y}, 1}; }
+  using ProductFilter::ProductFilter;
+  Sample sample(Vec2 u) const override { return {{(2 * u.x - 1) * radius().x, (2 * u.y - 1) * radius().y}, 1}; }
 
  private:
-  Vec2 radius_;
+  double value(double, double) const override { return 1; }
 };
 
-/// A separable filter, tabulated once per axis and sampled by its absolute value.
-class SeparableFilter final : public Filter {
+class TriangleFilter final : public ProductFilter {
  public:
-  template <class F>
-  SeparableFilter(const Params& p, F value) : x_(radius_of(p).x, value), y_(radius_of(p).y, value) {
+  using ProductFilter::ProductFilter;
+  Sample sample(Vec2 u) const override { return {{sample_tent(u.x) * radius().x, sample_tent(u.y) * radius().y}, 1}; }
+
+ private:
+  double value(double offset, double radius) const override { return 1 - std::abs(offset) / radius; }
+};
+
+/// Tabulated once per axis and sampled by its absolute value.
+class TabulatedFilter final : public ProductFilter {
+ public:
+  using Shape = std::function<double(double offset, double radius)>;
+  TabulatedFilter(const Params& p, Shape shape)
+      : ProductFilter(p), shape_(std::move(shape)), x_(radius().x, shape_), y_(radius().y, shape_) {
     if (!x_.is_usable() || !y_.is_usable())
       fail(p.where(), "this filter weighs nothing within its radius; other parameters are needed");
   }
@@ -50,10 +80,12 @@ class SeparableFilter final : public Filter {
   }
 
  private:
+  double value(double offset, double radius) const override { return shape_(offset, radius); }
+
   class Axis {
    public:
-    template <class F>
-    Axis(float radius, F value) : radius_(radius), cells_(tabulate(radius, value)), magnitude_(absolute(cells_)) {
+    Axis(float radius, const Shape& value)
+        : radius_(radius), cells_(tabulate(radius, value)), magnitude_(absolute(cells_)) {
       double sum = 0, absolute_sum = 0;
       for (const float c : cells_) sum += c, absolute_sum += std::abs(c);
       weight_ = static_cast<float>(absolute_sum / sum);
@@ -67,8 +99,7 @@ class SeparableFilter final : public Filter {
 
    private:
     static constexpr int kCells = 256;
-    template <class F>
-    static std::vector<float> tabulate(float radius, F value) {
+    static std::vector<float> tabulate(float radius, const Shape& value) {
       std::vector<float> cells;
       for (int i = 0; i < kCells; ++i)
         cells.push_back(static_cast<float>(
@@ -84,6 +115,7 @@ class SeparableFilter final : public Filter {
     Distribution1D magnitude_;
     float weight_;
   };
+  Shape shape_;
   Axis x_, y_;
 };
 
@@ -100,7 +132,7 @@ double sinc(double x) { return std::abs(x) < 1e-5 ? 1 : std::sin(M_PI * x) / (M_
 
 std::unique_ptr<Filter> make_gaussian(const Params& p) {
   const double sigma = p.real("sigma");
-  return std::make_unique<SeparableFilter>(p, [sigma](double x, double radius) {
+  return std::make_unique<TabulatedFilter>(p, [sigma](double x, double radius) {
     const auto g = [sigma](double v) { return std::exp(-v * v / (2 * sigma * sigma)); };
     return std::max(0.0, g(x) - g(radius));
   });
@@ -108,13 +140,13 @@ std::unique_ptr<Filter> make_gaussian(const Params& p) {
 
 std::unique_ptr<Filter> make_mitchell(const Params& p) {
   const double b = p.real("B"), c = p.real("C");
-  return std::make_unique<SeparableFilter>(p,
+  return std::make_unique<TabulatedFilter>(p,
                                            [b, c](double x, double radius) { return mitchell(2 * x / radius, b, c); });
 }
 
 std::unique_ptr<Filter> make_sinc(const Params& p) {
   const double tau = p.real("tau");
-  return std::make_unique<SeparableFilter>(p, [tau](double x, double) { return sinc(x) * sinc(x / tau); });
+  return std::make_unique<TabulatedFilter>(p, [tau](double x, double) { return sinc(x) * sinc(x / tau); });
 }
 
 template <class T>
@@ -131,8 +163,18 @@ constexpr Param radius(std::string_view name, double value) {
           .doc = "Half the filter's width."};
 }
 
-constexpr Param kBox[] = {radius("xradius", 0.5), radius("yradius", 0.5)};
-constexpr Param kTriangle[] = {radius("xradius", 2), radius("yradius", 2)};
+constexpr std::string_view kReconstructions[] = {"auto", "splatting", "importance"};
+constexpr Param kReconstruction{
+    .name = "reconstruction",
+    .kind = ParamKind::string,
+    .default_value = std::string_view("auto"),
+    .doc =
+        "Pixels share samples, which the filter weighs, or draw samples of their own from it; auto: what makes less "
+        "noise (docs/filters.md).",
+    .choices = kReconstructions};
+
+constexpr Param kBox[] = {radius("xradius", 0.5), radius("yradius", 0.5), kReconstruction};
+constexpr Param kTriangle[] = {radius("xradius", 2), radius("yradius", 2), kReconstruction};
 constexpr Param kGaussian[] = {radius("xradius", 1.5),
                                radius("yradius", 1.5),
                                {.name = "sigma",
@@ -140,16 +182,19 @@ constexpr Param kGaussian[] = {radius("xradius", 1.5),
                                 .default_value = 0.5,
                                 .unit = "pixels",
                                 .range = kPositive,
-                                .doc = "Standard deviation."}};
+                                .doc = "Standard deviation."},
+                               kReconstruction};
 constexpr Param kMitchell[] = {
     radius("xradius", 2),
     radius("yradius", 2),
     {.name = "B", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Blur."},
-    {.name = "C", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Ringing."}};
+    {.name = "C", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Ringing."},
+    kReconstruction};
 constexpr Param kSinc[] = {
     radius("xradius", 4),
     radius("yradius", 4),
-    {.name = "tau", .kind = ParamKind::real, .default_value = 3.0, .range = kPositive, .doc = "Cycles of the window."}};
+    {.name = "tau", .kind = ParamKind::real, .default_value = 3.0, .range = kPositive, .doc = "Cycles of the window."},
+    kReconstruction};
 
 }  // namespace
 

@@ -104,6 +104,8 @@ class SceneBuilder {
     apply_swaps(description_, overrides_.swaps, registry_, log_);
     if (const auto& text = overrides_.integrator)
       override_plugin(*text, registry_.integrators.get(text->name, {}), {}, description_.integrator);
+    if (const auto& text = overrides_.filter)
+      override_plugin(*text, registry_.filters.get(text->name, {}), {}, description_.filter);
     build_options();
     auto resolver = std::make_unique<SceneResolver>(description_, registry_, *scene_.wavelengths_);
     build_view(*resolver);

@@ -20,7 +20,7 @@ namespace frond {
 struct SceneOverrides {
   std::string wavelengths;  ///< a PluginText; empty: the scene's
   /// Of the scene's own kind: these parameters over the scene's. Of another: in its place.
-  std::optional<PluginText> integrator;
+  std::optional<PluginText> integrator, filter;
   std::optional<uint64_t> seed;
   std::vector<MaterialSwap> swaps;
   bool quick = false;               ///< half the resolution, a sixteenth of the samples

@@ -123,7 +123,7 @@ TEST_F(Commands, RenderWritesWhatItSays) {
   EXPECT_THAT(o.err, IsEmpty());
   const auto json = nlohmann::json::parse(o.out);
   EXPECT_EQ(json["samples_per_pixel"], 3);
-  EXPECT_EQ(json["paths"], 24 * 16 * 3);
+  EXPECT_EQ(json["paths"], 26 * 18 * 3);  // samples of the pixels around reach into the picture
   const ImageFile file = read_image(path("a.exr"), {});
   EXPECT_EQ(file.image.width, 24);
   EXPECT_EQ(file.image.height, 16);
@@ -241,6 +241,7 @@ TEST_F(Commands, WavelengthsTakeParameters) {
 TEST_F(Commands, AnIntegratorOfTheScenesKindKeepsItsOtherParameters) {
   folder_.write("scene.pbrt", R"(
 Film "rgb" "integer xresolution" 4 "integer yresolution" 4
+PixelFilter "box"
 Integrator "path" "integer maxdepth" 2
 WorldBegin
 LightSource "infinite"
@@ -265,6 +266,7 @@ Shape "sphere"
 TEST_F(Commands, BandsAreCutOffByTheirMean) {
   folder_.write("scene.pbrt", R"(
 Film "rgb" "integer xresolution" 4 "integer yresolution" 4
+PixelFilter "box"
 Integrator "path" "string termination" "attenuation" "float cutoff" .28
 WorldBegin
 LightSource "infinite" "spectrum L" [300 1 2500 1]

@@ -31,8 +31,8 @@ class Adaptive : public ::testing::Test {
  protected:
   void SetUp() override { scene_ = folder_.write("scene.pbrt", testing::a_scene()); }
 
-  LoadedScene load(bool adaptive, uint64_t seed = 1) {
-    return SceneRender{.seed = seed, .adaptive = adaptive}.load(session_, scene_);
+  LoadedScene load(bool adaptive, uint64_t seed = 1, const std::string& filter = {}) {
+    return SceneRender{.seed = seed, .filter = filter, .adaptive = adaptive}.load(session_, scene_);
   }
   RenderPart to_noise(const LoadedScene& scene, double max_rms, uint64_t most = 1u << 16) {
     RenderPart part = scene.empty_part();
@@ -62,19 +62,21 @@ double square_difference(const Film& a, const Film& b) {
 }
 
 TEST_F(Adaptive, NoiseIsNoLessThanPicturesDifferBy) {
-  const LoadedScene one = load(true, 1), two = load(true, 2);
-  for (const uint64_t samples : {32u, 64u, 256u}) {
-    RenderPart a = one.empty_part(), b = two.empty_part();
-    session_.render(one, SampleRange{0, samples}, a);
-    session_.render(two, SampleRange{0, samples}, b);
-    // The difference has the noise of both.
-    const double noise = square_difference(a.film, b.film) / 2;
-    EXPECT_GT(noise, 0);
-    for (const Film* film : {&a.film, &b.film}) {
-      const NoiseEstimate estimate = picture_noise(*film, noise_z());
-      EXPECT_GE(estimate.upper, noise) << samples;
-      EXPECT_GE(estimate.upper, estimate.mean_square);
-      EXPECT_GE(estimate.mean_square, 0.8 * noise) << samples;
+  for (const char* filter : {"gaussian", "mitchell", "box"}) {
+    const LoadedScene one = load(true, 1, filter), two = load(true, 2, filter);
+    for (const uint64_t samples : {32u, 64u, 256u}) {
+      RenderPart a = one.empty_part(), b = two.empty_part();
+      session_.render(one, SampleRange{0, samples}, a);
+      session_.render(two, SampleRange{0, samples}, b);
+      // The difference has the noise of both.
+      const double noise = square_difference(a.film, b.film) / 2;
+      EXPECT_GT(noise, 0);
+      for (const Film* film : {&a.film, &b.film}) {
+        const NoiseEstimate estimate = picture_noise(*film, noise_z());
+        EXPECT_GE(estimate.upper, noise) << filter << samples;
+        EXPECT_GE(estimate.upper, estimate.mean_square);
+        EXPECT_GE(estimate.mean_square, 0.8 * noise) << filter << samples;
+      }
     }
   }
 }
@@ -120,16 +122,19 @@ RenderPart in_pieces(const LoadedScene& scene, int reports, const auto& on) {
 }
 
 TEST_F(Adaptive, StoppedAndResumedItIsTheSameRender) {
-  const LoadedScene scene = load(true);
-  const RenderPart whole = to_noise(scene, 0.02);
-  ASSERT_GT(whole.header.round, 0);
-  for (const int reports : {1, 3, 7, 20}) {
-    const RenderPart part = in_pieces(scene, reports, [&](RenderPart& p, const RenderControl& control) {
-      session_.render_to(scene, {.max_rms = 0.02, .most_samples = 1u << 16}, p, control);
-    });
-    EXPECT_EQ(part.film, whole.film);
-    EXPECT_EQ(bytes_of(part), bytes_of(whole)) << reports;
-    EXPECT_EQ(part.header.statistics.paths, whole.header.statistics.paths);
+  for (const char* filter : {"gaussian", "box"}) {
+    const LoadedScene scene = load(true, 1, filter);
+    const double rms = 0.01;
+    const RenderPart whole = to_noise(scene, rms);
+    ASSERT_GT(whole.header.round, 0);
+    for (const int reports : {1, 3, 7, 20}) {
+      const RenderPart part = in_pieces(scene, reports, [&](RenderPart& p, const RenderControl& control) {
+        session_.render_to(scene, {.max_rms = rms, .most_samples = 1u << 16}, p, control);
+      });
+      EXPECT_EQ(part.film, whole.film) << filter;
+      EXPECT_EQ(bytes_of(part), bytes_of(whole)) << filter << reports;
+      EXPECT_EQ(part.header.statistics.paths, whole.header.statistics.paths);
+    }
   }
 }
 

@@ -45,10 +45,12 @@ struct SceneRender {
   std::string wavelengths = "hero";
   std::vector<std::string> channels = {};
   std::optional<Crop> pixels = {};
+  bool is_piece = true;  ///< where pixels are given: others are rendered elsewhere
   uint64_t seed = 1;
   int threads = 2;
   std::string swap = {};  ///< of "thing"
   std::string integrator = {};
+  std::string filter = {};
   bool adaptive = false;
 
   LoadedScene load(Session& session, const std::filesystem::path& scene) const {
@@ -57,7 +59,9 @@ struct SceneRender {
     overrides.seed = seed;
     if (!swap.empty()) overrides.swaps.push_back({"thing", parse_plugin_text(swap, {}), {}});
     if (!integrator.empty()) overrides.integrator = parse_plugin_text(integrator, {});
-    return session.load(session.read(scene), overrides, {.pixels = pixels, .channels = channels, .adaptive = adaptive});
+    if (!filter.empty()) overrides.filter = parse_plugin_text(filter, {});
+    return session.load(session.read(scene), overrides,
+                        {.pixels = pixels, .is_piece = is_piece, .channels = channels, .adaptive = adaptive});
   }
   RenderPart part(const std::filesystem::path& scene, SampleRange samples) const {
     Session session(silent_log(), {.threads = threads});
