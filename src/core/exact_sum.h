@@ -16,17 +16,15 @@ class ExactSum {
   static constexpr double kLargestTerm =
       double(uint64_t{1} << 48) * double(uint64_t{1} << 48) / double(uint64_t{1} << kFraction);
 
-  /// A term in the sum's units.
-  static Int128 units(double term) {
+  void add(double term) {
     // In units of 2^64: what is before the point, and what is behind it.
     const double units = term * (double(uint64_t{1} << kFraction) * 0x1p-64);
     const auto whole = static_cast<int64_t>(units);
     const auto rest = static_cast<int64_t>((units - static_cast<double>(whole)) * 0x1p63);
-    return (static_cast<Int128>(whole) << 64) + (static_cast<Int128>(rest) << 1);
+    bits_ += (static_cast<Int128>(whole) << 64) + (static_cast<Int128>(rest) << 1);
   }
-  void add(double term) { bits_ += units(term); }
-  /// A term times a weight of at most 1 in units of 2^-30; rounded down to a multiple of 2^-kFraction.
-  void add_weighted(Int128 units, int64_t weight) { bits_ += (units * weight) >> 30; }
+  /// A multiple of 2^-kFraction, as it is.
+  void add_units(Int128 units) { bits_ += units; }
   ExactSum& operator+=(const ExactSum& other) {
     bits_ += other.bits_;
     return *this;

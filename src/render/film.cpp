@@ -135,66 +135,88 @@ void FilmTile::clear(const Crop& pixels) {
   coverage_ = {};
 }
 
-void FilmTile::add(const FilmFormat& format, int x, int y, SensorResponse sensor, double weight, bool leaf,
-                   const SplatKernel::Weights* splat) {
+void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sample> samples, const SplatKernel* kernel) {
   const size_t at = index(x, y);
   assert(at < pixels_.size());
   Pixel& pixel = pixels_[at];
-  bool is_lost = !std::isfinite(sensor[0] + sensor[1] + sensor[2] + sensor[3]);
-  if (is_lost) sensor.value = {};
-  if (band_count_ == 0) sensor = SensorResponse(format.color * sensor.color());
   const FilmSettings& settings = format.settings;
-  const double largest = std::max({sensor[0], sensor[1], sensor[2], sensor[3]}) * settings.exposure;
-  const double scale = weight * settings.exposure * power_of_two(-format.exponent) *
-                       (largest > settings.max_component ? settings.max_component / largest : 1);
-  for (double& value : sensor.value) {
-    value *= scale;
-    is_lost |= cut_off(value);
-  }
-  for (size_t i = 0; i < size_t(sensor.count); ++i) {
-    if (band_count_ == 0) {
-      pixel.sum[i].add(sensor[i]);
-      pixel.square[i].add(sensor[i] * sensor[i]);
-      continue;
+  const double unit = settings.exposure * power_of_two(-format.exponent);
+  std::optional<SplatSums> splats;
+  int splatted = 0;
+  for (const Sample& sample : samples) {
+    SensorResponse sensor = sample.sensor;
+    bool is_lost = !std::isfinite(sensor[0] + sensor[1] + sensor[2] + sensor[3]);
+    if (is_lost) sensor.value = {};
+    if (band_count_ == 0) sensor = SensorResponse(format.color * sensor.color());
+    const double largest = std::max({sensor[0], sensor[1], sensor[2], sensor[3]}) * settings.exposure;
+    const double scale =
+        sample.weight * unit * (largest > settings.max_component ? settings.max_component / largest : 1);
+    for (double& value : sensor.value) {
+      value *= scale;
+      is_lost |= cut_off(value);
     }
-    assert(sensor.channel[i] < band_count_);
-    BandSums& band = bands_[at * band_count_ + sensor.channel[i]];
-    band.sum.add(sensor[i]);
-    band.square.add(sensor[i] * sensor[i]);
-    ++band.samples;
-  }
-  if (splat) add_splats(x, y, sensor, *splat);
-  pixel.weight += static_cast<int64_t>(weight * kWeightUnit);
-  pixel.leaf += leaf ? 1 : 0;
-  pixel.not_finite += is_lost ? 1 : 0;
-  ++pixel.samples;
-}
-
-void FilmTile::add_splats(int x, int y, const SensorResponse& sensor, const SplatKernel::Weights& weights) {
-  std::array<Int128, kLanes> value{};
-  Int128 any = 0;
-  for (size_t i = 0; i < size_t(sensor.count); ++i) any |= value[i] = ExactSum<60>::units(sensor[i]);
-  const int left = x - reach_x_, top = y - reach_y_;
-  for (int py = std::max(top, reached_.y0); py < std::min(y + reach_y_ + 1, reached_.y1); ++py) {
-    const int64_t along_y = weights.y[size_t(py - top)];
-    if (along_y == 0) continue;
-    for (int px = std::max(left, reached_.x0); px < std::min(x + reach_x_ + 1, reached_.x1); ++px) {
-      const int64_t weight = (along_y * weights.x[size_t(px - left)]) >> 30;
-      if (weight == 0) continue;
-      const size_t at = reached_index(px, py);
-      Splat& splat = splats_[at];
-      splat.weight += weight;
+    for (size_t i = 0; i < size_t(sensor.count); ++i) {
       if (band_count_ == 0) {
-        for (size_t c = 0; c < 3 && any != 0; ++c) splat.sum[c].add_weighted(value[c], weight);
+        pixel.sum[i].add(sensor[i]);
+        pixel.square[i].add(sensor[i] * sensor[i]);
         continue;
       }
-      for (size_t i = 0; i < size_t(sensor.count); ++i) {
-        BandSplat& band = band_splats_[at * band_count_ + sensor.channel[i]];
-        band.sum.add_weighted(value[i], weight);
-        band.weight += weight;
-      }
+      assert(sensor.channel[i] < band_count_);
+      BandSums& band = bands_[at * band_count_ + sensor.channel[i]];
+      band.sum.add(sensor[i]);
+      band.square.add(sensor[i] * sensor[i]);
+      ++band.samples;
     }
+    pixel.weight += static_cast<int64_t>(sample.weight * kWeightUnit);
+    pixel.leaf += sample.leaf ? 1 : 0;
+    pixel.not_finite += is_lost ? 1 : 0;
+    ++pixel.samples;
+    if (!kernel) continue;
+    if (band_count_ > 0) {
+      add_band_splats(x, y, sensor, kernel->at(sample.place));
+      continue;
+    }
+    const SplatValue value(sensor.value);
+    if (!splats || splats->exponent() != value.exponent || splatted == SplatSums::kMostSamples) {
+      if (splats) add_splats(x, y, *splats);
+      if (!splats) splats.emplace(*kernel);
+      splats->begin(value.exponent);
+      splatted = 0;
+    }
+    splats->add(sample.place, value);
+    ++splatted;
   }
+  if (splats) add_splats(x, y, *splats);
+}
+
+/// Calls each(index, column, row) for the pixels of the picture that a pixel's samples reach, counted from -reach.
+template <class Each>
+void FilmTile::for_each_reached(int x, int y, const Each& each) {
+  const int left = x - reach_x_, top = y - reach_y_;
+  const int end_x = std::min(x + reach_x_ + 1, reached_.x1), end_y = std::min(y + reach_y_ + 1, reached_.y1);
+  for (int py = std::max(top, reached_.y0); py < end_y; ++py)
+    for (int px = std::max(left, reached_.x0); px < end_x; ++px)
+      each(reached_index(px, py), size_t(px - left), size_t(py - top));
+}
+
+void FilmTile::add_splats(int x, int y, const SplatSums& sums) {
+  for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
+    Splat& splat = splats_[at];
+    for (size_t c = 0; c < 3; ++c) splat.sum[c].add_units(sums.sum(column, row, c));
+    splat.weight += sums.weight(column, row);
+  });
+}
+
+void FilmTile::add_band_splats(int x, int y, const SensorResponse& sensor, const SplatKernel::Weights& weights) {
+  const SplatValue value(sensor.value);
+  for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
+    const auto weight = double(weights.at(column, row));
+    for (size_t i = 0; i < size_t(sensor.count); ++i) {
+      BandSplat& band = band_splats_[at * band_count_ + sensor.channel[i]];
+      band.sum.add_units(SplatValue::units(value.multiples[i] * weight, value.exponent));
+      band.weight += int64_t(weight * kWeightUnit);
+    }
+  });
 }
 
 void FilmTile::add(int x, int y, const Features& f) {

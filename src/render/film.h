@@ -3,6 +3,8 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -113,11 +115,18 @@ class FilmTile {
   /// Black again, of other pixels.
   void clear(const Crop& pixels);
 
-  /// Adds one sample: sensor response, filter weight, and whether the camera ray met a leaf. A response that is no
-  /// finite number counts as black, one too bright for the film as the brightest that it can hold; both are counted.
-  /// `splat`: what it weighs in the pixels that it reaches, of a film of shared samples; its own weight is then 1.
-  void add(const FilmFormat& format, int x, int y, SensorResponse sensor, double weight, bool leaf,
-           const SplatKernel::Weights* splat = nullptr);
+  /// What a path says of a pixel.
+  struct Sample {
+    SensorResponse sensor;
+    double weight = 1;  ///< by the filter
+    bool leaf = false;  ///< the camera ray met a leaf
+    Vec2 place = {};    ///< in its pixel, [0, 1)^2: what it weighs in others, where samples are shared
+  };
+  /// Adds samples of a pixel; the same whether together or one by one. A response that is no finite number counts as
+  /// black, one too bright for the film as the brightest that it can hold; both are counted. `kernel`: of a film of
+  /// shared samples, all of weight 1.
+  void add(const FilmFormat& format, int x, int y, std::span<const Sample> samples,
+           const SplatKernel* kernel = nullptr);
   /// What a sample's camera ray met, of a film that has channels for it.
   void add(int x, int y, const Features& features);
   /// That the last kBlock samples of a pixel, which began at `before`, are a block of a film that has blocks.
@@ -158,7 +167,10 @@ class FilmTile {
 
   bool shares_samples() const { return reach_x_ >= 0; }
   void add_features(size_t at, const FilmTile& other, size_t from);
-  void add_splats(int x, int y, const SensorResponse& sensor, const SplatKernel::Weights& weights);
+  void add_splats(int x, int y, const SplatSums& sums);
+  void add_band_splats(int x, int y, const SensorResponse& sensor, const SplatKernel::Weights& weights);
+  template <class Each>
+  void for_each_reached(int x, int y, const Each& each);
   void merge_splats(const FilmTile& other);
   size_t index(int x, int y) const { return size_t(y - crop_.y0) * size_t(crop_.width()) + size_t(x - crop_.x0); }
   size_t reached_index(int x, int y) const {
@@ -213,7 +225,8 @@ class Film {
   size_t tile_at(int x, int y) const;
   /// Adds one sample. No two threads at a time.
   void add(int x, int y, const SensorResponse& sensor, double weight, bool leaf) {
-    tiles_[tile_at(x, y)].add(format_, x, y, sensor, weight, leaf);
+    const FilmTile::Sample sample{sensor, weight, leaf};
+    tiles_[tile_at(x, y)].add(format_, x, y, {&sample, 1});
   }
 
   /// Mean colour; of shared samples that weighed by the filter.

@@ -114,7 +114,7 @@ class Worker {
       trace_bundle(place_of(x, y), first, uint32_t(((1u << (end - first)) - 1) & ~((1u << (begin - first)) - 1)));
       const bool own_blocks = format_.blocks && !kernel_;
       const FilmTile::Pixel before = own_blocks ? tile_.pixel(x, y) : FilmTile::Pixel{};
-      for (size_t i = size_t(begin - first); i < size_t(end - first); ++i) add(x, y, i);
+      add(x, y, size_t(begin - first), size_t(end - first));
       if (own_blocks) tile_.add_block(x, y, before);
     }
     statistics_.rays += bundle_.traced;
@@ -162,23 +162,25 @@ class Worker {
     return {color[0] / format_.white[0], color[1] / format_.white[1], color[2] / format_.white[2]};
   }
 
-  void add(int x, int y, size_t i) {
-    const PathResult& path = bundle_.results[i];
-    const SampledWavelengths& lambda = bundle_.lambda[i];
-    const auto& [offset, weight] = filter_[i];
-    const SensorResponse response = job_.wavelengths.sensor(path.radiance, lambda);
-    if (kernel_) {
-      const SplatKernel::Weights splat = kernel_->at({offset.x + 0.5f, offset.y + 0.5f});
-      tile_.add(format_, x, y, response, 1, path.first.is_leaf, &splat);
-    } else {
-      tile_.add(format_, x, y, response, double(weight), path.first.is_leaf);
+  /// Some of the bundle's results, which follow each other.
+  void add(int x, int y, size_t begin, size_t end) {
+    const bool has_channels = format_.channels.means() + format_.channels.ids() > 0;
+    for (size_t i = begin; i < end; ++i) {
+      const PathResult& path = bundle_.results[i];
+      const SampledWavelengths& lambda = bundle_.lambda[i];
+      const auto& [offset, weight] = filter_[i];
+      samples_[i] = {job_.wavelengths.sensor(path.radiance, lambda),
+                     double(weight),
+                     path.first.is_leaf,
+                     {offset.x + 0.5f, offset.y + 0.5f}};
+      if (path.first.is_hit && has_channels) {
+        Features features(format_.channels, {path.first, bundle_.rays[i], axis_, albedo(path.first, lambda)});
+        features.from_center = std::hypot(offset.x, offset.y), features.sample = bundle_.samples.first + i;
+        tile_.add(x, y, features);
+      }
+      statistics_.ends.add(path);
     }
-    if (path.first.is_hit && format_.channels.means() + format_.channels.ids() > 0) {
-      Features features(format_.channels, {path.first, bundle_.rays[i], axis_, albedo(path.first, lambda)});
-      features.from_center = std::hypot(offset.x, offset.y), features.sample = bundle_.samples.first + i;
-      tile_.add(x, y, features);
-    }
-    statistics_.ends.add(path);
+    tile_.add(format_, x, y, std::span(samples_).subspan(begin, end - begin), kernel_ ? &*kernel_ : nullptr);
   }
 
   static constexpr uint32_t kBundle = PathBundle::kMost;
@@ -190,6 +192,7 @@ class Worker {
   std::unique_ptr<Tracer> tracer_;
   PathBundle bundle_;
   std::array<Filter::Sample, kBundle> filter_;  ///< of the bundle's samples
+  std::array<FilmTile::Sample, kBundle> samples_;
   FilmTile tile_;
   Vec3 axis_;  ///< along which depth is measured
   RenderStatistics statistics_;

@@ -4,7 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/exact_sum.h"
 #include "core/filter.h"
+#include "core/spectrum.h"
 #include "scene/film_settings.h"
 
 namespace frond {
@@ -51,15 +53,23 @@ Crop widened(const Crop& pixels, int x, int y);
 /// What both have.
 Crop intersection(const Crop& a, const Crop& b);
 
-/// What a sample weighs in the pixels around it, in units of 2^-30: along x and along y, whose product it is.
+/// What a sample weighs in the pixels around it: along x times along y.
 class SplatKernel {
  public:
   explicit SplatKernel(const Filter& filter);
 
   static constexpr int kMostWidth = 2 * kMostReach + 1;
   struct Weights {
-    std::array<int32_t, kMostWidth> x, y;  ///< from -reach on
+    std::array<float, kMostWidth> x, y;  ///< from -reach on
+
+    /// Of pixels that are counted from -reach; a multiple of kWeightUnit.
+    float at(size_t column, size_t row) const {
+      constexpr float kRounds = 0x1.8p23f * kWeightUnit;
+      return x[column] * y[row] + kRounds - kRounds;
+    }
   };
+  static constexpr float kWeightUnit = 0x1p-20f;
+
   /// For a sample at `u` in its pixel, [0, 1)^2.
   Weights at(Vec2 u) const {
     Weights w;
@@ -67,6 +77,8 @@ class SplatKernel {
     axes_[1].interpolate(u.y, w.y.data());
     return w;
   }
+  int width() const { return axes_[0].width; }
+  int height() const { return axes_[1].width; }
   /// What there is to know of it; `sampled` is empty.
   Splatting splatting() const;
 
@@ -80,12 +92,12 @@ class SplatKernel {
 
     template <class F>
     Axis(float radius, const F& value);
-    void interpolate(float u, int32_t* weights) const {
+    void interpolate(float u, float* weights) const {
       const float place = u * kNodes;
       const int node = std::min(int(place), kNodes - 1);
       const float t = place - float(node);
       const float* const low = &table[size_t(node * width)];
-      for (int i = 0; i < width; ++i) weights[i] = int32_t((low[i] + (low[i + width] - low[i]) * t) * 0x1p30f);
+      for (int i = 0; i < width; ++i) weights[i] = low[i] + (low[i + width] - low[i]) * t;
     }
     double weight(double u, int pixel) const;
     SplatAxis described() const;
@@ -98,6 +110,52 @@ class SplatKernel {
   friend bool splats(const Filter& filter);
 
   std::array<Axis, 2> axes_;
+};
+
+/// A sample's values as whole numbers, so that sums of them times weights are exact: multiples of 2^(exponent - 26).
+struct SplatValue {
+  static constexpr int kBits = 26;
+  static constexpr int kLeastExponent = -14, kStep = 4;
+
+  explicit SplatValue(const std::array<double, kLanes>& values);
+
+  int exponent;                            ///< kLeastExponent + n kStep; all values are less than 2^exponent
+  std::array<double, kLanes> multiples{};  ///< at most 2^26 in magnitude
+
+  /// A sum of multiples times weights, in units of 2^-60.
+  static Int128 units(double sum, int exponent) {
+    return static_cast<Int128>(static_cast<int64_t>(sum * (1 / double(SplatKernel::kWeightUnit))))
+           << (exponent - kLeastExponent);
+  }
+};
+
+/// What samples of one pixel, of the same exponent, give to each pixel that they reach.
+class SplatSums {
+ public:
+  explicit SplatSums(const SplatKernel& kernel) : kernel_(kernel) {}
+
+  /// Nothing but zeros.
+  void begin(int exponent);
+  int exponent() const { return exponent_; }
+  /// Of a sample at `u` in its pixel, [0, 1)^2. At most kMostSamples from a `begin` on.
+  void add(Vec2 u, const SplatValue& value);
+  static constexpr int kMostSamples = 64;
+
+  /// What a pixel, counted from -reach, gets: units of 2^-60, and of 2^-30.
+  Int128 sum(size_t column, size_t row, size_t color) const {
+    return SplatValue::units(sums_[at(column, row)][color], exponent_);
+  }
+  int64_t weight(size_t column, size_t row) const { return int64_t(sums_[at(column, row)][3] * 0x1p30); }
+
+ private:
+  /// The compilers' own vector type: the three colours, and 1, times weights.
+  using Double4 = double __attribute__((vector_size(32)));
+
+  size_t at(size_t column, size_t row) const { return row * size_t(kernel_.width()) + column; }
+
+  const SplatKernel& kernel_;
+  int exponent_ = SplatValue::kLeastExponent;
+  std::array<Double4, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums_;
 };
 
 /// Whether samples are to be shared: as the scene says, or else where that makes less noise than to draw each pixel's

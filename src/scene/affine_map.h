@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/ray.h"
+#include "core/float4.h"
 #include "core/transform.h"
 
 namespace frond {
@@ -22,19 +22,24 @@ struct AffineMap {
     const float sign = dot(row(0), c0) < 0 ? -1.f : 1.f;
     return Vec3{dot(c0, n), dot(c1, n), dot(c2, n)} * sign;
   }
-  /// Into the object's own space; distances along rays stay the same.
+  /// Into the object's own space; distances along rays stay the same. Fourth lanes are 0.
   struct Inverse {
-    std::array<Vec3, 3> rows;
-    Vec3 translation;  ///< that of the map, which comes off first
+    Float4 x, y, z;      ///< where the axes go
+    Float4 translation;  ///< that of the map, which comes off first
 
-    Vec3 vector(const Vec3& v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
-    Vec3 point(const Vec3& p) const { return vector(p - translation); }
-    Ray ray(const Ray& r) const { return {point(r.o), vector(r.d), r.t_max}; }
+    Float4 vector(Float4 v) const { return x * v[0] + y * v[1] + z * v[2]; }
+    Float4 point(Float4 p) const { return vector(p - translation); }
+    /// A normal back out of it, not unit.
+    Vec3 normal_out(const Vec3& n) const {
+      const auto along = [&n](Float4 axis) { return axis[0] * n.x + axis[1] * n.y + axis[2] * n.z; };
+      return {along(x), along(y), along(z)};
+    }
   };
   Inverse inverse() const {
-    const Vec3 x = column(0), y = column(1), z = column(2), yz = cross(y, z);
+    const Vec3 x = column(0), y = column(1), z = column(2), yz = cross(y, z), t = translation();
     const float scale = 1 / dot(x, yz);
-    return {{yz * scale, cross(z, x) * scale, cross(x, y) * scale}, translation()};
+    const Vec3 a = yz * scale, b = cross(z, x) * scale, c = cross(x, y) * scale;
+    return {Float4{a.x, b.x, c.x, 0}, Float4{a.y, b.y, c.y, 0}, Float4{a.z, b.z, c.z, 0}, Float4{t.x, t.y, t.z, 0}};
   }
   /// Bound of the image's largest coordinate over the point's, without translation.
   float largest_stretch() const {

@@ -13,12 +13,21 @@ namespace frond {
 
 /// Copies of objects, as their callbacks need them.
 struct Geometry::Copies {
+  /// Inverse maps are kept of so many copies at most: 64 MB.
+  static constexpr size_t kMostKept = 1 << 20;
+
   const Instances& instances;
   std::vector<const Object*> objects;  ///< by row; a single one: the same for all
   uint64_t first_id = 0;               ///< of what the first row holds, in the object that these copies are part of
   std::vector<uint64_t> ids = {};      ///< by row, from first_id; empty: all rows hold as many
 
+  std::vector<AffineMap::Inverse> inverses = {};  ///< of the table's maps; empty: they are made when they are needed
+  AffineMap::Inverse from_placement = {};         ///< where there is one
+
   const Object& object(size_t row) const { return *objects[objects.size() == 1 ? 0 : row]; }
+  AffineMap::Inverse inverse(size_t row) const {
+    return inverses.empty() ? instances.table->map(row).inverse() : inverses[row];
+  }
 };
 
 struct Geometry::Object {
@@ -115,18 +124,18 @@ Bounds widened(const Bounds& b) {
   return {b.min - by, b.max + by};
 }
 
+Float4 to_float4(const Vec3& v) { return Float4{v.x, v.y, v.z, 0}; }
+
 /// Whether a ray passes a box. Copies' boxes in the world are wider than those in their own space: most of the rays
 /// that pass the one miss the other.
-bool passes(const Ray& ray, const Bounds& box) {
-  float enter = 0, leave = ray.t_max;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float inverse = 1 / ray.d[axis];
-    const float a = (box.min[axis] - ray.o[axis]) * inverse, b = (box.max[axis] - ray.o[axis]) * inverse;
-    // NaN, where a ray runs along a face, leaves the bounds as they are.
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
-  }
-  return enter <= leave * (1 + 0x1p-20f);
+bool passes(Float4 origin, Float4 direction, float t_max, const Bounds& box) {
+  const Float4 inverse = 1 / direction;
+  const Float4 a = (to_float4(box.min) - origin) * inverse, b = (to_float4(box.max) - origin) * inverse;
+  // NaN, where a ray runs along a face, leaves the bounds as they are.
+  const Float4 near = b < a ? b : a, far = a < b ? b : a;
+  const Float4 start{}, end = start + t_max;
+  const Float4 enter = start < near ? near : start, leave = far < end ? far : end;
+  return std::max({enter[0], enter[1], enter[2]}) <= std::min({leave[0], leave[1], leave[2]}) * (1 + 0x1p-20f);
 }
 
 using Float8 = float __attribute__((vector_size(32), may_alias));
@@ -136,15 +145,15 @@ const Float8& lanes(const float* x) { return *reinterpret_cast<const Float8*>(x)
 
 /// Both may be the same rays.
 void transform(const AffineMap::Inverse& map, const RTCRay8& in, RTCRay8& out) {
-  const Vec3 &x = map.rows[0], &y = map.rows[1], &z = map.rows[2], &t = map.translation;
-  const Float8 px = lanes(in.org_x) - t.x, py = lanes(in.org_y) - t.y, pz = lanes(in.org_z) - t.z;
-  lanes(out.org_x) = x.x * px + x.y * py + x.z * pz;
-  lanes(out.org_y) = y.x * px + y.y * py + y.z * pz;
-  lanes(out.org_z) = z.x * px + z.y * py + z.z * pz;
+  const auto& [x, y, z, t] = map;
+  const Float8 px = lanes(in.org_x) - t[0], py = lanes(in.org_y) - t[1], pz = lanes(in.org_z) - t[2];
+  lanes(out.org_x) = x[0] * px + y[0] * py + z[0] * pz;
+  lanes(out.org_y) = x[1] * px + y[1] * py + z[1] * pz;
+  lanes(out.org_z) = x[2] * px + y[2] * py + z[2] * pz;
   const Float8 dx = lanes(in.dir_x), dy = lanes(in.dir_y), dz = lanes(in.dir_z);
-  lanes(out.dir_x) = x.x * dx + x.y * dy + x.z * dz;
-  lanes(out.dir_y) = y.x * dx + y.y * dy + y.z * dz;
-  lanes(out.dir_z) = z.x * dx + z.y * dy + z.z * dz;
+  lanes(out.dir_x) = x[0] * dx + y[0] * dy + z[0] * dz;
+  lanes(out.dir_y) = x[1] * dx + y[1] * dy + z[1] * dz;
+  lanes(out.dir_z) = x[2] * dx + y[2] * dy + z[2] * dz;
   lanes(out.tnear) = lanes(in.tnear);
   lanes(out.tfar) = lanes(in.tfar);
   lanes(out.time) = lanes(in.time);
@@ -222,12 +231,18 @@ bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hi
   return false;
 }
 
+/// A normal that a map may be applied to: no product of it overflows or vanishes.
+Vec3 of_moderate_length(const Vec3& n) {
+  const float square = dot(n, n);
+  return square > 1e-16f && square < 1e16f ? n : normalize_any(n);
+}
+
 /// Out of an object into the space where a copy of it stands. `ns` is nullptr where it is that of the hit.
-void place(const AffineMap& map, Hit& hit, Vec3* ns) {
+void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Vec3* ns) {
   hit.p = map.point(hit.p);
   hit.extent = map.largest_stretch() * hit.extent + largest_coordinate(map.translation());
-  hit.ng = map.normal(normalize_any(hit.ng));
-  if (ns) *ns = map.normal(normalize_any(*ns));
+  hit.ng = inverse.normal_out(of_moderate_length(hit.ng));
+  if (ns) *ns = inverse.normal_out(of_moderate_length(*ns));
 }
 
 }  // namespace
@@ -237,9 +252,17 @@ struct GeometryCallbacks {
   using Copies = Geometry::Copies;
   using Object = Geometry::Object;
 
-  static Ray to_object(const Copies& copies, uint32_t row, const Ray& ray) {
-    const Instances& i = copies.instances;
-    return i.table->map(row).inverse().ray(i.is_placed ? i.placement.inverse().ray(ray) : ray);
+  /// False where the ray misses the object's box.
+  static bool to_object(const embree::Copy& copy, const RTCRay& ray, RTCRay& inner) {
+    const Copies& copies = *static_cast<const Copies*>(copy.copies);
+    Float4 origin = embree::origin(ray), direction = embree::direction(ray);
+    if (copies.instances.is_placed) {
+      origin = copies.from_placement.point(origin);
+      direction = copies.from_placement.vector(direction);
+    }
+    const AffineMap::Inverse map = copies.inverse(copy.row);
+    inner = embree::from_vectors(map.point(origin), map.vector(direction), ray.tfar);
+    return passes(embree::origin(inner), embree::direction(inner), ray.tfar, copies.object(copy.row).bounds);
   }
 
   static void intersect(const RTCIntersectFunctionNArguments* args) {
@@ -266,20 +289,19 @@ struct GeometryCallbacks {
 
   static void intersect(const embree::Copy& copy, RTCRayHit& ray, embree::Query& query) {
     const auto& copies = *static_cast<const Copies*>(copy.copies);
+    RTCRayHit nested;
+    if (!to_object(copy, ray.ray, nested.ray)) return;
     const Object& object = copies.object(copy.row);
-    const Ray inner = to_object(copies, copy.row, embree::to_ray(ray.ray));
-    if (!passes(inner, object.bounds)) return;
     const uint32_t level = query.depth;
     query.enter(copy);
     if (object.only_primitive) {
       constexpr embree::Target kOnly{0, 0};
+      const Ray inner = embree::to_ray(nested.ray);
       if (const auto point = embree::meet(*object.only_primitive, kOnly, inner, query, *query.lane)) {
         embree::report(*point, kOnly, reinterpret_cast<RTCRayHitN*>(&ray), 1, 0, query);
         query.lane->hit[level] = copy;
       }
     } else {
-      RTCRayHit nested;
-      nested.ray = embree::from_ray(inner);
       nested.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       embree::intersect(object.scene.get(), nested, query);
       if (nested.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
@@ -293,14 +315,14 @@ struct GeometryCallbacks {
 
   static void occluded(const embree::Copy& copy, RTCRay& ray, embree::Query& query) {
     const auto& copies = *static_cast<const Copies*>(copy.copies);
+    RTCRay nested;
+    if (!to_object(copy, ray, nested)) return;
     const Object& object = copies.object(copy.row);
-    const Ray inner = to_object(copies, copy.row, embree::to_ray(ray));
-    if (!passes(inner, object.bounds)) return;
     query.enter(copy);
     if (object.only_primitive) {
-      if (embree::meet(*object.only_primitive, {0, 0}, inner, query, *query.lane)) ray.tfar = -INFINITY;
+      if (embree::meet(*object.only_primitive, {0, 0}, embree::to_ray(nested), query, *query.lane))
+        ray.tfar = -INFINITY;
     } else {
-      RTCRay nested = embree::from_ray(inner);
       embree::occluded(object.scene.get(), nested, query);
       if (nested.tfar < 0) ray.tfar = -INFINITY;
     }
@@ -310,10 +332,9 @@ struct GeometryCallbacks {
   /// The rays of a packet in the object's space, and which of them pass its box. False where none does.
   static bool to_object(const embree::Copy& copy, const int* valid, const RTCRay8& rays, RTCRay8& inner, int* passing) {
     const Copies& copies = *static_cast<const Copies*>(copy.copies);
-    const Instances& i = copies.instances;
-    const AffineMap::Inverse map = i.table->map(copy.row).inverse();
-    if (i.is_placed) {
-      transform(i.placement.inverse(), rays, inner);
+    const AffineMap::Inverse map = copies.inverse(copy.row);
+    if (copies.instances.is_placed) {
+      transform(copies.from_placement, rays, inner);
       transform(map, inner, inner);
     } else {
       transform(map, rays, inner);
@@ -431,6 +452,9 @@ void Geometry::attach(Object& object) {
     Copies copies{.instances = instances, .objects = {}, .first_id = object.ids};
     for (const uint32_t place : instances.objects) copies.objects.push_back(objects_[place].get());
     const size_t rows = instances.table->size();
+    if (rows <= Copies::kMostKept)
+      for (size_t row = 0; row < rows; ++row) copies.inverses.push_back(instances.table->map(row).inverse());
+    if (instances.is_placed) copies.from_placement = instances.placement.inverse();
     const auto as_many = [&](const Object* o) { return o->ids == copies.objects.front()->ids; };
     if (rows == 0 || std::ranges::all_of(copies.objects, as_many)) {
       object.ids += rows == 0 ? 0 : rows * copies.objects.front()->ids;
@@ -604,9 +628,10 @@ void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& r
   Vec3 own_normal;
   Vec3* const ns = fill(surface, at, lane, hit, own_normal) ? &own_normal : nullptr;
   for (uint32_t i = level; i-- > 0;) {
-    const Instances& instances = static_cast<const Copies*>(lane.hit[i].copies)->instances;
-    place(instances.table->map(lane.hit[i].row), hit, ns);
-    if (instances.is_placed) place(instances.placement, hit, ns);
+    const auto& copies = *static_cast<const Copies*>(lane.hit[i].copies);
+    const uint32_t row = lane.hit[i].row;
+    place(copies.instances.table->map(row), copies.inverse(row), hit, ns);
+    if (copies.instances.is_placed) place(copies.instances.placement, copies.from_placement, hit, ns);
   }
   set_frame(hit, ns, ray.d);
   met.material = surface.material;

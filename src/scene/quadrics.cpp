@@ -148,7 +148,7 @@ class Disk final : public Quadric {
   ShapePoint sample(Vec2 u) const override {
     const double r = std::sqrt(inner_ * inner_ + double(u.x) * (radius_ * radius_ - inner_ * inner_));
     const double phi = double(u.y) * phi_max();
-    return at({r * std::cos(phi), r * std::sin(phi), height_}, r, phi, 0);
+    return at({r * double(std::cos(float(phi))), r * double(std::sin(float(phi))), height_}, r, phi, 0);
   }
   double area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_) * area_scale(); }
 

@@ -5,6 +5,7 @@
 #include "spectra/check_range.h"
 #include "spectra/cie.h"
 #include "spectra/color_space.h"
+#include "spectra/fixed_wavelengths.h"
 #include "spectra/named.h"
 #include "spectra/rgb_upsampling.h"
 #include "spectra/spd_file.h"
@@ -134,7 +135,7 @@ SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, bool emission) {
     check_range(*s, wavelengths_, p.value_where, p.name);
   if (!emission && s->max_value() > 1)
     fail(p.value_where, "\"{}\" goes up to {}, outside its range 0 to 1", p.name, s->max_value());
-  return s;
+  return known_at(std::move(s), wavelengths_.fixed_nm());
 }
 
 std::filesystem::path SceneResolver::file(const std::string& name, const Location& where) {

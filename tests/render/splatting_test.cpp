@@ -54,8 +54,7 @@ class MadeUp {
       for (int y = c.y0; y < c.y1; ++y)
         for (int x = c.x0; x < c.x1; ++x) {
           const auto [u, response] = sample(x, y, s);
-          const SplatKernel::Weights weights = kernel_.at(u);
-          tile.add(format, x, y, response, 1, false, &weights);
+          tile.add(format, x, y, {{{response, 1, false, u}}}, &kernel_);
         }
       if (format.blocks && s % FilmTile::kBlock == FilmTile::kBlock - 1) tile.add_block(before);
     }
@@ -137,12 +136,11 @@ TEST(Splatting, WeightsAreTheFiltersAndAverageToWhatIsSaid) {
         for (uint64_t i = 0; i < kSide * kSide; ++i) {
           const Vec2 u = grid(i, kSide);
           const SplatKernel::Weights w = kernel.at(u);
-          const double weight =
-              double(w.x[size_t(dx + s.reach_x())]) * 0x1p-30 * double(w.y[size_t(dy + s.reach_y())]) * 0x1p-30;
+          const double weight = double(w.at(size_t(dx + s.reach_x()), size_t(dy + s.reach_y())));
           const Vec2 f = filter->along({u.x - 0.5f - float(dx), u.y - 0.5f - float(dy)}), peak = filter->along({0, 0});
           sum += weight, squares += weight * weight;
           const SplatKernel::Weights top = kernel.at({0.5f, 0.5f});
-          ratio = double(top.x[size_t(s.reach_x())]) * double(top.y[size_t(s.reach_y())]) * 0x1p-60;
+          ratio = double(top.at(size_t(s.reach_x()), size_t(s.reach_y())));
           EXPECT_NEAR(weight / ratio, double(f.x / peak.x * (f.y / peak.y)), 2e-3) << name;
         }
         EXPECT_NEAR(sum / (kSide * kSide), s.mean(dx, dy), 2e-4) << name;
