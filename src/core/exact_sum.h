@@ -23,8 +23,8 @@ class ExactSum {
     const auto rest = static_cast<int64_t>((units - static_cast<double>(whole)) * 0x1p63);
     bits_ += (static_cast<Int128>(whole) << 64) + (static_cast<Int128>(rest) << 1);
   }
-  /// A multiple of 2^-kFraction, as it is.
-  void add_units(Int128 units) { bits_ += units; }
+  /// n 2^(shift - kFraction), as it is.
+  void add_multiple(int64_t n, int shift) { bits_ += static_cast<Int128>(n) << shift; }
   ExactSum& operator+=(const ExactSum& other) {
     bits_ += other.bits_;
     return *this;

@@ -11,7 +11,7 @@ namespace frond {
 
 /// What a camera ray met first.
 struct FirstHit {
-  bool is_hit = false;  ///< false: nothing, and the rest means nothing
+  bool is_hit = false;  ///< false: nothing, no leaf, and the rest means nothing
   bool is_leaf = false;
   uint32_t material = 0;  ///< as of a SurfacePoint
   uint64_t instance = 0;  ///< as of a SurfacePoint

@@ -6,40 +6,35 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/float4.h"
+
 namespace frond {
 
 /// Wavelengths that one path carries at most.
 inline constexpr int kLanes = 4;
 
-/// A quantity at the wavelengths of one path, lane by lane. Unused lanes hold 0.
-struct alignas(16) SampledSpectrum {
-  std::array<float, kLanes> v{};
+/// A quantity at the wavelengths of one path, lane by lane. Unused lanes hold 0. One register, so that functions hand it
+/// on in one.
+struct SampledSpectrum {
+  Float4 v{};
 
   constexpr SampledSpectrum() = default;
-  constexpr explicit SampledSpectrum(float s) { v.fill(s); }
-  constexpr float operator[](int i) const { return v[static_cast<size_t>(i)]; }
-  constexpr float& operator[](int i) { return v[static_cast<size_t>(i)]; }
+  constexpr explicit SampledSpectrum(float s) : v{s, s, s, s} {}
+  constexpr explicit SampledSpectrum(Float4 lanes) : v(lanes) {}
+  float operator[](int i) const { return v[i]; }
+  float& operator[](int i) { return reinterpret_cast<float*>(&v)[i]; }
 
-  constexpr SampledSpectrum& operator+=(const SampledSpectrum& b) {
-    for (size_t i = 0; i < kLanes; ++i) v[i] += b.v[i];
-    return *this;
-  }
-  constexpr SampledSpectrum& operator*=(const SampledSpectrum& b) {
-    for (size_t i = 0; i < kLanes; ++i) v[i] *= b.v[i];
-    return *this;
-  }
-  constexpr SampledSpectrum& operator*=(float s) {
-    for (float& x : v) x *= s;
-    return *this;
-  }
-  friend constexpr SampledSpectrum operator+(SampledSpectrum a, const SampledSpectrum& b) { return a += b; }
-  friend constexpr SampledSpectrum operator*(SampledSpectrum a, const SampledSpectrum& b) { return a *= b; }
-  friend constexpr SampledSpectrum operator*(SampledSpectrum a, float s) { return a *= s; }
-  friend constexpr SampledSpectrum operator*(float s, SampledSpectrum a) { return a *= s; }
-  friend constexpr bool operator==(const SampledSpectrum&, const SampledSpectrum&) = default;
+  SampledSpectrum& operator+=(const SampledSpectrum& b) { return v += b.v, *this; }
+  SampledSpectrum& operator*=(const SampledSpectrum& b) { return v *= b.v, *this; }
+  SampledSpectrum& operator*=(float s) { return v *= s, *this; }
+  friend SampledSpectrum operator+(SampledSpectrum a, const SampledSpectrum& b) { return a += b; }
+  friend SampledSpectrum operator*(SampledSpectrum a, const SampledSpectrum& b) { return a *= b; }
+  friend SampledSpectrum operator*(SampledSpectrum a, float s) { return a *= s; }
+  friend SampledSpectrum operator*(float s, SampledSpectrum a) { return a *= s; }
+  friend bool operator==(const SampledSpectrum& a, const SampledSpectrum& b) { return are_equal(a.v, b.v); }
 
-  constexpr float max() const { return std::max({v[0], v[1], v[2], v[3]}); }
-  constexpr bool is_black() const { return v == decltype(v){}; }
+  float max() const { return std::max({v[0], v[1], v[2], v[3]}); }
+  bool is_black() const { return are_equal(v, Float4{}); }
 };
 
 struct Interval {

@@ -55,13 +55,17 @@ template <class T>
 Vec3T<T> normalize(const Vec3T<T>& a) {
   return a / length(a);
 }
-/// The same for vectors of any length, even where its square overflows or vanishes; 0 for 0.
 template <class T>
-Vec3T<T> normalize_any(const Vec3T<T>& a) {
-  if (const T square = dot(a, a); square > T(1e-30) && square < T(1e30)) return a / std::sqrt(square);
+[[gnu::cold, gnu::noinline]] Vec3T<T> normalize_extreme(const Vec3T<T>& a) {
   const T largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
   if (!(largest > 0)) return {};
   return normalize(Vec3T<T>{a.x / largest, a.y / largest, a.z / largest});
+}
+/// The same for vectors of any length, even where its square overflows or vanishes; 0 for 0.
+template <class T>
+Vec3T<T> normalize_any(const Vec3T<T>& a) {
+  const T square = dot(a, a);
+  return square > T(1e-30) && square < T(1e30) ? a / std::sqrt(square) : normalize_extreme(a);
 }
 
 /// Right-handed orthonormal frame around a unit `z`.

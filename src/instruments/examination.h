@@ -101,12 +101,16 @@ inline bool near(float a, float b) {
 }
 
 inline bool near(const SampledSpectrum& a, const SampledSpectrum& b) {
-  return std::ranges::equal(a.v, b.v, [](float x, float y) { return near(x, y); });
+  for (int i = 0; i < kLanes; ++i)
+    if (!near(a[i], b[i])) return false;
+  return true;
 }
 
 inline bool is_proper(float x) { return std::isfinite(x) && x >= 0; }
 inline bool is_proper(const SampledSpectrum& s) {
-  return std::ranges::all_of(s.v, [](float x) { return is_proper(x); });
+  for (int i = 0; i < kLanes; ++i)
+    if (!is_proper(s[i])) return false;
+  return true;
 }
 
 inline Finding statistical(Law law, const Series& s, double p_value, std::string message,

@@ -18,7 +18,7 @@ namespace {
 
 double sum(const SampledSpectrum& s) {
   double result = 0;
-  for (const float x : s.v) result += static_cast<double>(x);
+  for (int i = 0; i < kLanes; ++i) result += static_cast<double>(s[i]);
   return result;
 }
 

@@ -37,8 +37,11 @@ struct Path {
 /// direction on the other one, nothing is scattered there.
 class LocalBsdf {
  public:
-  LocalBsdf() = default;
-  LocalBsdf(const Bsdf& bsdf, const Hit& hit, const Vec3& wo) : bsdf_(&bsdf), ng_(hit.ng), frame_(hit.shading) {
+  /// Set, not made anew: a copy of what has just been written field by field waits for all of it.
+  void set(const Bsdf& bsdf, const Hit& hit, const Vec3& wo) {
+    bsdf_ = &bsdf;
+    ng_ = hit.ng;
+    frame_ = hit.shading;
     // A shading normal that turns away from the viewer is bent back to the side that the ray met.
     if (dot(wo, frame_.z) * dot(wo, hit.ng) <= 0) frame_ = Frame::around(hit.ng);
     wo_ = frame_.to_local(wo);
@@ -158,7 +161,11 @@ class PathTracer final : public Tracer {
       path.scatter_pdf = INFINITY;
       path.depth = 0;
       path.previous = {path.ray.o, {0, 0, 1}};
-      bundle_->results[i] = {};
+      PathResult& result = bundle_->results[i];
+      result.radiance = {};
+      result.first.is_hit = result.first.is_leaf = false;
+      result.scatterings = 0;
+      result.escaped = false;
     }
     return lanes;
   }
@@ -217,7 +224,7 @@ class PathTracer final : public Tracer {
       }
       if (path.depth == 0) bundle_->results[i].first = first_hit(point);
       if (path.depth >= settings_.max_depth) continue;
-      bsdfs_[i] = LocalBsdf(*bsdf, point.hit, -path.ray.d);
+      bsdfs_[i].set(*bsdf, point.hit, -path.ray.d);
       scattering.add(i);
     }
     return scattering;
@@ -286,8 +293,9 @@ class PathTracer final : public Tracer {
       if (f_cos.is_black()) continue;
       const float light_pdf = sample->pdf * probability;
       const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
-      lit_[i] = {f_cos * sample->radiance, weight / light_pdf};
-      shadow_rays_[i] = shadow_ray(point.hit, *sample);
+      lit_[i].radiance = f_cos * sample->radiance;
+      lit_[i].weight = weight / light_pdf;
+      set_shadow_ray(point.hit, *sample, shadow_rays_[i]);
       shadow_keys_[i] = path.key.of(Use::shadow_ray);
       lit.add(i);
       alike = alike && (light->is_delta() || !light->is_distant());
@@ -317,18 +325,26 @@ class PathTracer final : public Tracer {
   }
 
   /// From the lifted origin to the same point of the light, and just short of its surface.
-  static Ray shadow_ray(const Hit& hit, const LightSample& sample) {
-    const Vec3 origin = offset_origin(hit, sample.wi);
-    if (std::isinf(sample.distance)) return {origin, sample.wi};
-    return {origin, hit.p + sample.wi * sample.distance - origin, 1 - 0x1p-13f};
+  static void set_shadow_ray(const Hit& hit, const LightSample& sample, Ray& ray) {
+    const bool is_distant = std::isinf(sample.distance);
+    ray.o = offset_origin(hit, sample.wi);
+    ray.d = is_distant ? sample.wi : hit.p + sample.wi * sample.distance - ray.o;
+    ray.t_max = is_distant ? INFINITY : 1 - 0x1p-13f;
+  }
+
+  static void set_ray(const Hit& hit, const Vec3& direction, Path& path) {
+    path.previous.p = hit.p;
+    path.previous.n = hit.ng;
+    path.ray.o = offset_origin(hit, direction);
+    path.ray.d = direction;
+    path.ray.t_max = INFINITY;
   }
 
   /// Straight on through a surface that is not there. Shadow rays stop at it, so no light sample competes with what
   /// lies behind.
   static void pass(const Hit& hit, Path& path) {
     path.scatter_pdf = INFINITY;
-    path.previous = {hit.p, hit.ng};
-    path.ray = {offset_origin(hit, path.ray.d), path.ray.d};
+    set_ray(hit, path.ray.d, path);
   }
 
   /// Turns paths into their next directions. Those that go on, with those that were passed through.
@@ -360,8 +376,7 @@ class PathTracer final : public Tracer {
     path.throughput *= weight;
     path.lambda.retire_black_lanes(path.throughput);
     if (!settings_.sample_lights || any(sample->flags & Lobes::specular)) path.scatter_pdf = INFINITY;
-    path.previous = {hit.p, hit.ng};
-    path.ray = {offset_origin(hit, sample->wi), sample->wi};
+    set_ray(hit, sample->wi, path);
     return true;
   }
 

@@ -26,12 +26,12 @@ double variance_of_mean(double sum, double square, double n, double weight) {
 /// From -1022 to 1023; std::ldexp is a call.
 double power_of_two(int exponent) { return std::bit_cast<double>(uint64_t(1023 + exponent) << 52); }
 
-/// Whether a value had to be cut off.
-bool cut_off(double& value) {
-  if (std::abs(value) <= kBrightest) return false;
-  value = std::copysign(kBrightest, value);
-  return true;
+double magnitude(const Double4& v) {
+  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
 }
+
+/// Samples that sums in doubles may have.
+constexpr size_t kAtOnce = 64;
 
 double held(double value) {
   constexpr double kMost = ExactSum<40>::kLargestTerm;
@@ -52,6 +52,68 @@ SampleMoments moments_of(double sum, double square, double count) {
   if (count == 0) return {0, 0, 0};
   return {count, sum / count, std::max(square - sum * sum / count, 0.0)};
 }
+
+/// What the film sums of a sample's response: in its colours, in its units, cut off where that is too much.
+class Exposure {
+ public:
+  explicit Exposure(const FilmFormat& format)
+      : has_colors_(format.bands == 0),
+        exposure_(format.settings.exposure),
+        most_(format.settings.max_component),
+        unit_(format.settings.exposure * power_of_two(-format.exponent)) {
+    for (size_t c = 0; c < 3; ++c)
+      columns_[c] = Double4{format.color.row[0][c], format.color.row[1][c], format.color.row[2][c], 0};
+  }
+
+  /// False where not all of it could be kept.
+  bool expose(const FilmTile::Sample& sample, Double4& value) const {
+    const std::array<double, kLanes>& response = sample.sensor.value;
+    value = Double4{response[0], response[1], response[2], response[3]};
+    const bool is_finite = std::isfinite((value[0] + value[1]) + (value[2] + value[3]));
+    if (!is_finite) value = Double4{};
+    if (has_colors_) value = columns_[0] * value[0] + columns_[1] * value[1] + columns_[2] * value[2];
+    const double largest = std::max({value[0], value[1], value[2], value[3]}) * exposure_;
+    value *= sample.weight * unit_ * (largest > most_ ? most_ / largest : 1);
+    if (magnitude(value) <= kBrightest) return is_finite;
+    for (int i = 0; i < kLanes; ++i) value[i] = std::clamp(value[i], -kBrightest, kBrightest);
+    return false;
+  }
+
+ private:
+  bool has_colors_;
+  double exposure_, most_, unit_;
+  std::array<Double4, 3> columns_;
+};
+
+/// Sums of a few samples' colours that are not very bright, in doubles: each is rounded to a multiple of a unit, and its
+/// square too, so that their sums are exact.
+class ModestSums {
+ public:
+  /// False, and nothing changes, where a sample is too bright.
+  bool add(Double4 color) {
+    if (!(magnitude(color) < kMost)) return false;
+    add_rounded(color, kUnit, sum_);
+    add_rounded(color * color, kSquareUnit, square_);
+    return true;
+  }
+  void add_to(FilmTile::Pixel& pixel) const {
+    for (size_t i = 0; i < 3; ++i) {
+      pixel.sum[i].add_multiple(int64_t(sum_[i] / kUnit), 60 - kBits);
+      pixel.square[i].add_multiple(int64_t(square_[i] / kSquareUnit), 0);
+    }
+  }
+
+ private:
+  static constexpr double kMost = 4;  ///< kAtOnce of this do not leave the range of whole numbers
+  static constexpr int kBits = 44;
+  static constexpr double kUnit = 0x1p-44, kSquareUnit = 0x1p-40;
+  /// To the nearest.
+  static void add_rounded(const Double4& value, double unit, Double4& sum) {
+    const double rounds = 0x1.8p52 * unit;
+    sum += value + rounds - rounds;
+  }
+  Double4 sum_{}, square_{};
+};
 
 template <class Sums>
 void add_all(std::vector<Sums>& to, size_t at, const std::vector<Sums>& from, size_t from_at, size_t count) {
@@ -136,57 +198,54 @@ void FilmTile::clear(const Crop& pixels) {
 }
 
 void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sample> samples, const SplatKernel* kernel) {
+  if (samples.size() > kAtOnce) {
+    add(format, x, y, samples.first(kAtOnce), kernel);
+    return add(format, x, y, samples.subspan(kAtOnce), kernel);
+  }
   const size_t at = index(x, y);
   assert(at < pixels_.size());
   Pixel& pixel = pixels_[at];
-  const FilmSettings& settings = format.settings;
-  const double unit = settings.exposure * power_of_two(-format.exponent);
+  const Exposure exposure(format);
+  ModestSums modest;
   std::optional<SplatSums> splats;
-  int splatted = 0;
   for (const Sample& sample : samples) {
-    SensorResponse sensor = sample.sensor;
-    bool is_lost = !std::isfinite(sensor[0] + sensor[1] + sensor[2] + sensor[3]);
-    if (is_lost) sensor.value = {};
-    if (band_count_ == 0) sensor = SensorResponse(format.color * sensor.color());
-    const double largest = std::max({sensor[0], sensor[1], sensor[2], sensor[3]}) * settings.exposure;
-    const double scale =
-        sample.weight * unit * (largest > settings.max_component ? settings.max_component / largest : 1);
-    for (double& value : sensor.value) {
-      value *= scale;
-      is_lost |= cut_off(value);
-    }
-    for (size_t i = 0; i < size_t(sensor.count); ++i) {
-      if (band_count_ == 0) {
-        pixel.sum[i].add(sensor[i]);
-        pixel.square[i].add(sensor[i] * sensor[i]);
-        continue;
-      }
-      assert(sensor.channel[i] < band_count_);
-      BandSums& band = bands_[at * band_count_ + sensor.channel[i]];
-      band.sum.add(sensor[i]);
-      band.square.add(sensor[i] * sensor[i]);
-      ++band.samples;
-    }
+    Double4 value;
+    const bool is_kept = exposure.expose(sample, value);
     pixel.weight += static_cast<int64_t>(sample.weight * kWeightUnit);
     pixel.leaf += sample.leaf ? 1 : 0;
-    pixel.not_finite += is_lost ? 1 : 0;
+    pixel.not_finite += is_kept ? 0 : 1;
     ++pixel.samples;
-    if (!kernel) continue;
     if (band_count_ > 0) {
-      add_band_splats(x, y, sensor, kernel->at(sample.place));
+      add_bands(at, sample.sensor, value);
+      if (kernel) add_band_splats(x, y, sample.sensor, value, kernel->at(sample.place));
       continue;
     }
-    const SplatValue value(sensor.value);
-    if (!splats || splats->exponent() != value.exponent || splatted == SplatSums::kMostSamples) {
-      if (splats) add_splats(x, y, *splats);
-      if (!splats) splats.emplace(*kernel);
-      splats->begin(value.exponent);
-      splatted = 0;
+    if (!modest.add(value)) {
+      for (size_t i = 0; i < 3; ++i) {
+        pixel.sum[i].add(value[i]);
+        pixel.square[i].add(value[i] * value[i]);
+      }
     }
-    splats->add(sample.place, value);
-    ++splatted;
+    if (!kernel) continue;
+    const SplatValue splat(value);
+    if (!splats || splats->exponent() != splat.exponent) {
+      if (splats) add_splats(x, y, *splats);
+      splats.emplace(*kernel, splat.exponent);
+    }
+    splats->add(sample.place, splat);
   }
   if (splats) add_splats(x, y, *splats);
+  modest.add_to(pixel);
+}
+
+void FilmTile::add_bands(size_t at, const SensorResponse& sensor, const Double4& value) {
+  for (size_t i = 0; i < size_t(sensor.count); ++i) {
+    assert(sensor.channel[i] < band_count_);
+    BandSums& band = bands_[at * band_count_ + sensor.channel[i]];
+    band.sum.add(value[i]);
+    band.square.add(value[i] * value[i]);
+    ++band.samples;
+  }
 }
 
 /// Calls each(index, column, row) for the pixels of the picture that a pixel's samples reach, counted from -reach.
@@ -202,18 +261,19 @@ void FilmTile::for_each_reached(int x, int y, const Each& each) {
 void FilmTile::add_splats(int x, int y, const SplatSums& sums) {
   for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
     Splat& splat = splats_[at];
-    for (size_t c = 0; c < 3; ++c) splat.sum[c].add_units(sums.sum(column, row, c));
+    for (size_t c = 0; c < 3; ++c) splat.sum[c].add_multiple(sums.sum(column, row, c), sums.shift());
     splat.weight += sums.weight(column, row);
   });
 }
 
-void FilmTile::add_band_splats(int x, int y, const SensorResponse& sensor, const SplatKernel::Weights& weights) {
-  const SplatValue value(sensor.value);
+void FilmTile::add_band_splats(int x, int y, const SensorResponse& sensor, const Double4& exposed,
+                               const SplatKernel::Weights& weights) {
+  const SplatValue value(exposed);
   for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
     const auto weight = double(weights.at(column, row));
     for (size_t i = 0; i < size_t(sensor.count); ++i) {
       BandSplat& band = band_splats_[at * band_count_ + sensor.channel[i]];
-      band.sum.add_units(SplatValue::units(value.multiples[i] * weight, value.exponent));
+      band.sum.add_multiple(SplatValue::whole(value.multiples[i] * weight), value.shift());
       band.weight += int64_t(weight * kWeightUnit);
     }
   });

@@ -168,7 +168,9 @@ class FilmTile {
   bool shares_samples() const { return reach_x_ >= 0; }
   void add_features(size_t at, const FilmTile& other, size_t from);
   void add_splats(int x, int y, const SplatSums& sums);
-  void add_band_splats(int x, int y, const SensorResponse& sensor, const SplatKernel::Weights& weights);
+  void add_bands(size_t at, const SensorResponse& sensor, const Double4& value);
+  void add_band_splats(int x, int y, const SensorResponse& sensor, const Double4& exposed,
+                       const SplatKernel::Weights& weights);
   template <class Each>
   void for_each_reached(int x, int y, const Each& each);
   void merge_splats(const FilmTile& other);

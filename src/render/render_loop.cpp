@@ -68,6 +68,7 @@ class Worker {
         tile_(film.format(), {}),
         axis_(job.camera.ray({float(format_.settings.width) / 2, float(format_.settings.height) / 2}, {0.5f, 0.5f}).d) {
     if (format_.splatting) kernel_.emplace(job.filter);
+    if (has_fixed_wavelengths_) bundle_.lambda.fill(job.wavelengths.sample(0));
   }
 
   /// Renders an item, all that it has not got yet. It is then what `tile` holds.
@@ -140,7 +141,8 @@ class Worker {
     uint32_t dimension = 0;
     std::array<float, kBundle> u;
     std::array<Vec2, kBundle> on_filter, on_lens{};
-    sampler.get1d(b.samples, dimension++, u.data());
+    if (!has_fixed_wavelengths_) sampler.get1d(b.samples, dimension, u.data());
+    ++dimension;
     sampler.get2d(b.samples, dimension++, on_filter.data());
     if (job_.camera.uses_lens()) sampler.get2d(b.samples, dimension++, on_lens.data());
     b.dimension = dimension;
@@ -149,8 +151,9 @@ class Worker {
       const Vec2 on = on_filter[i];
       filter_[i] = kernel_ ? Filter::Sample{{on.x - 0.5f, on.y - 0.5f}, 1} : job_.filter.sample(on);
       const Vec2 film_point{float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
-      b.rays[i] = job_.camera.ray(film_point, on_lens[i]);
-      b.lambda[i] = job_.wavelengths.sample_in_turn(first + i, u[i]);
+      // Made in its place: a copy of what has just been written number by number waits for all of it.
+      ::new (&b.rays[i]) Ray(job_.camera.ray(film_point, on_lens[i]));
+      if (!has_fixed_wavelengths_) b.lambda[i] = job_.wavelengths.sample_in_turn(first + i, u[i]);
       b.keys[i] = sample_key(job_.seed, at.x, at.y, first + i);
     }
     tracer_->trace(b);
@@ -169,10 +172,10 @@ class Worker {
       const PathResult& path = bundle_.results[i];
       const SampledWavelengths& lambda = bundle_.lambda[i];
       const auto& [offset, weight] = filter_[i];
-      samples_[i] = {job_.wavelengths.sensor(path.radiance, lambda),
-                     double(weight),
-                     path.first.is_leaf,
-                     {offset.x + 0.5f, offset.y + 0.5f}};
+      ::new (&samples_[i]) FilmTile::Sample{job_.wavelengths.sensor(path.radiance, lambda),
+                                            double(weight),
+                                            path.first.is_leaf,
+                                            {offset.x + 0.5f, offset.y + 0.5f}};
       if (path.first.is_hit && has_channels) {
         Features features(format_.channels, {path.first, bundle_.rays[i], axis_, albedo(path.first, lambda)});
         features.from_center = std::hypot(offset.x, offset.y), features.sample = bundle_.samples.first + i;
@@ -188,6 +191,7 @@ class Worker {
 
   const RenderJob& job_;
   const FilmFormat& format_;
+  const bool has_fixed_wavelengths_ = !job_.wavelengths.fixed_nm().empty();
   std::optional<SplatKernel> kernel_;  ///< of shared samples
   std::unique_ptr<Tracer> tracer_;
   PathBundle bundle_;

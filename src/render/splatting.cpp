@@ -113,25 +113,24 @@ Splatting SplatKernel::splatting() const {
           .correlated_pixels = axes_[0].correlated_pixels() * axes_[1].correlated_pixels()};
 }
 
-SplatValue::SplatValue(const std::array<double, kLanes>& values) : exponent(kLeastExponent) {
-  double largest = 0;
-  for (const double v : values) largest = std::max(largest, std::abs(v));
+SplatValue::SplatValue(const Double4& values) : exponent(kLeastExponent) {
+  const double largest =
+      std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2]), std::abs(values[3])});
   double bound = std::ldexp(1.0, kLeastExponent);
   for (; largest >= bound; exponent += kStep) bound *= 1 << kStep;
   const double scale = double(1 << kBits) / bound;
   constexpr double kRounds = 0x1.8p52;
-  for (size_t i = 0; i < kLanes; ++i) multiples[i] = values[i] * scale + kRounds - kRounds;
+  multiples = values * scale + kRounds - kRounds;
 }
 
-void SplatSums::begin(int exponent) {
-  exponent_ = exponent;
+SplatSums::SplatSums(const SplatKernel& kernel, int exponent) : kernel_(kernel), exponent_(exponent) {
   std::fill_n(sums_.begin(), kernel_.width() * kernel_.height(), Double4{});
 }
 
 void SplatSums::add(Vec2 u, const SplatValue& value) {
   const SplatKernel::Weights weights = kernel_.at(u);
-  const auto& [r, g, b, unused] = value.multiples;
-  const Double4 v{r, g, b, 1};
+  Double4 v = value.multiples;
+  v[3] = 1;
   Double4* sum = sums_.data();
   for (size_t row = 0; row < size_t(kernel_.height()); ++row)
     for (size_t column = 0; column < size_t(kernel_.width()); ++column)

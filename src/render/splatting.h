@@ -4,9 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/exact_sum.h"
 #include "core/filter.h"
-#include "core/spectrum.h"
+#include "core/float4.h"
 #include "scene/film_settings.h"
 
 namespace frond {
@@ -117,44 +116,38 @@ struct SplatValue {
   static constexpr int kBits = 26;
   static constexpr int kLeastExponent = -14, kStep = 4;
 
-  explicit SplatValue(const std::array<double, kLanes>& values);
+  explicit SplatValue(const Double4& values);
 
-  int exponent;                            ///< kLeastExponent + n kStep; all values are less than 2^exponent
-  std::array<double, kLanes> multiples{};  ///< at most 2^26 in magnitude
+  int exponent;       ///< kLeastExponent + n kStep; all values are less than 2^exponent
+  Double4 multiples;  ///< at most 2^26 in magnitude
 
-  /// A sum of multiples times weights, in units of 2^-60.
-  static Int128 units(double sum, int exponent) {
-    return static_cast<Int128>(static_cast<int64_t>(sum * (1 / double(SplatKernel::kWeightUnit))))
-           << (exponent - kLeastExponent);
-  }
+  /// Of a sum of multiples times weights: a number of units of 2^(shift - 60).
+  static int64_t whole(double sum) { return static_cast<int64_t>(sum * (1 / double(SplatKernel::kWeightUnit))); }
+  int shift() const { return exponent - kLeastExponent; }
 };
 
 /// What samples of one pixel, of the same exponent, give to each pixel that they reach.
 class SplatSums {
  public:
-  explicit SplatSums(const SplatKernel& kernel) : kernel_(kernel) {}
+  SplatSums(const SplatKernel& kernel, int exponent);
 
-  /// Nothing but zeros.
-  void begin(int exponent);
   int exponent() const { return exponent_; }
-  /// Of a sample at `u` in its pixel, [0, 1)^2. At most kMostSamples from a `begin` on.
+  /// Of a sample at `u` in its pixel, [0, 1)^2. At most 64 of them.
   void add(Vec2 u, const SplatValue& value);
-  static constexpr int kMostSamples = 64;
 
-  /// What a pixel, counted from -reach, gets: units of 2^-60, and of 2^-30.
-  Int128 sum(size_t column, size_t row, size_t color) const {
-    return SplatValue::units(sums_[at(column, row)][color], exponent_);
+  /// What a pixel, counted from -reach, gets: units of 2^(shift - 60), and of 2^-30.
+  int64_t sum(size_t column, size_t row, size_t color) const {
+    return SplatValue::whole(sums_[at(column, row)][color]);
   }
+  int shift() const { return exponent_ - SplatValue::kLeastExponent; }
   int64_t weight(size_t column, size_t row) const { return int64_t(sums_[at(column, row)][3] * 0x1p30); }
 
  private:
-  /// The compilers' own vector type: the three colours, and 1, times weights.
-  using Double4 = double __attribute__((vector_size(32)));
-
   size_t at(size_t column, size_t row) const { return row * size_t(kernel_.width()) + column; }
 
   const SplatKernel& kernel_;
-  int exponent_ = SplatValue::kLeastExponent;
+  int exponent_;
+  /// Of the three colours, and 1, times weights.
   std::array<Double4, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums_;
 };
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <cstring>
+
 #include "core/float4.h"
 #include "scene/embree.h"
 #include "scene/geometry.h"
@@ -10,13 +13,22 @@ namespace frond::embree {
 RTCGeometry new_geometry(RTCDevice device, const Surface& surface);
 
 inline Ray to_ray(const RTCRay& r) { return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar}; }
-inline RTCRay from_ray(const Ray& r) { return {r.o.x, r.o.y, r.o.z, 0, r.d.x, r.d.y, r.d.z, 0, r.t_max, ~0u, 0, 0}; }
-
-/// The same in registers; fourth lanes are 0.
+/// Fourth lanes are 0.
 inline Float4 origin(const RTCRay& r) { return Float4{r.org_x, r.org_y, r.org_z, 0}; }
 inline Float4 direction(const RTCRay& r) { return Float4{r.dir_x, r.dir_y, r.dir_z, 0}; }
+
+/// Written in halves of 16 bytes, as Embree reads it: it would wait for four numbers written one by one.
 inline RTCRay from_vectors(Float4 o, Float4 d, float t_max) {
-  return {o[0], o[1], o[2], 0, d[0], d[1], d[2], 0, t_max, ~0u, 0, 0};
+  RTCRay ray;
+  static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
+  auto* const bytes = reinterpret_cast<std::byte*>(&ray);
+  std::memcpy(bytes, &o, sizeof o);
+  std::memcpy(bytes + 16, &d, sizeof d);
+  ray.tfar = t_max, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
+  return ray;
+}
+inline RTCRay from_ray(const Ray& r) {
+  return from_vectors(Float4{r.o.x, r.o.y, r.o.z, 0}, Float4{r.d.x, r.d.y, r.d.z, 0}, r.t_max);
 }
 
 /// Which of Embree's things a hit is on.

@@ -25,8 +25,9 @@ struct Geometry::Copies {
   AffineMap::Inverse from_placement = {};         ///< where there is one
 
   const Object& object(size_t row) const { return *objects[objects.size() == 1 ? 0 : row]; }
-  AffineMap::Inverse inverse(size_t row) const {
-    return inverses.empty() ? instances.table->map(row).inverse() : inverses[row];
+  /// `made`: where it is put if it is not kept.
+  const AffineMap::Inverse& inverse(size_t row, AffineMap::Inverse& made) const {
+    return inverses.empty() ? made = instances.table->map(row).inverse() : inverses[row];
   }
 };
 
@@ -260,7 +261,8 @@ struct GeometryCallbacks {
       origin = copies.from_placement.point(origin);
       direction = copies.from_placement.vector(direction);
     }
-    const AffineMap::Inverse map = copies.inverse(copy.row);
+    AffineMap::Inverse made;
+    const AffineMap::Inverse& map = copies.inverse(copy.row, made);
     inner = embree::from_vectors(map.point(origin), map.vector(direction), ray.tfar);
     return passes(embree::origin(inner), embree::direction(inner), ray.tfar, copies.object(copy.row).bounds);
   }
@@ -332,7 +334,8 @@ struct GeometryCallbacks {
   /// The rays of a packet in the object's space, and which of them pass its box. False where none does.
   static bool to_object(const embree::Copy& copy, const int* valid, const RTCRay8& rays, RTCRay8& inner, int* passing) {
     const Copies& copies = *static_cast<const Copies*>(copy.copies);
-    const AffineMap::Inverse map = copies.inverse(copy.row);
+    AffineMap::Inverse made;
+    const AffineMap::Inverse& map = copies.inverse(copy.row, made);
     if (copies.instances.is_placed) {
       transform(copies.from_placement, rays, inner);
       transform(map, inner, inner);
@@ -630,7 +633,8 @@ void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& r
   for (uint32_t i = level; i-- > 0;) {
     const auto& copies = *static_cast<const Copies*>(lane.hit[i].copies);
     const uint32_t row = lane.hit[i].row;
-    place(copies.instances.table->map(row), copies.inverse(row), hit, ns);
+    AffineMap::Inverse made;
+    place(copies.instances.table->map(row), copies.inverse(row, made), hit, ns);
     if (copies.instances.is_placed) place(copies.instances.placement, copies.from_placement, hit, ns);
   }
   set_frame(hit, ns, ray.d);

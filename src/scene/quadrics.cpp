@@ -29,9 +29,10 @@ class Quadric : public AnalyticShape {
   }
 
  protected:
-  ShapePoint to_scene(const Vec3d& p, const Vec3d& n, Vec2 uv, float t) const {
+  /// Unit.
+  Vec3 to_scene_normal(const Vec3d& n) const {
     const Vec3 ng = normalize_any(to_scene_.normal(to_float(normalize_any(n))));
-    return {to_scene_.point(to_float(p)), flip_ ? -ng : ng, uv, t};
+    return flip_ ? -ng : ng;
   }
   Vec3 to_scene_point(const Vec3& p) const { return to_scene_.point(p); }
   Vec3d local_point(const Vec3& p) const { return to_double(from_scene_.point(p)); }
@@ -102,7 +103,8 @@ class Sphere final : public Quadric {
   ShapePoint at(const Vec3d& p, double phi, float t) const {
     const double theta = std::acos(std::clamp(p.z / radius_, -1.0, 1.0));
     const double bottom = std::acos(z_min_ / radius_), top = std::acos(z_max_ / radius_);
-    return to_scene(p, p, {float(phi / phi_max()), float((theta - bottom) / (top - bottom))}, t);
+    return {to_scene_point(to_float(p)), to_scene_normal(p),
+            {float(phi / phi_max()), float((theta - bottom) / (top - bottom))}, t};
   }
 
   double radius_, z_min_ = 0, z_max_ = 0;
@@ -111,7 +113,11 @@ class Sphere final : public Quadric {
 class Disk final : public Quadric {
  public:
   Disk(const Params& p, const ShapePlacement& placement)
-      : Quadric(p, placement), radius_(p.real("radius")), inner_(p.real("innerradius")), height_(p.real("height")) {
+      : Quadric(p, placement),
+        radius_(p.real("radius")),
+        inner_(p.real("innerradius")),
+        height_(p.real("height")),
+        ng_(to_scene_normal({0, 0, 1})) {
     if (inner_ >= radius_)
       fail(p.where("innerradius"), "\"innerradius\" {} must be less than \"radius\" {}", inner_, radius_);
   }
@@ -154,10 +160,11 @@ class Disk final : public Quadric {
 
  private:
   ShapePoint at(const Vec3d& p, double r, double phi, float t) const {
-    return to_scene(p, {0, 0, 1}, {float(phi / phi_max()), float((radius_ - r) / (radius_ - inner_))}, t);
+    return {to_scene_point(to_float(p)), ng_, {float(phi / phi_max()), float((radius_ - r) / (radius_ - inner_))}, t};
   }
 
   double radius_, inner_, height_;
+  Vec3 ng_;
 };
 
 constexpr Param kPhiMax{.name = "phimax",

@@ -7,9 +7,9 @@ class KnownSpectrum final : public Spectrum {
  public:
   KnownSpectrum(SpectrumPtr spectrum, std::span<const float> nm) : spectrum_(std::move(spectrum)) {
     for (const float wavelength : nm) {
-      const auto lane = size_t(known_.count++);
-      known_.nm[lane] = wavelength;
-      values_.v[lane] = spectrum_->at(wavelength);
+      const int lane = known_.count++;
+      known_.nm[size_t(lane)] = wavelength;
+      values_[lane] = spectrum_->at(wavelength);
     }
   }
   float at(float lambda_nm) const override { return spectrum_->at(lambda_nm); }

@@ -155,7 +155,7 @@ void check_energy(const BodyFile& file, size_t column) {
     for (int i = 0; i <= all.cells; ++i) {
       const double sine = static_cast<double>(i) / all.cells;
       const BodyTable::Ways ways =
-          table.ways(below, table.nodes(static_cast<float>(sine)), to_float4(SampledSpectrum(1)), first);
+          table.ways(below, table.nodes(static_cast<float>(sine)), SampledSpectrum(1).v, first);
       const double sum = static_cast<double>(ways.back + ways.across);
       if (sum > 1 + kRule + 2 * all.error)
         fail(file.columns[column].where,

@@ -80,7 +80,7 @@ BodyTable::Selection BodyTable::with_index(const TableSelection& columns) const 
     float index = 0;
     for (size_t c = 0; c < static_cast<size_t>(columns.columns_per_lane); ++c)
       index += columns.lanes[l].weight[c] * index_[columns.lanes[l].column[c]];
-    selection.index.v[l] = index;
+    selection.index[int(l)] = index;
   }
   return selection;
 }

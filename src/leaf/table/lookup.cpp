@@ -55,8 +55,8 @@ std::vector<TableLookup::Node> TableLookup::resample(const std::vector<double>& 
     for (size_t k = 0; k <= kCells; ++k) {
       const double x = static_cast<double>(k) / kCells;
       const Shares s = side.at(std::acos(x * x) * 180 / std::numbers::pi);
-      nodes[i + k].v = {static_cast<float>(s.surface), static_cast<float>(s.subsurface),
-                        static_cast<float>(s.transmitted), 0};
+      nodes[i + k].v = Float4{static_cast<float>(s.surface), static_cast<float>(s.subsurface),
+                              static_cast<float>(s.transmitted), 0};
     }
   }
   return nodes;
@@ -77,9 +77,9 @@ TableLookup TableLookup::for_lanes(const Table& table) {
     const size_t angles = table.theta_deg.size();
     const std::vector<Node> nodes = resample(table.theta_deg, std::span(table.shares).subspan(lane * angles, angles));
     for (size_t i = 0; i < kNodes; ++i) {
-      lookup.lanes_[i].surface.v[lane] = nodes[i][0];
-      lookup.lanes_[i].subsurface.v[lane] = nodes[i][1];
-      lookup.lanes_[i].transmitted.v[lane] = nodes[i][2];
+      lookup.lanes_[i].surface[int(lane)] = nodes[i][0];
+      lookup.lanes_[i].subsurface[int(lane)] = nodes[i][1];
+      lookup.lanes_[i].transmitted[int(lane)] = nodes[i][2];
     }
   }
   return lookup;

@@ -30,7 +30,7 @@ class SolvedBsdf final : public Bsdf {
   }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
-    return leaf_scatters(wo, wi) ? to_spectrum(leaf_f(wo, wi, surface_.spread(wo, wi))) : SampledSpectrum();
+    return leaf_scatters(wo, wi) ? SampledSpectrum(leaf_f(wo, wi, surface_.spread(wo, wi))) : SampledSpectrum();
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
@@ -84,7 +84,7 @@ class SolvedBsdf final : public Bsdf {
   /// With n cos theta' = q: (1 - F) = 2 q cos theta (1 / (cos theta + q)^2 + n^2 / (n^2 cos theta + q)^2).
   Passage passage(const Vec3& w) const {
     const float cosine = std::abs(w.z);
-    const Float4 n = to_float4(hit_.selection->index), n2 = n * n, q = square_root(n2 - sine2(w));
+    const Float4 n = hit_.selection->index.v, n2 = n * n, q = square_root(n2 - sine2(w));
     const Float4 s = cosine + q, p = n2 * cosine + q, both = s * p;
     const Float4 part = 2 * cosine * (p * p + n2 * (s * s)) / (both * both);
     return {q * part, n * part};
@@ -97,7 +97,7 @@ class SolvedBsdf final : public Bsdf {
     in.direction = incident;
     in.sine = std::sqrt(sine2(incident));
     in.nodes = hit_.table->nodes(in.sine);
-    const Float4 active = to_float4(hit_.active);
+    const Float4 active = hit_.active.v;
     in.enters = active * passage(incident).through;
     in.reflectance = active - in.enters;
     return in;
@@ -129,7 +129,7 @@ class SolvedBsdf final : public Bsdf {
     if (density == 0) return result;
     // Made in its place: a copy would wait for its parts to be stored.
     BsdfSample& sample = result.emplace();
-    sample.f = to_spectrum(leaf_f(wo, wi, lobe));
+    sample.f = SampledSpectrum(leaf_f(wo, wi, lobe));
     sample.wi = wi;
     sample.pdf = density;
     sample.flags = from;
