@@ -63,7 +63,7 @@ template <class T>
 }
 /// The same for vectors of any length, even where its square overflows or vanishes; 0 for 0.
 template <class T>
-Vec3T<T> normalize_any(const Vec3T<T>& a) {
+inline Vec3T<T> normalize_any(const Vec3T<T>& a) {
   const T square = dot(a, a);
   return square > T(1e-30) && square < T(1e30) ? a / std::sqrt(square) : normalize_extreme(a);
 }

@@ -42,6 +42,7 @@ LightSelector::LightSelector(const World& world, Strategy strategy)
     everywhere_.push_back(i);
     sum += weights.emplace_back(by_place ? irradiance(*lights_[i], power, double(world.radius())) : power);
   }
+  if (count_ == 1) only_ = lights_[everywhere_.front()];
   tree_ = LightTree(std::move(entries));
   irradiance_ = float(sum);
   double before = 0;
@@ -57,7 +58,7 @@ float LightSelector::tree_share(const Place& place) const {
   return importance / (importance + irradiance_);
 }
 
-std::optional<LightSelector::Choice> LightSelector::choose(const Place& place, float u) const {
+std::optional<LightSelector::Choice> LightSelector::choose_among_all(const Place& place, float u) const {
   float share = 1;
   if (!tree_.empty()) {
     const float of_tree = tree_share(place);
@@ -76,6 +77,7 @@ std::optional<LightSelector::Choice> LightSelector::choose(const Place& place, f
 }
 
 float LightSelector::probability(const Light& light, const Place& place) const {
+  if (count_ == 1) return &light == only_ ? 1.f : 0.f;
   const auto i = size_t(light.index());
   if (tree_.empty()) return probability_[i];
   const float of_tree = tree_share(place);

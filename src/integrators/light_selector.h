@@ -35,15 +35,20 @@ class LightSelector {
   /// Some light has points or directions to sample: all but delta lights.
   bool has_extent() const { return has_extent_; }
   /// Nothing where no light reaches the place.
-  std::optional<Choice> choose(const Place& place, float u) const;
+  std::optional<Choice> choose(const Place& place, float u) const {
+    if (count_ == 1) return Choice{only_, 1};
+    return choose_among_all(place, u);
+  }
   float probability(const Light& light, const Place& place) const;
 
  private:
+  std::optional<Choice> choose_among_all(const Place& place, float u) const;
   /// Of all at this place, that one of the tree is chosen.
   float tree_share(const Place& place) const;
 
   std::vector<const Light*> lights_;  ///< of the scene; their places are the numbers of the tree
   size_t count_ = 0;                  ///< of those that are chosen at all
+  const Light* only_ = nullptr;       ///< where that is one
   bool has_extent_ = false;
   LightTree tree_;
   std::vector<size_t> everywhere_;  ///< places of those that are chosen the same way everywhere

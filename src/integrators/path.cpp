@@ -54,16 +54,22 @@ class LocalBsdf {
     return pdf > 0 ? bsdf_->f(wo_, wi, rng) * std::abs(wi.z) : SampledSpectrum();
   }
 
-  /// `sample.wi` comes back in world space.
-  std::optional<BsdfSample> sample(float uc, Vec2 u, RandomStream rng, SampledSpectrum& weight, float& mis_pdf) const {
-    auto s = bsdf_->sample(wo_, uc, u, rng);
-    if (!s) return {};
-    const Vec3 local = s->wi;
-    s->wi = frame_.to_world(local);
-    if (!agrees(s->wi, local)) return {};
-    weight = s->f * (std::abs(local.z) / s->pdf);
-    mis_pdf = s->pdf_is_approximate ? bsdf_->pdf(wo_, local) : s->pdf;
-    return s;
+  struct Sample {
+    Vec3 wi;                 ///< world space
+    SampledSpectrum weight;  ///< f |cos theta_i| / pdf
+    float pdf;               ///< for the balance with light sampling
+    bool is_specular;
+  };
+  /// False where nothing is scattered.
+  bool sample(float uc, Vec2 u, RandomStream rng, Sample& sample) const {
+    const auto s = bsdf_->sample(wo_, uc, u, rng);
+    if (!s) return false;
+    sample.wi = frame_.to_world(s->wi);
+    if (!agrees(sample.wi, s->wi)) return false;
+    sample.weight = s->f * (std::abs(s->wi.z) / s->pdf);
+    sample.pdf = s->pdf_is_approximate ? bsdf_->pdf(wo_, s->wi) : s->pdf;
+    sample.is_specular = any(s->flags & Lobes::specular);
+    return true;
   }
 
  private:
@@ -370,13 +376,12 @@ class PathTracer final : public Tracer {
 
   /// False where nothing is scattered.
   bool scatter(const Hit& hit, const LocalBsdf& bsdf, float uc, Vec2 u, Path& path) const {
-    SampledSpectrum weight;
-    const auto sample = bsdf.sample(uc, u, path.key.stream(Use::bsdf), weight, path.scatter_pdf);
-    if (!sample) return false;
-    path.throughput *= weight;
+    LocalBsdf::Sample sample;
+    if (!bsdf.sample(uc, u, path.key.stream(Use::bsdf), sample)) return false;
+    path.throughput *= sample.weight;
     path.lambda.retire_black_lanes(path.throughput);
-    if (!settings_.sample_lights || any(sample->flags & Lobes::specular)) path.scatter_pdf = INFINITY;
-    set_ray(hit, sample->wi, path);
+    path.scatter_pdf = !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf;
+    set_ray(hit, sample.wi, path);
     return true;
   }
 

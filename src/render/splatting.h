@@ -137,18 +137,24 @@ class SplatSums {
 
   /// What a pixel, counted from -reach, gets: units of 2^(shift - 60), and of 2^-30.
   int64_t sum(size_t column, size_t row, size_t color) const {
-    return SplatValue::whole(sums_[at(column, row)][color]);
+    const Sums& sums = sums_[at(column, row)];
+    return SplatValue::whole(color < 2 ? sums.red_green[color] : sums.blue_weight[0]);
   }
   int shift() const { return exponent_ - SplatValue::kLeastExponent; }
-  int64_t weight(size_t column, size_t row) const { return int64_t(sums_[at(column, row)][3] * 0x1p30); }
+  int64_t weight(size_t column, size_t row) const { return int64_t(sums_[at(column, row)].blue_weight[1] * 0x1p30); }
 
  private:
+  /// Of colours times weights, and of weights: two and two, which a register holds.
+  using Double2 = double __attribute__((vector_size(16)));
+  struct Sums {
+    Double2 red_green, blue_weight;
+  };
+
   size_t at(size_t column, size_t row) const { return row * size_t(kernel_.width()) + column; }
 
   const SplatKernel& kernel_;
   int exponent_;
-  /// Of the three colours, and 1, times weights.
-  std::array<Double4, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums_;
+  std::array<Sums, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums_;
 };
 
 /// Whether samples are to be shared: as the scene says, or else where that makes less noise than to draw each pixel's
