@@ -13,8 +13,8 @@ namespace frond {
 /// Wavelengths that one path carries at most.
 inline constexpr int kLanes = 4;
 
-/// A quantity at the wavelengths of one path, lane by lane. Unused lanes hold 0. One register, so that functions hand it
-/// on in one.
+/// A quantity at the wavelengths of one path, lane by lane. Unused lanes hold 0. One register, so that functions hand
+/// it on in one.
 struct SampledSpectrum {
   Float4 v{};
 

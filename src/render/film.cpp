@@ -85,8 +85,8 @@ class Exposure {
   std::array<Double4, 3> columns_;
 };
 
-/// Sums of a few samples' colours that are not very bright, in doubles: each is rounded to a multiple of a unit, and its
-/// square too, so that their sums are exact.
+/// Sums of a few samples' colours that are not very bright, in doubles: each is rounded to a multiple of a unit, and
+/// its square too, so that their sums are exact.
 class ModestSums {
  public:
   /// False, and nothing changes, where a sample is too bright.

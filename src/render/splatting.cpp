@@ -114,8 +114,7 @@ Splatting SplatKernel::splatting() const {
 }
 
 SplatValue::SplatValue(const Double4& values) : exponent(kLeastExponent) {
-  const double largest =
-      std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2]), std::abs(values[3])});
+  const double largest = std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2]), std::abs(values[3])});
   double bound = std::ldexp(1.0, kLeastExponent);
   for (; largest >= bound; exponent += kStep) bound *= 1 << kStep;
   const double scale = double(1 << kBits) / bound;

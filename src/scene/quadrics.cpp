@@ -103,8 +103,10 @@ class Sphere final : public Quadric {
   ShapePoint at(const Vec3d& p, double phi, float t) const {
     const double theta = std::acos(std::clamp(p.z / radius_, -1.0, 1.0));
     const double bottom = std::acos(z_min_ / radius_), top = std::acos(z_max_ / radius_);
-    return {to_scene_point(to_float(p)), to_scene_normal(p),
-            {float(phi / phi_max()), float((theta - bottom) / (top - bottom))}, t};
+    return {to_scene_point(to_float(p)),
+            to_scene_normal(p),
+            {float(phi / phi_max()), float((theta - bottom) / (top - bottom))},
+            t};
   }
 
   double radius_, z_min_ = 0, z_max_ = 0;

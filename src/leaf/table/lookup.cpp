@@ -55,8 +55,8 @@ std::vector<TableLookup::Node> TableLookup::resample(const std::vector<double>& 
     for (size_t k = 0; k <= kCells; ++k) {
       const double x = static_cast<double>(k) / kCells;
       const Shares s = side.at(std::acos(x * x) * 180 / std::numbers::pi);
-      nodes[i + k].v = Float4{static_cast<float>(s.surface), static_cast<float>(s.subsurface),
-                              static_cast<float>(s.transmitted), 0};
+      nodes[i + k].v =
+          Float4{static_cast<float>(s.surface), static_cast<float>(s.subsurface), static_cast<float>(s.transmitted), 0};
     }
   }
   return nodes;
