@@ -1,15 +1,19 @@
 """Which shared libraries the program loads for what it does: OpenImageIO's, some 250, for pictures of 8 bits and for reading."""
 
 import os
+import pathlib
 import re
 import unittest
 
 from frond_program import FROND, FrondTest
 
+LOADER = pathlib.Path("/lib64/ld-linux-x86-64.so.2")
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
+
 
 class StartupTest(FrondTest):
-    def libraries(self, *words):
-        """File names, as the loader initialises them, at the start and later. It writes them to a file for each process."""
+    def traced(self, *words):
+        """What the loader says of all that it loads, at the start and later. It writes that to a file for each process."""
         log = self.folder / "loader"
         environment = dict(os.environ, LD_DEBUG="files", LD_DEBUG_OUTPUT=str(log))
         process = self.start([FROND, *map(str, words)], environment)
@@ -18,7 +22,11 @@ class StartupTest(FrondTest):
         (trace,) = self.folder.glob("loader.*")
         text = trace.read_text(encoding="utf-8", errors="replace")
         trace.unlink()
-        return {os.path.basename(path) for path in re.findall(r"calling init: (\S+)", text)}
+        return text
+
+    def libraries(self, *words):
+        """File names, as they are initialised."""
+        return {os.path.basename(path) for path in re.findall(r"calling init: (\S+)", self.traced(*words))}
 
     def check_is_light(self, libraries):
         self.assertEqual([name for name in libraries if re.search("OpenImageIO|frond_image|Qt|opencv|boost|avcodec", name)], [])
@@ -45,6 +53,22 @@ class StartupTest(FrondTest):
                    'Material "diffuse" "texture reflectance" "t"\nShape "sphere"\n')
         words = ("render", self.folder / "textured.pbrt", "-o", self.folder / "a.exr", "--quick", "-q", "--no-cache")
         self.assertTrue(any(name.startswith("libOpenImageIO") for name in self.libraries(*words)))
+
+    def test_the_library_for_avx2_makes_the_same_bits(self):
+        if "/glibc-hwcaps/" not in self.traced("list"):
+            self.skipTest("there is no library for this machine's instructions")
+        for words in (("hundred-leaves/scene.pbrt", "--swap", "*=leaf_solved"), ("soybean-front/scene.pbrt", "--swap", "*=abm"),
+                      ("hundred-leaves/closed.pbrt", "--wavelengths", "smpte", "--max-rms", 0.2)):
+            with self.subTest(words):
+                pictures = []
+                for program in ([FROND], [LOADER, "--glibc-hwcaps-mask", "none", FROND]):
+                    out = self.folder / "picture.exr"
+                    render = [*program, "render", SCENES / words[0], *words[1:], "--quick", "-q", "--no-cache", "-o", out]
+                    process = self.start(list(map(str, render)))
+                    _, errors = process.communicate()
+                    self.assertEqual(process.returncode, 0, errors)
+                    pictures.append(re.sub(rb"capDate\0string\0.{23}", b"", out.read_bytes(), count=1, flags=re.DOTALL))
+                self.assertEqual(*pictures)
 
 
 if __name__ == "__main__":
