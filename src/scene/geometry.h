@@ -58,6 +58,8 @@ struct GeometryHit {
   uint64_t instance = 0;            ///< the copy, counted from 1; 0: the shape stands for itself
 };
 
+struct GeometryObject;
+
 /// Ray queries over surfaces and copies of objects, by Embree. It knows no material and no light: scenes that differ in
 /// those share one.
 class Geometry {
@@ -89,21 +91,16 @@ class Geometry {
   std::vector<float> areas() const;
 
  private:
-  struct Object;
-  struct Copies;
-  friend struct GeometryCallbacks;
-  class Areas;
-
   bool closest(const Ray& ray, embree::Query& context, RTCRayHit& query) const;
   uint32_t closest(const RayPacket& packet, embree::Query& context, const int* valid, RTCRayHit8& query) const;
   void describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, GeometryHit& met, Hit& hit) const;
-  std::unique_ptr<Object> build(ObjectParts parts, uint64_t first_id);
-  void attach(Object& object);
+  std::unique_ptr<GeometryObject> build(ObjectParts parts, uint64_t first_id);
+  void attach(GeometryObject& object);
   void check() const;
 
   embree::Device device_;
-  std::vector<std::unique_ptr<Object>> objects_;
-  std::unique_ptr<Object> world_;
+  std::vector<std::unique_ptr<GeometryObject>> objects_;
+  std::unique_ptr<GeometryObject> world_;
 };
 
 }  // namespace frond
