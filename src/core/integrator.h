@@ -49,7 +49,8 @@ struct PathBundle {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  /// Sets the results that are wanted: unbiased estimates of the radiance that arrives along the rays.
+  /// Sets the results that are wanted: unbiased estimates of the radiance that arrives along the rays. Changes nothing
+  /// else of the bundle but `traced`.
   virtual void trace(PathBundle& bundle) = 0;
 };
 

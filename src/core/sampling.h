@@ -7,7 +7,7 @@
 
 namespace frond {
 
-/// Sine and cosine of an angle within pi / 4 of 0, by their series; to 4e-8.
+/// Sine and cosine of an angle within pi / 4 of 0, by their series; to 7e-8.
 struct SineCosine {
   float sine, cosine;
 

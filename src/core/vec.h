@@ -55,6 +55,7 @@ template <class T>
 Vec3T<T> normalize(const Vec3T<T>& a) {
   return a / length(a);
 }
+/// For vectors whose square does not fit.
 template <class T>
 [[gnu::cold, gnu::noinline]] Vec3T<T> normalize_extreme(const Vec3T<T>& a) {
   const T largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});

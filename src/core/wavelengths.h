@@ -50,7 +50,8 @@ class WavelengthStrategy {
   virtual SampledWavelengths sample_in_turn([[maybe_unused]] uint64_t index, float u) const { return sample(u); }
   /// Everything `sample` can return lies in here (nm).
   virtual Interval range_nm() const = 0;
-  /// The wavelengths (nm) where every path carries the same ones; empty where they vary.
+  /// The wavelengths (nm) where every path carries the same ones, and `sample` always returns the same; empty where
+  /// they vary.
   virtual std::span<const float> fixed_nm() const = 0;
   /// All wavelengths (nm) that paths can carry, ascending, where they are so many and no more; empty where they are any
   /// of a range.

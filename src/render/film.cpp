@@ -11,7 +11,8 @@
 namespace frond {
 namespace {
 
-constexpr double kWeightUnit = 0x1p30;
+/// Units that a weight of 1 has.
+constexpr double kWeightsOfOne = 0x1p30;
 
 /// Of the values that a sum and the sum of squares can take.
 constexpr double kBrightest = 0x1p28;
@@ -30,8 +31,13 @@ double magnitude(const Double4& v) {
   return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
 }
 
-/// Samples that sums in doubles may have.
-constexpr size_t kAtOnce = 64;
+/// Whether all of it fits; not where it is no number.
+bool is_kept(const Double4& v) {
+  const Double4 size = v < 0 ? -v : v;
+  return size[0] <= kBrightest && size[1] <= kBrightest && size[2] <= kBrightest && size[3] <= kBrightest;
+}
+
+constexpr size_t kAtOnce = SplatSums::kMost;
 
 double held(double value) {
   constexpr double kMost = ExactSum<40>::kLargestTerm;
@@ -74,8 +80,9 @@ class Exposure {
     if (has_colors_) value = columns_[0] * value[0] + columns_[1] * value[1] + columns_[2] * value[2];
     const double largest = std::max({value[0], value[1], value[2], value[3]}) * exposure_;
     value *= sample.weight * unit_ * (largest > most_ ? most_ / largest : 1);
-    if (magnitude(value) <= kBrightest) return is_finite;
-    for (int i = 0; i < kLanes; ++i) value[i] = std::clamp(value[i], -kBrightest, kBrightest);
+    if (is_kept(value)) return is_finite;
+    for (int i = 0; i < kLanes; ++i)
+      value[i] = std::isnan(value[i]) ? 0 : std::clamp(value[i], -kBrightest, kBrightest);
     return false;
   }
 
@@ -90,7 +97,7 @@ class Exposure {
 class ModestSums {
  public:
   /// False, and nothing changes, where a sample is too bright.
-  bool add(Double4 color) {
+  bool add(const Double4& color) {
     if (!(magnitude(color) < kMost)) return false;
     add_rounded(color, kUnit, sum_);
     add_rounded(color * color, kSquareUnit, square_);
@@ -107,6 +114,7 @@ class ModestSums {
   static constexpr double kMost = 4;  ///< kAtOnce of this do not leave the range of whole numbers
   static constexpr int kBits = 44;
   static constexpr double kUnit = 0x1p-44, kSquareUnit = 0x1p-40;
+  static_assert(double(kAtOnce) * kMost / kUnit <= 0x1p53 && double(kAtOnce) * kMost * kMost / kSquareUnit <= 0x1p53);
   /// To the nearest.
   static void add_rounded(const Double4& value, double unit, Double4& sum) {
     const double rounds = 0x1.8p52 * unit;
@@ -211,7 +219,7 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
   for (const Sample& sample : samples) {
     Double4 value;
     const bool is_kept = exposure.expose(sample, value);
-    pixel.weight += static_cast<int64_t>(sample.weight * kWeightUnit);
+    pixel.weight += static_cast<int64_t>(sample.weight * kWeightsOfOne);
     pixel.leaf += sample.leaf ? 1 : 0;
     pixel.not_finite += is_kept ? 0 : 1;
     ++pixel.samples;
@@ -268,15 +276,15 @@ void FilmTile::add_splats(int x, int y, const SplatSums& sums) {
 
 void FilmTile::add_band_splats(int x, int y, const SensorResponse& sensor, const Double4& exposed,
                                const SplatKernel::Weights& weights) {
-  const SplatValue value(exposed);
-  for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
-    const auto weight = double(weights.at(column, row));
-    for (size_t i = 0; i < size_t(sensor.count); ++i) {
+  for (size_t i = 0; i < size_t(sensor.count); ++i) {
+    const SplatValue value(Double4{exposed[i], 0, 0, 0});
+    for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
+      const auto weight = double(weights.at(column, row));
       BandSplat& band = band_splats_[at * band_count_ + sensor.channel[i]];
-      band.sum.add_multiple(SplatValue::whole(value.multiples[i] * weight), value.shift());
-      band.weight += int64_t(weight * kWeightUnit);
-    }
-  });
+      band.sum.add_multiple(SplatValue::whole(value.multiples[0] * weight), value.shift());
+      band.weight += int64_t(weight * kWeightsOfOne);
+    });
+  }
 }
 
 void FilmTile::add(int x, int y, const Features& f) {
@@ -315,7 +323,7 @@ void FilmTile::add_block(int x, int y, const Pixel& before) {
 void FilmTile::add_block(const std::vector<Splat>& before) {
   for (size_t i = 0; i < splats_.size(); ++i) {
     SplatBlocks& block = splat_blocks_[i];
-    const double c = double(splats_[i].weight - before[i].weight) / (kWeightUnit * double(kBlock));
+    const double c = double(splats_[i].weight - before[i].weight) / (kWeightsOfOne * double(kBlock));
     for (size_t k = 0; k < 3; ++k) {
       const double b = (splats_[i].sum[k].value() - before[i].sum[k].value()) / double(kBlock);
       block.square[k].add(held(b * b));
@@ -424,7 +432,7 @@ Film::Gathered Film::gathered(int x, int y) const {
     if (samples == 0) return;
     const FilmTile::Splat& splat = tile.splat(x, y);
     for (size_t c = 0; c < 3; ++c) all.sum[c] += splat.sum[c].value() / samples;
-    all.weight += double(splat.weight) / kWeightUnit / samples;
+    all.weight += double(splat.weight) / kWeightsOfOne / samples;
   });
   all.weight = enough_weight(x, y, all.weight,
                              [](const FilmTile& tile, int px, int py) { return double(tile.pixel(px, py).samples); });
@@ -438,7 +446,7 @@ Film::Gathered Film::gathered(int x, int y, size_t band) const {
     if (samples == 0) return;
     const FilmTile::BandSplat& splat = tile.band_splat(x, y, band);
     all.sum[0] += splat.sum.value() / samples;
-    all.weight += double(splat.weight) / kWeightUnit / samples;
+    all.weight += double(splat.weight) / kWeightsOfOne / samples;
   });
   all.weight = enough_weight(x, y, all.weight, [band](const FilmTile& tile, int px, int py) {
     return double(tile.band(px, py, band).samples);
@@ -489,7 +497,7 @@ Triple Film::mean(int x, int y) const {
   }
   const FilmTile::Pixel& p = pixel(x, y);
   if (p.weight == 0) return {};
-  const double scale = unit_ * kWeightUnit / double(p.weight);
+  const double scale = unit_ * kWeightsOfOne / double(p.weight);
   return {p.sum[0].value() * scale, p.sum[1].value() * scale, p.sum[2].value() * scale};
 }
 
@@ -509,7 +517,7 @@ Triple Film::variance(int x, int y) const {
   }
   for (size_t c = 0; c < 3; ++c)
     v[c] = unit_ * unit_ *
-           variance_of_mean(p.sum[c].value(), p.square[c].value(), double(p.samples), double(p.weight) / kWeightUnit);
+           variance_of_mean(p.sum[c].value(), p.square[c].value(), double(p.samples), double(p.weight) / kWeightsOfOne);
   return v;
 }
 
@@ -522,7 +530,7 @@ Triple Film::block_variance_by(const FilmTile& tile, int x, int y, const Gathere
   Triple v{};
   for (size_t c = 0; c < 3; ++c) {
     const double mean = all.sum[c] / all.weight;
-    const double rest = (splat.sum[c].value() - mean * double(splat.weight) / kWeightUnit) / kBlock;
+    const double rest = (splat.sum[c].value() - mean * double(splat.weight) / kWeightsOfOne) / kBlock;
     const double square = b.square[c].value() - 2 * mean * b.product[c].value() + mean * mean * b.weight_square.value();
     v[c] = unit_ * unit_ * variance_of_mean(rest, square, double(b.blocks), all.weight * samples / kBlock);
   }
@@ -546,7 +554,7 @@ Triple Film::block_variance(int x, int y) const {
   }
   const FilmTile::Pixel& p = pixel(x, y);
   const FilmTile::BlockSums& b = tiles_[tile_at(x, y)].blocks(x, y);
-  const double weight = double(p.weight) / kWeightUnit / double(FilmTile::kBlock);
+  const double weight = double(p.weight) / kWeightsOfOne / double(FilmTile::kBlock);
   Triple v{};
   for (size_t c = 0; c < 3; ++c)
     v[c] = unit_ * unit_ *
@@ -572,7 +580,7 @@ Film::BandMean Film::band_mean(int x, int y, size_t band) const {
   }
   if (b.samples == 0 || p.weight == 0) return {};
   // Few samples see a band, and filter weights may be negative: those of all samples say what one weighs.
-  const double n = double(b.samples), weight = n * (double(p.weight) / kWeightUnit) / double(p.samples);
+  const double n = double(b.samples), weight = n * (double(p.weight) / kWeightsOfOne) / double(p.samples);
   return {unit_ * b.sum.value() / weight, unit_ * unit_ * variance_of_mean(b.sum.value(), b.square.value(), n, weight),
           b.samples};
 }

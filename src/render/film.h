@@ -25,7 +25,7 @@ struct FilmFormat {
   size_t bands = 0;           ///< of a sensor; 0: the film has three colours
   ChannelList channels = {};  ///< of what camera rays met first, summed up too
   bool blocks = false;  ///< how blocks of a pixel's samples differ is summed up too: whole blocks have to be rendered
-  /// Values are kept in units of 2^exponent: near the picture's typical value, of which samples may be 10^-18 to
+  /// Values are kept in units of 2^exponent: near the picture's typical value, of which samples may be 10^-13 to
   /// 10^8. Brighter ones are cut off there, and counted; squares forget what is below 10^-6.
   int exponent = 0;
   Matrix3 color = Matrix3::diagonal({1, 1, 1});  ///< from a path's response to the film's colours

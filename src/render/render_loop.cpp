@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <new>
 
 #include "system/cpu_clock.h"
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -132,8 +134,10 @@ class SplatSums {
   SplatSums(const SplatKernel& kernel, int exponent);
 
   int exponent() const { return exponent_; }
-  /// Of a sample at `u` in its pixel, [0, 1)^2. At most 64 of them.
+  /// Of a sample at `u` in its pixel, [0, 1)^2. At most kMost of them.
   void add(Vec2 u, const SplatValue& value);
+  static constexpr int kMost = 64;
+  static_assert(kMost * double(1 << SplatValue::kBits) / double(SplatKernel::kWeightUnit) <= 0x1p53);
 
   /// What a pixel, counted from -reach, gets: units of 2^(shift - 60), and of 2^-30.
   int64_t sum(size_t column, size_t row, size_t color) const {

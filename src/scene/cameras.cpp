@@ -40,15 +40,14 @@ class ProjectiveCamera : public Camera {
 
  protected:
   Vec2 screen_point(Vec2 film) const { return {origin_.x + film.x * step_.x, origin_.y + film.y * step_.y}; }
-  /// `d` of moderate length.
   Ray to_world(Vec3 o, Vec3 d, Vec2 lens) const {
     if (lens_radius_ > 0) {
       const Vec3 focus = o + d * (focal_distance_ / d.z);
       const Vec2 on_disk = sample_disk(lens);
       o += Vec3{on_disk.x * lens_radius_, on_disk.y * lens_radius_, 0};
-      d = normalize_any(focus - o);
+      d = focus - o;
     }
-    return {world_from_camera_.point(o), normalize_any(world_from_camera_.vector(d))};
+    return {world_from_camera_.point(o), normalize_any(world_from_camera_.vector(normalize_any(d)))};
   }
 
  private:

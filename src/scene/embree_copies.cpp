@@ -16,7 +16,7 @@ Float4 to_float4(const Vec3& v) { return Float4{v.x, v.y, v.z, 0}; }
 bool passes(Float4 origin, Float4 direction, float t_max, const Bounds& box) {
   const Float4 inverse = 1 / direction;
   const Float4 a = (to_float4(box.min) - origin) * inverse, b = (to_float4(box.max) - origin) * inverse;
-  // NaN, where a ray runs along a face, leaves the bounds as they are.
+  // NaN, where a ray runs along a face, may be in or out: boxes are a little wider than what is in them.
   const Float4 near = b < a ? b : a, far = a < b ? b : a;
   const Float4 start{}, end = start + t_max;
   const Float4 enter = start < near ? near : start, leave = far < end ? far : end;

@@ -17,7 +17,8 @@ inline Ray to_ray(const RTCRay& r) { return {{r.org_x, r.org_y, r.org_z}, {r.dir
 inline Float4 origin(const RTCRay& r) { return Float4{r.org_x, r.org_y, r.org_z, 0}; }
 inline Float4 direction(const RTCRay& r) { return Float4{r.dir_x, r.dir_y, r.dir_z, 0}; }
 
-/// Written in halves of 16 bytes, as Embree reads it: it would wait for four numbers written one by one.
+/// Fourth lanes have to be 0. Written in halves of 16 bytes, as Embree reads it: it would wait for four numbers written
+/// one by one.
 inline RTCRay from_vectors(Float4 o, Float4 d, float t_max) {
   RTCRay ray;
   static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);

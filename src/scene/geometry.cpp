@@ -147,8 +147,10 @@ void Geometry::attach(GeometryObject& object) {
     GeometryCopies copies{.instances = instances, .objects = {}, .first_id = object.ids};
     for (const uint32_t place : instances.objects) copies.objects.push_back(objects_[place].get());
     const size_t rows = instances.table->size();
-    if (rows <= GeometryCopies::kMostKept)
+    if (rows <= GeometryCopies::kMostKept) {
+      copies.inverses.reserve(rows);
       for (size_t row = 0; row < rows; ++row) copies.inverses.push_back(instances.table->map(row).inverse());
+    }
     if (instances.is_placed) copies.from_placement = instances.placement.inverse();
     const auto as_many = [&](const GeometryObject* o) { return o->ids == copies.objects.front()->ids; };
     if (rows == 0 || std::ranges::all_of(copies.objects, as_many)) {

@@ -166,7 +166,7 @@ class Kill(FrondTest):
 class Radiometers(FrondTest):
     """frond brf and frond flux keep what they have measured."""
 
-    COMMANDS = (("brf", "--zenith=-30:30:30"), ("flux",), ("flux", "--by", "instance"), ("brf", "--rms", "0.0002"))
+    COMMANDS = (("brf", "--zenith=-30:30:30"), ("flux",), ("flux", "--by", "instance"), ("brf", "--rms", "0.00005"))
 
     def setUp(self):
         super().setUp()

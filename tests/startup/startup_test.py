@@ -55,7 +55,7 @@ class StartupTest(FrondTest):
         self.assertTrue(any(name.startswith("libOpenImageIO") for name in self.libraries(*words)))
 
     def test_the_library_for_avx2_makes_the_same_bits(self):
-        if "/glibc-hwcaps/" not in self.traced("list"):
+        if not re.search(r"/glibc-hwcaps/\S*/libfrond", self.traced("list")):
             self.skipTest("there is no library for this machine's instructions")
         for words in (("hundred-leaves/scene.pbrt", "--swap", "*=leaf_solved"), ("soybean-front/scene.pbrt", "--swap", "*=abm"),
                       ("hundred-leaves/closed.pbrt", "--wavelengths", "smpte", "--max-rms", 0.2)):

@@ -29,7 +29,8 @@ The machine's load was up to {load:.1f}.
   wavelengths chosen along the spectrum anew for each path, as all others do. The reference of a group is frond.
 - **CPU**: time of a path on a core, median of the rounds (least to largest). A render of one sample is taken off, so that loading,
   compiling and writing are not in it. **Wall**: the same by the clock. **Set-up**: CPU time of all the rest of one render; with
-  Mitsuba's LLVM variants that is compiling, in a folder without kernels of earlier runs.
+  Mitsuba's LLVM variants that is compiling, in a folder without kernels of earlier runs. **All**: both together, of one render
+  from nothing.
 - **Noise**: standard deviation of a pixel's luminance between the rounds' seeds, root mean square over pixels without the two
   outermost, relative to the picture's mean, with the standard error of that.
 - **Efficiency**: 1 / (variance × CPU time), the group's frond = 1: median over the rounds (least to largest), with the times of
@@ -65,7 +66,12 @@ def efficiencies(result, reference):
     return [ratio * a / b for a, b in zip(reference["cpu"], result["cpu"])]
 
 
-def scene_tables(name, what, results):
+def whole(result, paths):
+    """CPU time of a render from nothing, seconds."""
+    return max(0, result["set_up_cpu"]) + statistics.median(result["cpu"]) * paths / 1e6
+
+
+def scene_tables(name, what, results, paths):
     text = f"## {name}\n\n{what}\n\n"
     for leaf in dict.fromkeys(r["leaf"] for r in results):
         for reconstruction in dict.fromkeys(r["filter"] for r in results):
@@ -76,10 +82,10 @@ def scene_tables(name, what, results):
                 reference = next(x for x in chosen if x["program"] == r["reference"])
                 own = r is reference
                 body.append([r["program"], span(r["cpu"], ".2f"), f"{statistics.median(r['wall']):.2f}",
-                             f"{max(0, r['set_up_cpu']):.1f} s", noise(r), "1" if own else span(efficiencies(r, reference), ".2f"), "" if own else mean(r),
+                             f"{max(0, r['set_up_cpu']):.1f} s", f"{whole(r, paths):.1f} s", noise(r), "1" if own else span(efficiencies(r, reference), ".2f"), "" if own else mean(r),
                              "" if own else f"{100 * r['blocks']:.2f} %"])
             kind = "opaque leaves" if leaf == "opaque" else "leaves that transmit"
-            head = [f"{kind}, {reconstruction}", "CPU, µs", "wall, µs", "set-up", "noise", "efficiency", "mean", "blocks"]
+            head = [f"{kind}, {reconstruction}", "CPU, µs", "wall, µs", "set-up", "all", "noise", "efficiency", "mean", "blocks"]
             text += table(head, body) + "\n"
     return text
 
@@ -87,7 +93,7 @@ def scene_tables(name, what, results):
 def page(about, results):
     setting = about["setting"]
     missing = "\nLeft out: " + "; ".join(about["missing"]) + ".\n" if about["missing"] else ""
-    tables = "".join(scene_tables(name, what, [r for r in results if r["scene"] == name])
+    tables = "".join(scene_tables(name, what, [r for r in results if r["scene"] == name], setting["size"]**2 * setting["samples"])
                      for name, what in about["scenes"].items())
     reflectance, transmittance = scenes.LEAVES["leaf"]
     threads = "One thread" if setting["threads"] == 1 else f"{setting['threads']} threads"
