@@ -27,16 +27,13 @@ double variance_of_mean(double sum, double square, double n, double weight) {
 /// From -1022 to 1023; std::ldexp is a call.
 double power_of_two(int exponent) { return std::bit_cast<double>(uint64_t(1023 + exponent) << 52); }
 
-double magnitude(const Double4& v) {
-  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
-}
-
-/// Whether all of it fits; not where it is no number.
-bool is_kept(const Double4& v) {
+/// Whether no lane is larger in magnitude, or no number.
+bool is_within(const Double4& v, double bound) {
   const Double4 size = v < 0 ? -v : v;
-  return size[0] <= kBrightest && size[1] <= kBrightest && size[2] <= kBrightest && size[3] <= kBrightest;
+  return size[0] <= bound && size[1] <= bound && size[2] <= bound && size[3] <= bound;
 }
 
+/// Samples that sums in doubles may have.
 constexpr size_t kAtOnce = SplatSums::kMost;
 
 double held(double value) {
@@ -80,7 +77,7 @@ class Exposure {
     if (has_colors_) value = columns_[0] * value[0] + columns_[1] * value[1] + columns_[2] * value[2];
     const double largest = std::max({value[0], value[1], value[2], value[3]}) * exposure_;
     value *= sample.weight * unit_ * (largest > most_ ? most_ / largest : 1);
-    if (is_kept(value)) return is_finite;
+    if (is_within(value, kBrightest)) return is_finite;
     for (int i = 0; i < kLanes; ++i)
       value[i] = std::isnan(value[i]) ? 0 : std::clamp(value[i], -kBrightest, kBrightest);
     return false;
@@ -98,7 +95,7 @@ class ModestSums {
  public:
   /// False, and nothing changes, where a sample is too bright.
   bool add(const Double4& color) {
-    if (!(magnitude(color) < kMost)) return false;
+    if (!is_within(color, kMost)) return false;
     add_rounded(color, kUnit, sum_);
     add_rounded(color * color, kSquareUnit, square_);
     return true;

@@ -17,7 +17,7 @@ struct AffineMap {
   Vec3 translation() const { return {rows[0][3], rows[1][3], rows[2][3]}; }
   Vec3 vector(const Vec3& v) const { return {dot(row(0), v), dot(row(1), v), dot(row(2), v)}; }
   Vec3 point(const Vec3& p) const { return vector(p) + translation(); }
-  /// By the cofactors: the inverse transpose up to a positive factor.
+  /// By the cofactors: the inverse transpose, times the factor by which areas with this unit normal grow.
   Vec3 normal(const Vec3& n) const {
     const Vec3 c0 = cross(row(1), row(2)), c1 = cross(row(2), row(0)), c2 = cross(row(0), row(1));
     const float sign = dot(row(0), c0) < 0 ? -1.f : 1.f;

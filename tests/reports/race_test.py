@@ -6,7 +6,6 @@ import struct
 import tempfile
 import unittest
 
-from race import __main__ as run
 from race import page, pictures, scenes
 
 FOUR_BY_FOUR = (1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1)
@@ -110,14 +109,6 @@ class PageTest(unittest.TestCase):
     def test_other_pictures_are_marked(self):
         self.assertIn("!", page.mean(self.result("other", [1], 0.01, 0.01)))
         self.assertNotIn("!", page.mean(self.result("other", [1], 0.01, 0.0003)))
-
-    def test_a_run_is_added_to_an_earlier_one(self):
-        about = {"load": 1, "missing": ["x"], "versions": ["a"], "scenes": {"front": ""}, "machine": "m", "setting": {}}
-        earlier = {"about": about | {"load": 2, "missing": [], "scenes": {"back": ""}},
-                   "results": [self.result("ours", [1], 1), self.result("ours", [2], 1) | {"scene": "back"}]}
-        merged, results = run.together(earlier, about, [self.result("ours", [3], 1), self.result("other", [4], 1)])
-        self.assertEqual([result["cpu"] for result in results], [[2], [3], [4]])
-        self.assertEqual((merged["load"], merged["missing"], list(merged["scenes"])), (2, [], ["back", "front"]))
 
 
 if __name__ == "__main__":

@@ -45,7 +45,6 @@ def arguments():
     parser.add_argument("--threads", type=int, metavar="N", help="of every program: 1")
     parser.add_argument("--pbrt", metavar="PATH", help="pbrt-v4's program; the pbrt on the PATH by default")
     parser.add_argument("--mitsuba", metavar="PYTHON", help="a Python that has mitsuba; that of build/race by default")
-    parser.add_argument("--add", action="store_true", help="scenes, leaves and filters of earlier runs with the same sizes stay on the page")
     parser.add_argument("--no-docs", action="store_true", help="print the page, write none")
     return parser.parse_args()
 
@@ -96,37 +95,9 @@ def figures(program, reconstruction, base, costs, own, reference, setting):
             "difference": beside.mean, "difference_error": beside.error, "blocks": beside.blocks}
 
 
-def kind(result):
-    """What is rendered by all programs in turn."""
-    return result["scene"], result["leaf"], result["filter"]
-
-
-def earlier_run(setting):
-    """Its figures, which those of this run can stand beside."""
-    if not FIGURES.exists():
-        return None
-    earlier = json.loads(FIGURES.read_text(encoding="utf-8"))
-    alike = ("size", "samples", "rounds", "threads")
-    if any(earlier["about"]["setting"][name] != getattr(setting, name) for name in alike) or \
-            earlier["about"]["machine"] != machine():
-        raise SystemExit(f"--add: {FIGURES} is of another machine, or of other {', '.join(alike)}")
-    return earlier
-
-
-def together(earlier, about, results):
-    """The figures of both runs; where they are of the same pictures, those of the later one."""
-    before, again = earlier["about"], {kind(result) for result in results}
-    merged = about | {"load": max(about["load"], before["load"]),
-                      "missing": [text for text in about["missing"] if text in before["missing"]],
-                      "versions": sorted({*about["versions"], *before["versions"]}),
-                      "scenes": before["scenes"] | about["scenes"]}
-    return merged, [result for result in earlier["results"] if kind(result) not in again] + results
-
-
 def main():
     options = arguments()
     setting = setting_of(options)
-    earlier = earlier_run(setting) if options.add else None
     running, missing = programs.present(options.pbrt, options.mitsuba)
     for text in missing:
         print(f"Left out: {text}", flush=True)
@@ -150,8 +121,6 @@ def main():
     about = {"machine": machine(), "system": f"{platform.system()} {platform.machine()}", "load": load, "missing": missing,
              "versions": sorted({program.version() for program in running}), "setting": dataclasses.asdict(setting),
              "scenes": {name: scenes.SCENES[name].__doc__ for name in names}}
-    if earlier:
-        about, results = together(earlier, about, results)
     FIGURES.parent.mkdir(parents=True, exist_ok=True)
     FIGURES.write_text(json.dumps({"about": about, "results": results}, indent=1), encoding="utf-8")
     text = page.page(about, results)
