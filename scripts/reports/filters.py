@@ -4,11 +4,9 @@ import json
 import math
 import pathlib
 import statistics
-import struct
 import tempfile
-import zlib
-from itertools import accumulate
 
+import exr
 from tools import COLORS, ROOT, block, frond, gnuplot, machine, table
 
 SCENES = ["hundred-leaves", "soybean-front", "soybean-back", "soybean-ambient"]
@@ -34,38 +32,8 @@ LINES = {
 
 
 def colors_of(path):
-    """R, G, B of all pixels, of an EXR of 32-bit floats in scan lines with zip compression, as frond writes them."""
-    data = path.read_bytes()
-    attributes, at = {}, 8
-    while data[at]:
-        name, rest = data[at:].split(b"\0", 1)[0].decode(), data.index(0, at) + 1
-        size_at = data.index(0, rest) + 1
-        (size,) = struct.unpack_from("<i", data, size_at)
-        attributes[name] = data[size_at + 4 : size_at + 4 + size]
-        at = size_at + 4 + size
-    channels, names = attributes["channels"], []
-    while channels[0]:
-        name, _, channels = channels.partition(b"\0")
-        names.append(name.decode())
-        channels = channels[16:]
-    x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
-    width, colors = x1 - x0 + 1, []
-    for offset in struct.unpack_from(f"<{(y1 - y0) // 16 + 1}Q", data, at + 1):
-        top, size = struct.unpack_from("<2i", data, offset)
-        rows = min(16, y1 - top + 1)
-        raw = data[offset + 8 : offset + 8 + size]
-        if size < rows * width * 4 * len(names):
-            # Before zlib OpenEXR takes differences of neighbours, and even bytes before odd ones.
-            raw = bytes(accumulate(zlib.decompress(raw), lambda a, b: (a + b - 128) & 255))
-            half = (len(raw) + 1) // 2
-            whole = bytearray(len(raw))
-            whole[0::2], whole[1::2] = raw[:half], raw[half:]
-            raw = bytes(whole)
-        for row in range(rows):
-            for i, name in enumerate(names):
-                if name in ("R", "G", "B"):
-                    colors.extend(struct.unpack_from(f"<{width}f", raw, 4 * width * (row * len(names) + i)))
-    return colors
+    """R, G, B of all pixels."""
+    return [value for row in exr.read(path.read_bytes()) for name in "RGB" for value in row[name]]
 
 
 class Measured:

@@ -6,6 +6,7 @@ import struct
 import tempfile
 import unittest
 
+import exr
 from race import page, pictures, scenes
 
 FOUR_BY_FOUR = (1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1)
@@ -49,7 +50,7 @@ class PicturesTest(unittest.TestCase):
         data = bytes(random.Random(6).randrange(256) for _ in range(999))
         halves = data[0::2] + data[1::2]
         coded = bytes([halves[0]] + [(halves[i] - halves[i - 1] + 128) & 255 for i in range(1, len(halves))])
-        self.assertEqual(pictures.unfiltered(coded), data)
+        self.assertEqual(exr.unfiltered(coded), data)
 
 
 class ScenesTest(unittest.TestCase):

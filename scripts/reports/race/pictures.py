@@ -6,8 +6,8 @@ import math
 import pathlib
 import re
 import statistics
-import struct
-import zlib
+
+import exr
 
 WEIGHTS = {"R": 0.2126, "G": 0.7152, "B": 0.0722}
 BORDER = 2  # pixels left out on each side: a filter that splats has fewer samples there
@@ -17,7 +17,7 @@ BLOCK = 16
 def read(path):
     """Luminance, row by row from the top, of a PFM or of an EXR as frond writes it."""
     data = pathlib.Path(path).read_bytes()
-    return read_pfm(data) if data[:2] == b"PF" else read_exr(data)
+    return read_pfm(data) if data[:2] == b"PF" else [luminance(row) for row in exr.read(data)]
 
 
 def read_pfm(data):
@@ -29,48 +29,6 @@ def read_pfm(data):
     r, g, b = (values[i::3] for i in range(3))
     gray = luminance({"R": r, "G": g, "B": b})
     return [gray[y * width:(y + 1) * width] for y in reversed(range(height))]
-
-
-def read_exr(data):
-    """Scan lines of floats, 16 at a time, compressed by zip."""
-    attributes, at = {}, 8
-    while data[at]:
-        name, kind = (part.decode() for part in data[at:].split(b"\0", 2)[:2])
-        at += len(name) + len(kind) + 2
-        size, = struct.unpack_from("<i", data, at)
-        attributes[name] = data[at + 4:at + 4 + size]
-        at += 4 + size
-    if attributes["compression"] != b"\x03":
-        raise SystemExit("an EXR that the race cannot read")
-    x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
-    width, height = x1 - x0 + 1, y1 - y0 + 1
-    names = [name.decode() for name in re.findall(rb"([^\0]+)\0.{16}", attributes["channels"], re.DOTALL)]
-    offsets = struct.unpack_from(f"<{(height + 15) // 16}Q", data, at + 1)
-    rows = []
-    for i, offset in enumerate(offsets):
-        lines = min(16, height - 16 * i)
-        full = lines * width * len(names) * 4
-        size, = struct.unpack_from("<i", data, offset + 4)
-        block = data[offset + 8:offset + 8 + size]
-        values = array.array("f", block if size == full else unfiltered(zlib.decompress(block)))
-        for y in range(lines):
-            first = y * len(names) * width
-            row = {n: values[first + k * width:first + (k + 1) * width] for k, n in enumerate(names) if n in WEIGHTS}
-            rows.append(luminance(row))
-    return rows
-
-
-def unfiltered(data):
-    """Undoes what OpenEXR does before zip: differences of bytes, and all even bytes before all odd ones."""
-    out = bytearray(len(data))
-    value, half = 128, (len(data) + 1) // 2
-    plain = bytearray(len(data))
-    for i, byte in enumerate(data):
-        value = (value + byte - 128) & 255
-        plain[i] = value
-    plain[0] = data[0]
-    out[0::2], out[1::2] = plain[:half], plain[half:]
-    return bytes(out)
 
 
 def luminance(channels):
