@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
+#include "core/random.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -79,6 +82,29 @@ TEST(Film, WhatIsNoNumberIsBlackAndCounted) {
     film.add(0, 0, response({{0, 1}, {1, NAN}, {2, 1}}), 1, false);
     EXPECT_EQ(film.not_finite(), 1);
     EXPECT_EQ(bands == 0 ? film.mean(0, 0)[0] : film.band_mean(0, 0, 0).mean, 0);
+  }
+}
+
+/// Sums are of whole numbers whatever a sample's size: the same one by one, in bundles and in any order.
+TEST(Film, SamplesAddUpToTheSameBitsInAnyOrderAndGrouping) {
+  std::vector<FilmTile::Sample> samples;
+  RandomStream rng(1);
+  for (int exponent = -50; exponent <= 32; ++exponent)
+    for (const double factor : {1.0, -1.0, 1 - 0x1p-53, 1 + 0x1p-52}) {
+      const double value = std::ldexp(factor, exponent), fraction = rng.uniform_double();
+      samples.push_back({std::array{value, value * fraction, 0.0}, factor > 0 ? 1.25 : -0.25, false, {}});
+    }
+  samples.push_back({std::array{double(NAN), 1.0, 0.0}, 1, false, {}});
+  const FilmFormat format{settings()};
+  FilmTile one_by_one(format, format.settings.crop);
+  for (const FilmTile::Sample& sample : samples) one_by_one.add(format, 0, 0, {&sample, 1});
+  for (const size_t group : {3u, 16u, 64u, 100u, 1000u}) {
+    std::shuffle(samples.begin(), samples.end(), std::mt19937(uint32_t(group)));
+    FilmTile grouped(format, format.settings.crop);
+    const std::span<const FilmTile::Sample> all(samples);
+    for (size_t at = 0; at < all.size(); at += group)
+      grouped.add(format, 0, 0, all.subspan(at, std::min(group, all.size() - at)));
+    EXPECT_TRUE(grouped == one_by_one) << group;
   }
 }
 
