@@ -4,6 +4,8 @@ set(frond_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/frond")
 
 install(TARGETS frond RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(TARGETS libfrond frond_plugin EXPORT frond LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+# One of an earlier installation would be loaded in place of this one.
+install(CODE "file(REMOVE_RECURSE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/${frond_hwcaps_dir}\")")
 if(FROND_X86_64_V3)
   install(TARGETS libfrond_v3 LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/${frond_hwcaps_dir}" NAMELINK_SKIP)
 endif()

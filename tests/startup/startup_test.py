@@ -55,8 +55,9 @@ class StartupTest(FrondTest):
         self.assertTrue(any(name.startswith("libOpenImageIO") for name in self.libraries(*words)))
 
     def test_the_library_for_avx2_makes_the_same_bits(self):
-        if not re.search(r"/glibc-hwcaps/\S*/libfrond", self.traced("list")):
-            self.skipTest("there is no library for this machine's instructions")
+        if not (pathlib.Path(FROND).parent / "glibc-hwcaps").exists() or not LOADER.exists():
+            self.skipTest("there is one library")
+        self.assertRegex(self.traced("list"), r"/glibc-hwcaps/\S*/libfrond", "a machine without AVX2 cannot test this")
         for words in (("hundred-leaves/scene.pbrt", "--swap", "*=leaf_solved"), ("soybean-front/scene.pbrt", "--swap", "*=abm"),
                       ("hundred-leaves/closed.pbrt", "--wavelengths", "smpte", "--max-rms", 0.2)):
             with self.subTest(words):
