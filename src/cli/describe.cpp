@@ -33,6 +33,8 @@ constexpr std::string_view type_name(ParamKind kind) {
       return "rgb | spectrum | blackbody";
     case ParamKind::albedo:
       return "rgb | spectrum";
+    case ParamKind::unbounded:
+      return "float | rgb | spectrum";
     case ParamKind::float_texture:
       return "float | texture";
     case ParamKind::spectrum_texture:

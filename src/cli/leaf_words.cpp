@@ -11,7 +11,7 @@ class NoReferences final : public ParamResolver {
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { refuse(); }
   std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location&) override { refuse(); }
   std::shared_ptr<Material> material(const std::string&, const Location&) override { refuse(); }
-  SpectrumPtr spectrum(const ParsedParam&, bool) override { refuse(); }
+  SpectrumPtr spectrum(const ParsedParam&, SpectrumUse) override { refuse(); }
   std::filesystem::path file(const std::string& name, const Location&) override { return name; }
 
  private:

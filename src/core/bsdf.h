@@ -33,6 +33,9 @@ struct BsdfSample {
   Lobes flags = Lobes::none;
   /// True where f / pdf is the right weight but `pdf` is not the density of wi: MIS must ask `pdf()` instead.
   bool pdf_is_approximate = false;
+  /// Of light that was refracted: the index of refraction on the side of wi over that on the side of wo. Its radiance
+  /// has changed by the square of that, which says nothing of how much the path matters.
+  float eta = 1;
 };
 
 /// What became of a ray of light at a surface.

@@ -56,24 +56,32 @@ class Light {
   int index_ = 0;
 };
 
+/// A point of a surface that gives off light.
+struct EmittingPoint {
+  Vec3 p;   ///< world space
+  Vec3 ng;  ///< geometric normal, unit, on the front
+  Vec2 uv;  ///< of the surface
+};
+
 /// Light given off by a surface of the scene.
 class AreaLight : public Light {
  public:
-  /// Radiance that leaves a point of the surface with geometric normal `ng` along `w`.
-  virtual SampledSpectrum radiance(const Vec3& ng, const Vec3& w, const SampledWavelengths& lambda) const = 0;
-  /// Density of `sample` at `from`, per solid angle, for a point of the surface seen along unit `wi`.
-  virtual float pdf(const Vec3& ng, const Vec3& wi, float distance) const = 0;
+  /// Radiance that leaves the point along `w`.
+  virtual SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const = 0;
+  /// Density of `sample` at `from`, per solid angle at that point, for a point of the surface.
+  virtual float pdf(const Vec3& from, const EmittingPoint& at) const = 0;
 };
 
 /// Light from outside the scene, met by every ray that leaves it.
 class EnvironmentLight : public Light {
  public:
   bool is_distant() const override { return true; }
-  virtual SampledSpectrum radiance(const Vec3& direction, const SampledWavelengths& lambda) const = 0;
-  /// Density of `sample`, per solid angle.
-  virtual float pdf(const Vec3& direction) const = 0;
+  /// What arrives at `from` from the direction.
+  virtual SampledSpectrum radiance(const Vec3& from, const Vec3& direction, const SampledWavelengths& lambda) const = 0;
+  /// Density of `sample` there, per solid angle.
+  virtual float pdf(const Vec3& from, const Vec3& direction) const = 0;
   /// That of `sample_competing`.
-  virtual float competing_pdf(const Vec3& direction) const { return pdf(direction); }
+  virtual float competing_pdf(const Vec3& from, const Vec3& direction) const { return pdf(from, direction); }
 };
 
 }  // namespace frond

@@ -14,6 +14,11 @@
 
 namespace frond {
 
+/// How a surface's point and its shading normal change with (u, v).
+struct SurfaceDerivatives {
+  Vec3 dpdu{}, dpdv{}, dndu{}, dndv{};
+};
+
 /// What a material may know of the surface point that it is asked for.
 struct Hit {
   Vec3 p;           ///< world space
@@ -22,6 +27,8 @@ struct Hit {
   TexturePoint at;  ///< what textures need
   float extent =
       0;  ///< largest coordinate that went into `p`: its rounding error is some units of this one's last place
+  /// World space; set where the material needs details. There shading.x points along dpdu.
+  SurfaceDerivatives derivatives{};
 };
 
 /// What a material gets to make itself ready once the scene is known, before the first path.
@@ -50,6 +57,8 @@ class Material {
   virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
   /// Claims f(a, b) = f(b, a), and the laws hold it to that.
   virtual bool is_reciprocal() const { return false; }
+  /// Reads derivatives of the hit, or the direction of its shading.x. Textures say for themselves what they need.
+  virtual bool needs_details() const { return false; }
   /// Counts as foliage in the foliar ratio.
   virtual bool is_leaf() const { return false; }
 };

@@ -19,7 +19,7 @@ struct KindTraits {
 };
 
 const KindTraits& traits(ParamKind kind) {
-  static const std::array<KindTraits, 14> table{{
+  static const std::array<KindTraits, 15> table{{
       {{"bool"}, 1},
       {{"integer"}, 1},
       {{"float"}, 1},
@@ -31,6 +31,7 @@ const KindTraits& traits(ParamKind kind) {
       {{"normal", "normal3"}, 3},
       {{"rgb", "spectrum", "blackbody"}, 0},
       {{"rgb", "spectrum"}, 0},
+      {{"float", "rgb", "spectrum"}, 0},
       {{"float", "texture"}, 1},
       {{"rgb", "spectrum", "texture"}, 0},
       {{"string"}, 1},
@@ -217,9 +218,11 @@ std::vector<Vec3> Params::vec3s(std::string_view name) const {
 
 SpectrumPtr Params::spectrum(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  const bool emission = declared.kind == ParamKind::illuminant;
-  if (parsed) return resolver_.spectrum(*parsed, emission);
-  return resolver_.spectrum(default_spectrum(declared, parsed_.where), emission);
+  const SpectrumUse use = declared.kind == ParamKind::illuminant  ? SpectrumUse::illuminant
+                          : declared.kind == ParamKind::unbounded ? SpectrumUse::unbounded
+                                                                  : SpectrumUse::albedo;
+  if (parsed) return resolver_.spectrum(*parsed, use);
+  return resolver_.spectrum(default_spectrum(declared, parsed_.where), use);
 }
 
 namespace {
@@ -264,7 +267,7 @@ std::shared_ptr<const SpectrumTexture> Params::spectrum_texture(std::string_view
   const auto [declared, parsed] = find(name);
   if (parsed && parsed->type == "texture") return resolver_.spectrum_texture(words(*parsed)[0], parsed->value_where);
   const ParsedParam& value = parsed ? *parsed : default_spectrum(declared, parsed_.where);
-  return std::make_shared<ConstantSpectrumTexture>(resolver_.spectrum(value, false));
+  return std::make_shared<ConstantSpectrumTexture>(resolver_.spectrum(value, SpectrumUse::albedo));
 }
 
 std::filesystem::path Params::file(std::string_view name) const { return resolver_.file(string(name), where(name)); }

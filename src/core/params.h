@@ -32,6 +32,7 @@ enum class ParamKind : uint8_t {
   normal3,           ///< normal3, normal
   illuminant,        ///< rgb, spectrum, blackbody: an emission
   albedo,            ///< rgb, spectrum: in [0, 1] at every wavelength
+  unbounded,         ///< float, rgb, spectrum: at least 0 at every wavelength
   float_texture,     ///< float, texture
   spectrum_texture,  ///< rgb, spectrum, texture: in [0, 1]
   material,          ///< string: the name of a material
@@ -75,6 +76,9 @@ struct ParsedPlugin {
   std::vector<ParsedParam> params;
 };
 
+/// What a spectrum says: how numbers and colours become one, and which are refused.
+enum class SpectrumUse : uint8_t { illuminant, albedo, unbounded };
+
 /// How parameter values that stand for something else are looked up; the scene's side of binding.
 class ParamResolver {
  public:
@@ -82,10 +86,12 @@ class ParamResolver {
   virtual std::shared_ptr<const FloatTexture> float_texture(const std::string& name, const Location&) = 0;
   virtual std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string& name, const Location&) = 0;
   virtual std::shared_ptr<Material> material(const std::string& name, const Location&) = 0;
-  /// From type "rgb", "spectrum" or "blackbody", for an emission or for a reflectance.
-  virtual SpectrumPtr spectrum(const ParsedParam&, bool emission) = 0;
+  /// From type "rgb", "spectrum", "blackbody" or "float".
+  virtual SpectrumPtr spectrum(const ParsedParam&, SpectrumUse) = 0;
   /// A path in the scene file, relative to that file.
   virtual std::filesystem::path file(const std::string& name, const Location&) = 0;
+  /// To the user: what is done is not quite what the scene asks for.
+  virtual void warn(const Location&, std::string_view /*message*/) {}
 };
 
 struct PluginInfo;
@@ -125,6 +131,8 @@ class Params {
   Location where(std::string_view name) const;
   const Location& where() const { return parsed_.where; }
   std::string_view plugin() const;  ///< the plugin's name
+  /// Tells the user, at the parameter, that what is done is not quite what the scene asks for.
+  void warn(std::string_view name, std::string_view message) const { resolver_.warn(where(name), message); }
   /// Those that another plugin declares too, with `more` of its own, for a plugin that makes that one. They count as
   /// read.
   Params forwarded(const PluginInfo& to, const std::vector<ParsedParam>& more = {}) const;

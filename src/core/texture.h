@@ -5,6 +5,7 @@
 #include "core/params.h"
 #include "core/plugin.h"
 #include "core/spectrum.h"
+#include "core/transform.h"
 #include "core/vec.h"
 
 namespace frond {
@@ -44,10 +45,16 @@ class InstanceRows {
   uint32_t count_ = 0;
 };
 
-/// What a texture may know of the point that it is asked for.
+/// What a texture may know of the point that it is asked for. What comes after the instance is set for those textures
+/// alone that `need_details`; 0 elsewhere.
 struct TexturePoint {
   Vec2 uv;
   InstanceRows instance = {};
+  Vec3 p{};  ///< world space
+  Vec3 n{};  ///< shading normal, world space, unit
+  /// To where the camera's next sample along x and y of the film would fall: what to filter over.
+  Vec3 dp_dx{}, dp_dy{};
+  Vec2 duv_dx{}, duv_dy{};
 };
 
 /// A number over a surface.
@@ -57,6 +64,8 @@ class FloatTexture {
   virtual float evaluate(const TexturePoint& at) const = 0;
   /// Bounds of the values.
   virtual Interval range() const = 0;
+  /// Reads more of its points than (u, v) and instance. What it is made of says so for itself.
+  virtual bool needs_details() const { return false; }
   bool is_constant() const { return range().min == range().max; }
 };
 
@@ -69,6 +78,8 @@ class SpectrumTexture {
   virtual Interval range_nm() const = 0;
   /// Upper bound of the values.
   virtual float max_value() const = 0;
+  /// As of a FloatTexture.
+  virtual bool needs_details() const { return false; }
 };
 
 /// Made from parameters that hold one number or spectrum, as materials use them.
@@ -95,11 +106,16 @@ class ConstantSpectrumTexture final : public SpectrumTexture {
   SpectrumPtr value_;
 };
 
+/// Where a texture was defined.
+struct TexturePlacement {
+  Transform world_from_texture;
+};
+
 struct FloatTextureInfo : PluginInfo {
-  std::unique_ptr<FloatTexture> (*make)(const Params&);
+  std::unique_ptr<FloatTexture> (*make)(const Params&, const TexturePlacement&);
 };
 struct SpectrumTextureInfo : PluginInfo {
-  std::unique_ptr<SpectrumTexture> (*make)(const Params&);
+  std::unique_ptr<SpectrumTexture> (*make)(const Params&, const TexturePlacement&);
 };
 
 }  // namespace frond

@@ -79,6 +79,11 @@ struct FrameT {
     const T sign = std::copysign(T(1), n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
     return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
+  /// With x as near to a vector as may be; where that is along z, any.
+  static FrameT along(const Vec3T<T>& n, const Vec3T<T>& v) {
+    const Vec3T<T> y = normalize_any(cross(n, v));
+    return dot(y, y) > T(0.5) ? FrameT{cross(y, n), y, n} : around(n);
+  }
   Vec3T<T> to_local(const Vec3T<T>& v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
   Vec3T<T> to_world(const Vec3T<T>& v) const { return x * v.x + y * v.y + z * v.z; }
 };

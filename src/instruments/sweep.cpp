@@ -72,6 +72,8 @@ std::vector<ParsedParam> at(const Param& p, const Interval& range, double u) {
     case ParamKind::albedo:
     case ParamKind::spectrum_texture:
       return {level(p, std::clamp(u, 0.0, 1.0))};
+    case ParamKind::unbounded:
+      return {level(p, u)};
     default:
       return {};
   }
@@ -184,7 +186,7 @@ std::shared_ptr<const SpectrumTexture> PlainResolver::spectrum_texture(const std
   fail(where, "there is no texture \"{}\"", name);
 }
 
-SpectrumPtr PlainResolver::spectrum(const ParsedParam& param, bool) {
+SpectrumPtr PlainResolver::spectrum(const ParsedParam& param, SpectrumUse) {
   const auto* numbers = std::get_if<std::vector<double>>(&param.values);
   if (!numbers || numbers->empty()) fail(param.value_where, "\"{}\" needs numbers here", param.name);
   if (param.type == "spectrum" && numbers->size() % 2 == 0) return std::make_shared<GivenSpectrum>(*numbers);

@@ -41,7 +41,7 @@ class PlainResolver final : public ParamResolver {
   std::shared_ptr<Material> material(const std::string& name, const Location&) override {
     return material_by_name_(name);
   }
-  SpectrumPtr spectrum(const ParsedParam& param, bool emission) override;
+  SpectrumPtr spectrum(const ParsedParam& param, SpectrumUse use) override;
   std::filesystem::path file(const std::string& name, const Location&) override { return name; }
 
  private:

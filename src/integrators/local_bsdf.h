@@ -32,6 +32,7 @@ class LocalBsdf {
     Vec3 wi;                 ///< world space
     SampledSpectrum weight;  ///< f |cos theta_i| / pdf
     float pdf;               ///< for the balance with light sampling
+    float radiance_factor;   ///< what refraction has done to the weight
     bool is_specular;
   };
   /// False where nothing is scattered.
@@ -42,6 +43,7 @@ class LocalBsdf {
     if (!agrees(sample.wi, s->wi)) return false;
     sample.weight = s->f * (std::abs(s->wi.z) / s->pdf);
     sample.pdf = s->pdf_is_approximate ? bsdf_->pdf(wo_, s->wi) : s->pdf;
+    sample.radiance_factor = 1 / (s->eta * s->eta);
     sample.is_specular = any(s->flags & Lobes::specular);
     return true;
   }

@@ -29,6 +29,7 @@ struct Path {
   SampledSpectrum throughput;
   /// Density of the last direction, for the balance with light sampling; infinite where no light sample competes.
   float scatter_pdf;
+  float radiance_factor;          ///< by which refraction alone has changed the throughput
   int depth;                      ///< scattering events so far
   LightSelector::Place previous;  ///< the last vertex
   VertexKey key;                  ///< of the vertex that it is at
@@ -118,6 +119,7 @@ class PathTracer final : public Tracer {
       path.lambda = bundle_->lambda[i];
       path.throughput = SampledSpectrum(1);
       path.scatter_pdf = INFINITY;
+      path.radiance_factor = 1;
       path.depth = 0;
       path.previous = {path.ray.o, {0, 0, 1}};
       PathResult& result = bundle_->results[i];
@@ -206,17 +208,17 @@ class PathTracer final : public Tracer {
   void add_environment(size_t lane) {
     const Path& path = paths_[lane];
     for (const EnvironmentLight* light : world_.environment())
-      add(lane, light->radiance(path.ray.d, path.lambda),
-          weight_of(*light, path, [&] { return light->competing_pdf(path.ray.d); }));
+      add(lane, light->radiance(path.previous.p, path.ray.d, path.lambda),
+          weight_of(*light, path, [&] { return light->competing_pdf(path.previous.p, path.ray.d); }));
   }
 
   void add_emission(size_t lane) {
     const SurfacePoint& point = points_[lane];
     const Path& path = paths_[lane];
     const AreaLight& light = *point.light;
-    add(lane, light.radiance(point.hit.ng, -path.ray.d, path.lambda), weight_of(light, path, [&] {
-          return light.pdf(point.hit.ng, path.ray.d, length(point.hit.p - path.previous.p));
-        }));
+    const EmittingPoint at{point.hit.p, point.hit.ng, point.hit.at.uv};
+    add(lane, light.radiance(at, -path.ray.d, path.lambda),
+        weight_of(light, path, [&] { return light.pdf(path.previous.p, at); }));
   }
 
   /// Weight of light met by a scattered ray.
@@ -332,6 +334,7 @@ class PathTracer final : public Tracer {
     LocalBsdf::Sample sample;
     if (!bsdf.sample(uc, u, path.key.stream(Use::bsdf), sample)) return false;
     path.throughput *= sample.weight;
+    path.radiance_factor *= sample.radiance_factor;
     path.lambda.retire_black_lanes(path.throughput);
     path.scatter_pdf = !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf;
     set_ray(hit, sample.wi, path);
@@ -343,7 +346,7 @@ class PathTracer final : public Tracer {
   bool ends(Path& path) const {
     if (path.throughput.is_black()) return true;
     if (settings_.cut_off_attenuation) return attenuation(path) < settings_.cutoff;
-    const float survival = path.throughput.max();
+    const float survival = path.throughput.max() / path.radiance_factor;
     if (path.depth < kSafeScatterings - 1 || survival >= 1) return false;
     if (path.key.stream(Use::roulette).uniform() >= survival) return true;
     path.throughput *= 1 / survival;

@@ -131,7 +131,7 @@ class Incoming {
                                           const SampledWavelengths& lambda) {
     if (evenly) {
       const Vec3 wi = sample_cosine_hemisphere(u);
-      return Sample{-wi, evenly->radiance(wi, lambda) * kPi};
+      return Sample{-wi, evenly->radiance({}, wi, lambda) * kPi};
     }
     const auto s = light.sample({}, u, lambda);
     if (!s || s->wi.z <= 0 || s->pdf <= 0) return {};

@@ -14,10 +14,9 @@ struct Patch {
   std::array<Vec3d, 4> p;
 
   Vec3d at(double u, double v) const { return along_u(u, 0) * (1 - v) + along_u(u, 2) * v; }
-  Vec3d normal(double u, double v) const {
-    const Vec3d du = (p[1] - p[0]) * (1 - v) + (p[3] - p[2]) * v, dv = (p[2] - p[0]) * (1 - u) + (p[3] - p[1]) * u;
-    return cross(du, dv);
-  }
+  Vec3d du(double v) const { return (p[1] - p[0]) * (1 - v) + (p[3] - p[2]) * v; }
+  Vec3d dv(double u) const { return (p[2] - p[0]) * (1 - u) + (p[3] - p[1]) * u; }
+  Vec3d normal(double u, double v) const { return cross(du(v), dv(u)); }
 
  private:
   Vec3d along_u(double u, size_t first) const { return p[first] * (1 - u) + p[first + 1] * u; }
@@ -86,6 +85,35 @@ class BilinearMesh final : public AnalyticShape {
   }
   double area() const override { return area_; }
 
+  Vec2 uv(unsigned i, Vec2 at) const override {
+    const auto& q = uv_[i];
+    return (q[0] * (1 - at.x) + q[1] * at.x) * (1 - at.y) + (q[2] * (1 - at.x) + q[3] * at.x) * at.y;
+  }
+
+  /// By the patch's parameters, then by the inverse of how texture coordinates change with those.
+  SurfaceDerivatives derivatives(const ShapePoint& point) const override {
+    const Patch& patch = patches_[point.primitive];
+    const auto& q = uv_[point.primitive];
+    const double u = double(point.at.x), v = double(point.at.y);
+    const Vec3d du = patch.du(v), dv = patch.dv(u), twist = patch.p[0] - patch.p[1] - patch.p[2] + patch.p[3];
+    const Vec3d n = cross(du, dv), unit = normalize_any(n);
+    const double size = length(n);
+    const auto change = [&](const Vec3d& dn) {
+      const Vec3d across = (dn - unit * dot(unit, dn)) / (flip_ ? -size : size);
+      return size > 0 ? across : Vec3d{};
+    };
+    const Vec3d dn_du = change(cross(du, twist)), dn_dv = change(cross(twist, dv));
+    const Vec2 s = (q[1] - q[0]) * (1 - point.at.y) + (q[3] - q[2]) * point.at.y;
+    const Vec2 t = (q[2] - q[0]) * (1 - point.at.x) + (q[3] - q[1]) * point.at.x;
+    const double det = double(s.x) * double(t.y) - double(s.y) * double(t.x);
+    if (det == 0) return {to_float(du), to_float(dv), to_float(dn_du), to_float(dn_dv)};
+    const auto along = [&](const Vec3d& a, const Vec3d& b, double x, double y) {
+      return to_float((a * x + b * y) / det);
+    };
+    return {along(du, dv, double(t.y), -double(s.y)), along(du, dv, -double(t.x), double(s.x)),
+            along(dn_du, dn_dv, double(t.y), -double(s.y)), along(dn_du, dn_dv, -double(t.x), double(s.x))};
+  }
+
   /// Uniform in (u, v) is uniform in area on parallelograms alone.
   std::string_view cannot_emit() const override {
     const auto is_parallelogram = [](const Patch& q) {
@@ -120,10 +148,7 @@ class BilinearMesh final : public AnalyticShape {
   ShapePoint at(unsigned i, double u, double v, float t) const {
     const Patch& patch = patches_[i];
     const Vec3 ng = to_float(normalize_any(patch.normal(u, v)));
-    const auto& q = uv_[i];
-    const float fu = float(u), fv = float(v);
-    const Vec2 uv = (q[0] * (1 - fu) + q[1] * fu) * (1 - fv) + (q[2] * (1 - fu) + q[3] * fu) * fv;
-    return {to_float(patch.at(u, v)), flip_ ? -ng : ng, uv, t};
+    return {to_float(patch.at(u, v)), flip_ ? -ng : ng, {float(u), float(v)}, t, i};
   }
 
   std::vector<Patch> patches_;

@@ -27,6 +27,7 @@ struct TextureDescription {
   std::string name;
   Value value;
   ParsedPlugin plugin;
+  Transform world_from_texture;
 };
 
 struct ShapeDescription {

@@ -185,7 +185,7 @@ void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, Parsed
   const auto [known, is_new] = textures_.emplace(std::pair(kind, name.text), name.where);
   if (!is_new)
     fail(name.where, "{} texture \"{}\" is defined again; first at {}", value.text, name.text, place(known->second));
-  scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture)});
+  scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture), state_.transform});
 }
 
 void DescriptionBuilder::area_light(ParsedPlugin plugin) {

@@ -8,7 +8,8 @@ namespace frond::embree {
 namespace {
 
 Vec2 uv_at(const Surface& surface, const RTCHit& hit) {
-  if (!std::holds_alternative<MeshPtr>(surface.geometry)) return {hit.u, hit.v};
+  if (const auto* shape = std::get_if<AnalyticShapePtr>(&surface.geometry))
+    return (*shape)->uv(hit.primID, {hit.u, hit.v});
   return Triangle(*std::get<MeshPtr>(surface.geometry), hit.primID, {hit.u, hit.v}).uv();
 }
 
@@ -99,7 +100,9 @@ std::optional<ShapePoint> meet(const Surface& surface, const Target& target, con
                                const Lane& lane) {
   const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
   auto point = shape.intersect(target.primitive, ray, 0);
-  for (unsigned layer = 0; point && surface.alpha && passes(surface, target, point->uv, query, lane, layer); ++layer)
+  for (unsigned layer = 0;
+       point && surface.alpha && passes(surface, target, shape.uv(target.primitive, point->at), query, lane, layer);
+       ++layer)
     point = shape.intersect(target.primitive, ray, point->t);
   return point;
 }
@@ -109,7 +112,7 @@ void report(const ShapePoint& point, const Target& target, RTCRayHitN* rays, uns
   query.lane[i].p = point.p;
   RTCHitN* hit = RTCRayHitN_HitN(rays, n);
   RTCHitN_Ng_x(hit, n, i) = point.ng.x, RTCHitN_Ng_y(hit, n, i) = point.ng.y, RTCHitN_Ng_z(hit, n, i) = point.ng.z;
-  RTCHitN_u(hit, n, i) = point.uv.x, RTCHitN_v(hit, n, i) = point.uv.y;
+  RTCHitN_u(hit, n, i) = point.at.x, RTCHitN_v(hit, n, i) = point.at.y;
   RTCHitN_primID(hit, n, i) = target.primitive, RTCHitN_geomID(hit, n, i) = target.geometry;
   RTCHitN_instID(hit, n, i, 0) = query.base.instID[0];
 }

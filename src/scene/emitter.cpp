@@ -1,5 +1,7 @@
 #include "scene/emitter.h"
 
+#include "scene/triangle.h"
+
 namespace frond {
 namespace {
 
@@ -32,7 +34,12 @@ ShapePoint EmittingSurface::sample(Vec2 u) const {
   const float root = std::sqrt(fraction), b1 = 1 - root, b2 = u.y * root;
   const Vec3 p = mesh.p[t[0]] * (1 - b1 - b2) + mesh.p[t[1]] * b1 + mesh.p[t[2]] * b2;
   const Vec3d n = normalize_any(edge_cross(mesh, t));
-  return {p, {float(n.x), float(n.y), float(n.z)}, {}, 0};
+  return {p, to_float(n), {b1, b2}, 0, unsigned(index)};
+}
+
+Vec2 EmittingSurface::uv(const ShapePoint& point) const {
+  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) return (*shape)->uv(point.primitive, point.at);
+  return Triangle(*std::get<MeshPtr>(geometry_), point.primitive, point.at).uv();
 }
 
 LightBounds EmittingSurface::bounds() const {

@@ -14,6 +14,7 @@ class EmittingSurface {
   /// `geometry` in world space.
   explicit EmittingSurface(const ShapeGeometry& geometry);
   ShapePoint sample(Vec2 u) const;
+  Vec2 uv(const ShapePoint& point) const;
   double area() const { return area_; }
   LightBounds bounds() const;
 

@@ -71,10 +71,38 @@ bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hi
     return true;
   }
   hit.ng = {at.Ng_x, at.Ng_y, at.Ng_z};
-  hit.at.uv = {at.u, at.v};
+  hit.at.uv = std::get<AnalyticShapePtr>(surface.geometry)->uv(at.primID, {at.u, at.v});
   hit.p = lane.p;
   hit.extent = largest_coordinate(hit.p);
   return false;
+}
+
+SurfaceDerivatives derivatives_of(const Surface& surface, const RTCHit& at, const embree::Lane& lane) {
+  if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry))
+    return Triangle(**mesh, at.primID, {at.u, at.v}).derivatives();
+  return std::get<AnalyticShapePtr>(surface.geometry)
+      ->derivatives({lane.p, {at.Ng_x, at.Ng_y, at.Ng_z}, {at.u, at.v}, 0, at.primID});
+}
+
+/// Out of an object into the space where a copy of it stands. Normals grow in length with what they are of.
+void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDerivatives& d) {
+  d.dpdu = map.vector(d.dpdu), d.dpdv = map.vector(d.dpdv);
+  d.dndu = inverse.normal_out(d.dndu), d.dndv = inverse.normal_out(d.dndv);
+}
+
+/// A hit's, and its frame along them.
+[[gnu::noinline]] void set_derivatives(const Surface& surface, const RTCHit& at, const embree::Lane& lane,
+                                       uint32_t level, Hit& hit) {
+  SurfaceDerivatives d = derivatives_of(surface, at, lane);
+  for (uint32_t i = level; i-- > 0;) {
+    const auto& copies = *static_cast<const GeometryCopies*>(lane.hit[i].copies);
+    const uint32_t row = lane.hit[i].row;
+    AffineMap::Inverse made;
+    place(copies.instances.table->map(row), copies.inverse(row, made), d);
+    if (copies.instances.is_placed) place(copies.instances.placement, copies.from_placement, d);
+  }
+  hit.derivatives = d;
+  hit.shading = Frame::along(hit.shading.z, d.dpdu);
 }
 
 /// A normal that a map may be applied to: no product of it overflows or vanishes.
@@ -198,14 +226,14 @@ bool Geometry::closest(const Ray& ray, embree::Query& context, RTCRayHit& query)
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-bool Geometry::intersect(const Ray& ray, uint64_t key, GeometryHit& met, Hit& hit) const {
+bool Geometry::intersect(const Ray& ray, uint64_t key, DetailedMaterials detailed, GeometryHit& met, Hit& hit) const {
   RTCRayHit query;
   embree::Lane lane;
   lane.key = key;
   embree::Query context(&lane);
   if (!closest(ray, context, query)) return false;
   met.t = query.ray.tfar;
-  describe(query.hit, lane, ray, met, hit);
+  describe(query.hit, lane, ray, detailed, met, hit);
   return true;
 }
 
@@ -225,7 +253,8 @@ uint32_t Geometry::closest(const RayPacket& packet, RTCRayHit8& query) const {
   return closest(packet, context.query, context.valid.data(), query);
 }
 
-uint32_t Geometry::intersect(const RayPacket& packet, GeometryHit* met, SurfacePoint* points) const {
+uint32_t Geometry::intersect(const RayPacket& packet, DetailedMaterials detailed, GeometryHit* met,
+                             SurfacePoint* points) const {
   PacketQuery context(packet);
   RTCRayHit8 query;
   const uint32_t hits = closest(packet, context.query, context.valid.data(), query);
@@ -233,12 +262,13 @@ uint32_t Geometry::intersect(const RayPacket& packet, GeometryHit* met, SurfaceP
     if (hits >> i & 1) {
       const RTCHit at = rtcGetHitFromHitN(reinterpret_cast<RTCHitN*>(&query.hit), RayPacket::kWidth, i);
       met[i].t = query.ray.tfar[i];
-      describe(at, context.lanes[i], packet.rays[i], met[i], points[i].hit);
+      describe(at, context.lanes[i], packet.rays[i], detailed, met[i], points[i].hit);
     }
   return hits;
 }
 
-void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, GeometryHit& met, Hit& hit) const {
+void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, DetailedMaterials detailed,
+                        GeometryHit& met, Hit& hit) const {
   const GeometryObject* object = world_.get();
   const uint32_t level = embree::level_of(at);
   hit.at.instance = {};
@@ -262,6 +292,7 @@ void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& r
     if (copies.instances.is_placed) place(copies.instances.placement, copies.from_placement, hit, ns);
   }
   set_frame(hit, ns, ray.d);
+  if (detailed.contains(surface.material)) set_derivatives(surface, at, lane, level, hit);
   met.material = surface.material;
   met.surface = level == 0 ? std::optional(at.geomID) : std::nullopt;
 }

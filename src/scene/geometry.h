@@ -60,6 +60,12 @@ struct GeometryHit {
 
 struct GeometryObject;
 
+/// Materials, by their places, whose hits need derivatives; nullptr: none.
+struct DetailedMaterials {
+  const uint8_t* flags = nullptr;
+  bool contains(uint32_t material) const { return flags && flags[material] != 0; }
+};
+
 /// Ray queries over surfaces and copies of objects, by Embree. It knows no material and no light: scenes that differ in
 /// those share one.
 class Geometry {
@@ -71,12 +77,12 @@ class Geometry {
   Geometry(const Geometry&) = delete;
   Geometry& operator=(const Geometry&) = delete;
 
-  bool intersect(const Ray& ray, uint64_t key, GeometryHit& met, Hit& hit) const;
+  bool intersect(const Ray& ray, uint64_t key, DetailedMaterials detailed, GeometryHit& met, Hit& hit) const;
   /// Embree's part of `intersect` alone.
   bool closest(const Ray& ray, uint64_t key, RTCRayHit& query) const;
   bool occluded(const Ray& ray, uint64_t key) const;
   /// As World's of packets. Sets the points' hits alone.
-  uint32_t intersect(const RayPacket& packet, GeometryHit* met, SurfacePoint* points) const;
+  uint32_t intersect(const RayPacket& packet, DetailedMaterials detailed, GeometryHit* met, SurfacePoint* points) const;
   uint32_t closest(const RayPacket& packet, RTCRayHit8& query) const;
   uint32_t occluded(const RayPacket& packet) const;
   Bounds bounds() const;
@@ -93,7 +99,8 @@ class Geometry {
  private:
   bool closest(const Ray& ray, embree::Query& context, RTCRayHit& query) const;
   uint32_t closest(const RayPacket& packet, embree::Query& context, const int* valid, RTCRayHit8& query) const;
-  void describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, GeometryHit& met, Hit& hit) const;
+  void describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, DetailedMaterials detailed,
+                GeometryHit& met, Hit& hit) const;
   std::unique_ptr<GeometryObject> build(ObjectParts parts, uint64_t first_id);
   void attach(GeometryObject& object);
   void check() const;

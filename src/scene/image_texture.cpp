@@ -177,7 +177,7 @@ constexpr Param kImageMap[] = {
 };
 
 template <class Base, class T>
-std::unique_ptr<Base> make(const Params& p) {
+std::unique_ptr<Base> make(const Params& p, const TexturePlacement&) {
   return std::make_unique<T>(p);
 }
 

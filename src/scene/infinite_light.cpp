@@ -21,10 +21,10 @@ class ConstantEnvironment final : public EnvironmentLight {
     return LightSample{
         spectrum_->sample(lambda) * scale_, {r * std::cos(phi), r * std::sin(phi), z}, INFINITY, kUniformPdf};
   }
-  SampledSpectrum radiance(const Vec3&, const SampledWavelengths& lambda) const override {
+  SampledSpectrum radiance(const Vec3&, const Vec3&, const SampledWavelengths& lambda) const override {
     return spectrum_->sample(lambda) * scale_;
   }
-  float pdf(const Vec3&) const override { return kUniformPdf; }
+  float pdf(const Vec3&, const Vec3&) const override { return kUniformPdf; }
   /// Scattered rays go where a surface weighs the sky most; uniform ones do not.
   double competing_share() const override { return 0; }
   bool is_delta() const override { return false; }
@@ -73,11 +73,13 @@ class ImageEnvironment final : public EnvironmentLight {
   std::optional<LightSample> sample_competing(const Vec3&, Vec2 u, const SampledWavelengths& lambda) const override {
     return sample_from(texels_by_excess_, u, lambda);
   }
-  SampledSpectrum radiance(const Vec3& direction, const SampledWavelengths& lambda) const override {
+  SampledSpectrum radiance(const Vec3&, const Vec3& direction, const SampledWavelengths& lambda) const override {
     return at(to_square(direction), lambda);
   }
-  float pdf(const Vec3& direction) const override { return texels_by_power_.pdf(to_square(direction)) * kPerSphere; }
-  float competing_pdf(const Vec3& direction) const override {
+  float pdf(const Vec3&, const Vec3& direction) const override {
+    return texels_by_power_.pdf(to_square(direction)) * kPerSphere;
+  }
+  float competing_pdf(const Vec3&, const Vec3& direction) const override {
     return texels_by_excess_.pdf(to_square(direction)) * kPerSphere;
   }
   double competing_share() const override { return excess_share_; }

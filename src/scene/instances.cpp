@@ -63,7 +63,9 @@ constexpr Param kInstanceTexture[] = {
      .kind = ParamKind::real,
      .doc = "Value where a surface is no copy with such a number; the least of \"range\" by default."}};
 
-std::unique_ptr<FloatTexture> make_instance_texture(const Params& p) { return std::make_unique<InstanceTexture>(p); }
+std::unique_ptr<FloatTexture> make_instance_texture(const Params& p, const TexturePlacement&) {
+  return std::make_unique<InstanceTexture>(p);
+}
 
 const ParsedParam* find(const ParsedPlugin& plugin, std::string_view name) {
   const auto found = std::ranges::find(plugin.params, name, &ParsedParam::name);

@@ -133,16 +133,19 @@ class DiffuseAreaLight final : public AreaLight {
     const float distance = length(d);
     if (distance == 0) return {};
     const Vec3 wi = d / distance;
-    const float density = pdf(on_light.ng, wi, distance);
-    const SampledSpectrum emitted = radiance(on_light.ng, -wi, lambda);
+    const EmittingPoint at{on_light.p, on_light.ng, {}};
+    const float density = pdf_along(at.ng, wi, distance);
+    const SampledSpectrum emitted = radiance(at, -wi, lambda);
     if (!std::isfinite(density) || emitted.is_black()) return {};
     return LightSample{emitted, wi, distance, density};
   }
-  SampledSpectrum radiance(const Vec3& ng, const Vec3& w, const SampledWavelengths& lambda) const override {
-    return two_sided_ || dot(ng, w) > 0 ? spectrum_->sample(lambda) * scale_ : SampledSpectrum();
+  SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const override {
+    return two_sided_ || dot(at.ng, w) > 0 ? spectrum_->sample(lambda) * scale_ : SampledSpectrum();
   }
-  float pdf(const Vec3& ng, const Vec3& wi, float distance) const override {
-    return distance * distance / (std::abs(dot(ng, wi)) * float(surface_.area()));
+  float pdf(const Vec3& from, const EmittingPoint& at) const override {
+    const Vec3 d = at.p - from;
+    const float density = pdf_along(at.ng, normalize_any(d), length(d));
+    return density > 0 ? density : 0;  // no number where the points are one
   }
   bool is_delta() const override { return false; }
   double power(float) const override {
@@ -157,6 +160,9 @@ class DiffuseAreaLight final : public AreaLight {
 
  private:
   double sides() const { return two_sided_ ? 2 : 1; }
+  float pdf_along(const Vec3& ng, const Vec3& wi, float distance) const {
+    return distance * distance / (std::abs(dot(ng, wi)) * float(surface_.area()));
+  }
 
   SpectrumPtr spectrum_;
   EmittingSurface surface_;

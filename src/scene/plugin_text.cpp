@@ -55,6 +55,7 @@ ParsedParam typed(const Param& declared, const std::string& text, const Location
       return p;
     case ParamKind::illuminant:
     case ParamKind::albedo:
+    case ParamKind::unbounded:
     case ParamKind::spectrum_texture:
       set_spectrum(text, where, p);
       return p;

@@ -35,6 +35,18 @@ class Quadric : public AnalyticShape {
     return flip_ ? -ng : ng;
   }
   Vec3 to_scene_point(const Vec3& p) const { return to_scene_.point(p); }
+  /// From those of the shape's own space, at a point with unit normal `n` there.
+  SurfaceDerivatives to_scene_derivatives(const Vec3d& n, const Vec3d& dpdu, const Vec3d& dpdv, const Vec3d& dndu,
+                                          const Vec3d& dndv) const {
+    const Vec3 grown = to_scene_.normal(to_float(n));
+    const float size = length(grown);
+    const Vec3 unit = grown / size;
+    const auto change = [&](const Vec3d& dn) {
+      const Vec3 d = to_scene_.normal(to_float(dn)) / size, across = d - unit * dot(unit, d);
+      return flip_ ? -across : across;
+    };
+    return {to_scene_.vector(to_float(dpdu)), to_scene_.vector(to_float(dpdv)), change(dndu), change(dndv)};
+  }
   Vec3d local_point(const Vec3& p) const { return to_double(from_scene_.point(p)); }
   Vec3d local_vector(const Vec3& v) const { return to_double(from_scene_.vector(v)); }
   Bounds transformed_box(Vec3 lo, Vec3 hi) const {
@@ -99,6 +111,14 @@ class Sphere final : public Quadric {
   }
   double area() const override { return phi_max() * radius_ * (z_max_ - z_min_) * area_scale(); }
 
+  SurfaceDerivatives derivatives(const ShapePoint& point) const override {
+    const Vec3d p = local_point(point.p);
+    const double ring = std::hypot(p.x, p.y), sweep = std::acos(z_max_ / radius_) - std::acos(z_min_ / radius_);
+    const double cos_phi = ring > 0 ? p.x / ring : 1, sin_phi = ring > 0 ? p.y / ring : 0;
+    const Vec3d dpdu = Vec3d{-p.y, p.x, 0} * phi_max(), dpdv = Vec3d{p.z * cos_phi, p.z * sin_phi, -ring} * sweep;
+    return to_scene_derivatives(p / radius_, dpdu, dpdv, dpdu / radius_, dpdv / radius_);
+  }
+
  private:
   ShapePoint at(const Vec3d& p, double phi, float t) const {
     const double theta = std::acos(std::clamp(p.z / radius_, -1.0, 1.0));
@@ -159,6 +179,13 @@ class Disk final : public Quadric {
     return at({r * double(std::cos(float(phi))), r * double(std::sin(float(phi))), height_}, r, phi, 0);
   }
   double area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_) * area_scale(); }
+
+  SurfaceDerivatives derivatives(const ShapePoint& point) const override {
+    const Vec3d p = local_point(point.p);
+    const double r = std::hypot(p.x, p.y);
+    const Vec3d outward = r > 0 ? Vec3d{p.x / r, p.y / r, 0} : Vec3d{1, 0, 0};
+    return to_scene_derivatives({0, 0, 1}, Vec3d{-p.y, p.x, 0} * phi_max(), outward * (inner_ - radius_), {}, {});
+  }
 
  private:
   ShapePoint at(const Vec3d& p, double r, double phi, float t) const {

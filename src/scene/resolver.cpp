@@ -42,6 +42,12 @@ SpectrumPtr blackbody_of(const ParsedParam& p) {
   return std::make_shared<BlackbodySpectrum>(v[0], p.value_where);
 }
 
+SpectrumPtr constant_of(const ParsedParam& p) {
+  const auto& v = numbers(p);
+  if (v.size() != 1) fail(p.value_where, "\"{}\" takes one value as float, {} given", p.name, v.size());
+  return std::make_shared<ConstantSpectrum>(float(v[0]));
+}
+
 /// An emission has luminance 1 before it is scaled; one that nobody sees cannot have that.
 SpectrumPtr normalized(SpectrumPtr s, const ParsedParam& p) {
   if (s->max_value() > 0 && !(photometric(*s) > 0))
@@ -52,31 +58,55 @@ SpectrumPtr normalized(SpectrumPtr s, const ParsedParam& p) {
 }  // namespace
 
 SceneResolver::SceneResolver(const SceneSettings& description, const Registry& registry,
-                             const WavelengthStrategy& wavelengths)
+                             const WavelengthStrategy& wavelengths, const Log& log)
     : description_(description),
       registry_(registry),
       wavelengths_(wavelengths),
-      color_space_(color_space(description.color_space, description.color_space_where)) {}
+      color_space_(color_space(description.color_space, description.color_space_where)),
+      log_(log) {}
 
 SceneResolver::~SceneResolver() = default;
+
+/// Makes something that may ask for others, and tells whether one of those needs details.
+template <class Make>
+auto SceneResolver::make(const std::string& key, const Make& make, bool& needs_details) {
+  in_progress_.insert(key);
+  needs_details_.push_back(false);
+  auto result = make();
+  needs_details = needs_details_.back() || result->needs_details();
+  needs_details_.pop_back();
+  in_progress_.erase(key);
+  return result;
+}
+
+/// To what is being made of it.
+void SceneResolver::pass_on(bool needs_details) {
+  if (needs_details && !needs_details_.empty()) needs_details_.back() = true;
+}
 
 template <class Texture, class Info>
 std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, const Location& where,
                                                       TextureDescription::Value value, const PluginTable<Info>& table,
-                                                      std::map<std::string, std::shared_ptr<const Texture>>& made) {
-  if (const auto it = made.find(name); it != made.end()) return it->second;
+                                                      MadeTextures<Texture>& made) {
+  if (const auto it = made.find(name); it != made.end()) {
+    pass_on(it->second.needs_details);
+    return it->second.texture;
+  }
   std::vector<std::string_view> names;
   for (const TextureDescription& t : description_.textures) {
     if (t.value != value) continue;
     names.push_back(t.name);
     if (t.name != name) continue;
     const std::string key = std::string(table.kind()) + ' ' + name;
-    if (!in_progress_.insert(key).second) fail(where, "texture \"{}\" refers to itself", name);
-    check_depth(in_progress_.size(), where);
+    if (in_progress_.contains(key)) fail(where, "texture \"{}\" refers to itself", name);
+    check_depth(in_progress_.size() + 1, where);
     const Info& info = table.get(t.plugin.name, t.plugin.where);
-    std::shared_ptr<const Texture> result = info.make(Params(info, t.plugin, *this));
-    in_progress_.erase(key);
-    return made[name] = result;
+    bool needs_details = false;
+    std::shared_ptr<const Texture> result = make(
+        key, [&] { return info.make(Params(info, t.plugin, *this), {t.world_from_texture}); }, needs_details);
+    pass_on(needs_details);
+    made.emplace(name, MadeTexture<Texture>{result, needs_details});
+    return result;
   }
   fail(where, "there is no {} \"{}\"{}", table.kind(), name, suggestion(name, names));
 }
@@ -106,21 +136,28 @@ std::shared_ptr<Material> SceneResolver::material(const std::string& name, const
 }
 
 std::shared_ptr<Material> SceneResolver::material(size_t index) {
-  if (const auto it = materials_.find(index); it != materials_.end()) return it->second;
+  if (const auto it = materials_.find(index); it != materials_.end()) {
+    pass_on(it->second.needs_details);
+    return it->second.material;
+  }
   const MaterialDescription& m = description_.materials[index];
-  const std::string key = "material " + m.name;
-  in_progress_.insert(key);
   const MaterialInfo& info = registry_.materials.get(m.plugin.name, m.plugin.where);
-  std::shared_ptr<Material> result = info.make(Params(info, m.plugin, *this));
-  in_progress_.erase(key);
-  return materials_[index] = result;
+  MadeMaterial made;
+  made.material = make(
+      "material " + m.name, [&] { return info.make(Params(info, m.plugin, *this)); }, made.needs_details);
+  pass_on(made.needs_details);
+  return materials_.emplace(index, made).first->second.material;
 }
 
-SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, bool emission) {
+SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
+  const bool emission = use == SpectrumUse::illuminant;
   SpectrumPtr s;
   if (p.type == "rgb") {
-    s = emission ? rgb_illuminant(color_space_, rgb_of(p), p.value_where)
-                 : rgb_albedo(color_space_, rgb_of(p), p.value_where);
+    s = emission                        ? rgb_illuminant(color_space_, rgb_of(p), p.value_where)
+        : use == SpectrumUse::unbounded ? rgb_unbounded(color_space_, rgb_of(p), p.value_where)
+                                        : rgb_albedo(color_space_, rgb_of(p), p.value_where);
+  } else if (p.type == "float") {
+    s = constant_of(p);
   } else {
     if (p.type == "blackbody")
       s = blackbody_of(p);
@@ -133,7 +170,7 @@ SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, bool emission) {
     check_light_range(*s, wavelengths_, p.value_where, p.name);
   else
     check_range(*s, wavelengths_, p.value_where, p.name);
-  if (!emission && s->max_value() > 1)
+  if (use == SpectrumUse::albedo && s->max_value() > 1)
     fail(p.value_where, "\"{}\" goes up to {}, outside its range 0 to 1", p.name, s->max_value());
   return known_at(std::move(s), wavelengths_.fixed_nm());
 }

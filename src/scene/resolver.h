@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "core/log.h"
 #include "core/params.h"
 #include "core/wavelengths.h"
 #include "scene/description.h"
@@ -12,37 +13,58 @@ namespace frond {
 
 struct ColorSpace;
 
+/// A material of the description.
+struct MadeMaterial {
+  std::shared_ptr<Material> material;
+  bool needs_details = false;  ///< it, or a texture of it, reads details of its hits
+};
+
 /// Looks up what parameters refer to: textures and materials by name, spectra by value, name or file. Things are made
 /// when first asked for. A spectrum whose data do not reach the render's wavelengths is an error at its parameter.
 class SceneResolver final : public ParamResolver {
  public:
-  SceneResolver(const SceneSettings& description, const Registry& registry, const WavelengthStrategy& wavelengths);
+  SceneResolver(const SceneSettings& description, const Registry& registry, const WavelengthStrategy& wavelengths,
+                const Log& log = silent_log());
   ~SceneResolver() override;
 
   std::shared_ptr<const FloatTexture> float_texture(const std::string& name, const Location& where) override;
   std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string& name, const Location& where) override;
   std::shared_ptr<Material> material(const std::string& name, const Location& where) override;
-  SpectrumPtr spectrum(const ParsedParam& param, bool emission) override;
+  SpectrumPtr spectrum(const ParsedParam& param, SpectrumUse use) override;
   std::filesystem::path file(const std::string& name, const Location& where) override;
+  void warn(const Location& where, std::string_view message) override { log_.warn(where, message); }
 
   std::shared_ptr<Material> material(size_t index);
   /// All that have been made, each once, by their places in the description.
-  const std::map<size_t, std::shared_ptr<Material>>& materials() const { return materials_; }
+  const std::map<size_t, MadeMaterial>& materials() const { return materials_; }
 
  private:
+  template <class Texture>
+  struct MadeTexture {
+    std::shared_ptr<const Texture> texture;
+    bool needs_details;  ///< it, or one that it is made of
+  };
+  template <class Texture>
+  using MadeTextures = std::map<std::string, MadeTexture<Texture>>;
+
   template <class Texture, class Info>
   std::shared_ptr<const Texture> texture(const std::string& name, const Location& where,
                                          TextureDescription::Value value, const PluginTable<Info>& table,
-                                         std::map<std::string, std::shared_ptr<const Texture>>& made);
+                                         MadeTextures<Texture>& made);
+  template <class Make>
+  auto make(const std::string& key, const Make& make, bool& needs_details);
+  void pass_on(bool needs_details);
 
   const SceneSettings& description_;
   const Registry& registry_;
   const WavelengthStrategy& wavelengths_;
   const ColorSpace& color_space_;
-  std::map<std::string, std::shared_ptr<const FloatTexture>> float_textures_;
-  std::map<std::string, std::shared_ptr<const SpectrumTexture>> spectrum_textures_;
-  std::map<size_t, std::shared_ptr<Material>> materials_;
+  const Log& log_;
+  MadeTextures<FloatTexture> float_textures_;
+  MadeTextures<SpectrumTexture> spectrum_textures_;
+  std::map<size_t, MadeMaterial> materials_;
   std::set<std::string> in_progress_;  ///< textures and materials being made: a second visit is a cycle
+  std::vector<bool> needs_details_;    ///< of what is being made, level by level
 };
 
 }  // namespace frond

@@ -37,7 +37,7 @@ class OptionResolver final : public ParamResolver {
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
   std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
   std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
-  SpectrumPtr spectrum(const ParsedParam& p, bool) override { none(p.where); }
+  SpectrumPtr spectrum(const ParsedParam& p, SpectrumUse) override { none(p.where); }
   std::filesystem::path file(const std::string& name, const Location& w) override {
     return description_.resolve(name, w);
   }
@@ -107,20 +107,22 @@ class SceneBuilder {
     if (const auto& text = overrides_.filter)
       override_plugin(*text, registry_.filters.get(text->name, {}), {}, description_.filter);
     build_options();
-    auto resolver = std::make_unique<SceneResolver>(description_, registry_, *scene_.wavelengths_);
+    auto resolver = std::make_unique<SceneResolver>(description_, registry_, *scene_.wavelengths_, log_);
     build_view(*resolver);
     return resolver;
   }
 
   void finish(SceneResolver& resolver, SharedWork& shared) {
     const Preparation preparation{*scene_.wavelengths_, pool_, log_, overrides_.cache_dir, &shared};
-    for (const auto& [place, material] : resolver.materials()) {
-      material->prepare(preparation);
-      scene_.materials_.emplace(place, material);
+    for (const auto& [place, made] : resolver.materials()) {
+      made.material->prepare(preparation);
+      scene_.materials_.emplace(place, made);
     }
     scene_.material_at_.resize(description_.materials.size());
-    for (const auto& [place, material] : scene_.materials_) {
-      scene_.material_at_[place] = material.get();
+    scene_.is_detailed_.resize(description_.materials.size());
+    for (const auto& [place, made] : scene_.materials_) {
+      scene_.material_at_[place] = made.material.get();
+      scene_.is_detailed_[place] = made.needs_details;
       scene_.material_plugins_.emplace(place, description_.materials[place].plugin);
     }
     const Bounds b = scene_.geometry_->bounds();
@@ -184,8 +186,9 @@ class SceneBuilder {
     FilmSettings film = Scene::film_settings(description_, registry_);
     if (overrides_.quick) film = halved(film);
     scene_.film_ = film;
-    scene_.camera_ = make(registry_.cameras, description_.camera, resolver,
-                          CameraPlacement{description_.camera_from_world.inverse(), film.width, film.height});
+    const CameraPlacement placement{description_.camera_from_world.inverse(), film.width, film.height};
+    scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
+    scene_.footprint_ = Footprint(*scene_.camera_, placement);
     check_camera(film);
     scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, seed_);
     const int samples = scene_.sampler_->samples_per_pixel();
@@ -263,7 +266,7 @@ bool Scene::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
 uint32_t Scene::intersect(const RayPacket& packet, SurfacePoint* points) const {
   if (tiling_) return World::intersect(packet, points);
   std::array<GeometryHit, RayPacket::kWidth> at;
-  const uint32_t hits = geometry_->intersect(packet, at.data(), points);
+  const uint32_t hits = geometry_->intersect(packet, {is_detailed_.data()}, at.data(), points);
   for (size_t i = 0; i < RayPacket::kWidth; ++i)
     if (hits >> i & 1) describe(at[i], points[i]);
   return hits;
@@ -274,17 +277,18 @@ void Scene::describe(const GeometryHit& at, SurfacePoint& point) const {
   point.light = at.surface ? lights_->of_surface[*at.surface] : nullptr;
   point.material_id = at.material;
   point.instance_id = at.instance;
+  if (is_detailed_[at.material]) footprint_.set(point.hit);
 }
 
 bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const {
-  if (!tiling_) return geometry_->intersect(ray, key, nearest, hit);
+  if (!tiling_) return geometry_->intersect(ray, key, {is_detailed_.data()}, nearest, hit);
   float distance = INFINITY;
   return tiling_->march(ray, [&](const Tiling::Copy& copy) {
     GeometryHit at;
     Hit there_hit;
     Ray there = copy.ray;
     there.t_max = std::min(there.t_max, distance - copy.distance);
-    if (!geometry_->intersect(there, key, at, there_hit)) return false;
+    if (!geometry_->intersect(there, key, {is_detailed_.data()}, at, there_hit)) return false;
     distance = copy.distance + at.t;
     there_hit.p += copy.shift;
     there_hit.extent = std::max(there_hit.extent, std::max(std::abs(there_hit.p.x), std::abs(there_hit.p.y)));

@@ -8,9 +8,11 @@
 #include "core/parallel.h"
 #include "core/world.h"
 #include "scene/description.h"
+#include "scene/footprint.h"
 #include "scene/geometry.h"
 #include "scene/plugin_text.h"
 #include "scene/registry.h"
+#include "scene/resolver.h"
 #include "scene/swap.h"
 #include "scene/tiling.h"
 
@@ -109,9 +111,11 @@ class Scene final : public World {
   std::unique_ptr<Sampler> sampler_;
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<Integrator> integrator_;
-  std::map<size_t, std::shared_ptr<Material>> materials_;  ///< by their places in the description
-  std::map<size_t, ParsedPlugin> material_plugins_;        ///< what they were made from
-  std::vector<const Material*> material_at_;               ///< `materials_` for hits; nullptr where nothing is made
+  std::map<size_t, MadeMaterial> materials_;         ///< by their places in the description
+  std::map<size_t, ParsedPlugin> material_plugins_;  ///< what they were made from
+  std::vector<const Material*> material_at_;         ///< `materials_` for hits; nullptr where nothing is made
+  std::vector<uint8_t> is_detailed_;                 ///< by place: whether hits need details
+  Footprint footprint_;
   std::shared_ptr<const LightTable> lights_;
   std::shared_ptr<const Geometry> geometry_;
   std::optional<Vec2> period_;

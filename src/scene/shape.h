@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/material.h"
 #include "core/plugin.h"
 #include "core/ray.h"
 #include "core/transform.h"
@@ -21,11 +22,12 @@ struct Bounds {
   std::vector<Vec3> corners() const;
 };
 
-/// A point of a surface: unit geometric normal on the front, and the surface's (u, v).
+/// A point of a surface.
 struct ShapePoint {
-  Vec3 p, ng;
-  Vec2 uv;
+  Vec3 p, ng;   ///< the geometric normal is unit, on the front
+  Vec2 at;      ///< where on the primitive that is, by its own parameters
   float t = 0;  ///< along the ray that met it
+  unsigned primitive = 0;
 };
 
 /// A surface with its own intersection routine, in the space that its transform leads to; one or more primitives.
@@ -38,6 +40,10 @@ class AnalyticShape {
   virtual std::vector<Vec3> outline(unsigned primitive) const { return bounds(primitive).corners(); }
   /// The nearest point with t_min < t < ray.t_max.
   virtual std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray, float t_min) const = 0;
+  /// Texture coordinates of a point, by its own parameters.
+  virtual Vec2 uv(unsigned /*primitive*/, Vec2 at) const { return at; }
+  /// By texture coordinates.
+  virtual SurfaceDerivatives derivatives(const ShapePoint& point) const = 0;
   /// Uniform over the area.
   virtual ShapePoint sample(Vec2 u) const = 0;
   virtual double area() const = 0;

@@ -79,16 +79,16 @@ class MixSpectrum final : public SpectrumTexture {
   std::shared_ptr<const FloatTexture> amount_;
 };
 
-std::unique_ptr<FloatTexture> make_constant_float(const Params& p) {
+std::unique_ptr<FloatTexture> make_constant_float(const Params& p, const TexturePlacement&) {
   return std::make_unique<ConstantFloatTexture>(float(p.real("value")));
 }
 
-std::unique_ptr<SpectrumTexture> make_constant_spectrum(const Params& p) {
+std::unique_ptr<SpectrumTexture> make_constant_spectrum(const Params& p, const TexturePlacement&) {
   return std::make_unique<ConstantSpectrumTexture>(p.spectrum("value"));
 }
 
 template <class Base, class T>
-std::unique_ptr<Base> make(const Params& p) {
+std::unique_ptr<Base> make(const Params& p, const TexturePlacement&) {
   return std::make_unique<T>(p);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/material.h"
 #include "scene/mesh.h"
 
 namespace frond {
@@ -18,7 +19,10 @@ class Triangle {
   }
   /// Shading normal, of any length.
   Vec3 ns() const { return mesh_.n.empty() ? ng() : interpolate(mesh_.n); }
-  Vec2 uv() const { return mesh_.uv.empty() ? b_ : interpolate(mesh_.uv); }
+  /// Without texture coordinates, the corners have (0, 0), (1, 0) and (1, 1), as in pbrt-v4.
+  Vec2 uv() const { return mesh_.uv.empty() ? Vec2{b_.x + b_.y, b_.y} : interpolate(mesh_.uv); }
+  /// Where (u, v) says nothing of directions on the triangle, some that do.
+  SurfaceDerivatives derivatives() const;
   const std::array<uint32_t, 3>& corners() const { return index_; }
 
  private:

@@ -203,6 +203,13 @@ SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Locatio
   return std::make_shared<ReflectanceSpectrum>(fit.reflectance, 1);
 }
 
+SpectrumPtr rgb_unbounded(const ColorSpace& space, const Triple& rgb, const Location& where) {
+  check(space, rgb, kNotNegative, where);
+  if (is_grey(rgb)) return flat(rgb[0]);
+  const ScaledFit s = fit_scaled(space, rgb, where);
+  return std::make_shared<ReflectanceSpectrum>(s.fit.reflectance, s.scale);
+}
+
 SpectrumPtr rgb_illuminant(const ColorSpace& space, const Triple& rgb, const Location& where) {
   check(space, rgb, kNotNegative, where);
   if (is_grey(rgb)) return std::make_shared<ScaledSpectrum>(unit_d65(), rgb[0]);

@@ -41,6 +41,10 @@ inline constexpr double kLargestFitError = 5e-3;
 /// A reflectance. Throws InputError unless `rgb` lies in [0, 1] and some reflectance has that colour.
 SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where);
 
+/// A quantity of any size, index of refraction for one: a multiple of a reflectance. Throws InputError if a channel is
+/// negative or no reflectance has that colour.
+SpectrumPtr rgb_unbounded(const ColorSpace& space, const Triple& rgb, const Location& where);
+
 /// An emission: a multiple of a reflectance times D65 of luminance 1, so that white (1, 1, 1) has Y = 1. Throws
 /// InputError if a channel is negative or no light has that colour.
 SpectrumPtr rgb_illuminant(const ColorSpace& space, const Triple& rgb, const Location& where);

@@ -62,8 +62,8 @@ class RecordingResolver final : public ParamResolver {
     asked.push_back("material " + name);
     return nullptr;
   }
-  SpectrumPtr spectrum(const ParsedParam& p, bool emission) override {
-    asked.push_back(p.type + (emission ? " emission " : " ") + p.name);
+  SpectrumPtr spectrum(const ParsedParam& p, SpectrumUse use) override {
+    asked.push_back(p.type + (use == SpectrumUse::illuminant ? " emission " : " ") + p.name);
     given = p;
     return nullptr;
   }

@@ -75,7 +75,7 @@ TEST(PlainResolver, SpectraAreLinearBetweenTheNumbersGiven) {
   PlainResolver resolver = no_materials();
   ParsedParam p;
   p.type = "spectrum", p.name = "s", p.values = std::vector<double>{400, 0.2, 500, 0.4, 700, 0};
-  const SpectrumPtr s = resolver.spectrum(p, false);
+  const SpectrumPtr s = resolver.spectrum(p, SpectrumUse::albedo);
   EXPECT_FLOAT_EQ(s->at(450), 0.3f);
   EXPECT_FLOAT_EQ(s->at(600), 0.2f);
   EXPECT_FLOAT_EQ(s->at(300), 0.2f);

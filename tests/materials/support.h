@@ -21,7 +21,7 @@ class Resolver final : public ParamResolver {
   }
   std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
   std::filesystem::path file(const std::string& name, const Location&) override { return name; }
-  SpectrumPtr spectrum(const ParsedParam& p, bool) override {
+  SpectrumPtr spectrum(const ParsedParam& p, SpectrumUse) override {
     return make_tabulated(std::get<std::vector<double>>(p.values), p.where);
   }
   std::shared_ptr<Material> material(const std::string& name, const Location& where) override;

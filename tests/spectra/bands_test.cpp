@@ -29,7 +29,7 @@ class OnlyFiles final : public ParamResolver {
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
   std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
   std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
-  SpectrumPtr spectrum(const ParsedParam& p, bool) override { none(p.where); }
+  SpectrumPtr spectrum(const ParsedParam& p, SpectrumUse) override { none(p.where); }
   fs::path file(const std::string& name, const Location&) override { return name; }
 
  private:
