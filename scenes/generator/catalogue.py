@@ -3,6 +3,7 @@
 import random
 
 import field
+import lathe
 import leaflet
 import plant
 import vec
@@ -63,6 +64,51 @@ def ambient():
     ]).grow()
 
 
+def vase():
+    """Three cut stems that lean on the rim of a vase."""
+    plants = []
+    for k, (azimuth, lean, leaves) in enumerate(((200, 0.080, 4), (325, 0.100, 4), (80, 0.060, 4))):
+        out = vec.direction(azimuth, 0)
+        foot, rim = vec.mul(out, -0.025), vec.mul(out, 0.022)
+        stem = [vec.add(foot, (0, 0, 0.014)), vec.add(rim, (0, 0, 0.20)),
+                vec.add(vec.mul(out, 0.6 * lean), (0, 0, 0.30)), vec.add(vec.mul(out, lean), (0, 0, 0.42))]
+        plants.append(Plant(stem, [
+            Leaf(0.26 + 0.045 * i, azimuth + (60, -70, 15, -160)[i], 35 + 10 * i, 0.06 - 0.01 * i, 0.95 - 0.12 * i,
+                 pitch=-12 + 6 * i, seed=100 + 10 * k + i) for i in range(leaves)
+        ], radius=0.0028, facing=(-0.9, -0.3, 0.4), facing_weight=0.35).grow())
+    return _together(plants)
+
+
+def pot():
+    """A young plant in a pot: its soil lies 0.15 m above the ground."""
+    stem = [(0.0, 0.0, 0.14), (0.005, 0.0, 0.20), (-0.004, 0.003, 0.28), (0.0, 0.0, 0.36)]
+    return Plant(stem, [
+        Leaf(0.19, 200, 35, 0.10, 1.00, pitch=-14, seed=31),
+        Leaf(0.21, -20, 36, 0.10, 1.05, pitch=-10, seed=32),
+        Leaf(0.24, 95, 40, 0.10, 1.00, pitch=-8, seed=33),
+        Leaf(0.27, -100, 44, 0.09, 1.00, pitch=-12, seed=34),
+        Leaf(0.31, 40, 50, 0.08, 0.90, pitch=-8, seed=35),
+        Leaf(0.34, 165, 60, 0.06, 0.75, pitch=-5, seed=36),
+        Leaf(0.355, -60, 72, 0.03, 0.45, sag=10, pitch=12, lateral_pitch=10, seed=37),
+    ], facing=(0.4, -0.6, 0.7), facing_weight=0.3).grow()
+
+
+def _together(plants):
+    for other in plants[1:]:
+        plants[0].leaflets += other.leaflets
+        plants[0].tubes.append(other.tubes)
+    return plants[0]
+
+
+# Radius and height, metres, from the middle of the foot outside, over the rim, to the middle of the floor inside.
+GLASS = [(0.0, 0.0), (0.030, 0.0), (0.046, 0.0008), (0.0495, 0.005), (0.053, 0.04), (0.056, 0.08), (0.052, 0.13),
+         (0.040, 0.18), (0.036, 0.205), (0.044, 0.235), (0.0435, 0.2375), (0.0410, 0.2365), (0.0325, 0.206),
+         (0.0362, 0.18), (0.0482, 0.13), (0.0522, 0.08), (0.049, 0.04), (0.044, 0.017), (0.030, 0.0135), (0.0, 0.013)]
+CLAY = [(0.0, 0.002), (0.050, 0.002), (0.066, 0.0), (0.070, 0.004), (0.078, 0.06), (0.086, 0.128), (0.0875, 0.131),
+        (0.096, 0.132), (0.0985, 0.135), (0.1005, 0.168), (0.0985, 0.172), (0.092, 0.172), (0.090, 0.168),
+        (0.087, 0.135), (0.080, 0.12), (0.070, 0.05), (0.0, 0.05)]
+
+
 def hundred():
     """A hundred leaflets that hang before the camera, upper sides toward it, for measurements of speed."""
     draw = random.Random(100)
@@ -75,7 +121,7 @@ def hundred():
         yield Placed("speed", frame, vec.mul(place, 0.095), draw.uniform(0.85, 1.2))
 
 
-PLANTS = {"soybean-front": front, "soybean-back": back, "soybean-ambient": ambient}
+PLANTS = {"soybean-front": front, "soybean-back": back, "soybean-ambient": ambient, "vase": vase, "pot": pot}
 
 
 def leaflets():
@@ -93,6 +139,8 @@ def files():
         grown = grow()
         out[f"{scene}/stems.ply"] = ply_bytes(grown.tubes, "stem, petioles and petiolules")
         out[f"{scene}/plant.pbrt"] = plant.pbrt_text(grown.leaflets, "stems.ply", MESHES).encode("ascii")
+    out["vase/glass.ply"] = ply_bytes(lathe.turn(GLASS), "glass vase")
+    out["pot/clay.ply"] = ply_bytes(lathe.turn(CLAY), "flower pot")
     out["hundred-leaves/leaves.pbrt"] = plant.pbrt_text(list(hundred()), None, MESHES).encode("ascii")
     out |= field.files(LEAFLETS)
     return out
