@@ -1,0 +1,222 @@
+"""docs/gallery.md: a picture for every plugin that a scene can name, and the lines that made it."""
+
+import argparse
+import pathlib
+import tempfile
+
+from tools import ROOT, frond
+
+SIZE = 200
+SAMPLES = 256
+PICTURES = ROOT / "docs" / "images" / "gallery"
+
+# Made by this script beside a scene that reads it: a picture with an up and a left.
+LETTER = "letter.ppm"
+
+VIEW = """Scale -1 1 1
+LookAt 0.4 -5 2.1   0 0 0.72   0 0 1
+Camera "perspective" "float fov" 27
+"""
+LIGHT = """AttributeBegin
+  Translate -2.2 -2.6 3.6
+  Rotate 128 1 0 0.3
+  AreaLightSource "diffuse" "spectrum L" "stdillum-D65" "float scale" 9
+  Shape "disk" "float radius" 0.8
+AttributeEnd
+LightSource "infinite" "spectrum L" "stdillum-D65" "float scale" 0.35
+"""
+FLOOR = """AttributeBegin
+  Texture "tiles" "spectrum" "checkerboard" "float uscale" 12 "float vscale" 12
+    "rgb tex1" [ 0.5 0.5 0.5 ] "rgb tex2" [ 0.28 0.28 0.3 ]
+  Material "diffuse" "texture reflectance" "tiles"
+  Shape "bilinearmesh" "point3 P" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]
+AttributeEnd
+"""
+BALL = """AttributeBegin
+  Translate 0 0 0.8
+  Rotate 20 0 0 1
+  Shape "sphere" "float radius" 0.8
+AttributeEnd
+"""
+LEAFLET = f"""AttributeBegin
+  Translate -0.35 -0.3 0.3
+  Rotate -55 0 1 0
+  Rotate 100 1 0 0
+  Scale 16 16 16
+  Shape "plymesh" "string filename" "{ROOT}/scenes/meshes/leaflet-terminal-1.ply"
+AttributeEnd
+"""
+FILM = f'Film "rgb" "integer xresolution" {SIZE} "integer yresolution" {SIZE}\n'
+GREY = 'Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]\n'
+RED = 'Material "diffuse" "rgb reflectance" [ 0.55 0.12 0.06 ]\n'
+
+# By kind and name: the lines of interest; where there are none, the plugin with its defaults.
+MATERIALS = {
+    "conductor": 'Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" 0.02',
+    "dielectric": 'Material "dielectric" "spectrum eta" "glass-BK7"',
+    "thindielectric": 'Material "thindielectric" "float eta" 1.5',
+    "coateddiffuse": 'Material "coateddiffuse" "rgb reflectance" [ 0.45 0.08 0.05 ]',
+    "coatedconductor": 'Material "coatedconductor" "float conductor.roughness" 0.1 "float thickness" 0.02',
+    "diffuse": 'Material "diffuse" "rgb reflectance" [ 0.2 0.35 0.6 ]',
+    "diffusetransmission": 'Material "diffusetransmission" "rgb reflectance" [ 0.3 0.2 0.1 ] "rgb transmittance" [ 0.1 0.3 0.4 ]',
+    "mix": 'MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k"\n'
+           'MakeNamedMaterial "blue" "string type" "diffuse" "rgb reflectance" [ 0.1 0.2 0.6 ]\n'
+           'Texture "stripes" "float" "checkerboard" "float uscale" 12 "float vscale" 0.5 "float tex1" 1 "float tex2" 0\n'
+           'Material "mix" "string materials" [ "gold" "blue" ] "texture amount" "stripes"',
+    "leaf_simplified": 'Material "leaf_simplified" "string specimen" "maize"',
+}
+SPECTRUM_TEXTURES = {
+    "constant": 'Texture "pattern" "spectrum" "constant" "rgb value" [ 0.15 0.4 0.2 ]',
+    "scale": 'Texture "image" "spectrum" "imagemap" "string filename" "letter.ppm"\n'
+             'Texture "pattern" "spectrum" "scale" "texture tex" "image" "float scale" 0.4',
+    "mix": 'Texture "image" "spectrum" "imagemap" "string filename" "letter.ppm"\n'
+           'Texture "pattern" "spectrum" "mix" "texture tex1" "image" "rgb tex2" [ 0.1 0.2 0.6 ] "float amount" 0.6',
+    "imagemap": 'Texture "pattern" "spectrum" "imagemap" "string filename" "letter.ppm" "float uscale" 3 "float vscale" 2',
+    "checkerboard": 'Texture "pattern" "spectrum" "checkerboard" "float uscale" 16 "float vscale" 8\n'
+                    '  "rgb tex1" [ 0.6 0.5 0.3 ] "rgb tex2" [ 0.1 0.2 0.1 ]',
+    "dots": 'Texture "pattern" "spectrum" "dots" "float uscale" 16 "float vscale" 8\n'
+            '  "rgb inside" [ 0.6 0.5 0.3 ] "rgb outside" [ 0.5 0.1 0.05 ]',
+    "bilerp": 'Texture "pattern" "spectrum" "bilerp" "rgb v00" [ 0.6 0.1 0.1 ] "rgb v01" [ 0.1 0.6 0.1 ]\n'
+              '  "rgb v10" [ 0.1 0.1 0.6 ] "rgb v11" [ 0.6 0.6 0.1 ]',
+    "directionmix": 'Texture "pattern" "spectrum" "directionmix" "vector3 dir" [ 0 0 1 ]\n'
+                    '  "rgb tex1" [ 0.7 0.7 0.75 ] "rgb tex2" [ 0.1 0.25 0.05 ]',
+    "marble": 'Texture "pattern" "spectrum" "marble" "float scale" 3 "float variation" 0.6 "integer octaves" 6',
+}
+FLOAT_TEXTURES = {
+    "constant": 'Texture "heights" "float" "constant" "float value" 0.5',
+    "scale": 'Texture "noise" "float" "fbm"\nTexture "heights" "float" "scale" "texture tex" "noise" "float scale" 0.3',
+    "mix": 'Texture "noise" "float" "fbm"\nTexture "steps" "float" "checkerboard" "float uscale" 12 "float vscale" 6 "float tex1" 0.3 "float tex2" 0\n'
+           'Texture "heights" "float" "mix" "texture tex1" "noise" "texture tex2" "steps" "float amount" 0.8',
+    "imagemap": 'Texture "heights" "float" "imagemap" "string filename" "letter.ppm" "float uscale" 3 "float vscale" 2 "float scale" 0.2',
+    "checkerboard": 'Texture "heights" "float" "checkerboard" "float uscale" 16 "float vscale" 8 "float tex1" 0.2 "float tex2" 0',
+    "dots": 'Texture "heights" "float" "dots" "float uscale" 16 "float vscale" 8 "float inside" 0 "float outside" 0.2',
+    "bilerp": 'Texture "heights" "float" "bilerp" "float v01" 0.5 "float v11" 0.5',
+    "directionmix": 'Texture "heights" "float" "directionmix" "vector3 dir" [ 0 0 1 ] "float tex1" 0.3 "float tex2" 0',
+    "instance": None,  # a number of a table: on the page of the canopies
+}
+SHAPES = {
+    "sphere": 'Shape "sphere" "float radius" 0.8 "float zmax" 0.6',
+    "disk": 'Rotate 70 1 0 0  Shape "disk" "float radius" 0.8 "float innerradius" 0.35 "float phimax" 300',
+    "cylinder": 'Shape "cylinder" "float radius" 0.55 "float zmin" -0.8 "float zmax" 0.6 "float phimax" 290',
+    "bilinearmesh": 'Shape "bilinearmesh" "point3 P" [ -0.8 -0.6 -0.7  0.8 -0.6 0.3  -0.8 0.6 0.7  0.8 0.6 -0.5 ]',
+    "trianglemesh": 'Shape "trianglemesh" "integer indices" [ 0 2 1  0 3 2  0 1 3  1 2 3 ]\n'
+                    '  "point3 P" [ -0.8 -0.5 -0.8   0.8 -0.5 -0.8   0 0.8 -0.8   0 0 0.7 ]',
+    "loopsubdiv": 'Shape "loopsubdiv" "integer levels" 4 "integer indices" [ 0 2 1  0 3 2  0 1 3  1 2 3 ]\n'
+                  '  "point3 P" [ -1.3 -0.8 -0.8   1.3 -0.8 -0.8   0 1.3 -0.8   0 0 1.5 ]',
+    "plymesh": None, "instances": None,
+    "curve": 'Shape "curve" "string type" "cylinder" "float width0" 0.25 "float width1" 0.05\n'
+             '  "point3 P" [ -0.9 0 -0.7   -0.9 0 1.4   0.9 0 -1.4   0.9 0 0.7 ]',
+}
+SHAPES["plymesh"] = f'Scale 14 14 14  Translate -0.045 0 0  Rotate -40 0 1 0  Rotate 70 1 0 0\nShape "plymesh" "string filename" "{ROOT}/scenes/meshes/leaflet-terminal-1.ply"'
+LIGHTS = {
+    "distant": 'LightSource "distant" "point3 from" [ -2 -3 4 ] "float scale" 3',
+    "infinite": 'LightSource "infinite" "spectrum L" "stdillum-D65"',
+    "point": 'LightSource "point" "point3 from" [ -1.6 -1.6 2.2 ] "float scale" 12',
+    "spot": 'LightSource "spot" "point3 from" [ -1.6 -1.6 3 ] "point3 to" [ 0 0 0.6 ] "float coneangle" 16 "float scale" 30',
+    "projection": 'AttributeBegin\n  Translate -1.2 -3 3  Rotate -128 1 0 0  Rotate 20 0 1 0\n'
+                  '  LightSource "projection" "string filename" "letter.ppm" "float fov" 40 "float scale" 30\nAttributeEnd',
+    "goniometric": 'AttributeBegin\n  Translate -1.2 -1.4 2.4\n'
+                   '  LightSource "goniometric" "string filename" "letter.ppm" "float scale" 14\nAttributeEnd',
+}
+CAMERAS = {
+    "perspective": 'Camera "perspective" "float fov" 27 "float lensradius" 0.12 "float focaldistance" 4.6',
+    "orthographic": 'Camera "orthographic" "float screenwindow" [ -1.3 1.3 -1.3 1.3 ]',
+    "spherical": 'Camera "spherical"',
+    "distant": None,  # columns of directions, no view
+}
+
+
+def lines_of(kind, name):
+    """The lines of a scene that show a plugin; None where it has no picture."""
+    tables = {"material": (MATERIALS, f'Material "{name}"'), "shape": (SHAPES, None), "light": (LIGHTS, None),
+              "spectrum texture": (SPECTRUM_TEXTURES, f'Texture "pattern" "spectrum" "{name}"'),
+              "float texture": (FLOAT_TEXTURES, f'Texture "heights" "float" "{name}"'), "camera": (CAMERAS, None),
+              "area light": ({}, None), "integrator": ({}, f'Integrator "{name}"'), "sampler": ({}, f'Sampler "{name}" "integer pixelsamples" 4'),
+              "pixel filter": ({}, f'PixelFilter "{name}"')}
+    table, default = tables.get(kind, ({}, None))
+    return table.get(name, default)
+
+
+def scene_of(kind, name, lines):
+    """All of the scene, and the samples of a pixel."""
+    front, world, things, samples = VIEW + FILM, LIGHT, FLOOR, SAMPLES
+    if kind == "material":
+        things += "AttributeBegin\n" + lines + "\n" + (LEAFLET if name.startswith(("leaf", "abm")) else BALL) + "AttributeEnd\n"
+    elif kind == "spectrum texture":
+        things += lines + '\nMaterial "diffuse" "texture reflectance" "pattern"\n' + BALL
+    elif kind == "float texture":
+        things += lines + '\nMaterial "diffuse" "rgb reflectance" [ 0.5 0.45 0.4 ] "texture displacement" "heights"\n' + BALL
+    elif kind == "shape":
+        things += RED + "AttributeBegin\nTranslate 0 0 0.82\n" + lines + "\nAttributeEnd\n"
+    elif kind == "light":
+        world, things = "", lines + "\n" + FLOOR + RED + BALL
+    elif kind == "camera":
+        front = "\n".join(VIEW.splitlines()[:2]) + "\n" + lines + "\n" + FILM
+        things += RED + BALL
+    else:
+        front, samples = front + lines + "\n", 4 if kind == "sampler" else SAMPLES
+        things += 'Material "coateddiffuse" "rgb reflectance" [ 0.45 0.08 0.05 ]\n' + BALL
+    return front + "WorldBegin\n" + world + things, samples
+
+
+def write_letter(path):
+    """An F of two colours on a third."""
+    rows = ["........", ".#####..", ".#......", ".####...", ".#......", ".#......", ".@......", "........"]
+    colors = {".": (225, 215, 180), "#": (150, 40, 25), "@": (30, 80, 160)}
+    scale = 8
+    body = b"".join(bytes(colors[c]) * scale for row in rows for _ in range(scale) for c in row)
+    path.write_bytes(b"P6 %d %d 255\n" % (len(rows[0]) * scale, len(rows) * scale) + body)
+
+
+def plugins():
+    """Kind, name and line of each."""
+    kind = ""
+    for line in frond("list").splitlines():
+        if not line.strip():
+            continue
+        if not line.startswith(" "):
+            kind = line.strip()
+        else:
+            name, doc = line.split(maxsplit=1)
+            yield kind, name, doc
+
+
+def render(kind, name, lines, folder):
+    scene, samples = scene_of(kind, name, lines)
+    path, exr = folder / "scene.pbrt", folder / "picture.exr"
+    path.write_text(scene)
+    picture = PICTURES / f"{kind.replace(' ', '-')}-{name}.jpg"
+    frond("render", path, "-q", "--spp", samples, "-o", exr)
+    frond("convert", exr, "-o", picture)
+    return picture
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--only", default="")
+    wanted = parser.parse_args().only
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    page, last = [], ""
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        write_letter(folder / LETTER)
+        for kind, name, doc in plugins():
+            lines = lines_of(kind, name)
+            if lines is None:
+                continue
+            if kind != last:
+                page += ["", f"## {kind[0].upper() + kind[1:]}", ""]
+                last = kind
+            if wanted in name:
+                picture = render(kind, name, lines, folder)
+            else:
+                picture = PICTURES / f"{kind.replace(' ', '-')}-{name}.jpg"
+            shown = lines.replace(f"{ROOT}/scenes/", "")
+            page += [f"### `{name}`", "", doc, "", f"![{name}](images/gallery/{picture.name})", "", "```", shown, "```", ""]
+    head = ["# Gallery", "", "Written by `scripts/gallery`: what the plugins that a scene can name look like, and the lines that made the picture.",
+            "[All their parameters](plugins.md)."]
+    (ROOT / "docs" / "gallery.md").write_text("\n".join(head + page).rstrip() + "\n")
+
+
+if __name__ == "__main__":
+    main()
