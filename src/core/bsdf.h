@@ -34,7 +34,7 @@ struct BsdfSample {
   /// True where f / pdf is the right weight but `pdf` is not the density of wi: MIS must ask `pdf()` instead.
   bool pdf_is_approximate = false;
   /// Of light that was refracted: the index of refraction on the side of wi over that on the side of wo. Its radiance
-  /// has changed by the square of that, which says nothing of how much the path matters.
+  /// has changed by the square of that, which says nothing of how much the path matters. Where lanes differ, of one.
   float eta = 1;
 };
 
@@ -54,6 +54,9 @@ struct Scattered {
 /// `sample` returns it with pdf = its probability and f = weight * pdf / |cos theta_i|. Directions with cos theta = 0
 /// scatter nothing. Lanes that are not active hold 0.
 ///
+/// `f` is of radiance, which refraction changes: into a side of index n_i it carries the factor (n_o / n_i)^2, lane by
+/// lane. Power it keeps, and it is reciprocal as n_i^2 f(wo, wi) = n_o^2 f(wi, wo).
+///
 /// A BSDF may be stochastic: then `f` and the weight of `sample` are unbiased estimates that draw from `rng`, a stream
 /// of their own for each call, never derived from directions. `uc` and `u` in [0, 1) are the sampler's low-discrepancy
 /// numbers for the first try of `sample`; redraws use `rng`.
@@ -65,6 +68,10 @@ class Bsdf {
   /// Density of `sample`, or an approximation of it that is positive wherever f is; used to weight both strategies.
   virtual float pdf(const Vec3& wo, const Vec3& wi) const = 0;
 
+  /// Index of refraction on the side of -z over that on the side of +z, lane by lane, where light is refracted; 1 in
+  /// lanes that are not active.
+  virtual SampledSpectrum index_ratio() const { return SampledSpectrum(1); }
+
   /// For virtual instruments: sends light in from the direction `incident`, which is what the BSDF's model calls so
   /// whichever of wo and wi that is, and tells what becomes of each ray. Means of the weights are reflectance and
   /// transmittance for that incidence. A BSDF `from_light` whose pdf is approximate must have its own.
@@ -75,5 +82,13 @@ class Bsdf {
 };
 
 inline bool same_side(const Vec3& a, const Vec3& b) { return a.z * b.z > 0; }
+
+/// (n_i / n_o)^2, lane by lane: power over radiance of what goes from the side of wo to that of wi.
+inline SampledSpectrum power_of_radiance(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
+  if (wo.z * wi.z >= 0) return SampledSpectrum(1);
+  const SampledSpectrum ratio = bsdf.index_ratio();
+  const SampledSpectrum square = ratio * ratio;
+  return wo.z > 0 ? square : SampledSpectrum(1 / square.v);
+}
 
 }  // namespace frond

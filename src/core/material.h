@@ -55,7 +55,7 @@ class Material {
   /// Thread-safe. The BSDF lives until the arena is reset; nullptr: the surface is not there, and rays go straight on.
   /// Shadow rays stop at it all the same, as in pbrt-v4: what lies behind is lit by scattered rays alone.
   virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
-  /// Claims f(a, b) = f(b, a), and the laws hold it to that.
+  /// Claims f(a, b) = f(b, a), as Bsdf says where light is refracted, and the laws hold it to that.
   virtual bool is_reciprocal() const { return false; }
   /// Reads derivatives of the hit, or the direction of its shading.x. Textures say for themselves what they need.
   virtual bool needs_details() const { return false; }

@@ -22,11 +22,12 @@ enum class Law : uint8_t {
   agreement,      ///< exact: f and pdf of a sample are those of `f` and `pdf` for its direction
   normalisation,  ///< exact: `pdf` integrates to the share of calls of `sample` that give a direction, delta lobes
                   ///< apart; not exact: to 1, or less if there are delta lobes
-  energy,         ///< no more comes out than went in, at each wavelength; just as much where nothing is said to absorb
+  energy,         ///< no more power comes out than went in, at each wavelength; just as much where nothing is said to
+                  ///< absorb
   flags,          ///< what flags say of sides and lobes holds
   values,         ///< all finite and not negative, densities of samples positive; nothing scatters at cos theta = 0
   lanes,          ///< lanes that are not active hold 0
-  reciprocity,    ///< f(a, b) = f(b, a), where claimed
+  reciprocity,    ///< f(a, b) = f(b, a), where claimed; with the squares of the indices of refraction (Bsdf)
   unbiasedness,   ///< not exact: in every bin and on each side, the mean weight of `sample` is the integral of f |cos
                   ///< theta|
   streams,        ///< not exact: the noise of f is drawn from its stream, not from its directions

@@ -16,12 +16,12 @@ struct Outgoing {
   std::vector<double> by_bin;
 };
 
-/// Mean weight of `sample`, a call without a direction counting as 0.
+/// Mean weight of `sample`, of power, a call without a direction counting as 0.
 Outgoing mean_weight(const Series& s, int lane) {
   Moments moments;
   std::vector<double> by_bin(s.bins.size(), 0);
   for (const BsdfSample& sample : s.samples) {
-    const double w = weight(sample, lane);
+    const double w = weight(sample, lane) * static_cast<double>(power_of_radiance(s.bsdf, s.wo, sample.wi)[lane]);
     moments.add(w);
     if (s.maps && !is_specular(sample)) by_bin[s.bins.find(sample.wi)] += w / static_cast<double>(s.drawn);
   }

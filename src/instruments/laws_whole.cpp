@@ -66,6 +66,12 @@ void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t s
 
 namespace {
 
+/// What is equal there and back: n_i^2 f(wo, wi), over the square of the index on +z.
+SampledSpectrum reciprocal_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, uint64_t key) {
+  const SampledSpectrum f = f_once(bsdf, wo, wi, key);
+  return wi.z < 0 && wo.z > 0 ? f * power_of_radiance(bsdf, wo, wi) : f;
+}
+
 /// f there and back between `a` and patches of the sphere.
 std::shared_ptr<const SphereMap> reciprocity_map(const Bsdf& bsdf, const Vec3& a, uint64_t seed) {
   constexpr int kBands = 16, kSectors = 32;
@@ -79,7 +85,8 @@ std::shared_ptr<const SphereMap> reciprocity_map(const Bsdf& bsdf, const Vec3& a
       const double z = 2. / kBands, phi = 2 * std::numbers::pi / kSectors;
       const SphereBox box{-1 + band * z, -1 + (band + 1) * z, sector * phi, (sector + 1) * phi};
       const Vec3 b = box.at(0.5, 0.5);
-      map.patches.push_back({box, mean_of(f_once(bsdf, a, b, seed)), mean_of(f_once(bsdf, b, a, seed))});
+      map.patches.push_back(
+          {box, mean_of(reciprocal_once(bsdf, a, b, seed)), mean_of(reciprocal_once(bsdf, b, a, seed))});
     }
   return std::make_shared<SphereMap>(std::move(map));
 }
@@ -91,7 +98,8 @@ void check_exact_reciprocity(const Bsdf& bsdf, const std::string& where, const E
   std::optional<Vec3> broken_at;
   for (const Vec3& a : directions) {
     for (const Vec3& b : directions) {
-      const SampledSpectrum there = f_once(bsdf, a, b, effort.seed), back = f_once(bsdf, b, a, effort.seed);
+      const SampledSpectrum there = reciprocal_once(bsdf, a, b, effort.seed),
+                            back = reciprocal_once(bsdf, b, a, effort.seed);
       verdict.expect(near(there, back), "f is {} from {} to {}, {} back", there, a, b, back);
     }
     if (verdict.failed() && !broken_at) broken_at = a;
@@ -109,8 +117,8 @@ void check_mean_reciprocity(const Bsdf& bsdf, const std::string& where, const Ex
     const Vec3 &a = directions[pair], &b = directions[pair + 1];
     std::array<Moments, kLanes> there, back;
     for (int64_t i = 0; i < effort.samples; ++i) {
-      const SampledSpectrum f = f_once(bsdf, a, b, hash_key(effort.seed, pair, i, 0));
-      const SampledSpectrum g = f_once(bsdf, b, a, hash_key(effort.seed, pair, i, 1));
+      const SampledSpectrum f = reciprocal_once(bsdf, a, b, hash_key(effort.seed, pair, i, 0));
+      const SampledSpectrum g = reciprocal_once(bsdf, b, a, hash_key(effort.seed, pair, i, 1));
       for (size_t lane = 0; lane < kLanes; ++lane) there[lane].add(f.v[lane]), back[lane].add(g.v[lane]);
     }
     for (size_t lane = 0; lane < kLanes; ++lane) {

@@ -33,7 +33,9 @@ class DiffuseTransmission final : public Material {
         scale_(static_cast<float>(p.real("scale"))),
         reflectance_where_(p.where("reflectance")),
         transmittance_where_(p.where("transmittance")) {
-    check_energy();
+    constexpr float kRounding = 1e-5f;
+    may_exceed_ = (reflectance_->max_value() + transmittance_->max_value()) * scale_ > 1 + kRounding;
+    if (may_exceed_) warn_of_excess(p);
   }
 
   void prepare(const Preparation& preparation) override {
@@ -50,27 +52,35 @@ class DiffuseTransmission final : public Material {
   struct Shares {
     SampledSpectrum reflected, transmitted;
   };
-  Shares shares(const TexturePoint& at, const SampledWavelengths& lambda) const {
+  /// As they are given: together they can be more than 1.
+  Shares given_shares(const TexturePoint& at, const SampledWavelengths& lambda) const {
     const SampledSpectrum scale = scale_ * lane_mask(lambda);
     return {reflectance_->evaluate(at, lambda) * scale, transmittance_->evaluate(at, lambda) * scale};
   }
+  Shares shares(const TexturePoint& at, const SampledWavelengths& lambda) const {
+    const Shares s = given_shares(at, lambda);
+    if (!may_exceed_) return s;
+    const SampledSpectrum least(1 / larger(s.reflected.v + s.transmitted.v, SampledSpectrum(1).v));
+    return {s.reflected * least, s.transmitted * least};
+  }
 
-  /// Constants are looked at every 2 nm, textures also at 16 x 16 places: between these, an excess can hide.
-  void check_energy() const {
-    constexpr float kRounding = 1e-5f;
-    if ((reflectance_->max_value() + transmittance_->max_value()) * scale_ <= 1 + kRounding) return;
+  /// Constants are looked at every 2 nm, textures also at 16 x 16 places.
+  void warn_of_excess(const Params& p) const {
     const Interval r = reflectance_->range_nm(), t = transmittance_->range_nm();
     const Interval both{std::max({r.min, t.min, 300.0}), std::min({r.max, t.max, 2500.0})};
+    float most = 0;
     for (double nm = both.min; nm <= both.max; nm += 2)
       for (int place = 0; place < 256; ++place) {
         const int column = place % 16, row = place / 16;
         const TexturePoint at{{(static_cast<float>(column) + 0.5f) / 16, (static_cast<float>(row) + 0.5f) / 16}};
-        const auto [reflected, transmitted] = shares(at, one_wavelength(static_cast<float>(nm)));
-        const float sum = reflected[0] + transmitted[0];
-        if (sum > 1 + kRounding)
-          fail(reflectance_where_,
-               "reflectance + transmittance is {:.4g} at {} nm: a surface cannot give off more than 1", sum, nm);
+        const auto [reflected, transmitted] = given_shares(at, one_wavelength(static_cast<float>(nm)));
+        most = std::max(most, reflected[0] + transmitted[0]);
       }
+    if (most > 1)
+      p.warn("reflectance",
+             fmt::format("reflectance + transmittance goes up to {:.4g}; where it is more than 1, which a "
+                         "surface cannot give off, both are scaled down to 1 together",
+                         most));
   }
 
   static SampledWavelengths one_wavelength(float nm) {
@@ -84,6 +94,7 @@ class DiffuseTransmission final : public Material {
 
   std::shared_ptr<const SpectrumTexture> reflectance_, transmittance_;
   float scale_;
+  bool may_exceed_;
   Location reflectance_where_, transmittance_where_;
 };
 

@@ -5,18 +5,26 @@
 namespace frond {
 
 extern const MaterialInfo abm_material;
+extern const MaterialInfo coated_conductor_material;
+extern const MaterialInfo coated_diffuse_material;
+extern const MaterialInfo conductor_material;
+extern const MaterialInfo dielectric_material;
 extern const MaterialInfo diffuse_material;
 extern const MaterialInfo diffuse_transmission_material;
+extern const MaterialInfo interface_material;
 extern const MaterialInfo leaf_material;
 extern const MaterialInfo leaf_lambert_material;
 extern const MaterialInfo leaf_simplified_material;
 extern const MaterialInfo leaf_solved_material;
 extern const MaterialInfo mix_material;
+extern const MaterialInfo thin_dielectric_material;
 
 std::span<const MaterialInfo* const> builtin_materials() {
   static constexpr std::array table{
-      &abm_material,          &diffuse_material,         &diffuse_transmission_material, &leaf_material,
-      &leaf_lambert_material, &leaf_simplified_material, &leaf_solved_material,          &mix_material,
+      &abm_material,        &coated_conductor_material, &coated_diffuse_material,       &conductor_material,
+      &dielectric_material, &diffuse_material,          &diffuse_transmission_material, &interface_material,
+      &leaf_material,       &leaf_lambert_material,     &leaf_simplified_material,      &leaf_solved_material,
+      &mix_material,        &thin_dielectric_material,
   };
   return table;
 }

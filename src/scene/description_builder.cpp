@@ -15,10 +15,10 @@ std::string place(const Location& where) {
 
 std::string_view opener(bool by_object) { return by_object ? "ObjectBegin" : "AttributeBegin"; }
 
-/// pbrt's way to say that a surface is only the border of a medium.
-void check_not_interface(const ParsedPlugin& material) {
-  if (material.name.empty() || material.name == "interface")
-    fail(material.where, "material \"{}\" of pbrt-v4 is not supported yet: there are no media", material.name);
+/// pbrt's older names of a surface that is not there become the one of today.
+ParsedPlugin with_name_of_interface(ParsedPlugin material) {
+  if (material.name.empty() || material.name == "none") material.name = "interface";
+  return material;
 }
 
 /// Takes "string type" out of the parameters of MakeNamedMaterial and makes it the plugin's name.
@@ -159,8 +159,7 @@ DescriptionBuilder::Name& DescriptionBuilder::object_called(const std::string& n
 }
 
 void DescriptionBuilder::material(ParsedPlugin plugin) {
-  check_not_interface(plugin);
-  state_.material = new_material({"", with_defaults(std::move(plugin), Target::material)});
+  state_.material = new_material({"", with_defaults(with_name_of_interface(std::move(plugin)), Target::material)});
 }
 
 void DescriptionBuilder::named_material(const std::string& name, const Location& where) {
@@ -172,9 +171,8 @@ void DescriptionBuilder::make_named_material(const std::string& name, ParsedPlug
   Name& entry = material_called(name, where);
   if (entry.is_defined) fail(where, "material \"{}\" is defined again", name);
   entry.is_defined = true;
-  plugin = with_defaults(typed_by_parameter(name, std::move(plugin)), Target::material);
-  check_not_interface(plugin);
-  scene_.materials[entry.index].plugin = std::move(plugin);
+  plugin = with_name_of_interface(typed_by_parameter(name, std::move(plugin)));
+  scene_.materials[entry.index].plugin = with_defaults(std::move(plugin), Target::material);
 }
 
 void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, ParsedPlugin plugin) {
@@ -200,8 +198,13 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
     fail(plugin.where, "area lights inside objects are not supported yet; that of {} is in force here",
          place(scene_.area_lights[*state_.area_light].where));
   auto& shapes = open_object_ ? scene_.objects[*open_object_].shapes : scene_.shapes;
+  std::optional<size_t> area_light = state_.area_light;
+  if (area_light && scene_.materials[state_.material].plugin.name == "interface") {
+    log_.warn(plugin.where, "the area light does not shine: with material \"interface\" there is no surface");
+    area_light.reset();
+  }
   shapes.push_back({with_defaults(std::move(plugin), Target::shape), state_.transform, state_.reverse_orientation,
-                    state_.material, state_.area_light});
+                    state_.material, area_light});
 }
 
 void DescriptionBuilder::light(ParsedPlugin plugin) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <vector>
 
+#include "spectra/data_files.h"
 #include "spectra/tabulated.h"
 
 namespace frond {

@@ -1,13 +1,8 @@
 #pragma once
 
-#include <string_view>
-
 #include "core/spectrum.h"
 
 namespace frond {
-
-/// The file src/spectra/data/solar.csv, put into the library by CMake.
-extern const std::string_view solar_csv;
 
 /// Spectral irradiance of the sun, W m^-2 nm^-1, from 300 to 2500 nm; ASTM G173-03.
 SpectrumPtr solar_am0();          ///< outside the atmosphere

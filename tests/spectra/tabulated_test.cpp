@@ -106,13 +106,76 @@ TEST(Named, TheSunHasThePowerThatTheStandardSays) {
 }
 
 TEST(Named, IlluminantsAreThereAsPublishedAndOthersAreNamed) {
-  for (const std::string_view name : {"stdillum-A", "stdillum-D65", "stdillum-E"})
+  for (const std::string_view name :
+       {"stdillum-A", "stdillum-D50", "stdillum-D55", "stdillum-D65", "stdillum-D75", "stdillum-E", "illum-acesD60"})
     EXPECT_EQ(named_spectrum(name, kHere)->at(560), 100) << name;
   EXPECT_NE(named_spectrum("stdillum-A", kHere)->at(600), named_spectrum("stdillum-D65", kHere)->at(600));
-  EXPECT_EQ(error_of([] { named_spectrum("metal-Cu-eta", kHere); }),
-            "scene.pbrt:3:7: pbrt-v4's spectrum \"metal-Cu-eta\" is not available; what there is: solar-am0, "
-            "solar-am1.5-direct, solar-am1.5-global, stdillum-A, stdillum-D65, stdillum-E, or a .spd file");
   EXPECT_THAT(error_of([] { named_spectrum("stdilum-D65", kHere); }), HasSubstr("did you mean \"stdillum-D65\"?"));
+}
+
+/// Chromaticities that CIE 15:2004 publishes, tables T.3 and T.8, and of the white of ACES (SMPTE ST 2065-1).
+TEST(Named, IlluminantsHaveTheirChromaticities) {
+  const auto expect = [](std::string_view name, double x, double y, double tolerance) {
+    const Triple xyz = to_xyz(*named_spectrum(name, kHere));
+    const double sum = xyz[0] + xyz[1] + xyz[2];
+    EXPECT_NEAR(xyz[0] / sum, x, tolerance) << name;
+    EXPECT_NEAR(xyz[1] / sum, y, tolerance) << name;
+  };
+  expect("stdillum-D50", 0.34567, 0.35850, 1e-4);
+  expect("stdillum-D55", 0.33242, 0.34743, 1e-4);
+  expect("stdillum-D75", 0.29902, 0.31485, 1e-4);
+  expect("illum-acesD60", 0.32168, 0.33767, 2e-4);
+  constexpr Triple kFluorescent[] = {{0.3131, 0.3371}, {0.3721, 0.3751}, {0.4091, 0.3941}, {0.4402, 0.4031},
+                                     {0.3138, 0.3452}, {0.3779, 0.3882}, {0.3129, 0.3292}, {0.3458, 0.3586},
+                                     {0.3741, 0.3727}, {0.3458, 0.3588}, {0.3805, 0.3769}, {0.4370, 0.4042}};
+  for (size_t i = 0; i < 12; ++i)
+    expect("stdillum-F" + std::to_string(i + 1), kFluorescent[i][0], kFluorescent[i][1], 5e-4);
+}
+
+/// Catalogues' n_d, at the yellow line of helium, and Abbe numbers, which the line C and F decide.
+TEST(Named, GlassesRefractAsCataloguesSay) {
+  const auto expect = [](std::string_view name, double n_d, double abbe) {
+    const SpectrumPtr n = named_spectrum(name, kHere);
+    const auto at = [&](float nm) { return double(n->at(nm)); };
+    EXPECT_NEAR(at(587.5618f), n_d, 2e-5) << name;
+    EXPECT_NEAR((at(587.5618f) - 1) / (at(486.1327f) - at(656.2725f)), abbe, 0.02) << name;
+  };
+  expect("glass-BK7", 1.51680, 64.17);
+  expect("glass-BAF10", 1.67003, 47.11);
+  expect("glass-FK51A", 1.48656, 84.47);
+  expect("glass-LASF9", 1.85025, 32.17);
+  expect("glass-SF5", 1.67271, 32.25);
+  expect("glass-SF10", 1.72828, 28.53);
+  expect("glass-SF11", 1.78472, 25.68);
+  for (const char* number : {"5", "10", "11"})
+    EXPECT_EQ(named_spectrum(std::string("glass-F") + number, kHere),
+              named_spectrum(std::string("glass-SF") + number, kHere));
+}
+
+/// Reflectance at normal incidence, ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2): gold is dark in the blue, silver nowhere.
+TEST(Named, MetalsHaveTheirColours) {
+  const auto reflectance = [](const std::string& metal, float nm) {
+    const double n = double(named_spectrum("metal-" + metal + "-eta", kHere)->at(nm));
+    const double k = double(named_spectrum("metal-" + metal + "-k", kHere)->at(nm));
+    return ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
+  };
+  EXPECT_NEAR(reflectance("Au", 450), 0.39, 0.02);
+  EXPECT_NEAR(reflectance("Au", 700), 0.97, 0.02);
+  EXPECT_NEAR(reflectance("Cu", 450), 0.55, 0.04);
+  EXPECT_NEAR(reflectance("Cu", 700), 0.96, 0.03);
+  EXPECT_NEAR(reflectance("Al", 550), 0.92, 0.02);
+  EXPECT_GT(reflectance("Ag", 450), 0.95);
+  EXPECT_GT(reflectance("CuZn", 650), reflectance("CuZn", 450));
+  EXPECT_EQ(named_spectrum("metal-MgO-k", kHere)->at(550), 0);
+  EXPECT_NEAR(double(named_spectrum("metal-TiO2-eta", kHere)->at(600)), 2.9, 0.2);
+}
+
+TEST(Named, AllReachOverTheVisible) {
+  for (const std::string_view name : spectrum_names()) {
+    const Interval range = named_spectrum(name, kHere)->range_nm();
+    EXPECT_LE(range.min, kCieRange_nm.min) << name;
+    EXPECT_GE(range.max, kCieRange_nm.max) << name;
+  }
 }
 
 }  // namespace

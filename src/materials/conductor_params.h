@@ -1,0 +1,66 @@
+#pragma once
+
+#include "core/material.h"
+#include "materials/lobes/conductor.h"
+#include "spectra/check_range.h"
+#include "spectra/fixed_wavelengths.h"
+#include "spectra/named.h"
+
+namespace frond {
+
+/// Names of the parameters of a metal's optics.
+struct MetalNames {
+  std::string_view eta, k, reflectance;
+};
+
+constexpr std::array<Param, 3> metal_params(const MetalNames& names) {
+  return {Param{.name = names.eta,
+                .kind = ParamKind::unbounded,
+                .doc = "Index of refraction; by default that of copper, \"metal-Cu-eta\"."},
+          Param{.name = names.k,
+                .kind = ParamKind::unbounded,
+                .doc = "Index of absorption; by default that of copper, \"metal-Cu-k\"."},
+          Param{.name = names.reflectance,
+                .kind = ParamKind::spectrum_texture,
+                .range = {0, 1},
+                .doc = "Share that is reflected at normal incidence, in place of both."}};
+}
+
+/// What a metal is made of, from its parameters.
+class Metal {
+ public:
+  Metal(const Params& p, const MetalNames& names) : names_(names), where_(p.where()) {
+    const bool has_indices = p.given(names.eta) || p.given(names.k);
+    if (p.given(names.reflectance)) {
+      if (has_indices)
+        fail(p.where(names.reflectance), "\"{}\" stands in place of \"{}\" and \"{}\": give one or the others",
+             names.reflectance, names.eta, names.k);
+      reflectance_ = p.spectrum_texture(names.reflectance);
+      where_ = p.where(names.reflectance);
+      return;
+    }
+    eta_ = p.given(names.eta) ? p.spectrum(names.eta) : named_spectrum("metal-Cu-eta", where_);
+    k_ = p.given(names.k) ? p.spectrum(names.k) : named_spectrum("metal-Cu-k", where_);
+  }
+
+  void prepare(const WavelengthStrategy& wavelengths) {
+    if (reflectance_) return check_range(reflectance_->range_nm(), wavelengths, where_, names_.reflectance);
+    check_range(*eta_, wavelengths, where_, names_.eta);
+    check_range(*k_, wavelengths, where_, names_.k);
+    eta_ = known_at(eta_, wavelengths.fixed_nm());
+    k_ = known_at(k_, wavelengths.fixed_nm());
+  }
+
+  ConductorIndices at(const TexturePoint& point, const SampledWavelengths& lambda) const {
+    if (reflectance_) return ConductorIndices::of_reflectance(reflectance_->evaluate(point, lambda));
+    return {eta_->sample(lambda), k_->sample(lambda)};
+  }
+
+ private:
+  MetalNames names_;
+  Location where_;
+  SpectrumPtr eta_, k_;
+  std::shared_ptr<const SpectrumTexture> reflectance_;  ///< nullptr: the indices
+};
+
+}  // namespace frond

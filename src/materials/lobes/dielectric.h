@@ -1,0 +1,210 @@
+#pragma once
+
+#include "core/bsdf.h"
+#include "materials/lobes/active_lanes.h"
+#include "materials/lobes/dielectric_interface.h"
+
+namespace frond {
+
+/// Index of refraction below a surface over that above, at the wavelengths of a path.
+class LaneIndices {
+ public:
+  LaneIndices(const SampledSpectrum& eta, const SampledWavelengths& lambda) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      eta_[lane] = 1;
+      if (!lambda.active[size_t(lane)]) continue;
+      // pbrt-v4's too: a spectrum that ends has no index of refraction beyond.
+      eta_[lane] = eta[lane] == 0 ? 1 : std::clamp(eta[lane], kLeast, 1 / kLeast);
+      mask_[lane] = 1;
+      lanes_[size_t(count_++)] = lane;
+    }
+    for (int i = 1; i < count_; ++i) disperses_ = disperses_ || of(i) != of(0);
+  }
+
+  /// Whether lanes differ.
+  bool disperses() const { return disperses_; }
+  /// Lanes that are active, and how many.
+  int lane(int i) const { return lanes_[size_t(i)]; }
+  int count() const { return count_; }
+  /// Of the i-th active one.
+  float of(int i) const { return eta_[lane(i)]; }
+  const SampledSpectrum& eta() const { return eta_; }
+  const SampledSpectrum& mask() const { return mask_; }
+  /// No light is turned.
+  bool are_all_one() const {
+    for (int i = 0; i < count_; ++i)
+      if (std::abs(of(i) - 1) >= kAlmostOne) return false;
+    return true;
+  }
+  /// None so close to 1 that what a rough border refracts cannot be told from what it lets through.
+  void move_off_one() {
+    for (int i = 0; i < count_; ++i)
+      if (float& eta = eta_[lane(i)]; std::abs(eta - 1) < kAlmostOne) eta = eta < 1 ? 1 - kAlmostOne : 1 + kAlmostOne;
+  }
+
+ private:
+  static constexpr float kLeast = 1e-3f, kAlmostOne = 1e-3f;
+
+  SampledSpectrum eta_, mask_;
+  std::array<int, kLanes> lanes_{};
+  int count_ = 0;
+  bool disperses_ = false;
+};
+
+/// The border of a dielectric without roughness. What is reflected keeps all lanes; where they are refracted by
+/// different angles, one of them goes on, chosen as often as it is let through.
+class SmoothDielectricBsdf final : public Bsdf {
+ public:
+  explicit SmoothDielectricBsdf(const LaneIndices& indices) : indices_(indices) {}
+
+  Lobes flags() const override {
+    const Lobes flags = Lobes::specular | Lobes::reflection | Lobes::transmission;
+    return indices_.disperses() ? flags | Lobes::stochastic : flags;
+  }
+  SampledSpectrum f(const Vec3&, const Vec3&, RandomStream&) const override { return {}; }
+  float pdf(const Vec3&, const Vec3&) const override { return 0; }
+  SampledSpectrum index_ratio() const override { return indices_.eta(); }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2, RandomStream& rng) const override {
+    if (is_grazing(wo) || indices_.count() == 0) return {};
+    const float cosine = std::abs(wo.z);
+    SampledSpectrum share;
+    float sum = 0;
+    for (int i = 0; i < indices_.count(); ++i) {
+      const float eta = wo.z > 0 ? indices_.of(i) : 1 / indices_.of(i);
+      share[indices_.lane(i)] = fresnel_dielectric(cosine, eta);
+      sum += share[indices_.lane(i)];
+    }
+    const float reflect = std::min(1.f, sum / float(indices_.count()));
+    if (uc < reflect)
+      return BsdfSample{share * (1 / cosine), {-wo.x, -wo.y, wo.z}, reflect, Lobes::specular | Lobes::reflection};
+    return indices_.disperses() ? refract_one(wo, share, rng) : refract_all(wo, 1 - reflect);
+  }
+
+ private:
+  std::optional<BsdfSample> refract_all(const Vec3& wo, float chance) const {
+    const DielectricInterface border({0, 0}, indices_.of(0));
+    const auto way = border.refract(wo, {0, 0, 1});
+    if (!way) return {};
+    return BsdfSample{.f = indices_.mask() * (way->weight / std::abs(way->wi.z)),
+                      .wi = way->wi,
+                      .pdf = chance,
+                      .flags = Lobes::specular | Lobes::transmission,
+                      .eta = border.eta_beyond(wo)};
+  }
+
+  std::optional<BsdfSample> refract_one(const Vec3& wo, const SampledSpectrum& reflected, RandomStream& rng) const {
+    float all = 0;
+    for (int i = 0; i < indices_.count(); ++i) all += 1 - reflected[indices_.lane(i)];
+    float rest = rng.uniform() * all;
+    int chosen = 0;
+    while (chosen + 1 < indices_.count() && rest >= 1 - reflected[indices_.lane(chosen)])
+      rest -= 1 - reflected[indices_.lane(chosen++)];
+    const int lane = indices_.lane(chosen);
+    const DielectricInterface border({0, 0}, indices_.of(chosen));
+    const auto way = border.refract(wo, {0, 0, 1});
+    if (!way) return {};
+    BsdfSample s{.f = {},
+                 .wi = way->wi,
+                 .pdf = (1 - reflected[lane]) / float(indices_.count()),
+                 .flags = Lobes::specular | Lobes::transmission | Lobes::stochastic,
+                 .eta = border.eta_beyond(wo)};
+    if (!(s.pdf > 0)) return {};
+    s.f[lane] = way->weight / std::abs(way->wi.z);
+    return s;
+  }
+
+  LaneIndices indices_;
+};
+
+/// The border of a dielectric with roughness. Where lanes are refracted by different angles, directions are those of a
+/// lane drawn at random, and the density is the mean of theirs.
+class RoughDielectricBsdf final : public Bsdf {
+ public:
+  RoughDielectricBsdf(const TrowbridgeReitz& facets, LaneIndices indices) : facets_(facets), indices_(indices) {
+    indices_.move_off_one();
+  }
+
+  Lobes flags() const override { return Lobes::glossy | Lobes::reflection | Lobes::transmission; }
+  SampledSpectrum index_ratio() const override { return indices_.eta(); }
+
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
+    const bool reflects = same_side(wo, wi);
+    SampledSpectrum f;
+    for (int i = 0; i < models(); ++i) {
+      const auto pair = border(i).pair(wo, wi);
+      f[indices_.lane(i)] = pair.f * pair.share(reflects);
+    }
+    return indices_.disperses() || indices_.count() == 0 ? f : indices_.mask() * f[indices_.lane(0)];
+  }
+
+  float pdf(const Vec3& wo, const Vec3& wi) const override {
+    const bool reflects = same_side(wo, wi);
+    float sum = 0;
+    for (int i = 0; i < models(); ++i) {
+      const auto pair = border(i).pair(wo, wi);
+      sum += pair.pdf * pair.share(reflects);
+    }
+    return models() > 0 ? sum / float(models()) : 0;
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
+    if (is_grazing(wo) || models() == 0) return {};
+    const float place = uc * float(models());
+    const int chosen = std::min(int(place), models() - 1);
+    const DielectricInterface one = border(chosen);
+    const Vec3 m = one.facet(wo, u);
+    const bool reflects = place - float(chosen) < one.fresnel(wo, m);
+    const auto way = reflects ? one.reflect(wo, m) : one.refract(wo, m);
+    if (!way) return {};
+    const float density = pdf(wo, way->wi);
+    if (!(density > 0)) return {};
+    return BsdfSample{.f = f(wo, way->wi, rng),
+                      .wi = way->wi,
+                      .pdf = density,
+                      .flags = Lobes::glossy | (reflects ? Lobes::reflection : Lobes::transmission),
+                      .eta = reflects ? 1 : one.eta_beyond(wo)};
+  }
+
+ private:
+  /// One for all lanes, or one for each.
+  int models() const { return indices_.disperses() ? indices_.count() : std::min(indices_.count(), 1); }
+  DielectricInterface border(int i) const { return {facets_, indices_.of(i)}; }
+
+  TrowbridgeReitz facets_;
+  LaneIndices indices_;
+};
+
+/// A pane so thin that light leaves it where it came in, reflected between its faces to and fro; not refracted.
+class ThinDielectricBsdf final : public Bsdf {
+ public:
+  explicit ThinDielectricBsdf(const LaneIndices& indices) : indices_(indices) {}
+
+  Lobes flags() const override { return Lobes::specular | Lobes::reflection | Lobes::transmission; }
+  SampledSpectrum f(const Vec3&, const Vec3&, RandomStream&) const override { return {}; }
+  float pdf(const Vec3&, const Vec3&) const override { return 0; }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2, RandomStream&) const override {
+    if (is_grazing(wo) || indices_.count() == 0) return {};
+    const float cosine = std::abs(wo.z);
+    SampledSpectrum reflected, transmitted;
+    float sum = 0;
+    for (int i = 0; i < indices_.count(); ++i) {
+      const float one_face = fresnel_dielectric(cosine, indices_.of(i)), both = 2 * one_face / (1 + one_face);
+      reflected[indices_.lane(i)] = both;
+      transmitted[indices_.lane(i)] = 1 - both;
+      sum += both;
+    }
+    const float reflect = std::min(1.f, sum / float(indices_.count()));
+    const bool reflects = uc < reflect;
+    return BsdfSample{.f = (reflects ? reflected : transmitted) * (1 / cosine),
+                      .wi = reflects ? Vec3{-wo.x, -wo.y, wo.z} : -wo,
+                      .pdf = reflects ? reflect : 1 - reflect,
+                      .flags = Lobes::specular | (reflects ? Lobes::reflection : Lobes::transmission)};
+  }
+
+ private:
+  LaneIndices indices_;
+};
+
+}  // namespace frond

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <optional>
+
+#include "materials/lobes/fresnel.h"
+#include "materials/lobes/trowbridge_reitz.h"
+
+namespace frond {
+
+/// Closer than this to the surface, directions scatter nothing: floats should not be divided by less.
+inline bool is_grazing(const Vec3& w) { return std::abs(w.z) < 1e-15f; }
+
+/// A border between two dielectrics at one wavelength, smooth or rough (Walter et al. 2007). Directions and f as of a
+/// Bsdf, for radiance.
+class DielectricInterface {
+ public:
+  /// `eta`: index of refraction below over that above.
+  DielectricInterface(const TrowbridgeReitz& facets, float eta) : facets_(facets), eta_(eta) {}
+
+  bool is_smooth() const { return facets_.is_smooth(); }
+  const TrowbridgeReitz& facets() const { return facets_; }
+  /// On the far side of `w`, over that on its own.
+  float eta_beyond(const Vec3& w) const { return w.z > 0 ? eta_ : 1 / eta_; }
+
+  /// What a rough one's facets do that turn wo into wi: f before Fresnel's factor, the density of `wi` where one such
+  /// facet is taken for granted, and that factor.
+  struct Pair {
+    float f = 0, pdf = 0, fresnel = 0;
+    float share(bool reflects) const { return reflects ? fresnel : 1 - fresnel; }
+  };
+  Pair pair(Vec3 wo, Vec3 wi) const {
+    if (is_grazing(wo) || is_grazing(wi)) return {};
+    const float eta = eta_beyond(wo);
+    if (wo.z < 0) wo.z = -wo.z, wi.z = -wi.z;
+    return wi.z > 0 ? reflected(wo, wi, eta) : refracted(wo, wi, eta);
+  }
+
+  /// A way on by one of the two.
+  struct Way {
+    Vec3 wi;
+    float weight;  ///< f |cos theta_i| / pdf
+    float pdf;     ///< where this one of the two is taken for granted; of a smooth one it is 1
+  };
+
+  /// A facet that is seen from wo; a smooth one's is the surface.
+  Vec3 facet(const Vec3& wo, Vec2 u) const {
+    if (is_smooth()) return {0, 0, 1};
+    return facets_.sample_visible({wo.x, wo.y, std::abs(wo.z)}, u);
+  }
+  float fresnel(const Vec3& wo, const Vec3& m) const {
+    return fresnel_dielectric(dot({wo.x, wo.y, std::abs(wo.z)}, m), eta_beyond(wo));
+  }
+
+  std::optional<Way> reflect(const Vec3& wo_, const Vec3& m) const {
+    const Vec3 wo{wo_.x, wo_.y, std::abs(wo_.z)};
+    const float cosine = dot(wo, m), share = fresnel_dielectric(cosine, eta_beyond(wo_));
+    Vec3 wi = 2 * cosine * m - wo;
+    if (!(wi.z > 0)) return {};
+    Way way{wi, share, 1};
+    if (!is_smooth()) {
+      way.pdf = facets_.density(m) * facets_.visibility(wo) / 4;
+      way.weight *= passes(wo, wi);
+    }
+    if (wo_.z < 0) way.wi.z = -way.wi.z;
+    return way;
+  }
+
+  std::optional<Way> refract(const Vec3& wo_, const Vec3& m) const {
+    const float eta = eta_beyond(wo_);
+    const Vec3 wo{wo_.x, wo_.y, std::abs(wo_.z)};
+    const float cosine = dot(wo, m), cosine2_beyond = 1 - std::max(0.f, 1 - cosine * cosine) / (eta * eta);
+    if (cosine2_beyond <= 0) return {};
+    const float cosine_beyond = std::sqrt(cosine2_beyond);
+    const Vec3 wi = wo * (-1 / eta) + m * (cosine / eta - cosine_beyond);
+    if (!(wi.z < 0)) return {};
+    Way way{wi, (1 - fresnel_dielectric(cosine, eta)) / (eta * eta), 1};
+    if (!is_smooth()) {
+      way.pdf = facets_.density(m) * facets_.visibility(wo) * cosine * spread(cosine, cosine_beyond, eta);
+      way.weight *= passes(wo, {wi.x, wi.y, -wi.z});
+    }
+    if (wo_.z < 0) way.wi.z = -way.wi.z;
+    return way;
+  }
+
+ private:
+  Pair reflected(const Vec3& wo, const Vec3& wi, float eta) const {
+    const Vec3 m = normalize_any(wo + wi);
+    const float area = facets_.density(m);
+    return {area * facets_.seen_from_both(wo, wi), area * facets_.visibility(wo) / 4,
+            fresnel_dielectric(dot(wo, m), eta)};
+  }
+
+  Pair refracted(const Vec3& wo, const Vec3& wi, float eta) const {
+    Vec3 m = normalize_any(wo + eta * wi);
+    if (m.z < 0) m = -m;
+    const float cosine = dot(wo, m), beyond = -dot(wi, m);
+    if (cosine <= 0 || beyond <= 0) return {};
+    const float area = facets_.density(m) * cosine * spread(cosine, beyond, eta);
+    return {area * 4 * facets_.seen_from_both(wo, {wi.x, wi.y, -wi.z}) / (eta * eta), area * facets_.visibility(wo),
+            fresnel_dielectric(cosine, eta)};
+  }
+
+  /// Solid angle of facets' normals over that of directions refracted by them; cosines of both directions to the facet.
+  static float spread(float cosine, float beyond, float eta) {
+    const float whole = cosine / eta - beyond;
+    return beyond / (whole * whole);
+  }
+
+  /// Of the facets seen from one, share that is seen from the other too.
+  float passes(const Vec3& wo, const Vec3& wi) const {
+    return 4 * wi.z * facets_.seen_from_both(wo, wi) / facets_.visibility(wo);
+  }
+
+  TrowbridgeReitz facets_;
+  float eta_;
+};
+
+}  // namespace frond

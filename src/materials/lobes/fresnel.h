@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/float4.h"
+#include "core/spectrum.h"
+
+namespace frond {
+
+/// Reflectance of a smooth border for unpolarised light (Fresnel 1823). `cosine` >= 0: of incidence; `eta`: index of
+/// refraction beyond over that on this side.
+inline float fresnel_dielectric(float cosine, float eta) {
+  const float sine2 = std::max(0.f, 1 - cosine * cosine) / (eta * eta);
+  if (sine2 >= 1) return 1;
+  const float beyond = std::sqrt(1 - sine2);
+  const float along = (eta * cosine - beyond) / (eta * cosine + beyond);
+  const float across = (cosine - eta * beyond) / (cosine + eta * beyond);
+  return 0.5f * (along * along + across * across);
+}
+
+/// The same where the side beyond absorbs, lane by lane: its index is eta + i k (Born and Wolf, 14.2).
+inline SampledSpectrum fresnel_conductor(float cosine, const SampledSpectrum& eta, const SampledSpectrum& k) {
+  constexpr float kTiny = 1e-30f;  // 0 / 0 where nothing is beyond
+  const float cosine2 = cosine * cosine, sine2 = std::max(0.f, 1 - cosine2);
+  const Float4 eta2 = eta.v * eta.v, k2 = k.v * k.v, difference = eta2 - k2 - sine2;
+  const Float4 modulus = square_root(difference * difference + 4 * eta2 * k2);
+  const Float4 a = square_root(larger(0.5f * (modulus + difference), Float4{}));
+  const Float4 twice = 2 * cosine * a, whole = modulus + cosine2;
+  const Float4 across = (whole - twice + kTiny) / (whole + twice + kTiny);
+  const Float4 sum = cosine2 * modulus + sine2 * sine2, part = twice * sine2;
+  const Float4 along = across * (sum - part + kTiny) / (sum + part + kTiny);
+  return SampledSpectrum(0.5f * (across + along));
+}
+
+}  // namespace frond

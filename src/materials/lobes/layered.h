@@ -1,0 +1,321 @@
+#pragma once
+
+#include "materials/lobes/conductor.h"
+#include "materials/lobes/dielectric.h"
+
+namespace frond {
+
+/// The medium between a coat and what it covers. Its extinction coefficient is 1, so its thickness is optical.
+struct CoatMedium {
+  float thickness;
+  SampledSpectrum albedo;  ///< black: it absorbs and does not scatter
+  float g;                 ///< mean cosine of scattering (Henyey and Greenstein 1941)
+};
+
+/// How far walks between the layers go.
+struct LayerWalks {
+  int max_depth;  ///< events below the coat, the way out not counted
+  int samples;    ///< walks of one call of f
+};
+
+namespace detail {
+
+/// Density of the cosine between directions of travel before and after, 1/sr.
+inline float henyey_greenstein(float cosine, float g) {
+  const float square = 1 + g * g - 2 * g * cosine;
+  return 0.25f * kInvPi * (1 - g * g) / (square * std::sqrt(square));
+}
+
+inline Vec3 sample_henyey_greenstein(const Vec3& w, float g, Vec2 u) {
+  float cosine = 1 - 2 * u.x;
+  if (std::abs(g) > 1e-3f) {
+    const float x = (1 - g * g) / (1 + g - 2 * g * u.x);
+    cosine = std::clamp((1 + g * g - x * x) / (2 * g), -1.f, 1.f);
+  }
+  const float sine = std::sqrt(std::max(0.f, 1 - cosine * cosine)), phi = 2 * kPi * u.y;
+  return Frame::around(w).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
+}
+
+}  // namespace detail
+
+/// Lambert's reflection as the lower layer.
+class DiffuseBase {
+ public:
+  explicit DiffuseBase(const SampledSpectrum& reflectance) : reflectance_(reflectance) {}
+
+  static constexpr Lobes kLobe = Lobes::diffuse;
+  bool is_smooth() const { return false; }
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi) const {
+    return same_side(wo, wi) ? reflectance_ * kInvPi : SampledSpectrum();
+  }
+  float pdf(const Vec3& wo, const Vec3& wi) const { return same_side(wo, wi) ? std::abs(wi.z) * kInvPi : 0; }
+  std::optional<BsdfSample> sample(const Vec3& wo, Vec2 u) const {
+    const Vec3 wi = sample_cosine_hemisphere(u);
+    if (is_grazing(wi)) return {};
+    return BsdfSample{f(wo, wi), wi, pdf(wo, wi), Lobes::reflection | Lobes::diffuse};
+  }
+  /// Facets that reflect about as it does, seen through a border of this index and roughness; none.
+  std::optional<TrowbridgeReitz> seen_through(const TrowbridgeReitz&, float) const { return {}; }
+
+ private:
+  SampledSpectrum reflectance_;
+};
+
+/// A metal as the lower layer.
+class ConductorBase {
+ public:
+  ConductorBase(const TrowbridgeReitz& facets, const ConductorIndices& indices, const SampledSpectrum& mask)
+      : facets_(facets), metal_(facets, indices, mask) {}
+
+  static constexpr Lobes kLobe = Lobes::glossy;
+  bool is_smooth() const { return metal_.is_smooth(); }
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi) const { return metal_.f(wo, wi); }
+  float pdf(const Vec3& wo, const Vec3& wi) const { return metal_.pdf(wo, wi); }
+  std::optional<BsdfSample> sample(const Vec3& wo, Vec2 u) const { return metal_.sample(wo, u); }
+  /// By how far slopes turn light that comes near the normal: its own twice, eta times as far outside; the coat's by
+  /// eta - 1, on the way in and on the way out.
+  std::optional<TrowbridgeReitz> seen_through(const TrowbridgeReitz& coat, float eta) const {
+    if (coat.is_smooth() && is_smooth()) return {};
+    const auto width = [&](float own, float above) {
+      return std::clamp(std::hypot(eta * own, (eta - 1) * above * 0.7f), 0.003f, 1.f);
+    };
+    return TrowbridgeReitz(width(facets_.alpha().x, coat.alpha().x), width(facets_.alpha().y, coat.alpha().y));
+  }
+
+ private:
+  TrowbridgeReitz facets_;
+  ConductorBsdf metal_;
+};
+
+/// A dielectric coat over something that reflects, with a medium in between; alike on both sides. f is estimated by
+/// random walks between the layers that know depth alone (Guo, Hasan and Zhao 2018), connected to both directions; the
+/// two ways to meet at a vertex are combined by the power heuristic. Where the coat's index varies over the lanes, a
+/// call takes that of one, drawn at random, and sees that one alone.
+template <class Base>
+class LayeredBsdf final : public Bsdf {
+ public:
+  LayeredBsdf(const TrowbridgeReitz& coat, const LaneIndices& indices, const Base& base, const CoatMedium& medium,
+              const LayerWalks& walks)
+      : coat_(coat), indices_(indices), base_(base), medium_(medium), walks_(walks) {
+    if (!coat_.is_smooth()) indices_.move_off_one();
+    medium_.thickness = std::max(medium_.thickness, 0.f);
+    medium_.g = std::clamp(medium_.g, -0.99f, 0.99f);
+  }
+
+  Lobes flags() const override {
+    Lobes flags = Lobes::reflection | Lobes::stochastic | Base::kLobe;
+    if (coat_.is_smooth()) flags = flags | Lobes::specular;
+    return flags | Lobes::glossy;
+  }
+
+  SampledSpectrum f(const Vec3& wo_, const Vec3& wi_, RandomStream& rng) const override {
+    if (!same_side(wo_, wi_) || is_grazing(wo_) || is_grazing(wi_) || indices_.count() == 0) return {};
+    const Vec3 wo = wo_.z < 0 ? -wo_ : wo_, wi = wo_.z < 0 ? -wi_ : wi_;
+    const Coat coat = draw_coat(rng);
+    SampledSpectrum walked;
+    for (int i = 0; i < walks_.samples; ++i) walked += walk_between(coat, wo, wi, rng);
+    SampledSpectrum f = walked * (1 / float(walks_.samples));
+    if (!coat_.is_smooth()) {
+      const auto pair = coat.border.pair(wo, wi);
+      f += coat.lanes * (pair.f * pair.fresnel);
+    }
+    return f;
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo_, float uc, Vec2 u, RandomStream& rng) const override {
+    if (is_grazing(wo_) || indices_.count() == 0) return {};
+    const bool turned = wo_.z < 0;
+    const Coat coat = draw_coat(rng);
+    auto s = walk_out(coat, turned ? -wo_ : wo_, uc, u, rng);
+    if (!s || is_grazing(s->wi)) return {};
+    if (turned) s->wi = -s->wi;
+    // The weight stands; what it is divided by does not matter.
+    s->pdf = any(s->flags & Lobes::specular) ? 1 : pdf(wo_, s->wi);
+    s->f *= s->pdf / std::abs(s->wi.z);
+    s->pdf_is_approximate = true;
+    if (!(s->pdf > 0)) return {};
+    return s;
+  }
+
+  /// The coat's reflection, the base's lobe as it looks through the coat, and a cosine for the rest.
+  float pdf(const Vec3& wo_, const Vec3& wi_) const override {
+    if (!same_side(wo_, wi_) || is_grazing(wo_) || is_grazing(wi_) || indices_.count() == 0) return 0;
+    const Vec3 wo = wo_.z < 0 ? -wo_ : wo_, wi = wo_.z < 0 ? -wi_ : wi_;
+    if (coat_.is_smooth() && base_.is_smooth() && medium_.albedo.is_black()) return 0;
+    const float reflected = fresnel_dielectric(wo.z, indices_.of(0));
+    float density = wi.z * kInvPi;
+    if (const auto lobe = base_.seen_through(coat_, indices_.of(0)))
+      density = std::lerp(density, density_folded(*lobe, wo, wi), kLobeShare);
+    if (coat_.is_smooth()) return (1 - reflected) * density;
+    return std::lerp(density, density_folded(coat_, wo, wi), std::clamp(reflected, 0.05f, 0.95f));
+  }
+
+ private:
+  static constexpr float kLobeShare = 0.9f;
+
+  /// The coat at one wavelength, and the lanes that it stands for, each times how seldom it is chosen.
+  struct Coat {
+    DielectricInterface border;
+    SampledSpectrum lanes;
+  };
+  Coat draw_coat(RandomStream& rng) const {
+    if (!indices_.disperses()) return {{coat_, indices_.of(0)}, indices_.mask()};
+    const int chosen = std::min(int(rng.uniform() * float(indices_.count())), indices_.count() - 1);
+    Coat coat{{coat_, indices_.of(chosen)}, {}};
+    coat.lanes[indices_.lane(chosen)] = float(indices_.count());
+    return coat;
+  }
+
+  static Vec2 pair_of(RandomStream& rng) {
+    const float x = rng.uniform(), y = rng.uniform();
+    return {x, y};
+  }
+  float transmittance(float distance, const Vec3& w) const { return std::exp(-distance / std::abs(w.z)); }
+
+  /// Density of directions reflected by facets that are seen from wo; what goes below the surface is folded up.
+  static float density_folded(const TrowbridgeReitz& facets, const Vec3& wo, const Vec3& wi) {
+    const auto density = [&](const Vec3& w) {
+      const Vec3 m = normalize_any(wo + w);
+      return dot(wo, m) > 0 ? facets.density(m) : 0;
+    };
+    return (density(wi) + density({wi.x, wi.y, -wi.z})) * facets.visibility(wo) / 4;
+  }
+
+  /// Where a walk is: at height z over the base, on its way along w.
+  struct Place {
+    float z;
+    Vec3 w;
+    SampledSpectrum weight;
+  };
+
+  /// To the next event. True: it is in the medium, and the weight has its albedo.
+  bool advance(Place& at, RandomStream& rng) const {
+    const float end = at.w.z > 0 ? medium_.thickness : 0, way = std::abs(end - at.z);
+    if (medium_.albedo.is_black()) {
+      at.weight *= transmittance(way, at.w);
+    } else if (const float step = -std::log1p(-rng.uniform()) * std::abs(at.w.z); step < way) {
+      at.z += at.w.z > 0 ? step : -step;
+      at.weight *= medium_.albedo;
+      return true;
+    }
+    at.z = end;
+    return false;
+  }
+
+  /// Roulette of walks that carry little; false where one ends.
+  static bool survives(Place& at, int depth, RandomStream& rng) {
+    constexpr int kSafe = 4;
+    constexpr float kLittle = 0.25f;
+    const float most = at.weight.max();
+    if (depth < kSafe || most >= kLittle) return most > 0;
+    if (rng.uniform() >= most) return false;
+    at.weight *= 1 / most;
+    return true;
+  }
+
+  /// Estimate of what goes from wi to wo by way of the base or the medium.
+  SampledSpectrum walk_between(const Coat& coat, const Vec3& wo, const Vec3& wi, RandomStream& rng) const {
+    const DielectricInterface& border = coat.border;
+    const auto in = border.refract(wo, border.facet(wo, pair_of(rng)));
+    const auto out = border.refract(wi, border.facet(wi, pair_of(rng)));
+    if (!in || !out || is_grazing(in->wi) || is_grazing(out->wi)) return {};
+    const Vec3 up = -out->wi;
+    const float eta = border.eta_beyond(wi), out_weight = out->weight * eta * eta;  // it is used the other way round
+    const bool smooth = coat_.is_smooth();
+    // Light from wi by the way out that was drawn, against a direction `w` drawn elsewhere.
+    const auto against = [&](float pdf) { return smooth ? 1 : power_heuristic(out->pdf, pdf); };
+    const auto escaped = [&](const Place& at, float pdf, bool is_delta) -> SampledSpectrum {
+      if (smooth || !(at.w.z > 0)) return {};
+      const auto pair = border.pair(-at.w, wi);
+      if (pair.f == 0) return {};
+      const float weight = is_delta ? 1 : power_heuristic(pdf, border.pair(wi, -at.w).pdf);
+      return at.weight * (pair.f * (1 - pair.fresnel) * weight * transmittance(medium_.thickness - at.z, at.w));
+    };
+
+    SampledSpectrum sum;
+    Place at{medium_.thickness, in->wi, coat.lanes * in->weight};
+    for (int depth = 0; depth < walks_.max_depth && survives(at, depth, rng); ++depth) {
+      if (is_grazing(at.w)) break;
+      if (advance(at, rng)) {
+        const float p = detail::henyey_greenstein(dot(at.w, up), medium_.g);
+        sum += at.weight * (p * against(p) * transmittance(medium_.thickness - at.z, up) * out_weight / up.z);
+        const Vec3 before = at.w;
+        at.w = detail::sample_henyey_greenstein(before, medium_.g, pair_of(rng));
+        if (is_grazing(at.w)) break;
+        sum += escaped(at, detail::henyey_greenstein(dot(before, at.w), medium_.g), false);
+      } else if (at.w.z > 0) {
+        const auto back = border.reflect(-at.w, border.facet(-at.w, pair_of(rng)));
+        if (!back) break;
+        at.weight *= back->weight;
+        at.w = back->wi;
+      } else {
+        if (!base_.is_smooth())
+          sum += at.weight * base_.f(-at.w, up) *
+                 (against(base_.pdf(-at.w, up)) * transmittance(medium_.thickness, up) * out_weight);
+        const auto next = base_.sample(-at.w, pair_of(rng));
+        if (!next || is_grazing(next->wi)) break;
+        at.weight *= next->f * (std::abs(next->wi.z) / next->pdf);
+        at.w = next->wi;
+        sum += escaped(at, next->pdf, base_.is_smooth());
+      }
+    }
+    return sum;
+  }
+
+  /// A walk from wo until it leaves; f holds its weight.
+  std::optional<BsdfSample> walk_out(const Coat& coat, const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const {
+    const DielectricInterface& border = coat.border;
+    const Lobes coat_lobe = coat_.is_smooth() ? Lobes::specular : Lobes::glossy;
+    const Vec3 m = border.facet(wo, u);
+    const float reflected = border.fresnel(wo, m);
+    if (uc < reflected) {
+      const auto way = border.reflect(wo, m);
+      if (!way) return {};
+      return BsdfSample{.f = coat.lanes * (way->weight / reflected),
+                        .wi = way->wi,
+                        .flags = Lobes::reflection | Lobes::stochastic | coat_lobe};
+    }
+    const auto in = border.refract(wo, m);
+    if (!in || is_grazing(in->wi)) return {};
+    Place at{medium_.thickness, in->wi, coat.lanes * (in->weight / (1 - reflected))};
+    bool is_delta = coat_.is_smooth();
+    for (int depth = 0; survives(at, depth, rng); ++depth) {
+      if (is_grazing(at.w)) return {};
+      const bool may_go_on = depth < walks_.max_depth;
+      if (advance(at, rng)) {
+        if (!may_go_on) return {};
+        at.w = detail::sample_henyey_greenstein(at.w, medium_.g, pair_of(rng));
+        is_delta = false;
+      } else if (at.w.z > 0) {
+        const Vec3 inner = border.facet(-at.w, pair_of(rng));
+        const float back = border.fresnel(-at.w, inner);
+        const bool stays = rng.uniform() < back;
+        const auto way = stays ? border.reflect(-at.w, inner) : border.refract(-at.w, inner);
+        if (!way || (stays && !may_go_on)) return {};
+        at.weight *= way->weight / (stays ? back : 1 - back);
+        at.w = way->wi;
+        if (!stays)
+          return BsdfSample{
+              .f = at.weight,
+              .wi = at.w,
+              .flags = Lobes::reflection | Lobes::stochastic | (is_delta ? Lobes::specular : Base::kLobe)};
+      } else {
+        if (!may_go_on) return {};
+        const auto next = base_.sample(-at.w, pair_of(rng));
+        if (!next) return {};
+        at.weight *= next->f * (std::abs(next->wi.z) / next->pdf);
+        at.w = next->wi;
+        is_delta = is_delta && base_.is_smooth();
+      }
+    }
+    return {};
+  }
+
+  TrowbridgeReitz coat_;
+  LaneIndices indices_;
+  Base base_;
+  CoatMedium medium_;
+  LayerWalks walks_;
+};
+
+}  // namespace frond

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "core/sampling.h"
+#include "core/vec.h"
+
+namespace frond {
+
+/// Distribution of the normals of a rough surface's facets (Trowbridge and Reitz 1975; "GGX"), whose slopes along x and
+/// y have the widths alpha, with Smith's shadowing, height correlated (Heitz 2014). Directions lie on the side of +z.
+class TrowbridgeReitz {
+ public:
+  /// Below `kSmooth` in both, nobody sees that it is rough; the smaller is not less than a tenth of that.
+  TrowbridgeReitz(float alpha_x, float alpha_y)
+      : x_(std::clamp(alpha_x, 0.1f * kSmooth, kRoughest)), y_(std::clamp(alpha_y, 0.1f * kSmooth, kRoughest)) {}
+
+  bool is_smooth() const { return std::max(x_, y_) < kSmooth; }
+  Vec2 alpha() const { return {x_, y_}; }
+
+  /// Area of facets of this normal, over the surface's, 1/sr.
+  float density(const Vec3& m) const {
+    if (m.z <= 0) return 0;
+    const float x = m.x / x_, y = m.y / y_, square = x * x + y * y + m.z * m.z;
+    return kInvPi / (x_ * y_ * square * square);
+  }
+  /// Of a direction stretched as the facets are: cos theta (1 + 2 Lambda) of Smith's function.
+  float stretch(const Vec3& w) const {
+    const float x = x_ * w.x, y = y_ * w.y;
+    return std::sqrt(w.z * w.z + x * x + y * y);
+  }
+  /// Share of facets that are seen from both, over 4 cos theta_a cos theta_b.
+  float seen_from_both(const Vec3& a, const Vec3& b) const { return 0.5f / (a.z * stretch(b) + b.z * stretch(a)); }
+  /// Density of `sample_visible` over `density` and |dot(w, m)|.
+  float visibility(const Vec3& w) const { return 2 / (w.z + stretch(w)); }
+
+  /// A normal, as often as its facets are seen from `w` (Heitz 2018), by spherical caps (Dupuy and Benyoub 2023).
+  Vec3 sample_visible(const Vec3& w, Vec2 u) const {
+    const Vec3 stretched = normalize_any(Vec3{x_ * w.x, y_ * w.y, w.z});
+    const float phi = 2 * kPi * u.x, z = 1 - u.y * (1 + stretched.z);
+    const float sine = std::sqrt(std::max(0.f, 1 - z * z));
+    const Vec3 h = stretched + Vec3{sine * std::cos(phi), sine * std::sin(phi), z};
+    return normalize_any(Vec3{x_ * h.x, y_ * h.y, std::max(h.z, 1e-7f)});
+  }
+
+ private:
+  static constexpr float kSmooth = 1e-3f, kRoughest = 10;
+
+  float x_, y_;
+};
+
+}  // namespace frond

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include "core/params.h"
+#include "core/texture.h"
+#include "materials/lobes/trowbridge_reitz.h"
+
+namespace frond {
+
+/// Names of the parameters of one surface's roughness.
+struct RoughnessNames {
+  std::string_view both, u, v;
+};
+inline constexpr RoughnessNames kRoughnessNames{"roughness", "uroughness", "vroughness"};
+
+constexpr std::array<Param, 3> roughness_params(const RoughnessNames& names) {
+  return {Param{.name = names.both,
+                .kind = ParamKind::float_texture,
+                .default_value = 0.0,
+                .range = kAtLeastZero,
+                .doc = "Roughness of the surface; its square root is the width of the facets' slopes. 0: smooth."},
+          Param{.name = names.u,
+                .kind = ParamKind::float_texture,
+                .range = kAtLeastZero,
+                .doc = "Roughness along u; by default that of both."},
+          Param{.name = names.v,
+                .kind = ParamKind::float_texture,
+                .range = kAtLeastZero,
+                .doc = "Roughness along v; by default that of both."}};
+}
+
+inline constexpr Param kRemapRoughness{.name = "remaproughness",
+                                       .kind = ParamKind::boolean,
+                                       .default_value = true,
+                                       .doc = "false: roughness is the width of the facets' slopes itself."};
+
+/// How rough a surface is over its points, from its parameters.
+class Roughness {
+ public:
+  Roughness(const Params& p, const RoughnessNames& names)
+      : u_(p.float_texture(p.given(names.u) ? names.u : names.both)),
+        v_(p.float_texture(p.given(names.v) ? names.v : names.both)),
+        remap_(p.boolean("remaproughness")),
+        is_along_u_((p.given(names.u) || p.given(names.v)) &&
+                    !(u_->is_constant() && v_->is_constant() && u_->range().min == v_->range().min)) {
+    p.float_texture(names.both);  // checked even where it does not count
+  }
+
+  TrowbridgeReitz at(const TexturePoint& point) const {
+    const float u = u_->evaluate(point);
+    return {alpha(u), alpha(is_along_u_ ? v_->evaluate(point) : u)};
+  }
+  /// It needs to know where u goes.
+  bool has_direction() const { return is_along_u_; }
+
+ private:
+  float alpha(float roughness) const { return remap_ ? std::sqrt(std::max(0.f, roughness)) : roughness; }
+
+  std::shared_ptr<const FloatTexture> u_, v_;
+  bool remap_, is_along_u_;
+};
+
+/// Parameters of several kinds in one table.
+template <size_t... N>
+constexpr auto joined(const std::array<Param, N>&... parts) {
+  std::array<Param, (N + ...)> all{};
+  size_t i = 0;
+  ((std::ranges::for_each(parts, [&](const Param& p) { all[i++] = p; })), ...);
+  return all;
+}
+
+}  // namespace frond

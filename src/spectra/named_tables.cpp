@@ -1,0 +1,61 @@
+#include "spectra/named_tables.h"
+
+#include <charconv>
+#include <stdexcept>
+#include <string>
+
+#include "spectra/cie.h"
+#include "spectra/data_files.h"
+
+namespace frond {
+namespace {
+
+/// Cuts off what comes before the separator, and returns it.
+std::string_view cut(std::string_view& text, char separator) {
+  const size_t end = text.find(separator);
+  const std::string_view first = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return first;
+}
+
+/// Where a name stands in the line that begins a block; 0 where it does not.
+size_t place_in(std::string_view names, std::string_view name) {
+  for (size_t i = 0; !names.empty(); ++i)
+    if (cut(names, ',') == name) return i;
+  return 0;
+}
+
+double field(std::string_view line, size_t index) {
+  for (size_t i = 0; i < index; ++i) cut(line, ',');
+  const std::string_view text = cut(line, ',');
+  double value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+}  // namespace
+
+std::vector<SpectrumPoint> named_column(std::string_view name) {
+  std::vector<SpectrumPoint> points;
+  size_t column = 0;
+  for (std::string_view rest = named_csv; !rest.empty();) {
+    const std::string_view line = cut(rest, '\n');
+    if (line.empty() || line.front() == '#') continue;
+    if (line.starts_with("nm,"))
+      column = place_in(line, name);
+    else if (column > 0)
+      points.push_back({field(line, 0), field(line, column)});
+  }
+  if (points.empty()) throw std::logic_error("named.csv has no column " + std::string(name));
+  return points;
+}
+
+SpectrumPtr named_table(std::string_view name) {
+  std::vector<SpectrumPoint> points = named_column(name);
+  if (points.front().lambda_nm > kCieRange_nm.min)
+    points.insert(points.begin(), {kCieRange_nm.min, points.front().value});
+  if (points.back().lambda_nm < kCieRange_nm.max) points.push_back({kCieRange_nm.max, points.back().value});
+  return make_tabulated(points);
+}
+
+}  // namespace frond
