@@ -190,18 +190,19 @@ void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, Parsed
 
 void DescriptionBuilder::area_light(ParsedPlugin plugin) {
   if (plugin.name.empty()) return state_.area_light.reset();
-  if (open_object_) fail(plugin.where, "area lights inside objects are not supported yet");
   scene_.area_lights.push_back(with_defaults(std::move(plugin), Target::light));
   state_.area_light = scene_.area_lights.size() - 1;
 }
 
 void DescriptionBuilder::shape(ParsedPlugin plugin) {
-  if (open_object_ && state_.area_light)
-    fail(plugin.where, "area lights inside objects are not supported yet; that of {} is in force here",
-         place(scene_.area_lights[*state_.area_light].where));
+  const bool is_dark = open_object_ && state_.area_light;
+  if (is_dark)
+    log_.warn(plugin.where, fmt::format("shapes in objects give off no light, as in pbrt-v4; the area light of {} is in "
+                                        "force here",
+                                        place(scene_.area_lights[*state_.area_light].where)));
   auto& shapes = open_object_ ? scene_.objects[*open_object_].shapes : scene_.shapes;
   shapes.push_back({with_defaults(std::move(plugin), Target::shape), state_.transform, state_.reverse_orientation,
-                    state_.material, state_.area_light});
+                    state_.material, is_dark ? std::nullopt : state_.area_light});
 }
 
 void DescriptionBuilder::light(ParsedPlugin plugin) {
