@@ -13,6 +13,12 @@ double irradiance(const Light& light, double power, double radius) {
   return light.is_delta() ? e : e / kOfSky;
 }
 
+/// A surface that no ray meets is sampled all the same.
+bool has_points(const Light& light) {
+  const auto bounds = light.bounds();
+  return bounds && !(bounds->min == bounds->max);
+}
+
 }  // namespace
 
 LightSelector::LightSelector(const World& world, Strategy strategy)
@@ -24,7 +30,7 @@ LightSelector::LightSelector(const World& world, Strategy strategy)
     const double share = lights_[i]->competing_share();
     if (share == 0) continue;
     ++count_;
-    has_extent_ = has_extent_ || !lights_[i]->is_delta();
+    has_extent_ = has_extent_ || !lights_[i]->is_delta() || has_points(*lights_[i]);
     total += powers[i] = strategy == Strategy::uniform ? 1 : share * lights_[i]->power(world.radius());
   }
   const double least = total > 0 ? kLeast * total / double(count_) : 1;

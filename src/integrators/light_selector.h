@@ -32,7 +32,7 @@ class LightSelector {
   bool empty() const { return count_ == 0; }
   /// More than one light: `choose` reads its number.
   bool has_choice() const { return count_ > 1; }
-  /// Some light has points or directions to sample: all but delta lights.
+  /// Some light has points or directions to sample: all but delta lights, and of these surfaces that no ray meets.
   bool has_extent() const { return has_extent_; }
   /// Nothing where no light reaches the place.
   std::optional<Choice> choose(const Place& place, float u) const {

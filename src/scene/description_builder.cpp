@@ -188,17 +188,19 @@ void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, Parsed
 
 void DescriptionBuilder::area_light(ParsedPlugin plugin) {
   if (plugin.name.empty()) return state_.area_light.reset();
-  if (open_object_) fail(plugin.where, "area lights inside objects are not supported yet");
   scene_.area_lights.push_back(with_defaults(std::move(plugin), Target::light));
   state_.area_light = scene_.area_lights.size() - 1;
 }
 
 void DescriptionBuilder::shape(ParsedPlugin plugin) {
-  if (open_object_ && state_.area_light)
-    fail(plugin.where, "area lights inside objects are not supported yet; that of {} is in force here",
-         place(scene_.area_lights[*state_.area_light].where));
   auto& shapes = open_object_ ? scene_.objects[*open_object_].shapes : scene_.shapes;
   std::optional<size_t> area_light = state_.area_light;
+  if (area_light && open_object_) {
+    log_.warn(plugin.where, fmt::format("shapes in objects give off no light, as in pbrt-v4; the area light of {} is in "
+                                        "force here",
+                                        place(scene_.area_lights[*area_light].where)));
+    area_light.reset();
+  }
   if (area_light && scene_.materials[state_.material].plugin.name == "interface") {
     log_.warn(plugin.where, "the area light does not shine: with material \"interface\" there is no surface");
     area_light.reset();

@@ -13,53 +13,83 @@ Vec3d edge_cross(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
 
 }  // namespace
 
-EmittingSurface::EmittingSurface(const ShapeGeometry& geometry) : geometry_(geometry) {
-  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) {
-    area_ = (*shape)->area();
+unsigned primitives_of(const ShapeGeometry& geometry) {
+  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry)) return (*shape)->count();
+  return unsigned(std::get<MeshPtr>(geometry)->triangles.size());
+}
+
+EmittingSurface::EmittingSurface(const Surface& surface, std::optional<unsigned> primitive)
+    : geometry_(surface.geometry),
+      is_met_(!surface.alpha || surface.alpha->range().max > 0),
+      only_(primitive ? primitive : count() == 1 ? std::optional(0u) : std::nullopt) {
+  if (is_met_) alpha_ = surface.alpha;
+  if (only_) {
+    area_ = area_of(*only_);
     return;
   }
-  const TriangleMesh& mesh = *std::get<MeshPtr>(geometry_);
   std::vector<float> areas;
-  areas.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) areas.push_back(float(length(edge_cross(mesh, t)) / 2));
-  triangles_by_area_.emplace(areas);
-  area_ = triangles_by_area_->sum();
+  areas.reserve(count());
+  for (unsigned i = 0; i < count(); ++i) areas.push_back(float(area_of(i)));
+  by_area_.emplace(areas);
+  area_ = by_area_->sum();
 }
 
-ShapePoint EmittingSurface::sample(Vec2 u) const {
-  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) return (*shape)->sample(u);
+unsigned EmittingSurface::count() const { return primitives_of(geometry_); }
+
+double EmittingSurface::area_of(unsigned i) const {
+  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) return (*shape)->area(i);
   const TriangleMesh& mesh = *std::get<MeshPtr>(geometry_);
-  const auto [index, fraction, pdf] = triangles_by_area_->sample(u.x);
-  const auto& t = mesh.triangles[index];
-  const float root = std::sqrt(fraction), b1 = 1 - root, b2 = u.y * root;
-  const Vec3 p = mesh.p[t[0]] * (1 - b1 - b2) + mesh.p[t[1]] * b1 + mesh.p[t[2]] * b2;
-  const Vec3d n = normalize_any(edge_cross(mesh, t));
-  return {p, to_float(n), {b1, b2}, 0, unsigned(index)};
+  return length(edge_cross(mesh, mesh.triangles[i])) / 2;
 }
 
-Vec2 EmittingSurface::uv(const ShapePoint& point) const {
-  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) return (*shape)->uv(point.primitive, point.at);
-  return Triangle(*std::get<MeshPtr>(geometry_), point.primitive, point.at).uv();
+ShapePoint EmittingSurface::sample(unsigned primitive, Vec2 u) const {
+  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) return (*shape)->sample(primitive, u);
+  const TriangleMesh& mesh = *std::get<MeshPtr>(geometry_);
+  const auto& t = mesh.triangles[primitive];
+  const float root = std::sqrt(u.x), b1 = 1 - root, b2 = u.y * root;
+  const Vec3 p = mesh.p[t[0]] * (1 - b1 - b2) + mesh.p[t[1]] * b1 + mesh.p[t[2]] * b2;
+  const Vec3d n = edge_cross(mesh, t);
+  return {p, to_float(normalize_any(n)), {b1, b2}, 0, primitive, length(n) / 2};
+}
+
+EmittingSurface::Sample EmittingSurface::sample(Vec2 u) const {
+  Sample s;
+  double own_area = area_;
+  if (only_) {
+    s.point = sample(*only_, u);
+  } else {
+    const auto [index, fraction, probability] = by_area_->sample(u.x);
+    s.point = sample(unsigned(index), {fraction, u.y});
+    own_area *= double(probability);
+  }
+  s.weight = float(s.point.area / own_area);
+  if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_))
+    s.uv = (*shape)->uv(s.point.primitive, s.point.at);
+  else
+    s.uv = Triangle(*std::get<MeshPtr>(geometry_), s.point.primitive, s.point.at).uv();
+  return s;
 }
 
 LightBounds EmittingSurface::bounds() const {
   Bounds box;
   LightBounds result;
+  const unsigned first = only_.value_or(0), end = only_ ? first + 1 : count();
   if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) {
-    for (unsigned i = 0; i < (*shape)->count(); ++i) {
+    for (unsigned i = first; i < end; ++i) {
       const Bounds one = (*shape)->bounds(i);
       box.add(one.min), box.add(one.max);
     }
   } else {
     const TriangleMesh& mesh = *std::get<MeshPtr>(geometry_);
+    const std::span triangles(mesh.triangles.begin() + first, mesh.triangles.begin() + end);
     Vec3d sum;
-    for (const auto& t : mesh.triangles) {
+    for (const auto& t : triangles) {
       for (const uint32_t i : t) box.add(mesh.p[i]);
       sum += edge_cross(mesh, t);
     }
     if (const Vec3d axis = normalize_any(sum); dot(axis, axis) > 0) {
       double least = 1;
-      for (const auto& t : mesh.triangles) least = std::min(least, dot(axis, normalize_any(edge_cross(mesh, t))));
+      for (const auto& t : triangles) least = std::min(least, dot(axis, normalize_any(edge_cross(mesh, t))));
       result.axis = to_float(axis);
       result.cos_spread = float(std::max(-1.0, least - 0x1p-20));
     }

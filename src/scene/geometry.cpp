@@ -18,6 +18,9 @@ Bounds bounds_of(RTCScene scene) {
   return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
 }
 
+/// How far offset_origin lifts rays off, as a share of a hit's extent.
+constexpr float kLiftOfExtent = 0x1p-17f;
+
 Vec3 face_forward(const Vec3& n, const Vec3& reference) { return dot(n, reference) < 0 ? -n : n; }
 
 /// Where the surface is so small, or its vertex normals so contrary, that there is no normal, the next best: no NaN.
@@ -71,10 +74,14 @@ bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hi
     return true;
   }
   hit.ng = {at.Ng_x, at.Ng_y, at.Ng_z};
-  hit.at.uv = std::get<AnalyticShapePtr>(surface.geometry)->uv(at.primID, {at.u, at.v});
+  const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
+  hit.at.uv = shape.uv(at.primID, {at.u, at.v});
   hit.p = lane.p;
   hit.extent = largest_coordinate(hit.p);
-  return false;
+  if (shape.is_plain()) return false;
+  hit.extent = std::max(hit.extent, shape.clearance({lane.p, hit.ng, {at.u, at.v}, 0, at.primID}) / kLiftOfExtent);
+  ns = shape.shading_normal(at.primID, {at.u, at.v});
+  return !(ns == Vec3{});
 }
 
 SurfaceDerivatives derivatives_of(const Surface& surface, const RTCHit& at, const embree::Lane& lane) {
@@ -295,6 +302,7 @@ void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& r
   if (detailed.contains(surface.material)) set_derivatives(surface, at, lane, level, hit);
   met.material = surface.material;
   met.surface = level == 0 ? std::optional(at.geomID) : std::nullopt;
+  met.primitive = at.primID;
 }
 
 uint32_t Geometry::occluded(const RayPacket& packet) const {

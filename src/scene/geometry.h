@@ -55,6 +55,7 @@ struct GeometryHit {
   float t = 0;                      ///< along the ray
   uint32_t material = 0;            ///< as of a Surface
   std::optional<uint32_t> surface;  ///< of Geometry::surfaces, where the shape stands for itself
+  uint32_t primitive = 0;           ///< of the surface
   uint64_t instance = 0;            ///< the copy, counted from 1; 0: the shape stands for itself
 };
 

@@ -59,11 +59,13 @@ class Areas {
     constexpr int kPoints = 64;
     const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
     const AffineMap map{t.rows()};
-    for (int i = 0; i < kPoints; ++i) {
-      const Vec3 n = shape.sample({(float(i) + 0.5f) / kPoints, float((i * 37) % kPoints) / kPoints}).ng;
-      sum += double(length(map.normal(n))) / kPoints;
-    }
-    return sum * shape.area();
+    for (unsigned primitive = 0; primitive < shape.count(); ++primitive)
+      for (int i = 0; i < kPoints; ++i) {
+        const Vec2 u{(float(i) + 0.5f) / kPoints, float((i * 37) % kPoints) / kPoints};
+        const ShapePoint point = shape.sample(primitive, u);
+        sum += double(length(map.normal(point.ng))) * point.area / kPoints;
+      }
+    return sum;
   }
 
   std::vector<float>& areas_;

@@ -105,7 +105,8 @@ class GeometryBuilder {
     if (const auto* copies = std::get_if<ObjectCopies>(&made))
       parts.instances.push_back(instances(*copies, shape, params));
     else
-      parts.surfaces.push_back(surface(std::move(std::get<ShapeGeometry>(made)), shape, params));
+      for (ShapeGeometry& geometry : std::get<std::vector<ShapeGeometry>>(made))
+        parts.surfaces.push_back(surface(std::move(geometry), shape, params));
   }
 
   Surface surface(ShapeGeometry geometry, const ShapeDescription& shape, const Params& params) {
@@ -115,7 +116,6 @@ class GeometryBuilder {
     const auto alpha = params.float_texture("alpha");
     if (!alpha->is_constant() || alpha->range().min < 1) result.alpha = alpha;
     if (shape.area_light) {
-      if (result.alpha) fail(params.where("alpha"), "\"alpha\" on a shape that gives off light is not supported yet");
       check_emitter(result.geometry, where);
       result.area_light = uint32_t(*shape.area_light);
     }

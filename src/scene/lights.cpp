@@ -5,7 +5,6 @@
 
 #include "core/error.h"
 #include "core/sampling.h"
-#include "scene/emitter.h"
 #include "scene/registry.h"
 #include "spectra/cie.h"
 
@@ -121,33 +120,35 @@ class SpotLight final : public Light {
 
 class DiffuseAreaLight final : public AreaLight {
  public:
-  DiffuseAreaLight(const Params& p, const ShapeGeometry& geometry)
-      : spectrum_(p.spectrum("L")), surface_(geometry), two_sided_(p.boolean("twosided")) {
+  DiffuseAreaLight(const Params& p, EmittingSurface surface)
+      : spectrum_(p.spectrum("L")), surface_(std::move(surface)), two_sided_(p.boolean("twosided")) {
     if (!(surface_.area() > 0))
       fail(p.where(), "an area light needs a surface with an area, this one has {}", surface_.area());
     scale_ = scale_of(p, "power", sides() * kPiD * surface_.area());
   }
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
-    const ShapePoint on_light = surface_.sample(u);
+    const auto [on_light, uv, weight] = surface_.sample(u);
     const Vec3 d = on_light.p - p;
     const float distance = length(d);
     if (distance == 0) return {};
     const Vec3 wi = d / distance;
-    const EmittingPoint at{on_light.p, on_light.ng, {}};
+    const EmittingPoint at{on_light.p, on_light.ng, uv};
     const float density = pdf_along(at.ng, wi, distance);
-    const SampledSpectrum emitted = radiance(at, -wi, lambda);
+    // Not the density, which `pdf` would have to know too: where points are not quite even, what they give makes up.
+    const SampledSpectrum emitted = radiance(at, -wi, lambda) * weight;
     if (!std::isfinite(density) || emitted.is_black()) return {};
     return LightSample{emitted, wi, distance, density};
   }
   SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const override {
-    return two_sided_ || dot(at.ng, w) > 0 ? spectrum_->sample(lambda) * scale_ : SampledSpectrum();
+    if (!two_sided_ && !(dot(at.ng, w) > 0)) return {};
+    return spectrum_->sample(lambda) * (scale_ * surface_.opacity(at.uv));
   }
   float pdf(const Vec3& from, const EmittingPoint& at) const override {
     const Vec3 d = at.p - from;
     const float density = pdf_along(at.ng, normalize_any(d), length(d));
     return density > 0 ? density : 0;  // no number where the points are one
   }
-  bool is_delta() const override { return false; }
+  bool is_delta() const override { return !surface_.is_met(); }
   double power(float) const override {
     return photometric(*spectrum_) * double(scale_) * kPiD * surface_.area() * sides();
   }
@@ -230,8 +231,8 @@ std::unique_ptr<Light> make_light(const Params& p, const Transform& world_from_l
   return std::make_unique<T>(p, world_from_light);
 }
 
-std::unique_ptr<AreaLight> make_area_light(const Params& p, const ShapeGeometry& geometry) {
-  return std::make_unique<DiffuseAreaLight>(p, geometry);
+std::unique_ptr<AreaLight> make_area_light(const Params& p, EmittingSurface surface) {
+  return std::make_unique<DiffuseAreaLight>(p, std::move(surface));
 }
 
 }  // namespace

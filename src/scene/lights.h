@@ -3,7 +3,7 @@
 #include "core/light.h"
 #include "core/plugin.h"
 #include "core/transform.h"
-#include "scene/shape.h"
+#include "scene/emitter.h"
 
 namespace frond {
 
@@ -11,9 +11,9 @@ struct LightInfo : PluginInfo {
   std::unique_ptr<Light> (*make)(const Params&, const Transform& world_from_light);
 };
 
-/// Makes one area light: Lambertian emission over a shape. `geometry` is in world space and is kept.
+/// Makes one area light: Lambertian emission over a shape.
 struct AreaLightInfo : PluginInfo {
-  std::unique_ptr<AreaLight> (*make)(const Params&, const ShapeGeometry& geometry);
+  std::unique_ptr<AreaLight> (*make)(const Params&, EmittingSurface surface);
 };
 
 }  // namespace frond

@@ -1,9 +1,11 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "scene/bilinear.h"
 #include "scene/ply.h"
 #include "scene/registry.h"
 #include "scene/shape.h"
+#include "scene/subdivision.h"
 
 namespace frond {
 namespace {
@@ -16,22 +18,74 @@ Vec3 face_normal(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
 /// where they are 0 or lie in the face.
 void orient(TriangleMesh& mesh, const ShapePlacement& placement) {
   const bool flip_winding = placement.reverse_orientation != placement.to_scene.swaps_handedness();
-  for (auto& t : mesh.triangles) {
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    auto& t = mesh.triangles[i];
     const Vec3 n = mesh.n.empty() ? Vec3{} : mesh.n[t[0]] + mesh.n[t[1]] + mesh.n[t[2]];
     const float agreement = dot(normalize_any(face_normal(mesh, t)), n);
-    if (agreement == 0 ? flip_winding : agreement < 0) std::swap(t[1], t[2]);
+    if (!(agreement == 0 ? flip_winding : agreement < 0)) continue;
+    std::swap(t[1], t[2]);
+    if (!mesh.uv.empty()) continue;
+    mesh.turned.resize(mesh.triangles.size());
+    mesh.turned[i] = true;
   }
 }
 
-/// Winding counter-clockwise about the front, positions and normals in the scene's space.
-MadeShape place(TriangleMesh mesh, const ShapePlacement& placement) {
-  for (Vec3& p : mesh.p) p = placement.to_scene.point(p);
-  for (Vec3& n : mesh.n) {
-    const Vec3 m = normalize_any(placement.to_scene.normal(normalize_any(n)));
-    n = placement.reverse_orientation ? -m : m;
-  }
+void place_corners(std::vector<Vec3>& p, std::vector<Vec3>& n, const ShapePlacement& placement) {
+  for (Vec3& at : p) at = placement.to_scene.point(at);
+  place_normals(n, placement);
+}
+
+/// Winding counter-clockwise about the front; positions and normals are in the scene's space already.
+ShapeGeometry oriented(TriangleMesh mesh, const ShapePlacement& placement) {
   orient(mesh, placement);
   return std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
+/// The two ways from a quadrilateral's first corner to its third add up to the same: what is bilinear between such
+/// corners is linear.
+template <class T>
+bool is_linear(const std::array<T, 4>& q, float slack) {
+  const T twist = q[0] - q[1] + q[2] - q[3];
+  const T sides = q[2] - q[0];
+  if constexpr (std::is_same_v<T, Vec2>)
+    return std::max(std::abs(twist.x), std::abs(twist.y)) <= slack * std::max(std::abs(sides.x), std::abs(sides.y));
+  else
+    return length(twist) <= slack * std::max(length(sides), length(q[3] - q[1]));
+}
+
+/// A parallelogram with everything on it linear: two triangles make the same picture as a patch, and faster.
+bool is_flat(const TriangleMesh& mesh, const std::array<uint32_t, 4>& quad) {
+  const auto four = [&quad](const auto& values) {
+    return std::array{values[quad[0]], values[quad[1]], values[quad[2]], values[quad[3]]};
+  };
+  return is_linear(four(mesh.p), 1e-5f) && (mesh.uv.empty() || is_linear(four(mesh.uv), 1e-4f)) &&
+         (mesh.n.empty() || length(four(mesh.n)[0] - four(mesh.n)[1] + four(mesh.n)[2] - four(mesh.n)[3]) <= 1e-4f);
+}
+
+/// Triangles, and bilinear patches of quadrilaterals as in pbrt-v4.
+std::vector<ShapeGeometry> surfaces_of(PlyMesh file, const ShapePlacement& placement) {
+  TriangleMesh& mesh = file.mesh;
+  place_corners(mesh.p, mesh.n, placement);
+  PatchMesh twisted;
+  mesh.halves_from = mesh.triangles.size();
+  for (const auto& [a, b, c, d] : file.quads) {
+    if (is_flat(mesh, {a, b, c, d})) {
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    } else {
+      twisted.patches.push_back({a, b, d, c});
+    }
+  }
+  std::vector<ShapeGeometry> surfaces;
+  if (!twisted.patches.empty()) {
+    const bool is_all = mesh.triangles.empty();
+    twisted.p = is_all ? std::move(mesh.p) : mesh.p;
+    twisted.n = is_all ? std::move(mesh.n) : mesh.n;
+    twisted.uv = is_all ? std::move(mesh.uv) : mesh.uv;
+    surfaces.push_back(patches(std::move(twisted), placement));
+  }
+  if (!mesh.triangles.empty()) surfaces.push_back(oriented(std::move(mesh), placement));
+  return surfaces;
 }
 
 void check_indices(const Params& p, const std::vector<int>& indices, size_t vertices) {
@@ -54,15 +108,42 @@ MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
     fail(p.where("N"), "{} values of \"N\" for {} of \"P\"", mesh.n.size(), mesh.p.size());
   if (!mesh.uv.empty() && mesh.uv.size() != mesh.p.size())
     fail(p.where("uv"), "{} values of \"uv\" for {} of \"P\"", mesh.uv.size(), mesh.p.size());
-  return place(std::move(mesh), placement);
+  p.vec3s("S"), p.integers("faceIndices");
+  place_corners(mesh.p, mesh.n, placement);
+  return std::vector{oriented(std::move(mesh), placement)};
 }
 
 MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
   try {
-    return place(read_ply(p.file("filename")), placement);
+    PlyMesh file = read_ply(p.file("filename"));
+    if (file.ignored > 0)
+      p.warn("filename",
+             fmt::format("{} faces are neither triangles nor quadrilaterals and are left out, as in pbrt-v4",
+                         file.ignored));
+    return surfaces_of(std::move(file), placement);
   } catch (const InputError& error) {
     fail(p.where("filename"), "{}", error.what());
   }
+}
+
+/// Loop's subdivision of a triangle mesh, at its limit.
+MadeShape make_loop_subdivision(const Params& p, const ShapePlacement& placement) {
+  const std::vector<Vec3> cage = p.vec3s("P");
+  const std::vector<int> indices = p.integers("indices");
+  check_indices(p, indices, cage.size());
+  std::vector<std::array<uint32_t, 3>> faces;
+  for (size_t i = 0; i < indices.size(); i += 3)
+    faces.push_back({uint32_t(indices[i]), uint32_t(indices[i + 1]), uint32_t(indices[i + 2])});
+  p.string("scheme");
+  const int levels = p.integer("levels");
+  constexpr size_t kMostTriangles = 100'000'000;
+  if (double(faces.size()) * std::pow(4.0, levels) > double(kMostTriangles))
+    fail(p.where("levels"), "{} levels make more than {} triangles", levels, kMostTriangles);
+  TriangleMesh mesh;
+  if (const std::string problem = subdivide(cage, faces, levels, mesh); !problem.empty())
+    fail(p.where("indices"), "{}", problem);
+  place_corners(mesh.p, mesh.n, placement);
+  return std::vector{oriented(std::move(mesh), placement)};
 }
 
 constexpr Param kTriangleMesh[] = {
@@ -73,18 +154,48 @@ constexpr Param kTriangleMesh[] = {
      .list = true},
     {.name = "uv", .kind = ParamKind::point2, .doc = "Texture coordinates, one for each vertex.", .list = true},
     {.name = "indices", .kind = ParamKind::integer, .doc = "Three vertices for each triangle.", .list = true},
+    {.name = "S", .kind = ParamKind::vector3, .doc = "pbrt-v4's tangents: not used.", .list = true},
+    {.name = "faceIndices", .kind = ParamKind::integer, .doc = "pbrt-v4's numbers of faces: not used.", .list = true},
     kAlphaParam};
 constexpr Param kPlyMesh[] = {{.name = "filename",
                                .kind = ParamKind::string,
-                               .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals.",
+                               .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals, which are "
+                                      "bilinear patches; .ply.gz: compressed.",
                                .required = true},
                               kAlphaParam};
+constexpr Param kLoopSubdivision[] = {
+    {.name = "P", .kind = ParamKind::point3, .doc = "Vertices of the control mesh.", .list = true, .required = true},
+    {.name = "indices",
+     .kind = ParamKind::integer,
+     .doc = "Three vertices for each triangle.",
+     .list = true,
+     .required = true},
+    {.name = "levels",
+     .kind = ParamKind::integer,
+     .default_value = 3,
+     .range = {0, 12},
+     .doc = "How often each triangle becomes four; vertices then lie on the limit surface."},
+    {.name = "scheme",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("loop"),
+     .doc = "Loop's, whatever it says, as in pbrt-v4."},
+    kAlphaParam};
 
 }  // namespace
 
+void place_normals(std::vector<Vec3>& normals, const ShapePlacement& placement) {
+  for (Vec3& n : normals) {
+    const Vec3 m = normalize_any(placement.to_scene.normal(normalize_any(n)));
+    n = placement.reverse_orientation ? -m : m;
+  }
+}
+
 extern const ShapeInfo triangle_mesh_shape{{"shape", "trianglemesh", "Triangles.", "pbrt-v4", kTriangleMesh},
                                            make_triangle_mesh};
-extern const ShapeInfo ply_mesh_shape{{"shape", "plymesh", "Triangles from a PLY file.", "pbrt-v4", kPlyMesh},
-                                      make_ply_mesh};
+extern const ShapeInfo ply_mesh_shape{
+    {"shape", "plymesh", "Triangles and bilinear patches from a PLY file.", "pbrt-v4", kPlyMesh}, make_ply_mesh};
+extern const ShapeInfo loop_subdivision_shape{
+    {"shape", "loopsubdiv", "The smooth surface that Loop's subdivision leads to.", "pbrt-v4", kLoopSubdivision},
+    make_loop_subdivision};
 
 }  // namespace frond

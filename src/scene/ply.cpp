@@ -7,6 +7,7 @@
 #include "scene/ply_header.h"
 #include "scene/ply_source.h"
 #include "system/file_bytes.h"
+#include "system/gzip.h"
 
 namespace frond {
 namespace {
@@ -23,7 +24,7 @@ size_t slot_of(std::string_view name) {
   return kNoSlot;
 }
 
-/// Which slots the vertices of a file fill; checked to be whole groups.
+/// Which slots the vertices of a file fill: whole groups, each by the first property that has such a name.
 struct VertexLayout {
   std::vector<size_t> slots;  ///< one for each property
   bool has_normals = false, has_uv = false;
@@ -31,17 +32,16 @@ struct VertexLayout {
   explicit VertexLayout(const PlyElement& element) {
     std::array<bool, kSlots + 1> filled{};
     for (const PlyProperty& p : element.properties) {
-      const size_t slot = p.count_type ? kNoSlot : slot_of(p.name);
-      if (slot != kNoSlot && filled[slot]) fail(p.where, "a second property \"{}\" for the same coordinate", p.name);
+      size_t slot = p.count_type ? kNoSlot : slot_of(p.name);
+      if (filled[slot]) slot = kNoSlot;
       filled[slot] = true;
       slots.push_back(slot);
     }
     if (!(filled[0] && filled[1] && filled[2])) fail(element.where, "element \"vertex\" needs properties x, y and z");
-    has_normals = filled[3] || filled[4] || filled[5];
-    has_uv = filled[6] || filled[7];
-    if (has_normals && !(filled[3] && filled[4] && filled[5]))
-      fail(element.where, "element \"vertex\" has a part of nx, ny and nz only");
-    if (has_uv && !(filled[6] && filled[7])) fail(element.where, "element \"vertex\" has one of u and v only");
+    has_normals = filled[3] && filled[4] && filled[5];
+    has_uv = filled[6] && filled[7];
+    for (size_t& slot : slots)
+      if ((!has_normals && slot >= 3 && slot < 6) || (!has_uv && slot >= 6)) slot = kNoSlot;
   }
 };
 
@@ -77,8 +77,8 @@ struct MeshLayout {
 template <class Source>
 class BodyReader {
  public:
-  BodyReader(Source& source, const PlyHeader& header, const MeshLayout& layout, TriangleMesh& mesh)
-      : source_(source), header_(header), layout_(layout), mesh_(mesh) {}
+  BodyReader(Source& source, const PlyHeader& header, const MeshLayout& layout, PlyMesh& result)
+      : source_(source), header_(header), layout_(layout), result_(result), mesh_(result.mesh) {}
 
   void read() {
     for (const PlyElement& element : header_.elements) {
@@ -141,18 +141,23 @@ class BodyReader {
   void read_faces() {
     const size_t indices = layout_.indices;
     const size_t least = 3 * Source::least_bytes(element_->properties[indices].type);
-    mesh_.triangles.reserve(std::min(static_cast<size_t>(element_->count), source_.bytes_left() / least));
+    const size_t most = std::min(static_cast<size_t>(element_->count), source_.bytes_left() / least);
+    mesh_.triangles.reserve(most);
     for_each_row([&](const PlyProperty& p, size_t i) { i == indices ? read_face(p) : skip(p); }, [] {});
   }
 
   void read_face(const PlyProperty& p) {
     const double corners = number(*p.count_type);
-    if (corners != 3 && corners != 4)
-      fail_row(fmt::format("{} corners; triangles and quadrilaterals are supported", corners));
+    if (corners != 3 && corners != 4) {
+      ++result_.ignored;
+      return skip_values(p, corners);
+    }
     std::array<uint32_t, 4> c{};
     for (size_t i = 0; i < static_cast<size_t>(corners); ++i) c[i] = index(p.type);
-    mesh_.triangles.push_back({c[0], c[1], c[2]});
-    if (corners == 4) mesh_.triangles.push_back({c[0], c[2], c[3]});
+    if (corners == 3)
+      mesh_.triangles.push_back({c[0], c[1], c[2]});
+    else
+      result_.quads.push_back(c);
   }
 
   uint32_t index(PlyType type) {
@@ -169,14 +174,13 @@ class BodyReader {
   }
 
   void skip(const PlyProperty& p) {
-    size_t count = 1;
-    if (p.count_type) {
-      const double length = number(*p.count_type);
-      if (!(length >= 0 && length <= static_cast<double>(source_.bytes_left())) || length != std::floor(length))
-        fail_row(fmt::format("\"{}\" is a list of {} values, which the file does not hold", p.name, length));
-      count = static_cast<size_t>(length);
-    }
-    if (!source_.skip(p.type, count)) fail_row(source_.problem());
+    skip_values(p, p.count_type ? number(*p.count_type) : 1);
+  }
+
+  void skip_values(const PlyProperty& p, double count) {
+    if (!(count >= 0 && count <= static_cast<double>(source_.bytes_left())) || count != std::floor(count))
+      fail_row(fmt::format("\"{}\" is a list of {} values, which the file does not hold", p.name, count));
+    if (!source_.skip(p.type, static_cast<size_t>(count))) fail_row(source_.problem());
   }
 
   [[noreturn]] void fail_row(const std::string& message) const {
@@ -186,6 +190,7 @@ class BodyReader {
   Source& source_;
   const PlyHeader& header_;
   const MeshLayout& layout_;
+  PlyMesh& result_;
   TriangleMesh& mesh_;
   const PlyElement* element_ = nullptr;
   uint64_t row_ = 0;
@@ -193,22 +198,23 @@ class BodyReader {
 
 }  // namespace
 
-TriangleMesh read_ply_text(std::string_view bytes, const std::string& name) {
+PlyMesh read_ply_text(std::string_view bytes, const std::string& name) {
   const auto file = std::make_shared<const std::string>(name);
   const PlyHeader header = read_ply_header(bytes, file);
   const Location end{file, header.lines, 1};
   const MeshLayout layout(element_called(header, "vertex", end), element_called(header, "face", end));
-  TriangleMesh mesh;
-  const auto read_from = [&](auto source) { BodyReader(source, header, layout, mesh).read(); };
+  PlyMesh result;
+  const auto read_from = [&](auto source) { BodyReader(source, header, layout, result).read(); };
   if (header.format == PlyFormat::ascii)
     read_from(ply::AsciiSource(bytes, header, file));
   else
     read_from(ply::BinarySource(bytes, header, file));
-  return mesh;
+  return result;
 }
 
-TriangleMesh read_ply(const std::filesystem::path& path) {
-  return read_ply_text(read_file_bytes(path, {}), path.string());
+PlyMesh read_ply(const std::filesystem::path& path) {
+  const std::string bytes = read_file_bytes(path, {});
+  return read_ply_text(is_gzip(bytes) ? unpack_gzip(bytes, path.string(), {}) : bytes, path.string());
 }
 
 }  // namespace frond

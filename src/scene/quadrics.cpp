@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "scene/affine_map.h"
 #include "scene/registry.h"
 #include "scene/shape.h"
 
@@ -18,17 +19,32 @@ class Quadric : public AnalyticShape {
         flip_(placement.reverse_orientation != placement.to_scene.swaps_handedness()),
         phi_max_(p.real("phimax") * M_PI / 180) {}
 
-  /// The area is known, and even, under similarities alone.
-  std::string_view cannot_emit() const override {
-    const Vec3 x = to_scene_.vector({1, 0, 0}), y = to_scene_.vector({0, 1, 0}), z = to_scene_.vector({0, 0, 1});
-    const float xx = dot(x, x), slack = 1e-4f * xx;
-    const auto near = [slack](float a, float b) { return std::abs(a - b) <= slack; };
-    const bool similar =
-        near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) && near(dot(z, x), 0);
-    return similar ? "" : "its transform stretches it unevenly";
+  ShapePoint sample(unsigned, Vec2 u) const final {
+    const Sample s = sample_own(u);
+    ShapePoint point = s.point;
+    point.area = own_area() * stretch(s.normal);
+    return point;
+  }
+  double area(unsigned) const final {
+    if (is_similar()) return own_area() * stretch({0, 0, 1});
+    constexpr int kSteps = 128;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j)
+        sum += stretch(sample_own({(float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps}).normal);
+    return own_area() * sum / (kSteps * kSteps);
   }
 
  protected:
+  /// Uniform over the area in the shape's own space; the normal there is unit.
+  struct Sample {
+    ShapePoint point;
+    Vec3d normal;
+  };
+  virtual Sample sample_own(Vec2 u) const = 0;
+  /// In the shape's own space.
+  virtual double own_area() const = 0;
+
   /// Unit.
   Vec3 to_scene_normal(const Vec3d& n) const {
     const Vec3 ng = normalize_any(to_scene_.normal(to_float(normalize_any(n))));
@@ -63,9 +79,19 @@ class Quadric : public AnalyticShape {
     return phi < 0 ? phi + kTau : phi;
   }
   double phi_max() const { return phi_max_; }
-  double area_scale() const { return std::pow(double(length(to_scene_.vector({1, 0, 0}))), 2); }
+  const Transform& to_scene() const { return to_scene_; }
 
  private:
+  /// By how much the transform enlarges areas with this unit normal.
+  double stretch(const Vec3d& n) const { return double(length(AffineMap{to_scene_.rows()}.normal(to_float(n)))); }
+  bool is_similar() const {
+    const Vec3 x = to_scene_.vector({1, 0, 0}), y = to_scene_.vector({0, 1, 0}), z = to_scene_.vector({0, 0, 1});
+    const float xx = dot(x, x), slack = 1e-4f * xx;
+    const auto near = [slack](float a, float b) { return std::abs(a - b) <= slack; };
+    return near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) &&
+           near(dot(z, x), 0);
+  }
+
   Transform to_scene_, from_scene_;
   bool flip_;
   double phi_max_;
@@ -104,12 +130,13 @@ class Sphere final : public Quadric {
     return {};
   }
 
-  ShapePoint sample(Vec2 u) const override {
+  Sample sample_own(Vec2 u) const override {
     const double z = z_min_ + double(u.x) * (z_max_ - z_min_), phi = double(u.y) * phi_max();
     const double r = std::sqrt(std::max(0.0, radius_ * radius_ - z * z));
-    return at({r * std::cos(phi), r * std::sin(phi), z}, phi, 0);
+    const Vec3d p{r * std::cos(phi), r * std::sin(phi), z};
+    return {at(p, phi, 0), p / radius_};
   }
-  double area() const override { return phi_max() * radius_ * (z_max_ - z_min_) * area_scale(); }
+  double own_area() const override { return phi_max() * radius_ * (z_max_ - z_min_); }
 
   SurfaceDerivatives derivatives(const ShapePoint& point) const override {
     const Vec3d p = local_point(point.p);
@@ -173,12 +200,12 @@ class Disk final : public Quadric {
     return points;
   }
 
-  ShapePoint sample(Vec2 u) const override {
+  Sample sample_own(Vec2 u) const override {
     const double r = std::sqrt(inner_ * inner_ + double(u.x) * (radius_ * radius_ - inner_ * inner_));
     const double phi = double(u.y) * phi_max();
-    return at({r * double(std::cos(float(phi))), r * double(std::sin(float(phi))), height_}, r, phi, 0);
+    return {at({r * double(std::cos(float(phi))), r * double(std::sin(float(phi))), height_}, r, phi, 0), {0, 0, 1}};
   }
-  double area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_) * area_scale(); }
+  double own_area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_); }
 
   SurfaceDerivatives derivatives(const ShapePoint& point) const override {
     const Vec3d p = local_point(point.p);
@@ -194,6 +221,83 @@ class Disk final : public Quadric {
 
   double radius_, inner_, height_;
   Vec3 ng_;
+};
+
+class Cylinder final : public Quadric {
+ public:
+  Cylinder(const Params& p, const ShapePlacement& placement)
+      : Quadric(p, placement),
+        radius_(p.real("radius")),
+        z_min_(std::min(p.real("zmin"), p.real("zmax"))),
+        z_max_(std::max(p.real("zmin"), p.real("zmax"))) {
+    if (z_min_ == z_max_) fail(p.where("zmax"), "the cylinder is empty: zmin and zmax are {}", z_min_);
+  }
+
+  /// Those of its rims, which a map makes ellipses of: closer than those of a box that is turned with it.
+  Bounds bounds(unsigned) const override {
+    Bounds bounds;
+    const Transform::Rows& rows = to_scene().rows();
+    const auto reach = [&](size_t i) { return float(radius_ * std::hypot(double(rows[i][0]), double(rows[i][1]))); };
+    const Vec3 by{reach(0), reach(1), reach(2)};
+    for (const double z : {z_min_, z_max_}) {
+      const Vec3 centre = to_scene_point({0, 0, float(z)});
+      bounds.add(centre - by), bounds.add(centre + by);
+    }
+    return bounds;
+  }
+  std::vector<Vec3> outline(unsigned) const override {
+    std::vector<Vec3> points;
+    const float r = float(radius_);
+    for (const double z : {z_min_, z_max_})
+      for (const float x : {-r, r})
+        for (const float y : {-r, r}) points.push_back(to_scene_point({x, y, float(z)}));
+    return points;
+  }
+
+  std::optional<ShapePoint> intersect(unsigned, const Ray& ray, float t_min) const override {
+    const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
+    const double dd = d.x * d.x + d.y * d.y;
+    if (dd == 0) return {};
+    // As of a sphere: from where the line is closest to the axis.
+    const double b = -(o.x * d.x + o.y * d.y) / dd, x = o.x + b * d.x, y = o.y + b * d.y;
+    const double discriminant = radius_ * radius_ - (x * x + y * y);
+    if (discriminant < 0) return {};
+    const double half = std::sqrt(discriminant / dd);
+    for (const double t : {b - half, b + half}) {
+      if (!within(t, t_min, ray)) continue;
+      Vec3d p = o + d * t;
+      if (!(p.z >= z_min_ && p.z <= z_max_)) continue;
+      const double phi = azimuth(p);
+      if (phi > phi_max()) continue;
+      const double to_surface = radius_ / std::hypot(p.x, p.y);
+      p.x *= to_surface, p.y *= to_surface;
+      return at(p, phi, float(t));
+    }
+    return {};
+  }
+
+  SurfaceDerivatives derivatives(const ShapePoint& point) const override {
+    const Vec3d p = local_point(point.p), n = normalize_any(Vec3d{p.x, p.y, 0});
+    const Vec3d dpdu = Vec3d{-p.y, p.x, 0} * phi_max();
+    return to_scene_derivatives(n, dpdu, {0, 0, z_max_ - z_min_}, dpdu / radius_, {});
+  }
+
+ private:
+  Sample sample_own(Vec2 u) const override {
+    const double z = z_min_ + double(u.x) * (z_max_ - z_min_), phi = double(u.y) * phi_max();
+    const Vec3d n{std::cos(phi), std::sin(phi), 0};
+    return {at({radius_ * n.x, radius_ * n.y, z}, phi, 0), n};
+  }
+  double own_area() const override { return phi_max() * radius_ * (z_max_ - z_min_); }
+
+  ShapePoint at(const Vec3d& p, double phi, float t) const {
+    return {to_scene_point(to_float(p)),
+            to_scene_normal({p.x, p.y, 0}),
+            {float(phi / phi_max()), float((p.z - z_min_) / (z_max_ - z_min_))},
+            t};
+  }
+
+  double radius_, z_min_, z_max_;
 };
 
 constexpr Param kPhiMax{.name = "phimax",
@@ -220,9 +324,16 @@ constexpr Param kDisk[] = {
     kPhiMax,
     kAlphaParam};
 
+constexpr Param kCylinder[] = {
+    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Radius."},
+    {.name = "zmin", .kind = ParamKind::real, .default_value = -1.0, .doc = "Lower end."},
+    {.name = "zmax", .kind = ParamKind::real, .default_value = 1.0, .doc = "Upper end."},
+    kPhiMax,
+    kAlphaParam};
+
 template <class T>
 MadeShape make_quadric(const Params& p, const ShapePlacement& placement) {
-  return std::make_shared<const T>(p, placement);
+  return std::vector<ShapeGeometry>{std::make_shared<const T>(p, placement)};
 }
 
 }  // namespace
@@ -244,5 +355,7 @@ std::vector<Vec3> Bounds::corners() const {
 extern const ShapeInfo sphere_shape{{"shape", "sphere", "Sphere or part of one.", "pbrt-v4", kSphere},
                                     make_quadric<Sphere>};
 extern const ShapeInfo disk_shape{{"shape", "disk", "Flat disk or ring.", "pbrt-v4", kDisk}, make_quadric<Disk>};
+extern const ShapeInfo cylinder_shape{{"shape", "cylinder", "Open cylinder or part of one.", "pbrt-v4", kCylinder},
+                                      make_quadric<Cylinder>};
 
 }  // namespace frond

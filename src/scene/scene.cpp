@@ -226,15 +226,36 @@ class SceneBuilder {
   /// One for each surface that gives off light. There are no lights after these.
   void build_area_lights(SceneResolver& resolver) {
     for (const Surface& surface : scene_.geometry_->surfaces()) {
-      lights_->of_surface.push_back(nullptr);
-      if (!surface.area_light) continue;
-      auto light =
-          make(registry_.area_lights, description_.area_lights[*surface.area_light], resolver, surface.geometry);
-      lights_->of_surface.back() = light.get();
-      lights_->add(std::move(light));
+      lights_->of_surface.emplace_back();
+      if (surface.area_light) build_area_light(surface, resolver, lights_->of_surface.back());
     }
     if (lights_->all.empty()) log_.warn({}, "the scene has no light: the image will be black");
     scene_.lights_ = std::move(lights_);
+  }
+
+  /// With "power" there is one for each primitive: the total is that of each, as in pbrt-v4.
+  void build_area_light(const Surface& surface, SceneResolver& resolver, SurfaceLights& of_surface) {
+    const ParsedPlugin& plugin = description_.area_lights[*surface.area_light];
+    const AreaLightInfo& info = registry_.area_lights.get(plugin.name, plugin.where);
+    const Params params(info, plugin, resolver);
+    const auto add = [&](EmittingSurface emitting) {
+      auto light = info.make(params, std::move(emitting));
+      const AreaLight* const added = light.get();
+      lights_->add(std::move(light));
+      return added;
+    };
+    const unsigned count = primitives_of(surface.geometry);
+    if (count == 1 || !params.given("power")) {
+      of_surface.whole = add(EmittingSurface(surface));
+      return;
+    }
+    params.warn("power", fmt::format("each of the shape's {} triangles or patches gives off this power, as in pbrt-v4: "
+                                     "all of them together {} times as much",
+                                     count, count));
+    for (unsigned i = 0; i < count; ++i) {
+      EmittingSurface emitting(surface, i);
+      of_surface.by_primitive.push_back(emitting.area() > 0 ? add(std::move(emitting)) : nullptr);
+    }
   }
 
   Scene& scene_;
@@ -274,7 +295,7 @@ uint32_t Scene::intersect(const RayPacket& packet, SurfacePoint* points) const {
 
 void Scene::describe(const GeometryHit& at, SurfacePoint& point) const {
   point.material = material_at_[at.material];
-  point.light = at.surface ? lights_->of_surface[*at.surface] : nullptr;
+  point.light = at.surface ? lights_->of_surface[*at.surface].at(at.primitive) : nullptr;
   point.material_id = at.material;
   point.instance_id = at.instance;
   if (is_detailed_[at.material]) footprint_.set(point.hit);

@@ -43,12 +43,21 @@ ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, 
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
                                                      const SceneSettings& description, const Registry& registry);
 
+/// Of a surface: the light that all of it is, or one for each of its primitives.
+struct SurfaceLights {
+  const AreaLight* whole = nullptr;
+  std::vector<const AreaLight*> by_primitive = {};
+
+  /// nullptr: it gives off none.
+  const AreaLight* at(uint32_t primitive) const { return by_primitive.empty() ? whole : by_primitive[primitive]; }
+};
+
 /// What gives off light in a scene.
 struct LightTable {
   std::vector<std::unique_ptr<Light>> owned;
   std::vector<const Light*> all;
   std::vector<const EnvironmentLight*> environment;  ///< those that surround the scene
-  std::vector<const AreaLight*> of_surface;          ///< by Geometry::surfaces; nullptr: it gives off none
+  std::vector<SurfaceLights> of_surface;             ///< by Geometry::surfaces
 
   void add(std::unique_ptr<Light> light);
 };

@@ -28,6 +28,7 @@ struct ShapePoint {
   Vec2 at;      ///< where on the primitive that is, by its own parameters
   float t = 0;  ///< along the ray that met it
   unsigned primitive = 0;
+  double area = 0;  ///< of a sampled point: what it stands for, the reciprocal of its density over the area
 };
 
 /// A surface with its own intersection routine, in the space that its transform leads to; one or more primitives.
@@ -44,11 +45,23 @@ class AnalyticShape {
   virtual Vec2 uv(unsigned /*primitive*/, Vec2 at) const { return at; }
   /// By texture coordinates.
   virtual SurfaceDerivatives derivatives(const ShapePoint& point) const = 0;
-  /// Uniform over the area.
-  virtual ShapePoint sample(Vec2 u) const = 0;
-  virtual double area() const = 0;
-  /// Why `sample` would not be uniform over the area here; empty where it is.
+  /// Shaded with the geometric normal, and left by rays from where they met it: the next two are not asked for.
+  bool is_plain() const { return is_plain_; }
+  /// Shading normal, of any length; 0: it is the geometric one.
+  virtual Vec3 shading_normal(unsigned /*primitive*/, Vec2 /*at*/) const { return {}; }
+  /// How far off along the normal rays start that leave it, if that is farther than rounding asks for.
+  virtual float clearance(const ShapePoint& /*point*/) const { return 0; }
+  /// A point of the primitive, nearly evenly over its area: the point's `area` says how nearly.
+  virtual ShapePoint sample(unsigned primitive, Vec2 u) const = 0;
+  virtual double area(unsigned primitive) const = 0;
+  /// Why it cannot be sampled; empty where it can.
   virtual std::string_view cannot_emit() const { return {}; }
+
+ protected:
+  explicit AnalyticShape(bool is_plain = true) : is_plain_(is_plain) {}
+
+ private:
+  bool is_plain_;
 };
 
 using MeshPtr = std::shared_ptr<const TriangleMesh>;
@@ -63,8 +76,8 @@ struct ObjectCopies {
   std::filesystem::path table;  ///< of an InstanceTable
 };
 
-/// What a shape plugin makes.
-using MadeShape = std::variant<ShapeGeometry, ObjectCopies>;
+/// What a shape plugin makes: a surface, or several.
+using MadeShape = std::variant<std::vector<ShapeGeometry>, ObjectCopies>;
 
 struct ShapePlacement {
   Transform to_scene;        ///< from the shape's space to that of the scene, or of the object it is defined in

@@ -4,7 +4,7 @@ namespace frond {
 
 SurfaceDerivatives Triangle::derivatives() const {
   const Vec3 &p0 = mesh_.p[index_[0]], e1 = mesh_.p[index_[1]] - p0, e2 = mesh_.p[index_[2]] - p0;
-  Vec2 s{1, 0}, t{1, 1};
+  auto [s, t] = default_sides();
   if (!mesh_.uv.empty()) s = mesh_.uv[index_[1]] - mesh_.uv[index_[0]], t = mesh_.uv[index_[2]] - mesh_.uv[index_[0]];
   const double det = double(s.x) * double(t.y) - double(s.y) * double(t.x);
   const auto along = [det](const Vec3& a, const Vec3& b, float x, float y) {

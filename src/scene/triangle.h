@@ -9,7 +9,7 @@ namespace frond {
 class Triangle {
  public:
   Triangle(const TriangleMesh& mesh, unsigned primitive, Vec2 b)
-      : mesh_(mesh), index_(mesh.triangles[primitive]), b_(b) {}
+      : mesh_(mesh), index_(mesh.triangles[primitive]), primitive_(primitive), b_(b) {}
 
   Vec3 p() const { return interpolate(mesh_.p); }
   /// Of any length, on the front.
@@ -19,13 +19,26 @@ class Triangle {
   }
   /// Shading normal, of any length.
   Vec3 ns() const { return mesh_.n.empty() ? ng() : interpolate(mesh_.n); }
-  /// Without texture coordinates, the corners have (0, 0), (1, 0) and (1, 1), as in pbrt-v4.
-  Vec2 uv() const { return mesh_.uv.empty() ? Vec2{b_.x + b_.y, b_.y} : interpolate(mesh_.uv); }
+  /// Without texture coordinates the corners have (0, 0), (1, 0) and (1, 1), and those of quadrilaterals (0, 1) too, as
+  /// in pbrt-v4.
+  Vec2 uv() const {
+    if (!mesh_.uv.empty()) return interpolate(mesh_.uv);
+    const auto [s, t] = default_sides();
+    return s * b_.x + t * b_.y;
+  }
   /// Where (u, v) says nothing of directions on the triangle, some that do.
   SurfaceDerivatives derivatives() const;
   const std::array<uint32_t, 3>& corners() const { return index_; }
 
  private:
+  /// Texture coordinates of the second and third corner, where the mesh has none; the first has (0, 0).
+  std::array<Vec2, 2> default_sides() const {
+    const bool is_second_half = primitive_ >= mesh_.halves_from && ((primitive_ - mesh_.halves_from) & 1);
+    const Vec2 s = is_second_half ? Vec2{1, 1} : Vec2{1, 0}, t = is_second_half ? Vec2{0, 1} : Vec2{1, 1};
+    if (!mesh_.turned.empty() && mesh_.turned[primitive_]) return {t, s};
+    return {s, t};
+  }
+
   template <class T>
   T interpolate(const std::vector<T>& values) const {
     return values[index_[0]] * (1 - b_.x - b_.y) + values[index_[1]] * b_.x + values[index_[2]] * b_.y;
@@ -33,6 +46,7 @@ class Triangle {
 
   const TriangleMesh& mesh_;
   const std::array<uint32_t, 3>& index_;
+  unsigned primitive_;
   Vec2 b_;
 };
 

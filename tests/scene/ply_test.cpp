@@ -78,13 +78,15 @@ using Triangle = std::array<uint32_t, 3>;
 
 TEST(Ply, ReadsTheSameMeshFromEveryFormat) {
   for (const auto& text : {rich_ascii(), rich_binary(std::endian::little), rich_binary(std::endian::big)}) {
-    const TriangleMesh mesh = read(text);
+    const PlyMesh file = read(text);
+    const TriangleMesh& mesh = file.mesh;
     EXPECT_THAT(mesh.p, ElementsAre(Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}, Vec3{0.5f, 2, -3}));
     ASSERT_EQ(mesh.n.size(), 5u);
     EXPECT_EQ(mesh.n[4], (Vec3{0, 1, 0}));
     ASSERT_EQ(mesh.uv.size(), 5u);
     EXPECT_EQ(mesh.uv[4], (Vec2{0.5f, 2}));
-    EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{3, 2, 4}));
+    EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{3, 2, 4}));
+    EXPECT_THAT(file.quads, ElementsAre(std::array<uint32_t, 4>{0, 1, 2, 3}));
   }
 }
 
@@ -95,7 +97,7 @@ constexpr std::string_view kHeader =
 std::string small(std::string_view body) { return std::string(kHeader) + std::string(body); }
 
 TEST(Ply, LeavesNormalsAndTextureCoordinatesEmptyWhereThereAreNone) {
-  const TriangleMesh mesh = read(small("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+  const TriangleMesh mesh = read(small("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")).mesh;
   EXPECT_TRUE(mesh.n.empty());
   EXPECT_TRUE(mesh.uv.empty());
 }
@@ -246,7 +248,7 @@ TEST(Ply, NamesTheByteWhereABinaryBodyIsWrong) {
 
 TEST(Ply, ReadsFilesAndNamesThoseItCannotRead) {
   const TestFolder folder("ply");
-  EXPECT_EQ(read_ply(folder.write("a.ply", rich_ascii())).triangles.size(), 3u);
+  EXPECT_EQ(read_ply(folder.write("a.ply", rich_ascii())).quads.size(), 1u);
   EXPECT_EQ(error_of([&] { read_ply(folder.name_of("gone.ply")); }), "there is no file " + folder.name_of("gone.ply"));
   EXPECT_THAT(error_of([&] { read_ply(folder.write("bad.ply", "solid")); }),
               StartsWith(folder.name_of("bad.ply:1:1: ")));
@@ -255,7 +257,10 @@ TEST(Ply, ReadsFilesAndNamesThoseItCannotRead) {
 /// Reads or throws InputError; anything else gets out and fails the test.
 void read_anything(const std::string& text) {
   error_of([&] {
-    const TriangleMesh mesh = read(text);
+    const PlyMesh file = read(text);
+    const TriangleMesh& mesh = file.mesh;
+    for (const auto& q : file.quads)
+      for (const uint32_t i : q) EXPECT_LT(i, mesh.p.size());
     for (const Triangle& t : mesh.triangles)
       for (const uint32_t i : t) EXPECT_LT(i, mesh.p.size());
   });
