@@ -21,6 +21,14 @@ Image rgb_of(const Image& image, const std::filesystem::path& path, const Locati
   return image.selected(channels, {kRgb.begin(), kRgb.end()});
 }
 
+void check_finite(const Image& image, const std::filesystem::path& path, const Location& where) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (size_t c = 0; c < image.channels.size(); ++c)
+        if (const float v = image.at(x, y, c); !std::isfinite(v))
+          fail(where, "{} holds the value {} in column {}, row {}", path.string(), v, x, y);
+}
+
 [[noreturn]] void refuse_without_colors(const std::string& path, const Image& image) {
   const auto bands = bands_of(image);
   if (bands.empty()) fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
@@ -32,17 +40,19 @@ Image rgb_of(const Image& image, const std::filesystem::path& path, const Locati
 
 }  // namespace
 
+ImageFile read_finite(const std::filesystem::path& path, const Location& where) {
+  ImageFile file = read_image(path, where);
+  check_finite(file.image, path, where);
+  return file;
+}
+
 ImageFile read_rgb(const std::filesystem::path& path, const Location& where) {
   ImageFile file = read_image(path, where);
   if (file.image.channels.size() > 2)
     file.image = rgb_of(file.image, path, where);
   else
     file.image = file.image.selected(std::array<size_t, 3>{}, {kRgb.begin(), kRgb.end()});
-  for (int y = 0; y < file.image.height; ++y)
-    for (int x = 0; x < file.image.width; ++x)
-      for (size_t c = 0; c < 3; ++c)
-        if (const float v = file.image.at(x, y, c); !std::isfinite(v))
-          fail(where, "{} holds the value {} in column {}, row {}", path.string(), v, x, y);
+  check_finite(file.image, path, where);
   return file;
 }
 

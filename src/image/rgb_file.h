@@ -8,6 +8,9 @@ namespace frond {
 /// lights. Throws InputError at `where`, for values that are not finite too.
 ImageFile read_rgb(const std::filesystem::path& path, const Location& where);
 
+/// An image file with all of its channels, as read_image, whose values are finite. Throws InputError at `where`.
+ImageFile read_finite(const std::filesystem::path& path, const Location& where);
+
 /// To linear values, by the curve of IEC 61966-2-1.
 void decode_srgb(Image& image);
 

@@ -194,6 +194,12 @@ SigmoidFit fit_reflectance(const ColorSpace& space, const Triple& rgb) {
   return {SigmoidPolynomial(c), error};
 }
 
+void refine_reflectance(const ColorSpace& space, const Triple& rgb, bool from_flat, Triple& c) {
+  const Triple target = target_xyz(space, rgb);
+  if (from_flat) c = start(target[1]);
+  improve(coarse_response(), target, from_flat ? 1e-3 : 1e-6, c);
+}
+
 SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where) {
   check(space, rgb, {0, 1}, where);
   if (is_grey(rgb)) return flat(rgb[0]);

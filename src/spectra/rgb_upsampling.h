@@ -11,9 +11,24 @@ class SigmoidPolynomial {
   /// Of t^2, t and 1, where t runs from -1 at 360 nm to 1 at 830 nm.
   constexpr explicit SigmoidPolynomial(const Triple& c)
       : c2_(static_cast<float>(c[0])), c1_(static_cast<float>(c[1])), c0_(static_cast<float>(c[2])) {}
+  static SigmoidPolynomial of(float c2, float c1, float c0) {
+    SigmoidPolynomial s{Triple{}};
+    s.c2_ = c2, s.c1_ = c1, s.c0_ = c0;
+    return s;
+  }
+  /// What it leaves of 1.
+  SigmoidPolynomial complement() const { return of(-c2_, -c1_, -c0_); }
   float at(float lambda_nm) const {
     const float t = std::clamp((lambda_nm - 595) / 235, -1.f, 1.f);
     return sigmoid((c2_ * t + c1_) * t + c0_);
+  }
+  Float4 at(Float4 lambda_nm) const {
+    constexpr Float4 kOne{1, 1, 1, 1};
+    Float4 t = (lambda_nm - 595.f) / 235.f;
+    t = t < -kOne ? -kOne : t > kOne ? kOne : t;
+    const Float4 x = (c2_ * t + c1_) * t + c0_, size = larger(x, -x), r = square_root(kOne + x * x);
+    const Float4 rest = 0.5f / (r * (r + size));
+    return x < Float4{} ? rest : kOne - rest;
   }
   float max_value() const;
 
@@ -34,6 +49,10 @@ struct SigmoidFit {
 /// The reflectance that shows `rgb` in [0, 1] under D65, by damped Gauss-Newton steps; some tens of microseconds. No
 /// reflectance is as bright and pure as the corners of wide spaces: there the error says what is missing.
 SigmoidFit fit_reflectance(const ColorSpace& space, const Triple& rgb);
+
+/// Moves the coefficients `c` (as of a SigmoidPolynomial) to those of `rgb`, faster and not as exact as
+/// fit_reflectance: nodes are 5 nm apart. `from_flat`: beginning at those of a flat reflectance, whatever they are.
+void refine_reflectance(const ColorSpace& space, const Triple& rgb, bool from_flat, Triple& c);
 
 /// Largest error of a fit that the functions below accept, for the colour at full scale.
 inline constexpr double kLargestFitError = 5e-3;
