@@ -3,6 +3,7 @@
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(benchmark QUIET)
 find_package(embree 4 QUIET)

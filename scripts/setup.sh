@@ -22,7 +22,7 @@ FROND="$FROND_BUILD/frond"
 build_packages=(
   g++ cmake ninja-build pkg-config ccache
   libembree-dev libopenimageio-dev libopenexr-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
-  libzstd-dev libboost-dev libgmock-dev libbenchmark-dev
+  libzstd-dev zlib1g-dev libboost-dev libgmock-dev libbenchmark-dev
 )
 
 install_missing() {
