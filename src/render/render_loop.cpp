@@ -143,14 +143,19 @@ class Worker {
     std::array<float, kBundle> u;
     std::array<Vec2, kBundle> on_filter, on_lens{};
     if (!has_fixed_wavelengths_) sampler.get1d(b.samples, dimension, u.data());
+    if (!job_.wavelength_jitter) u.fill(0.5f);
     ++dimension;
     sampler.get2d(b.samples, dimension++, on_filter.data());
     if (job_.camera.uses_lens()) sampler.get2d(b.samples, dimension++, on_lens.data());
+    if (!job_.pixel_jitter) on_lens.fill({0.5f, 0.5f});
     b.dimension = dimension;
     for (size_t i = 0; i < kBundle; ++i) {
       if (!(b.lanes >> i & 1)) continue;
       const Vec2 on = on_filter[i];
-      filter_[i] = kernel_ ? Filter::Sample{{on.x - 0.5f, on.y - 0.5f}, 1} : job_.filter.sample(on);
+      if (job_.pixel_jitter)
+        filter_[i] = kernel_ ? Filter::Sample{{on.x - 0.5f, on.y - 0.5f}, 1} : job_.filter.sample(on);
+      else
+        filter_[i] = {{0, 0}, 1};
       const Vec2 film_point{float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
       // Made in its place: a copy of what has just been written number by number waits for all of it.
       ::new (&b.rays[i]) Ray(job_.camera.ray(film_point, on_lens[i]));

@@ -33,6 +33,8 @@ struct RenderJob {
   /// Which pixels of the picture the film's stand for, row by row: some of them, drawn from all. Empty: themselves.
   /// Pixels that share samples stand for themselves.
   std::span<const PixelPlace> places = {};
+  bool pixel_jitter = true;       ///< else all samples lie at the pixels' centres and the lens's, unfiltered
+  bool wavelength_jitter = true;  ///< else they have the same wavelengths
 };
 
 /// Which samples of which of a film's pixels are to be rendered.

@@ -102,7 +102,7 @@ const char* instruction_set() {
 
 /// Nothing where pixels have samples of their own.
 std::optional<Splatting> splatting_of(const Scene& scene, const Crop& whole, const Crop& pixels, bool is_piece) {
-  if (scene.camera().pixels_are_apart() || !splats(scene.filter())) return {};
+  if (scene.camera().pixels_are_apart() || !scene.has_pixel_jitter() || !splats(scene.filter())) return {};
   Splatting splatting = SplatKernel(scene.filter()).splatting();
   splatting.sampled = widened(pixels, splatting.reach_x(), splatting.reach_y());
   if (is_piece) {  // beside it are other pieces, but where the whole ends
@@ -151,8 +151,16 @@ void LoadedScene::check_samples(uint64_t samples) const {
 }
 
 RenderJob LoadedScene::job() const {
-  return {*scene_,          scene_->camera(),  scene_->integrator(), scene_->wavelengths(),
-          scene_->filter(), scene_->sampler(), scene_->seed()};
+  return {*scene_,
+          scene_->camera(),
+          scene_->integrator(),
+          scene_->wavelengths(),
+          scene_->filter(),
+          scene_->sampler(),
+          scene_->seed(),
+          {},
+          scene_->has_pixel_jitter(),
+          scene_->has_wavelength_jitter()};
 }
 
 Identity LoadedScene::identity() const {

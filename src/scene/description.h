@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -80,7 +81,11 @@ struct SceneSettings {
   std::vector<LightDescription> lights;
   std::vector<ParsedPlugin> area_lights;
 
-  /// A file name in the scene as a path: relative to the file that names it, or else to the main file.
+  /// What directives that could not be read would have given a name to: what misses it is no error of its own.
+  std::set<std::string, std::less<>> unread;
+
+  /// A file name in the scene as a path: relative to the file that names it, or else to the main file, or else to where
+  /// the program runs. Backslashes are as good as slashes where no file is called so.
   std::filesystem::path resolve(const std::string& name, const Location& where) const;
 };
 

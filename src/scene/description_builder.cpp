@@ -1,6 +1,7 @@
 #include "scene/description_builder.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/log.h"
 
@@ -12,8 +13,6 @@ std::string place(const Location& where) {
   const std::string text = where.text();
   return text.substr(0, text.size() - std::min<size_t>(text.size(), 2));  // without ": "
 }
-
-std::string_view opener(bool by_object) { return by_object ? "ObjectBegin" : "AttributeBegin"; }
 
 /// pbrt's older names of a surface that is not there become the one of today.
 ParsedPlugin with_name_of_interface(ParsedPlugin material) {
@@ -48,31 +47,92 @@ void DescriptionBuilder::world_begin(const Location& where) {
   name_transform("world", where);
 }
 
-void DescriptionBuilder::finish(const Location& where) {
-  if (!in_world_) fail(where, "the file ends before WorldBegin");
-  if (!saved_.empty()) {
-    const Saved& open = saved_.back();
-    fail(open.where, "{} without {}", opener(open.by_object), open.by_object ? "ObjectEnd" : "AttributeEnd");
+std::string_view DescriptionBuilder::name_of(Opener opener) {
+  constexpr std::array<std::string_view, 4> kNames{"AttributeBegin", "TransformBegin", "ObjectBegin", "Import"};
+  return kNames[static_cast<size_t>(opener)];
+}
+
+std::string_view DescriptionBuilder::ender_of(Opener opener) {
+  constexpr std::array<std::string_view, 4> kNames{"AttributeEnd", "TransformEnd", "ObjectEnd", "the end of the file"};
+  return kNames[static_cast<size_t>(opener)];
+}
+
+void DescriptionBuilder::finish(const Location& where, Problems& problems) {
+  if (problems.empty()) {  // else what is missing may have been there
+    if (!in_world_) fail(where, "the file ends before WorldBegin");
+    if (!saved_.empty())
+      fail(saved_.back().where, "{} without {}", name_of(saved_.back().by), ender_of(saved_.back().by));
   }
-  const auto check_defined = [](const Names& names, std::string_view kind, std::string_view maker) {
-    const Name* unknown = nullptr;
-    std::string_view unknown_name;
-    std::vector<std::string_view> defined;
-    for (const auto& [text, name] : names) {
-      if (name.is_defined)
-        defined.push_back(text);
-      else if (!unknown || name.index < unknown->index)
-        unknown = &name, unknown_name = text;
-    }
-    if (unknown)
-      fail(unknown->first_use, "there is no {} \"{}\"{}", kind, unknown_name,
-           defined.empty() ? fmt::format("; {} makes them", maker) : suggestion(unknown_name, defined));
+  settle_unknown_materials(problems);
+  std::vector<std::string_view> defined;
+  for (const auto& [text, name] : objects_)
+    if (name.is_defined) defined.push_back(text);
+  for (const auto& [text, name] : objects_)
+    if (!name.is_defined && !scene_.unread.contains(text))
+      problems.attempt([&] {
+        fail(name.first_use, "there is no object \"{}\"{}", text,
+             defined.empty() ? "; ObjectBegin makes them" : suggestion(text, defined));
+      });
+}
+
+/// A name that no shape needs may stay unknown, as in pbrt.
+void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
+  std::vector<bool> is_used(scene_.materials.size(), false);
+  const auto use = [&](const std::vector<ShapeDescription>& shapes) {
+    for (const ShapeDescription& shape : shapes) is_used[shape.material] = true;
   };
-  check_defined(materials_, "named material", "MakeNamedMaterial");
-  check_defined(objects_, "object", "ObjectBegin");
+  use(scene_.shapes);
+  for (const ObjectDescription& object : scene_.objects) use(object.shapes);
+  std::vector<std::string_view> defined;
+  for (const auto& [text, name] : materials_)
+    if (name.is_defined) defined.push_back(text);
+  for (const auto& [text, name] : materials_) {
+    if (name.is_defined) continue;
+    const std::string message =
+        fmt::format("there is no named material \"{}\"{}", text,
+                    defined.empty() ? "; MakeNamedMaterial makes them" : suggestion(text, defined));
+    scene_.materials[name.index] = {"", {"diffuse", name.first_use, {}}};
+    if (scene_.unread.contains(text)) continue;
+    if (is_used[name.index])
+      problems.add(InputError(name.first_use, message));
+    else
+      log_.warn(name.first_use, message + "; no shape needs it");
+  }
+}
+
+void DescriptionBuilder::import_begin(const Location& where) {
+  if (!in_world_) fail(where, "Import belongs after WorldBegin");
+  push(Opener::import, where);
+  saved_.back().coordinate_systems = scene_.coordinate_systems;
+}
+
+void DescriptionBuilder::import_end() {
+  while (saved_.back().by != Opener::import) {
+    const Saved open = std::move(saved_.back());
+    saved_.pop_back();
+    if (open.by == Opener::object) open_object_.reset();
+    if (saved_.back().by == Opener::import) {  // the outermost is told
+      scene_.coordinate_systems = std::move(saved_.back().coordinate_systems);
+      pop();
+      fail(open.where, "{} without {}", name_of(open.by), ender_of(open.by));
+    }
+  }
+  scene_.coordinate_systems = std::move(saved_.back().coordinate_systems);
+  pop();
+}
+
+/// Names as pbrt takes them: case, - and _ do not count.
+void DescriptionBuilder::option(ParsedParam param) {
+  std::string name;
+  for (const char c : param.name)
+    if (c != '-' && c != '_') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  param.name = std::move(name);
+  std::erase_if(scene_.options, [&](const ParsedParam& older) { return older.name == param.name; });
+  scene_.options.push_back(std::move(param));
 }
 
 void DescriptionBuilder::camera(ParsedPlugin plugin) {
+  if (!state_.transform.is_valid()) fail(plugin.where, "the camera's transform cannot be inverted");
   set_option_plugin(&SceneDescription::camera, "Camera", std::move(plugin));
   scene_.camera_from_world = state_.transform;
   scene_.coordinate_systems["camera"] = state_.transform.inverse();
@@ -93,34 +153,53 @@ void DescriptionBuilder::color_space(const std::string& name, const Location& wh
 }
 
 void DescriptionBuilder::concat(const Transform& transform, std::string_view directive, const Location& where) {
-  state_.transform = state_.transform * transform;
-  if (!state_.transform.is_valid())
-    fail(where, "after this {} the transform cannot be inverted: its scale is too small or too large", directive);
+  set_transform(state_.transform * transform, directive, where);
+}
+
+/// pbrt goes on where a transform cannot be inverted: what stands under it has no volume.
+void DescriptionBuilder::set_transform(const Transform& transform, std::string_view directive, const Location& where) {
+  if (!state_.is_transform_active) return;
+  const bool was_valid = state_.transform.is_valid();
+  state_.transform = transform;
+  if (was_valid && !transform.is_valid())
+    log_.warn(where,
+              fmt::format("after this {} the transform cannot be inverted: shapes, lights and copies under it are "
+                          "left out",
+                          directive));
 }
 
 void DescriptionBuilder::recall_transform(const std::string& name, const Location& where) {
   const auto& systems = scene_.coordinate_systems;
-  if (const auto found = systems.find(name); found != systems.end()) return set_transform(found->second);
+  if (const auto found = systems.find(name); found != systems.end()) {
+    state_.transform = found->second;
+    return;
+  }
   std::vector<std::string_view> names;
   for (const auto& [known, transform] : systems) names.push_back(known);
-  fail(where, "unknown coordinate system \"{}\"{}", name, suggestion(name, names));
+  log_.warn(where, fmt::format("unknown coordinate system \"{}\"{}; the transform stays as it is", name,
+                               suggestion(name, names)));
 }
 
-void DescriptionBuilder::attribute_begin(const Location& where) { push(false, where); }
-void DescriptionBuilder::attribute_end(const Location& where) { pop(false, where); }
+void DescriptionBuilder::transform_begin(const Location& where) {
+  if (!has_warned_of_transform_begin_)
+    log_.warn(
+        where,
+        "TransformBegin saves all that AttributeBegin does, the material too, as in pbrt-v4: TransformEnd brings it "
+        "back");
+  has_warned_of_transform_begin_ = true;
+  push(Opener::transform, where);
+}
 
-void DescriptionBuilder::pop(bool by_object, const Location& where) {
-  const std::string_view ender = by_object ? "ObjectEnd" : "AttributeEnd";
-  if (saved_.empty()) fail(where, "{} without {}", ender, opener(by_object));
+void DescriptionBuilder::attribute_end(const Location& where) {
+  if (saved_.empty() || saved_.back().by == Opener::import)
+    return log_.warn(where, "AttributeEnd without AttributeBegin is left out");
   const Saved& last = saved_.back();
-  if (last.by_object != by_object)
-    fail(where, "{} while the {} at {} is open", ender, opener(last.by_object), place(last.where));
-  state_ = std::move(saved_.back().state);
-  saved_.pop_back();
+  if (last.by == Opener::object) fail(where, "AttributeEnd while the ObjectBegin at {} is open", place(last.where));
+  pop();
 }
 
 void DescriptionBuilder::attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params) {
-  if (target == "medium") fail(where, "attributes of media of pbrt-v4 are not supported yet");
+  if (target == "medium") return;  // there are none
   const auto found = std::find(kTargets.begin(), kTargets.end(), target);
   if (found == kTargets.end())
     fail(where, "unknown target \"{}\" of Attribute{}", target, suggestion(target, {kTargets.begin(), kTargets.end()}));
@@ -183,7 +262,8 @@ void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, Parsed
   const auto [known, is_new] = textures_.emplace(std::pair(kind, name.text), name.where);
   if (!is_new)
     fail(name.where, "{} texture \"{}\" is defined again; first at {}", value.text, name.text, place(known->second));
-  scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture), state_.transform});
+  scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture),
+                             state_.transform.is_valid() ? state_.transform : Transform()});
 }
 
 void DescriptionBuilder::area_light(ParsedPlugin plugin) {
@@ -193,6 +273,7 @@ void DescriptionBuilder::area_light(ParsedPlugin plugin) {
 }
 
 void DescriptionBuilder::shape(ParsedPlugin plugin) {
+  if (!state_.transform.is_valid()) return;
   auto& shapes = open_object_ ? scene_.objects[*open_object_].shapes : scene_.shapes;
   std::optional<size_t> area_light = state_.area_light;
   if (area_light && open_object_) {
@@ -210,6 +291,7 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
 }
 
 void DescriptionBuilder::light(ParsedPlugin plugin) {
+  if (!state_.transform.is_valid()) return;
   if (open_object_) log_.warn(plugin.where, "a light inside an object is not part of its instances: it shines once");
   scene_.lights.push_back({with_defaults(std::move(plugin), Target::light), state_.transform});
 }
@@ -224,16 +306,19 @@ void DescriptionBuilder::object_begin(const std::string& name, const Location& w
   entry.is_defined = true;
   object.where = where;
   open_object_ = entry.index;
-  push(true, where);
+  push(Opener::object, where);
 }
 
 void DescriptionBuilder::object_end(const Location& where) {
   if (!open_object_) fail(where, "ObjectEnd without ObjectBegin");
-  pop(true, where);
+  if (const Saved& last = saved_.back(); last.by != Opener::object)
+    fail(where, "ObjectEnd while the {} at {} is open", name_of(last.by), place(last.where));
+  pop();
   open_object_.reset();
 }
 
 void DescriptionBuilder::object_instance(const std::string& name, const Location& where) {
+  if (!state_.transform.is_valid()) return;
   const AffineMap map{state_.transform.rows()};
   if (const std::string problem = problem_of(map); !problem.empty())
     fail(where, "this copy is not possible: {}", problem);

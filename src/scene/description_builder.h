@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/log.h"
+#include "core/problems.h"
 #include "scene/description.h"
 
 namespace frond {
@@ -25,23 +26,31 @@ class DescriptionBuilder {
   bool in_world() const { return in_world_; }
   void world_begin(const Location& where);
   /// End of the main file: everything must be closed and every name known. `where` is that end.
-  void finish(const Location& where);
+  void finish(const Location& where, Problems& problems);
+
+  // Import: the state goes in, and does not come out
+  void import_begin(const Location& where);
+  void import_end();
 
   // Options
   void camera(ParsedPlugin plugin);
   void set_option_plugin(ParsedPlugin SceneSettings::*option, std::string_view directive, ParsedPlugin plugin);
-  void option(ParsedParam param) { scene_.options.push_back(std::move(param)); }
+  void option(ParsedParam param);
   void color_space(const std::string& name, const Location& where);
 
   // Transforms
   void concat(const Transform& transform, std::string_view directive, const Location& where);
-  void set_transform(const Transform& transform) { state_.transform = transform; }
+  void set_transform(const Transform& transform, std::string_view directive, const Location& where);
   void name_transform(const std::string& name, const Location&) { scene_.coordinate_systems[name] = state_.transform; }
   void recall_transform(const std::string& name, const Location& where);
+  /// Whether transforms change anything: those that are for the end of a motion alone do not.
+  void activate_transforms(bool active) { state_.is_transform_active = active; }
 
   // Graphics state
-  void attribute_begin(const Location& where);
+  void attribute_begin(const Location& where) { push(Opener::attribute, where); }
   void attribute_end(const Location& where);
+  /// As AttributeBegin, also for the material: pbrt-v4 has it so.
+  void transform_begin(const Location& where);
   void attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params);
   void reverse_orientation() { state_.reverse_orientation = !state_.reverse_orientation; }
   void material(ParsedPlugin plugin);
@@ -64,15 +73,18 @@ class DescriptionBuilder {
 
   struct State {
     Transform transform;
+    bool is_transform_active = true;
     bool reverse_orientation = false;
     size_t material = 0;
     std::optional<size_t> area_light;
     std::array<std::vector<ParsedParam>, kTargets.size()> defaults;
   };
+  enum class Opener : uint8_t { attribute, transform, object, import };
   struct Saved {
-    bool by_object;
+    Opener by;
     Location where;
     State state;
+    std::map<std::string, Transform> coordinate_systems;  ///< of an import
   };
   /// A name that may be used before it is defined.
   struct Name {
@@ -82,8 +94,11 @@ class DescriptionBuilder {
   };
   using Names = std::map<std::string, Name, std::less<>>;
 
-  void push(bool by_object, const Location& where) { saved_.push_back({by_object, where, state_}); }
-  void pop(bool by_object, const Location& where);
+  static std::string_view name_of(Opener opener);
+  static std::string_view ender_of(Opener opener);
+  void push(Opener by, const Location& where) { saved_.push_back({by, where, state_, {}}); }
+  void pop() { state_ = std::move(saved_.back().state), saved_.pop_back(); }
+  void settle_unknown_materials(Problems& problems);
   ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
   size_t new_material(MaterialDescription material);
   Name& material_called(const std::string& name, const Location& where);
@@ -94,6 +109,7 @@ class DescriptionBuilder {
   State state_;
   std::vector<Saved> saved_;
   bool in_world_ = false;
+  bool has_warned_of_transform_begin_ = false;
   std::optional<size_t> open_object_;
   Names materials_, objects_;
   std::map<std::pair<TextureDescription::Value, std::string>, Location> textures_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace frond {
 namespace {
@@ -22,7 +23,20 @@ struct Directive {
   /// A plugin's quoted name and its parameters.
   ParsedPlugin plugin() {
     const Token token = quoted();
-    return {text(token), place(token), context.parameters.read(context.tokens)};
+    return {text(token), place(token), parameters()};
+  }
+  /// What is given twice counts as it is given last, as in pbrt.
+  std::vector<ParsedParam> parameters() {
+    std::vector<ParsedParam> params = context.parameters.read(context.tokens);
+    for (size_t i = 1; i < params.size(); ++i) {
+      const auto end = params.begin() + static_cast<std::ptrdiff_t>(i);
+      const auto older = std::find_if(params.begin(), end, [&](const ParsedParam& p) { return p.name == end->name; });
+      if (older == end) continue;
+      context.log.warn(end->where, fmt::format("parameter \"{}\" is given twice: this one counts", end->name));
+      params.erase(older);
+      --i;
+    }
+    return params;
   }
   template <size_t N>
   std::array<double, N> numbers() {
@@ -42,17 +56,13 @@ Vec3 vec3_at(const std::array<double, N>& v, size_t i) {
   return {static_cast<float>(v[i]), static_cast<float>(v[i + 1]), static_cast<float>(v[i + 2])};
 }
 
-void scale(Directive d) {
-  const Vec3 by = vec3_at(d.numbers<3>(), 0);
-  if (by.x == 0 || by.y == 0 || by.z == 0) fail(d.where, "Scale by 0 cannot be inverted");
-  d.scene().concat(Transform::scale(by), d.name, d.where);
-}
+void scale(Directive d) { d.scene().concat(Transform::scale(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }
 
 void rotate(Directive d) {
   const auto v = d.numbers<4>();
   const Vec3 axis = vec3_at(v, 1);
-  if (axis == Vec3{}) fail(d.where, "Rotate about the axis 0 0 0");
-  d.scene().concat(Transform::rotate(v[0], axis), d.name, d.where);
+  if (axis != Vec3{}) return d.scene().concat(Transform::rotate(v[0], axis), d.name, d.where);
+  if (v[0] != 0) fail(d.where, "Rotate about the axis 0 0 0");
 }
 
 void look_at(Directive d) {
@@ -71,15 +81,18 @@ Transform matrix(Directive& d) {
   d.bracket(Kind::open_bracket);
   const auto m = d.numbers<16>();
   d.bracket(Kind::close_bracket);
-  if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+  constexpr double kRounding = 1e-6;
+  const double w = m[15], projective = std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11])});
+  if (!(projective <= kRounding * std::abs(w)) || w == 0)
     fail(d.where, "{}: the matrix is projective (its last row is {} {} {} {}, not 0 0 0 1)", d.name, m[3], m[7], m[11],
-         m[15]);
+         w);
+  if (projective > 0)
+    d.context.log.warn(
+        d.where, fmt::format("{}: the last row {} {} {} {} is taken for 0 0 0 {}", d.name, m[3], m[7], m[11], w, w));
   Transform::RowsDouble rows;
   for (size_t i = 0; i < 3; ++i)
-    for (size_t j = 0; j < 4; ++j) rows[i][j] = m[4 * j + i];
-  const Transform transform(rows);
-  if (!transform.is_valid()) fail(d.where, "{}: the matrix is singular", d.name);
-  return transform;
+    for (size_t j = 0; j < 4; ++j) rows[i][j] = m[4 * j + i] / w;
+  return Transform(rows);
 }
 
 void texture(Directive d) {
@@ -95,14 +108,32 @@ void make_named_material(Directive d) {
 
 void attribute(Directive d) {
   const Token target = d.quoted();
-  d.scene().attribute(d.text(target), d.place(target), d.context.parameters.read(d.context.tokens));
+  d.scene().attribute(d.text(target), d.place(target), d.parameters());
 }
 
 void option(Directive d) { d.scene().option(d.context.parameters.read_option(d.context.tokens)); }
 
 void accelerator(Directive d) {
+  constexpr std::string_view kOfPbrt[] = {"bvh", "kdtree"};
   const ParsedPlugin plugin = d.plugin();
-  d.context.log.warn(plugin.where, fmt::format("Accelerator \"{}\" has no effect: Embree brings its own", plugin.name));
+  if (std::ranges::find(kOfPbrt, plugin.name) == std::end(kOfPbrt))
+    d.context.log.warn(plugin.where, fmt::format("unknown accelerator \"{}\": Embree brings its own", plugin.name));
+}
+
+void medium_interface(Directive d) {
+  const bool is_empty = d.text(d.quoted()).empty();
+  const bool is_outside_empty = d.context.tokens.peek().kind != Kind::string || d.text(d.quoted()).empty();
+  if (is_empty && is_outside_empty) return;
+  d.context.unsupported.handle("media", d.where, d.name, "is left out", d.context.log);
+}
+
+void active_transform(Directive d) {
+  const Token which = d.context.tokens.next();
+  if (which.text == "All") return d.scene().activate_transforms(true);
+  if (which.kind != Kind::word || (which.text != "StartTime" && which.text != "EndTime"))
+    fail(d.place(which), "ActiveTransform takes StartTime, EndTime or All, {} was given", which.shown());
+  d.context.unsupported.handle("motion", d.where, d.name, "leaves all as it is at the start", d.context.log);
+  d.scene().activate_transforms(which.text == "StartTime");
 }
 
 template <ParsedPlugin SceneSettings::*option>
@@ -138,6 +169,7 @@ using Scene = SceneDescription;
 
 constexpr DirectiveEntry kDirectives[] = {
     {"Accelerator", Block::options, accelerator},
+    {"ActiveTransform", Block::any, active_transform},
     {"AreaLightSource", Block::world, with_plugin<&Builder::area_light>},
     {"Attribute", Block::any, attribute},
     {"AttributeBegin", Block::world, alone<&Builder::attribute_begin>},
@@ -148,12 +180,14 @@ constexpr DirectiveEntry kDirectives[] = {
     {"CoordSysTransform", Block::any, with_name<&Builder::recall_transform>},
     {"CoordinateSystem", Block::any, with_name<&Builder::name_transform>},
     {"Film", Block::options, option_plugin<&Scene::film>},
-    {"Identity", Block::any, [](Directive d) { d.scene().set_transform(Transform()); }},
+    {"Identity", Block::any, [](Directive d) { d.scene().set_transform(Transform(), d.name, d.where); }},
     {"Integrator", Block::options, option_plugin<&Scene::integrator>},
     {"LightSource", Block::world, with_plugin<&Builder::light>},
     {"LookAt", Block::any, look_at},
     {"MakeNamedMaterial", Block::world, make_named_material},
+    {"MakeNamedMedium", Block::any, [](Directive d) { (void)d.plugin(); }},  // MediumInterface asks for it
     {"Material", Block::world, with_plugin<&Builder::material>},
+    {"MediumInterface", Block::any, medium_interface},
     {"NamedMaterial", Block::world, with_name<&Builder::named_material>},
     {"ObjectBegin", Block::world, with_name<&Builder::object_begin>},
     {"ObjectEnd", Block::world, alone<&Builder::object_end>},
@@ -166,21 +200,31 @@ constexpr DirectiveEntry kDirectives[] = {
     {"Scale", Block::any, scale},
     {"Shape", Block::world, with_plugin<&Builder::shape>},
     {"Texture", Block::world, texture},
-    {"Transform", Block::any, [](Directive d) { d.scene().set_transform(matrix(d)); }},
+    {"Transform", Block::any, [](Directive d) { d.scene().set_transform(matrix(d), d.name, d.where); }},
+    {"TransformBegin", Block::world, alone<&Builder::transform_begin>},
+    {"TransformEnd", Block::world, alone<&Builder::attribute_end>},
+    {"TransformTimes", Block::options, [](Directive d) { (void)d.numbers<2>(); }},  // ActiveTransform asks for it
     {"Translate", Block::any,
      [](Directive d) { d.scene().concat(Transform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},
     {"WorldBegin", Block::any, alone<&Builder::world_begin>},
 };
 
-constexpr std::string_view kOfPbrtOnly[] = {"ActiveTransform", "Import",       "MakeNamedMedium", "MediumInterface",
-                                            "TransformBegin",  "TransformEnd", "TransformTimes"};
+/// pbrt --upgrade of pbrt-v4 reads pbrt-v3's files alone.
+constexpr std::string_view kOfPbrt2[] = {"AreaLight",        "Exterior", "Interior",    "LightSourceBegin",
+                                         "Renderer",         "Search",   "SearchPath",  "SurfaceIntegrator",
+                                         "VolumeIntegrator", "Volume",   "VolumeRegion"};
 
 [[noreturn]] void fail_unknown(const Token& token, const Location& where) {
   if (token.kind != Kind::word || parse_number(token.text))
     fail(where, "a directive is needed, {} was given", token.shown());
-  if (std::find(std::begin(kOfPbrtOnly), std::end(kOfPbrtOnly), token.text) != std::end(kOfPbrtOnly))
-    fail(where, "directive {} of pbrt-v4 is not supported yet", token.text);
-  std::vector<std::string_view> names{"Include"};
+  if (token.text == "WorldEnd")
+    fail(where, "WorldEnd: this is a file for pbrt-v3 or older; \"pbrt --upgrade\" of pbrt-v4 makes one for pbrt-v4");
+  if (std::ranges::find(kOfPbrt2, token.text) != std::end(kOfPbrt2))
+    fail(where,
+         "{}: this is a file for pbrt-v2 or older; it has to become one for pbrt-v3 by hand (Integrator in place of "
+         "SurfaceIntegrator and Renderer), then for pbrt-v4 by \"pbrt --upgrade\"",
+         token.text);
+  std::vector<std::string_view> names{"Include", "Import"};
   for (const DirectiveEntry& entry : kDirectives) names.push_back(entry.name);
   const std::string_view match = nearest(token.text.substr(0, 80), names);
   if (match.empty()) fail(where, "unknown directive {}", token.shown());

@@ -7,6 +7,7 @@
 #include "scene/description_builder.h"
 #include "scene/parameter_list.h"
 #include "scene/tokenizer.h"
+#include "scene/unsupported.h"
 
 namespace frond {
 
@@ -16,10 +17,11 @@ struct DirectiveContext {
   ParameterReader& parameters;
   DescriptionBuilder& scene;
   const Log& log;
+  const Unsupported& unsupported;
 };
 
 /// Reads the arguments of directive `name`, whose word has been taken from the tokens, and carries it out; all but
-/// Include, which is the parser's. Throws InputError, for unknown directives too.
+/// Include and Import, which are the parser's. Throws InputError, for unknown directives too.
 void carry_out(const Token& name, DirectiveContext& context);
 
 /// The quoted string that must come next; `directive` asks for it.

@@ -3,8 +3,6 @@
 namespace frond {
 namespace {
 
-constexpr float kStep = 0.125f;  // pixels
-
 void keep_shorter(Vec3& shortest, const Vec3& v) {
   if (dot(v, v) < dot(shortest, shortest)) shortest = v;
 }
@@ -19,8 +17,9 @@ Vec2 uv_of(const SurfaceDerivatives& d, const Vec3& step) {
 
 }  // namespace
 
-Footprint::Footprint(const Camera& camera, const CameraPlacement& placement)
-    : camera_from_world_(placement.world_from_camera.inverse()) {
+Footprint::Footprint(const Camera& camera, const CameraPlacement& placement, bool between_samples)
+    : camera_from_world_(placement.world_from_camera.inverse()), is_point_(false) {
+  const float pixels = between_samples ? 0.125f : 1.f;
   // The shortest steps from corner to corner of the film: textures are rather too sharp than blurred.
   constexpr int kPlaces = 512;
   const Vec2 lens{0.5f, 0.5f};
@@ -32,8 +31,8 @@ Footprint::Footprint(const Camera& camera, const CameraPlacement& placement)
     const Ray here = camera.ray(film, lens);
     const Frame frame = Frame::around(direction(here));
     const auto keep = [&](const Ray& next, Step& shortest) {
-      keep_shorter(shortest.origin, (origin(next) - origin(here)) * kStep);
-      keep_shorter(shortest.direction, (frame.to_local(direction(next)) - Vec3{0, 0, 1}) * kStep);
+      keep_shorter(shortest.origin, (origin(next) - origin(here)) * pixels);
+      keep_shorter(shortest.direction, (frame.to_local(direction(next)) - Vec3{0, 0, 1}) * pixels);
     };
     keep(camera.ray({film.x + 1, film.y}, lens), x_);
     keep(camera.ray({film.x, film.y + 1}, lens), y_);
@@ -43,6 +42,10 @@ Footprint::Footprint(const Camera& camera, const CameraPlacement& placement)
 void Footprint::set(Hit& hit) const {
   TexturePoint& at = hit.at;
   at.p = hit.p, at.n = hit.shading.z;
+  if (is_point_) {
+    at.dp_dx = at.dp_dy = {}, at.duv_dx = at.duv_dy = {};
+    return;
+  }
   // In a space where the camera looks along z at the point, rays a step aside meet the plane that touches the surface.
   const Vec3 p = camera_from_world_.point(hit.p);
   const float distance = length(p);

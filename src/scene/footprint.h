@@ -6,12 +6,13 @@
 namespace frond {
 
 /// How far apart the camera's samples fall on a surface, over which textures are filtered: an eighth of a pixel,
-/// however many samples there are. As if the camera looked at each point straight, also where mirrors lie between: pbrt
-/// 4th ed., 10.1.
+/// however many samples there are. One made by nothing does not filter. As if the camera looked at each point straight,
+/// also where mirrors lie between: pbrt 4th ed., 10.1.
 class Footprint {
  public:
   Footprint() = default;
-  Footprint(const Camera& camera, const CameraPlacement& placement);
+  /// `between_samples`: over an eighth of a pixel; else of a whole one, where each has its samples at its centre.
+  Footprint(const Camera& camera, const CameraPlacement& placement, bool between_samples = true);
   /// What textures may know of a hit that has its derivatives.
   void set(Hit& hit) const;
 
@@ -23,6 +24,7 @@ class Footprint {
   };
   Transform camera_from_world_;
   Step x_, y_;
+  bool is_point_ = true;
 };
 
 }  // namespace frond

@@ -54,15 +54,24 @@ void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where, 
 class GeometryBuilder {
  public:
   GeometryBuilder(const SceneDescription& description, const Registry& registry, SceneResolver& resolver,
-                  const ThreadPool& pool, const Log& log)
-      : description_(description), registry_(registry), resolver_(resolver), pool_(pool), log_(log) {
+                  const ThreadPool& pool, const Log& log, Problems& problems)
+      : description_(description),
+        registry_(registry),
+        resolver_(resolver),
+        pool_(pool),
+        log_(log),
+        problems_(problems) {
     for (size_t i = 0; i < description.objects.size(); ++i) by_name_.emplace(description.objects[i].name, i);
     visits_.resize(description.objects.size());
   }
 
   std::shared_ptr<const Geometry> build() {
-    for (size_t i = 0; i < description_.objects.size(); ++i) visit(i);
-    ObjectParts world = parts_of(description_.shapes, description_.copies);
+    ObjectParts world;
+    problems_.attempt([&] {
+      for (size_t i = 0; i < description_.objects.size(); ++i) visit(i);
+      world = parts_of(description_.shapes, description_.copies);
+    });
+    problems_.check();
     return std::make_shared<const Geometry>(std::move(objects_), std::move(world), pool_.size());
   }
 
@@ -87,7 +96,7 @@ class GeometryBuilder {
 
   ObjectParts parts_of(const std::vector<ShapeDescription>& shapes, const CopyList& copies) {
     ObjectParts parts;
-    for (const ShapeDescription& shape : shapes) add(shape, parts);
+    for (const ShapeDescription& shape : shapes) problems_.attempt([&] { add(shape, parts); });
     if (copies.objects.empty()) return parts;
     Instances instances{.table = std::make_shared<const InstanceTable>(copies.maps), .objects = {}, .placement = {}};
     const bool is_one = std::ranges::all_of(copies.objects, [&](uint32_t o) { return o == copies.objects.front(); });
@@ -149,6 +158,7 @@ class GeometryBuilder {
   SceneResolver& resolver_;
   const ThreadPool& pool_;
   const Log& log_;
+  Problems& problems_;
   std::map<std::string, size_t, std::less<>> by_name_;
   std::map<std::filesystem::path, std::shared_ptr<const InstanceTable>> tables_;
   std::vector<Visit> visits_;
@@ -158,8 +168,9 @@ class GeometryBuilder {
 }  // namespace
 
 std::shared_ptr<const Geometry> build_geometry(const SceneDescription& description, const Registry& registry,
-                                               SceneResolver& resolver, const ThreadPool& pool, const Log& log) {
-  return GeometryBuilder(description, registry, resolver, pool, log).build();
+                                               SceneResolver& resolver, const ThreadPool& pool, const Log& log,
+                                               Problems& problems) {
+  return GeometryBuilder(description, registry, resolver, pool, log, problems).build();
 }
 
 }  // namespace frond

@@ -2,13 +2,16 @@
 
 #include "core/log.h"
 #include "core/parallel.h"
+#include "core/problems.h"
 #include "scene/geometry.h"
 #include "scene/resolver.h"
 
 namespace frond {
 
-/// The description's shapes and the copies of its objects. Throws InputError.
+/// The description's shapes and the copies of its objects. Goes on after a shape with an error; throws all that
+/// `problems` then has.
 std::shared_ptr<const Geometry> build_geometry(const SceneDescription& description, const Registry& registry,
-                                               SceneResolver& resolver, const ThreadPool& pool, const Log& log);
+                                               SceneResolver& resolver, const ThreadPool& pool, const Log& log,
+                                               Problems& problems);
 
 }  // namespace frond

@@ -26,6 +26,12 @@ constexpr ValueType kTypes[] = {
     {"blackbody", Values::numbers}};
 
 Values values_of(std::string_view type, const Location& where) {
+  if (type == "color" || type == "xyz")
+    fail(where,
+         "parameter type \"{}\" is of pbrt-v3 and older: \"rgb\" is what pbrt-v4 has; \"pbrt --upgrade\" of pbrt-v4 "
+         "makes a "
+         "file for it",
+         type);
   std::vector<std::string_view> names;
   for (const ValueType& t : kTypes) {
     if (t.name == type) return t.values;

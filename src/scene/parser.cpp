@@ -7,31 +7,44 @@
 #include "scene/description_builder.h"
 #include "scene/directives.h"
 #include "system/file_bytes.h"
+#include "system/gzip.h"
 
 namespace frond {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads a file and, where it says so, others.
+/// Reads files and, where they say so, others.
 class SceneReader {
  public:
-  SceneReader(SceneDescription& scene, const Log& log) : scene_(scene), log_(log), builder_(scene, log) {}
+  SceneReader(SceneDescription& scene, const Log& log, const Unsupported& unsupported, Problems& problems)
+      : scene_(scene), log_(log), unsupported_(unsupported), problems_(problems), builder_(scene, log) {}
 
-  void read_main(const std::string& text, const fs::path& path) { builder_.finish(read(text, path)); }
+  void read_main(const std::string& text, const fs::path& path) {
+    problems_.attempt([&] { end_ = read(text, path, nullptr); });
+  }
+  void finish() {
+    problems_.attempt([this] { builder_.finish(end_, problems_); });
+  }
 
  private:
   static constexpr size_t kDeepest = 64;
 
-  Location read(const std::string& text, const fs::path& path);
+  Location read(const std::string& bytes, const fs::path& path, Tokenizer* outer);
+  void read_directive(Tokenizer& tokens, DirectiveContext& context);
   void include(Tokenizer& tokens);
+  void import(Tokenizer& tokens, const Location& where);
+  fs::path next_file(Tokenizer& tokens, std::string_view directive, Location& where) const;
   void check_include(const fs::path& path, const Location& where) const;
 
   SceneDescription& scene_;
   const Log& log_;
+  const Unsupported& unsupported_;
+  Problems& problems_;
   DescriptionBuilder builder_;
   ParameterReader parameters_;
   std::vector<fs::path> open_files_;  // from the main file to the one being read
+  Location end_;
 };
 
 fs::path real_path(const fs::path& path) {
@@ -41,29 +54,57 @@ fs::path real_path(const fs::path& path) {
 }
 
 /// Returns the place of the end.
-Location SceneReader::read(const std::string& text, const fs::path& path) {
+Location SceneReader::read(const std::string& bytes, const fs::path& path, Tokenizer* outer) {
   scene_.files.push_back(path);
-  scene_.content_hash = hash_bytes(text, scene_.content_hash);
+  scene_.content_hash = hash_bytes(bytes, scene_.content_hash);
+  const auto name = std::make_shared<const std::string>(path.string());
+  std::string unpacked;
+  if (is_gzip(bytes)) unpacked = unpack_gzip(bytes, path.string(), {name, 1, 1});
+  Tokenizer tokens(is_gzip(bytes) ? unpacked : bytes, name, outer);
+  DirectiveContext context{tokens, parameters_, builder_, log_, unsupported_};
   open_files_.push_back(path);
-  Tokenizer tokens(text, std::make_shared<const std::string>(path.string()));
-  DirectiveContext context{tokens, parameters_, builder_, log_};
-  while (tokens.peek().kind != Token::Kind::end) {
-    const Token word = tokens.next();
-    if (word.kind == Token::Kind::word && word.text == "Include")
-      include(tokens);
-    else
-      carry_out(word, context);
+  while (!tokens.at_end()) {
+    if (!problems_.attempt([&] { read_directive(tokens, context); })) tokens.skip_to_directive();
   }
   open_files_.pop_back();
   return tokens.where(tokens.peek());
 }
 
+void SceneReader::read_directive(Tokenizer& tokens, DirectiveContext& context) {
+  const Token word = tokens.next(), argument = tokens.peek();
+  try {
+    if (word.kind == Token::Kind::word && word.text == "Include")
+      include(tokens);
+    else if (word.kind == Token::Kind::word && word.text == "Import")
+      import(tokens, tokens.where(word));
+    else
+      carry_out(word, context);
+  } catch (const InputError&) {
+    if (argument.kind == Token::Kind::string) scene_.unread.emplace(argument.text);
+    throw;
+  }
+}
+
 void SceneReader::include(Tokenizer& tokens) {
-  const Token name = read_quoted(tokens, "Include");
-  const Location where = tokens.where(name);
+  Location where;
+  const fs::path path = next_file(tokens, "Include", where);
+  read(read_file_bytes(path, where), path, &tokens);
+}
+
+void SceneReader::import(Tokenizer& tokens, const Location& where) {
+  Location name_where;
+  const fs::path path = next_file(tokens, "Import", name_where);
+  builder_.import_begin(where);
+  problems_.attempt([&] { read(read_file_bytes(path, name_where), path, nullptr); });
+  builder_.import_end();
+}
+
+fs::path SceneReader::next_file(Tokenizer& tokens, std::string_view directive, Location& where) const {
+  const Token name = read_quoted(tokens, directive);
+  where = tokens.where(name);
   const fs::path path = scene_.resolve(tokens.text_of(name), where);
   check_include(path, where);
-  read(read_file_bytes(path, where), path);
+  return path;
 }
 
 void SceneReader::check_include(const fs::path& path, const Location& where) const {
@@ -78,25 +119,53 @@ void SceneReader::check_include(const fs::path& path, const Location& where) con
 
 }  // namespace
 
-SceneDescription parse_scene(const fs::path& path, const Log& log) {
-  if (path == "-") return parse_scene_text(read_standard_input(), "standard input", log);
-  return parse_scene_text(read_file_bytes(path, {}), path.string(), log);
+SceneDescription parse_scene(const std::vector<fs::path>& paths, const Log& log, const Unsupported& unsupported,
+                             Problems& problems) {
+  SceneDescription scene;
+  SceneReader reader(scene, log, unsupported, problems);
+  for (const fs::path& path : paths)
+    problems.attempt([&] {
+      if (path == "-")
+        reader.read_main(read_standard_input(), "standard input");
+      else
+        reader.read_main(read_file_bytes(path, {}), path);
+    });
+  reader.finish();
+  return scene;
 }
 
-SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log) {
+SceneDescription parse_scene(const fs::path& path, const Log& log, const Unsupported& unsupported) {
+  Problems problems;
+  SceneDescription scene = parse_scene(std::vector{path}, log, unsupported, problems);
+  problems.check();
+  return scene;
+}
+
+SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log,
+                                  const Unsupported& unsupported) {
+  Problems problems;
   SceneDescription scene;
-  SceneReader(scene, log).read_main(text, name);
+  SceneReader reader(scene, log, unsupported, problems);
+  reader.read_main(text, name);
+  reader.finish();
+  problems.check();
   return scene;
 }
 
 fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
-  const fs::path path = name;
-  if (path.is_absolute() || !where.file) return path;
-  const fs::path beside = (fs::path(*where.file).parent_path() / path).lexically_normal();
+  if (name.empty() || fs::path(name).is_absolute() || !where.file) return name;
+  std::string slashed = name;  // as exporters on Windows mean it
+  std::ranges::replace(slashed, '\\', '/');
   std::error_code error;
-  if (fs::exists(beside, error) || files.empty()) return beside;
-  const fs::path from_main = (files.front().parent_path() / path).lexically_normal();
-  return fs::exists(from_main, error) ? from_main : beside;
+  for (const fs::path& path : {fs::path(name), fs::path(slashed)}) {
+    const fs::path beside = (fs::path(*where.file).parent_path() / path).lexically_normal();
+    if (fs::exists(beside, error)) return beside;
+    if (files.empty()) continue;
+    if (fs::path from_main = (files.front().parent_path() / path).lexically_normal(); fs::exists(from_main, error))
+      return from_main;
+    if (fs::exists(path, error)) return path;
+  }
+  return (fs::path(*where.file).parent_path() / name).lexically_normal();
 }
 
 }  // namespace frond

@@ -1,6 +1,6 @@
 #include "scene/resolver.h"
 
-#include "core/error.h"
+#include "core/problems.h"
 #include "spectra/analytic.h"
 #include "spectra/check_range.h"
 #include "spectra/cie.h"
@@ -72,11 +72,20 @@ template <class Make>
 auto SceneResolver::make(const std::string& key, const Make& make, bool& needs_details) {
   in_progress_.insert(key);
   needs_details_.push_back(false);
-  auto result = make();
-  needs_details = needs_details_.back() || result->needs_details();
-  needs_details_.pop_back();
-  in_progress_.erase(key);
-  return result;
+  const auto leave = [&] {
+    needs_details = needs_details_.back();
+    needs_details_.pop_back();
+    in_progress_.erase(key);
+  };
+  try {
+    auto result = make();
+    leave();
+    needs_details = needs_details || result->needs_details();
+    return result;
+  } catch (...) {  // others are made after an error
+    leave();
+    throw;
+  }
 }
 
 /// To what is being made of it.
@@ -108,7 +117,14 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
     made.emplace(name, MadeTexture<Texture>{result, needs_details});
     return result;
   }
-  fail(where, "there is no {} \"{}\"{}", table.kind(), name, suggestion(name, names));
+  fail_unknown(table.kind(), name, names, where);
+}
+
+void SceneResolver::fail_unknown(std::string_view kind, const std::string& name,
+                                 const std::vector<std::string_view>& names, const Location& where) const {
+  const std::string message = fmt::format("there is no {} \"{}\"{}", kind, name, suggestion(name, names));
+  if (description_.unread.contains(name)) throw Consequence(where, message);
+  fail(where, "{}", message);
 }
 
 std::shared_ptr<const FloatTexture> SceneResolver::float_texture(const std::string& name, const Location& where) {
@@ -132,7 +148,7 @@ std::shared_ptr<Material> SceneResolver::material(const std::string& name, const
     check_depth(in_progress_.size(), where);
     return material(i);
   }
-  fail(where, "there is no material \"{}\"{}", name, suggestion(name, names));
+  fail_unknown("material", name, names, where);
 }
 
 std::shared_ptr<Material> SceneResolver::material(size_t index) {

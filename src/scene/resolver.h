@@ -54,6 +54,8 @@ class SceneResolver final : public ParamResolver {
   template <class Make>
   auto make(const std::string& key, const Make& make, bool& needs_details);
   void pass_on(bool needs_details);
+  [[noreturn]] void fail_unknown(std::string_view kind, const std::string& name,
+                                 const std::vector<std::string_view>& names, const Location& where) const;
 
   const SceneSettings& description_;
   const Registry& registry_;

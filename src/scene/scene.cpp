@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "core/log.h"
+#include "core/problems.h"
 #include "scene/geometry_builder.h"
 #include "scene/instances.h"
 
 namespace frond {
 namespace {
 
+constexpr std::string_view kCoordSystems[] = {"camera", "cameraworld", "world"};
 constexpr Param kOptionParams[] = {
     {.name = "seed",
      .kind = ParamKind::integer,
@@ -25,13 +27,43 @@ constexpr Param kOptionParams[] = {
      .range = {1e-6, 1e9},
      .doc = "Two lengths: what stands in the scene is there again every so far along x and y, for ever.",
      .list = true},
+    {.name = "disablepixeljitter",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "All samples at the pixels' centres and the lens's."},
+    {.name = "disabletexturefiltering",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "Textures are read at points."},
+    {.name = "disablewavelengthjitter",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "All samples see the same wavelengths."},
+    {.name = "forcediffuse", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
+    {.name = "pixelstats", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
+    {.name = "wavefront", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
+    {.name = "displacementedgescale", .kind = ParamKind::real, .default_value = 1.0, .doc = "pbrt's; has no effect."},
+    {.name = "msereferenceimage",
+     .kind = ParamKind::string,
+     .default_value = std::string_view(),
+     .doc = "pbrt's; has no effect: frond difference compares pictures."},
+    {.name = "msereferenceout",
+     .kind = ParamKind::string,
+     .default_value = std::string_view(),
+     .doc = "pbrt's; has no effect: frond difference compares pictures."},
+    {.name = "rendercoordsys",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("cameraworld"),
+     .doc = "pbrt's; has no effect: it does not change the picture.",
+     .choices = kCoordSystems},
 };
 constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
 
 /// Binding of what can refer to files, but to nothing else of the scene.
 class OptionResolver final : public ParamResolver {
  public:
-  explicit OptionResolver(const SceneSettings& description) : description_(description) {}
+  explicit OptionResolver(const SceneSettings& description, const Log& log = silent_log())
+      : description_(description), log_(log) {}
 
  private:
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
@@ -41,9 +73,11 @@ class OptionResolver final : public ParamResolver {
   std::filesystem::path file(const std::string& name, const Location& w) override {
     return description_.resolve(name, w);
   }
+  void warn(const Location& where, std::string_view message) override { log_.warn(where, message); }
   [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
 
   const SceneSettings& description_;
+  const Log& log_;
 };
 
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
@@ -59,7 +93,8 @@ bool is_mixture(const MaterialInfo& info) {
 
 }  // namespace
 
-/// Turns the description into a scene, in the order of what depends on what.
+/// Turns the description into a scene, in the order of what depends on what. After an error it goes on with what does
+/// not depend on it; all are thrown together.
 class SceneBuilder {
  public:
   SceneBuilder(Scene& scene, const SceneSettings& settings, const Registry& registry, const SceneOverrides& overrides,
@@ -69,12 +104,17 @@ class SceneBuilder {
   /// With these shapes.
   void build(const SceneDescription& description, SharedWork& shared) {
     const auto resolver = build_settings();
-    check_declarations(*resolver);
-    build_lights(*resolver);
-    scene_.geometry_ = build_geometry(description, registry_, *resolver, pool_, log_);
-    check_instance_textures(description_, *scene_.geometry_, log_);
-    build_area_lights(*resolver);
+    build_world(description, *resolver);
+    problems_.check();
     finish(*resolver, shared);
+  }
+
+  /// All that can be wrong in these shapes and what they are made of, also in what nothing is made of.
+  void check(const SceneDescription& description) {
+    const auto resolver = build_settings();
+    bind_all(*resolver);
+    build_world(description, *resolver);
+    problems_.check();
   }
 
   /// With what stands in the other, and as much of what that is made of as is the same.
@@ -100,13 +140,25 @@ class SceneBuilder {
   }
 
  private:
+  void build_world(const SceneDescription& description, SceneResolver& resolver) {
+    check_declarations(resolver);
+    build_lights(resolver);
+    scene_.geometry_ = build_geometry(description, registry_, resolver, pool_, log_, problems_);
+    check_instance_textures(description_, *scene_.geometry_, log_);
+    build_area_lights(resolver);
+  }
+
+  /// What has no wavelengths cannot be bound.
   std::unique_ptr<SceneResolver> build_settings() {
-    apply_swaps(description_, overrides_.swaps, registry_, log_);
-    if (const auto& text = overrides_.integrator)
-      override_plugin(*text, registry_.integrators.get(text->name, {}), {}, description_.integrator);
-    if (const auto& text = overrides_.filter)
-      override_plugin(*text, registry_.filters.get(text->name, {}), {}, description_.filter);
-    build_options();
+    problems_.attempt([this] {
+      apply_swaps(description_, overrides_.swaps, registry_, log_);
+      if (const auto& text = overrides_.integrator)
+        override_plugin(*text, registry_.integrators.get(text->name, {}), {}, description_.integrator);
+      if (const auto& text = overrides_.filter)
+        override_plugin(*text, registry_.filters.get(text->name, {}), {}, description_.filter);
+    });
+    problems_.attempt([this] { build_options(); });
+    if (!scene_.wavelengths_) problems_.check();
     auto resolver = std::make_unique<SceneResolver>(description_, registry_, *scene_.wavelengths_, log_);
     build_view(*resolver);
     return resolver;
@@ -138,12 +190,12 @@ class SceneBuilder {
   }
 
   template <class Info>
-  void check(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver) const {
-    Params(table.get(plugin.name, plugin.where), plugin, resolver);
+  void check(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver) {
+    problems_.attempt([&] { Params(table.get(plugin.name, plugin.where), plugin, resolver); });
   }
 
   /// Also of what no shape uses: a name or parameter that is wrong is told at once.
-  void check_declarations(SceneResolver& resolver) const {
+  void check_declarations(SceneResolver& resolver) {
     for (const TextureDescription& t : description_.textures) {
       if (t.value == TextureDescription::Value::real)
         check(registry_.float_textures, t.plugin, resolver);
@@ -154,9 +206,35 @@ class SceneBuilder {
     for (const ParsedPlugin& light : description_.area_lights) check(registry_.area_lights, light, resolver);
   }
 
+  /// Also what nothing is made of.
+  void bind_all(SceneResolver& resolver) {
+    for (const TextureDescription& t : description_.textures)
+      problems_.attempt([&] {
+        if (t.value == TextureDescription::Value::real)
+          (void)resolver.float_texture(t.name, t.plugin.where);
+        else
+          (void)resolver.spectrum_texture(t.name, t.plugin.where);
+      });
+    for (size_t i = 0; i < description_.materials.size(); ++i) problems_.attempt([&] { (void)resolver.material(i); });
+    for (const ParsedPlugin& light : description_.area_lights)
+      problems_.attempt([&] {
+        const AreaLightInfo& info = registry_.area_lights.get(light.name, light.where);
+        const Params params(info, light, resolver);
+        for (const Param& p : info.params)
+          if (p.kind == ParamKind::illuminant && params.given(p.name)) (void)params.spectrum(p.name);
+      });
+  }
+
   void build_options() {
-    OptionResolver resolver(description_);
+    OptionResolver resolver(description_, log_);
     const Params p(kOptions, {"Option", {}, description_.options}, resolver);
+    for (const std::string_view name : {"forcediffuse", "pixelstats", "wavefront"})
+      if (p.boolean(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
+    for (const std::string_view name : {"displacementedgescale", "msereferenceimage", "msereferenceout"})
+      if (p.given(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
+    scene_.has_pixel_jitter_ = !p.boolean("disablepixeljitter");
+    scene_.has_wavelength_jitter_ = !p.boolean("disablewavelengthjitter");
+    filters_textures_ = !p.boolean("disabletexturefiltering");
     seed_ = overrides_.seed;
     if (!seed_ && p.given("seed")) seed_ = uint64_t(p.integer("seed"));
     const auto [text, where] = wavelength_choice(description_, overrides_);
@@ -183,23 +261,31 @@ class SceneBuilder {
   }
 
   void build_view(SceneResolver& resolver) {
-    FilmSettings film = Scene::film_settings(description_, registry_);
+    FilmSettings film;
+    problems_.attempt([&] { film = Scene::film_settings(description_, registry_); });
     if (overrides_.quick) film = halved(film);
     scene_.film_ = film;
     const CameraPlacement placement{description_.camera_from_world.inverse(), film.width, film.height};
-    scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
-    scene_.footprint_ = Footprint(*scene_.camera_, placement);
-    check_camera(film);
-    scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, seed_);
+    problems_.attempt([&] {
+      scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
+      check_camera(film);
+    });
+    problems_.attempt([&] { scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, seed_); });
+    problems_.attempt([&] { scene_.filter_ = make(registry_.filters, description_.filter, resolver); });
+    problems_.attempt([&] { scene_.integrator_ = make(registry_.integrators, description_.integrator, resolver); });
+    if (!problems_.empty()) return;
+    if (filters_textures_) scene_.footprint_ = Footprint(*scene_.camera_, placement, scene_.has_pixel_jitter_);
     const int samples = scene_.sampler_->samples_per_pixel();
     scene_.samples_per_pixel_ = overrides_.quick ? std::max(1, samples / 16) : samples;
-    scene_.filter_ = make(registry_.filters, description_.filter, resolver);
+    problems_.attempt([this] { check_filter(); });
+  }
+
+  void check_filter() const {
     if (scene_.camera_->pixels_are_apart() && !scene_.filter_->stays_in_pixel())
       fail(description_.filter.where.file ? description_.filter.where : description_.camera.where,
            "the pixels of this camera have nothing to do with each other, and \"{}\" mixes them: PixelFilter \"box\" "
            "does not",
            description_.filter.name);
-    scene_.integrator_ = make(registry_.integrators, description_.integrator, resolver);
   }
 
   /// Embree takes no ray whose numbers are too large; the film's corners and the lens's rim have the largest.
@@ -220,14 +306,15 @@ class SceneBuilder {
 
   void build_lights(SceneResolver& resolver) {
     for (const LightDescription& light : description_.lights)
-      lights_->add(make(registry_.lights, light.plugin, resolver, light.world_from_light));
+      problems_.attempt([&] { lights_->add(make(registry_.lights, light.plugin, resolver, light.world_from_light)); });
   }
 
   /// One for each surface that gives off light. There are no lights after these.
   void build_area_lights(SceneResolver& resolver) {
     for (const Surface& surface : scene_.geometry_->surfaces()) {
       lights_->of_surface.emplace_back();
-      if (surface.area_light) build_area_light(surface, resolver, lights_->of_surface.back());
+      if (surface.area_light)
+        problems_.attempt([&] { build_area_light(surface, resolver, lights_->of_surface.back()); });
     }
     if (lights_->all.empty()) log_.warn({}, "the scene has no light: the image will be black");
     scene_.lights_ = std::move(lights_);
@@ -262,6 +349,8 @@ class SceneBuilder {
   std::optional<uint64_t> seed_;  ///< of the command line or the scene's options; the sampler's own where there is none
   std::optional<Vec2> period_;
   Location period_where_;
+  bool filters_textures_ = true;
+  Problems problems_;
   SceneSettings description_;
   const Registry& registry_;
   const SceneOverrides& overrides_;
@@ -380,6 +469,13 @@ Scene::Scene(const Scene& other, const SceneSettings& settings, const Registry& 
   SceneBuilder(*this, settings, registry, overrides, pool, log).build(other, shared);
 }
 
+void Scene::check(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
+                  ThreadPool& pool, const Log& log) {
+  Scene scene;
+  SceneBuilder(scene, description, registry, overrides, pool, log).check(description);
+}
+
+Scene::Scene() = default;
 Scene::~Scene() = default;
 
 }  // namespace frond

@@ -82,6 +82,11 @@ class Scene final : public World {
         ThreadPool& pool, const Log& log, SharedWork& shared);
   ~Scene() override;
 
+  /// Loads all that the scene names, whether a shape needs it or not, and makes nothing of it. Throws InputError, with
+  /// all that is wrong.
+  static void check(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
+                    ThreadPool& pool, const Log& log);
+
   bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override;
   bool occluded(const Ray& ray, uint64_t key) const override;
   uint32_t intersect(const RayPacket& packet, SurfacePoint* points) const override;
@@ -104,11 +109,16 @@ class Scene final : public World {
   /// That of the description at this place; nullptr where nothing is made of it.
   const Material* material(size_t place) const { return material_at_[place]; }
   int samples_per_pixel() const { return samples_per_pixel_; }
+  /// Else all samples lie at the pixels' centres and the lens's.
+  bool has_pixel_jitter() const { return has_pixel_jitter_; }
+  /// Else all samples have the same wavelengths.
+  bool has_wavelength_jitter() const { return has_wavelength_jitter_; }
   /// Of all random numbers.
   uint64_t seed() const { return sampler_->seed(); }
 
  private:
   friend class SceneBuilder;
+  Scene();
 
   bool meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const;
   void describe(const GeometryHit& at, SurfacePoint& point) const;
@@ -131,6 +141,7 @@ class Scene final : public World {
   std::optional<Tiling> tiling_;
   float radius_ = 0;
   int samples_per_pixel_ = 0;
+  bool has_pixel_jitter_ = true, has_wavelength_jitter_ = true;
 };
 
 }  // namespace frond

@@ -29,8 +29,8 @@ Location location_of(const std::shared_ptr<const std::string>& file, std::string
 }
 
 void check_is_text(std::string_view text, const std::shared_ptr<const std::string>& file) {
-  if (text.starts_with("\x1f\x8b"))
-    fail({file, 1, 1}, "this file is compressed; compressed scene files are not supported yet");
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    fail({file, 1, 1}, "this file is UTF-16 text; scene files are UTF-8");
   if (const size_t offset = text.find('\0'); offset != text.npos)
     fail(location_of(file, text, offset), "a zero byte: this is not a text file");
 }
@@ -53,7 +53,8 @@ std::string Token::shown() const {
   }
 }
 
-Tokenizer::Tokenizer(std::string_view text, std::shared_ptr<const std::string> file) : file_(std::move(file)) {
+Tokenizer::Tokenizer(std::string_view text, std::shared_ptr<const std::string> file, Tokenizer* outer)
+    : file_(std::move(file)), outer_(outer) {
   check_is_text(text, file_);
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   at_ = line_start_ = text.data();
@@ -62,6 +63,7 @@ Tokenizer::Tokenizer(std::string_view text, std::shared_ptr<const std::string> f
 }
 
 Token Tokenizer::next() {
+  if (at_end() && outer_) return outer_->next();
   const Token token = next_;
   if (token.kind != Token::Kind::end) next_ = scan();
   return token;
@@ -71,6 +73,7 @@ Token Tokenizer::token_at(const char* start) const {
   Token token;
   token.line = line_;
   token.column = static_cast<int>(start - line_start_) + 1;
+  token.from = this;
   return token;
 }
 
@@ -105,10 +108,27 @@ Token Tokenizer::scan_string() {
   const char* start = ++at_;
   for (; at_ != end_ && *at_ != '"' && *at_ != '\n'; ++at_)
     if (*at_ == '\\' && at_ + 1 != end_ && at_[1] != '\n') token.has_escapes = true, ++at_;
-  if (at_ == end_ || *at_ != '"') fail(where(token), "this string has no closing quote on its line");
+  if (at_ == end_ || *at_ != '"') {
+    is_broken_ = true;
+    fail(where(token), "this string has no closing quote on its line");
+  }
   token.text = {start, static_cast<size_t>(at_ - start)};
   ++at_;
   return token;
+}
+
+void Tokenizer::skip_to_directive() {
+  const auto may_be_directive = [](const Token& token) {
+    return token.kind == Token::Kind::word && token.text[0] >= 'A' && token.text[0] <= 'Z';
+  };
+  while (is_broken_ || (!at_end() && !may_be_directive(next_))) {
+    is_broken_ = false;
+    try {
+      next_ = scan();
+    } catch (const InputError&) {  // it follows from the one that is told
+    }
+  }
+  if (at_end() && outer_) outer_->skip_to_directive();
 }
 
 std::string Tokenizer::text_of(const Token& string) const {

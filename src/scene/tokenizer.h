@@ -10,6 +10,8 @@
 
 namespace frond {
 
+class Tokenizer;
+
 /// A piece of a scene file. `text` points into the file: a word, or a string without its quotes.
 struct Token {
   enum class Kind : uint8_t { end, word, string, open_bracket, close_bracket };
@@ -17,21 +19,28 @@ struct Token {
   bool has_escapes = false;
   int line = 1, column = 1;
   std::string_view text;
+  const Tokenizer* from = nullptr;  ///< whose file it stands in
 
   /// As error messages show it.
   std::string shown() const;
 };
 
-/// Cuts a scene file's text into tokens, without a copy or an allocation for any of them.
+/// Cuts a scene file's text into tokens, without a copy or an allocation for any of them. Behind the end of a file
+/// that another one includes come that one's: a directive may begin in the one and end in the other, as in pbrt.
 class Tokenizer {
  public:
-  /// Both must outlive the tokens. Throws InputError when the text is binary.
-  Tokenizer(std::string_view text, std::shared_ptr<const std::string> file);
+  /// All must outlive the tokens. `outer`: what includes this file, or nullptr. Throws InputError when the text is
+  /// binary.
+  Tokenizer(std::string_view text, std::shared_ptr<const std::string> file, Tokenizer* outer = nullptr);
 
-  const Token& peek() const { return next_; }
+  const Token& peek() const { return at_end() && outer_ ? outer_->peek() : next_; }
+  /// Of this file.
+  bool at_end() const { return next_.kind == Token::Kind::end; }
   /// The token that `peek` showed. Throws InputError when the one after it is malformed.
   Token next();
-  Location where(const Token& token) const { return {file_, token.line, token.column}; }
+  Location where(const Token& token) const { return {token.from->file_, token.line, token.column}; }
+  /// After an error: leaves out what comes before the next word that may be a directive.
+  void skip_to_directive();
   /// A string's text with its escapes resolved.
   std::string text_of(const Token& string) const;
 
@@ -42,10 +51,12 @@ class Tokenizer {
   Token token_at(const char* start) const;
 
   std::shared_ptr<const std::string> file_;
+  Tokenizer* outer_;
   const char* at_;
   const char* end_;
   const char* line_start_;
   int line_ = 1;
+  bool is_broken_ = false;  ///< `next_` could not be read
   Token next_;
 };
 
