@@ -24,12 +24,12 @@ constexpr std::array kCoatMedium{
     Param{.name = "maxdepth",
           .kind = ParamKind::integer,
           .default_value = 10,
-          .range = {0, 10000},
+          .range = {0, 1000},
           .doc = "Longest walk below the coat, in events."},
     Param{.name = "nsamples",
           .kind = ParamKind::integer,
           .default_value = 1,
-          .range = {1, 10000},
+          .range = {1, 1000},
           .doc = "Walks for each value of the BSDF."}};
 
 constexpr Param coat_eta(std::string_view name) {

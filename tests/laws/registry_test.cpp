@@ -47,9 +47,18 @@ ParsedParam given(const std::string& type, const std::string& name, T value) {
   return p;
 }
 
+/// From one value at 400 nm to another at 700 nm.
+ParsedParam falling(const std::string& name, double at_400, double at_700) {
+  ParsedParam p;
+  p.type = "spectrum", p.name = name, p.values = std::vector<double>{400, at_400, 700, at_700};
+  return p;
+}
+
 /// Tables that are quick to make: the laws hold for what is in them, be it as noisy as it may.
 const SweepOptions kSweep{.pinned = {given("string", "tablemethod", std::string("montecarlo")),
-                                     given("integer", "tablerays", 100.0), given("float", "tolerance", 0.02)}};
+                                     given("integer", "tablerays", 100.0), given("float", "tolerance", 0.02),
+                                     // Of layers: walks that take their time say no more.
+                                     given("integer", "nsamples", 2.0), given("integer", "maxdepth", 20.0)}};
 
 /// Runs the laws and fails the test where one is broken.
 Findings expect_lawful(const MaterialInfo& info, std::span<const ParameterSet> sets,
@@ -117,6 +126,60 @@ TEST(Lossless, LeavesWithoutMesophyllReturnAllLight) {
   for (const std::string method : {"montecarlo", "solve"})
     expect_lossless("leaf_simplified",
                     {nothing_absorbs, given("string", "tablemethod", method), given("integer", "tablerays", 100.0)});
+}
+
+TEST(Lossless, DielectricsReturnAllLight) {
+  expect_lossless("dielectric", {level("eta", 1.5)});
+  expect_lossless("dielectric", {falling("eta", 1.8, 1.3)});
+  expect_lossless("thindielectric", {falling("eta", 1.8, 1.3)});
+}
+
+TEST(Lossless, WhiteUnderASmoothCoatReturnsAllLight) {
+  expect_lossless("coateddiffuse",
+                  {level("reflectance", 1), given("float", "thickness", 0.0), given("integer", "maxdepth", 1000.0)});
+  expect_lossless("coateddiffuse", {level("reflectance", 1), level("albedo", 1), given("float", "thickness", 0.5),
+                                    given("float", "g", 0.5), given("integer", "maxdepth", 1000.0)});
+}
+
+// Where lanes are refracted by different angles.
+TEST(Dispersion, Obeys) {
+  const StratifiedWavelengths four;
+  const GivenWavelengths three({608, 551, 455}), one({550}), with_retired({430, 550, 670, 800}, {0, 2});
+  const ParameterSet sets[] = {
+      {"smooth", {"dielectric", {}, {falling("eta", 1.8, 1.3)}}},
+      {"rough", {"dielectric", {}, {falling("eta", 1.8, 1.3), given("float", "roughness", 0.05)}}},
+      {"anisotropic",
+       {"dielectric",
+        {},
+        {falling("eta", 0.8, 0.5), given("float", "uroughness", 0.4), given("float", "vroughness", 0.02)}}}};
+  for (const WavelengthStrategy* wavelengths :
+       std::initializer_list<const WavelengthStrategy*>{&four, &three, &one, &with_retired})
+    expect_lawful(material("dielectric"), sets, *wavelengths, {});
+  const ParameterSet coated{"coated",
+                            {"coateddiffuse", {}, {falling("eta", 1.8, 1.3), given("float", "roughness", 0.05)}}};
+  expect_lawful(material("coateddiffuse"), {&coated, 1}, three, {});
+}
+
+TEST(Rough, Obeys) {
+  for (const double roughness : {0.003, 0.03, 0.3}) {
+    const ParsedParam rough = given("float", "roughness", roughness);
+    for (const std::string_view name : {"dielectric", "conductor", "coateddiffuse"}) {
+      const ParameterSet set{std::to_string(roughness), {std::string(name), {}, {rough}}};
+      expect_lawful(material(name), {&set, 1}, GivenWavelengths({608, 551, 455}), {});
+    }
+  }
+}
+
+TEST(CoatedConductor, Obeys) {
+  const ParsedParam scatters = level("albedo", 0.8), thick = given("float", "thickness", 0.3);
+  const ParsedParam rough = given("float", "conductor.roughness", 0.05);
+  const ParsedParam rough_coat = given("float", "interface.roughness", 0.05);
+  const ParameterSet sets[] = {{"rough metal", {"coatedconductor", {}, {rough}}},
+                               {"rough coat", {"coatedconductor", {}, {rough_coat}}},
+                               {"both rough", {"coatedconductor", {}, {rough, rough_coat}}},
+                               {"smooth, medium", {"coatedconductor", {}, {scatters, thick}}},
+                               {"rough, medium", {"coatedconductor", {}, {scatters, thick, rough, rough_coat}}}};
+  expect_lawful(material("coatedconductor"), sets, GivenWavelengths({608, 551, 455}), {});
 }
 
 // Nearly white, so that a mean of many samples is sharp: an f that is 3 % too small or too large is seen.

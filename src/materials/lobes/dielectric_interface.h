@@ -71,7 +71,7 @@ class DielectricInterface {
     const float cosine = dot(wo, m), cosine2_beyond = 1 - std::max(0.f, 1 - cosine * cosine) / (eta * eta);
     if (cosine2_beyond <= 0) return {};
     const float cosine_beyond = std::sqrt(cosine2_beyond);
-    const Vec3 wi = wo * (-1 / eta) + m * (cosine / eta - cosine_beyond);
+    const Vec3 wi = normalize(wo * (-1 / eta) + m * (cosine / eta - cosine_beyond));
     if (!(wi.z < 0)) return {};
     Way way{wi, (1 - fresnel_dielectric(cosine, eta)) / (eta * eta), 1};
     if (!is_smooth()) {
@@ -91,13 +91,14 @@ class DielectricInterface {
   }
 
   Pair refracted(const Vec3& wo, const Vec3& wi, float eta) const {
-    Vec3 m = normalize_any(wo + eta * wi);
+    // In double: both ways round it is the same, even where a cosine is small.
+    Vec3d m = normalize_any(to_double(wo) + double(eta) * to_double(wi));
     if (m.z < 0) m = -m;
-    const float cosine = dot(wo, m), beyond = -dot(wi, m);
+    const float cosine = float(dot(to_double(wo), m)), beyond = float(-dot(to_double(wi), m));
     if (cosine <= 0 || beyond <= 0) return {};
-    const float area = facets_.density(m) * cosine * spread(cosine, beyond, eta);
+    const float area = facets_.density(to_float(m)) * cosine * spread(cosine, beyond, eta);
     return {area * 4 * facets_.seen_from_both(wo, {wi.x, wi.y, -wi.z}) / (eta * eta), area * facets_.visibility(wo),
-            fresnel_dielectric(cosine, eta)};
+            fresnel_between(cosine, beyond, eta)};
   }
 
   /// Solid angle of facets' normals over that of directions refracted by them; cosines of both directions to the facet.

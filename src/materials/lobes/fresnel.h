@@ -5,15 +5,19 @@
 
 namespace frond {
 
-/// Reflectance of a smooth border for unpolarised light (Fresnel 1823). `cosine` >= 0: of incidence; `eta`: index of
-/// refraction beyond over that on this side.
-inline float fresnel_dielectric(float cosine, float eta) {
-  const float sine2 = std::max(0.f, 1 - cosine * cosine) / (eta * eta);
-  if (sine2 >= 1) return 1;
-  const float beyond = std::sqrt(1 - sine2);
+/// Reflectance of a smooth border for unpolarised light (Fresnel 1823), by the cosines of incidence and of refraction;
+/// `eta`: index of refraction beyond over that on this side.
+inline float fresnel_between(float cosine, float beyond, float eta) {
   const float along = (eta * cosine - beyond) / (eta * cosine + beyond);
   const float across = (cosine - eta * beyond) / (cosine + eta * beyond);
   return 0.5f * (along * along + across * across);
+}
+
+/// The same by the cosine of incidence, >= 0, alone.
+inline float fresnel_dielectric(float cosine, float eta) {
+  const float sine2 = std::max(0.f, 1 - cosine * cosine) / (eta * eta);
+  if (sine2 >= 1) return 1;
+  return fresnel_between(cosine, std::sqrt(1 - sine2), eta);
 }
 
 /// The same where the side beyond absorbs, lane by lane: its index is eta + i k (Born and Wolf, 14.2).
@@ -27,7 +31,7 @@ inline SampledSpectrum fresnel_conductor(float cosine, const SampledSpectrum& et
   const Float4 across = (whole - twice + kTiny) / (whole + twice + kTiny);
   const Float4 sum = cosine2 * modulus + sine2 * sine2, part = twice * sine2;
   const Float4 along = across * (sum - part + kTiny) / (sum + part + kTiny);
-  return SampledSpectrum(0.5f * (across + along));
+  return SampledSpectrum(larger(0.5f * (across + along), Float4{}));
 }
 
 }  // namespace frond

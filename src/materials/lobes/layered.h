@@ -213,6 +213,37 @@ class LayeredBsdf final : public Bsdf {
     return true;
   }
 
+  /// What smooth layers do to light between them that goes up along a direction in the end.
+  struct Mirrors {
+    SampledSpectrum base;  ///< once reflected by the base and up to the coat
+    SampledSpectrum both;  ///< reflected by the coat, then so by the base
+  };
+  Mirrors mirrors_along(const DielectricInterface& border, const Vec3& up) const {
+    Mirrors m;
+    const float across = transmittance(medium_.thickness, up);
+    if (const auto s = base_.sample(up, {})) m.base = s->f * (std::abs(s->wi.z) / s->pdf * across);
+    m.both = m.base * (border.fresnel(-up, {0, 0, 1}) * across);
+    return m;
+  }
+
+  /// What is scattered in the medium and comes to go along `up` by mirrors alone, which no direction drawn elsewhere
+  /// can meet: first down to the base, or first up to the coat. At most so many events more.
+  SampledSpectrum by_mirrors(const Mirrors& between, const Place& at, const Vec3& up, int events) const {
+    constexpr float kNegligible = 1e-7f;
+    const auto scattered = [&](const Vec3& w) { return detail::henyey_greenstein(dot(at.w, w), medium_.g); };
+    SampledSpectrum first_down = between.base * (scattered({up.x, up.y, -up.z}) * transmittance(at.z, up));
+    SampledSpectrum first_up = between.both * (scattered(up) * transmittance(medium_.thickness - at.z, up));
+    SampledSpectrum sum;
+    for (; events > 0; events -= 2) {
+      sum += first_down;
+      if (events > 1) sum += first_up;
+      first_down *= between.both;
+      first_up *= between.both;
+      if (std::max(first_down.max(), first_up.max()) <= kNegligible * sum.max()) break;
+    }
+    return sum;
+  }
+
   /// Estimate of what goes from wi to wo by way of the base or the medium.
   SampledSpectrum walk_between(const Coat& coat, const Vec3& wo, const Vec3& wi, RandomStream& rng) const {
     const DielectricInterface& border = coat.border;
@@ -232,6 +263,9 @@ class LayeredBsdf final : public Bsdf {
       return at.weight * (pair.f * (1 - pair.fresnel) * weight * transmittance(medium_.thickness - at.z, at.w));
     };
 
+    const bool mirrors = smooth && base_.is_smooth();
+    const Mirrors between = mirrors ? mirrors_along(border, up) : Mirrors{};
+
     SampledSpectrum sum;
     Place at{medium_.thickness, in->wi, coat.lanes * in->weight};
     for (int depth = 0; depth < walks_.max_depth && survives(at, depth, rng); ++depth) {
@@ -239,6 +273,7 @@ class LayeredBsdf final : public Bsdf {
       if (advance(at, rng)) {
         const float p = detail::henyey_greenstein(dot(at.w, up), medium_.g);
         sum += at.weight * (p * against(p) * transmittance(medium_.thickness - at.z, up) * out_weight / up.z);
+        if (mirrors) sum += at.weight * by_mirrors(between, at, up, walks_.max_depth - 1 - depth) * (out_weight / up.z);
         const Vec3 before = at.w;
         at.w = detail::sample_henyey_greenstein(before, medium_.g, pair_of(rng));
         if (is_grazing(at.w)) break;

@@ -9,9 +9,14 @@ namespace frond {
 /// y have the widths alpha, with Smith's shadowing, height correlated (Heitz 2014). Directions lie on the side of +z.
 class TrowbridgeReitz {
  public:
-  /// Below `kSmooth` in both, nobody sees that it is rough; the smaller is not less than a tenth of that.
-  TrowbridgeReitz(float alpha_x, float alpha_y)
-      : x_(std::clamp(alpha_x, 0.1f * kSmooth, kRoughest)), y_(std::clamp(alpha_y, 0.1f * kSmooth, kRoughest)) {}
+  /// Below `kSmooth` in both, nobody sees that it is rough; else neither is less than that, or than a thousandth of the
+  /// other.
+  TrowbridgeReitz(float alpha_x, float alpha_y) {
+    const float larger = std::min(std::max(alpha_x, alpha_y), kRoughest);
+    const float least = larger < kSmooth ? 0 : std::max(kSmooth, 1e-3f * larger);
+    x_ = std::clamp(alpha_x, least, kRoughest);
+    y_ = std::clamp(alpha_y, least, kRoughest);
+  }
 
   bool is_smooth() const { return std::max(x_, y_) < kSmooth; }
   Vec2 alpha() const { return {x_, y_}; }
