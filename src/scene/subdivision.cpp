@@ -76,7 +76,7 @@ class ControlMesh {
     std::vector<Edge> all;
     all.reserve(edges);
     for (uint32_t e = 0; e < edges; ++e) {
-      const auto [low, high] = std::minmax(start_of(e), end_of(e));
+      const uint32_t low = std::min(start_of(e), end_of(e)), high = std::max(start_of(e), end_of(e));
       if (low == high) {
         problem_ = fmt::format("face {} has vertex {} twice", e / 3, low);
         return;
