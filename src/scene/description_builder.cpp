@@ -197,9 +197,10 @@ void DescriptionBuilder::area_light(ParsedPlugin plugin) {
 void DescriptionBuilder::shape(ParsedPlugin plugin) {
   const bool is_dark = open_object_ && state_.area_light;
   if (is_dark)
-    log_.warn(plugin.where, fmt::format("shapes in objects give off no light, as in pbrt-v4; the area light of {} is in "
-                                        "force here",
-                                        place(scene_.area_lights[*state_.area_light].where)));
+    log_.warn(plugin.where,
+              fmt::format("shapes in objects give off no light, as in pbrt-v4; the area light of {} is in "
+                          "force here",
+                          place(scene_.area_lights[*state_.area_light].where)));
   auto& shapes = open_object_ ? scene_.objects[*open_object_].shapes : scene_.shapes;
   shapes.push_back({with_defaults(std::move(plugin), Target::shape), state_.transform, state_.reverse_orientation,
                     state_.material, is_dark ? std::nullopt : state_.area_light});
