@@ -259,17 +259,14 @@ class FluxMeter::Sums {
     Vec3 direction;
     Lanes weight;
   };
-  /// What leaves the surface of light that goes along `d`. Nothing does where shading and geometric normal disagree
-  /// about the side.
+  /// What leaves the surface of light that goes along `d`. The shading normal alone decides on which side directions
+  /// are.
   static Onward scatter(const Bsdf& bsdf, const Hit& hit, const Vec3& d, RandomStream& random) {
-    Frame frame = hit.shading;
-    if (dot(d, frame.z) * dot(d, hit.ng) <= 0) frame = Frame::around(hit.ng);
+    const Frame& frame = hit.shading;
     Scattered s;
     bsdf.scatter(frame.to_local(-d), random, {&s, 1});
     if (s.weight.is_black()) return {};
-    const Vec3 direction = frame.to_world(s.direction);
-    if (!(s.direction.z * dot(direction, hit.ng) > 0)) return {};
-    return {direction, s.weight};
+    return {frame.to_world(s.direction), s.weight};
   }
 
   State& state_;

@@ -1,8 +1,9 @@
+#include "scene/bilinear.h"
+
 #include <algorithm>
 #include <array>
 
 #include "core/error.h"
-#include "scene/bilinear.h"
 #include "scene/registry.h"
 #include "scene/shape.h"
 

@@ -21,7 +21,9 @@ unsigned primitives_of(const ShapeGeometry& geometry) {
 EmittingSurface::EmittingSurface(const Surface& surface, std::optional<unsigned> primitive)
     : geometry_(surface.geometry),
       is_met_(!surface.alpha || surface.alpha->range().max > 0),
-      only_(primitive ? primitive : count() == 1 ? std::optional(0u) : std::nullopt) {
+      only_(primitive      ? primitive
+            : count() == 1 ? std::optional(0u)
+                           : std::nullopt) {
   if (is_met_) alpha_ = surface.alpha;
   if (only_) {
     area_ = area_of(*only_);

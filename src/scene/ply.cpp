@@ -173,9 +173,7 @@ class BodyReader {
     return value;
   }
 
-  void skip(const PlyProperty& p) {
-    skip_values(p, p.count_type ? number(*p.count_type) : 1);
-  }
+  void skip(const PlyProperty& p) { skip_values(p, p.count_type ? number(*p.count_type) : 1); }
 
   void skip_values(const PlyProperty& p, double count) {
     if (!(count >= 0 && count <= static_cast<double>(source_.bytes_left())) || count != std::floor(count))

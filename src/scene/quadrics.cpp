@@ -88,8 +88,7 @@ class Quadric : public AnalyticShape {
     const Vec3 x = to_scene_.vector({1, 0, 0}), y = to_scene_.vector({0, 1, 0}), z = to_scene_.vector({0, 0, 1});
     const float xx = dot(x, x), slack = 1e-4f * xx;
     const auto near = [slack](float a, float b) { return std::abs(a - b) <= slack; };
-    return near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) &&
-           near(dot(z, x), 0);
+    return near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) && near(dot(z, x), 0);
   }
 
   Transform to_scene_, from_scene_;

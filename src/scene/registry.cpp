@@ -25,10 +25,9 @@ constexpr std::array kCameras{&perspective_camera, &orthographic_camera, &distan
 constexpr std::array kFilms{&rgb_film, &gbuffer_film};
 constexpr std::array kSamplers{&padded_sobol_sampler, &independent_sampler};
 constexpr std::array kFilters{&box_filter, &triangle_filter, &gaussian_filter, &mitchell_filter, &sinc_filter};
-constexpr std::array kShapes{
-    &triangle_mesh_shape, &ply_mesh_shape,      &sphere_shape, &disk_shape,
-    &cylinder_shape,      &bilinear_mesh_shape, &curve_shape,  &loop_subdivision_shape,
-    &instances_shape};
+constexpr std::array kShapes{&triangle_mesh_shape, &ply_mesh_shape,         &sphere_shape,
+                             &disk_shape,          &cylinder_shape,         &bilinear_mesh_shape,
+                             &curve_shape,         &loop_subdivision_shape, &instances_shape};
 constexpr std::array kLights{&infinite_light, &distant_light, &point_light, &spot_light};
 constexpr std::array kAreaLights{&diffuse_area_light};
 constexpr std::array kFloatTextures{&constant_float_texture, &scale_float_texture, &mix_float_texture,

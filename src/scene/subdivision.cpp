@@ -1,11 +1,11 @@
 #include "scene/subdivision.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
-
-#include <fmt/format.h>
 
 namespace frond {
 namespace {
@@ -76,7 +76,7 @@ class ControlMesh {
     std::vector<Edge> all;
     all.reserve(edges);
     for (uint32_t e = 0; e < edges; ++e) {
-      const auto [low, high] = std::minmax(start_of(e), end_of(e));
+      const uint32_t low = std::min(start_of(e), end_of(e)), high = std::max(start_of(e), end_of(e));
       if (low == high) {
         problem_ = fmt::format("face {} has vertex {} twice", e / 3, low);
         return;
@@ -170,8 +170,8 @@ class ControlMesh {
     return (a + b) * (3. / 8) + (p_[start_of(previous(e))] + p_[start_of(previous(opposite_[e]))]) * (1. / 8);
   }
 
-  /// From tangents, which are weighed sums over the ring. Not unit. As in pbrt-v4 it is on the side from which faces wind
-  /// clockwise, which thereby is the surface's front.
+  /// From tangents, which are weighed sums over the ring. Not unit. As in pbrt-v4 it is on the side from which faces
+  /// wind clockwise, which thereby is the surface's front.
   Vec3d normal(uint32_t v, const std::vector<Vec3d>& limit) const {
     const std::vector<uint32_t> around = ring(v);
     const size_t n = around.size();
@@ -195,8 +195,7 @@ class ControlMesh {
     } else {
       const double angle = std::numbers::pi / double(n - 1);
       t = (at(0) + at(n - 1)) * -std::sin(angle);
-      for (size_t k = 1; k + 1 < n; ++k)
-        t += at(k) * ((2 - 2 * std::cos(angle)) * std::sin(double(k) * angle));
+      for (size_t k = 1; k + 1 < n; ++k) t += at(k) * ((2 - 2 * std::cos(angle)) * std::sin(double(k) * angle));
     }
     return cross(s, t);
   }

@@ -52,9 +52,6 @@ TEST(ParserErrors, NameDirectivesOfPbrtThatAreNotThereYet) {
   expect_errors_in_world({
       {"ColorSpace \"aces2065-1\"", "s:2:12: ColorSpace after WorldBegin is not supported yet"},
       {"Attribute \"medium\" \"float g\" 0", "s:2:11: attributes of media of pbrt-v4 are not supported yet"},
-      {"ObjectBegin \"o\" AreaLightSource \"diffuse\"", "s:2:33: area lights inside objects are not supported yet"},
-      {"AreaLightSource \"diffuse\" ObjectBegin \"o\" Shape \"disk\"",
-       "s:2:49: area lights inside objects are not supported yet; that of s:2:17 is in force here"},
   });
 }
 

@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::StartsWith;
 
-TriangleMesh read(const std::string& text) { return read_ply_text(text, "m.ply"); }
+PlyMesh read(const std::string& text) { return read_ply_text(text, "m.ply"); }
 
 /// Appends values to a binary body.
 class Body {
@@ -104,25 +104,25 @@ TEST(Ply, LeavesNormalsAndTextureCoordinatesEmptyWhereThereAreNone) {
 
 TEST(Ply, KnowsTheNamesOfTextureCoordinates) {
   for (const auto& [u, v] : {std::pair("u", "v"), {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}) {
-    const TriangleMesh mesh = read(fmt::format(
+    const PlyMesh mesh = read(fmt::format(
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
         "property float {}\nproperty float {}\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
         "0 0 0 3 4\n3 0 0 0",
         u, v));
-    EXPECT_THAT(mesh.uv, ElementsAre(Vec2{3, 4}));
+    EXPECT_THAT(mesh.mesh.uv, ElementsAre(Vec2{3, 4}));
   }
 }
 
 TEST(Ply, TakesWindowsLineEndsAndEmptyLines) {
   std::string text = small("0 0 0 \n\n1 0 0\n0 1 0\n3 0 1 2\n\n  \n");
   for (size_t at = 0; (at = text.find('\n', at)) != text.npos; at += 2) text.insert(at, "\r");
-  EXPECT_EQ(read(text).triangles.size(), 1u);
+  EXPECT_EQ(read(text).mesh.triangles.size(), 1u);
 }
 
 TEST(Ply, ReadsFacesThatStandBeforeTheVertices) {
   EXPECT_EQ(read("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_index\nelement vertex 3\n"
                  "property float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n")
-                .triangles.size(),
+                .mesh.triangles.size(),
             1u);
 }
 
@@ -172,10 +172,6 @@ TEST(Ply, RefusesHeadersThatDeclareNoMesh) {
       {with("face 1", "face 0"), "7:1: the mesh has no faces"},
       {with("float z", "float w"), "3:1: element \"vertex\" needs properties x, y and z"},
       {with("float z", "list uchar float z"), "3:1: element \"vertex\" needs properties x, y and z"},
-      {with("float z\n", "float z\nproperty float nx\n"), "3:1: element \"vertex\" has a part of nx, ny and nz only"},
-      {with("float z\n", "float z\nproperty float u\n"), "3:1: element \"vertex\" has one of u and v only"},
-      {with("float z\n", "float z\nproperty float u\nproperty float s\n"),
-       "8:1: a second property \"s\" for the same coordinate"},
       {with("vertex_index", "indices"), "7:1: element \"face\" needs property \"vertex_indices\""},
       {with("uchar int", "uchar float"), "8:1: property \"vertex_index\" must be a list of integers"},
       {with("list uchar int", "int"), "8:1: property \"vertex_index\" must be a list of integers"},
@@ -206,9 +202,6 @@ TEST(Ply, RefusesAsciiBodiesThatAreNotWellFormed) {
       {small("0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n"), "13:7: face 0: index 1.5 is out of range: there are 3 vertices"},
       {small("0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), "13:6: face 0: the row ends too early"},
       {small("0 0 0\n1 0 0\n0 1 0\n3 0 1"), "13:6: face 0: the file ends too early"},
-      {small("0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), "13:1: face 0: 2 corners; triangles and quadrilaterals are supported"},
-      {small("0 0 0\n1 0 0\n0 1 0\n5 0 1 2 0 1\n"),
-       "13:1: face 0: 5 corners; triangles and quadrilaterals are supported"},
       {small("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
        "14:1: there is more data after the last element: a count in the header is wrong"},
   });
@@ -238,12 +231,34 @@ TEST(Ply, NamesTheByteWhereABinaryBodyIsWrong) {
   EXPECT_EQ(error(file(NAN, {0, 1, 2}, 3)), at(16, "vertex 1: y is nan"));
   EXPECT_EQ(error(file(INFINITY, {0, 1, 2}, 3)), at(16, "vertex 1: y is inf"));
   EXPECT_EQ(error(file(0, {0, 3, 2}, 3)), at(41, "face 0: index 3 is out of range: there are 3 vertices"));
-  EXPECT_EQ(error(file(0, {0, 1, 2}, 7)), at(36, "face 0: 7 corners; triangles and quadrilaterals are supported"));
+  EXPECT_EQ(error(file(0, {0, 1, 2}, 7)), at(37, "face 0: the file ends too early"));
   EXPECT_EQ(error(file(0, {0, 1}, 3)), at(45, "face 0: the file ends too early"));
   EXPECT_EQ(error(file(0, {0, 1, 2, 0}, 3)),
             at(49, "there is more data after the last element: a count in the header is wrong"));
   EXPECT_EQ(error(header),
             "m.ply:3:1: element \"vertex\" has 3 rows of at least 12 bytes, but 0 bytes are left in the file");
+}
+
+std::string with_header(std::string_view what, std::string_view replacement, std::string_view body) {
+  std::string header(kHeader);
+  return header.replace(header.find(what), what.size(), replacement) + std::string(body);
+}
+
+TEST(Ply, LeavesOutFacesOfOtherShapes) {
+  const PlyMesh file =
+      read(with_header("element face 1", "element face 3", "0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n5 0 1 2 0 1\n"));
+  EXPECT_EQ(file.ignored, 2u);
+  EXPECT_EQ(file.mesh.triangles.size(), 1u);
+}
+
+TEST(Ply, LeavesOutHalfAPairOfTextureCoordinatesAndASecondOne) {
+  const std::string body = "0 0 0 5\n1 0 0 6\n0 1 0 7\n3 0 1 2\n";
+  EXPECT_TRUE(read(with_header("float z\n", "float z\nproperty float u\n", body)).mesh.uv.empty());
+  EXPECT_TRUE(read(with_header("float z\n", "float z\nproperty float nx\n", body)).mesh.n.empty());
+  const PlyMesh file = read(with_header("float z\n", "float z\nproperty float u\nproperty float v\nproperty float s\n",
+                                        "0 0 0 5 6 7\n1 0 0 6 7 8\n0 1 0 7 8 9\n3 0 1 2\n"));
+  ASSERT_EQ(file.mesh.uv.size(), 3u);
+  EXPECT_EQ(file.mesh.uv[1], (Vec2{6, 7}));
 }
 
 TEST(Ply, ReadsFilesAndNamesThoseItCannotRead) {

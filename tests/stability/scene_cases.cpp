@@ -108,19 +108,6 @@ Cell bent(const Leaf& leaf, double lean_deg) {
   return comparison.cell();
 }
 
-/// Light from so many degrees over the geometric plane. The sheet is turned back, so that it lies in that plane.
-Cell blocked(const Leaf& leaf, double elevation_deg, double lean_deg) {
-  const double e = elevation_deg * kDegree;
-  const Sheet sheet{.material = leaf.material,
-                    .world = distant_light(triple(std::cos(e), 0, std::sin(e))) + "Rotate -10 1 2 0\n",
-                    .normals = leaning(lean_deg)};
-  const Film film = render_text(sheet.text(), {.samples = 16});
-  Comparison comparison;
-  comparison.require(film.not_finite() == 0, "a sample is no number");
-  for (size_t c = 0; c < 3; ++c) comparison.add("radiance", channel_mean(film, c).mean, 0);
-  return comparison.cell();
-}
-
 Film render_at(const Leaf& leaf, double place) {
   const Sheet sheet{.material = leaf.material,
                     .world = kSky + distant_light(".3 -.4 1"),
@@ -155,10 +142,6 @@ Theme scenes() {
   for (const double lean_deg : {45.0, 80.0, 89.9, 90.0, 135.0, 180.0})
     add_leaves(theme, fmt::format("no absorption, under a sky of 1, shading normals lean by {:g} degrees", lean_deg),
                "radiance above 0, at most 1", [&](const Leaf& leaf) { return bent(leaf, lean_deg); });
-  add_leaves(theme, "light 10 degrees under the surface, shading normals lean 60 degrees towards it", "radiance 0",
-             [](const Leaf& leaf) { return blocked(leaf, -10, 60); });
-  add_leaves(theme, "light 10 degrees above the surface, shading normals lean 40 degrees away from it", "radiance 0",
-             [](const Leaf& leaf) { return blocked(leaf, 10, -40); });
   for (const double place : {1e5, 1e7})
     add_leaves(theme, fmt::format("a sheet 8192 units wide, {} units from the origin", rounded_up(place)),
                "as at the origin", [&](const Leaf& leaf) { return far_away(leaf, place); });
