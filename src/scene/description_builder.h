@@ -29,6 +29,7 @@ class DescriptionBuilder {
 
   // Options
   void camera(ParsedPlugin plugin);
+  void film(ParsedPlugin plugin);
   void set_option_plugin(ParsedPlugin SceneSettings::*option, std::string_view directive, ParsedPlugin plugin);
   void option(ParsedParam param) { scene_.options.push_back(std::move(param)); }
   void color_space(const std::string& name, const Location& where);
@@ -67,6 +68,8 @@ class DescriptionBuilder {
     bool reverse_orientation = false;
     size_t material = 0;
     std::optional<size_t> area_light;
+    std::string color_space = "srgb";
+    Location color_space_where;
     std::array<std::vector<ParsedParam>, kTargets.size()> defaults;
   };
   struct Saved {
@@ -85,6 +88,9 @@ class DescriptionBuilder {
   void push(bool by_object, const Location& where) { saved_.push_back({by_object, where, state_}); }
   void pop(bool by_object, const Location& where);
   ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
+  void note_color_space(std::vector<ParsedParam>& params) const;
+  /// The colour space that holds here is the film's.
+  void set_film_space();
   size_t new_material(MaterialDescription material);
   Name& material_called(const std::string& name, const Location& where);
   Name& object_called(const std::string& name, const Location& where);
