@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/sampling.h"
 #include "scene/emitter.h"
+#include "scene/light_image.h"
 #include "scene/registry.h"
 #include "spectra/cie.h"
 
@@ -123,9 +124,16 @@ class DiffuseAreaLight final : public AreaLight {
  public:
   DiffuseAreaLight(const Params& p, const ShapeGeometry& geometry)
       : spectrum_(p.spectrum("L")), surface_(geometry), two_sided_(p.boolean("twosided")) {
+    if (p.given("filename")) {
+      if (p.given("L")) fail(p.where("L"), "\"L\" and \"filename\" exclude each other");
+      image_.emplace(read_light_image(p));
+      spectrum_ = image_->white();
+      mean_ = image_->mean_luminance();
+      if (p.given("power") && !(mean_ > 0)) fail(p.where("power"), "the image is black: it has no power to scale");
+    }
     if (!(surface_.area() > 0))
       fail(p.where(), "an area light needs a surface with an area, this one has {}", surface_.area());
-    scale_ = scale_of(p, "power", sides() * kPiD * surface_.area());
+    scale_ = scale_of(p, "power", sides() * kPiD * surface_.area() * mean_);
   }
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
     const ShapePoint on_light = surface_.sample(u);
@@ -133,14 +141,15 @@ class DiffuseAreaLight final : public AreaLight {
     const float distance = length(d);
     if (distance == 0) return {};
     const Vec3 wi = d / distance;
-    const EmittingPoint at{on_light.p, on_light.ng, {}};
+    const EmittingPoint at{on_light.p, on_light.ng, image_ ? surface_.uv(on_light) : Vec2{}};
     const float density = pdf_along(at.ng, wi, distance);
     const SampledSpectrum emitted = radiance(at, -wi, lambda);
     if (!std::isfinite(density) || emitted.is_black()) return {};
     return LightSample{emitted, wi, distance, density};
   }
   SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const override {
-    return two_sided_ || dot(at.ng, w) > 0 ? spectrum_->sample(lambda) * scale_ : SampledSpectrum();
+    if (!two_sided_ && !(dot(at.ng, w) > 0)) return {};
+    return (image_ ? image_->bilinear({at.uv.x, 1 - at.uv.y}, lambda) : spectrum_->sample(lambda)) * scale_;
   }
   float pdf(const Vec3& from, const EmittingPoint& at) const override {
     const Vec3 d = at.p - from;
@@ -149,7 +158,7 @@ class DiffuseAreaLight final : public AreaLight {
   }
   bool is_delta() const override { return false; }
   double power(float) const override {
-    return photometric(*spectrum_) * double(scale_) * kPiD * surface_.area() * sides();
+    return photometric(*spectrum_) * mean_ * double(scale_) * kPiD * surface_.area() * sides();
   }
   std::optional<LightBounds> bounds() const override {
     LightBounds bounds = surface_.bounds();
@@ -168,6 +177,8 @@ class DiffuseAreaLight final : public AreaLight {
   EmittingSurface surface_;
   bool two_sided_;
   float scale_ = 0;
+  std::optional<LightImage> image_;  ///< over (u, v), in place of an even radiance
+  double mean_ = 1;                  ///< of the image's luminance
 };
 
 constexpr Default kWhite = std::array<double, 3>{1, 1, 1};
@@ -221,6 +232,7 @@ constexpr Param kSpot[] = {kIntensity,
                             .doc = "Width of the soft rim."}};
 constexpr Param kDiffuseArea[] = {
     kRadiance,
+    {.name = "filename", .kind = ParamKind::string, .doc = "Image over (u, v), its top at v = 1; in place of L."},
     kScale,
     kPower,
     {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Both sides give off light."}};
