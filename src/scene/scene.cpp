@@ -359,6 +359,11 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
 
 FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry) {
   OptionResolver resolver(description);
+  if (description.film.name == "spectral")
+    fail(
+        description.film.where,
+        "film \"spectral\" of pbrt-v4 is not supported: with film \"rgb\" and --wavelengths bands an EXR has a channel "
+        "for each wavelength");
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
   FilmSettings film = info.make(Params(info, description.film, resolver));
   if (description.camera.name == "realistic")

@@ -16,6 +16,8 @@ class SigmoidPolynomial {
     return sigmoid((c2_ * t + c1_) * t + c0_);
   }
   float max_value() const;
+  /// As given to the constructor.
+  Triple coefficients() const { return {double(c2_), double(c1_), double(c0_)}; }
 
  private:
   /// 1/2 + x / (2 sqrt(1 + x^2)), written so that no digits cancel where it is small.

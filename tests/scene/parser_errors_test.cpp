@@ -54,7 +54,6 @@ TEST(ParserErrors, NameDirectivesOfPbrtThatAreNotThereYet) {
       {"Material \"\"", "s:2:10: material \"\" of pbrt-v4 is not supported yet: there are no media"},
       {"MakeNamedMaterial \"m\" \"string type\" \"interface\"",
        "s:2:37: material \"interface\" of pbrt-v4 is not supported yet: there are no media"},
-      {"ColorSpace \"aces2065-1\"", "s:2:12: ColorSpace after WorldBegin is not supported yet"},
       {"Attribute \"medium\" \"float g\" 0", "s:2:11: attributes of media of pbrt-v4 are not supported yet"},
       {"ObjectBegin \"o\" AreaLightSource \"diffuse\"", "s:2:33: area lights inside objects are not supported yet"},
       {"AreaLightSource \"diffuse\" ObjectBegin \"o\" Shape \"disk\"",
