@@ -303,7 +303,7 @@ TEST(LightImages, HaveTheirColorsHoweverMany) {
     const double peak = double(std::max({wanted[0], wanted[1], wanted[2]}));
     for (size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(rgb[c] - double(wanted[c])) / peak);
   }
-  EXPECT_LT(largest, 0.01);
+  EXPECT_LT(largest, 1e-3);
 }
 
 TEST(Cameras, SphericalOnesHaveYAtTheTop) {
