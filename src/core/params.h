@@ -66,7 +66,8 @@ struct ParsedParam {
   Location where;        ///< of the quoted declaration
   Location value_where;  ///< of the first value
   std::variant<std::vector<double>, std::vector<std::string>, std::vector<bool>> values;
-  bool may_be_unused = false;  ///< from an `Attribute`: for those plugins that declare it
+  bool may_be_unused = false;    ///< from an `Attribute`: for those plugins that declare it
+  std::string color_space = {};  ///< of an rgb; empty: the scene's
 };
 
 /// A directive with a plugin's name and parameters: `Material "diffuse" ...`.

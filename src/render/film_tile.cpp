@@ -47,8 +47,8 @@ class Exposure {
     value = Double4{response[0], response[1], response[2], response[3]};
     const bool is_finite = std::isfinite((value[0] + value[1]) + (value[2] + value[3]));
     if (!is_finite) value = Double4{};
+    const double largest = std::max({value[0], value[1], value[2], value[3]}) * exposure_;  // of the sensor, as in pbrt
     if (has_colors_) value = columns_[0] * value[0] + columns_[1] * value[1] + columns_[2] * value[2];
-    const double largest = std::max({value[0], value[1], value[2], value[3]}) * exposure_;
     value *= sample.weight * unit_ * (largest > most_ ? most_ / largest : 1);
     if (is_within(value, kBrightest)) return is_finite;
     for (int i = 0; i < kLanes; ++i)

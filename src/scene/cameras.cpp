@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/sampling.h"
+#include "scene/equal_area.h"
 #include "scene/registry.h"
 
 namespace frond {
@@ -75,6 +76,40 @@ class OrthographicCamera final : public ProjectiveCamera {
   }
 };
 
+constexpr std::string_view kMappings[] = {"equalarea", "equirectangular"};
+
+/// All directions from a point, +y at the zenith.
+class SphericalCamera final : public Camera {
+ public:
+  SphericalCamera(const Params& p, const CameraPlacement& film)
+      : world_from_camera_(film.world_from_camera),
+        width_(float(film.width)),
+        height_(float(film.height)),
+        equal_area_(p.string("mapping") == "equalarea") {
+    for (const std::string_view name : {"frameaspectratio", "screenwindow", "lensradius", "focaldistance"})
+      if (p.given(name)) p.warn(name, fmt::format("\"{}\" has no effect on a spherical camera", name));
+  }
+  Ray ray(Vec2 film, Vec2) const override {
+    const Vec2 uv{film.x / width_, film.y / height_};
+    return {world_from_camera_.point({}), normalize_any(world_from_camera_.vector(direction(uv)))};
+  }
+  bool uses_lens() const override { return false; }
+
+ private:
+  Vec3 direction(Vec2 uv) const {
+    if (equal_area_) {
+      const Vec3 d = sphere_from_square(wrapped_on_square(uv));
+      return {d.x, d.z, d.y};
+    }
+    const float theta = uv.y * kPi, phi = uv.x * 2 * kPi;
+    return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+  }
+
+  Transform world_from_camera_;
+  float width_, height_;
+  bool equal_area_;
+};
+
 constexpr Interval kPositive{1e-30, 1e30};
 constexpr Param kFrameAspect{.name = "frameaspectratio",
                              .kind = ParamKind::real,
@@ -94,20 +129,49 @@ constexpr Param kFocalDistance{.name = "focaldistance",
                                .default_value = 1e6,
                                .range = kPositive,
                                .doc = "Distance of the plane in focus."};
+constexpr Param kShutterOpen{.name = "shutteropen",
+                             .kind = ParamKind::real,
+                             .default_value = 0.0,
+                             .unit = "s",
+                             .doc = "When the exposure begins; how long it is is a factor of the image."};
+constexpr Param kShutterClose{
+    .name = "shutterclose", .kind = ParamKind::real, .default_value = 1.0, .unit = "s", .doc = "When it ends."};
 constexpr Param kPerspective[] = {kFrameAspect,
                                   kScreenWindow,
                                   kLensRadius,
                                   kFocalDistance,
+                                  kShutterOpen,
+                                  kShutterClose,
                                   {.name = "fov",
                                    .kind = ParamKind::real,
                                    .default_value = 90.0,
                                    .unit = "degrees",
                                    .range = {1e-3, 179.999},
                                    .doc = "Field of view along the shorter axis."}};
-constexpr Param kOrthographic[] = {kFrameAspect, kScreenWindow, kLensRadius, kFocalDistance};
+constexpr Param kOrthographic[] = {kFrameAspect,   kScreenWindow, kLensRadius,
+                                   kFocalDistance, kShutterOpen,  kShutterClose};
+constexpr Param kSpherical[] = {{.name = "mapping",
+                                 .kind = ParamKind::string,
+                                 .default_value = std::string_view("equalarea"),
+                                 .doc = "From the film to directions; equal-area wants a square film.",
+                                 .choices = kMappings},
+                                kFrameAspect,
+                                kScreenWindow,
+                                kLensRadius,
+                                kFocalDistance,
+                                kShutterOpen,
+                                kShutterClose};
+
+/// What it does is done to the film: nothing moves.
+void check_shutter(const Params& p) {
+  const double open = p.real("shutteropen"), close = p.real("shutterclose");
+  if (close < open) p.warn("shutterclose", "the shutter closes before it opens: the two are exchanged");
+  if (close == open) p.warn("shutterclose", "the shutter is open for no time: the image is black");
+}
 
 template <class T>
 std::unique_ptr<Camera> make_camera(const Params& p, const CameraPlacement& film) {
+  check_shutter(p);
   return std::make_unique<T>(p, film);
 }
 
@@ -115,6 +179,8 @@ std::unique_ptr<Camera> make_camera(const Params& p, const CameraPlacement& film
 
 extern const CameraInfo perspective_camera{{"camera", "perspective", "Pinhole or thin lens.", "pbrt-v4", kPerspective},
                                            make_camera<PerspectiveCamera>};
+extern const CameraInfo spherical_camera{
+    {"camera", "spherical", "All directions around a point.", "pbrt-v4", kSpherical}, make_camera<SphericalCamera>};
 extern const CameraInfo orthographic_camera{
     {"camera", "orthographic", "Parallel projection.", "pbrt-v4", kOrthographic}, make_camera<OrthographicCamera>};
 

@@ -66,7 +66,7 @@ struct SceneSettings {
   ParsedPlugin sampler{"paddedsobol", {}, {}};
   ParsedPlugin integrator{"path", {}, {}};
   ParsedPlugin filter{"gaussian", {}, {}};
-  std::string color_space = "srgb";
+  std::string color_space = "srgb";  ///< of the film; an rgb has its own
   Location color_space_where;
   /// `Option "type name" value`; without a type it follows from the value: bool, integer, float or string.
   std::vector<ParsedParam> options;

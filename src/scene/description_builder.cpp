@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "core/log.h"
+#include "spectra/color_space.h"
 
 namespace frond {
 namespace {
@@ -43,6 +44,7 @@ DescriptionBuilder::DescriptionBuilder(SceneDescription& scene, const Log& log) 
 void DescriptionBuilder::world_begin(const Location& where) {
   if (in_world_) fail(where, "WorldBegin is given twice");
   in_world_ = true;
+  if (!scene_.film.where.file) set_film_space();
   state_.transform = Transform();
   name_transform("world", where);
 }
@@ -146,10 +148,24 @@ void DescriptionBuilder::set_option_plugin(ParsedPlugin SceneSettings::*option, 
   slot = std::move(plugin);
 }
 
+void DescriptionBuilder::film(ParsedPlugin plugin) {
+  set_option_plugin(&SceneDescription::film, "Film", std::move(plugin));
+  set_film_space();
+}
+
+void DescriptionBuilder::set_film_space() {
+  scene_.color_space = state_.color_space;
+  scene_.color_space_where = state_.color_space_where;
+}
+
 void DescriptionBuilder::color_space(const std::string& name, const Location& where) {
-  if (in_world_ && name != scene_.color_space) fail(where, "ColorSpace after WorldBegin is not supported yet");
-  scene_.color_space = name;
-  scene_.color_space_where = where;
+  state_.color_space = frond::color_space(name, where).name;
+  state_.color_space_where = where;
+}
+
+void DescriptionBuilder::note_color_space(std::vector<ParsedParam>& params) const {
+  for (ParsedParam& p : params)
+    if (p.type == "rgb") p.color_space = state_.color_space;
 }
 
 void DescriptionBuilder::concat(const Transform& transform, std::string_view directive, const Location& where) {
@@ -204,6 +220,7 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
   if (found == kTargets.end())
     fail(where, "unknown target \"{}\" of Attribute{}", target, suggestion(target, {kTargets.begin(), kTargets.end()}));
   auto& defaults = state_.defaults[static_cast<size_t>(found - kTargets.begin())];
+  note_color_space(params);
   for (ParsedParam& param : params) {
     param.may_be_unused = true;
     std::erase_if(defaults, [&](const ParsedParam& older) { return older.name == param.name; });
@@ -212,6 +229,7 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
 }
 
 ParsedPlugin DescriptionBuilder::with_defaults(ParsedPlugin plugin, Target target) const {
+  note_color_space(plugin.params);
   const size_t own = plugin.params.size();
   for (const ParsedParam& p : state_.defaults[static_cast<size_t>(target)]) {
     const auto own_end = plugin.params.begin() + static_cast<std::ptrdiff_t>(own);

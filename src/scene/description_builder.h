@@ -34,6 +34,7 @@ class DescriptionBuilder {
 
   // Options
   void camera(ParsedPlugin plugin);
+  void film(ParsedPlugin plugin);
   void set_option_plugin(ParsedPlugin SceneSettings::*option, std::string_view directive, ParsedPlugin plugin);
   void option(ParsedParam param);
   void color_space(const std::string& name, const Location& where);
@@ -77,6 +78,8 @@ class DescriptionBuilder {
     bool reverse_orientation = false;
     size_t material = 0;
     std::optional<size_t> area_light;
+    std::string color_space = "srgb";
+    Location color_space_where;
     std::array<std::vector<ParsedParam>, kTargets.size()> defaults;
   };
   enum class Opener : uint8_t { attribute, transform, object, import };
@@ -100,6 +103,9 @@ class DescriptionBuilder {
   void pop() { state_ = std::move(saved_.back().state), saved_.pop_back(); }
   void settle_unknown_materials(Problems& problems);
   ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
+  void note_color_space(std::vector<ParsedParam>& params) const;
+  /// The colour space that holds here is the film's.
+  void set_film_space();
   size_t new_material(MaterialDescription material);
   Name& material_called(const std::string& name, const Location& where);
   Name& object_called(const std::string& name, const Location& where);

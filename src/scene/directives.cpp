@@ -179,7 +179,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"ConcatTransform", Block::any, [](Directive d) { d.scene().concat(matrix(d), d.name, d.where); }},
     {"CoordSysTransform", Block::any, with_name<&Builder::recall_transform>},
     {"CoordinateSystem", Block::any, with_name<&Builder::name_transform>},
-    {"Film", Block::options, option_plugin<&Scene::film>},
+    {"Film", Block::options, with_plugin<&Builder::film>},
     {"Identity", Block::any, [](Directive d) { d.scene().set_transform(Transform(), d.name, d.where); }},
     {"Integrator", Block::options, option_plugin<&Scene::integrator>},
     {"LightSource", Block::world, with_plugin<&Builder::light>},

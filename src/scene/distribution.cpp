@@ -61,4 +61,79 @@ float Distribution2D::pdf(Vec2 uv) const {
   return marginal_.probability(y) * rows_[y].probability(x) * static_cast<float>(rows_.size() * rows_[y].size());
 }
 
+WindowedDistribution::WindowedDistribution(const std::vector<float>& weights, int width)
+    : width_(width), height_(int(weights.size()) / width) {
+  const size_t row = size_t(width_) + 1;
+  sums_.assign(row * (size_t(height_) + 1), 0);
+  for (size_t y = 0; y < size_t(height_); ++y) {
+    double left = 0;
+    for (size_t x = 0; x < size_t(width_); ++x) {
+      left += double(weights[y * size_t(width_) + x]);
+      sums_[(y + 1) * row + x + 1] = sums_[y * row + x + 1] + left;
+    }
+  }
+}
+
+WindowedDistribution::Box WindowedDistribution::box(const Window& w) const {
+  const auto at = [](float t, int cells) { return std::clamp(double(t), 0.0, 1.0) * cells; };
+  return {at(w.min.x, width_), at(w.max.x, width_), at(w.min.y, height_), at(w.max.y, height_)};
+}
+
+double WindowedDistribution::below(double x, double y) const {
+  const int i = std::min(int(x), width_ - 1), j = std::min(int(y), height_ - 1);
+  const double fx = x - i, fy = y - j;
+  const double* const low = &sums_[size_t(j) * (size_t(width_) + 1) + size_t(i)];
+  const double* const high = low + width_ + 1;
+  return std::lerp(std::lerp(low[0], low[1], fx), std::lerp(high[0], high[1], fx), fy);
+}
+
+double WindowedDistribution::sum(const Box& b) const {
+  return below(b.x1, b.y1) - below(b.x0, b.y1) - below(b.x1, b.y0) + below(b.x0, b.y0);
+}
+
+namespace {
+
+struct Place {
+  double at;
+  int cell;
+};
+
+/// Where in [first, last] a sum that grows linearly from whole number to whole number reaches a share u of its last.
+template <class Sum>
+Place place_in(double first, double last, double u, const Sum& sum) {
+  const double target = u * sum(last);
+  int low = int(first), high = std::max(low, int(std::ceil(last)) - 1);
+  while (low < high) {
+    const int middle = low + (high - low) / 2;
+    if (sum(std::min(middle + 1.0, last)) > target)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  const double a = std::max(double(low), first), b = std::min(low + 1.0, last);
+  const double from = sum(a), step = sum(b) - from;
+  return {step > 0 ? std::clamp(a + (target - from) / step * (b - a), a, b) : a, low};
+}
+
+}  // namespace
+
+std::optional<WindowedDistribution::Sample> WindowedDistribution::sample(Vec2 u, const Window& window) const {
+  const Box b = box(window);
+  const double total = sum(b);
+  if (!(total > 0)) return {};
+  const auto [x, i] = place_in(b.x0, b.x1, double(u.x), [&](double to) { return sum({b.x0, to, b.y0, b.y1}); });
+  const double left = std::max(double(i), b.x0), right = std::min(i + 1.0, b.x1);
+  const auto [y, j] = place_in(b.y0, b.y1, double(u.y), [&](double to) { return sum({left, right, b.y0, to}); });
+  const double density = weight(i, j) / total * width_ * height_;
+  if (!(density > 0)) return {};
+  return Sample{{float(x / width_), float(y / height_)}, float(density)};
+}
+
+float WindowedDistribution::pdf(Vec2 uv, const Window& window) const {
+  const double total = sum(box(window));
+  if (!(total > 0) || !window.contains(uv)) return 0;
+  const auto cell = [](float t, int cells) { return std::clamp(int(t * float(cells)), 0, cells - 1); };
+  return float(weight(cell(uv.x, width_), cell(uv.y, height_)) / total * width_ * height_);
+}
+
 }  // namespace frond

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/vec.h"
@@ -46,6 +47,39 @@ class Distribution2D {
  private:
   std::vector<Distribution1D> rows_;
   Distribution1D marginal_;
+};
+
+/// Piecewise constant density over any window of the unit square, by a summed-area table (Bitterli et al. 2015,
+/// "Portal- Masked Environment Map Sampling").
+class WindowedDistribution {
+ public:
+  struct Window {
+    Vec2 min, max;
+    bool contains(Vec2 p) const { return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y; }
+  };
+  struct Sample {
+    Vec2 uv;
+    float pdf;  ///< per unit area of the square
+  };
+  /// Row-major weights, `width` to a row: finite and not negative.
+  WindowedDistribution(const std::vector<float>& weights, int width);
+
+  /// Nothing where the weights in the window are 0.
+  std::optional<Sample> sample(Vec2 u, const Window& window) const;
+  /// 0 outside the window.
+  float pdf(Vec2 uv, const Window& window) const;
+
+ private:
+  struct Box {
+    double x0, x1, y0, y1;  ///< in cells
+  };
+  Box box(const Window& window) const;
+  double below(double x, double y) const;
+  double sum(const Box& b) const;
+  double weight(int x, int y) const { return sum({double(x), double(x + 1), double(y), double(y + 1)}); }
+
+  int width_, height_;
+  std::vector<double> sums_;  ///< of the cells below and left of each corner
 };
 
 }  // namespace frond

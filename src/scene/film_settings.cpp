@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "scene/registry.h"
+#include "spectra/film_sensor.h"
 
 namespace frond {
 namespace {
 
 constexpr Interval kResolution{1, 65536};
-constexpr std::string_view kSensors[] = {"cie1931"};
 constexpr auto kRgb = std::to_array<Param>({
     {.name = "xresolution",
      .kind = ParamKind::integer,
@@ -58,8 +58,14 @@ constexpr auto kRgb = std::to_array<Param>({
     {.name = "sensor",
      .kind = ParamKind::string,
      .default_value = std::string_view("cie1931"),
-     .doc = "Response of the film.",
-     .choices = kSensors},
+     .doc = "Response of the film, where its wavelengths are \"hero\".",
+     .choices = kFilmSensors},
+    {.name = "whitebalance",
+     .kind = ParamKind::real,
+     .default_value = 0.0,
+     .unit = "K",
+     .range = {0, 1e5},
+     .doc = "Colour temperature of the daylight that is to be white; 0: of cameras 6500 K, of cie1931 none."},
     {.name = "maxcomponentvalue",
      .kind = ParamKind::real,
      .range = kAtLeastZero,
@@ -109,7 +115,7 @@ FilmSettings make_rgb_film(const Params& p) {
   s.max_component =
       p.given("maxcomponentvalue") ? p.real("maxcomponentvalue") : std::numeric_limits<double>::infinity();
   (void)p.real("diagonal");
-  (void)p.string("sensor");
+  (void)p.string("sensor"), (void)p.real("whitebalance");  // make_wavelengths reads them
   return s;
 }
 

@@ -28,7 +28,7 @@ struct FilmSettings {
   std::string filename;
   bool half = false;         ///< EXR with 16-bit floats
   double exposure = 1;       ///< factor from radiance to film
-  double max_component = 0;  ///< samples are scaled down to this channel value; infinity: not at all
+  double max_component = 0;  ///< of a sample's response, which is scaled down to it; infinity: not at all
 
   std::vector<std::string> channels = {};  ///< beside colour: names of render/channels.h
   bool features_in_camera_space = false;   ///< normals and positions; else in world space

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/sampling.h"
+#include "scene/light_image.h"
 #include "scene/registry.h"
 #include "spectra/cie.h"
 
@@ -122,9 +123,16 @@ class DiffuseAreaLight final : public AreaLight {
  public:
   DiffuseAreaLight(const Params& p, EmittingSurface surface)
       : spectrum_(p.spectrum("L")), surface_(std::move(surface)), two_sided_(p.boolean("twosided")) {
+    if (p.given("filename")) {
+      if (p.given("L")) fail(p.where("L"), "\"L\" and \"filename\" exclude each other");
+      image_.emplace(read_light_image(p));
+      spectrum_ = image_->white();
+      mean_ = image_->mean_luminance();
+      if (p.given("power") && !(mean_ > 0)) fail(p.where("power"), "the image is black: it has no power to scale");
+    }
     if (!(surface_.area() > 0))
       fail(p.where(), "an area light needs a surface with an area, this one has {}", surface_.area());
-    scale_ = scale_of(p, "power", sides() * kPiD * surface_.area());
+    scale_ = scale_of(p, "power", sides() * kPiD * surface_.area() * mean_);
   }
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
     const auto [on_light, uv, weight] = surface_.sample(u);
@@ -141,7 +149,8 @@ class DiffuseAreaLight final : public AreaLight {
   }
   SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const override {
     if (!two_sided_ && !(dot(at.ng, w) > 0)) return {};
-    return spectrum_->sample(lambda) * (scale_ * surface_.opacity(at.uv));
+    const SampledSpectrum emitted = image_ ? image_->bilinear({at.uv.x, 1 - at.uv.y}, lambda) : spectrum_->sample(lambda);
+    return emitted * (scale_ * surface_.opacity(at.uv));
   }
   float pdf(const Vec3& from, const EmittingPoint& at) const override {
     const Vec3 d = at.p - from;
@@ -150,7 +159,7 @@ class DiffuseAreaLight final : public AreaLight {
   }
   bool is_delta() const override { return !surface_.is_met(); }
   double power(float) const override {
-    return photometric(*spectrum_) * double(scale_) * kPiD * surface_.area() * sides();
+    return photometric(*spectrum_) * mean_ * double(scale_) * kPiD * surface_.area() * sides();
   }
   std::optional<LightBounds> bounds() const override {
     LightBounds bounds = surface_.bounds();
@@ -169,6 +178,8 @@ class DiffuseAreaLight final : public AreaLight {
   EmittingSurface surface_;
   bool two_sided_;
   float scale_ = 0;
+  std::optional<LightImage> image_;  ///< over (u, v), in place of an even radiance
+  double mean_ = 1;                  ///< of the image's luminance
 };
 
 constexpr Default kWhite = std::array<double, 3>{1, 1, 1};
@@ -222,6 +233,7 @@ constexpr Param kSpot[] = {kIntensity,
                             .doc = "Width of the soft rim."}};
 constexpr Param kDiffuseArea[] = {
     kRadiance,
+    {.name = "filename", .kind = ParamKind::string, .doc = "Image over (u, v), its top at v = 1; in place of L."},
     kScale,
     kPower,
     {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Both sides give off light."}};

@@ -6,13 +6,13 @@
 
 namespace frond {
 
-extern const CameraInfo perspective_camera, orthographic_camera, distant_camera;
+extern const CameraInfo perspective_camera, orthographic_camera, spherical_camera, distant_camera;
 extern const FilmInfo rgb_film, gbuffer_film;
 extern const SamplerInfo independent_sampler, padded_sobol_sampler;
 extern const FilterInfo box_filter, triangle_filter, gaussian_filter, mitchell_filter, sinc_filter;
 extern const ShapeInfo triangle_mesh_shape, ply_mesh_shape, sphere_shape, disk_shape, cylinder_shape,
     bilinear_mesh_shape, curve_shape, loop_subdivision_shape, instances_shape;
-extern const LightInfo infinite_light, distant_light, point_light, spot_light;
+extern const LightInfo infinite_light, distant_light, point_light, spot_light, projection_light, goniometric_light;
 extern const AreaLightInfo diffuse_area_light;
 extern const FloatTextureInfo constant_float_texture, scale_float_texture, mix_float_texture, image_float_texture,
     instance_float_texture;
@@ -21,14 +21,15 @@ extern const SpectrumTextureInfo constant_spectrum_texture, scale_spectrum_textu
 
 namespace {
 
-constexpr std::array kCameras{&perspective_camera, &orthographic_camera, &distant_camera};
+constexpr std::array kCameras{&perspective_camera, &orthographic_camera, &spherical_camera, &distant_camera};
 constexpr std::array kFilms{&rgb_film, &gbuffer_film};
 constexpr std::array kSamplers{&padded_sobol_sampler, &independent_sampler};
 constexpr std::array kFilters{&box_filter, &triangle_filter, &gaussian_filter, &mitchell_filter, &sinc_filter};
 constexpr std::array kShapes{&triangle_mesh_shape, &ply_mesh_shape,         &sphere_shape,
                              &disk_shape,          &cylinder_shape,         &bilinear_mesh_shape,
                              &curve_shape,         &loop_subdivision_shape, &instances_shape};
-constexpr std::array kLights{&infinite_light, &distant_light, &point_light, &spot_light};
+constexpr std::array kLights{&infinite_light, &distant_light,    &point_light,
+                             &spot_light,     &projection_light, &goniometric_light};
 constexpr std::array kAreaLights{&diffuse_area_light};
 constexpr std::array kFloatTextures{&constant_float_texture, &scale_float_texture, &mix_float_texture,
                                     &image_float_texture, &instance_float_texture};

@@ -2,6 +2,7 @@
 
 #include "core/problems.h"
 #include "spectra/analytic.h"
+#include "spectra/beyond_data.h"
 #include "spectra/check_range.h"
 #include "spectra/cie.h"
 #include "spectra/color_space.h"
@@ -38,7 +39,8 @@ Triple rgb_of(const ParsedParam& p) {
 
 SpectrumPtr blackbody_of(const ParsedParam& p) {
   const auto& v = numbers(p);
-  if (v.size() != 1) fail(p.value_where, "\"{}\" takes one temperature in kelvin, {} values given", p.name, v.size());
+  if (v.empty() || v.size() > 2)
+    fail(p.value_where, "\"{}\" takes one temperature in kelvin, {} values given", p.name, v.size());
   return std::make_shared<BlackbodySpectrum>(v[0], p.value_where);
 }
 
@@ -165,21 +167,47 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
   return materials_.emplace(index, made).first->second.material;
 }
 
+/// Tables that end within the visible are 0 beyond, as in pbrt-v4; what may not be 0, such as an index of refraction,
+/// keeps its last value.
+SpectrumPtr SceneResolver::in_the_visible(SpectrumPtr s, const ParsedParam& p, SpectrumUse use) {
+  const Beyond beyond = use == SpectrumUse::unbounded ? Beyond::held : Beyond::zero;
+  const Interval data_nm = s->range_nm(), needed_nm = wavelengths_.range_nm();
+  s = known_in_the_visible(std::move(s), beyond);
+  const auto reaches = [needed_nm](Interval nm) { return nm.contains(needed_nm.min) && nm.contains(needed_nm.max); };
+  if (!reaches(data_nm) && reaches(s->range_nm()))
+    warn(p.value_where,
+         fmt::format("\"{}\" is known from {} to {} nm, the render needs {} to {} nm: {}", p.name, data_nm.min,
+                     data_nm.max, needed_nm.min, needed_nm.max,
+                     beyond == Beyond::zero ? "it is 0 beyond, as in pbrt-v4" : "beyond, its last value is taken"));
+  return s;
+}
+
+void SceneResolver::warn(const Location& where, std::string_view message) {
+  if (warned_.insert(where.text() + std::string(message)).second) log_.warn(where, message);
+}
+
 SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
   const bool emission = use == SpectrumUse::illuminant;
   SpectrumPtr s;
   if (p.type == "rgb") {
-    s = emission                        ? rgb_illuminant(color_space_, rgb_of(p), p.value_where)
-        : use == SpectrumUse::unbounded ? rgb_unbounded(color_space_, rgb_of(p), p.value_where)
-                                        : rgb_albedo(color_space_, rgb_of(p), p.value_where);
+    const ColorSpace& space = p.color_space.empty() ? color_space_ : color_space(p.color_space, p.where);
+    s = emission                        ? rgb_illuminant(space, rgb_of(p), p.value_where)
+        : use == SpectrumUse::unbounded ? rgb_unbounded(space, rgb_of(p), p.value_where)
+                                        : rgb_albedo(space, rgb_of(p), p.value_where);
   } else if (p.type == "float") {
     s = constant_of(p);
   } else {
-    if (p.type == "blackbody")
+    if (p.type == "blackbody") {
       s = blackbody_of(p);
-    else
-      s = std::holds_alternative<std::vector<double>>(p.values) ? make_tabulated(numbers(p), p.value_where)
-                                                                : spectrum_of_name(p, description_);
+      if (numbers(p).size() == 2)
+        warn(p.value_where,
+             fmt::format("a blackbody has one value, its temperature: the second, {}, has no effect", numbers(p)[1]));
+    } else {
+      s = in_the_visible(std::holds_alternative<std::vector<double>>(p.values)
+                             ? make_tabulated(numbers(p), p.value_where)
+                             : spectrum_of_name(p, description_),
+                         p, use);
+    }
     if (emission) s = normalized(s, p);
   }
   if (emission)

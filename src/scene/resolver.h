@@ -20,7 +20,9 @@ struct MadeMaterial {
 };
 
 /// Looks up what parameters refer to: textures and materials by name, spectra by value, name or file. Things are made
-/// when first asked for. A spectrum whose data do not reach the render's wavelengths is an error at its parameter.
+/// when first asked for. A table that
+/// ends within the visible is continued there, with a warning; a spectrum that does not reach the render's wavelengths
+/// even so is an error at its parameter.
 class SceneResolver final : public ParamResolver {
  public:
   SceneResolver(const SceneSettings& description, const Registry& registry, const WavelengthStrategy& wavelengths,
@@ -32,7 +34,8 @@ class SceneResolver final : public ParamResolver {
   std::shared_ptr<Material> material(const std::string& name, const Location& where) override;
   SpectrumPtr spectrum(const ParsedParam& param, SpectrumUse use) override;
   std::filesystem::path file(const std::string& name, const Location& where) override;
-  void warn(const Location& where, std::string_view message) override { log_.warn(where, message); }
+  /// Once, however often the same plugin is made.
+  void warn(const Location& where, std::string_view message) override;
 
   std::shared_ptr<Material> material(size_t index);
   /// All that have been made, each once, by their places in the description.
@@ -56,6 +59,7 @@ class SceneResolver final : public ParamResolver {
   void pass_on(bool needs_details);
   [[noreturn]] void fail_unknown(std::string_view kind, const std::string& name,
                                  const std::vector<std::string_view>& names, const Location& where) const;
+  SpectrumPtr in_the_visible(SpectrumPtr s, const ParsedParam& p, SpectrumUse use);
 
   const SceneSettings& description_;
   const Registry& registry_;
@@ -66,7 +70,8 @@ class SceneResolver final : public ParamResolver {
   MadeTextures<SpectrumTexture> spectrum_textures_;
   std::map<size_t, MadeMaterial> materials_;
   std::set<std::string> in_progress_;  ///< textures and materials being made: a second visit is a cycle
-  std::vector<bool> needs_details_;    ///< of what is being made, level by level
+  std::set<std::string> warned_;
+  std::vector<bool> needs_details_;  ///< of what is being made, level by level
 };
 
 }  // namespace frond

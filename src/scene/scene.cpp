@@ -82,8 +82,29 @@ class OptionResolver final : public ParamResolver {
 
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
   return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
-           return p.type == q.type && p.name == q.name && p.values == q.values;
+           return p.type == q.type && p.name == q.name && p.values == q.values && p.color_space == q.color_space;
          });
+}
+
+bool declares(const PluginInfo& info, std::string_view name) {
+  return std::ranges::find(info.params, name, &Param::name) != info.params.end();
+}
+
+/// What the film says of its responses, which wavelengths are weighed by, where that is not the eye as it is.
+std::vector<ParsedParam> sensor_params(const SceneSettings& description) {
+  using Values = decltype(ParsedParam::values);
+  std::vector<ParsedParam> params;
+  for (const ParsedParam& p : description.film.params)
+    if ((p.name == "sensor" && p.values != Values(std::vector<std::string>{"cie1931"})) ||
+        (p.name == "whitebalance" && p.values != Values(std::vector<double>{0})))
+      params.push_back(p);
+  return params;
+}
+
+/// Of a camera's shutter, in seconds; 1 of one that has none.
+double open_time(const Params& camera, const CameraInfo& info) {
+  if (!declares(info, "shutterclose")) return 1;
+  return std::abs(camera.real("shutterclose") - camera.real("shutteropen"));
 }
 
 bool is_mixture(const MaterialInfo& info) {
@@ -241,6 +262,10 @@ class SceneBuilder {
     if (p.given("period")) set_period(p);
     scene_.wavelengths_name_ = text;
     scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
+    const WavelengthsInfo& info = registry_.wavelengths.get(parse_plugin_text(text, where).name, where);
+    for (const ParsedParam& of_film : sensor_params(description_))
+      if (!declares(info, of_film.name))
+        log_.warn(of_film.where, fmt::format("\"{}\" has no effect on wavelengths \"{}\"", of_film.name, info.name));
   }
 
   void set_period(const Params& p) {
@@ -434,15 +459,28 @@ ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, 
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
                                                      const SceneSettings& description, const Registry& registry) {
   OptionResolver resolver(description);
-  const ParsedPlugin plugin = wavelengths_plugin(text, where, registry);
+  ParsedPlugin plugin = wavelengths_plugin(text, where, registry);
   const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
+  for (const ParsedParam& p : sensor_params(description))
+    if (declares(info, p.name) && std::ranges::find(plugin.params, p.name, &ParsedParam::name) == plugin.params.end())
+      plugin.params.push_back(p);
   return info.make(Params(info, plugin, resolver));
 }
 
 FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry) {
   OptionResolver resolver(description);
+  if (description.film.name == "spectral")
+    fail(
+        description.film.where,
+        "film \"spectral\" of pbrt-v4 is not supported: with film \"rgb\" and --wavelengths bands an EXR has a channel "
+        "for each wavelength");
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
-  return info.make(Params(info, description.film, resolver));
+  FilmSettings film = info.make(Params(info, description.film, resolver));
+  if (description.camera.name == "realistic")
+    fail(description.camera.where, "camera \"realistic\" of pbrt-v4 is not supported: \"perspective\" has a thin lens");
+  const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
+  film.exposure *= open_time(Params(camera, description.camera, resolver), camera);
+  return film;
 }
 
 std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, const Registry& registry) {

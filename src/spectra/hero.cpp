@@ -1,7 +1,9 @@
 #include <cmath>
+#include <optional>
 
 #include "spectra/cie.h"
 #include "spectra/color_space.h"
+#include "spectra/film_sensor.h"
 #include "spectra/registry.h"
 
 namespace frond {
@@ -20,7 +22,20 @@ constexpr Param kMax{.name = "lambdamax",
                      .unit = "nm",
                      .range = kAllowed_nm,
                      .doc = "Longest wavelength; the film sees none beyond 830 nm."};
-constexpr Param kParams[] = {kMin, kMax};
+constexpr Param kSensor{.name = "sensor",
+                        .kind = ParamKind::string,
+                        .default_value = kFilmSensors[0],
+                        .doc = "What the film is made of; the scene's film says so too.",
+                        .choices = kFilmSensors};
+constexpr Param kWhiteBalance{.name = "whitebalance",
+                              .kind = ParamKind::real,
+                              .default_value = 0.0,
+                              .unit = "K",
+                              .range = {0, 1e5},
+                              .doc =
+                                  "Colour temperature of the daylight that is to be white; 0: of cameras 6500 K, of "
+                                  "cie1931 none. The scene's film says so too."};
+constexpr Param kParams[] = {kMin, kMax, kSensor, kWhiteBalance};
 
 /// Density proportional to 1 / cosh^2 of the distance from 538 nm, close to the eye's response (Radziszewski et al.
 /// 2009); over 360 to 830 nm it is 0.0039398042 / cosh^2(...). Its integral is a difference of tanh.
@@ -55,11 +70,23 @@ Interval range_of(const Params& p) {
   return nm;
 }
 
+/// Nothing for the eye as it is.
+std::optional<FilmSensor> sensor_of(const Params& p) {
+  constexpr double kColdest_kelvin = 1000;
+  const std::string name = p.string("sensor");
+  const double white_kelvin = p.real("whitebalance");
+  if (white_kelvin > 0 && white_kelvin < kColdest_kelvin)
+    fail(p.where("whitebalance"), "\"whitebalance\" is {} K: 0, or {} K at least, is needed", white_kelvin,
+         kColdest_kelvin);
+  if (name == kFilmSensors[0] && white_kelvin == 0) return {};
+  return FilmSensor(name, white_kelvin);
+}
+
 /// Four wavelengths at equal steps of the density's integral, all turned by the same random number (Wilkie et al. 2014,
 /// hero wavelength spectral sampling). The film's channels are CIE XYZ.
 class Hero final : public WavelengthStrategy {
  public:
-  explicit Hero(const Params& p) : density_(range_of(p)) {}
+  explicit Hero(const Params& p) : density_(range_of(p)), film_(sensor_of(p)) {}
 
   SampledWavelengths sample(float u) const override {
     SampledWavelengths lambda;
@@ -79,7 +106,7 @@ class Hero final : public WavelengthStrategy {
   SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const override {
     Triple xyz{};
     for (size_t i = 0; i < kLanes; ++i) {
-      const Triple bar = cie_xyz(double(lambda.nm[i]));
+      const Triple bar = film_ ? film_->at(double(lambda.nm[i])) : cie_xyz(double(lambda.nm[i]));
       const double weight = double(radiance.v[i]) / (double(lambda.pdf[i]) * lambda.count);
       for (size_t c = 0; c < 3; ++c) xyz[c] += bar[c] * weight;
     }
@@ -89,6 +116,7 @@ class Hero final : public WavelengthStrategy {
 
  private:
   VisibleDensity density_;
+  std::optional<FilmSensor> film_;
 };
 
 }  // namespace

@@ -31,6 +31,8 @@ class SigmoidPolynomial {
     return x < Float4{} ? rest : kOne - rest;
   }
   float max_value() const;
+  /// As given to the constructor.
+  Triple coefficients() const { return {double(c2_), double(c1_), double(c0_)}; }
 
  private:
   /// 1/2 + x / (2 sqrt(1 + x^2)), written so that no digits cancel where it is small.

@@ -51,5 +51,35 @@ TEST(Distribution, OfTheSquareAgreesWithItsDensity) {
   EXPECT_NEAR(integral, 1, 1e-6);
 }
 
+TEST(WindowedDistribution, AgreesWithItsDensityInAnyWindow) {
+  const std::vector<float> weights{1, 2, 0, 5, 0, 4};
+  const WindowedDistribution d(weights, 3);
+  for (const WindowedDistribution::Window& w : {WindowedDistribution::Window{{0, 0}, {1, 1}},
+                                                {{0.1f, 0.2f}, {0.9f, 0.7f}},
+                                                {{0.4f, 0.1f}, {0.45f, 0.95f}},
+                                                {{0.05f, 0.55f}, {0.3f, 0.6f}}}) {
+    constexpr int kSteps = 200;
+    const float dx = (w.max.x - w.min.x) / kSteps, dy = (w.max.y - w.min.y) / kSteps;
+    double integral = 0, mean = 0, sampled = 0;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+      const Vec2 u{(float(i % kSteps) + 0.5f) / kSteps, (float(i / kSteps) + 0.5f) / kSteps};
+      const Vec2 uv{w.min.x + (float(i % kSteps) + 0.5f) * dx, w.min.y + (float(i / kSteps) + 0.5f) * dy};
+      integral += double(d.pdf(uv, w) * dx * dy);
+      mean += double(d.pdf(uv, w) * dx * dy * (uv.x + 2 * uv.y));
+      const auto s = d.sample(u, w);
+      ASSERT_TRUE(s);
+      EXPECT_TRUE(s->uv.x >= w.min.x - 1e-6f && s->uv.x <= w.max.x + 1e-6f);
+      EXPECT_TRUE(s->uv.y >= w.min.y - 1e-6f && s->uv.y <= w.max.y + 1e-6f);
+      EXPECT_GT(s->pdf, 0);
+      sampled += double(s->uv.x + 2 * s->uv.y) / (kSteps * kSteps);
+    }
+    EXPECT_NEAR(integral, 1, 0.01);
+    EXPECT_NEAR(sampled / mean, 1, 0.01);
+  }
+  EXPECT_FALSE(d.sample({0.5f, 0.5f}, {{0.7f, 0.1f}, {0.9f, 0.4f}})) << "black there";
+  EXPECT_FALSE(d.sample({0.5f, 0.5f}, {{0.2f, 0.2f}, {0.2f, 0.4f}})) << "empty";
+  EXPECT_EQ(d.pdf({0.1f, 0.1f}, {{0.2f, 0.2f}, {0.5f, 0.4f}}), 0);
+}
+
 }  // namespace
 }  // namespace frond

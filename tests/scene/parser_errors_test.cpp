@@ -50,7 +50,6 @@ TEST(ParserErrors, NameDirectivesOfPbrtThatAreNotThereYet) {
     expect_errors(
         {{fmt::format("\n {} \"x\"", name), fmt::format("s:2:2: directive {} of pbrt-v4 is not supported yet", name)}});
   expect_errors_in_world({
-      {"ColorSpace \"aces2065-1\"", "s:2:12: ColorSpace after WorldBegin is not supported yet"},
       {"Attribute \"medium\" \"float g\" 0", "s:2:11: attributes of media of pbrt-v4 are not supported yet"},
   });
 }

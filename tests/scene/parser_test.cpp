@@ -43,13 +43,13 @@ TEST(Parser, HasDefaultsForWhatTheSceneLeavesOut) {
 
 TEST(Parser, ReadsTheOptionsBlock) {
   const SceneDescription s = parse(R"(
+ColorSpace "rec2020"
 Camera "orthographic" "float screenwindow" [ -1 1 -2 2 ]
 Film "gbuffer" "integer xresolution" 640
 Sampler "independent" "integer pixelsamples" [ 16 ]
 Integrator "volpath" "integer maxdepth" 7
 PixelFilter "box" "float xradius" .5
 Accelerator "kdtree" "integer maxprims" 1
-ColorSpace "rec2020"
 Option "integer seed" 3
 Option "disablepixeljitter" true
 Option "seed" 4
