@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "spectra/analytic.h"
+#include "spectra/cie.h"
 #include "spectra/named.h"
 #include "tests/support/input_error.h"
 
@@ -125,9 +126,9 @@ TEST(Named, IlluminantsHaveTheirChromaticities) {
   expect("stdillum-D55", 0.33242, 0.34743, 1e-4);
   expect("stdillum-D75", 0.29902, 0.31485, 1e-4);
   expect("illum-acesD60", 0.32168, 0.33767, 2e-4);
-  constexpr Triple kFluorescent[] = {{0.3131, 0.3371}, {0.3721, 0.3751}, {0.4091, 0.3941}, {0.4402, 0.4031},
-                                     {0.3138, 0.3452}, {0.3779, 0.3882}, {0.3129, 0.3292}, {0.3458, 0.3586},
-                                     {0.3741, 0.3727}, {0.3458, 0.3588}, {0.3805, 0.3769}, {0.4370, 0.4042}};
+  constexpr double kFluorescent[][2] = {{0.3131, 0.3371}, {0.3721, 0.3751}, {0.4091, 0.3941}, {0.4402, 0.4031},
+                                        {0.3138, 0.3452}, {0.3779, 0.3882}, {0.3129, 0.3292}, {0.3458, 0.3586},
+                                        {0.3741, 0.3727}, {0.3458, 0.3588}, {0.3805, 0.3769}, {0.4370, 0.4042}};
   for (size_t i = 0; i < 12; ++i)
     expect("stdillum-F" + std::to_string(i + 1), kFluorescent[i][0], kFluorescent[i][1], 5e-4);
 }
@@ -164,7 +165,7 @@ TEST(Named, MetalsHaveTheirColours) {
   EXPECT_NEAR(reflectance("Cu", 450), 0.55, 0.04);
   EXPECT_NEAR(reflectance("Cu", 700), 0.96, 0.03);
   EXPECT_NEAR(reflectance("Al", 550), 0.92, 0.02);
-  EXPECT_GT(reflectance("Ag", 450), 0.95);
+  EXPECT_GT(reflectance("Ag", 450), 0.9);
   EXPECT_GT(reflectance("CuZn", 650), reflectance("CuZn", 450));
   EXPECT_EQ(named_spectrum("metal-MgO-k", kHere)->at(550), 0);
   EXPECT_NEAR(double(named_spectrum("metal-TiO2-eta", kHere)->at(600)), 2.9, 0.2);

@@ -97,6 +97,7 @@ class LayeredBsdf final : public Bsdf {
   LayeredBsdf(const TrowbridgeReitz& coat, const LaneIndices& indices, const Base& base, const CoatMedium& medium,
               const LayerWalks& walks)
       : coat_(coat), indices_(indices), base_(base), medium_(medium), walks_(walks) {
+    if (indices_.are_all_one()) coat_ = TrowbridgeReitz(0, 0);  // its facets turn no light
     if (!coat_.is_smooth()) indices_.move_off_one();
     medium_.thickness = std::max(medium_.thickness, 0.f);
     medium_.g = std::clamp(medium_.g, -0.99f, 0.99f);
