@@ -12,11 +12,13 @@
 namespace frond {
 
 struct ColorSpace;
+class NormalBend;
 
 /// A material of the description.
 struct MadeMaterial {
   std::shared_ptr<Material> material;
-  bool needs_details = false;  ///< it, or a texture of it, reads details of its hits
+  bool needs_details = false;              ///< it, or a texture of it, reads details of its hits
+  std::shared_ptr<const NormalBend> bend;  ///< nullptr: normals are the surface's own
 };
 
 /// Looks up what parameters refer to: textures and materials by name, spectra by value, name or file. Things are made
@@ -34,6 +36,7 @@ class SceneResolver final : public ParamResolver {
   std::filesystem::path file(const std::string& name, const Location& where) override;
   void warn(const Location& where, std::string_view message) override { log_.warn(where, message); }
 
+  /// Without its bend, which is with those of `materials`.
   std::shared_ptr<Material> material(size_t index);
   /// All that have been made, each once, by their places in the description.
   const std::map<size_t, MadeMaterial>& materials() const { return materials_; }
@@ -54,6 +57,7 @@ class SceneResolver final : public ParamResolver {
   template <class Make>
   auto make(const std::string& key, const Make& make, bool& needs_details);
   void pass_on(bool needs_details);
+  std::array<double, 3> clamped_rgb(const ParsedParam& p);
 
   const SceneSettings& description_;
   const Registry& registry_;
