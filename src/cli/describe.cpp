@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "render/plugins.h"
+#include "scene/normal_map.h"
 
 namespace frond {
 namespace {
@@ -67,11 +68,19 @@ std::string range_text(const Param& p) {
   return "";
 }
 
+/// With those that any material takes.
+std::vector<Param> params_of(const PluginInfo& info) {
+  std::vector<Param> params(info.params.begin(), info.params.end());
+  const auto& bends = normal_bend_params.params;
+  if (info.kind == normal_bend_params.kind) params.insert(params.end(), bends.begin(), bends.end());
+  return params;
+}
+
 /// One record, two prints: aligned text for a terminal, a Markdown section for the docs.
 void print_text(const PluginInfo& info) {
   fmt::print("{} \"{}\"\n  {}\n", info.kind, info.name, info.doc);
   if (!info.source.empty()) fmt::print("  After: {}\n", info.source);
-  for (const Param& p : info.params) {
+  for (const Param& p : params_of(info)) {
     fmt::print("\n  \"{} {}\"{}\n      {}\n", type_name(p.kind), p.name, p.list ? " [ ... ]" : "", p.doc);
     std::vector<std::string> facts;
     if (const auto text = default_text(p); !text.empty()) facts.push_back(p.required ? text : "default " + text);
@@ -86,14 +95,15 @@ void print_markdown(const PluginInfo& info) {
   fmt::print("## {} `{}`\n\n{}", info.kind, info.name, info.doc);
   if (!info.source.empty()) fmt::print(" After: {}.", info.source);
   fmt::print("\n\n");
-  if (info.params.empty()) return;
+  const std::vector<Param> params = params_of(info);
+  if (params.empty()) return;
   fmt::print("| parameter | type | default | unit | range | |\n|---|---|---|---|---|---|\n");
   const auto escape = [](std::string_view s) {
     std::string out;
     for (const char c : s) out += c == '|' ? "\\|" : std::string(1, c);
     return out;
   };
-  for (const Param& p : info.params)
+  for (const Param& p : params)
     fmt::print("| `{}` | {} | {} | {} | {} | {} |\n", p.name, escape(type_name(p.kind)), default_text(p), p.unit,
                escape(range_text(p)), p.doc);
   fmt::print("\n");

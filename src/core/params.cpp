@@ -227,15 +227,37 @@ SpectrumPtr Params::spectrum(std::string_view name) const {
 
 namespace {
 
+class ClampedFloatTexture final : public FloatTexture {
+ public:
+  ClampedFloatTexture(std::shared_ptr<const FloatTexture> texture, Interval range)
+      : texture_(std::move(texture)), range_(range) {}
+  float evaluate(const TexturePoint& at) const override {
+    return std::clamp(texture_->evaluate(at), float(range_.min), float(range_.max));
+  }
+  Interval range() const override {
+    const Interval own = texture_->range();
+    return {std::clamp(own.min, range_.min, range_.max), std::clamp(own.max, range_.min, range_.max)};
+  }
+  bool needs_details() const override { return texture_->needs_details(); }
+
+ private:
+  std::shared_ptr<const FloatTexture> texture_;
+  Interval range_;
+};
+
 std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, const Param& declared,
                                                      const std::string& name, const Location& where) {
   auto texture = resolver.float_texture(name, where);
-  const Interval values = texture->range();
-  if (!declared.range.contains(values.min) || !declared.range.contains(values.max))
-    fail(where, "texture \"{}\" has values from {} to {}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
-         values.max, declared.range.min, declared.range.max, declared.unit.empty() ? "" : " ", declared.unit,
-         declared.name);
-  return texture;
+  const Interval values = texture->range(), range = declared.range;
+  if (range.contains(values.min) && range.contains(values.max)) return texture;
+  const std::string message =
+      fmt::format("texture \"{}\" has values from {} to {}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
+                  values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);
+  // What has a unit is physics, and most likely in another one.
+  if (!declared.unit.empty() || values.max < range.min || values.min > range.max || !(values.min <= values.max))
+    fail(where, "{}", message);
+  resolver.warn(where, message + ": they are clamped");
+  return std::make_shared<ClampedFloatTexture>(std::move(texture), range);
 }
 
 }  // namespace

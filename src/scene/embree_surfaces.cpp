@@ -7,17 +7,20 @@
 namespace frond::embree {
 namespace {
 
-Vec2 uv_at(const Surface& surface, const RTCHit& hit) {
-  if (const auto* shape = std::get_if<AnalyticShapePtr>(&surface.geometry))
-    return (*shape)->uv(hit.primID, {hit.u, hit.v});
-  return Triangle(*std::get<MeshPtr>(surface.geometry), hit.primID, {hit.u, hit.v}).uv();
+/// On a mesh, in the space of the object that it is part of.
+TexturePoint texture_point(const Surface& surface, const RTCHit& hit) {
+  const Triangle t(*std::get<MeshPtr>(surface.geometry), hit.primID, {hit.u, hit.v});
+  return {.uv = t.uv(), .p = t.p(), .n = normalize_any(Vec3{hit.Ng_x, hit.Ng_y, hit.Ng_z})};
+}
+TexturePoint texture_point(const AnalyticShape& shape, unsigned primitive, const ShapePoint& at) {
+  return {.uv = shape.uv(primitive, at.at), .p = at.p, .n = normalize_any(at.ng)};
 }
 
 /// Whether a ray passes a partly transparent surface: decided for each ray and primitive, in whatever order Embree
 /// asks. `layer` counts the sheets of one primitive along the ray.
-bool passes(const Surface& surface, const Target& target, Vec2 uv, const Query& query, const Lane& lane,
+bool passes(const Surface& surface, const Target& target, const TexturePoint& at, const Query& query, const Lane& lane,
             unsigned layer = 0) {
-  const float alpha = surface.alpha->evaluate({uv, {}});
+  const float alpha = surface.alpha->evaluate(at);
   if (alpha >= 1) return false;
   RandomStream random(
       hash_key(lane.key, (uint64_t(target.geometry) << 32) | target.primitive, query.place(), uint64_t(layer)));
@@ -35,7 +38,8 @@ void filter_alpha(const RTCFilterFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
     const RTCHit hit = rtcGetHitFromHitN(args->hit, args->N, i);
-    if (passes(surface, {hit.geomID, hit.primID}, uv_at(surface, hit), query, query.lane[i])) args->valid[i] = 0;
+    if (passes(surface, {hit.geomID, hit.primID}, texture_point(surface, hit), query, query.lane[i]))
+      args->valid[i] = 0;
   }
 }
 
@@ -100,8 +104,8 @@ std::optional<ShapePoint> meet(const Surface& surface, const Target& target, con
                                const Lane& lane) {
   const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
   auto point = shape.intersect(target.primitive, ray, 0);
-  for (unsigned layer = 0;
-       point && surface.alpha && passes(surface, target, shape.uv(target.primitive, point->at), query, lane, layer);
+  for (unsigned layer = 0; point && surface.alpha &&
+                           passes(surface, target, texture_point(shape, target.primitive, *point), query, lane, layer);
        ++layer)
     point = shape.intersect(target.primitive, ray, point->t);
   return point;

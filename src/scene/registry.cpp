@@ -15,9 +15,11 @@ extern const ShapeInfo triangle_mesh_shape, ply_mesh_shape, sphere_shape, disk_s
 extern const LightInfo infinite_light, distant_light, point_light, spot_light, projection_light, goniometric_light;
 extern const AreaLightInfo diffuse_area_light;
 extern const FloatTextureInfo constant_float_texture, scale_float_texture, mix_float_texture, image_float_texture,
-    instance_float_texture;
+    instance_float_texture, bilerp_float_texture, checkerboard_float_texture, direction_mix_float_texture,
+    dots_float_texture, fbm_float_texture, windy_float_texture, wrinkled_float_texture;
 extern const SpectrumTextureInfo constant_spectrum_texture, scale_spectrum_texture, mix_spectrum_texture,
-    image_spectrum_texture;
+    image_spectrum_texture, bilerp_spectrum_texture, checkerboard_spectrum_texture, direction_mix_spectrum_texture,
+    dots_spectrum_texture, marble_spectrum_texture;
 
 namespace {
 
@@ -31,10 +33,14 @@ constexpr std::array kShapes{&triangle_mesh_shape, &ply_mesh_shape,         &sph
 constexpr std::array kLights{&infinite_light, &distant_light,    &point_light,
                              &spot_light,     &projection_light, &goniometric_light};
 constexpr std::array kAreaLights{&diffuse_area_light};
-constexpr std::array kFloatTextures{&constant_float_texture, &scale_float_texture, &mix_float_texture,
-                                    &image_float_texture, &instance_float_texture};
-constexpr std::array kSpectrumTextures{&constant_spectrum_texture, &scale_spectrum_texture, &mix_spectrum_texture,
-                                       &image_spectrum_texture};
+constexpr std::array kFloatTextures{&constant_float_texture,      &scale_float_texture, &mix_float_texture,
+                                    &direction_mix_float_texture, &image_float_texture, &bilerp_float_texture,
+                                    &checkerboard_float_texture,  &dots_float_texture,  &fbm_float_texture,
+                                    &wrinkled_float_texture,      &windy_float_texture, &instance_float_texture};
+constexpr std::array kSpectrumTextures{
+    &constant_spectrum_texture,      &scale_spectrum_texture, &mix_spectrum_texture,
+    &direction_mix_spectrum_texture, &image_spectrum_texture, &bilerp_spectrum_texture,
+    &checkerboard_spectrum_texture,  &dots_spectrum_texture,  &marble_spectrum_texture};
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "scene/resolver.h"
 
 #include "core/problems.h"
+#include "scene/normal_map.h"
 #include "spectra/analytic.h"
 #include "spectra/beyond_data.h"
 #include "spectra/check_range.h"
@@ -148,7 +149,9 @@ std::shared_ptr<Material> SceneResolver::material(const std::string& name, const
     }
     if (in_progress_.contains("material " + name)) fail(where, "material \"{}\" refers to itself", name);
     check_depth(in_progress_.size(), where);
-    return material(i);
+    auto made = material(i);
+    const auto& bend = materials_.at(i).bend;
+    return bend ? bent_material(std::move(made), bend) : made;
   }
   fail_unknown("material", name, names, where);
 }
@@ -162,7 +165,13 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
   const MaterialInfo& info = registry_.materials.get(m.plugin.name, m.plugin.where);
   MadeMaterial made;
   made.material = make(
-      "material " + m.name, [&] { return info.make(Params(info, m.plugin, *this)); }, made.needs_details);
+      "material " + m.name,
+      [&] {
+        made.bend = make_normal_bend(m.plugin, *this);
+        return info.make(Params(info, split_bend(m.plugin, false), *this));
+      },
+      made.needs_details);
+  if (made.bend) made.needs_details = true;
   pass_on(made.needs_details);
   return materials_.emplace(index, made).first->second.material;
 }
@@ -186,6 +195,16 @@ void SceneResolver::warn(const Location& where, std::string_view message) {
   if (warned_.insert(where.text() + std::string(message)).second) log_.warn(where, message);
 }
 
+/// A reflectance as pbrt-v4 takes it: channels above 1 are 1.
+Triple SceneResolver::clamped_rgb(const ParsedParam& p) {
+  Triple rgb = rgb_of(p);
+  const double most = std::max({rgb[0], rgb[1], rgb[2]});
+  if (!(most > 1)) return rgb;
+  warn(p.value_where, fmt::format("\"{}\" goes up to {}, a reflectance lies in 0 to 1: it is clamped", p.name, most));
+  for (double& v : rgb) v = std::min(v, 1.0);
+  return rgb;
+}
+
 SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
   const bool emission = use == SpectrumUse::illuminant;
   SpectrumPtr s;
@@ -193,7 +212,7 @@ SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
     const ColorSpace& space = p.color_space.empty() ? color_space_ : color_space(p.color_space, p.where);
     s = emission                        ? rgb_illuminant(space, rgb_of(p), p.value_where)
         : use == SpectrumUse::unbounded ? rgb_unbounded(space, rgb_of(p), p.value_where)
-                                        : rgb_albedo(space, rgb_of(p), p.value_where);
+                                        : rgb_albedo(space, clamped_rgb(p), p.value_where);
   } else if (p.type == "float") {
     s = constant_of(p);
   } else {

@@ -12,11 +12,13 @@
 namespace frond {
 
 struct ColorSpace;
+class NormalBend;
 
 /// A material of the description.
 struct MadeMaterial {
   std::shared_ptr<Material> material;
-  bool needs_details = false;  ///< it, or a texture of it, reads details of its hits
+  bool needs_details = false;              ///< it, or a texture of it, reads details of its hits
+  std::shared_ptr<const NormalBend> bend;  ///< nullptr: normals are the surface's own
 };
 
 /// Looks up what parameters refer to: textures and materials by name, spectra by value, name or file. Things are made
@@ -37,6 +39,7 @@ class SceneResolver final : public ParamResolver {
   /// Once, however often the same plugin is made.
   void warn(const Location& where, std::string_view message) override;
 
+  /// Without its bend, which is with those of `materials`.
   std::shared_ptr<Material> material(size_t index);
   /// All that have been made, each once, by their places in the description.
   const std::map<size_t, MadeMaterial>& materials() const { return materials_; }
@@ -60,6 +63,7 @@ class SceneResolver final : public ParamResolver {
   [[noreturn]] void fail_unknown(std::string_view kind, const std::string& name,
                                  const std::vector<std::string_view>& names, const Location& where) const;
   SpectrumPtr in_the_visible(SpectrumPtr s, const ParsedParam& p, SpectrumUse use);
+  std::array<double, 3> clamped_rgb(const ParsedParam& p);
 
   const SceneSettings& description_;
   const Registry& registry_;

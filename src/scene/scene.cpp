@@ -7,6 +7,7 @@
 #include "core/problems.h"
 #include "scene/geometry_builder.h"
 #include "scene/instances.h"
+#include "scene/normal_map.h"
 
 namespace frond {
 namespace {
@@ -193,9 +194,11 @@ class SceneBuilder {
     }
     scene_.material_at_.resize(description_.materials.size());
     scene_.is_detailed_.resize(description_.materials.size());
+    scene_.bend_at_.resize(description_.materials.size());
     for (const auto& [place, made] : scene_.materials_) {
       scene_.material_at_[place] = made.material.get();
       scene_.is_detailed_[place] = made.needs_details;
+      scene_.bend_at_[place] = made.bend.get();
       scene_.material_plugins_.emplace(place, description_.materials[place].plugin);
     }
     const Bounds b = scene_.geometry_->bounds();
@@ -223,7 +226,10 @@ class SceneBuilder {
       else
         check(registry_.spectrum_textures, t.plugin, resolver);
     }
-    for (const MaterialDescription& m : description_.materials) check(registry_.materials, m.plugin, resolver);
+    for (const MaterialDescription& m : description_.materials) {
+      check(registry_.materials, split_bend(m.plugin, false), resolver);
+      Params(normal_bend_params, split_bend(m.plugin, true), resolver);
+    }
     for (const ParsedPlugin& light : description_.area_lights) check(registry_.area_lights, light, resolver);
   }
 
@@ -412,7 +418,12 @@ void Scene::describe(const GeometryHit& at, SurfacePoint& point) const {
   point.light = at.surface ? lights_->of_surface[*at.surface].at(at.primitive) : nullptr;
   point.material_id = at.material;
   point.instance_id = at.instance;
-  if (is_detailed_[at.material]) footprint_.set(point.hit);
+  if (is_detailed_[at.material]) add_details(at.material, point.hit);
+}
+
+void Scene::add_details(uint32_t material, Hit& hit) const {
+  footprint_.set(hit);
+  if (bend_at_[material]) bend_at_[material]->bend(hit);
 }
 
 bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const {

@@ -122,6 +122,7 @@ class Scene final : public World {
 
   bool meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const;
   void describe(const GeometryHit& at, SurfacePoint& point) const;
+  void add_details(uint32_t material, Hit& hit) const;
 
   std::string wavelengths_name_;
   std::unique_ptr<WavelengthStrategy> wavelengths_;
@@ -134,6 +135,7 @@ class Scene final : public World {
   std::map<size_t, ParsedPlugin> material_plugins_;  ///< what they were made from
   std::vector<const Material*> material_at_;         ///< `materials_` for hits; nullptr where nothing is made
   std::vector<uint8_t> is_detailed_;                 ///< by place: whether hits need details
+  std::vector<const NormalBend*> bend_at_;           ///< by place; nullptr: none
   Footprint footprint_;
   std::shared_ptr<const LightTable> lights_;
   std::shared_ptr<const Geometry> geometry_;

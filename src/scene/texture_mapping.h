@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "core/params.h"
 #include "core/texture.h"
@@ -80,10 +81,10 @@ inline constexpr std::array<Param, 7> kMappingParams{
 /// A plugin's own parameters and those of its mapping.
 template <size_t N>
 constexpr std::array<Param, N + kMappingParams.size()> with_mapping(const Param (&own)[N]) {
-  std::array<Param, N + kMappingParams.size()> all{};
-  std::copy(own, own + N, all.begin());
-  std::copy(kMappingParams.begin(), kMappingParams.end(), all.begin() + N);
-  return all;
+  return [&]<size_t... I, size_t... J>(std::index_sequence<I...>, std::index_sequence<J...>) {
+    return std::array<Param, N + kMappingParams.size()>{own[I]..., kMappingParams[J]...};
+  }
+  (std::make_index_sequence<N>(), std::make_index_sequence<kMappingParams.size()>());
 }
 
 }  // namespace frond

@@ -22,20 +22,28 @@ class ScaleFloat final : public FloatTexture {
 class ScaleSpectrum final : public SpectrumTexture {
  public:
   explicit ScaleSpectrum(const Params& p) : tex_(p.spectrum_texture("tex")), scale_(p.float_texture("scale")) {
-    if (const Interval r = scale_->range(); r.min < 0 || r.max * double(max_of_tex()) > 1)
-      fail(p.where("scale"), "\"scale\" takes \"tex\", up to {}, out of [0, 1]: it is {} to {}", max_of_tex(), r.min,
-           r.max);
+    const Interval r = scale_->range();
+    const double most = r.max * double(tex_->max_value());
+    is_clamped_ = r.min < 0 || most > 1;
+    if (is_clamped_)
+      p.warn("scale", fmt::format("this takes \"tex\", up to {:.3g}, out of [0, 1], for it is {:.3g} to {:.3g}: the "
+                                  "product is clamped",
+                                  tex_->max_value(), r.min, r.max));
   }
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
-    return tex_->evaluate(at, lambda) * scale_->evaluate(at);
+    const SampledSpectrum product = tex_->evaluate(at, lambda) * scale_->evaluate(at);
+    if (!is_clamped_) return product;
+    constexpr Float4 kOne{1, 1, 1, 1};
+    const Float4 positive = larger(Float4{}, product.v);
+    return SampledSpectrum(positive < kOne ? positive : kOne);
   }
   Interval range_nm() const override { return tex_->range_nm(); }
-  float max_value() const override { return max_of_tex() * float(scale_->range().max); }
+  float max_value() const override { return std::clamp(tex_->max_value() * float(scale_->range().max), 0.f, 1.f); }
 
  private:
-  float max_of_tex() const { return tex_->max_value(); }
   std::shared_ptr<const SpectrumTexture> tex_;
   std::shared_ptr<const FloatTexture> scale_;
+  bool is_clamped_ = false;
 };
 
 class MixFloat final : public FloatTexture {
@@ -60,10 +68,7 @@ class MixFloat final : public FloatTexture {
 class MixSpectrum final : public SpectrumTexture {
  public:
   explicit MixSpectrum(const Params& p)
-      : a_(p.spectrum_texture("tex1")), b_(p.spectrum_texture("tex2")), amount_(p.float_texture("amount")) {
-    if (const Interval r = amount_->range(); r.min < 0 || r.max > 1)
-      fail(p.where("amount"), "\"amount\" is {} to {}, outside 0 to 1", r.min, r.max);
-  }
+      : a_(p.spectrum_texture("tex1")), b_(p.spectrum_texture("tex2")), amount_(p.float_texture("amount")) {}
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
     const float t = amount_->evaluate(at);
     return (1 - t) * a_->evaluate(at, lambda) + t * b_->evaluate(at, lambda);

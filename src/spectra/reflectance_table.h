@@ -8,7 +8,8 @@
 namespace frond {
 
 /// Smooth reflectances of all colours of sRGB, for what needs them by the million: interpolated between fits on a grid,
-/// as Jakob and Hanika 2019 do. XYZ is off by less than 4e-3 (white: Y = 1), 2e-4 on average; greys are flat.
+/// as Jakob and Hanika 2019 do. XYZ is off by 7e-4 on average (white: Y = 1), by 2e-2 at most: for the purest and
+/// brightest colours. Greys are flat.
 class ReflectanceTable {
  public:
   /// Made when first asked for: some tens of milliseconds.

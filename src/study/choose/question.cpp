@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/log.h"
+#include "scene/normal_map.h"
 #include "scene/resolver.h"
 
 namespace frond::choose {
@@ -66,7 +67,7 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
       alike->materials.push_back(i);
       continue;
     }
-    const Params params(registry.materials.get("leaf", m.plugin.where), m.plugin, resolver);
+    const Params params(registry.materials.get("leaf", m.plugin.where), split_bend(m.plugin, false), resolver);
     const std::string name = m.name.empty() ? fmt::format("leaf in line {}", m.plugin.where.line) : m.name;
     OpenChoice& question = leaves.emplace_back(OpenChoice{name, {i}, params.real("maxrms"), {}});
     add_options(question, tried, registry, wavelengths, ladder.models);
