@@ -11,6 +11,7 @@ void add_render_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
 void add_submit_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
+void add_check_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_difference_command(CLI::App& app);
 void add_list_command(CLI::App& app);

@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/render_report.h"
+#include "cli/strict_log.h"
 #include "render/adaptive.h"
 #include "render/checkpoint.h"
 #include "render/image_output.h"
@@ -48,9 +49,12 @@ void print_choice(const std::optional<choose::Choice>& choice, bool json) {
 /// A render from its command line to its files.
 class RenderCommand {
  public:
-  explicit RenderCommand(const RenderOptions& options)
+  /// `files` are read one after the other.
+  RenderCommand(const RenderOptions& options, std::vector<std::filesystem::path> files)
       : options_(options),
-        log_(options.quiet),
+        files_(std::move(files)),
+        console_(options.quiet),
+        log_(console_, options.reading.strict),
         session_(log_, {options.threads, cache_directory(options.cache, options.no_cache), options.plugins}) {}
 
   /// The program's exit code.
@@ -65,17 +69,18 @@ class RenderCommand {
       kept_->keep(!stopped, !output_, [&part](const auto& path) { write_part(path, part.header, part.film); });
     if (stopped) return kept_->say_how_to_go_on();
     finish(part);
+    log_.check();
     return 0;
   }
 
  private:
   /// What can be refused is refused now, not after an hour.
   void prepare() {
-    description_ = session_.read(options_.scene);
+    read();
     apply_swaps(description_, swaps_of(options_.swaps), session_.registry(), log_);
     SceneOverrides overrides = overrides_of(options_);
     FilmSettings film = session_.film(description_, false);
-    film.crop = crop_of(options_, film);
+    film.crop = crop_of(options_, film, log_);
     if (options_.quick) film = halved(film);
     find_paths(film.filename);
     check_bands(overrides);
@@ -83,7 +88,7 @@ class RenderCommand {
                            .is_piece = !options_.part.empty(),
                            .channels = options_.channels,
                            .adaptive = is_adaptive(),
-                           .command = command_line_of(options_)};
+                           .command = command_line_of(options_, files_.back())};
     std::shared_ptr<const Scene> pilot;
     if (auto chosen = choose_models(options_, session_, description_, overrides)) {
       choice_ = std::move(chosen->choice);
@@ -105,6 +110,18 @@ class RenderCommand {
       fail({}, "--max-rms: {} samples per pixel at least tell how much noise there is, --spp allows {}", kLeastAdaptive,
            options_.samples);
     if (output_) output_->check(scene_->picture());
+    log_.check();
+  }
+
+  /// Where something is wrong with the file, what else is wrong with the scene is told too.
+  void read() {
+    Problems problems;
+    const std::string& ignored = options_.reading.ignore_unsupported;
+    description_ = session_.read(files_, ignored.empty() ? Unsupported() : Unsupported(ignored), problems);
+    set_scene_options(options_, description_);
+    if (!problems.empty()) problems.attempt([this] { session_.check(description_, {}); });
+    problems.check();
+    for (const std::string& name : options_.of_pbrt) log_.warn({}, fmt::format("{} of pbrt has no effect here", name));
   }
 
   void find_paths(const std::string& scene_output) {
@@ -214,7 +231,9 @@ class RenderCommand {
   const RenderOptions& options_;
   const Clock::time_point start_ = Clock::now();
   Clock::time_point load_start_ = start_;
-  ConsoleLog log_;
+  std::vector<std::filesystem::path> files_;
+  ConsoleLog console_;
+  StrictLog log_;
   Session session_;
   SceneDescription description_;
   std::optional<ImageOutput> output_;     ///< empty: a part is asked for
@@ -234,8 +253,12 @@ void add_render_command(CLI::App& app) {
   auto* command = app.add_subcommand("render", "Render a pbrt-v4 scene file.");
   add_render_options(*command, *options);
   command->callback([options] {
-    const int code = RenderCommand(*options).run();
-    if (code != 0) throw CLI::RuntimeError(code);
+    const auto scenes = scenes_of(options->scenes);
+    if (scenes.size() > 1 && (!options->output.empty() || !options->part.empty()))
+      fail({}, "{} scenes cannot all be written to {}: without it each goes where its Film says", scenes.size(),
+           options->part.empty() ? options->output : options->part);
+    for (const auto& files : scenes)
+      if (const int code = RenderCommand(*options, files).run(); code != 0) throw CLI::RuntimeError(code);
   });
 }
 

@@ -27,7 +27,74 @@ MaterialSwap parse_swap(const std::string& text) {
   return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), where), where};
 }
 
+RenderOptions with_bounds_of_pixel(RenderOptions o) {
+  o.pixels = {o.pixel[0], o.pixel[0] + 1, o.pixel[1], o.pixel[1] + 1};
+  o.pixel.clear();
+  return o;
+}
+
+/// Options of pbrt that change nothing here.
+void add_idle_options(CLI::App& command, RenderOptions& o) {
+  const auto add = [&](const char* name, const char* doc) {
+    return command.add_flag_callback(
+        name, [&o, name] { o.of_pbrt.emplace_back(name); }, doc);
+  };
+  add("--gpu", "pbrt's: warns. The CPU renders.");
+  add("--wavefront", "pbrt's: warns.");
+  add("--write-partial-images", "pbrt's: warns; --checkpoint keeps what is done.");
+  add("--pixelstats", "pbrt's: warns.");
+  add("--force-diffuse", "pbrt's: warns; --swap changes materials.");
+  add("--log-utilization", "pbrt's: warns.");
+  command.add_flag_callback(
+      "--stats", [] {}, "pbrt's: statistics are printed in any case.");
+  const auto add_with_value = [&](const char* name, const char* doc) {
+    command.add_option_function<std::string>(
+        name, [&o, name](const std::string&) { o.of_pbrt.emplace_back(name); }, doc);
+  };
+  add_with_value("--gpu-device", "pbrt's: warns.");
+  add_with_value("--log-level", "pbrt's: warns.");
+  add_with_value("--log-file", "pbrt's: warns.");
+  add_with_value("--displacement-edge-scale", "pbrt's: warns.");
+  command.add_option_function<std::string>(
+      "--render-coord-sys", [](const std::string&) {}, "pbrt's: changes no picture.");
+}
+
+/// Options of pbrt that ask for something else than a picture.
+void add_refused_options(CLI::App& command) {
+  const auto refuse = [&](const char* name, const char* instead) {
+    command.add_option_function<std::string>(
+        name, [name, instead](const std::string&) { fail({}, "{}: {}", name, instead); },
+        std::string("pbrt's, refused: ") + instead);
+  };
+  const auto refuse_flag = [&](const char* name, const char* instead) {
+    command.add_flag_callback(
+        name, [name, instead] { fail({}, "{}: {}", name, instead); }, std::string("pbrt's, refused: ") + instead);
+  };
+  refuse("--display-server", "frond talks to no viewer; --checkpoint and frond merge show what is done so far");
+  refuse("--mse-reference-image", "frond difference compares pictures");
+  refuse("--mse-reference-out", "frond difference compares pictures");
+  refuse("--debugstart", "--pixels and --samples find one path again");
+  refuse("--pixelmaterial", "--channels material writes what each pixel shows");
+  refuse_flag("--interactive", "frond has no window");
+  refuse_flag("--fullscreen", "frond has no window");
+  refuse_flag("--disable-image-textures", "frond has nothing like it");
+  refuse_flag("--format", "pbrt-v4 itself rewrites scene files");
+  refuse_flag("--toply", "pbrt-v4 itself rewrites scene files");
+  refuse_flag("--upgrade", "pbrt-v4 itself upgrades files of pbrt-v3");
+}
+
 }  // namespace
+
+void set_scene_options(const RenderOptions& o, SceneDescription& description) {
+  const auto set = [&description](bool is_asked_for, const char* name) {
+    if (!is_asked_for) return;
+    std::erase_if(description.options, [name](const ParsedParam& p) { return p.name == name; });
+    description.options.push_back({"bool", name, {}, {}, std::vector<bool>{true}});
+  };
+  set(o.no_pixel_jitter, "disablepixeljitter");
+  set(o.no_texture_filtering, "disabletexturefiltering");
+  set(o.no_wavelength_jitter, "disablewavelengthjitter");
+}
 
 std::vector<MaterialSwap> swaps_of(const std::vector<std::string>& swaps) {
   std::vector<MaterialSwap> result;
@@ -35,10 +102,16 @@ std::vector<MaterialSwap> swaps_of(const std::vector<std::string>& swaps) {
   return result;
 }
 
-Crop crop_of(const RenderOptions& o, const FilmSettings& film) {
+Crop crop_of(const RenderOptions& o, const FilmSettings& film, const Log& log) {
+  if (!o.pixel.empty()) return crop_of(with_bounds_of_pixel(o), film, log);
   if (o.crop.empty() && o.pixels.empty()) return film.crop;
-  const Crop crop = o.crop.empty() ? crop_of_pixels(o.pixels, film.width, film.height)
-                                   : crop_of_fractions(o.crop, film.width, film.height);
+  const auto ordered = [&log](auto bounds) {
+    if (put_in_order(bounds))
+      log.warn({}, fmt::format("the crop's ends are the wrong way round: taken for {}", fmt::join(bounds, ",")));
+    return bounds;
+  };
+  const Crop crop = o.crop.empty() ? crop_of_pixels(ordered(o.pixels), film.width, film.height)
+                                   : crop_of_fractions(ordered(o.crop), film.width, film.height);
   if (crop.width() <= 0 || crop.height() <= 0)
     fail({}, "{} holds no pixel of the {} x {} film: it takes x0,x1,y0,y1",
          o.crop.empty() ? fmt::format("--pixels {}", fmt::join(o.pixels, ","))
@@ -58,8 +131,8 @@ SceneOverrides overrides_of(const RenderOptions& options) {
   return overrides;
 }
 
-std::string command_line_of(const RenderOptions& o) {
-  std::string line = "frond render " + std::filesystem::path(o.scene).filename().string();
+std::string command_line_of(const RenderOptions& o, const std::filesystem::path& scene) {
+  std::string line = "frond render " + scene.filename().string();
   if (o.seed) line += fmt::format(" --seed {}", *o.seed);
   if (!o.wavelengths.empty()) line += " --wavelengths " + o.wavelengths;
   if (!o.integrator.empty()) line += " --integrator " + o.integrator;
@@ -68,6 +141,10 @@ std::string command_line_of(const RenderOptions& o) {
   for (const std::string& swap : o.swaps) line += " --swap " + swap;
   if (!o.channels.empty()) line += fmt::format(" --channels {}", fmt::join(ChannelList(o.channels).names(), ","));
   if (o.quick) line += " --quick";
+  if (o.no_pixel_jitter) line += " --disable-pixel-jitter";
+  if (o.no_texture_filtering) line += " --disable-texture-filtering";
+  if (o.no_wavelength_jitter) line += " --disable-wavelength-jitter";
+  if (!o.reading.ignore_unsupported.empty()) line += " --ignore-unsupported=" + o.reading.ignore_unsupported;
   return line;
 }
 
@@ -85,11 +162,12 @@ std::optional<SampleRange> range_of(const RenderOptions& options) {
 }
 
 void add_render_options(CLI::App& command, RenderOptions& o) {
-  command.add_option("scene", o.scene, "Scene file.")->required();
-  auto* output = command.add_option("-o,--output", o.output,
+  command.add_option("scene", o.scenes, "Scene file; of several, each is rendered, after pieces without WorldBegin.")
+      ->required();
+  auto* output = command.add_option("-o,--output,--outfile", o.output,
                                     "Image: .exr (linear), .png or .jpg (through the display transform).");
   add_count_option(command, "--spp", o.samples, 1 << 30, "Samples per pixel, in place of the scene's.");
-  command.add_option("--threads", o.threads, "Threads; all by default. The image does not depend on it.")
+  command.add_option("--threads,--nthreads", o.threads, "Threads; all by default. The image does not depend on it.")
       ->check(CLI::Range(1, 1024));
   command.add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
   auto* crop = command.add_option("--crop,--cropwindow", o.crop,
@@ -98,6 +176,12 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
   auto* pixels = command.add_option("--pixels,--pixelbounds", o.pixels,
                                     "x0,x1,y0,y1 of what to render, in pixels; x1 and y1 are not in it.");
   pixels->delimiter(',')->expected(4)->check(is_pixel)->excludes(crop);
+  command.add_option("--pixel", o.pixel, "x,y of the one pixel to render.")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(is_pixel)
+      ->excludes(crop)
+      ->excludes(pixels);
   command.add_option("--wavelengths", o.wavelengths,
                      "hero (also hero,lambdamin=400,lambdamax=700), meyer, smpte for the paper's three, or "
                      "bands,wavelengths=450,550,850 (also bands,lambdamin=400,lambdamax=1000,step=10).");
@@ -141,6 +225,12 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
       ->check(is_positive)
       ->excludes(range);
   command.add_option("--channels", o.channels, channels_doc())->delimiter(',');
+  add_reading_options(command, o.reading);
+  command.add_flag("--disable-pixel-jitter", o.no_pixel_jitter, "All samples at the pixels' centres and the lens's.");
+  command.add_flag("--disable-texture-filtering", o.no_texture_filtering, "Read textures at points.");
+  command.add_flag("--disable-wavelength-jitter", o.no_wavelength_jitter, "All samples see the same wavelengths.");
+  add_idle_options(command, o);
+  add_refused_options(command);
 }
 
 }  // namespace frond

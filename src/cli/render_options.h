@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/reading_options.h"
 #include "image/display_image.h"
 #include "render/work.h"
 #include "scene/scene.h"
@@ -16,15 +17,19 @@ namespace frond {
 
 /// What `frond render` is told.
 struct RenderOptions {
-  std::string scene, output, part, wavelengths, integrator, filter, cache, range;
+  std::vector<std::string> scenes;
+  ReadingOptions reading;
+  std::string output, part, wavelengths, integrator, filter, cache, range;
   std::vector<double> crop;
-  std::vector<int> pixels;
+  std::vector<int> pixels, pixel;
   std::vector<std::string> swaps, plugins, channels;
   DisplayChoice display;
   int samples = 0, threads = 0;
   std::optional<uint64_t> seed;
   double checkpoint_seconds = 0, time_limit_seconds = 0, max_rms = 0;
   bool quick = false, json = false, quiet = false, no_cache = false, pilot = false, resume = false;
+  bool no_pixel_jitter = false, no_texture_filtering = false, no_wavelength_jitter = false;
+  std::vector<std::string> of_pbrt;  ///< its options that do nothing here, as they are spelled
 };
 
 /// Declares them; they are read into `options`, which must outlive the command.
@@ -33,9 +38,12 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 /// Throws InputError for what is no "leaf=abm" or "leaf=abm,mode=analog".
 std::vector<MaterialSwap> swaps_of(const std::vector<std::string>& swaps);
 
-/// What of the film the command line asks for; the scene's crop if it says nothing. Throws InputError where that is no
-/// pixel.
-Crop crop_of(const RenderOptions& options, const FilmSettings& film);
+/// What of the film the command line asks for; the scene's crop if it says nothing. Ends the wrong way round are put
+/// right, with a warning. Throws InputError where that is no pixel.
+Crop crop_of(const RenderOptions& options, const FilmSettings& film, const Log& log);
+
+/// What of the command line goes before the scene's options.
+void set_scene_options(const RenderOptions& options, SceneDescription& description);
 
 SceneOverrides overrides_of(const RenderOptions& options);
 
@@ -44,6 +52,6 @@ std::optional<SampleRange> range_of(const RenderOptions& options);
 
 /// What of the command decides the pixels, but for their number and that of their samples: threads, paths and what is
 /// printed do not belong in a file's header.
-std::string command_line_of(const RenderOptions& options);
+std::string command_line_of(const RenderOptions& options, const std::filesystem::path& scene);
 
 }  // namespace frond

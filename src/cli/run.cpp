@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "cli/commands.h"
 #include "cli/mistyped.h"
+#include "cli/reading_options.h"
+#include "core/problems.h"
 #include "render/checkpoint.h"
 
 namespace frond {
@@ -28,6 +31,7 @@ int run(int argc, const char* const* argv) {
   app.set_version_flag("--version", "frond " FROND_VERSION);
   app.require_subcommand(1);
   add_render_command(app);
+  add_check_command(app);
   add_merge_command(app);
   add_submit_command(app);
   add_compare_command(app);
@@ -45,7 +49,9 @@ int run(int argc, const char* const* argv) {
   add_goniophotometer_command(app);
   add_bench_command(app);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc});
+    std::ranges::reverse(words);  // CLI11 takes them from the end
+    app.parse(std::move(words));
     return 0;
   } catch (const CLI::RuntimeError& verdict) {  // a command's own exit code; it has said why
     return verdict.get_exit_code();
@@ -54,6 +60,9 @@ int run(int argc, const char* const* argv) {
   } catch (const Busy& error) {
     fmt::print(stderr, "frond: {}\n", error.what());
     return kTryAgainLater;
+  } catch (const InputErrors& errors) {
+    constexpr size_t kMostShown = 20;
+    fmt::print(stderr, "{}\n", errors.text("frond: ", kMostShown));
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "frond: out of memory\n");
   } catch (const std::exception& error) {

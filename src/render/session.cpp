@@ -6,7 +6,6 @@
 #include "render/adaptive.h"
 #include "render/inputs.h"
 #include "render/plugins.h"
-#include "scene/parser.h"
 #include "spectra/color_management.h"
 #include "spectra/color_space.h"
 
@@ -201,7 +200,16 @@ RenderPart LoadedScene::empty_part() const {
 Session::Session(const Log& log, SessionOptions options)
     : log_(log), options_(std::move(options)), registry_(load_registry(options_.plugins)), pool_(options_.threads) {}
 
-SceneDescription Session::read(const std::filesystem::path& path) const { return parse_scene(path, log_); }
+SceneDescription Session::read(const std::filesystem::path& path) const { return read_scene(path, registry_, log_); }
+
+SceneDescription Session::read(const std::vector<std::filesystem::path>& paths, const Unsupported& unsupported,
+                               Problems& problems) const {
+  return read_scene(paths, registry_, log_, unsupported, problems);
+}
+
+void Session::check(const SceneDescription& description, const SceneOverrides& overrides) {
+  Scene::check(description, registry_, overrides, pool_, log_);
+}
 
 FilmSettings Session::film(const SceneDescription& description, bool quick) const {
   const FilmSettings settings = Scene::film_settings(description, registry_);

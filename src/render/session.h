@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "render/part.h"
 #include "render/render_loop.h"
+#include "scene/pbrt_plugins.h"
 #include "scene/scene.h"
 
 namespace frond {
@@ -95,6 +96,11 @@ class Session {
 
   /// A scene file; "-" is standard input.
   SceneDescription read(const std::filesystem::path& path) const;
+  /// One that may be in several files. What is wrong goes to `problems`, and all that could be read is returned.
+  SceneDescription read(const std::vector<std::filesystem::path>& paths, const Unsupported& unsupported,
+                        Problems& problems) const;
+  /// Loads all that a scene names and renders nothing. Throws all that is wrong.
+  void check(const SceneDescription& description, const SceneOverrides& overrides);
   /// The film that a scene asks for; half of it where a first look will do.
   FilmSettings film(const SceneDescription& description, bool quick) const;
   /// The cache is the session's, whatever the overrides say. `other`: a scene in which the same stands, which is then

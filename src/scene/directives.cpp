@@ -250,6 +250,13 @@ Token read_quoted(Tokenizer& tokens, std::string_view directive) {
   return token;
 }
 
+bool is_directive(std::string_view word) {
+  Token token;
+  token.kind = Kind::word;
+  token.text = word;
+  return word == "Include" || word == "Import" || find_directive(token);
+}
+
 void carry_out(const Token& name, DirectiveContext& context) {
   const Location where = context.tokens.where(name);
   const DirectiveEntry* entry = find_directive(name);

@@ -24,6 +24,9 @@ struct DirectiveContext {
 /// Include and Import, which are the parser's. Throws InputError, for unknown directives too.
 void carry_out(const Token& name, DirectiveContext& context);
 
+/// Whether a word is one, Include and Import too.
+bool is_directive(std::string_view word);
+
 /// The quoted string that must come next; `directive` asks for it.
 Token read_quoted(Tokenizer& tokens, std::string_view directive);
 

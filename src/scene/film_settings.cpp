@@ -85,10 +85,16 @@ constexpr auto kGbuffer = [] {
 }();
 
 Crop crop_in(const Params& p, int width, int height) {
-  const auto window = p.reals("cropwindow");
-  const auto bounds = p.integers("pixelbounds");
-  if (!window.empty() && !bounds.empty())
-    fail(p.where("pixelbounds"), "\"cropwindow\" and \"pixelbounds\" exclude each other");
+  auto window = p.reals("cropwindow");
+  auto bounds = p.integers("pixelbounds");
+  if (!window.empty() && !bounds.empty()) {
+    p.warn("pixelbounds", "\"cropwindow\" is given too, and counts");
+    bounds.clear();
+  }
+  if (window.size() == 4 && put_in_order(window))
+    p.warn("cropwindow", "\"cropwindow\" has its ends the wrong way round: they are exchanged");
+  if (bounds.size() == 4 && put_in_order(bounds))
+    p.warn("pixelbounds", "\"pixelbounds\" has its ends the wrong way round: they are exchanged");
   Crop crop{0, 0, width, height};
   if (!window.empty()) {
     if (window.size() != 4) fail(p.where("cropwindow"), "\"cropwindow\" takes 4 values, {} given", window.size());

@@ -64,7 +64,8 @@ Location SceneReader::read(const std::string& bytes, const fs::path& path, Token
   DirectiveContext context{tokens, parameters_, builder_, log_, unsupported_};
   open_files_.push_back(path);
   while (!tokens.at_end()) {
-    if (!problems_.attempt([&] { read_directive(tokens, context); })) tokens.skip_to_directive();
+    const Token word = tokens.peek();
+    if (!problems_.attempt([&] { read_directive(tokens, context); })) tokens.skip_to_directive(word, is_directive);
   }
   open_files_.pop_back();
   return tokens.where(tokens.peek());
@@ -139,6 +140,21 @@ SceneDescription parse_scene(const fs::path& path, const Log& log, const Unsuppo
   SceneDescription scene = parse_scene(std::vector{path}, log, unsupported, problems);
   problems.check();
   return scene;
+}
+
+bool holds_world(const fs::path& path) {
+  bool holds = false;
+  Problems ignored;
+  ignored.attempt([&] {
+    std::string text = read_file_bytes(path, {});
+    if (is_gzip(text)) text = unpack_gzip(text, path.string(), {});
+    Tokenizer tokens(text, std::make_shared<const std::string>(path.string()));
+    while (!holds && !tokens.at_end()) {
+      const Token token = tokens.next();
+      holds = token.kind == Token::Kind::word && token.text == "WorldBegin";
+    }
+  });
+  return holds;
 }
 
 SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log,

@@ -21,6 +21,10 @@ SceneDescription parse_scene(const std::filesystem::path& path, const Log& log, 
 SceneDescription parse_scene(const std::vector<std::filesystem::path>& paths, const Log& log,
                              const Unsupported& unsupported, Problems& problems);
 
+/// Whether this file, without those that it includes, holds WorldBegin: then it is a scene, else a piece of one. False
+/// where it cannot be read.
+bool holds_world(const std::filesystem::path& path);
+
 /// As the first from text; `name` is what errors call it, and what Include resolves against.
 SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log,
                                   const Unsupported& unsupported = {});

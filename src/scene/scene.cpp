@@ -293,7 +293,11 @@ class SceneBuilder {
 
   void build_view(SceneResolver& resolver) {
     FilmSettings film;
-    problems_.attempt([&] { film = Scene::film_settings(description_, registry_); });
+    problems_.attempt([&] {  // for its warnings
+      OptionResolver options(description_, log_);
+      const FilmInfo& info = registry_.films.get(description_.film.name, description_.film.where);
+      film = info.make(Params(info, description_.film, options));
+    });
     if (overrides_.quick) film = halved(film);
     scene_.film_ = film;
     const CameraPlacement placement{description_.camera_from_world.inverse(), film.width, film.height};

@@ -28,6 +28,14 @@ Location location_of(const std::shared_ptr<const std::string>& file, std::string
           static_cast<int>(offset - line_start) + 1};
 }
 
+bool is_capital(const Token& token) {
+  return token.kind == Token::Kind::word && token.text[0] >= 'A' && token.text[0] <= 'Z';
+}
+
+bool begins_line(const Token& word) {
+  return std::all_of(word.text.data() - (word.column - 1), word.text.data(), is_blank);
+}
+
 void check_is_text(std::string_view text, const std::shared_ptr<const std::string>& file) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     fail({file, 1, 1}, "this file is UTF-16 text; scene files are UTF-8");
@@ -65,6 +73,7 @@ Tokenizer::Tokenizer(std::string_view text, std::shared_ptr<const std::string> f
 Token Tokenizer::next() {
   if (at_end() && outer_) return outer_->next();
   const Token token = next_;
+  if (is_capital(token)) last_capital_ = token;
   if (token.kind != Token::Kind::end) next_ = scan();
   return token;
 }
@@ -117,18 +126,27 @@ Token Tokenizer::scan_string() {
   return token;
 }
 
-void Tokenizer::skip_to_directive() {
-  const auto may_be_directive = [](const Token& token) {
-    return token.kind == Token::Kind::word && token.text[0] >= 'A' && token.text[0] <= 'Z';
-  };
-  while (is_broken_ || (!at_end() && !may_be_directive(next_))) {
+void Tokenizer::go_back_to(const Token& word) {
+  at_ = word.text.data();
+  line_ = word.line;
+  line_start_ = at_ - (word.column - 1);
+  is_broken_ = false;
+  next_ = scan();
+}
+
+void Tokenizer::skip_to_directive(const Token& failed, bool (*is_directive)(std::string_view)) {
+  if (last_capital_.text.data() != failed.text.data() && last_capital_.from == this &&
+      last_capital_.text.data() > failed.text.data() && is_directive(last_capital_.text))
+    return go_back_to(last_capital_);
+  while (is_broken_ || !at_end()) {
+    if (!is_broken_ && is_capital(next_) && (begins_line(next_) || is_directive(next_.text))) return;
     is_broken_ = false;
     try {
       next_ = scan();
     } catch (const InputError&) {  // it follows from the one that is told
     }
   }
-  if (at_end() && outer_) outer_->skip_to_directive();
+  if (outer_) outer_->skip_to_directive(failed, is_directive);
 }
 
 std::string Tokenizer::text_of(const Token& string) const {

@@ -39,8 +39,9 @@ class Tokenizer {
   /// The token that `peek` showed. Throws InputError when the one after it is malformed.
   Token next();
   Location where(const Token& token) const { return {token.from->file_, token.line, token.column}; }
-  /// After an error: leaves out what comes before the next word that may be a directive.
-  void skip_to_directive();
+  /// After an error in what began with `failed`: goes on at the next directive, or word that looks like one and begins
+  /// a line. Where the error is that one came too early, that is the next.
+  void skip_to_directive(const Token& failed, bool (*is_directive)(std::string_view));
   /// A string's text with its escapes resolved.
   std::string text_of(const Token& string) const;
 
@@ -49,6 +50,7 @@ class Tokenizer {
   Token scan_string();
   void skip_blanks();
   Token token_at(const char* start) const;
+  void go_back_to(const Token& word);
 
   std::shared_ptr<const std::string> file_;
   Tokenizer* outer_;
@@ -58,6 +60,7 @@ class Tokenizer {
   int line_ = 1;
   bool is_broken_ = false;  ///< `next_` could not be read
   Token next_;
+  Token last_capital_;  ///< of the words taken: the last that may be a directive
 };
 
 /// A decimal number as scene files and PLY write it; nothing for any other word ("nan", "inf", hexadecimal). Too large

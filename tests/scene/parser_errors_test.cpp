@@ -27,7 +27,8 @@ void expect_errors_in_world(std::vector<BadScene> scenes) {
 TEST(ParserErrors, NameWhatIsNotText) {
   expect_errors({
       {std::string("WorldBegin\n ab\0c", 16), "s:2:4: a zero byte: this is not a text file"},
-      {"\x1f\x8b\x08...", "s:1:1: this file is compressed; compressed scene files are not supported yet"},
+      {"\x1f\x8b\x08...", "s:1:1: s is compressed and damaged: unknown header flags set"},
+      {std::string("\xff\xfe") + "W", "s:1:1: this file is UTF-16 text; scene files are UTF-8"},
       {"\x7f\x80", "s:1:1: unknown directive ?\x80"},
   });
 }
@@ -44,13 +45,19 @@ TEST(ParserErrors, NameUnknownDirectives) {
   });
 }
 
-TEST(ParserErrors, NameDirectivesOfPbrtThatAreNotThereYet) {
-  for (const char* name : {"ActiveTransform", "Import", "MakeNamedMedium", "MediumInterface", "TransformBegin",
-                           "TransformEnd", "TransformTimes"})
-    expect_errors(
-        {{fmt::format("\n {} \"x\"", name), fmt::format("s:2:2: directive {} of pbrt-v4 is not supported yet", name)}});
+TEST(ParserErrors, NameWhatOfPbrtIsNotThereYet) {
+  expect_errors({
+      {"\n MediumInterface \"fog\"",
+       "s:2:2: MediumInterface of pbrt-v4 is not supported; with --ignore-unsupported=media it is left out"},
+      {"\n ActiveTransform EndTime",
+       "s:2:2: ActiveTransform of pbrt-v4 is not supported; with --ignore-unsupported=motion it leaves all as it is at "
+       "the start"},
+      {"ActiveTransform Now", "s:1:17: ActiveTransform takes StartTime, EndTime or All, Now was given"},
+      {"Import \"x\"", "s:1:1: Import belongs after WorldBegin"},
+      {"WorldBegin WorldEnd",
+       "s:1:12: WorldEnd: this is a file for pbrt-v3 or older; \"pbrt --upgrade\" of pbrt-v4 makes one for pbrt-v4"},
+  });
   expect_errors_in_world({
-      {"Attribute \"medium\" \"float g\" 0", "s:2:11: attributes of media of pbrt-v4 are not supported yet"},
   });
 }
 
@@ -70,7 +77,6 @@ TEST(ParserErrors, TellWhichBlockADirectiveBelongsTo) {
 
 TEST(ParserErrors, TellWhatIsNotNestedAsItShouldBe) {
   expect_errors_in_world({
-      {"AttributeEnd", "s:2:1: AttributeEnd without AttributeBegin"},
       {"ObjectEnd", "s:2:1: ObjectEnd without ObjectBegin"},
       {"AttributeBegin\nObjectEnd", "s:3:1: ObjectEnd without ObjectBegin"},
       {"ObjectBegin \"a\" AttributeEnd", "s:2:17: AttributeEnd while the ObjectBegin at s:2:13 is open"},
@@ -86,15 +92,16 @@ TEST(ParserErrors, TellWhatIsNotNestedAsItShouldBe) {
 TEST(ParserErrors, TellWhichNameIsUnknownOrDefinedAgain) {
   const std::string leaf = "MakeNamedMaterial \"leaf\" \"string type\" \"abm\"\n";
   expect_errors_in_world({
-      {leaf + "NamedMaterial \"leef\"", "s:3:15: there is no named material \"leef\"; did you mean \"leaf\"?"},
-      {"NamedMaterial \"leaf\"", "s:2:15: there is no named material \"leaf\"; MakeNamedMaterial makes them"},
+      {leaf + "NamedMaterial \"leef\" Shape \"disk\"",
+       "s:3:15: there is no named material \"leef\"; did you mean \"leaf\"?"},
+      {"NamedMaterial \"leaf\" Shape \"disk\"",
+       "s:2:15: there is no named material \"leaf\"; MakeNamedMaterial makes them"},
       {leaf + leaf, "s:3:19: material \"leaf\" is defined again"},
       {"MakeNamedMaterial \"m\"", "s:2:19: MakeNamedMaterial \"m\" needs parameter \"string type\""},
       {"MakeNamedMaterial \"m\" \"float type\" 1", "s:2:23: \"type\" is string, a float was given"},
       {"MakeNamedMaterial \"m\" \"string type\" [\"a\" \"b\"]", "s:2:38: \"type\" takes 1 value, 2 given"},
       {"ObjectBegin \"leaf\" ObjectEnd\nObjectInstance \"leave\"",
        "s:3:16: there is no object \"leave\"; did you mean \"leaf\"?"},
-      {"CoordSysTransform \"wurld\"", "s:2:19: unknown coordinate system \"wurld\"; did you mean \"world\"?"},
       {"Texture \"t\" \"color\" \"constant\"", "s:2:13: unknown kind of texture \"color\"; there are float, spectrum"},
       {"Texture \"t\" \"float\" \"scale\"\nTexture \"t\" \"float\" \"mix\"",
        "s:3:9: float texture \"t\" is defined again; first at s:2:9"},
@@ -103,15 +110,11 @@ TEST(ParserErrors, TellWhichNameIsUnknownOrDefinedAgain) {
 }
 
 TEST(ParserErrors, TellWhichTransformMakesNoSense) {
-  const std::string huge = "340000000000000000000000000000000000000";
   expect_errors_in_world({
-      {"Scale 1 0 1", "s:2:1: Scale by 0 cannot be inverted"},
       {"Rotate 30 0 0 0", "s:2:1: Rotate about the axis 0 0 0"},
       {"LookAt 1 2 3 1 2 3 0 1 0", "s:2:1: LookAt: eye and target are the same point"},
       {"LookAt 0 0 0 0 2 0 0 1 0", "s:2:1: LookAt: up is parallel to the direction of view"},
       {"LookAt 0 0 0 0 2 0 0 0 0", "s:2:1: LookAt: up is 0 0 0"},
-      {"Transform [ 1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 ]", "s:2:1: Transform: the matrix is singular"},
-      {"ConcatTransform [ 1 0 0 0 1 0 0 0 0 0 1 0 0 0 0 1 ]", "s:2:1: ConcatTransform: the matrix is singular"},
       {"Transform [ 1 0 0 0 0 1 0 0 0 0 1 .5 0 0 0 1 ]",
        "s:2:1: Transform: the matrix is projective (its last row is 0 0 0.5 1, not 0 0 0 1)"},
       {"Transform 1 0 0", "s:2:11: Transform takes 16 numbers in brackets, 1 was given"},
@@ -124,10 +127,6 @@ TEST(ParserErrors, TellWhichTransformMakesNoSense) {
       {"Translate 1 nan 0", "s:2:13: Translate takes 3 numbers: a number is needed, nan was given"},
       {"Translate 1 -inf 0", "s:2:13: Translate takes 3 numbers: a number is needed, -inf was given"},
       {"Translate 1 1e99 0", "s:2:13: 1e99 is out of range: numbers reach 3.403e+38"},
-      {"Scale 1e-30 1 1 Scale 1e-30 1 1",
-       "s:2:17: after this Scale the transform cannot be inverted: its scale is too small or too large"},
-      {"Translate " + huge + " 0 0 Translate " + huge + " 0 0",
-       "s:2:55: after this Translate the transform cannot be inverted: its scale is too small or too large"},
   });
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace frond {
+
+/// What commands are told of scene files.
+struct ReadingOptions {
+  std::string ignore_unsupported;  ///< empty: nothing
+  bool strict = false;
+};
+
+/// `--ignore-unsupported[=KINDS]` and `--strict`.
+void add_reading_options(CLI::App& command, ReadingOptions& options);
+
+/// Scenes, each in the files that are read one after the other: a file without WorldBegin and the one after it are one.
+std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files);
+
+/// The command line with pbrt's spelling put into ours: `frond SCENE.pbrt` renders, and what follows
+/// --ignore-unsupported belongs to it where it can.
+std::vector<std::string> with_pbrt_spelling(std::vector<std::string> words);
+
+}  // namespace frond

@@ -1,0 +1,229 @@
+#include "scene/pbrt_plugins.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "scene/parser.h"
+
+namespace frond {
+namespace {
+
+/// What stands in for a plugin of pbrt-v4. Parameters that `ours` declares go on; the others that pbrt knows are
+/// dropped.
+struct StandIn {
+  std::string_view name, ours;
+  std::string_view feature;                   ///< of --ignore-unsupported; empty: the picture is the same
+  std::span<const std::string_view> of_pbrt;  ///< parameters that it may have; empty: any
+};
+
+constexpr std::string_view kRandomized[] = {"pixelsamples", "seed", "randomization"};
+constexpr std::string_view kPlain[] = {"pixelsamples", "seed"};
+constexpr std::string_view kStratified[] = {"xsamples", "ysamples", "jitter", "seed"};
+constexpr StandIn kSamplers[] = {
+    {"zsobol", "paddedsobol", "", kRandomized}, {"paddedsobol", "paddedsobol", "", kRandomized},
+    {"halton", "paddedsobol", "", kRandomized}, {"sobol", "paddedsobol", "", kRandomized},
+    {"pmj02bn", "paddedsobol", "", kPlain},     {"stratified", "paddedsobol", "", kStratified}};
+
+constexpr std::string_view kPath[] = {"maxdepth", "lightsampler", "regularize"};
+constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath},
+                                    {"simplepath", "path", "integrators", {}},
+                                    {"simplevolpath", "path", "integrators", {}},
+                                    {"randomwalk", "path", "integrators", {}},
+                                    {"ambientocclusion", "path", "integrators", {}},
+                                    {"lightpath", "path", "integrators", {}},
+                                    {"bdpt", "path", "integrators", {}},
+                                    {"mlt", "path", "integrators", {}},
+                                    {"sppm", "path", "integrators", {}},
+                                    {"function", "path", "integrators", {}}};
+constexpr StandIn kMaterials[] = {{"measured", "diffuse", "materials", {}},
+                                  {"hair", "diffuse", "materials", {}},
+                                  {"subsurface", "coateddiffuse", "materials", {}},
+                                  {"subsurface", "diffuse", "materials", {}}};
+constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}},
+                                {"spherical", "perspective", "cameras", {}}};
+constexpr StandIn kTextures[] = {{"ptex", "constant", "textures", {}}};
+constexpr StandIn kFilms[] = {{"spectral", "rgb", "films", {}}};
+
+/// Of pbrt-v3 and older.
+constexpr std::string_view kOldMaterials[] = {"matte",     "plastic",    "uber",        "glass",   "mirror",
+                                              "substrate", "metal",      "translucent", "fourier", "disney",
+                                              "none",      "shinymetal", "kdsubsurface"};
+constexpr std::string_view kOldSamplers[] = {"lowdiscrepancy", "random",        "02sequence", "(0,2)-sequence",
+                                             "maxmindist",     "bestcandidate", "adaptive"};
+constexpr std::string_view kOldIntegrators[] = {"directlighting",  "whitted",         "photonmap", "exphotonmap", "igi",
+                                                "irradiancecache", "dipolesubsurface"};
+constexpr std::string_view kOldCameras[] = {"environment"};
+constexpr std::string_view kOldFilms[] = {"image"};
+constexpr std::string_view kOldShapes[] = {"cone", "heightfield", "hyperboloid", "nurbs", "paraboloid"};
+constexpr std::string_view kOldTextures[] = {"uv"};
+
+const ParsedParam* find(const ParsedPlugin& plugin, std::string_view name) {
+  const auto found = std::ranges::find(plugin.params, name, &ParsedParam::name);
+  return found == plugin.params.end() ? nullptr : &*found;
+}
+
+std::optional<double> number(const ParsedPlugin& plugin, std::string_view name) {
+  const ParsedParam* p = find(plugin, name);
+  if (!p) return {};
+  const auto* values = std::get_if<std::vector<double>>(&p->values);
+  if (!values || values->size() != 1) fail(p->value_where, "\"{}\" takes 1 number", name);
+  return (*values)[0];
+}
+
+/// One description's plugins, kind after kind.
+class Answerer {
+ public:
+  Answerer(const Unsupported& unsupported, const Log& log, Problems& problems)
+      : unsupported_(unsupported), log_(log), problems_(problems) {}
+
+  /// Says whether something stands in. Also after an error, which is then told once.
+  template <class Info>
+  bool answer(std::string_view directive, const PluginTable<Info>& ours, std::span<const StandIn> stand_ins,
+              std::span<const std::string_view> old, ParsedPlugin& plugin) {
+    if (!ours.find(plugin.name) && std::ranges::find(old, plugin.name) != old.end()) {
+      refuse_old(directive, plugin);
+      plugin.name = ours.all().front()->name;
+      plugin.params.clear();
+      return false;
+    }
+    for (const StandIn& by : stand_ins) {
+      if (by.name != plugin.name || !ours.find(by.ours) || (ours.find(by.name) && by.name != by.ours)) continue;
+      replace(directive, *ours.find(by.ours), by, plugin);
+      return true;
+    }
+    return false;
+  }
+
+  void refuse_old(std::string_view directive, const ParsedPlugin& plugin) {
+    problems_.attempt([&] {
+      fail(plugin.where,
+           "{} \"{}\": this is a file for pbrt-v3 or older; \"pbrt --upgrade\" of pbrt-v4 makes one for pbrt-v4",
+           directive, plugin.name);
+    });
+  }
+
+ private:
+  void replace(std::string_view directive, const PluginInfo& ours, const StandIn& by, ParsedPlugin& plugin) {
+    if (!by.feature.empty())
+      problems_.attempt([&] {
+        unsupported_.handle(by.feature, plugin.where, fmt::format("{} \"{}\"", directive, plugin.name),
+                            fmt::format("is replaced by \"{}\"", by.ours), log_);
+      });
+    else if (by.name != by.ours)
+      log_.info(fmt::format("{} \"{}\" is answered by \"{}\"", directive, by.name, by.ours));
+    std::erase_if(plugin.params, [&](const ParsedParam& p) {
+      const auto is_called_so = [&p](const Param& known) { return known.name == p.name; };
+      if (std::ranges::any_of(ours.params, is_called_so)) return false;
+      return by.of_pbrt.empty() || std::ranges::find(by.of_pbrt, p.name) != by.of_pbrt.end();
+    });
+    plugin.name = by.ours;
+  }
+
+  const Unsupported& unsupported_;
+  const Log& log_;
+  Problems& problems_;
+};
+
+/// Samples of x times y strata.
+void count_strata(ParsedPlugin& sampler) {
+  const double x = number(sampler, "xsamples").value_or(4), y = number(sampler, "ysamples").value_or(4);
+  const Location where = find(sampler, "xsamples") ? find(sampler, "xsamples")->value_where : sampler.where;
+  sampler.params.push_back({"integer", "pixelsamples", where, where, std::vector<double>{x * y}});
+}
+
+void warn_of_regularize(const ParsedPlugin& integrator, const Log& log) {
+  const ParsedParam* p = find(integrator, "regularize");
+  if (!p) return;
+  const auto* value = std::get_if<std::vector<bool>>(&p->values);
+  if (value && value->size() == 1 && (*value)[0])
+    log.warn(p->where, "\"regularize\" has no effect: nothing is blurred, what pbrt leaves out shows as noise");
+}
+
+/// Hair's colour goes by two names.
+void rename_color(ParsedPlugin& material) {
+  if (find(material, "reflectance")) return;
+  const auto color = std::ranges::find(material.params, "color", &ParsedParam::name);
+  if (color != material.params.end()) color->name = "reflectance";
+}
+
+/// Of a lens of 50 mm, as the film is large; pbrt measures the shorter side.
+void set_field_of_view(ParsedPlugin& camera, const ParsedPlugin& film) {
+  constexpr double kFocalLength = 50;  // mm
+  const double diagonal = number(film, "diagonal").value_or(35), x = number(film, "xresolution").value_or(1280),
+               y = number(film, "yresolution").value_or(720);
+  const double shorter = diagonal * std::min(x, y) / std::hypot(x, y);
+  if (!(shorter > 0)) return;
+  const double degrees = 2 * std::atan(shorter / (2 * kFocalLength)) * 180 / std::numbers::pi;
+  camera.params.push_back({"float", "fov", camera.where, camera.where, std::vector<double>{degrees}});
+}
+
+/// White for numbers, grey for colours.
+void set_constant(TextureDescription& texture) {
+  const bool is_real = texture.value == TextureDescription::Value::real;
+  const Location& where = texture.plugin.where;
+  texture.plugin.params.clear();
+  texture.plugin.params.push_back({is_real ? "float" : "rgb", "value", where, where,
+                                   is_real ? std::vector<double>{1} : std::vector<double>{0.5, 0.5, 0.5}});
+}
+
+}  // namespace
+
+void answer_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,
+                         const Log& log, Problems& problems) {
+  Answerer answerer(unsupported, log, problems);
+  SceneDescription& d = description;
+  problems.attempt([&] {
+    if (d.sampler.name == "stratified" && !registry.samplers.find("stratified")) count_strata(d.sampler);
+  });
+  answerer.answer("Sampler", registry.samplers, kSamplers, kOldSamplers, d.sampler);
+  warn_of_regularize(d.integrator, log);
+  if (d.integrator.name == "path")
+    std::erase_if(d.integrator.params, [](const auto& p) { return p.name == "regularize"; });
+  answerer.answer("Integrator", registry.integrators, kIntegrators, kOldIntegrators, d.integrator);
+  const bool is_realistic = d.camera.name == "realistic";
+  if (answerer.answer("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)
+    problems.attempt([&] { set_field_of_view(d.camera, d.film); });
+  answerer.answer("Film", registry.films, kFilms, kOldFilms, d.film);
+  for (MaterialDescription& m : d.materials) {
+    const bool is_hair = m.plugin.name == "hair";
+    if (is_hair && !registry.materials.find("hair")) rename_color(m.plugin);
+    answerer.answer("Material", registry.materials, kMaterials, kOldMaterials, m.plugin);
+  }
+  for (TextureDescription& t : d.textures) {
+    const bool is_real = t.value == TextureDescription::Value::real;
+    const bool is_answered =
+        is_real ? answerer.answer("Texture", registry.float_textures, kTextures, kOldTextures, t.plugin)
+                : answerer.answer("Texture", registry.spectrum_textures, kTextures, kOldTextures, t.plugin);
+    if (is_answered) set_constant(t);
+  }
+  const auto answer_shapes = [&](std::vector<ShapeDescription>& shapes) {
+    std::erase_if(shapes, [&](const ShapeDescription& s) {
+      if (registry.shapes.find(s.plugin.name) || std::ranges::find(kOldShapes, s.plugin.name) == std::end(kOldShapes))
+        return false;
+      answerer.refuse_old("Shape", s.plugin);
+      return true;
+    });
+  };
+  answer_shapes(d.shapes);
+  for (ObjectDescription& object : d.objects) answer_shapes(object.shapes);
+}
+
+SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,
+                            const Unsupported& unsupported, Problems& problems) {
+  SceneDescription description = parse_scene(paths, log, unsupported, problems);
+  answer_pbrt_plugins(description, registry, unsupported, log, problems);
+  return description;
+}
+
+SceneDescription read_scene(const std::filesystem::path& path, const Registry& registry, const Log& log,
+                            const Unsupported& unsupported) {
+  Problems problems;
+  SceneDescription description = read_scene(std::vector{path}, registry, log, unsupported, problems);
+  problems.check();
+  return description;
+}
+
+}  // namespace frond

@@ -1,0 +1,135 @@
+// What users of pbrt type, `frond check`, --strict and --ignore-unsupported.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "image/image_file.h"
+#include "tests/cli/command.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr std::string_view kOptions =
+    "LookAt 0 0 3 0 0 0 0 1 0 Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6\n";
+constexpr std::string_view kWorld = "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n";
+
+class PbrtOptions : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.write("scene.pbrt", std::string(kOptions) + std::string(kWorld));
+    folder_.write("bad.pbrt", std::string(kOptions) + "Sampler \"zobol\"\n" + std::string(kWorld) +
+                                  "Shape \"sphere\" \"float radus\" 1\nTranslate 1 2\n"
+                                  "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"disk\"\n");
+    folder_.write("media.pbrt", std::string(kOptions) + "Integrator \"sppm\"\n" + std::string(kWorld) +
+                                    "MediumInterface \"fog\" \"\" Shape \"sphere\"\n");
+  }
+  std::string path(const std::string& name) const { return folder_.name_of(name); }
+  TestFolder folder_{"pbrt_options"};
+};
+
+TEST_F(PbrtOptions, ASceneAloneIsRendered) {
+  EXPECT_EQ(frond_command({path("scene.pbrt"), "--outfile", path("a.exr"), "--spp", "1", "--quiet"}).code, 0);
+  EXPECT_EQ(frond_command({"--nthreads", "1", "--spp", "1", "--outfile", path("b.exr"), path("scene.pbrt")}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("a.exr")) && std::filesystem::exists(path("b.exr")));
+}
+
+TEST_F(PbrtOptions, WhatDoesNothingHereWarnsAndWhatAsksForMoreIsRefused) {
+  const Outcome idle = frond_command(
+      {"render", path("scene.pbrt"), "-o", path("a.exr"), "--spp", "1", "--gpu", "--stats", "--write-partial-images"});
+  EXPECT_EQ(idle.code, 0);
+  EXPECT_THAT(idle.err, AllOf(HasSubstr("--gpu of pbrt has no effect"), HasSubstr("--write-partial-images of pbrt")));
+  const Outcome refused = frond_command({"render", path("scene.pbrt"), "--display-server", "localhost:14158"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--display-server: frond talks to no viewer"));
+}
+
+TEST_F(PbrtOptions, CropsTheWrongWayRoundArePutRight) {
+  const Outcome done =
+      frond_command({"render", path("scene.pbrt"), "-o", path("a.exr"), "--spp", "1", "--cropwindow", "0.5,0,0,0.5"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("wrong way round: taken for 0,0.5,0,0.5"));
+  folder_.write("crop.pbrt",
+                "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6\n"
+                "\"integer pixelbounds\" [ 6 2 0 3 ]\n" +
+                    std::string(kWorld));
+  EXPECT_THAT(frond_command({path("crop.pbrt"), "-o", path("b.exr"), "--spp", "1"}).err,
+              HasSubstr("crop.pbrt:2:25: warning: \"pixelbounds\" has its ends"));
+}
+
+TEST_F(PbrtOptions, PiecesAreOneSceneAndScenesFollowEachOther) {
+  folder_.write("options.pbrt", kOptions);
+  folder_.write("world.pbrt", kWorld);
+  EXPECT_EQ(frond_command({path("options.pbrt"), path("world.pbrt"), "-o", path("a.exr"), "--spp", "1", "-q"}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("a.exr")));
+  EXPECT_THAT(frond_command({path("scene.pbrt"), path("scene.pbrt"), "-o", path("b.exr")}).err,
+              HasSubstr("2 scenes cannot all be written to"));
+  EXPECT_THAT(frond_command({"check", path("scene.pbrt"), path("scene.pbrt")}).out,
+              HasSubstr("scene.pbrt: nothing is wrong\n" + path("scene.pbrt")));
+}
+
+TEST_F(PbrtOptions, AllThatIsWrongIsTold) {
+  for (const char* command : {"check", "render"}) {
+    const Outcome bad = frond_command({command, path("bad.pbrt")});
+    EXPECT_EQ(bad.code, 1);
+    EXPECT_THAT(bad.err, AllOf(HasSubstr("bad.pbrt:2:9: unknown sampler \"zobol\""),
+                               HasSubstr("bad.pbrt:6:16: shape \"sphere\" has no parameter \"radus\""),
+                               HasSubstr("bad.pbrt:8:1: Translate takes 3 numbers"),
+                               HasSubstr("bad.pbrt:8:42: there is no spectrum texture \"t\"")));
+  }
+  const Outcome good = frond_command({"check", path("scene.pbrt")});
+  EXPECT_EQ(good.code, 0);
+  EXPECT_THAT(good.err, IsEmpty());
+}
+
+TEST_F(PbrtOptions, WhatIsUnsupportedCanBeLetPass) {
+  const Outcome refused = frond_command({"render", path("media.pbrt"), "-o", path("a.exr"), "--spp", "1"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("media.pbrt:2:12: Integrator \"sppm\" of pbrt-v4 is not supported"),
+                                 HasSubstr("--ignore-unsupported=media")));
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--ignore-unsupported", path("media.pbrt")},
+                                                {"--ignore-unsupported", "media,integrators", path("media.pbrt")},
+                                                {"--ignore-unsupported=all", path("media.pbrt")}}) {
+    std::vector<std::string> command{"render", "-o", path("a.exr"), "--spp", "1"};
+    command.insert(command.end(), words.begin(), words.end());
+    const Outcome passed = frond_command(command);
+    EXPECT_EQ(passed.code, 0) << passed.err;
+    EXPECT_THAT(passed.err, HasSubstr("warning: MediumInterface of pbrt-v4 is not supported"));
+  }
+  EXPECT_EQ(frond_command({"check", "--ignore-unsupported", "media", path("media.pbrt")}).code, 1);
+}
+
+TEST_F(PbrtOptions, StrictMakesErrorsOfWarnings) {
+  folder_.write("warns.pbrt", std::string(kOptions) + std::string(kWorld) + "AttributeEnd\nAttributeEnd\n");
+  EXPECT_EQ(frond_command({"check", path("warns.pbrt")}).code, 0);
+  const Outcome strict = frond_command({"render", path("warns.pbrt"), "-o", path("a.exr"), "--spp", "1", "--strict"});
+  EXPECT_EQ(strict.code, 1);
+  EXPECT_THAT(strict.err, AllOf(HasSubstr("warns.pbrt:5:1: AttributeEnd"), HasSubstr("warns.pbrt:6:1: AttributeEnd")));
+  EXPECT_FALSE(std::filesystem::exists(path("a.exr")));
+  EXPECT_EQ(frond_command({"check", "--strict", path("scene.pbrt")}).code, 0);
+}
+
+TEST_F(PbrtOptions, WithoutJitterAllSamplesAreThoseOfThePixelsCentres) {
+  const auto variance = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{path("scene.pbrt"), "-o", path("a.exr"), "--spp", "16", "-q", "--integrator",
+                                   "path,maxdepth=0"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(frond_command(words).code, 0);
+    const Image image = read_image(path("a.exr"), {}).image;
+    const size_t green = image.channel("variance.G").value();
+    float most = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) most = std::max(most, image.at(x, y, green));
+    return most;
+  };
+  EXPECT_GT(variance({"--disable-wavelength-jitter"}), 0);
+  EXPECT_EQ(variance({"--disable-pixel-jitter", "--disable-wavelength-jitter"}), 0);
+}
+
+}  // namespace
+}  // namespace frond

@@ -1,0 +1,230 @@
+// What pbrt-v4 accepts: imports, compressed files, transforms that cannot be inverted, names of its plugins.
+#include <gmock/gmock.h>
+#include <zlib.h>
+
+#include "core/log.h"
+#include "core/problems.h"
+#include "render/plugins.h"
+#include "scene/parser.h"
+#include "scene/pbrt_plugins.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class KeptLog final : public Log {
+ public:
+  void info(std::string_view message) const override { infos.emplace_back(message); }
+  void warn(const Location& where, std::string_view message) const override {
+    warnings.push_back(where.text() + std::string(message));
+  }
+  mutable std::vector<std::string> infos, warnings;
+};
+
+SceneDescription parse_world(const std::string& text, const Log& log = silent_log()) {
+  return parse_scene_text("WorldBegin\n" + text, "s", log);
+}
+
+std::string gzipped(const std::string& text) {
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(text.size() + 100, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = uInt(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = uInt(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(packed.size() - stream.avail_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+TEST(PbrtFormat, ImportTakesTheStateInAndLetsNoneOut) {
+  const TestFolder folder("import");
+  folder.write("inner.pbrt",
+               "Shape \"disk\" Translate 0 1 0 Material \"mix\" CoordinateSystem \"c\" ReverseOrientation\n"
+               "AttributeBegin Shape \"sphere\" AttributeEnd\n"
+               "MakeNamedMaterial \"m\" \"string type\" \"diffuse\"");
+  const auto scene = parse_scene(folder.write("main.pbrt",
+                                              "WorldBegin Translate 1 0 0\n"
+                                              "Import \"inner.pbrt\" NamedMaterial \"m\" Shape \"disk\""),
+                                 silent_log());
+  ASSERT_EQ(scene.shapes.size(), 3u);
+  EXPECT_EQ(scene.shapes[0].world_from_object, Transform::translate({1, 0, 0}));
+  EXPECT_EQ(scene.shapes[1].world_from_object, Transform::translate({1, 1, 0}));
+  EXPECT_EQ(scene.shapes[2].world_from_object, Transform::translate({1, 0, 0}));
+  EXPECT_TRUE(scene.shapes[1].reverse_orientation);
+  EXPECT_FALSE(scene.shapes[2].reverse_orientation);
+  EXPECT_EQ(scene.materials[scene.shapes[2].material].name, "m");
+  EXPECT_FALSE(scene.coordinate_systems.contains("c"));
+}
+
+TEST(PbrtFormat, WhatAnImportLeavesOpenIsToldThere) {
+  const TestFolder folder("import_open");
+  folder.write("inner.pbrt", "AttributeBegin");
+  folder.write("ender.pbrt", "ObjectEnd");
+  const auto error = [&](const std::string& text) {
+    return error_of([&] { parse_scene(folder.write("main.pbrt", text), silent_log()); });
+  };
+  EXPECT_THAT(error("WorldBegin Import \"inner.pbrt\""), HasSubstr("inner.pbrt:1:1: AttributeBegin without"));
+  EXPECT_THAT(error("WorldBegin ObjectBegin \"o\" Import \"ender.pbrt\" ObjectEnd"),
+              HasSubstr("ObjectEnd while the Import at"));
+}
+
+TEST(PbrtFormat, CompressedFilesAreReadAsTheyAre) {
+  const TestFolder folder("gz");
+  folder.write("inner.pbrt.gz", gzipped("Translate 1 0 0 ") + gzipped("Shape \"disk\""));
+  const std::string main = gzipped("WorldBegin Include \"inner.pbrt.gz\" Shape \"disk\"");
+  const auto scene = parse_scene(folder.write("main.pbrt.gz", main), silent_log());
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_EQ(scene.shapes[1].world_from_object, Transform::translate({1, 0, 0}));
+  folder.write("cut.pbrt", main.substr(0, main.size() / 2));
+  EXPECT_THAT(error_of([&] { parse_scene(folder.name_of("cut.pbrt"), silent_log()); }), HasSubstr("cut short"));
+}
+
+TEST(PbrtFormat, ADirectiveMayEndInTheFileThatIncludes) {
+  const TestFolder folder("over_the_end");
+  folder.write("inner.pbrt", "Shape \"disk\"\n \"float radius\" 2");
+  const auto scene =
+      parse_scene(folder.write("main.pbrt", "WorldBegin Include \"inner.pbrt\"\n \"float height\" 3 Shape \"sphere\""),
+                  silent_log());
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  ASSERT_EQ(scene.shapes[0].plugin.params.size(), 2u);
+  EXPECT_THAT(scene.shapes[0].plugin.params[0].where.text(), HasSubstr("inner.pbrt:2:2"));
+  EXPECT_THAT(scene.shapes[0].plugin.params[1].where.text(), HasSubstr("main.pbrt:2:2"));
+}
+
+TEST(PbrtFormat, FilesAreFoundWithBackslashes) {
+  const TestFolder folder("slashes");
+  folder.write("geometry/inner.pbrt", "Shape \"disk\"");
+  const auto main = folder.write("main.pbrt", R"(WorldBegin Include "geometry\\inner.pbrt")");
+  EXPECT_EQ(parse_scene(main, silent_log()).shapes.size(), 1u);
+}
+
+TEST(PbrtFormat, TransformBeginSavesTheMaterialToo) {
+  const KeptLog log;
+  const auto scene = parse_world("TransformBegin Material \"mix\" Translate 1 0 0 TransformEnd Shape \"disk\"", log);
+  EXPECT_EQ(scene.shapes.at(0).material, 0u);
+  EXPECT_EQ(scene.shapes.at(0).world_from_object, Transform());
+  EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("s:2:1: TransformBegin saves all")));
+}
+
+TEST(PbrtFormat, WhatCannotBeInvertedIsLeftOut) {
+  for (const char* flat :
+       {"Scale 1 0 1", "Transform [ 1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 ]", "Scale 1e-30 1 1 Scale 1e-30 1 1"}) {
+    const KeptLog log;
+    const auto scene = parse_world(std::string("ObjectBegin \"o\" Shape \"disk\" ObjectEnd AttributeBegin\n") + flat +
+                                       "\nShape \"disk\" LightSource \"point\" ObjectInstance \"o\" Scale 2 2 2\n"
+                                       "AttributeEnd Shape \"sphere\"",
+                                   log);
+    EXPECT_EQ(scene.shapes.size(), 1u) << flat;
+    EXPECT_THAT(scene.lights, IsEmpty());
+    EXPECT_THAT(scene.copies.objects, IsEmpty());
+    EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("cannot be inverted")));
+  }
+}
+
+TEST(PbrtFormat, WhatPbrtOnlyWarnsOfIsAWarning) {
+  const std::vector<std::pair<std::string, std::string>> scenes{
+      {"AttributeEnd", "s:2:1: AttributeEnd without AttributeBegin is left out"},
+      {"CoordSysTransform \"wurld\"", "s:2:19: unknown coordinate system \"wurld\"; did you mean \"world\"?"},
+      {"NamedMaterial \"m\"", "s:2:15: there is no named material \"m\""},
+      {"Shape \"disk\" \"float radius\" 1 \"float radius\" 2", "s:2:31: parameter \"radius\" is given twice"}};
+  for (const auto& [text, warning] : scenes) {
+    const KeptLog log;
+    parse_world(text, log);
+    EXPECT_THAT(log.warnings, ElementsAre(HasSubstr(warning))) << text;
+  }
+  const auto scene = parse_world("Shape \"disk\" \"float radius\" 1 \"float radius\" 2");
+  ASSERT_EQ(scene.shapes.at(0).plugin.params.size(), 1u);
+  EXPECT_EQ(std::get<std::vector<double>>(scene.shapes[0].plugin.params[0].values)[0], 2);
+}
+
+TEST(PbrtFormat, AllErrorsAreToldAndNoneThatFollows) {
+  Problems problems;
+  problems.attempt([] {
+    parse_world(
+        "Shape sphere\nTranslate 1 2\nMakeNamedMaterial \"m\" \"flot x\" 1\nNamedMaterial \"m\" Shape \"disk\"\n"
+        "Texture \"t\" \"color\" \"constant\"\nShape \"disk\" \"string a\" \"b\nFoo 1 2 3\nObjectInstance \"o\"");
+  });
+  EXPECT_THAT(
+      problems.messages(),
+      ElementsAre(HasSubstr("s:2:7: Shape needs"), HasSubstr("s:4:1: Translate takes"), HasSubstr("s:4:23: unknown"),
+                  HasSubstr("s:6:13: unknown kind of texture"), HasSubstr("s:7:25: this string"),
+                  HasSubstr("s:8:1: unknown directive Foo"), HasSubstr("s:9:16: there is no object")));
+}
+
+/// What becomes of a scene's plugins, and what is said.
+struct Answer {
+  SceneDescription scene;
+  Problems problems;
+  KeptLog log;
+};
+
+Answer answer(const std::string& text, const std::string& ignored = "") {
+  Answer result;
+  const auto unsupported = ignored.empty() ? Unsupported() : Unsupported(ignored);
+  const Registry registry = builtin_registry();
+  result.problems.attempt([&] {
+    result.scene = parse_scene_text(text, "s", result.log, unsupported);
+    answer_pbrt_plugins(result.scene, registry, unsupported, result.log, result.problems);
+  });
+  return result;
+}
+
+TEST(PbrtFormat, SamplersAreAnsweredByOurs) {
+  for (const char* name : {"halton", "sobol", "zsobol", "pmj02bn", "paddedsobol"}) {
+    const Answer a = answer(fmt::format("Sampler \"{}\" \"integer pixelsamples\" 9 WorldBegin", name));
+    EXPECT_EQ(a.scene.sampler.name, "paddedsobol");
+    EXPECT_EQ(a.scene.sampler.params.size(), 1u);
+    EXPECT_TRUE(a.problems.empty() && a.log.warnings.empty());
+  }
+  const Answer a =
+      answer("Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5 \"bool jitter\" true WorldBegin");
+  ASSERT_EQ(a.scene.sampler.params.size(), 1u);
+  EXPECT_EQ(std::get<std::vector<double>>(a.scene.sampler.params[0].values)[0], 15);
+  EXPECT_EQ(answer("Sampler \"zsobol\" \"string randomization\" \"owen\" WorldBegin").scene.sampler.params.size(), 0u);
+}
+
+TEST(PbrtFormat, VolpathIsPathWhereThereAreNoMedia) {
+  const Answer a = answer("Integrator \"volpath\" \"integer maxdepth\" 7 \"bool regularize\" true WorldBegin");
+  EXPECT_EQ(a.scene.integrator.name, "path");
+  EXPECT_EQ(a.scene.integrator.params.size(), 1u);
+  EXPECT_TRUE(a.problems.empty());
+  EXPECT_THAT(a.log.warnings, ElementsAre(HasSubstr("\"regularize\" has no effect")));
+}
+
+TEST(PbrtFormat, WhatGivesAnotherPictureHasToBeLetPass) {
+  const std::string text =
+      "Integrator \"bdpt\" Camera \"realistic\" \"string lensfile\" \"x.dat\" WorldBegin\n"
+      "Material \"hair\" \"rgb color\" [.1 .2 .3]\nTexture \"t\" \"float\" \"ptex\" \"string filename\" \"x.ptx\"\n"
+      "MediumInterface \"fog\" \"\" ActiveTransform EndTime Translate 1 0 0 Shape \"disk\"";
+  const Answer refused = answer(text);
+  EXPECT_EQ(refused.problems.count(), 2u);  // media and motion: the file is not read on
+  const Answer passed = answer(text, "all");
+  EXPECT_TRUE(passed.problems.empty());
+  EXPECT_EQ(passed.log.warnings.size(), 6u);
+  EXPECT_EQ(passed.scene.integrator.name, "path");
+  EXPECT_EQ(passed.scene.camera.name, "perspective");
+  EXPECT_EQ(passed.scene.materials.at(1).plugin.params.at(0).name, "reflectance");
+  EXPECT_EQ(passed.scene.shapes.at(0).world_from_object, Transform());
+  const Answer some = answer(text, "media,motion");
+  EXPECT_EQ(some.problems.count(), 4u);
+  EXPECT_THAT(some.problems.messages()[0], HasSubstr("s:1:12: Integrator \"bdpt\" of pbrt-v4 is not supported; with "
+                                                     "--ignore-unsupported=integrators it is replaced by \"path\""));
+  EXPECT_THAT(error_of([] { Unsupported("fog"); }), HasSubstr("--ignore-unsupported takes all, or some of media"));
+}
+
+TEST(PbrtFormat, FilesOfOlderVersionsAreKnown) {
+  const Answer a =
+      answer("Film \"image\" Sampler \"lowdiscrepancy\" WorldBegin Material \"matte\" \"rgb Kd\" 1 Shape \"cone\"");
+  EXPECT_EQ(a.problems.count(), 4u);
+  for (const std::string& message : a.problems.messages()) EXPECT_THAT(message, HasSubstr("pbrt --upgrade"));
+}
+
+}  // namespace
+}  // namespace frond
