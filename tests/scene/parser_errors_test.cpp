@@ -57,8 +57,6 @@ TEST(ParserErrors, NameWhatOfPbrtIsNotThereYet) {
       {"WorldBegin WorldEnd",
        "s:1:12: WorldEnd: this is a file for pbrt-v3 or older; \"pbrt --upgrade\" of pbrt-v4 makes one for pbrt-v4"},
   });
-  expect_errors_in_world({
-  });
 }
 
 TEST(ParserErrors, TellWhichBlockADirectiveBelongsTo) {
