@@ -25,7 +25,7 @@ Problems problems_of(const std::vector<std::filesystem::path>& files, const Chec
       o.reading.ignore_unsupported.empty() ? Unsupported() : Unsupported(o.reading.ignore_unsupported);
   Problems problems;
   const SceneDescription description = session.read(files, unsupported, problems);
-  problems.attempt([&] { session.check(description, {}); });
+  if (!description.files.empty()) problems.attempt([&] { session.check(description, {}); });
   problems.attempt([&] { log.check(); });
   return problems;
 }

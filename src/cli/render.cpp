@@ -119,7 +119,8 @@ class RenderCommand {
     const std::string& ignored = options_.reading.ignore_unsupported;
     description_ = session_.read(files_, ignored.empty() ? Unsupported() : Unsupported(ignored), problems);
     set_scene_options(options_, description_);
-    if (!problems.empty()) problems.attempt([this] { session_.check(description_, {}); });
+    if (!problems.empty() && !description_.files.empty())
+      problems.attempt([this] { session_.check(description_, {}); });
     problems.check();
     for (const std::string& name : options_.of_pbrt) log_.warn({}, fmt::format("{} of pbrt has no effect here", name));
   }

@@ -67,7 +67,7 @@ SweepOptions sweep_of(const MaterialInfo& info) {
   if (!info.name.starts_with("coated")) return options;
   options.pinned.push_back(given("float", "g", 0.4));
   for (const std::string prefix : {"", "interface.", "conductor."})
-    for (const auto& [name, value] : {std::pair("roughness", 0.03), {"uroughness", 0.04}, {"vroughness", 0.02}})
+    for (const auto& [name, value] : {std::pair("roughness", 0.1), {"uroughness", 0.15}, {"vroughness", 0.1}})
       options.pinned.push_back(given("float", prefix + name, value));
   return options;
 }

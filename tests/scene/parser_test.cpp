@@ -64,10 +64,10 @@ WorldBegin)");
   EXPECT_EQ(s.integrator.name, "volpath");
   EXPECT_EQ(s.filter.name, "box");
   EXPECT_EQ(s.color_space, "rec2020");
-  ASSERT_EQ(s.options.size(), 5u);
-  const char* types[] = {"integer", "bool", "integer", "float", "string"};
-  for (size_t i = 0; i < 5; ++i) EXPECT_EQ(s.options[i].type, types[i]);
-  EXPECT_THAT(numbers(s.options[2]), ElementsAre(4));
+  ASSERT_EQ(s.options.size(), 4u);  // what is given again counts
+  const char* types[] = {"bool", "integer", "float", "string"};
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(s.options[i].type, types[i]);
+  EXPECT_THAT(numbers(s.options[1]), ElementsAre(4));
 }
 
 TEST(Parser, SaysWhereThingsStand) {
@@ -244,13 +244,13 @@ Shape "sphere")");
 
 TEST(Parser, WarnsOfAcceleratorsOptionsGivenTwiceAndLightsInObjects) {
   testing::internal::CaptureStderr();
-  parse_scene_text(R"(Accelerator "bvh" Film "rgb"
+  parse_scene_text(R"(Accelerator "bvh" Accelerator "octree" Film "rgb"
 Film "rgb"
 WorldBegin ObjectBegin "o" LightSource "point" ObjectEnd)",
                    "s.pbrt", ConsoleLog());
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "s.pbrt:1:13: warning: Accelerator \"bvh\" has no effect: Embree brings its own\n"
-            "s.pbrt:2:6: warning: this Film takes the place of that at s.pbrt:1:24\n"
+            "s.pbrt:1:31: warning: unknown accelerator \"octree\": Embree brings its own\n"
+            "s.pbrt:2:6: warning: this Film takes the place of that at s.pbrt:1:45\n"
             "s.pbrt:3:40: warning: a light inside an object is not part of its instances: it shines once\n");
 }
 

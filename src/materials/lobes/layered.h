@@ -250,12 +250,16 @@ class LayeredBsdf final : public Bsdf {
     const DielectricInterface& border = coat.border;
     const auto in = border.refract(wo, border.facet(wo, pair_of(rng)));
     const auto out = border.refract(wi, border.facet(wi, pair_of(rng)));
-    if (!in || !out || is_grazing(in->wi) || is_grazing(out->wi)) return {};
-    const Vec3 up = -out->wi;
-    const float eta = border.eta_beyond(wi), out_weight = out->weight * eta * eta;  // it is used the other way round
+    if (!in || is_grazing(in->wi)) return {};
+    // Where facets let nothing through, rough ones may still be met from below.
+    const bool connects = out && !is_grazing(out->wi);
+    if (!connects && coat_.is_smooth()) return {};
+    const Vec3 up = connects ? -out->wi : Vec3{0, 0, 1};
+    const float eta = border.eta_beyond(wi);
+    const float out_weight = connects ? out->weight * eta * eta : 0;  // it is used the other way round
     const bool smooth = coat_.is_smooth();
     // Light from wi by the way out that was drawn, against a direction `w` drawn elsewhere.
-    const auto against = [&](float pdf) { return smooth ? 1 : power_heuristic(out->pdf, pdf); };
+    const auto against = [&](float pdf) { return smooth || !connects ? 1 : power_heuristic(out->pdf, pdf); };
     const auto escaped = [&](const Place& at, float pdf, bool is_delta) -> SampledSpectrum {
       if (smooth || !(at.w.z > 0)) return {};
       const auto pair = border.pair(-at.w, wi);
