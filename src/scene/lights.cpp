@@ -149,7 +149,8 @@ class DiffuseAreaLight final : public AreaLight {
   }
   SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const override {
     if (!two_sided_ && !(dot(at.ng, w) > 0)) return {};
-    const SampledSpectrum emitted = image_ ? image_->bilinear({at.uv.x, 1 - at.uv.y}, lambda) : spectrum_->sample(lambda);
+    const SampledSpectrum emitted =
+        image_ ? image_->bilinear({at.uv.x, 1 - at.uv.y}, lambda) : spectrum_->sample(lambda);
     return emitted * (scale_ * surface_.opacity(at.uv));
   }
   float pdf(const Vec3& from, const EmittingPoint& at) const override {
