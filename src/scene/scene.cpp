@@ -142,6 +142,7 @@ class SceneBuilder {
   /// With what stands in the other, and as much of what that is made of as is the same.
   void build(const Scene& other, SharedWork& shared) {
     const auto resolver = build_settings();
+    problems_.check();
     scene_.geometry_ = other.geometry_;
     const bool same_wavelengths = scene_.wavelengths_name_ == other.wavelengths_name_;
     if (same_wavelengths) {
@@ -158,6 +159,7 @@ class SceneBuilder {
       else
         resolver->material(place);
     }
+    problems_.check();
     finish(*resolver, shared);
   }
 
