@@ -111,6 +111,12 @@ FilmTile::BandSums& FilmTile::BandSums::operator+=(const BandSums& other) {
   return *this;
 }
 
+FilmTile::BlockSums& FilmTile::BlockSums::operator+=(const BlockSums& other) {
+  for (size_t c = 0; c < 3; ++c) square[c] += other.square[c];
+  blocks += other.blocks;
+  return *this;
+}
+
 FilmTile::Splat& FilmTile::Splat::operator+=(const Splat& other) {
   for (size_t c = 0; c < 3; ++c) sum[c] += other.sum[c];
   weight += other.weight;
@@ -136,12 +142,6 @@ Features::Features(const ChannelList& channels, const CameraHit& hit) {
     for (size_t c = 0; c < channel->size(); ++c)
       (channel->kind == ChannelInfo::Kind::mean ? means[mean++] : ids[id++]) = value[c];
   }
-}
-
-FilmTile::BlockSums& FilmTile::BlockSums::operator+=(const BlockSums& other) {
-  for (size_t c = 0; c < 3; ++c) square[c] += other.square[c];
-  blocks += other.blocks;
-  return *this;
 }
 
 FilmTile::FilmTile(const FilmFormat& format, const Crop& pixels)

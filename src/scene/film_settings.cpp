@@ -117,7 +117,6 @@ FilmSettings make_rgb_film(const Params& p) {
   s.filename = p.string("filename");
   s.half = p.boolean("savefp16");
   s.exposure = p.real("exposuretime") * p.real("iso") / 100;
-  if (!std::isfinite(s.exposure)) fail(p.where("iso"), "\"exposuretime\" times \"iso\" is no finite number");
   s.max_component =
       p.given("maxcomponentvalue") ? p.real("maxcomponentvalue") : std::numeric_limits<double>::infinity();
   (void)p.real("diagonal");
