@@ -144,6 +144,7 @@ void add_hit(const MaterialInfo& info) {
 
 [[maybe_unused]] const bool kAdded = [] {
   for (const MaterialInfo* info : materials().all()) {
+    if (info->name == "interface") continue;  // has no BSDF
     add_hit(*info);
     add_sample_from_everywhere(*info);
     add(*info, "sample", [](const Bsdf& bsdf, const Vec3& wo, const CallDraws::Draw& draw, RandomStream& rng) {

@@ -274,8 +274,6 @@ void DescriptionBuilder::make_named_material(const std::string& name, ParsedPlug
 
 void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, ParsedPlugin plugin) {
   using Value = TextureDescription::Value;
-  if (plugin.name == "ptex")
-    fail(plugin.where, "texture \"ptex\" of pbrt-v4 is not supported: Ptex files hold a picture for each face");
   if (value.text != "float" && value.text != "spectrum")
     fail(value.where, "unknown kind of texture \"{}\"{}", value.text, suggestion(value.text, {"float", "spectrum"}));
   const Value kind = value.text == "float" ? Value::real : Value::spectrum;

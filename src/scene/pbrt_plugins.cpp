@@ -42,8 +42,7 @@ constexpr StandIn kMaterials[] = {{"measured", "diffuse", "materials", {}},
                                   {"hair", "diffuse", "materials", {}},
                                   {"subsurface", "coateddiffuse", "materials", {}},
                                   {"subsurface", "diffuse", "materials", {}}};
-constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}},
-                                {"spherical", "perspective", "cameras", {}}};
+constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}}};
 constexpr StandIn kTextures[] = {{"ptex", "constant", "textures", {}}};
 constexpr StandIn kFilms[] = {{"spectral", "rgb", "films", {}}};
 
@@ -182,6 +181,8 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   warn_of_regularize(d.integrator, log);
   if (d.integrator.name == "path")
     std::erase_if(d.integrator.params, [](const auto& p) { return p.name == "regularize"; });
+  // Shadow rays of these pass what only parts media; those of "path" do not.
+  const bool sees_through_interfaces = d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
   answerer.answer("Integrator", registry.integrators, kIntegrators, kOldIntegrators, d.integrator);
   const bool is_realistic = d.camera.name == "realistic";
   if (answerer.answer("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)
@@ -201,6 +202,7 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   }
   const auto answer_shapes = [&](std::vector<ShapeDescription>& shapes) {
     std::erase_if(shapes, [&](const ShapeDescription& s) {
+      if (sees_through_interfaces && d.materials[s.material].plugin.name == "interface") return true;
       if (registry.shapes.find(s.plugin.name) || std::ranges::find(kOldShapes, s.plugin.name) == std::end(kOldShapes))
         return false;
       answerer.refuse_old("Shape", s.plugin);

@@ -295,11 +295,7 @@ class SceneBuilder {
 
   void build_view(SceneResolver& resolver) {
     FilmSettings film;
-    problems_.attempt([&] {  // for its warnings
-      OptionResolver options(description_, log_);
-      const FilmInfo& info = registry_.films.get(description_.film.name, description_.film.where);
-      film = info.make(Params(info, description_.film, options));
-    });
+    problems_.attempt([&] { film = Scene::film_settings(description_, registry_, log_); });
     if (overrides_.quick) film = halved(film);
     scene_.film_ = film;
     const CameraPlacement placement{description_.camera_from_world.inverse(), film.width, film.height};
@@ -484,17 +480,10 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
   return info.make(Params(info, plugin, resolver));
 }
 
-FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry) {
-  OptionResolver resolver(description);
-  if (description.film.name == "spectral")
-    fail(
-        description.film.where,
-        "film \"spectral\" of pbrt-v4 is not supported: with film \"rgb\" and --wavelengths bands an EXR has a channel "
-        "for each wavelength");
+FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry, const Log& log) {
+  OptionResolver resolver(description, log);
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
   FilmSettings film = info.make(Params(info, description.film, resolver));
-  if (description.camera.name == "realistic")
-    fail(description.camera.where, "camera \"realistic\" of pbrt-v4 is not supported: \"perspective\" has a thin lens");
   const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
   film.exposure *= open_time(Params(camera, description.camera, resolver), camera);
   return film;

@@ -66,7 +66,8 @@ struct LightTable {
 class Scene final : public World {
  public:
   /// What the scene says of its image, at its full size; throws InputError.
-  static FilmSettings film_settings(const SceneSettings& description, const Registry& registry);
+  static FilmSettings film_settings(const SceneSettings& description, const Registry& registry,
+                                    const Log& log = silent_log());
 
   /// Which of the description's materials are leaves (Material::is_leaf), by place. A mixture of others is none: its
   /// parts stand for themselves. Throws InputError.

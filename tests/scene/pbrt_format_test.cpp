@@ -198,6 +198,12 @@ TEST(PbrtFormat, VolpathIsPathWhereThereAreNoMedia) {
   EXPECT_THAT(a.log.warnings, ElementsAre(HasSubstr("\"regularize\" has no effect")));
 }
 
+TEST(PbrtFormat, VolpathSeesThroughInterfaces) {
+  const std::string world = " WorldBegin Material \"interface\" Shape \"sphere\" Material \"diffuse\" Shape \"disk\"";
+  EXPECT_EQ(answer("Integrator \"volpath\"" + world).scene.shapes.size(), 1u);
+  EXPECT_EQ(answer("Integrator \"path\"" + world).scene.shapes.size(), 2u);
+}
+
 TEST(PbrtFormat, WhatGivesAnotherPictureHasToBeLetPass) {
   const std::string text =
       "Integrator \"bdpt\" Camera \"realistic\" \"string lensfile\" \"x.dat\" WorldBegin\n"
