@@ -295,9 +295,10 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
   auto& shapes = open_object_ ? scene_.objects[*open_object_].shapes : scene_.shapes;
   std::optional<size_t> area_light = state_.area_light;
   if (area_light && open_object_) {
-    log_.warn(plugin.where, fmt::format("shapes in objects give off no light, as in pbrt-v4; the area light of {} is in "
-                                        "force here",
-                                        place(scene_.area_lights[*area_light].where)));
+    log_.warn(plugin.where,
+              fmt::format("shapes in objects give off no light, as in pbrt-v4; the area light of {} is in "
+                          "force here",
+                          place(scene_.area_lights[*area_light].where)));
     area_light.reset();
   }
   if (area_light && scene_.materials[state_.material].plugin.name == "interface") {

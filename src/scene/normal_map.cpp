@@ -82,7 +82,7 @@ constexpr Param kBends[] = {
 
 bool is_of_bend(const ParsedParam& p) { return std::ranges::find(kBends, p.name, &Param::name) != std::end(kBends); }
 
-/// A BSDF whose frame is another than that in which it is asked.
+/// A BSDF whose frame is another than that in which it is asked. Its own normal alone decides what is seen and lit.
 class BentBsdf final : public Bsdf {
  public:
   BentBsdf(const Bsdf& bsdf, const Frame& outer, const Frame& bent)
@@ -90,29 +90,29 @@ class BentBsdf final : public Bsdf {
 
   Lobes flags() const override { return bsdf_.flags(); }
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const override {
-    const Vec3 o = to_bent_.to_world(wo), i = to_bent_.to_world(wi);
-    return agree(wo, o) && agree(wi, i) ? bsdf_.f(o, i, rng) * std::abs(i.z / wi.z) : SampledSpectrum();
+    if (wi.z == 0) return {};
+    const Vec3 i = to_bent_.to_world(wi);
+    return bsdf_.f(to_bent_.to_world(wo), i, rng) * std::abs(i.z / wi.z);
   }
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
-    const Vec3 o = to_bent_.to_world(wo);
-    if (!agree(wo, o)) return {};
-    auto s = bsdf_.sample(o, uc, u, rng);
+    auto s = bsdf_.sample(to_bent_.to_world(wo), uc, u, rng);
     if (!s) return s;
     const Vec3 wi = to_bent_.to_local(s->wi);
-    if (!agree(wi, s->wi)) return {};
+    if (wi.z == 0) return {};
     s->f *= std::abs(s->wi.z / wi.z);
     s->wi = wi;
     return s;
   }
   float pdf(const Vec3& wo, const Vec3& wi) const override {
-    const Vec3 o = to_bent_.to_world(wo), i = to_bent_.to_world(wi);
-    return agree(wo, o) && agree(wi, i) ? bsdf_.pdf(o, i) : 0;
+    return bsdf_.pdf(to_bent_.to_world(wo), to_bent_.to_world(wi));
+  }
+  SampledSpectrum index_ratio() const override { return bsdf_.index_ratio(); }
+  void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
+    bsdf_.scatter(to_bent_.to_world(incident), rng, rays);
+    for (Scattered& ray : rays) ray.direction = to_bent_.to_local(ray.direction);
   }
 
  private:
-  /// No light passes where the two normals see different sides of the surface.
-  static bool agree(const Vec3& a, const Vec3& b) { return a.z * b.z > 0; }
-
   const Bsdf& bsdf_;
   Frame to_bent_;  ///< the outer frame's axes, seen in the bent one
 };
