@@ -30,10 +30,10 @@ const KindTraits& traits(ParamKind kind) {
       {{"vector3", "vector"}, 3},
       {{"normal", "normal3"}, 3},
       {{"rgb", "spectrum", "blackbody"}, 0},
-      {{"rgb", "spectrum"}, 0},
-      {{"float", "rgb", "spectrum"}, 0},
+      {{"rgb", "spectrum", "blackbody"}, 0},
+      {{"float", "rgb", "spectrum", "blackbody"}, 0},
       {{"float", "texture"}, 1},
-      {{"rgb", "spectrum", "texture"}, 0},
+      {{"rgb", "spectrum", "blackbody", "texture"}, 0},
       {{"string"}, 1},
   }};
   return table[static_cast<size_t>(kind)];

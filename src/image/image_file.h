@@ -46,7 +46,8 @@ struct ImageFile {
   Image image;
   ImageHeader header;
   std::optional<Chromaticities> chromaticities;
-  bool eight_bit = false;  ///< values 0 to 255 in the file, here 0 to 1 and still encoded
+  bool eight_bit = false;   ///< values 0 to 255 in the file, here 0 to 1
+  bool is_encoded = false;  ///< for a display, as 8 bits are and PNG is
 };
 
 /// Reads an image in any format that OpenImageIO knows (EXR, PNG, JPEG, HDR, TIFF, ...): values as they stand in the

@@ -62,7 +62,7 @@ void decode_srgb(Image& image) {
 
 LinearFile read_linear(const std::string& path) {
   const ImageFile file = read_image(path, {});
-  if (file.eight_bit) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
+  if (file.is_encoded) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
   if (file.header.color_space.empty()) refuse_without_colors(path, file.image);
   LinearFile result{
       .path = path, .space = file.header.color_space, .image = rgb_of(file.image, path, {}), .leaf = {}, .seed = {}};

@@ -75,7 +75,7 @@ class OpenImageIOCodec final : public ImageCodec {
         (is_png && !is_whole_png(read_file_bytes(path, where))))
       fail(where, "cannot read image \"{}\": the file ends too soon", path.string());
     ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
-                   spec.format == OIIO::TypeDesc::UINT8};
+                   spec.format == OIIO::TypeDesc::UINT8, spec.format == OIIO::TypeDesc::UINT8 || is_png};
     if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.pixels.data()))
       fail(where, "cannot read image \"{}\": {}", path.string(), in->geterror());
     return file;

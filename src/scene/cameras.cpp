@@ -17,11 +17,13 @@ struct Screen {
 Screen screen_of(const Params& p, const CameraPlacement& film) {
   const float width = float(film.width), height = float(film.height);
   const float aspect = p.given("frameaspectratio") ? float(p.real("frameaspectratio")) : width / height;
-  if (const auto window = p.reals("screenwindow"); !window.empty()) {
-    if (window.size() != 4) fail(p.where("screenwindow"), "\"screenwindow\" takes 4 values, {} given", window.size());
+  const auto window = p.reals("screenwindow");
+  if (window.size() == 4) {
     if (window[0] == window[1] || window[2] == window[3]) fail(p.where("screenwindow"), "\"screenwindow\" is empty");
     return {float(window[0]), float(window[1]), float(window[2]), float(window[3])};
   }
+  if (!window.empty())
+    p.warn("screenwindow", fmt::format("\"screenwindow\" takes 4 values, {} given: it has no effect", window.size()));
   return aspect > 1 ? Screen{-aspect, aspect, -1, 1} : Screen{-1, 1, -1 / aspect, 1 / aspect};
 }
 

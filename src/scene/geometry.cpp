@@ -38,7 +38,7 @@ RTCRay8 from_packet(const RayPacket& packet) {
     rays.dir_x[i] = r.d.x, rays.dir_y[i] = r.d.y, rays.dir_z[i] = r.d.z;
     rays.tfar[i] = r.t_max;
   }
-  std::ranges::fill(rays.tnear, 0.f);
+  std::ranges::fill(rays.tnear, 0x1p-126f);  // a camera may stand in the plane of what it does not see
   std::ranges::fill(rays.time, 0.f);
   std::ranges::fill(rays.mask, ~0u);
   std::ranges::fill(rays.id, 0u);

@@ -57,7 +57,7 @@ ColorEncoding encoding_of(const Params& p, const std::filesystem::path& path, co
     return {};
   }
   if (is_given) return parse_encoding(p);
-  return {file.eight_bit || extension == ".png" ? ColorEncoding::Curve::srgb : ColorEncoding::Curve::linear};
+  return {file.is_encoded ? ColorEncoding::Curve::srgb : ColorEncoding::Curve::linear};
 }
 
 /// Scaled first, then inverted.

@@ -83,7 +83,7 @@ class FitTable {
 
 ColorImage read_light_image(const Params& p) {
   ImageFile file = read_rgb(p.file("filename"), p.where("filename"));
-  if (file.eight_bit) decode_srgb(file.image);
+  if (file.is_encoded) decode_srgb(file.image);
   float lowest = 0;
   for (float& v : file.image.pixels) lowest = std::min(lowest, v), v = std::max(v, 0.f);
   if (lowest < 0)

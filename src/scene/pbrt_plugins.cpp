@@ -17,6 +17,7 @@ struct StandIn {
   std::string_view name, ours;
   std::string_view feature;                   ///< of --ignore-unsupported; empty: the picture is the same
   std::span<const std::string_view> of_pbrt;  ///< parameters that it may have; empty: any
+  std::string_view caution = {};
 };
 
 constexpr std::string_view kRandomized[] = {"pixelsamples", "seed", "randomization"};
@@ -28,10 +29,12 @@ constexpr StandIn kSamplers[] = {
     {"pmj02bn", "paddedsobol", "", kPlain},     {"stratified", "paddedsobol", "", kStratified}};
 
 constexpr std::string_view kPath[] = {"maxdepth", "lightsampler", "regularize"};
+constexpr std::string_view kSimplePath[] = {"maxdepth", "samplelights", "samplebsdf"};
+constexpr std::string_view kRandomWalk[] = {"maxdepth"};
 constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath},
-                                    {"simplepath", "path", "integrators", {}},
+                                    {"simplepath", "path", "", kSimplePath},
+                                    {"randomwalk", "path", "", kRandomWalk},
                                     {"simplevolpath", "path", "integrators", {}},
-                                    {"randomwalk", "path", "integrators", {}},
                                     {"ambientocclusion", "path", "integrators", {}},
                                     {"lightpath", "path", "integrators", {}},
                                     {"bdpt", "path", "integrators", {}},
@@ -42,7 +45,7 @@ constexpr StandIn kMaterials[] = {{"measured", "diffuse", "materials", {}},
                                   {"hair", "diffuse", "materials", {}},
                                   {"subsurface", "coateddiffuse", "materials", {}},
                                   {"subsurface", "diffuse", "materials", {}}};
-constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}}};
+constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}, ", which lets in more light"}};
 constexpr StandIn kTextures[] = {{"ptex", "constant", "textures", {}}};
 constexpr StandIn kFilms[] = {{"spectral", "rgb", "films", {}}};
 
@@ -96,20 +99,34 @@ class Answerer {
     return false;
   }
 
+  /// pbrt moves a mesh's vertices by a texture.
+  void leave_out_displacement(ParsedPlugin& shape) {
+    if (shape.name != "plymesh") return;
+    if (const ParsedParam* p = find(shape, "displacement"))
+      problems_.attempt([&] {
+        unsupported_.handle("displacement", p->where, "\"displacement\" of shape \"plymesh\"", "is left out", log_);
+      });
+    std::erase_if(shape.params, [](const auto& p) { return p.name == "displacement" || p.name == "edgelength"; });
+  }
+
   void refuse_old(std::string_view directive, const ParsedPlugin& plugin) {
-    problems_.attempt([&] {
+    if (!old_.empty()) return;
+    old_.attempt([&] {
       fail(plugin.where,
            "{} \"{}\": this is a file for pbrt-v3 or older; \"pbrt --upgrade\" of pbrt-v4 makes one for pbrt-v4",
            directive, plugin.name);
     });
   }
 
+  /// That the file is for an older version, if it is.
+  const Problems& old() const { return old_; }
+
  private:
   void replace(std::string_view directive, const PluginInfo& ours, const StandIn& by, ParsedPlugin& plugin) {
     if (!by.feature.empty())
       problems_.attempt([&] {
         unsupported_.handle(by.feature, plugin.where, fmt::format("{} \"{}\"", directive, plugin.name),
-                            fmt::format("is replaced by \"{}\"", by.ours), log_);
+                            fmt::format("is replaced by \"{}\"{}", by.ours, by.caution), log_);
       });
     else if (by.name != by.ours)
       log_.info(fmt::format("{} \"{}\" is answered by \"{}\"", directive, by.name, by.ours));
@@ -124,6 +141,7 @@ class Answerer {
   const Unsupported& unsupported_;
   const Log& log_;
   Problems& problems_;
+  Problems old_;
 };
 
 /// Samples of x times y strata.
@@ -201,6 +219,7 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
     if (is_answered) set_constant(t);
   }
   const auto answer_shapes = [&](std::vector<ShapeDescription>& shapes) {
+    for (ShapeDescription& s : shapes) answerer.leave_out_displacement(s.plugin);
     std::erase_if(shapes, [&](const ShapeDescription& s) {
       if (sees_through_interfaces && d.materials[s.material].plugin.name == "interface") return true;
       if (registry.shapes.find(s.plugin.name) || std::ranges::find(kOldShapes, s.plugin.name) == std::end(kOldShapes))
@@ -211,6 +230,9 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   };
   answer_shapes(d.shapes);
   for (ObjectDescription& object : d.objects) answer_shapes(object.shapes);
+  if (answerer.old().empty()) return;
+  problems = answerer.old();  // all there is to say
+  d = {};
 }
 
 SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,

@@ -195,12 +195,17 @@ void SceneResolver::warn(const Location& where, std::string_view message) {
   if (warned_.insert(where.text() + std::string(message)).second) log_.warn(where, message);
 }
 
+void SceneResolver::warn_of_clamping(const ParsedParam& p, double most) {
+  warn(p.value_where,
+       fmt::format("\"{}\" goes up to {:.6g}, a reflectance lies in 0 to 1: it is clamped", p.name, most));
+}
+
 /// A reflectance as pbrt-v4 takes it: channels above 1 are 1.
 Triple SceneResolver::clamped_rgb(const ParsedParam& p) {
   Triple rgb = rgb_of(p);
   const double most = std::max({rgb[0], rgb[1], rgb[2]});
   if (!(most > 1)) return rgb;
-  warn(p.value_where, fmt::format("\"{}\" goes up to {}, a reflectance lies in 0 to 1: it is clamped", p.name, most));
+  warn_of_clamping(p, most);
   for (double& v : rgb) v = std::min(v, 1.0);
   return rgb;
 }
@@ -233,8 +238,10 @@ SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
     check_light_range(*s, wavelengths_, p.value_where, p.name);
   else
     check_range(*s, wavelengths_, p.value_where, p.name);
-  if (use == SpectrumUse::albedo && s->max_value() > 1)
-    fail(p.value_where, "\"{}\" goes up to {}, outside its range 0 to 1", p.name, s->max_value());
+  if (use == SpectrumUse::albedo && s->max_value() > 1) {
+    warn_of_clamping(p, double(s->max_value()));
+    s = std::make_shared<ClampedSpectrum>(std::move(s));
+  }
   return known_at(std::move(s), wavelengths_.fixed_nm());
 }
 

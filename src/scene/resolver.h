@@ -62,6 +62,7 @@ class SceneResolver final : public ParamResolver {
   void pass_on(bool needs_details);
   [[noreturn]] void fail_unknown(std::string_view kind, const std::string& name,
                                  const std::vector<std::string_view>& names, const Location& where) const;
+  void warn_of_clamping(const ParsedParam& p, double most);
   SpectrumPtr in_the_visible(SpectrumPtr s, const ParsedParam& p, SpectrumUse use);
   std::array<double, 3> clamped_rgb(const ParsedParam& p);
 

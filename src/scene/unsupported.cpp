@@ -10,7 +10,7 @@ namespace frond {
 
 const std::vector<std::string_view>& Unsupported::kinds() {
   static const std::vector<std::string_view> all{"media",  "materials", "integrators", "cameras",
-                                                 "motion", "textures",  "films"};
+                                                 "motion", "textures",  "films",       "displacement"};
   return all;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "core/error.h"
@@ -49,6 +50,18 @@ class ScaledSpectrum final : public Spectrum {
  private:
   SpectrumPtr base_;
   float scale_;
+};
+
+/// Another spectrum, no higher than 1.
+class ClampedSpectrum final : public Spectrum {
+ public:
+  explicit ClampedSpectrum(SpectrumPtr base) : base_(std::move(base)) {}
+  float at(float lambda_nm) const override { return std::min(1.f, base_->at(lambda_nm)); }
+  Interval range_nm() const override { return base_->range_nm(); }
+  float max_value() const override { return std::min(1.f, base_->max_value()); }
+
+ private:
+  SpectrumPtr base_;
 };
 
 }  // namespace frond

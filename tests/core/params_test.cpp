@@ -162,7 +162,7 @@ TEST_F(ParamsTest, UnlikeNameListsWhatThereIs) {
 
 TEST_F(ParamsTest, WrongTypeNamesTheRightOnes) {
   EXPECT_EQ(error({parsed("float", "reflectance", Numbers{0.1})}),
-            "a.pbrt:2:3: \"reflectance\" is rgb or spectrum or texture, a float was given");
+            "a.pbrt:2:3: \"reflectance\" is rgb or spectrum or blackbody or texture, a float was given");
 }
 
 TEST_F(ParamsTest, ValueOutsideItsRangeSaysTheRangeAndUnit) {

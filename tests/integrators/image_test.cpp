@@ -97,6 +97,32 @@ TEST(ImageTexture, WhatIsNoReflectanceIsClamped) {
   EXPECT_NEAR(film.mean(1, 0)[1], 1, 2e-3);
 }
 
+TEST(Reflectances, AboveOneAreOne) {
+  const auto green = [](const std::string& reflectance) {
+    const std::string material = "Material \"diffuse\" " + reflectance;
+    return render_text(textured_plane("", material), {.samples = 1}).mean(0, 0)[1];
+  };
+  const double white = green("\"spectrum reflectance\" [360 1 2500 1]");
+  EXPECT_EQ(green("\"spectrum reflectance\" [360 18 2500 18]"), white);
+  EXPECT_LT(green("\"blackbody reflectance\" 5000"), white);
+  EXPECT_GT(green("\"blackbody reflectance\" 5000"), 0.99 * white);
+}
+
+TEST(Cameras, DoNotSeeThePlaneThatTheyLieIn) {
+  const Film film = render_text(R"(
+Film "rgb" "integer xresolution" 2 "integer yresolution" 2
+PixelFilter "box"
+Integrator "path" "integer maxdepth" 1
+WorldBegin
+LightSource "infinite" "spectrum L" "stdillum-D65"
+Material "diffuse" "spectrum reflectance" [360 0 2500 0]
+Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]
+Shape "trianglemesh" "point3 P" [-1 -1 0  1 -1 0  1 1 0]
+Shape "disk")",
+                                {.samples = 4});
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(film.mean(i % 2, i / 2)[1], 1, 1e-3) << i;
+}
+
 TEST(NormalMap, TurnsLightAway) {
   const TestFolder folder("normalmap");
   // 45 degrees towards u everywhere: 2 c - 1 = (1, 0, 1) / sqrt 2.

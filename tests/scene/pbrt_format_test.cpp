@@ -225,11 +225,22 @@ TEST(PbrtFormat, WhatGivesAnotherPictureHasToBeLetPass) {
   EXPECT_THAT(error_of([] { Unsupported("fog"); }), HasSubstr("--ignore-unsupported takes all, or some of media"));
 }
 
+TEST(PbrtFormat, DisplacedMeshesHaveToBeLetPass) {
+  const std::string text =
+      "WorldBegin Shape \"plymesh\" \"string filename\" \"x.ply\" \"float edgelength\" .1 \"texture displacement\" "
+      "\"t\"";
+  EXPECT_EQ(answer(text).problems.count(), 1u);
+  const Answer passed = answer(text, "displacement");
+  EXPECT_TRUE(passed.problems.empty());
+  EXPECT_EQ(passed.scene.shapes.at(0).plugin.params.size(), 1u);
+}
+
 TEST(PbrtFormat, FilesOfOlderVersionsAreKnown) {
   const Answer a =
       answer("Film \"image\" Sampler \"lowdiscrepancy\" WorldBegin Material \"matte\" \"rgb Kd\" 1 Shape \"cone\"");
-  EXPECT_EQ(a.problems.count(), 4u);
-  for (const std::string& message : a.problems.messages()) EXPECT_THAT(message, HasSubstr("pbrt --upgrade"));
+  ASSERT_EQ(a.problems.count(), 1u);
+  EXPECT_THAT(a.problems.messages()[0], HasSubstr("s:1:22: Sampler \"lowdiscrepancy\": this is a file for pbrt-v3"));
+  EXPECT_THAT(a.problems.messages()[0], HasSubstr("pbrt --upgrade"));
 }
 
 }  // namespace
