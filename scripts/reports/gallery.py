@@ -50,6 +50,12 @@ FILM = f'Film "rgb" "integer xresolution" {SIZE} "integer yresolution" {SIZE}\n'
 GREY = 'Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]\n'
 RED = 'Material "diffuse" "rgb reflectance" [ 0.55 0.12 0.06 ]\n'
 
+# A number shows as colour and as height.
+BUMPS = """
+Texture "colors" "spectrum" "mix" "rgb tex1" [ 0.6 0.55 0.5 ] "rgb tex2" [ 0.03 0.2 0.3 ] "texture amount" "heights"
+Material "diffuse" "texture reflectance" "colors" "texture displacement" "heights"
+"""
+
 # By kind and name: the lines of interest; where there are none, the plugin with its defaults.
 MATERIALS = {
     "conductor": 'Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" 0.02',
@@ -145,7 +151,7 @@ def scene_of(kind, name, lines):
     elif kind == "spectrum texture":
         things += lines + '\nMaterial "diffuse" "texture reflectance" "pattern"\n' + BALL
     elif kind == "float texture":
-        things += lines + '\nMaterial "diffuse" "rgb reflectance" [ 0.5 0.45 0.4 ] "texture displacement" "heights"\n' + BALL
+        things += lines + BUMPS + BALL
     elif kind == "shape":
         things += RED + "AttributeBegin\nTranslate 0 0 0.82\n" + lines + "\nAttributeEnd\n"
     elif kind == "light":
