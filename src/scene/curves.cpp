@@ -57,6 +57,7 @@ class Curves final : public AnalyticShape {
         kind_(kind),
         to_scene_(placement.to_scene),
         from_scene_(placement.to_scene.inverse()),
+        precise_(placement.to_scene),
         flip_(placement.reverse_orientation != placement.to_scene.swaps_handedness()) {
     const Transform::Rows& r = to_scene_.rows();
     const Vec3 x{r[0][0], r[1][0], r[2][0]}, y{r[0][1], r[1][1], r[2][1]}, z{r[0][2], r[1][2], r[2][2]};
@@ -81,7 +82,8 @@ class Curves final : public AnalyticShape {
 
   std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray, float t_min) const override {
     const Piece piece = piece_of(primitive);
-    const Vec3d o = frond::to_double(from_scene_.point(ray.o)), d = frond::to_double(from_scene_.vector(ray.d));
+    const Vec3d o = precise_.inverse_point(frond::to_double(ray.o));
+    const Vec3d d = precise_.inverse_vector(frond::to_double(ray.d));
     // With the ray along z, and the curve more or less along x: boxes around it are narrow.
     const double ray_length = length(d);
     const Framed ray_space = Framed::along(d / ray_length, piece.curve[3] - piece.curve[0]);
@@ -96,7 +98,7 @@ class Curves final : public AnalyticShape {
     const float t = float(search.nearest / ray_length);
     if (!search.found || !(t > t_min && t < ray.t_max)) return {};
     const Vec3d n = normal_at(search.hit, ray_space, piece.segment);
-    return ShapePoint{to_scene_.point(to_float(o + d * (search.nearest / ray_length))),
+    return ShapePoint{to_float(precise_.point(o + d * (search.nearest / ray_length))),
                       to_scene_normal(n),
                       {float(search.hit.u), float(search.hit.v)},
                       t,
@@ -255,6 +257,7 @@ class Curves final : public AnalyticShape {
   Vec2 widths_;
   CurveKind kind_;
   Transform to_scene_, from_scene_;
+  PreciseTransform precise_;
   bool flip_;
   float scale_;  ///< of lengths, on average
 };

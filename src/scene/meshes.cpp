@@ -183,13 +183,6 @@ constexpr Param kLoopSubdivision[] = {
 
 }  // namespace
 
-void place_normals(std::vector<Vec3>& normals, const ShapePlacement& placement) {
-  for (Vec3& n : normals) {
-    const Vec3 m = normalize_any(placement.to_scene.normal(normalize_any(n)));
-    n = placement.reverse_orientation ? -m : m;
-  }
-}
-
 extern const ShapeInfo triangle_mesh_shape{{"shape", "trianglemesh", "Triangles.", "pbrt-v4", kTriangleMesh},
                                            make_triangle_mesh};
 extern const ShapeInfo ply_mesh_shape{

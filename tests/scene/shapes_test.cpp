@@ -58,6 +58,41 @@ TEST_F(Shapes, ACylinderIsMetFromBothSidesWithinItsSweep) {
   EXPECT_FALSE(meet(*s, {0, 0, 9}, {0, 0, -1}, at)) << "there are no caps";
 }
 
+TEST_F(Shapes, LargeOnesCastNoShadowOnThemselves) {
+  const std::string turned = "Translate 0 0 -1000 Rotate 33 1 2 3 Scale 1 1.0001 1 ";
+  const std::map<std::string, std::string> shapes{
+      {"sphere", "Translate 0 0 -1000 Shape \"sphere\" \"float radius\" 1000"},
+      {"sphere, turned", turned + "Shape \"sphere\" \"float radius\" 1000"},
+      {"cylinder",
+       "Translate 3000 0 -1000 Rotate 90 0 1 0 Shape \"cylinder\" \"float radius\" 1000 \"float zmin\" -9999 \"float "
+       "zmax\" 9999"},
+      {"disk far up its own axis",
+       "Rotate 20 1 2 0 Translate 0 0 -5000 Shape \"disk\" \"float height\" 5000 \"float radius\" 900"},
+      {"sphere from within", "Translate 0 0 1000 Shape \"sphere\" \"float radius\" 1000"},
+      {"curve",
+       "Translate -5000 0 -5000 Shape \"curve\" \"point3 P\" [4990 0 5000  4997 0 5000  5003 0 5000  5010 0 5000] "
+       "\"float "
+       "width\" 3e-3"},
+  };
+  RandomStream random(3);
+  for (const auto& [name, text] : shapes) {
+    const auto s = scene(text);
+    int met = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const bool is_curve = name == "curve";
+      const Vec3 from{2 * random.uniform() - 1, is_curve ? 0 : 2 * random.uniform() - 1, 1};
+      SurfacePoint at;
+      if (!meet(*s, from, {0, 0, -1}, at)) continue;
+      ++met;
+      EXPECT_LT(std::abs(at.hit.p.x - from.x), 1e-6f) << name;
+      const float tilt = random.uniform();
+      const Vec3 up = normalize(Vec3{0.3f * tilt, is_curve ? 0 : 0.4f * tilt, 1});
+      ASSERT_FALSE(s->occluded({offset_origin(at.hit, up), up, 1.5f}, 0)) << name << ' ' << i;
+    }
+    EXPECT_EQ(met, 2000) << name;
+  }
+}
+
 /// Irradiance of an upward surface at the origin.
 struct Irradiance {
   double sampled = 0, met = 0;
