@@ -303,18 +303,28 @@ TEST_F(Shapes, SubdivisionLeadsToLoopsLimit) {
 }
 
 TEST_F(Shapes, SubdivisionKeepsAStraightBoundaryStraight) {
-  const std::vector<Vec3> sheet{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 1},
-                                {2, 1, 0}, {0, 2, 0}, {1, 2, 0}, {2, 2, 0}};
-  const std::vector<std::array<uint32_t, 3>> faces{{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4},
-                                                   {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}};
+  constexpr uint32_t kWide = 5, kHigh = 3;
+  std::vector<Vec3> sheet;
+  std::vector<std::array<uint32_t, 3>> faces;
+  for (uint32_t j = 0; j < kHigh; ++j)
+    for (uint32_t i = 0; i < kWide; ++i) {
+      sheet.push_back({float(i), float(j), i == 2 && j == 1 ? 1.f : 0.f});
+      if (i + 1 == kWide || j + 1 == kHigh) continue;
+      const uint32_t a = j * kWide + i, b = a + 1, c = b + kWide, d = a + kWide;
+      faces.push_back({a, b, c});
+      faces.push_back({a, c, d});
+    }
   TriangleMesh mesh;
   ASSERT_EQ(subdivide(sheet, faces, 2, mesh), "");
   size_t on_edge = 0;
   for (size_t i = 0; i < mesh.p.size(); ++i) {
-    on_edge += mesh.p[i].y == 0;
     EXPECT_LT(mesh.n[i].z, 0) << "as pbrt-v4: on the other side than winding says";
+    if (mesh.p[i].y != 0) continue;
+    ++on_edge;
+    EXPECT_EQ(std::round(mesh.p[i].x * 4), mesh.p[i].x * 4);
   }
-  EXPECT_GE(on_edge, 1u) << "but for what the corners, which are rounded off, reach";
+  // The edge is a cubic B-spline, straight where four of its control points are in a row: from 1 to 3, in quarters.
+  EXPECT_EQ(on_edge, 9u);
 }
 
 TEST_F(Shapes, QuadrilateralsOfAFileAreBilinearPatches) {
@@ -382,6 +392,13 @@ TEST_F(Shapes, OddInputIsNamed) {
               HasSubstr("cannot give off light"));
   EXPECT_THAT(error("Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0] \"normal N\" [0 0 1]"),
               HasSubstr("1 values of \"N\" for 4 of \"P\""));
+  EXPECT_THAT(error("Shape \"loopsubdiv\" \"point3 P\" [0 0 0  1 0 0  0 1 0] \"integer indices\" []"),
+              HasSubstr("needs a triangle at least"));
+  EXPECT_THAT(
+      error("Shape \"loopsubdiv\" \"point3 P\" [0 0 0  1 0 0  0 1 0] \"integer indices\" [0 1 2] \"integer "
+            "levels\" 12 Shape \"loopsubdiv\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0] \"integer indices\" [0 1 2 "
+            "1 3 2] \"integer levels\" 12"),
+      HasSubstr("12 levels make 3.36e+07 triangles, of some 11 GB"));
   // Curves of no width or length are not there; nothing else comes of them.
   const auto s = scene(
       "Shape \"curve\" \"float width\" 0 \"point3 P\" [0 0 0  1 0 0  2 0 0  3 0 0] "
