@@ -168,16 +168,17 @@ class Curves final : public AnalyticShape {
     return (a * std::sin((1 - u) * angle) + b * std::sin(u * angle)) / sine;
   }
 
-  /// How often to halve a curve until its pieces are straight to a 20th of the width.
+  /// How often to halve a curve until its pieces, as the ray sees them, are straight to a 20th of the width. Wang 1984:
+  /// n pieces of a curve of degree d are within d (d - 1) / 8 of its largest second difference over n^2.
   int depth_for(const Cubicd& c) const {
     double bend = 0;
-    for (size_t i = 0; i < 2; ++i) {
-      const Vec3d second = c[i] - c[i + 1] * 2.0 + c[i + 2];
-      bend = std::max({bend, std::abs(second.x), std::abs(second.y), std::abs(second.z)});
-    }
-    const double slack = 0.05 * double(std::max(widths_.x, widths_.y)), ratio = std::sqrt(2.0) * 6 * bend / (8 * slack);
-    constexpr int kDeepest = 10;
-    return ratio > 1 ? std::min(std::ilogb(std::min(ratio, 1e9)) / 2, kDeepest) : 0;
+    for (size_t i = 1; i <= 2; ++i)
+      bend = std::max(bend, std::hypot(c[i - 1].x - 2 * c[i].x + c[i + 1].x, c[i - 1].y - 2 * c[i].y + c[i + 1].y));
+    const double slack = double(std::max(widths_.x, widths_.y)) / 20;
+    if (!(bend * 6 / 8 > slack)) return 0;
+    constexpr double kMostPieces = 1024;
+    const double pieces = std::min(std::sqrt(bend * 6 / 8 / slack), kMostPieces);
+    return int(std::ceil(std::log2(pieces)));
   }
 
   struct CurveHit {
