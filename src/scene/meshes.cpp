@@ -137,7 +137,7 @@ MadeShape make_loop_subdivision(const Params& p, const ShapePlacement& placement
     faces.push_back({uint32_t(indices[i]), uint32_t(indices[i + 1]), uint32_t(indices[i + 2])});
   p.string("scheme");
   const int levels = p.integer("levels");
-  constexpr double kMostTriangles = 20e6, kBytesEach = 300;
+  constexpr double kMostTriangles = 20e6, kBytesEach = 150;  // measured, with Embree's
   if (const double count = double(faces.size()) * std::pow(4.0, levels); count > kMostTriangles)
     fail(p.where("levels"), "{} levels make {:.3g} triangles, of some {:.0f} GB: {:.0f} million are the limit", levels,
          count, std::ceil(count * kBytesEach / 1e9), kMostTriangles / 1e6);
