@@ -287,8 +287,11 @@ class SceneBuilder {
   void build_tiling() {
     if (!period_) return;
     for (const Light* light : scene_.lights_->all)
-      if (!light->is_distant())
-        fail(period_where_, "a scene with a \"period\" takes light from outside alone: distant, infinite");
+      if (!light->is_distant()) {
+        const auto known = light_where_.find(light);
+        fail(known == light_where_.end() ? period_where_ : known->second,
+             "a scene with a \"period\" takes light from outside alone: \"distant\", or \"infinite\" without a portal");
+      }
     scene_.period_ = period_;
     scene_.tiling_.emplace(*period_, scene_.geometry_->bounds());
   }
@@ -339,11 +342,20 @@ class SceneBuilder {
 
   void build_lights(SceneResolver& resolver) {
     for (const LightDescription& light : description_.lights)
-      problems_.attempt([&] { lights_->add(make(registry_.lights, light.plugin, resolver, light.world_from_light)); });
+      problems_.attempt(
+          [&] { add(make(registry_.lights, light.plugin, resolver, light.world_from_light), light.plugin.where); });
+  }
+
+  const Light* add(std::unique_ptr<Light> light, const Location& where) {
+    const Light* const added = light.get();
+    if (period_) light_where_.emplace(added, where);
+    lights_->add(std::move(light));
+    return added;
   }
 
   /// One for each surface that gives off light. There are no lights after these.
   void build_area_lights(SceneResolver& resolver) {
+    emissions_.resize(description_.area_lights.size());
     for (const Surface& surface : scene_.geometry_->surfaces()) {
       lights_->of_surface.emplace_back();
       if (surface.area_light)
@@ -353,28 +365,35 @@ class SceneBuilder {
     scene_.lights_ = std::move(lights_);
   }
 
-  /// With "power" there is one for each primitive: the total is that of each, as in pbrt-v4.
+  /// What a directive says, for all of its shapes: images are read and spectra fitted once.
+  const AreaEmission& emission_of(size_t place, SceneResolver& resolver) {
+    if (!emissions_[place]) emissions_[place] = make(registry_.area_lights, description_.area_lights[place], resolver);
+    return *emissions_[place];
+  }
+
   void build_area_light(const Surface& surface, SceneResolver& resolver, SurfaceLights& of_surface) {
-    const ParsedPlugin& plugin = description_.area_lights[*surface.area_light];
-    const AreaLightInfo& info = registry_.area_lights.get(plugin.name, plugin.where);
-    const Params params(info, plugin, resolver);
-    const auto add = [&](EmittingSurface emitting) {
-      auto light = info.make(params, std::move(emitting));
+    const AreaEmission& emission = emission_of(*surface.area_light, resolver);
+    const Location& where = description_.area_lights[*surface.area_light].where;
+    const auto add_over = [&](EmittingSurface emitting) {
+      auto light = emission.over(std::move(emitting));
       const AreaLight* const added = light.get();
-      lights_->add(std::move(light));
+      add(std::move(light), where);
       return added;
     };
-    const unsigned count = primitives_of(surface.geometry);
-    if (count == 1 || !params.given("power")) {
-      of_surface.whole = add(EmittingSurface(surface));
+    const unsigned faces = faces_of(surface.geometry);
+    if (faces == 1 || !emission.is_by_face()) {
+      of_surface.whole = add_over(EmittingSurface(surface));
       return;
     }
-    params.warn("power", fmt::format("each of the shape's {} triangles or patches gives off this power, as in pbrt-v4: "
-                                     "all of them together {} times as much",
-                                     count, count));
-    for (unsigned i = 0; i < count; ++i) {
-      EmittingSurface emitting(surface, i);
-      of_surface.by_primitive.push_back(emitting.area() > 0 ? add(std::move(emitting)) : nullptr);
+    log_.warn(where, fmt::format("each of the shape's {} triangles or patches gives off this \"power\", as in pbrt-v4: "
+                                 "all of them together {} times as much",
+                                 faces, faces));
+    of_surface.by_primitive.resize(primitives_of(surface.geometry));
+    for (unsigned i = 0; i < of_surface.by_primitive.size();) {
+      const Primitives face = face_of(surface.geometry, i);
+      EmittingSurface emitting(surface, face);
+      const AreaLight* const light = emitting.area() > 0 ? add_over(std::move(emitting)) : nullptr;
+      for (; i < face.end; ++i) of_surface.by_primitive[i] = light;
     }
   }
 
@@ -390,6 +409,8 @@ class SceneBuilder {
   ThreadPool& pool_;
   const Log& log_;
   std::shared_ptr<LightTable> lights_ = std::make_shared<LightTable>();
+  std::map<const Light*, Location> light_where_;  ///< where there is a period
+  std::vector<std::unique_ptr<AreaEmission>> emissions_;  ///< by area light of the description; made when needed
 };
 
 void LightTable::add(std::unique_ptr<Light> light) {

@@ -269,6 +269,21 @@ TEST(ImageAreaLight, GivesOffThePowerThatIsAskedFor) {
       3 / (kPiD * kPiD), 0.002);
 }
 
+/// Reading says of each image once that it holds what is no light.
+TEST(ImageAreaLight, ReadsItsImageOnceForAllItsShapes) {
+  const TestFolder folder("lights");
+  Image image = even(4, 4, 1);
+  image.at(2, 2, 1) = -0.5f;
+  write_image(folder.name_of("a.exr"), image, {"linear sRGB", {}});
+  const Loaded loaded(fmt::format(
+      "WorldBegin AreaLightSource \"diffuse\" \"string filename\" \"{}\" \"float power\" 2 {} Shape \"disk\"",
+      folder.name_of("a.exr"), kSquare));
+  EXPECT_EQ(loaded.scene->lights().size(), 3u);
+  EXPECT_EQ(std::ranges::count_if(loaded.warnings, [](const std::string& w) { return w.find("down to") != w.npos; }),
+            1);
+  for (const Light* light : loaded.scene->lights()) EXPECT_NEAR(light->power(1), 2, 1e-5);
+}
+
 TEST(LightImages, AreNotNegative) {
   const TestFolder folder("lights");
   Image image = even(4, 4, 1);

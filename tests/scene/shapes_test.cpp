@@ -171,16 +171,74 @@ TEST_F(Shapes, ASphereGivesWhatItsDistanceSays) {
   EXPECT_NEAR(e.met, expected, 0.005 * expected);
 }
 
+/// What leaves the surface that is met straight above the origin's plane, downwards, over that of the same spectrum
+/// without a power.
+double relative_radiance(const Scene& scene, const Vec3& below) {
+  SampledWavelengths lambda;
+  lambda.count = 1, lambda.nm[0] = 550, lambda.pdf[0] = 1, lambda.active[0] = true;
+  SurfacePoint at;
+  if (!scene.intersect({below, {0, 0, 1}, INFINITY}, 0, at) || !at.light) return NAN;
+  const auto given = at.light->radiance({at.hit.p, at.hit.ng, at.hit.at.uv}, {0, 0, -1}, lambda).v[0];
+  return double(given) / double(at.light->emission().sample(lambda).v[0]);
+}
+
 TEST_F(Shapes, PowerIsThatOfEachTriangle) {
   const std::string power = "AreaLightSource \"diffuse\" \"spectrum L\" [200 1 900 1] \"float power\" 3 ";
-  const std::string first = "\"point3 P\" [-1 -1 2  1 -1 2  1 1 2  -1 .2 2]";
-  const auto light = [&](const std::string& indices) {
-    return irradiance(*scene(power + "Shape \"trianglemesh\" " + first + " \"integer indices\" [" + indices + "]"));
+  const std::string mesh = "Shape \"trianglemesh\" \"point3 P\" [-1 -1 2  1 -1 2  1 1 2  -1 .2 2] \"integer indices\" ";
+  const Vec3 in_first{0.5f, -0.5f, 0}, in_second{-0.8f, -0.3f, 0};
+  for (const char* sides : {"", "\"bool twosided\" true "}) {
+    const double per_area = 3 / std::numbers::pi / (*sides ? 2 : 1);
+    const auto both = scene(power + sides + mesh + "[0 2 1  0 3 2]");
+    EXPECT_EQ(both->lights().size(), 2u);
+    EXPECT_NEAR(relative_radiance(*both, in_first) / (per_area / 2), 1, 1e-5);
+    EXPECT_NEAR(relative_radiance(*both, in_second) / (per_area / 1.2), 1, 1e-5);
+    const auto alone = scene(power + sides + mesh + "[0 3 2]");
+    EXPECT_NEAR(relative_radiance(*alone, in_second) / (per_area / 1.2), 1, 1e-5);
+  }
+  const Irradiance e = irradiance(*scene(power + mesh + "[0 2 1  0 3 2]"));
+  // Of 90000 stratified samples each the noise is below 0.2 %: five of its standard deviations, one in a million.
+  EXPECT_NEAR(e.met, e.sampled, 0.01 * e.met);
+}
+
+TEST_F(Shapes, PowerIsThatOfEachQuadrilateral) {
+  const auto file = [&](const std::string& faces, int count) {
+    folder_.write("quads.ply",
+                  fmt::format("ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+                              "property float z\nelement face {}\nproperty list uchar int vertex_index\n"
+                              "end_header\n0 0 2\n1 0 2\n1 2 2\n0 2 2\n4 0 2\n4 2 2\n{}",
+                              count, faces));
+    return scene(
+        "AreaLightSource \"diffuse\" \"float power\" 3 ReverseOrientation Shape \"plymesh\" \"string filename\" \"" +
+        folder_.name_of("quads.ply") + "\"");
   };
-  const Irradiance a = light("0 2 1"), b = light("0 3 2"), both = light("0 2 1 0 3 2");
-  EXPECT_NEAR(a.met, a.sampled, 0.01 * a.met);
-  EXPECT_NEAR(both.met, both.sampled, 0.01 * both.met);
-  EXPECT_NEAR(both.met, a.met + b.met, 0.01 * both.met);
+  const auto one = file("4 0 1 2 3\n", 1);
+  EXPECT_EQ(one->lights().size(), 1u);
+  for (const Vec3& below : {Vec3{0.8f, 0.2f, 0}, {0.2f, 1.8f, 0}})
+    EXPECT_NEAR(relative_radiance(*one, below), 3 / std::numbers::pi / 2, 1e-5);
+  const auto more = file("3 0 1 2\n4 1 4 5 2\n4 0 1 2 3\n", 3);
+  EXPECT_EQ(more->lights().size(), 3u);
+  for (const Vec3& below : {Vec3{3.8f, 0.2f, 0}, {1.2f, 1.8f, 0}})
+    EXPECT_NEAR(relative_radiance(*more, below), 3 / std::numbers::pi / 6, 1e-5);
+  EXPECT_NEAR(relative_radiance(*more, {0.2f, 1.8f, 0}), 3 / std::numbers::pi / 2, 1e-5);
+  const Irradiance e = irradiance(*file("4 0 1 2 3\n4 1 4 5 2\n", 2));
+  // As above: one in a million.
+  EXPECT_NEAR(e.met, e.sampled, 0.01 * e.met);
+}
+
+TEST_F(Shapes, TheAlphaOfAnEmitterIsThatOfItsPoints) {
+  const std::string squares =
+      "AttributeBegin Scale .37 .41 .5 Texture \"a\" \"float\" \"checkerboard\" \"integer dimension\" 3 \"float tex1\" "
+      "1 "
+      "\"float tex2\" 0 AttributeEnd ";
+  for (const char* shape :
+       {"Translate .1 .2 2 Shape \"sphere\" \"texture alpha\" \"a\"",
+        "Shape \"trianglemesh\" \"point3 P\" [-1 -1 2  1 -1 2.2  1 1 2.1] \"integer indices\" [0 2 1] "
+        "\"texture alpha\" \"a\""}) {
+    const Irradiance e = irradiance(*scene(squares + std::string(kLight) + "\"bool twosided\" false " + shape));
+    EXPECT_GT(e.met, 1e-4);
+    // Of 90000 stratified samples each the noise is below 0.4 %: five of its standard deviations, one in a million.
+    EXPECT_NEAR(e.met, e.sampled, 0.02 * e.met) << shape;
+  }
 }
 
 TEST_F(Shapes, AnEmitterOfNoOpacityLightsAllTheSame) {
