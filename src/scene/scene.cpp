@@ -8,78 +8,15 @@
 #include "scene/geometry_builder.h"
 #include "scene/instances.h"
 #include "scene/normal_map.h"
+#include "scene/scene_options.h"
 
 namespace frond {
 namespace {
 
-constexpr std::string_view kCoordSystems[] = {"camera", "cameraworld", "world"};
-constexpr Param kOptionParams[] = {
-    {.name = "seed",
-     .kind = ParamKind::integer,
-     .default_value = 0,
-     .range = {0, 2147483647},
-     .doc = "Seed of all random numbers."},
-    {.name = "wavelengths",
-     .kind = ParamKind::string,
-     .default_value = std::string_view("hero"),
-     .doc = "Wavelength strategy."},
-    {.name = "period",
-     .kind = ParamKind::real,
-     .range = {1e-6, 1e9},
-     .doc = "Two lengths: what stands in the scene is there again every so far along x and y, for ever.",
-     .list = true},
-    {.name = "disablepixeljitter",
-     .kind = ParamKind::boolean,
-     .default_value = false,
-     .doc = "All samples at the pixels' centres and the lens's."},
-    {.name = "disabletexturefiltering",
-     .kind = ParamKind::boolean,
-     .default_value = false,
-     .doc = "Textures are read at points."},
-    {.name = "disablewavelengthjitter",
-     .kind = ParamKind::boolean,
-     .default_value = false,
-     .doc = "All samples see the same wavelengths."},
-    {.name = "forcediffuse", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "pixelstats", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "wavefront", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "displacementedgescale", .kind = ParamKind::real, .default_value = 1.0, .doc = "pbrt's; has no effect."},
-    {.name = "msereferenceimage",
-     .kind = ParamKind::string,
-     .default_value = std::string_view(),
-     .doc = "pbrt's; has no effect: frond difference compares pictures."},
-    {.name = "msereferenceout",
-     .kind = ParamKind::string,
-     .default_value = std::string_view(),
-     .doc = "pbrt's; has no effect: frond difference compares pictures."},
-    {.name = "rendercoordsys",
-     .kind = ParamKind::string,
-     .default_value = std::string_view("cameraworld"),
-     .doc = "pbrt's; has no effect: it does not change the picture.",
-     .choices = kCoordSystems},
-};
-constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
-
-/// Binding of what can refer to files, but to nothing else of the scene.
-class OptionResolver final : public ParamResolver {
- public:
-  explicit OptionResolver(const SceneSettings& description, const Log& log = silent_log())
-      : description_(description), log_(log) {}
-
- private:
-  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
-  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
-  std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
-  SpectrumPtr spectrum(const ParsedParam& p, SpectrumUse) override { none(p.where); }
-  std::filesystem::path file(const std::string& name, const Location& w) override {
-    return description_.resolve(name, w);
-  }
-  void warn(const Location& where, std::string_view message) override { log_.warn(where, message); }
-  [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
-
-  const SceneSettings& description_;
-  const Log& log_;
-};
+WavelengthChoice wavelength_choice(const SceneOptions& options, const SceneOverrides& overrides) {
+  if (!overrides.wavelengths.empty()) return {overrides.wavelengths, {}};
+  return {options.wavelengths, options.wavelengths_where};
+}
 
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
   return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
@@ -230,7 +167,7 @@ class SceneBuilder {
     }
     for (const MaterialDescription& m : description_.materials) {
       check(registry_.materials, split_bend(m.plugin, false), resolver);
-      Params(normal_bend_params, split_bend(m.plugin, true), resolver);
+      problems_.attempt([&] { Params(normal_bend_params, split_bend(m.plugin, true), resolver); });
     }
     for (const ParsedPlugin& light : description_.area_lights) check(registry_.area_lights, light, resolver);
   }
@@ -255,32 +192,19 @@ class SceneBuilder {
   }
 
   void build_options() {
-    OptionResolver resolver(description_, log_);
-    const Params p(kOptions, {"Option", {}, description_.options}, resolver);
-    for (const std::string_view name : {"forcediffuse", "pixelstats", "wavefront"})
-      if (p.boolean(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
-    for (const std::string_view name : {"displacementedgescale", "msereferenceimage", "msereferenceout"})
-      if (p.given(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
-    scene_.has_pixel_jitter_ = !p.boolean("disablepixeljitter");
-    scene_.has_wavelength_jitter_ = !p.boolean("disablewavelengthjitter");
-    filters_textures_ = !p.boolean("disabletexturefiltering");
-    seed_ = overrides_.seed;
-    if (!seed_ && p.given("seed")) seed_ = uint64_t(p.integer("seed"));
-    const auto [text, where] = wavelength_choice(description_, overrides_);
-    if (p.given("period")) set_period(p);
+    const SceneOptions options = read_options(description_, log_);
+    scene_.has_pixel_jitter_ = options.has_pixel_jitter;
+    scene_.has_wavelength_jitter_ = options.has_wavelength_jitter;
+    filters_textures_ = options.filters_textures;
+    seed_ = overrides_.seed ? overrides_.seed : options.seed;
+    period_ = options.period, period_where_ = options.period_where;
+    const auto [text, where] = wavelength_choice(options, overrides_);
     scene_.wavelengths_name_ = text;
     scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
     const WavelengthsInfo& info = registry_.wavelengths.get(parse_plugin_text(text, where).name, where);
     for (const ParsedParam& of_film : sensor_params(description_))
       if (!declares(info, of_film.name))
         log_.warn(of_film.where, fmt::format("\"{}\" has no effect on wavelengths \"{}\"", of_film.name, info.name));
-  }
-
-  void set_period(const Params& p) {
-    const std::vector<double> period = p.reals("period");
-    if (period.size() != 2) fail(p.where("period"), "\"period\" takes 2 values, {} given", period.size());
-    period_ = Vec2{float(period[0]), float(period[1])};
-    period_where_ = p.where("period");
   }
 
   /// Lights that stand in the scene would have to be there again too.
@@ -297,15 +221,20 @@ class SceneBuilder {
   }
 
   void build_view(SceneResolver& resolver) {
-    FilmSettings film;
-    problems_.attempt([&] { film = Scene::film_settings(description_, registry_, log_); });
-    if (overrides_.quick) film = halved(film);
-    scene_.film_ = film;
-    const CameraPlacement placement{description_.camera_from_world.inverse(), film.width, film.height};
-    problems_.attempt([&] {
-      scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
-      check_camera(film);
+    CameraPlacement placement{description_.camera_from_world.inverse(), 0, 0};
+    const bool has_film = problems_.attempt([&] {
+      const FilmSettings film = Scene::film_settings(description_, registry_, log_);
+      scene_.film_ = overrides_.quick ? halved(film) : film;
+      placement.width = scene_.film_.width, placement.height = scene_.film_.height;
     });
+    // A camera's frame hangs on the film's shape: without one only its parameters can be looked at.
+    if (has_film)
+      problems_.attempt([&] {
+        scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
+        check_camera(scene_.film_);
+      });
+    else
+      check(registry_.cameras, description_.camera, resolver);
     problems_.attempt([&] { scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, seed_); });
     problems_.attempt([&] { scene_.filter_ = make(registry_.filters, description_.filter, resolver); });
     problems_.attempt([&] { scene_.integrator_ = make(registry_.integrators, description_.integrator, resolver); });
@@ -477,10 +406,7 @@ uint32_t Scene::occluded(const RayPacket& packet) const {
 }
 
 WavelengthChoice wavelength_choice(const SceneSettings& description, const SceneOverrides& overrides) {
-  OptionResolver resolver(description);
-  const Params p(kOptions, {"Option", {}, description.options}, resolver);
-  if (!overrides.wavelengths.empty()) return {overrides.wavelengths, {}};
-  return {p.string("wavelengths"), p.where("wavelengths")};
+  return wavelength_choice(read_options(description), overrides);
 }
 
 ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry) {
