@@ -338,7 +338,7 @@ class SceneBuilder {
   ThreadPool& pool_;
   const Log& log_;
   std::shared_ptr<LightTable> lights_ = std::make_shared<LightTable>();
-  std::map<const Light*, Location> light_where_;  ///< where there is a period
+  std::map<const Light*, Location> light_where_;          ///< where there is a period
   std::vector<std::unique_ptr<AreaEmission>> emissions_;  ///< by area light of the description; made when needed
 };
 
