@@ -168,17 +168,21 @@ class Curves final : public AnalyticShape {
     return (a * std::sin((1 - u) * angle) + b * std::sin(u * angle)) / sine;
   }
 
-  /// How often to halve a curve until its pieces, as the ray sees them, are straight to a 20th of the width. Wang 1984:
-  /// n pieces of a curve of degree d are within d (d - 1) / 8 of its largest second difference over n^2.
+  /// How often to halve a curve until its pieces are straight to some 20th of the width. Wang 1984: n pieces of a curve
+  /// of degree d are within d (d - 1) / 8 of its largest second difference over n^2. Rounded down, as pbrt-v4 does: how
+  /// many pieces there are can be seen.
   int depth_for(const Cubicd& c) const {
-    double bend = 0;
-    for (size_t i = 1; i <= 2; ++i)
-      bend = std::max(bend, std::hypot(c[i - 1].x - 2 * c[i].x + c[i + 1].x, c[i - 1].y - 2 * c[i].y + c[i + 1].y));
-    const double slack = double(std::max(widths_.x, widths_.y)) / 20;
-    if (!(bend * 6 / 8 > slack)) return 0;
-    constexpr double kMostPieces = 1024;
-    const double pieces = std::min(std::sqrt(bend * 6 / 8 / slack), kMostPieces);
-    return int(std::ceil(std::log2(pieces)));
+    double largest = 0;
+    for (size_t i = 1; i <= 2; ++i) {
+      const Vec3d bend = c[i - 1] + c[i + 1] - c[i] * 2.0;
+      largest = std::max({largest, std::abs(bend.x), std::abs(bend.y), std::abs(bend.z)});
+    }
+    const double in_plane = std::sqrt(2.0) * largest, slack = double(std::max(widths_.x, widths_.y)) / 20;
+    constexpr int kDeepest = 10;
+    int depth = 0;
+    for (double pieces_squared = 3 * 2 / 8.0 * in_plane / slack; pieces_squared >= 4 && depth < kDeepest; ++depth)
+      pieces_squared /= 4;
+    return depth;
   }
 
   struct CurveHit {
