@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/float4.h"
@@ -48,10 +49,35 @@ struct AffineMap {
     for (const auto& r : rows) largest = std::max(largest, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
     return largest;
   }
+  /// By how much all areas grow, where shapes keep their angles, up to rounding; nothing where they do not.
+  std::optional<float> area_scale() const {
+    const Vec3 x = column(0), y = column(1), z = column(2);
+    const float xx = dot(x, x), slack = 1e-4f * xx;
+    const auto near = [slack](float a, float b) { return std::abs(a - b) <= slack; };
+    if (near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) && near(dot(z, x), 0))
+      return xx;
+    return {};
+  }
 
  private:
   Vec3 row(size_t i) const { return {rows[i][0], rows[i][1], rows[i][2]}; }
   Vec3 column(size_t j) const { return {rows[0][j], rows[1][j], rows[2][j]}; }
+};
+
+/// A transform and its inverse in double, of those same floats: there and back again is where it was, even where a
+/// shape's own coordinates are much larger than those in the scene.
+class PreciseTransform {
+ public:
+  explicit PreciseTransform(const Transform& t);
+
+  Vec3d point(const Vec3d& p) const { return vector(p) + translation_; }
+  Vec3d vector(const Vec3d& v) const { return x_ * v.x + y_ * v.y + z_ * v.z; }
+  Vec3d inverse_point(const Vec3d& p) const { return inverse_vector(p - translation_); }
+  Vec3d inverse_vector(const Vec3d& v) const { return {dot(row_x_, v), dot(row_y_, v), dot(row_z_, v)}; }
+
+ private:
+  Vec3d x_, y_, z_, translation_;  ///< where the axes and the origin go
+  Vec3d row_x_, row_y_, row_z_;    ///< of the inverse
 };
 
 /// What is wrong with a map: it has no inverse, or scales so much that a ray's numbers would overflow or vanish in the

@@ -15,7 +15,4 @@ struct PatchMesh {
 /// Of a mesh that is in the scene's space already.
 AnalyticShapePtr patches(PatchMesh mesh, const ShapePlacement& placement);
 
-/// A mesh's normals into the scene's space, unit, on the side that ReverseOrientation makes the front.
-void place_normals(std::vector<Vec3>& n, const ShapePlacement& placement);
-
 }  // namespace frond

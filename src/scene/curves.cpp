@@ -57,6 +57,7 @@ class Curves final : public AnalyticShape {
         kind_(kind),
         to_scene_(placement.to_scene),
         from_scene_(placement.to_scene.inverse()),
+        precise_(placement.to_scene),
         flip_(placement.reverse_orientation != placement.to_scene.swaps_handedness()) {
     const Transform::Rows& r = to_scene_.rows();
     const Vec3 x{r[0][0], r[1][0], r[2][0]}, y{r[0][1], r[1][1], r[2][1]}, z{r[0][2], r[1][2], r[2][2]};
@@ -81,7 +82,8 @@ class Curves final : public AnalyticShape {
 
   std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray, float t_min) const override {
     const Piece piece = piece_of(primitive);
-    const Vec3d o = frond::to_double(from_scene_.point(ray.o)), d = frond::to_double(from_scene_.vector(ray.d));
+    const Vec3d o = precise_.inverse_point(frond::to_double(ray.o));
+    const Vec3d d = precise_.inverse_vector(frond::to_double(ray.d));
     // With the ray along z, and the curve more or less along x: boxes around it are narrow.
     const double ray_length = length(d);
     const Framed ray_space = Framed::along(d / ray_length, piece.curve[3] - piece.curve[0]);
@@ -96,7 +98,7 @@ class Curves final : public AnalyticShape {
     const float t = float(search.nearest / ray_length);
     if (!search.found || !(t > t_min && t < ray.t_max)) return {};
     const Vec3d n = normal_at(search.hit, ray_space, piece.segment);
-    return ShapePoint{to_scene_.point(to_float(o + d * (search.nearest / ray_length))),
+    return ShapePoint{to_float(precise_.point(o + d * (search.nearest / ray_length))),
                       to_scene_normal(n),
                       {float(search.hit.u), float(search.hit.v)},
                       t,
@@ -166,16 +168,21 @@ class Curves final : public AnalyticShape {
     return (a * std::sin((1 - u) * angle) + b * std::sin(u * angle)) / sine;
   }
 
-  /// How often to halve a curve until its pieces are straight to a 20th of the width.
+  /// How often to halve a curve until its pieces are straight to some 20th of the width. Wang 1984: n pieces of a curve
+  /// of degree d are within d (d - 1) / 8 of its largest second difference over n^2. Rounded down, as pbrt-v4 does: how
+  /// many pieces there are can be seen.
   int depth_for(const Cubicd& c) const {
-    double bend = 0;
-    for (size_t i = 0; i < 2; ++i) {
-      const Vec3d second = c[i] - c[i + 1] * 2.0 + c[i + 2];
-      bend = std::max({bend, std::abs(second.x), std::abs(second.y), std::abs(second.z)});
+    double largest = 0;
+    for (size_t i = 1; i <= 2; ++i) {
+      const Vec3d bend = c[i - 1] + c[i + 1] - c[i] * 2.0;
+      largest = std::max({largest, std::abs(bend.x), std::abs(bend.y), std::abs(bend.z)});
     }
-    const double slack = 0.05 * double(std::max(widths_.x, widths_.y)), ratio = std::sqrt(2.0) * 6 * bend / (8 * slack);
+    const double in_plane = std::sqrt(2.0) * largest, slack = double(std::max(widths_.x, widths_.y)) / 20;
     constexpr int kDeepest = 10;
-    return ratio > 1 ? std::min(std::ilogb(std::min(ratio, 1e9)) / 2, kDeepest) : 0;
+    int depth = 0;
+    for (double pieces_squared = 3 * 2 / 8.0 * in_plane / slack; pieces_squared >= 4 && depth < kDeepest; ++depth)
+      pieces_squared /= 4;
+    return depth;
   }
 
   struct CurveHit {
@@ -255,6 +262,7 @@ class Curves final : public AnalyticShape {
   Vec2 widths_;
   CurveKind kind_;
   Transform to_scene_, from_scene_;
+  PreciseTransform precise_;
   bool flip_;
   float scale_;  ///< of lengths, on average
 };

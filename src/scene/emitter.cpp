@@ -18,25 +18,38 @@ unsigned primitives_of(const ShapeGeometry& geometry) {
   return unsigned(std::get<MeshPtr>(geometry)->triangles.size());
 }
 
-EmittingSurface::EmittingSurface(const Surface& surface, std::optional<unsigned> primitive)
-    : geometry_(surface.geometry),
-      is_met_(!surface.alpha || surface.alpha->range().max > 0),
-      only_(primitive      ? primitive
-            : count() == 1 ? std::optional(0u)
-                           : std::nullopt) {
+Primitives face_of(const ShapeGeometry& geometry, unsigned primitive) {
+  if (const auto* mesh = std::get_if<MeshPtr>(&geometry))
+    if (const size_t cut = (*mesh)->halves_from; primitive >= cut) {
+      const unsigned first = primitive - unsigned((primitive - cut) % 2);
+      return {first, first + 2};
+    }
+  return {primitive, primitive + 1};
+}
+
+unsigned faces_of(const ShapeGeometry& geometry) {
+  const unsigned primitives = primitives_of(geometry);
+  const auto* mesh = std::get_if<MeshPtr>(&geometry);
+  if (!mesh || (*mesh)->halves_from >= primitives) return primitives;
+  return primitives - unsigned((primitives - (*mesh)->halves_from) / 2);
+}
+
+EmittingSurface::EmittingSurface(const Surface& surface)
+    : EmittingSurface(surface, {0, primitives_of(surface.geometry)}) {}
+
+EmittingSurface::EmittingSurface(const Surface& surface, Primitives primitives)
+    : geometry_(surface.geometry), is_met_(!surface.alpha || surface.alpha->range().max > 0), primitives_(primitives) {
   if (is_met_) alpha_ = surface.alpha;
-  if (only_) {
-    area_ = area_of(*only_);
+  if (primitives.count() == 1) {
+    area_ = area_of(primitives.first);
     return;
   }
   std::vector<float> areas;
-  areas.reserve(count());
-  for (unsigned i = 0; i < count(); ++i) areas.push_back(float(area_of(i)));
+  areas.reserve(primitives.count());
+  for (unsigned i = primitives.first; i < primitives.end; ++i) areas.push_back(float(area_of(i)));
   by_area_.emplace(areas);
   area_ = by_area_->sum();
 }
-
-unsigned EmittingSurface::count() const { return primitives_of(geometry_); }
 
 double EmittingSurface::area_of(unsigned i) const {
   if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) return (*shape)->area(i);
@@ -57,11 +70,11 @@ ShapePoint EmittingSurface::sample(unsigned primitive, Vec2 u) const {
 EmittingSurface::Sample EmittingSurface::sample(Vec2 u) const {
   Sample s;
   double own_area = area_;
-  if (only_) {
-    s.point = sample(*only_, u);
+  if (!by_area_) {
+    s.point = sample(primitives_.first, u);
   } else {
     const auto [index, fraction, probability] = by_area_->sample(u.x);
-    s.point = sample(unsigned(index), {fraction, u.y});
+    s.point = sample(primitives_.first + unsigned(index), {fraction, u.y});
     own_area *= double(probability);
   }
   s.weight = float(s.point.area / own_area);
@@ -75,7 +88,7 @@ EmittingSurface::Sample EmittingSurface::sample(Vec2 u) const {
 LightBounds EmittingSurface::bounds() const {
   Bounds box;
   LightBounds result;
-  const unsigned first = only_.value_or(0), end = only_ ? first + 1 : count();
+  const auto [first, end] = primitives_;
   if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) {
     for (unsigned i = first; i < end; ++i) {
       const Bounds one = (*shape)->bounds(i);

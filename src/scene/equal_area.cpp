@@ -5,7 +5,10 @@ namespace frond {
 Vec3 sphere_from_square(Vec2 uv) {
   const float x = 2 * uv.x - 1, y = 2 * uv.y - 1, ax = std::abs(x), ay = std::abs(y);
   const float d = 1 - (ax + ay), r = 1 - std::abs(d);
-  const float phi = (r == 0 ? 1 : (ay - ax) / r + 1) * kPi / 4, ring = r * std::sqrt(std::max(0.f, 2 - r * r));
+  // Azimuth goes evenly along a height's diamond from y = 0 to x = 0. The lower half is folded over the edge d = 0:
+  // (x, y) lies there where (1 - y, 1 - x) does above.
+  const float along = d >= 0 ? ay : 1 - ax, phi = r > 0 ? along / r * (kPi / 2) : kPi / 4;
+  const float ring = r * std::sqrt(std::max(0.f, 2 - r * r));
   return {std::copysign(std::cos(phi), x) * ring, std::copysign(std::sin(phi), y) * ring, std::copysign(1 - r * r, d)};
 }
 

@@ -10,13 +10,12 @@
 namespace frond {
 
 struct Crop {
-  int x0, y0, x1, y1;  ///< pixels; the end is not in it
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< pixels; the end is not in it
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
   friend bool operator==(const Crop&, const Crop&) = default;
 };
 
-/// Pixels of a window x0 x1 y0 y1 that is given as fractions of a film, ends rounded up as in pbrt.
 /// Ends the wrong way round, as some exporters write them, are exchanged: x0, x1, y0, y1. Says whether any were.
 template <class Bounds>
 bool put_in_order(Bounds& bounds) {
@@ -26,14 +25,15 @@ bool put_in_order(Bounds& bounds) {
   return is_changed;
 }
 
+/// Pixels of a window x0 x1 y0 y1 that is given as fractions of a film, ends rounded up as in pbrt.
 Crop crop_of_fractions(std::span<const double> window, int width, int height);
 /// As far as it lies on the film.
 Crop crop_of_pixels(std::span<const int> bounds, int width, int height);
 
 /// What the scene says of the image.
 struct FilmSettings {
-  int width, height;  ///< full resolution, pixels
-  Crop crop;
+  int width = 0, height = 0;  ///< full resolution, pixels
+  Crop crop = {};
   std::string filename;
   bool half = false;         ///< EXR with 16-bit floats
   double exposure = 1;       ///< factor from radiance to film

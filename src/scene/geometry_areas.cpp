@@ -35,13 +35,10 @@ class Areas {
 
   /// Of a similar image the area is that of the surface times a factor.
   double area(const Surface& surface, const Transform& t) {
-    const Vec3 x = t.vector({1, 0, 0}), y = t.vector({0, 1, 0}), z = t.vector({0, 0, 1});
-    const float xx = dot(x, x), slack = 1e-4f * xx;
-    const auto near = [slack](float a, float b) { return std::abs(a - b) <= slack; };
-    if (near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) && near(dot(z, x), 0)) {
+    if (const auto scale = AffineMap{t.rows()}.area_scale()) {
       const auto [known, is_new] = own_.try_emplace(&surface, 0);
       if (is_new) known->second = area_under(surface, Transform());
-      return known->second * double(xx);
+      return known->second * double(*scale);
     }
     return area_under(surface, t);
   }

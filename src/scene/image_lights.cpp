@@ -1,8 +1,10 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "scene/direction_map.h"
 #include "scene/equal_area.h"
 #include "scene/light_image.h"
+#include "scene/light_params.h"
 #include "scene/registry.h"
 #include "spectra/cie.h"
 
@@ -11,29 +13,17 @@ namespace {
 
 constexpr double kPiD = std::numbers::pi;
 
-/// Squared distance below which a point on a surface counts as the light's own: what divides by it would overflow.
-constexpr float kLeastSquare = 1e-30f;
-
-/// "scale", times what makes the light's power match where the scene states one.
-float scale_of(const Params& p, double unit_power) {
-  if (!p.given("power")) return float(p.real("scale"));
-  if (!(unit_power > 0)) fail(p.where("power"), "the image is black: it has no power to scale");
-  return float(p.real("scale") * p.real("power") / unit_power);
-}
-
 /// A light at a point of which an image says what it gives off along each direction.
 class ImagePointLight : public Light {
  public:
   explicit ImagePointLight(const Transform& world_from_light)
-      : world_from_light_(world_from_light),
-        light_from_world_(world_from_light.inverse()),
-        position_(world_from_light.point({})) {}
+      : directions_(world_from_light), position_(world_from_light.point({})) {}
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
     const Vec3 d = position_ - p;
     const float distance2 = dot(d, d), distance = std::sqrt(distance2);
     if (distance2 < kLeastSquare) return {};
     const Vec3 wi = d / distance;
-    const SampledSpectrum along = intensity(normalize_any(light_from_world_.vector(-wi)), lambda);
+    const SampledSpectrum along = intensity(directions_.to_light(-wi), lambda);
     if (along.is_black()) return {};
     return LightSample{along * (1 / distance2), wi, distance, 1};
   }
@@ -43,10 +33,10 @@ class ImagePointLight : public Light {
  protected:
   /// Along a direction of the light's own space, unit.
   virtual SampledSpectrum intensity(const Vec3& w, const SampledWavelengths& lambda) const = 0;
-  Vec3 to_world(const Vec3& w) const { return normalize_any(world_from_light_.vector(w)); }
+  const DirectionMap& directions() const { return directions_; }
 
  private:
-  Transform world_from_light_, light_from_world_;
+  DirectionMap directions_;
   Vec3 position_;
 };
 
@@ -59,12 +49,12 @@ class ProjectionLight final : public ImagePointLight {
     const auto tangent = float(std::tan(p.real("fov") * kPiD / 360));
     half_width_ = tangent * std::max(aspect, 1.f), half_height_ = tangent * std::max(1 / aspect, 1.f);
     flux_ = flux();
-    scale_ = scale_of(p, flux_);
-    axis_ = to_world({0, 0, 1});
+    scale_ = light_scale(p, "power", flux_);
+    axis_ = directions().to_world({0, 0, 1});
     cos_corner_ = 1;
     for (const float x : {-half_width_, half_width_})
       for (const float y : {-half_height_, half_height_})
-        cos_corner_ = std::min(cos_corner_, dot(axis_, to_world(normalize_any(Vec3{x, y, 1}))));
+        cos_corner_ = std::min(cos_corner_, dot(axis_, directions().to_world(normalize_any(Vec3{x, y, 1}))));
   }
   double power(float) const override { return double(scale_) * flux_; }
   std::optional<LightBounds> bounds() const override {
@@ -90,7 +80,9 @@ class ProjectionLight final : public ImagePointLight {
       for (int i = 0; i < width; ++i) {
         const double x = ((2 * i + 1.0) / width - 1) * double(half_width_);
         const double y = ((2 * j + 1.0) / height - 1) * double(half_height_);
-        sum += double(image_.luminances()[size_t(j) * size_t(width) + size_t(i)]) * std::pow(1 + x * x + y * y, -1.5);
+        const double spread = double(directions().spread(to_float(normalize(Vec3d{x, y, 1}))));
+        sum += double(image_.luminances()[size_t(j) * size_t(width) + size_t(i)]) * spread *
+               std::pow(1 + x * x + y * y, -1.5);
       }
     return sum * 4 * double(half_width_) * double(half_height_) / (double(width) * height);
   }
@@ -115,11 +107,14 @@ class GoniometricLight final : public ImagePointLight {
     size_ = image.width;
     double sum = 0;
     for (size_t i = 0; i < image.pixels.size(); i += 3) {
+      const int cell = int(texels_.size());
+      const Vec2 centre{(float(cell % size_) + 0.5f) / float(size_), (float(cell / size_) + 0.5f) / float(size_)};
+      const Vec3 w = sphere_from_square(centre);
       texels_.push_back((image.pixels[i] + image.pixels[i + 1] + image.pixels[i + 2]) / 3);
-      sum += double(texels_.back());
+      sum += double(texels_.back() * directions().spread({w.x, w.z, w.y}));
     }
     steradians_ = 4 * kPiD * sum / double(texels_.size());
-    scale_ = scale_of(p, steradians_);
+    scale_ = light_scale(p, "power", steradians_);
   }
   double power(float) const override { return photometric(*spectrum_) * double(scale_) * steradians_; }
   const Spectrum& emission() const override { return *spectrum_; }
@@ -138,13 +133,6 @@ class GoniometricLight final : public ImagePointLight {
   float scale_;
 };
 
-constexpr Param kScale{
-    .name = "scale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor."};
-constexpr Param kPower{.name = "power",
-                       .kind = ParamKind::real,
-                       .unit = "lm",
-                       .range = kAtLeastZero,
-                       .doc = "Total power, in place of the image's own."};
 constexpr Param kProjection[] = {{.name = "filename",
                                   .kind = ParamKind::string,
                                   .doc = "The picture; its longer side reaches beyond \"fov\".",
@@ -155,8 +143,8 @@ constexpr Param kProjection[] = {{.name = "filename",
                                   .unit = "degrees",
                                   .range = {1e-3, 179.999},
                                   .doc = "Angle of the picture along its shorter side."},
-                                 kPower,
-                                 kScale};
+                                 kLightPower,
+                                 kLightScale};
 constexpr Param kGoniometric[] = {
     {.name = "filename",
      .kind = ParamKind::string,
@@ -166,13 +154,8 @@ constexpr Param kGoniometric[] = {
      .kind = ParamKind::illuminant,
      .default_value = std::array<double, 3>{1, 1, 1},
      .doc = "Radiant intensity, times the image; spectra are normalised to luminance 1."},
-    kPower,
-    kScale};
-
-template <class T>
-std::unique_ptr<Light> make_light(const Params& p, const Transform& world_from_light) {
-  return std::make_unique<T>(p, world_from_light);
-}
+    kLightPower,
+    kLightScale};
 
 }  // namespace
 

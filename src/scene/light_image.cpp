@@ -1,7 +1,7 @@
 #include "scene/light_image.h"
 
 #include <algorithm>
-#include <map>
+#include <bit>
 #include <optional>
 
 #include "image/rgb_file.h"
@@ -79,6 +79,42 @@ class FitTable {
   std::vector<std::optional<Triple>> nodes_;  ///< [brightest channel][next but one][next]
 };
 
+/// An image's colours, numbered as they come: a hash table of the first texel of each.
+class ColorNumbers {
+ public:
+  explicit ColorNumbers(const Image& image) : image_(image) {
+    slots_.resize(std::bit_ceil(image.pixels.size() / 3 * 3 / 2 + 1), kFree);
+  }
+
+  struct Number {
+    uint32_t number;
+    bool is_new;
+  };
+  Number of(uint32_t texel) {
+    const Rgb c = rgb_at(image_, texel);
+    size_t slot = hash(c) & (slots_.size() - 1);
+    for (; slots_[slot] != kFree; slot = (slot + 1) & (slots_.size() - 1))
+      if (rgb_at(image_, first_[slots_[slot]]) == c) return {slots_[slot], false};
+    slots_[slot] = uint32_t(first_.size());
+    first_.push_back(texel);
+    return {slots_[slot], true};
+  }
+
+ private:
+  static constexpr uint32_t kFree = UINT32_MAX;
+
+  static size_t hash(const Rgb& c) {
+    uint64_t h = 0;
+    // 0 and -0 are equal, and have to have one hash.
+    for (const float v : c) h = (h ^ std::bit_cast<uint32_t>(v + 0.f)) * 0x9e3779b97f4a7c15u, h ^= h >> 29;
+    return size_t(h);
+  }
+
+  const Image& image_;
+  std::vector<uint32_t> slots_;  ///< numbers
+  std::vector<uint32_t> first_;  ///< by number, a texel of that colour
+};
+
 }  // namespace
 
 ColorImage read_light_image(const Params& p) {
@@ -108,11 +144,11 @@ LightImage::LightImage(const ColorImage& file)
   texels_.reserve(luminances_.size());
   constexpr size_t kMostFits = 10000;
   FitTable table(*file.space);
-  std::map<Rgb, uint32_t> known;
-  for (size_t i = 0; i < luminances_.size(); ++i) {
+  ColorNumbers numbers(file.image);
+  for (uint32_t i = 0; i < luminances_.size(); ++i) {
     const Rgb c = rgb_at(file.image, i);
-    const auto [it, is_new] = known.emplace(c, uint32_t(colors_.size()));
-    texels_.push_back(it->second);
+    const auto [number, is_new] = numbers.of(i);
+    texels_.push_back(number);
     if (!is_new) continue;
     // Twice the brightest channel leaves the reflectance room on both sides.
     const double peak = 2 * double(std::max({c[0], c[1], c[2]}));

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/sampling.h"
 #include "scene/light_image.h"
+#include "scene/light_params.h"
 #include "scene/registry.h"
 #include "spectra/cie.h"
 
@@ -13,15 +14,6 @@ namespace frond {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
-
-/// Squared distance below which a point on a surface counts as the light's own: what divides by it would overflow.
-constexpr float kLeastSquare = 1e-30f;
-
-/// "scale", times what makes the light's total match where the scene states a total.
-float scale_of(const Params& p, std::string_view total, double unit_total) {
-  const double scale = p.real("scale");
-  return float(p.given(total) ? scale * p.real(total) / unit_total : scale);
-}
 
 /// Transform of a light placed by "from" (and "to"), as pbrt composes it.
 Vec3 direction_of(const Params& p, const Transform& world_from_light) {
@@ -33,7 +25,7 @@ Vec3 direction_of(const Params& p, const Transform& world_from_light) {
 class DistantLight final : public Light {
  public:
   DistantLight(const Params& p, const Transform& world_from_light)
-      : spectrum_(p.spectrum("L")), scale_(scale_of(p, "illuminance", 1)), wi_(-direction_of(p, world_from_light)) {}
+      : spectrum_(p.spectrum("L")), scale_(light_scale(p, "illuminance", 1)), wi_(-direction_of(p, world_from_light)) {}
   std::optional<LightSample> sample(const Vec3&, Vec2, const SampledWavelengths& lambda) const override {
     return LightSample{spectrum_->sample(lambda) * scale_, wi_, INFINITY, 1};
   }
@@ -54,7 +46,7 @@ class PointLight final : public Light {
  public:
   PointLight(const Params& p, const Transform& world_from_light)
       : spectrum_(p.spectrum("I")),
-        scale_(scale_of(p, "power", 4 * kPiD)),
+        scale_(light_scale(p, "power", 4 * kPiD)),
         position_(world_from_light.point(p.vec3("from"))) {}
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
     const Vec3 d = position_ - p;
@@ -86,7 +78,7 @@ class SpotLight final : public Light {
     cos_outer_ = float(std::cos(cone * kPiD / 180));
     if (!(cos_outer_ < 1)) fail(p.where("coneangle"), "a \"coneangle\" of {} degrees lets no light through", cone);
     cos_inner_ = float(std::cos((cone - delta) * kPiD / 180));
-    scale_ = scale_of(p, "power", solid_angle());
+    scale_ = light_scale(p, "power", solid_angle());
   }
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
     const Vec3 d = position_ - p;
@@ -119,20 +111,43 @@ class SpotLight final : public Light {
   float cos_outer_, cos_inner_, scale_;
 };
 
-class DiffuseAreaLight final : public AreaLight {
- public:
-  DiffuseAreaLight(const Params& p, EmittingSurface surface)
-      : spectrum_(p.spectrum("L")), surface_(std::move(surface)), two_sided_(p.boolean("twosided")) {
+/// What all lights of one directive share.
+struct DiffuseEmission {
+  SpectrumPtr spectrum;
+  std::optional<LightImage> image;  ///< over (u, v), in place of an even radiance
+  double mean = 1;                  ///< of the image's luminance
+  double luminance = 0;             ///< of unscaled radiance, on average
+  double scale = 1;
+  std::optional<double> power;  ///< of each light
+  bool two_sided = false;
+  Location where;
+
+  explicit DiffuseEmission(const Params& p)
+      : scale(p.real("scale")), power(stated_total(p, "power")), two_sided(p.boolean("twosided")), where(p.where()) {
     if (p.given("filename")) {
       if (p.given("L")) fail(p.where("L"), "\"L\" and \"filename\" exclude each other");
-      image_.emplace(read_light_image(p));
-      spectrum_ = image_->white();
-      mean_ = image_->mean_luminance();
-      if (p.given("power") && !(mean_ > 0)) fail(p.where("power"), "the image is black: it has no power to scale");
+      image.emplace(read_light_image(p));
+      spectrum = image->white();
+      mean = image->mean_luminance();
+      if (power && !(mean > 0)) fail(p.where("power"), "the image is black: it has no power to scale");
+    } else {
+      spectrum = p.spectrum("L");
     }
+    luminance = photometric(*spectrum) * mean;
+  }
+  double sides() const { return two_sided ? 2 : 1; }
+};
+
+class DiffuseAreaLight final : public AreaLight {
+ public:
+  DiffuseAreaLight(std::shared_ptr<const DiffuseEmission> emission, EmittingSurface surface)
+      : emission_(std::move(emission)), surface_(std::move(surface)) {
     if (!(surface_.area() > 0))
-      fail(p.where(), "an area light needs a surface with an area, this one has {}", surface_.area());
-    scale_ = scale_of(p, "power", sides() * kPiD * surface_.area() * mean_);
+      fail(emission_->where, "an area light needs a surface with an area, this one has {}", surface_.area());
+    scale_ = float(emission_->scale);
+    if (emission_->power)
+      scale_ =
+          float(emission_->scale * *emission_->power / (emission_->sides() * kPiD * surface_.area() * emission_->mean));
   }
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
     const auto [on_light, uv, weight] = surface_.sample(u);
@@ -148,10 +163,10 @@ class DiffuseAreaLight final : public AreaLight {
     return LightSample{emitted, wi, distance, density};
   }
   SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const override {
-    if (!two_sided_ && !(dot(at.ng, w) > 0)) return {};
-    const SampledSpectrum emitted =
-        image_ ? image_->bilinear({at.uv.x, 1 - at.uv.y}, lambda) : spectrum_->sample(lambda);
-    return emitted * (scale_ * surface_.opacity(at.uv));
+    if (!emission_->two_sided && !(dot(at.ng, w) > 0)) return {};
+    const SampledSpectrum emitted = emission_->image ? emission_->image->bilinear({at.uv.x, 1 - at.uv.y}, lambda)
+                                                     : emission_->spectrum->sample(lambda);
+    return emitted * (scale_ * surface_.opacity(at));
   }
   float pdf(const Vec3& from, const EmittingPoint& at) const override {
     const Vec3 d = at.p - from;
@@ -160,32 +175,38 @@ class DiffuseAreaLight final : public AreaLight {
   }
   bool is_delta() const override { return !surface_.is_met(); }
   double power(float) const override {
-    return photometric(*spectrum_) * mean_ * double(scale_) * kPiD * surface_.area() * sides();
+    return emission_->luminance * double(scale_) * kPiD * surface_.area() * emission_->sides();
   }
   std::optional<LightBounds> bounds() const override {
     LightBounds bounds = surface_.bounds();
-    bounds.two_sided = two_sided_;
+    bounds.two_sided = emission_->two_sided;
     return bounds;
   }
-  const Spectrum& emission() const override { return *spectrum_; }
+  const Spectrum& emission() const override { return *emission_->spectrum; }
 
  private:
-  double sides() const { return two_sided_ ? 2 : 1; }
   float pdf_along(const Vec3& ng, const Vec3& wi, float distance) const {
     return distance * distance / (std::abs(dot(ng, wi)) * float(surface_.area()));
   }
 
-  SpectrumPtr spectrum_;
+  std::shared_ptr<const DiffuseEmission> emission_;
   EmittingSurface surface_;
-  bool two_sided_;
   float scale_ = 0;
-  std::optional<LightImage> image_;  ///< over (u, v), in place of an even radiance
-  double mean_ = 1;                  ///< of the image's luminance
+};
+
+class DiffuseAreaEmission final : public AreaEmission {
+ public:
+  explicit DiffuseAreaEmission(const Params& p) : emission_(std::make_shared<const DiffuseEmission>(p)) {}
+  bool is_by_face() const override { return emission_->power.has_value(); }
+  std::unique_ptr<AreaLight> over(EmittingSurface surface) const override {
+    return std::make_unique<DiffuseAreaLight>(emission_, std::move(surface));
+  }
+
+ private:
+  std::shared_ptr<const DiffuseEmission> emission_;
 };
 
 constexpr Default kWhite = std::array<double, 3>{1, 1, 1};
-constexpr Param kScale{
-    .name = "scale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor."};
 constexpr Param kRadiance{.name = "L",
                           .kind = ParamKind::illuminant,
                           .default_value = kWhite,
@@ -194,11 +215,6 @@ constexpr Param kIntensity{.name = "I",
                            .kind = ParamKind::illuminant,
                            .default_value = kWhite,
                            .doc = "Radiant intensity; spectra are normalised to luminance 1."};
-constexpr Param kPower{.name = "power",
-                       .kind = ParamKind::real,
-                       .unit = "lm",
-                       .range = kAtLeastZero,
-                       .doc = "Total power, in place of the spectrum's own."};
 constexpr Param kFrom{
     .name = "from", .kind = ParamKind::point3, .default_value = std::array<double, 3>{0, 0, 0}, .doc = "Position."};
 constexpr Param kTo{.name = "to",
@@ -206,18 +222,17 @@ constexpr Param kTo{.name = "to",
                     .default_value = std::array<double, 3>{0, 0, 1},
                     .doc = "What the light points at."};
 constexpr Param kDistant[] = {kRadiance,
-                              kScale,
+                              kLightScale,
                               kFrom,
                               kTo,
                               {.name = "illuminance",
                                .kind = ParamKind::real,
                                .unit = "lx",
-                               .range = kAtLeastZero,
-                               .doc = "Illuminance of a surface that faces the light."}};
-constexpr Param kPoint[] = {kIntensity, kScale, kPower, kFrom};
+                               .doc = "Illuminance of a surface that faces the light; 0 or less states none."}};
+constexpr Param kPoint[] = {kIntensity, kLightScale, kLightPower, kFrom};
 constexpr Param kSpot[] = {kIntensity,
-                           kScale,
-                           kPower,
+                           kLightScale,
+                           kLightPower,
                            kFrom,
                            kTo,
                            {.name = "coneangle",
@@ -235,18 +250,11 @@ constexpr Param kSpot[] = {kIntensity,
 constexpr Param kDiffuseArea[] = {
     kRadiance,
     {.name = "filename", .kind = ParamKind::string, .doc = "Image over (u, v), its top at v = 1; in place of L."},
-    kScale,
-    kPower,
+    kLightScale,
+    kLightPower,
     {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Both sides give off light."}};
 
-template <class T>
-std::unique_ptr<Light> make_light(const Params& p, const Transform& world_from_light) {
-  return std::make_unique<T>(p, world_from_light);
-}
-
-std::unique_ptr<AreaLight> make_area_light(const Params& p, EmittingSurface surface) {
-  return std::make_unique<DiffuseAreaLight>(p, std::move(surface));
-}
+std::unique_ptr<AreaEmission> make_diffuse_area(const Params& p) { return std::make_unique<DiffuseAreaEmission>(p); }
 
 }  // namespace
 
@@ -257,6 +265,6 @@ extern const LightInfo point_light{{"light", "point", "The same intensity in eve
 extern const LightInfo spot_light{{"light", "spot", "A cone with a soft rim.", "pbrt-v4", kSpot},
                                   make_light<SpotLight>};
 extern const AreaLightInfo diffuse_area_light{
-    {"area light", "diffuse", "The same radiance in every direction.", "pbrt-v4", kDiffuseArea}, make_area_light};
+    {"area light", "diffuse", "The same radiance in every direction.", "pbrt-v4", kDiffuseArea}, make_diffuse_area};
 
 }  // namespace frond

@@ -15,7 +15,7 @@ class Quadric : public AnalyticShape {
  public:
   Quadric(const Params& p, const ShapePlacement& placement)
       : to_scene_(placement.to_scene),
-        from_scene_(placement.to_scene.inverse()),
+        precise_(placement.to_scene),
         flip_(placement.reverse_orientation != placement.to_scene.swaps_handedness()),
         phi_max_(p.real("phimax") * M_PI / 180) {}
 
@@ -26,7 +26,7 @@ class Quadric : public AnalyticShape {
     return point;
   }
   double area(unsigned) const final {
-    if (is_similar()) return own_area() * stretch({0, 0, 1});
+    if (AffineMap{to_scene_.rows()}.area_scale()) return own_area() * stretch({0, 0, 1});
     constexpr int kSteps = 128;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i)
@@ -50,7 +50,8 @@ class Quadric : public AnalyticShape {
     const Vec3 ng = normalize_any(to_scene_.normal(to_float(normalize_any(n))));
     return flip_ ? -ng : ng;
   }
-  Vec3 to_scene_point(const Vec3& p) const { return to_scene_.point(p); }
+  /// Rounded in the scene's space alone: rays that leave a hit are lifted off by its coordinates there.
+  Vec3 to_scene_point(const Vec3d& p) const { return to_float(precise_.point(p)); }
   /// From those of the shape's own space, at a point with unit normal `n` there.
   SurfaceDerivatives to_scene_derivatives(const Vec3d& n, const Vec3d& dpdu, const Vec3d& dpdv, const Vec3d& dndu,
                                           const Vec3d& dndv) const {
@@ -63,12 +64,12 @@ class Quadric : public AnalyticShape {
     };
     return {to_scene_.vector(to_float(dpdu)), to_scene_.vector(to_float(dpdv)), change(dndu), change(dndv)};
   }
-  Vec3d local_point(const Vec3& p) const { return to_double(from_scene_.point(p)); }
-  Vec3d local_vector(const Vec3& v) const { return to_double(from_scene_.vector(v)); }
-  Bounds transformed_box(Vec3 lo, Vec3 hi) const {
+  Vec3d local_point(const Vec3& p) const { return precise_.inverse_point(to_double(p)); }
+  Vec3d local_vector(const Vec3& v) const { return precise_.inverse_vector(to_double(v)); }
+  Bounds transformed_box(const Vec3d& lo, const Vec3d& hi) const {
     Bounds bounds;
     for (int corner = 0; corner < 8; ++corner)
-      bounds.add(to_scene_.point({corner & 1 ? lo.x : hi.x, corner & 2 ? lo.y : hi.y, corner & 4 ? lo.z : hi.z}));
+      bounds.add(to_scene_point({corner & 1 ? lo.x : hi.x, corner & 2 ? lo.y : hi.y, corner & 4 ? lo.z : hi.z}));
     return bounds;
   }
   /// As a float, which is what a search that goes on from there compares with.
@@ -84,14 +85,9 @@ class Quadric : public AnalyticShape {
  private:
   /// By how much the transform enlarges areas with this unit normal.
   double stretch(const Vec3d& n) const { return double(length(AffineMap{to_scene_.rows()}.normal(to_float(n)))); }
-  bool is_similar() const {
-    const Vec3 x = to_scene_.vector({1, 0, 0}), y = to_scene_.vector({0, 1, 0}), z = to_scene_.vector({0, 0, 1});
-    const float xx = dot(x, x), slack = 1e-4f * xx;
-    const auto near = [slack](float a, float b) { return std::abs(a - b) <= slack; };
-    return near(dot(y, y), xx) && near(dot(z, z), xx) && near(dot(x, y), 0) && near(dot(y, z), 0) && near(dot(z, x), 0);
-  }
 
-  Transform to_scene_, from_scene_;
+  Transform to_scene_;
+  PreciseTransform precise_;
   bool flip_;
   double phi_max_;
 };
@@ -107,8 +103,7 @@ class Sphere final : public Quadric {
   }
 
   Bounds bounds(unsigned) const override {
-    const float r = float(radius_);
-    return transformed_box({-r, -r, float(z_min_)}, {r, r, float(z_max_)});
+    return transformed_box({-radius_, -radius_, z_min_}, {radius_, radius_, z_max_});
   }
 
   std::optional<ShapePoint> intersect(unsigned, const Ray& ray, float t_min) const override {
@@ -149,10 +144,8 @@ class Sphere final : public Quadric {
   ShapePoint at(const Vec3d& p, double phi, float t) const {
     const double theta = std::acos(std::clamp(p.z / radius_, -1.0, 1.0));
     const double bottom = std::acos(z_min_ / radius_), top = std::acos(z_max_ / radius_);
-    return {to_scene_point(to_float(p)),
-            to_scene_normal(p),
-            {float(phi / phi_max()), float((theta - bottom) / (top - bottom))},
-            t};
+    return {
+        to_scene_point(p), to_scene_normal(p), {float(phi / phi_max()), float((theta - bottom) / (top - bottom))}, t};
   }
 
   double radius_, z_min_ = 0, z_max_ = 0;
@@ -171,8 +164,7 @@ class Disk final : public Quadric {
   }
 
   Bounds bounds(unsigned) const override {
-    const float r = float(radius_), h = float(height_);
-    return transformed_box({-r, -r, h}, {r, r, h});
+    return transformed_box({-radius_, -radius_, height_}, {radius_, radius_, height_});
   }
 
   std::optional<ShapePoint> intersect(unsigned, const Ray& ray, float t_min) const override {
@@ -194,7 +186,7 @@ class Disk final : public Quadric {
     std::vector<Vec3> points;
     for (int i = 0; i < kCorners; ++i) {
       const double phi = kTau * i / kCorners, r = radius_ / std::cos(kTau / 2 / kCorners);
-      points.push_back(to_scene_point({float(r * std::cos(phi)), float(r * std::sin(phi)), float(height_)}));
+      points.push_back(to_scene_point({r * std::cos(phi), r * std::sin(phi), height_}));
     }
     return points;
   }
@@ -215,7 +207,7 @@ class Disk final : public Quadric {
 
  private:
   ShapePoint at(const Vec3d& p, double r, double phi, float t) const {
-    return {to_scene_point(to_float(p)), ng_, {float(phi / phi_max()), float((radius_ - r) / (radius_ - inner_))}, t};
+    return {to_scene_point(p), ng_, {float(phi / phi_max()), float((radius_ - r) / (radius_ - inner_))}, t};
   }
 
   double radius_, inner_, height_;
@@ -239,17 +231,16 @@ class Cylinder final : public Quadric {
     const auto reach = [&](size_t i) { return float(radius_ * std::hypot(double(rows[i][0]), double(rows[i][1]))); };
     const Vec3 by{reach(0), reach(1), reach(2)};
     for (const double z : {z_min_, z_max_}) {
-      const Vec3 centre = to_scene_point({0, 0, float(z)});
+      const Vec3 centre = to_scene_point({0, 0, z});
       bounds.add(centre - by), bounds.add(centre + by);
     }
     return bounds;
   }
   std::vector<Vec3> outline(unsigned) const override {
     std::vector<Vec3> points;
-    const float r = float(radius_);
     for (const double z : {z_min_, z_max_})
-      for (const float x : {-r, r})
-        for (const float y : {-r, r}) points.push_back(to_scene_point({x, y, float(z)}));
+      for (const double x : {-radius_, radius_})
+        for (const double y : {-radius_, radius_}) points.push_back(to_scene_point({x, y, z}));
     return points;
   }
 
@@ -290,7 +281,7 @@ class Cylinder final : public Quadric {
   double own_area() const override { return phi_max() * radius_ * (z_max_ - z_min_); }
 
   ShapePoint at(const Vec3d& p, double phi, float t) const {
-    return {to_scene_point(to_float(p)),
+    return {to_scene_point(p),
             to_scene_normal({p.x, p.y, 0}),
             {float(phi / phi_max()), float((p.z - z_min_) / (z_max_ - z_min_))},
             t};
@@ -336,20 +327,6 @@ MadeShape make_quadric(const Params& p, const ShapePlacement& placement) {
 }
 
 }  // namespace
-
-void Bounds::add(const Vec3& p) {
-  min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
-  max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
-}
-
-std::vector<Vec3> Bounds::corners() const {
-  std::vector<Vec3> points;
-  if (is_empty()) return points;
-  for (const float x : {min.x, max.x})
-    for (const float y : {min.y, max.y})
-      for (const float z : {min.z, max.z}) points.push_back({x, y, z});
-  return points;
-}
 
 extern const ShapeInfo sphere_shape{{"shape", "sphere", "Sphere or part of one.", "pbrt-v4", kSphere},
                                     make_quadric<Sphere>};

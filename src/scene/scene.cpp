@@ -8,78 +8,15 @@
 #include "scene/geometry_builder.h"
 #include "scene/instances.h"
 #include "scene/normal_map.h"
+#include "scene/scene_options.h"
 
 namespace frond {
 namespace {
 
-constexpr std::string_view kCoordSystems[] = {"camera", "cameraworld", "world"};
-constexpr Param kOptionParams[] = {
-    {.name = "seed",
-     .kind = ParamKind::integer,
-     .default_value = 0,
-     .range = {0, 2147483647},
-     .doc = "Seed of all random numbers."},
-    {.name = "wavelengths",
-     .kind = ParamKind::string,
-     .default_value = std::string_view("hero"),
-     .doc = "Wavelength strategy."},
-    {.name = "period",
-     .kind = ParamKind::real,
-     .range = {1e-6, 1e9},
-     .doc = "Two lengths: what stands in the scene is there again every so far along x and y, for ever.",
-     .list = true},
-    {.name = "disablepixeljitter",
-     .kind = ParamKind::boolean,
-     .default_value = false,
-     .doc = "All samples at the pixels' centres and the lens's."},
-    {.name = "disabletexturefiltering",
-     .kind = ParamKind::boolean,
-     .default_value = false,
-     .doc = "Textures are read at points."},
-    {.name = "disablewavelengthjitter",
-     .kind = ParamKind::boolean,
-     .default_value = false,
-     .doc = "All samples see the same wavelengths."},
-    {.name = "forcediffuse", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "pixelstats", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "wavefront", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "displacementedgescale", .kind = ParamKind::real, .default_value = 1.0, .doc = "pbrt's; has no effect."},
-    {.name = "msereferenceimage",
-     .kind = ParamKind::string,
-     .default_value = std::string_view(),
-     .doc = "pbrt's; has no effect: frond difference compares pictures."},
-    {.name = "msereferenceout",
-     .kind = ParamKind::string,
-     .default_value = std::string_view(),
-     .doc = "pbrt's; has no effect: frond difference compares pictures."},
-    {.name = "rendercoordsys",
-     .kind = ParamKind::string,
-     .default_value = std::string_view("cameraworld"),
-     .doc = "pbrt's; has no effect: it does not change the picture.",
-     .choices = kCoordSystems},
-};
-constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
-
-/// Binding of what can refer to files, but to nothing else of the scene.
-class OptionResolver final : public ParamResolver {
- public:
-  explicit OptionResolver(const SceneSettings& description, const Log& log = silent_log())
-      : description_(description), log_(log) {}
-
- private:
-  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
-  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
-  std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
-  SpectrumPtr spectrum(const ParsedParam& p, SpectrumUse) override { none(p.where); }
-  std::filesystem::path file(const std::string& name, const Location& w) override {
-    return description_.resolve(name, w);
-  }
-  void warn(const Location& where, std::string_view message) override { log_.warn(where, message); }
-  [[noreturn]] static void none(const Location& where) { fail(where, "an option cannot refer to the scene"); }
-
-  const SceneSettings& description_;
-  const Log& log_;
-};
+WavelengthChoice wavelength_choice(const SceneOptions& options, const SceneOverrides& overrides) {
+  if (!overrides.wavelengths.empty()) return {overrides.wavelengths, {}};
+  return {options.wavelengths, options.wavelengths_where};
+}
 
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
   return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
@@ -230,7 +167,7 @@ class SceneBuilder {
     }
     for (const MaterialDescription& m : description_.materials) {
       check(registry_.materials, split_bend(m.plugin, false), resolver);
-      Params(normal_bend_params, split_bend(m.plugin, true), resolver);
+      problems_.attempt([&] { Params(normal_bend_params, split_bend(m.plugin, true), resolver); });
     }
     for (const ParsedPlugin& light : description_.area_lights) check(registry_.area_lights, light, resolver);
   }
@@ -255,19 +192,13 @@ class SceneBuilder {
   }
 
   void build_options() {
-    OptionResolver resolver(description_, log_);
-    const Params p(kOptions, {"Option", {}, description_.options}, resolver);
-    for (const std::string_view name : {"forcediffuse", "pixelstats", "wavefront"})
-      if (p.boolean(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
-    for (const std::string_view name : {"displacementedgescale", "msereferenceimage", "msereferenceout"})
-      if (p.given(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
-    scene_.has_pixel_jitter_ = !p.boolean("disablepixeljitter");
-    scene_.has_wavelength_jitter_ = !p.boolean("disablewavelengthjitter");
-    filters_textures_ = !p.boolean("disabletexturefiltering");
-    seed_ = overrides_.seed;
-    if (!seed_ && p.given("seed")) seed_ = uint64_t(p.integer("seed"));
-    const auto [text, where] = wavelength_choice(description_, overrides_);
-    if (p.given("period")) set_period(p);
+    const SceneOptions options = read_options(description_, log_);
+    scene_.has_pixel_jitter_ = options.has_pixel_jitter;
+    scene_.has_wavelength_jitter_ = options.has_wavelength_jitter;
+    filters_textures_ = options.filters_textures;
+    seed_ = overrides_.seed ? overrides_.seed : options.seed;
+    period_ = options.period, period_where_ = options.period_where;
+    const auto [text, where] = wavelength_choice(options, overrides_);
     scene_.wavelengths_name_ = text;
     scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
     const WavelengthsInfo& info = registry_.wavelengths.get(parse_plugin_text(text, where).name, where);
@@ -276,33 +207,34 @@ class SceneBuilder {
         log_.warn(of_film.where, fmt::format("\"{}\" has no effect on wavelengths \"{}\"", of_film.name, info.name));
   }
 
-  void set_period(const Params& p) {
-    const std::vector<double> period = p.reals("period");
-    if (period.size() != 2) fail(p.where("period"), "\"period\" takes 2 values, {} given", period.size());
-    period_ = Vec2{float(period[0]), float(period[1])};
-    period_where_ = p.where("period");
-  }
-
   /// Lights that stand in the scene would have to be there again too.
   void build_tiling() {
     if (!period_) return;
     for (const Light* light : scene_.lights_->all)
-      if (!light->is_distant())
-        fail(period_where_, "a scene with a \"period\" takes light from outside alone: distant, infinite");
+      if (!light->is_distant()) {
+        const auto known = light_where_.find(light);
+        fail(known == light_where_.end() ? period_where_ : known->second,
+             "a scene with a \"period\" takes light from outside alone: \"distant\", or \"infinite\" without a portal");
+      }
     scene_.period_ = period_;
     scene_.tiling_.emplace(*period_, scene_.geometry_->bounds());
   }
 
   void build_view(SceneResolver& resolver) {
-    FilmSettings film;
-    problems_.attempt([&] { film = Scene::film_settings(description_, registry_, log_); });
-    if (overrides_.quick) film = halved(film);
-    scene_.film_ = film;
-    const CameraPlacement placement{description_.camera_from_world.inverse(), film.width, film.height};
-    problems_.attempt([&] {
-      scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
-      check_camera(film);
+    CameraPlacement placement{description_.camera_from_world.inverse(), 0, 0};
+    const bool has_film = problems_.attempt([&] {
+      const FilmSettings film = Scene::film_settings(description_, registry_, log_);
+      scene_.film_ = overrides_.quick ? halved(film) : film;
+      placement.width = scene_.film_.width, placement.height = scene_.film_.height;
     });
+    // A camera's frame hangs on the film's shape: without one only its parameters can be looked at.
+    if (has_film)
+      problems_.attempt([&] {
+        scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
+        check_camera(scene_.film_);
+      });
+    else
+      check(registry_.cameras, description_.camera, resolver);
     problems_.attempt([&] { scene_.sampler_ = make(registry_.samplers, description_.sampler, resolver, seed_); });
     problems_.attempt([&] { scene_.filter_ = make(registry_.filters, description_.filter, resolver); });
     problems_.attempt([&] { scene_.integrator_ = make(registry_.integrators, description_.integrator, resolver); });
@@ -339,11 +271,20 @@ class SceneBuilder {
 
   void build_lights(SceneResolver& resolver) {
     for (const LightDescription& light : description_.lights)
-      problems_.attempt([&] { lights_->add(make(registry_.lights, light.plugin, resolver, light.world_from_light)); });
+      problems_.attempt(
+          [&] { add(make(registry_.lights, light.plugin, resolver, light.world_from_light), light.plugin.where); });
+  }
+
+  const Light* add(std::unique_ptr<Light> light, const Location& where) {
+    const Light* const added = light.get();
+    if (period_) light_where_.emplace(added, where);
+    lights_->add(std::move(light));
+    return added;
   }
 
   /// One for each surface that gives off light. There are no lights after these.
   void build_area_lights(SceneResolver& resolver) {
+    emissions_.resize(description_.area_lights.size());
     for (const Surface& surface : scene_.geometry_->surfaces()) {
       lights_->of_surface.emplace_back();
       if (surface.area_light)
@@ -353,28 +294,35 @@ class SceneBuilder {
     scene_.lights_ = std::move(lights_);
   }
 
-  /// With "power" there is one for each primitive: the total is that of each, as in pbrt-v4.
+  /// What a directive says, for all of its shapes: images are read and spectra fitted once.
+  const AreaEmission& emission_of(size_t place, SceneResolver& resolver) {
+    if (!emissions_[place]) emissions_[place] = make(registry_.area_lights, description_.area_lights[place], resolver);
+    return *emissions_[place];
+  }
+
   void build_area_light(const Surface& surface, SceneResolver& resolver, SurfaceLights& of_surface) {
-    const ParsedPlugin& plugin = description_.area_lights[*surface.area_light];
-    const AreaLightInfo& info = registry_.area_lights.get(plugin.name, plugin.where);
-    const Params params(info, plugin, resolver);
-    const auto add = [&](EmittingSurface emitting) {
-      auto light = info.make(params, std::move(emitting));
+    const AreaEmission& emission = emission_of(*surface.area_light, resolver);
+    const Location& where = description_.area_lights[*surface.area_light].where;
+    const auto add_over = [&](EmittingSurface emitting) {
+      auto light = emission.over(std::move(emitting));
       const AreaLight* const added = light.get();
-      lights_->add(std::move(light));
+      add(std::move(light), where);
       return added;
     };
-    const unsigned count = primitives_of(surface.geometry);
-    if (count == 1 || !params.given("power")) {
-      of_surface.whole = add(EmittingSurface(surface));
+    const unsigned faces = faces_of(surface.geometry);
+    if (faces == 1 || !emission.is_by_face()) {
+      of_surface.whole = add_over(EmittingSurface(surface));
       return;
     }
-    params.warn("power", fmt::format("each of the shape's {} triangles or patches gives off this power, as in pbrt-v4: "
-                                     "all of them together {} times as much",
-                                     count, count));
-    for (unsigned i = 0; i < count; ++i) {
-      EmittingSurface emitting(surface, i);
-      of_surface.by_primitive.push_back(emitting.area() > 0 ? add(std::move(emitting)) : nullptr);
+    log_.warn(where, fmt::format("each of the shape's {} triangles or patches gives off this \"power\", as in pbrt-v4: "
+                                 "all of them together {} times as much",
+                                 faces, faces));
+    of_surface.by_primitive.resize(primitives_of(surface.geometry));
+    for (unsigned i = 0; i < of_surface.by_primitive.size();) {
+      const Primitives face = face_of(surface.geometry, i);
+      EmittingSurface emitting(surface, face);
+      const AreaLight* const light = emitting.area() > 0 ? add_over(std::move(emitting)) : nullptr;
+      for (; i < face.end; ++i) of_surface.by_primitive[i] = light;
     }
   }
 
@@ -390,6 +338,8 @@ class SceneBuilder {
   ThreadPool& pool_;
   const Log& log_;
   std::shared_ptr<LightTable> lights_ = std::make_shared<LightTable>();
+  std::map<const Light*, Location> light_where_;          ///< where there is a period
+  std::vector<std::unique_ptr<AreaEmission>> emissions_;  ///< by area light of the description; made when needed
 };
 
 void LightTable::add(std::unique_ptr<Light> light) {
@@ -456,10 +406,7 @@ uint32_t Scene::occluded(const RayPacket& packet) const {
 }
 
 WavelengthChoice wavelength_choice(const SceneSettings& description, const SceneOverrides& overrides) {
-  OptionResolver resolver(description);
-  const Params p(kOptions, {"Option", {}, description.options}, resolver);
-  if (!overrides.wavelengths.empty()) return {overrides.wavelengths, {}};
-  return {p.string("wavelengths"), p.where("wavelengths")};
+  return wavelength_choice(read_options(description), overrides);
 }
 
 ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry) {

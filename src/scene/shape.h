@@ -84,6 +84,9 @@ struct ShapePlacement {
   bool reverse_orientation;  ///< of the directive: front and back swapped
 };
 
+/// A mesh's normals into the scene's space, unit, on the side that ReverseOrientation makes the front.
+void place_normals(std::vector<Vec3>& normals, const ShapePlacement& placement);
+
 struct ShapeInfo : PluginInfo {
   MadeShape (*make)(const Params&, const ShapePlacement&);
 };

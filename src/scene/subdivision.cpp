@@ -170,34 +170,27 @@ class ControlMesh {
     return (a + b) * (3. / 8) + (p_[start_of(previous(e))] + p_[start_of(previous(opposite_[e]))]) * (1. / 8);
   }
 
-  /// From tangents, which are weighed sums over the ring. Not unit. As in pbrt-v4 it is on the side from which faces
-  /// wind clockwise, which thereby is the surface's front.
+  /// By how much the neighbour i of n in the ring of a vertex on the boundary pulls the tangent that leads inward.
+  static double inward_pull(size_t i, size_t n) {
+    static constexpr double kOfFew[3][4] = {{1, 1}, {0, 1, 0}, {-1, 2, 2, -1}};
+    if (n <= 4) return kOfFew[n - 2][i];
+    const double angle = std::numbers::pi / double(n - 1);
+    return i == 0 || i == n - 1 ? -std::sin(angle) : 2 * (1 - std::cos(angle)) * std::sin(double(i) * angle);
+  }
+
+  /// From two tangents: sums of the ways to the neighbours, each with its pull. Not unit. As in pbrt-v4 it is on the
+  /// side from which faces wind clockwise, which thereby is the surface's front.
   Vec3d normal(uint32_t v, const std::vector<Vec3d>& limit) const {
     const std::vector<uint32_t> around = ring(v);
     const size_t n = around.size();
-    Vec3d s, t;
-    if (!is_boundary(v)) {
-      for (size_t i = 0; i < n; ++i) {
-        const double angle = 2 * std::numbers::pi * double(i) / double(n);
-        s += limit[around[i]] * std::cos(angle);
-        t += limit[around[i]] * std::sin(angle);
-      }
-      return cross(t, s);
+    Vec3d a, b;
+    for (size_t i = 0; i < n; ++i) {
+      const Vec3d way = limit[around[i]] - limit[v];
+      const double turn = 2 * std::numbers::pi * double(i) / double(n);
+      a += way * (is_boundary(v) ? (i == n - 1 ? 1. : i == 0 ? -1. : 0.) : std::sin(turn));
+      b += way * (is_boundary(v) ? inward_pull(i, n) : std::cos(turn));
     }
-    const auto at = [&](size_t i) { return limit[around[i]]; };
-    s = at(n - 1) - at(0);
-    if (n == 2) {
-      t = at(0) + at(1) - limit[v] * 2.0;
-    } else if (n == 3) {
-      t = at(1) - limit[v];
-    } else if (n == 4) {
-      t = (at(1) + at(2)) * 2.0 - at(0) - at(3) - limit[v] * 2.0;
-    } else {
-      const double angle = std::numbers::pi / double(n - 1);
-      t = (at(0) + at(n - 1)) * -std::sin(angle);
-      for (size_t k = 1; k + 1 < n; ++k) t += at(k) * ((2 - 2 * std::cos(angle)) * std::sin(double(k) * angle));
-    }
-    return cross(s, t);
+    return cross(a, b);
   }
 
   std::vector<Vec3d> p_;

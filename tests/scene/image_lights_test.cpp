@@ -111,6 +111,113 @@ TEST(ImageSky, RefusesAMapByLatitudeAndLongitude) {
       HasSubstr("makeequiarea"));
 }
 
+/// By directions evenly over the sphere.
+template <class Value>
+double over_the_sphere(const Value& value) {
+  constexpr int kSteps = 600;
+  double sum = 0;
+  for (int i = 0; i < kSteps * kSteps; ++i)
+    sum += value(sphere_from_square({(float(i % kSteps) + 0.5f) / kSteps, (float(i / kSteps) + 0.5f) / kSteps}));
+  return sum * 4 * kPiD / (double(kSteps) * kSteps);
+}
+
+/// As an image of the sphere has it: 1 on average, and different everywhere.
+float ramp(const Vec3& w) { return 1 + 0.5f * w.x + 0.3f * w.y - 0.2f * w.z; }
+
+void write_ramp(const std::string& name, int size) {
+  Image image(size, size, {"R", "G", "B"});
+  for (int i = 0; i < size * size; ++i) {
+    const Vec2 uv{(float(i % size) + 0.5f) / float(size), (float(i / size) + 0.5f) / float(size)};
+    for (size_t c = 0; c < 3; ++c) image.at(i % size, i / size, c) = ramp(sphere_from_square(uv));
+  }
+  write_image(name, image, {"linear sRGB", {}});
+}
+
+constexpr const char* kStretched = "WorldBegin Rotate 30 1 2 3 Scale 1 .7 4 LightSource ";
+
+TEST(ImageSky, HasItsDensitiesWhateverTheTransform) {
+  const TestFolder folder("lights");
+  write_ramp(folder.name_of("sky.exr"), 64);
+  for (const std::string& place : {std::string(kStretched), std::string("WorldBegin Scale 2 -2 2 LightSource ")}) {
+    const Loaded sky(place + fmt::format("\"infinite\" \"string filename\" \"{}\"", folder.name_of("sky.exr")));
+    const auto& light = dynamic_cast<const EnvironmentLight&>(sky.light());
+    const bool is_stretched = place == kStretched;
+    EXPECT_EQ(sky.warnings.size(), is_stretched ? 1u : 0u);
+    for (const bool competing : {false, true}) {
+      const auto pdf = [&](const Vec3& w) { return competing ? light.competing_pdf({}, w) : light.pdf({}, w); };
+      EXPECT_NEAR(over_the_sphere([&](const Vec3& w) { return double(pdf(w)); }), 1, 5e-3);
+      double sum = 0;
+      constexpr int kSteps = 200;
+      for (int i = 0; i < kSteps * kSteps; ++i) {
+        const Vec2 u{(float(i % kSteps) + 0.5f) / kSteps, (float(i / kSteps) + 0.5f) / kSteps};
+        const auto s = competing ? light.sample_competing({}, u, sky.lambda()) : light.sample({}, u, sky.lambda());
+        ASSERT_TRUE(s);
+        if (i % 37 == 0) {
+          EXPECT_NEAR(pdf(s->wi) / s->pdf, 1, 0.1) << "but for points at the edge of a texel";
+        }
+        if (!competing) sum += relative_to_white(s->radiance, sky.lambda()) * double(std::max(0.f, s->wi.z) / s->pdf);
+      }
+      if (competing) continue;
+      const double wanted = over_the_sphere([&](const Vec3& w) {
+        return relative_to_white(light.radiance({}, w, sky.lambda()), sky.lambda()) * double(std::max(0.f, w.z));
+      });
+      EXPECT_NEAR(sum / (kSteps * kSteps) / wanted, 1, 5e-3);
+    }
+  }
+}
+
+TEST(PointLightsOfImages, GiveOffTheirPowerWhateverTheTransform) {
+  const TestFolder folder("lights");
+  write_ramp(folder.name_of("g.exr"), 64);
+  for (const char* kind : {"\"goniometric\"", "\"projection\" \"float fov\" 80"}) {
+    const Loaded loaded(kStretched +
+                        fmt::format("{} \"string filename\" \"{}\" \"float power\" 5", kind, folder.name_of("g.exr")));
+    const double given = over_the_sphere([&](const Vec3& w) {
+      const auto s = loaded.light().sample(w, {}, loaded.lambda());
+      return s ? relative_to_white(s->radiance, loaded.lambda()) : 0.0;
+    });
+    EXPECT_NEAR(given, 5, 0.05) << kind;
+    EXPECT_NEAR(loaded.light().power(1), 5, 1e-3) << kind;
+  }
+}
+
+/// As in pbrt-v4: 0 or less states none.
+TEST(Lights, TotalsThatAreNotPositiveCountAsNotGiven) {
+  const TestFolder folder("lights");
+  write_ramp(folder.name_of("a.exr"), 8);
+  const std::string image = fmt::format("\"string filename\" \"{}\"", folder.name_of("a.exr"));
+  const std::string portal = "\"point3 portal\" [-1 -2 3  -1 2 3  1 2 3  1 -2 3]";
+  for (const auto& [light, total] :
+       std::vector<std::pair<std::string, std::string>>{{"LightSource \"point\"", "power"},
+                                                        {"LightSource \"spot\"", "power"},
+                                                        {"LightSource \"distant\"", "illuminance"},
+                                                        {"LightSource \"infinite\"", "illuminance"},
+                                                        {"LightSource \"infinite\" " + image, "illuminance"},
+                                                        {"LightSource \"infinite\" " + portal, "illuminance"},
+                                                        {"LightSource \"infinite\" " + portal + image, "illuminance"},
+                                                        {"LightSource \"projection\" " + image, "power"},
+                                                        {"LightSource \"goniometric\" " + image, "power"},
+                                                        {"AreaLightSource \"diffuse\"", "power"},
+                                                        {"AreaLightSource \"diffuse\" " + image, "power"}}) {
+    const auto loaded = [&, text = &light, name = &total](const std::string& value) {
+      return Loaded("WorldBegin " + *text + (value.empty() ? "" : fmt::format(" \"float {}\" {}", *name, value)) +
+                    (text->starts_with("Area")
+                         ? " Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0  3 1 0  3 3 "
+                           "0] \"integer indices\" [0 1 2 3  1 4 3 5]"
+                         : ""));
+    };
+    const Loaded own = loaded("");
+    EXPECT_TRUE(own.warnings.empty()) << light;
+    for (const char* value : {"0", "-1"}) {
+      const Loaded same = loaded(value);
+      EXPECT_EQ(same.light().power(1), own.light().power(1)) << light;
+      EXPECT_EQ(same.scene->lights().size(), own.scene->lights().size()) << light;
+      EXPECT_THAT(same.warnings, ::testing::ElementsAre(HasSubstr("counts as not given"))) << light;
+    }
+    EXPECT_NE(loaded("1.5").light().power(1), own.light().power(1)) << light;
+  }
+}
+
 constexpr const char* kPortal = "\"point3 portal\" [-1 -2 3  -1 2 3  1 2 3  1 -2 3]";
 
 /// Seen from the origin through a rectangle of half sides a and b at a distance d, whose solid angle is known.
@@ -158,6 +265,37 @@ TEST(Portal, ShowsAnImage) {
   expect_portal(with_light(fmt::format("\"infinite\" \"string filename\" \"{}\" \"float scale\" 3 {}",
                                        folder.name_of("sky.exr"), kPortal)),
                 1.5);
+}
+
+TEST(Portal, ShowsAnImageAsItIsTurned) {
+  const TestFolder folder("lights");
+  write_ramp(folder.name_of("sky.exr"), 128);
+  const Loaded loaded(fmt::format("WorldBegin Rotate 50 1 -2 .5 LightSource \"infinite\" \"string filename\" \"{}\" {}",
+                                  folder.name_of("sky.exr"), kPortal));
+  const auto& light = dynamic_cast<const EnvironmentLight&>(loaded.light());
+  const Transform back = Transform::rotate(50, {1, -2, 0.5f}).inverse();
+  double wanted = 0, sampled = 0;
+  constexpr int kSteps = 100;
+  for (int i = 0; i < kSteps * kSteps; ++i) {
+    const Vec2 u{(float(i % kSteps) + 0.5f) / kSteps, (float(i / kSteps) + 0.5f) / kSteps};
+    const Vec3 to{2 * u.x - 1, 4 * u.y - 2, 3}, w = normalize(to);
+    const float seen = float(relative_to_white(light.radiance({}, w, loaded.lambda()), loaded.lambda()));
+    EXPECT_NEAR(seen, ramp(back.vector(w)), 0.03f);
+    wanted += double(ramp(back.vector(w)) * w.z / dot(to, to)) * 8 / (kSteps * kSteps);
+    const auto s = light.sample({}, u, loaded.lambda());
+    ASSERT_TRUE(s);
+    sampled += relative_to_white(s->radiance, loaded.lambda()) / double(s->pdf) / (kSteps * kSteps);
+  }
+  EXPECT_NEAR(sampled / wanted, 1, 5e-3);
+}
+
+/// pbrt-v4 takes such a light for an image of one texel; measured with it: 1.591 for 10 lx.
+TEST(Portal, ItsIlluminanceIsThatOfAnImageOfOneTexel) {
+  const Loaded loaded = with_light(fmt::format("\"infinite\" \"rgb L\" [1 1 1] \"float illuminance\" 10 {}", kPortal));
+  const auto& light = dynamic_cast<const EnvironmentLight&>(loaded.light());
+  EXPECT_NEAR(relative_to_white(light.radiance({}, {0, 0, 1}, loaded.lambda()), loaded.lambda()), 10 / (2 * kPiD),
+              0.01);
+  EXPECT_THAT(loaded.warnings, Contains(HasSubstr("half of what gives this illuminance")));
 }
 
 TEST(Portal, IsARectangle) {
@@ -267,6 +405,21 @@ TEST(ImageAreaLight, GivesOffThePowerThatIsAskedFor) {
   EXPECT_NEAR(
       relative_to_white(light.radiance({{}, {0, 0, 1}, {0.5f, 0.5f}}, {0, 0, 1}, loaded.lambda()), loaded.lambda()),
       3 / (kPiD * kPiD), 0.002);
+}
+
+/// Reading says of each image once that it holds what is no light.
+TEST(ImageAreaLight, ReadsItsImageOnceForAllItsShapes) {
+  const TestFolder folder("lights");
+  Image image = even(4, 4, 1);
+  image.at(2, 2, 1) = -0.5f;
+  write_image(folder.name_of("a.exr"), image, {"linear sRGB", {}});
+  const Loaded loaded(fmt::format(
+      "WorldBegin AreaLightSource \"diffuse\" \"string filename\" \"{}\" \"float power\" 2 {} Shape \"disk\"",
+      folder.name_of("a.exr"), kSquare));
+  EXPECT_EQ(loaded.scene->lights().size(), 3u);
+  EXPECT_EQ(std::ranges::count_if(loaded.warnings, [](const std::string& w) { return w.find("down to") != w.npos; }),
+            1);
+  for (const Light* light : loaded.scene->lights()) EXPECT_NEAR(light->power(1), 2, 1e-5);
 }
 
 TEST(LightImages, AreNotNegative) {

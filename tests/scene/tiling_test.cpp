@@ -93,8 +93,15 @@ TEST(Tiling, BadPeriodsAreRefused) {
   };
   EXPECT_NE(error("Option \"float period\" [1]\n", "").find("takes 2 values"), std::string::npos);
   EXPECT_NE(error("Option \"float period\" [0 1]\n", ""), "");
-  EXPECT_NE(error("Option \"float period\" [1 1]\n", "LightSource \"point\"").find("takes light from outside alone"),
-            std::string::npos);
+  const std::string outside = "takes light from outside alone: \"distant\", or \"infinite\" without a portal";
+  const std::string two = "Option \"float period\" [1 1]\n", even = "LightSource \"infinite\"\n";
+  for (const char* light :
+       {"LightSource \"point\"", "LightSource \"infinite\" \"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]",
+        "AreaLightSource \"diffuse\" Shape \"disk\""}) {
+    const std::string message = error(two, even + light);
+    EXPECT_NE(message.find(outside), std::string::npos) << message;
+    EXPECT_NE(message.find(":4:"), std::string::npos) << message;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+#include "scene/scene_options.h"
+
+#include <fmt/format.h>
+
+#include "core/plugin.h"
+
+namespace frond {
+namespace {
+
+constexpr std::string_view kCoordSystems[] = {"camera", "cameraworld", "world"};
+constexpr Param kOptionParams[] = {
+    {.name = "seed",
+     .kind = ParamKind::integer,
+     .default_value = 0,
+     .range = {0, 2147483647},
+     .doc = "Seed of all random numbers."},
+    {.name = "wavelengths",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("hero"),
+     .doc = "Wavelength strategy."},
+    {.name = "period",
+     .kind = ParamKind::real,
+     .range = {1e-6, 1e9},
+     .doc = "Two lengths: what stands in the scene is there again every so far along x and y, for ever.",
+     .list = true},
+    {.name = "disablepixeljitter",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "All samples at the pixels' centres and the lens's."},
+    {.name = "disabletexturefiltering",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "Textures are read at points."},
+    {.name = "disablewavelengthjitter",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "All samples see the same wavelengths."},
+    {.name = "forcediffuse", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
+    {.name = "pixelstats", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
+    {.name = "wavefront", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
+    {.name = "displacementedgescale", .kind = ParamKind::real, .default_value = 1.0, .doc = "pbrt's; has no effect."},
+    {.name = "msereferenceimage",
+     .kind = ParamKind::string,
+     .default_value = std::string_view(),
+     .doc = "pbrt's; has no effect: frond difference compares pictures."},
+    {.name = "msereferenceout",
+     .kind = ParamKind::string,
+     .default_value = std::string_view(),
+     .doc = "pbrt's; has no effect: frond difference compares pictures."},
+    {.name = "rendercoordsys",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("cameraworld"),
+     .doc = "pbrt's; has no effect: it does not change the picture.",
+     .choices = kCoordSystems},
+};
+constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
+
+}  // namespace
+
+SceneOptions read_options(const SceneSettings& description, const Log& log) {
+  OptionResolver resolver(description, log);
+  const Params p(kOptions, {"Option", {}, description.options}, resolver);
+  for (const std::string_view name : {"forcediffuse", "pixelstats", "wavefront"})
+    if (p.boolean(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
+  for (const std::string_view name : {"displacementedgescale", "msereferenceimage", "msereferenceout"})
+    if (p.given(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
+  SceneOptions options;
+  if (p.given("seed")) options.seed = uint64_t(p.integer("seed"));
+  options.wavelengths = p.string("wavelengths"), options.wavelengths_where = p.where("wavelengths");
+  if (p.given("period")) {
+    const std::vector<double> period = p.reals("period");
+    options.period_where = p.where("period");
+    if (period.size() != 2) fail(options.period_where, "\"period\" takes 2 values, {} given", period.size());
+    options.period = Vec2{float(period[0]), float(period[1])};
+  }
+  options.has_pixel_jitter = !p.boolean("disablepixeljitter");
+  options.has_wavelength_jitter = !p.boolean("disablewavelengthjitter");
+  options.filters_textures = !p.boolean("disabletexturefiltering");
+  return options;
+}
+
+}  // namespace frond
