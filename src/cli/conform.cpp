@@ -6,6 +6,7 @@
 #include "cli/common_options.h"
 #include "cli/material_words.h"
 #include "cli/number_list.h"
+#include "cli/refusing_log.h"
 #include "core/log.h"
 #include "instruments/given_wavelengths.h"
 #include "instruments/material_conformance.h"
@@ -75,13 +76,14 @@ ConformReport examine_material(const ConformOptions& o) {
   const auto sets = parameter_sets(material, o);
   ThreadPool pool;
   const ConsoleLog log;
+  const RefusingLog refusing;
   ConformReport report{.material = fmt::format("{}", fmt::join(o.material, " ")),
                        .wavelengths_nm = parse_numbers("--wavelengths", o.wavelengths),
                        .effort = effort_of(o),
                        .false_alarm_rate = o.false_alarm_rate,
                        .findings = {}};
   for (const GivenWavelengths& wavelengths : in_lanes(report.wavelengths_nm)) {
-    SceneResolver resolver(others, registry, wavelengths);
+    SceneResolver resolver(others, registry, wavelengths, refusing);
     const Preparation preparation{wavelengths, pool, log, {}};
     const Findings findings =
         examine(material.info, sets, {preparation, resolver, o.claims, report.effort, is_asked_for(material, o)});

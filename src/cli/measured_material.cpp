@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/material_words.h"
+#include "cli/refusing_log.h"
 #include "core/log.h"
 #include "instruments/beam.h"
 #include "scene/resolver.h"
@@ -14,7 +15,8 @@ std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, 
                                          const std::filesystem::path& cache_dir) {
   SceneDescription description = scene_of_materials(registry);
   description.materials.push_back({"", parse_material(words, registry).plugin});
-  SceneResolver resolver(description, registry, wavelengths);
+  const RefusingLog refusing;
+  SceneResolver resolver(description, registry, wavelengths, refusing);
   auto material = resolver.material(description.materials.size() - 1);
   material->prepare({wavelengths, pool, log, cache_dir});
   return material;
