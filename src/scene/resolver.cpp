@@ -48,6 +48,7 @@ SpectrumPtr blackbody_of(const ParsedParam& p) {
 SpectrumPtr constant_of(const ParsedParam& p) {
   const auto& v = numbers(p);
   if (v.size() != 1) fail(p.value_where, "\"{}\" takes one value as float, {} given", p.name, v.size());
+  if (!(v[0] >= 0)) fail(p.value_where, "\"{}\" is {}, below 0", p.name, v[0]);
   return std::make_shared<ConstantSpectrum>(float(v[0]));
 }
 
@@ -217,7 +218,8 @@ SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
     const ColorSpace& space = p.color_space.empty() ? color_space_ : color_space(p.color_space, p.where);
     s = emission                        ? rgb_illuminant(space, rgb_of(p), p.value_where)
         : use == SpectrumUse::unbounded ? rgb_unbounded(space, rgb_of(p), p.value_where)
-                                        : rgb_albedo(space, clamped_rgb(p), p.value_where);
+                                        : rgb_albedo(space, clamped_rgb(p), p.value_where,
+                                                     [&](const std::string& message) { warn(p.value_where, message); });
   } else if (p.type == "float") {
     s = constant_of(p);
   } else {

@@ -200,12 +200,14 @@ void refine_reflectance(const ColorSpace& space, const Triple& rgb, bool from_fl
   improve(coarse_response(), target, from_flat ? 1e-3 : 1e-6, c);
 }
 
-SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where) {
+SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where,
+                       const std::function<void(const std::string&)>& warn) {
   check(space, rgb, {0, 1}, where);
   if (is_grey(rgb)) return flat(rgb[0]);
   const SigmoidFit fit = fit_reflectance(space, rgb);
   if (fit.error > kLargestFitError)
-    fail(where, "{} is brighter and purer than a surface can be: XYZ is off by {:.3f}", shown(space, rgb), fit.error);
+    warn(fmt::format("{} is brighter and purer than a surface can be: it is the nearest, with XYZ off by {:.3f}",
+                     shown(space, rgb), fit.error));
   return std::make_shared<ReflectanceSpectrum>(fit.reflectance, 1);
 }
 

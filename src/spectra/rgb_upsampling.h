@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "core/spectrum.h"
 #include "spectra/color_space.h"
 
@@ -59,8 +62,10 @@ void refine_reflectance(const ColorSpace& space, const Triple& rgb, bool from_fl
 /// Largest error of a fit that the functions below accept, for the colour at full scale.
 inline constexpr double kLargestFitError = 5e-3;
 
-/// A reflectance. Throws InputError unless `rgb` lies in [0, 1] and some reflectance has that colour.
-SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where);
+/// A reflectance. Where none has that colour it is the nearest, and `warn` is told. Throws InputError unless `rgb` lies in
+/// [0, 1].
+SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where,
+                       const std::function<void(const std::string&)>& warn);
 
 /// A quantity of any size, index of refraction for one: a multiple of a reflectance. Throws InputError if a channel is
 /// negative or no reflectance has that colour.

@@ -48,6 +48,8 @@ void for_each_color(const Body& body) {
 
 const Location kHere{std::make_shared<const std::string>("a.pbrt"), 4, 2};
 
+void must_exist(const std::string& message) { ADD_FAILURE() << message; }
+
 /// What a render measures of a surface under D65, in the film's linear RGB, against what the scene asked for.
 void expect_round_trip(const char* name) {
   const ColorSpace& space = *find_color_space(name);
@@ -55,7 +57,7 @@ void expect_round_trip(const char* name) {
   const Matrix3 to_table_white = bradford(nominal_white, table_white);
   double worst = 0, worst_nominal = 0, worst_delta_e = 0;
   for_each_color([&](const Triple& rgb) {
-    const SpectrumPtr s = rgb_albedo(space, rgb, {});
+    const SpectrumPtr s = rgb_albedo(space, rgb, {}, must_exist);
     EXPECT_LE(s->max_value(), 1);
     const Triple xyz = to_xyz(Product(*s, *unit_d65())), wanted = space.xyz_from_rgb * rgb;
     worst = std::max(worst, largest_difference(xyz, to_table_white * wanted));
@@ -83,7 +85,7 @@ TEST(RgbAlbedo, ColorsOfWideSpacesComeBackOrAreRefused) {
     int kept = 0;
     for_each_color([&](const Triple& rgb) {
       try {
-        const SpectrumPtr s = rgb_albedo(space, rgb, {});
+        const SpectrumPtr s = rgb_albedo(space, rgb, {}, must_exist);
         const Triple xyz = to_xyz(Product(*s, *unit_d65()));
         EXPECT_LT(largest_difference(xyz, to_table_white * (space.xyz_from_rgb * rgb)), kLargestFitError + kSteepEdges);
         ++kept;
@@ -99,18 +101,18 @@ TEST(RgbAlbedo, ColorsOfWideSpacesComeBackOrAreRefused) {
 TEST(RgbAlbedo, GreyIsFlatAndExact) {
   for (const float v : {0.f, 0.18f, 0.5f, 1.f})
     for (const ColorSpace& space : color_spaces()) {
-      const SpectrumPtr s = rgb_albedo(space, {double(v), double(v), double(v)}, {});
+      const SpectrumPtr s = rgb_albedo(space, {double(v), double(v), double(v)}, {}, must_exist);
       for (float nm = 360; nm <= 830; nm += 10) ASSERT_EQ(s->at(nm), v);
     }
 }
 
 TEST(RgbAlbedo, NearlyGreyIsNearlyFlat) {
-  const SpectrumPtr s = rgb_albedo(color_space("srgb", {}), {0.5, 0.5, 0.5001}, {});
+  const SpectrumPtr s = rgb_albedo(color_space("srgb", {}, must_exist), {0.5, 0.5, 0.5001}, {});
   for (float nm = 360; nm <= 830; nm += 10) ASSERT_NEAR(double(s->at(nm)), 0.5, 1e-3);
 }
 
 TEST(RgbAlbedo, DataEndWithTheEye) {
-  const SpectrumPtr s = rgb_albedo(color_space("srgb", {}), {0.2, 0.5, 0.1}, {});
+  const SpectrumPtr s = rgb_albedo(color_space("srgb", {}, must_exist), {0.2, 0.5, 0.1}, {});
   EXPECT_EQ(s->range_nm().min, 360);
   EXPECT_EQ(s->range_nm().max, 830);
   EXPECT_EQ(s->at(2000), s->at(830));
@@ -118,7 +120,7 @@ TEST(RgbAlbedo, DataEndWithTheEye) {
 
 TEST(RgbAlbedo, MaximumIsThatOfItsValues) {
   for_each_color([](const Triple& rgb) {
-    const SpectrumPtr s = rgb_albedo(color_space("srgb", {}), rgb, {});
+    const SpectrumPtr s = rgb_albedo(color_space("srgb", {}, must_exist), rgb, {});
     float largest = 0;
     for (float nm = 360; nm <= 830; nm += 0.5f) largest = std::max(largest, s->at(nm));
     ASSERT_GE(s->max_value(), largest * (1 - 1e-6f));
@@ -129,13 +131,13 @@ TEST(RgbAlbedo, MaximumIsThatOfItsValues) {
 TEST(RgbAlbedo, ImpossibleColorsAreRefusedWhereTheyStand) {
   const ColorSpace& srgb = *find_color_space("srgb");
   EXPECT_EQ(error_of([&] {
-              rgb_albedo(srgb, {1.2, 0, 0}, kHere);
+              rgb_albedo(srgb, {1.2, 0, 0}, kHere, must_exist);
             }),
             "a.pbrt:4:2: rgb (1.2, 0, 0) of color space \"srgb\" lies outside 0 to 1");
-  EXPECT_THAT(error_of([&] { rgb_albedo(srgb, {0, -0.1, 0}, kHere); }), HasSubstr("outside 0 to 1"));
-  EXPECT_THAT(error_of([&] { rgb_albedo(srgb, {0, NAN, 0}, kHere); }), HasSubstr("outside 0 to 1"));
+  EXPECT_THAT(error_of([&] { rgb_albedo(srgb, {0, -0.1, 0}, kHere, must_exist); }), HasSubstr("outside 0 to 1"));
+  EXPECT_THAT(error_of([&] { rgb_albedo(srgb, {0, NAN, 0}, kHere, must_exist); }), HasSubstr("outside 0 to 1"));
   EXPECT_THAT(error_of([&] {
-                rgb_albedo(color_space("rec2020", {}), {0, 1, 0}, kHere);
+                rgb_albedo(color_space("rec2020", {}, must_exist), {0, 1, 0}, kHere);
               }),
               HasSubstr("brighter and purer than a surface can be"));
 }

@@ -13,7 +13,7 @@ class LaneIndices {
     for (int lane = 0; lane < kLanes; ++lane) {
       eta_[lane] = 1;
       if (!lambda.active[size_t(lane)]) continue;
-      // pbrt-v4's too: a spectrum that ends has no index of refraction beyond.
+      // 0 is no index of refraction; pbrt-v4 takes 1 for it too.
       eta_[lane] = eta[lane] == 0 ? 1 : std::clamp(eta[lane], kLeast, 1 / kLeast);
       mask_[lane] = 1;
       lanes_[size_t(count_++)] = lane;

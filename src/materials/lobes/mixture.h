@@ -57,6 +57,11 @@ class MixtureBsdf final : public Bsdf {
     return (1 - amount_) * first_.pdf(wo, wi) + amount_ * second_.pdf(wo, wi);
   }
 
+  /// Where two differ, there is none: what is asked of it has to be asked of the parts.
+  SampledSpectrum index_ratio() const override {
+    return any(first_.flags() & Lobes::transmission) ? first_.index_ratio() : second_.index_ratio();
+  }
+
   /// Each may have its own idea of what is incident.
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
     for (size_t i = 0; i < rays.size(); ++i)
