@@ -68,6 +68,7 @@ Tokenizer::Tokenizer(std::string_view text, std::shared_ptr<const std::string> f
   at_ = line_start_ = text.data();
   end_ = at_ + text.size();
   next_ = scan();
+  if (outer_) outer_->last_capital_ = {};  // what is taken from there later may end a directive of this file
 }
 
 Token Tokenizer::next() {
@@ -135,9 +136,8 @@ void Tokenizer::go_back_to(const Token& word) {
 }
 
 void Tokenizer::skip_to_directive(const Token& failed, bool (*is_directive)(std::string_view)) {
-  if (last_capital_.text.data() != failed.text.data() && last_capital_.from == this &&
-      last_capital_.text.data() > failed.text.data() && is_directive(last_capital_.text))
-    return go_back_to(last_capital_);
+  const bool came_later = failed.from != this || last_capital_.text.data() > failed.text.data();
+  if (last_capital_.from == this && came_later && is_directive(last_capital_.text)) return go_back_to(last_capital_);
   while (is_broken_ || !at_end()) {
     if (!is_broken_ && is_capital(next_) && (begins_line(next_) || is_directive(next_.text))) return;
     is_broken_ = false;

@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "core/problems.h"
 #include "render/plugins.h"
+#include "scene/directives.h"
 #include "scene/parser.h"
 #include "scene/pbrt_plugins.h"
 #include "tests/support/input_error.h"
@@ -156,6 +157,36 @@ TEST(PbrtFormat, AllErrorsAreToldAndNoneThatFollows) {
       ElementsAre(HasSubstr("s:2:7: Shape needs"), HasSubstr("s:4:1: Translate takes"), HasSubstr("s:4:23: unknown"),
                   HasSubstr("s:6:13: unknown kind of texture"), HasSubstr("s:7:25: this string"),
                   HasSubstr("s:8:1: unknown directive Foo"), HasSubstr("s:9:16: there is no object")));
+}
+
+/// The one text stands before the other in memory, and behind it.
+TEST(PbrtFormat, AfterAnErrorAtAnIncludedFilesEndTheFileThatIncludesGoesOn) {
+  const std::string inner_text = "Translate 1 x", outer_text = "Include \"i\" Shape \"disk\"";
+  for (const std::string& both : {inner_text + ' ' + outer_text, outer_text + ' ' + inner_text}) {
+    const auto piece = [&](const std::string& text) {
+      return std::string_view(both).substr(both.find(text), text.size());
+    };
+    const auto name = std::make_shared<const std::string>("s");
+    Tokenizer outer(piece(outer_text), name);
+    outer.next(), outer.next();
+    Tokenizer inner(piece(inner_text), name, &outer);
+    const Token failed = inner.next();
+    inner.next(), inner.next();
+    inner.skip_to_directive(failed, is_directive);
+    EXPECT_EQ(outer.peek().text, "Shape") << both;
+  }
+}
+
+TEST(PbrtFormat, WhatAnIncludedFileTakesOfItsIncluderIsReadAgain) {
+  const TestFolder folder("include_end");
+  folder.write("inner.pbrt", "Shape \"disk\"\nTranslate 1 2");
+  Problems problems;
+  const auto scene =
+      parse_scene({folder.write("main.pbrt", "WorldBegin\nInclude \"inner.pbrt\"\nShape \"sphere\"\nFoo 1")},
+                  silent_log(), {}, problems);
+  EXPECT_THAT(problems.messages(), ElementsAre(HasSubstr("main.pbrt:3:1: Translate takes 3 numbers"),
+                                               HasSubstr("main.pbrt:4:1: unknown directive Foo")));
+  EXPECT_EQ(scene.shapes.size(), 2u);
 }
 
 /// What becomes of a scene's plugins, and what is said.
