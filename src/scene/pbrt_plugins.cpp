@@ -181,8 +181,9 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   warn_of_regularize(d.integrator, log);
   if (d.integrator.name == "path")
     std::erase_if(d.integrator.params, [](const auto& p) { return p.name == "regularize"; });
-  // Shadow rays of these pass what only parts media; those of "path" do not.
-  const bool sees_through_interfaces = d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
+  // Shadow rays of these pass what only parts media; those of "path" do not. pbrt takes volpath where none is given.
+  const bool sees_through_interfaces =
+      !d.integrator.where.file || d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
   answerer.answer("Integrator", registry.integrators, kIntegrators, kOldIntegrators, d.integrator);
   const bool is_realistic = d.camera.name == "realistic";
   if (answerer.answer("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)

@@ -232,6 +232,7 @@ TEST(PbrtFormat, VolpathIsPathWhereThereAreNoMedia) {
 TEST(PbrtFormat, VolpathSeesThroughInterfaces) {
   const std::string world = " WorldBegin Material \"interface\" Shape \"sphere\" Material \"diffuse\" Shape \"disk\"";
   EXPECT_EQ(answer("Integrator \"volpath\"" + world).scene.shapes.size(), 1u);
+  EXPECT_EQ(answer(world).scene.shapes.size(), 1u);  // pbrt's default
   EXPECT_EQ(answer("Integrator \"path\"" + world).scene.shapes.size(), 2u);
 }
 
