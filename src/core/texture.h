@@ -4,6 +4,7 @@
 
 #include "core/params.h"
 #include "core/plugin.h"
+#include "core/shared_work.h"
 #include "core/spectrum.h"
 #include "core/transform.h"
 #include "core/vec.h"
@@ -106,9 +107,10 @@ class ConstantSpectrumTexture final : public SpectrumTexture {
   SpectrumPtr value_;
 };
 
-/// Where a texture was defined.
+/// Where a texture was defined, and among which others.
 struct TexturePlacement {
   Transform world_from_texture;
+  SharedWork* shared = nullptr;  ///< what textures of one scene have in common; nullptr: each has its own
 };
 
 struct FloatTextureInfo : PluginInfo {
