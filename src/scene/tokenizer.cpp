@@ -89,9 +89,10 @@ Token Tokenizer::token_at(const char* start) const {
 
 void Tokenizer::skip_blanks() {
   for (; at_ != end_; ++at_) {
-    if (*at_ == '#') at_ = std::find(at_, end_, '\n');
+    if (*at_ == '#') at_ = std::find_if(at_, end_, [](char c) { return c == '\n' || c == '\r'; });
     if (at_ == end_ || !is_blank(*at_)) return;
-    if (*at_ == '\n') ++line_, line_start_ = at_ + 1;
+    const bool is_lone_return = *at_ == '\r' && (at_ + 1 == end_ || at_[1] != '\n');
+    if (*at_ == '\n' || is_lone_return) ++line_, line_start_ = at_ + 1;
   }
 }
 
