@@ -84,8 +84,9 @@ struct SceneSettings {
   /// What directives that could not be read would have given a name to: what misses it is no error of its own.
   std::set<std::string, std::less<>> unread;
 
-  /// A file name in the scene as a path: relative to the file that names it, or else to the main file, or else to where
-  /// the program runs. Backslashes are as good as slashes where no file is called so.
+  /// A file name in the scene as a path: relative to the main file, as in pbrt, or else to the file that names it, or
+  /// else to where the program runs, which a name on the command line is relative to first. Backslashes are as good as
+  /// slashes where no file is called so.
   std::filesystem::path resolve(const std::string& name, const Location& where) const;
 };
 

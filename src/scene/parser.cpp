@@ -168,20 +168,4 @@ SceneDescription parse_scene_text(const std::string& text, const std::string& na
   return scene;
 }
 
-fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
-  if (name.empty() || fs::path(name).is_absolute() || !where.file) return name;
-  std::string slashed = name;  // as exporters on Windows mean it
-  std::ranges::replace(slashed, '\\', '/');
-  std::error_code error;
-  for (const fs::path& path : {fs::path(name), fs::path(slashed)}) {
-    const fs::path beside = (fs::path(*where.file).parent_path() / path).lexically_normal();
-    if (fs::exists(beside, error)) return beside;
-    if (files.empty()) continue;
-    if (fs::path from_main = (files.front().parent_path() / path).lexically_normal(); fs::exists(from_main, error))
-      return from_main;
-    if (fs::exists(path, error)) return path;
-  }
-  return (fs::path(*where.file).parent_path() / name).lexically_normal();
-}
-
 }  // namespace frond
