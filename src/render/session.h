@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "render/part.h"
 #include "render/render_loop.h"
-#include "scene/pbrt_plugins.h"
+#include "scene/read_scene.h"
 #include "scene/scene.h"
 
 namespace frond {

@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "render/inputs.h"
 #include "render/plugins.h"
-#include "scene/pbrt_plugins.h"
+#include "scene/read_scene.h"
 #include "scene/resolver.h"
 #include "study/paired_films.h"
 
