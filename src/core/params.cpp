@@ -238,6 +238,7 @@ class ClampedFloatTexture final : public FloatTexture {
     const Interval own = texture_->range();
     return {std::clamp(own.min, range_.min, range_.max), std::clamp(own.max, range_.min, range_.max)};
   }
+  bool is_range_tight() const override { return texture_->is_range_tight(); }
   bool needs_details() const override { return texture_->needs_details(); }
 
  private:
@@ -250,13 +251,13 @@ std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, co
   auto texture = resolver.float_texture(name, where);
   const Interval values = texture->range(), range = declared.range;
   if (range.contains(values.min) && range.contains(values.max)) return texture;
-  const std::string message =
-      fmt::format("texture \"{}\" has values from {} to {}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
-                  values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);
+  const std::string message = fmt::format(
+      "texture \"{}\" has values from {:.3g} to {:.3g}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
+      values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);
   // What has a unit is physics, and most likely in another one.
   if (!declared.unit.empty() || values.max < range.min || values.min > range.max || !(values.min <= values.max))
     fail(where, "{}", message);
-  resolver.warn(where, message + ": they are clamped");
+  if (texture->is_range_tight()) resolver.warn(where, message + ": they are clamped");
   return std::make_shared<ClampedFloatTexture>(std::move(texture), range);
 }
 

@@ -65,6 +65,8 @@ class FloatTexture {
   virtual float evaluate(const TexturePoint& at) const = 0;
   /// Bounds of the values.
   virtual Interval range() const = 0;
+  /// Whether values come near to them; those of noise hardly do.
+  virtual bool is_range_tight() const { return true; }
   /// Reads more of its points than (u, v) and instance. What it is made of says so for itself.
   virtual bool needs_details() const { return false; }
   bool is_constant() const { return range().min == range().max; }

@@ -27,6 +27,7 @@ class SharedFloat final : public FloatTexture {
     return (t < 1 ? (1 - t) * first_->evaluate(at) : 0) + (t > 0 ? t * second_->evaluate(at) : 0);
   }
   Interval range() const override { return hull(first_->range(), second_->range()); }
+  bool is_range_tight() const override { return first_->is_range_tight() && second_->is_range_tight(); }
   bool needs_details() const override { return share_.needs_details(); }
 
  private:
@@ -216,6 +217,7 @@ class Fbm final : public FloatTexture {
     const double most = largest_sum(double(octaves_.gain), octaves_.count);
     return {-most, most};
   }
+  bool is_range_tight() const override { return false; }
   bool needs_details() const override { return true; }
 
  private:
@@ -233,6 +235,7 @@ class Wrinkled final : public FloatTexture {
     const double most = largest_sum(double(octaves_.gain), octaves_.count);
     return {octaves_.gain < 0 ? -most : 0, most};
   }
+  bool is_range_tight() const override { return false; }
   bool needs_details() const override { return true; }
 
  private:
@@ -254,6 +257,7 @@ class Windy final : public FloatTexture {
     const double most = largest_sum(double(kGain), kGustOctaves) * largest_sum(double(kGain), kWaveOctaves);
     return {-most, most};
   }
+  bool is_range_tight() const override { return false; }
   bool needs_details() const override { return true; }
 
  private:
