@@ -39,6 +39,19 @@ const KindTraits& traits(ParamKind kind) {
   return table[static_cast<size_t>(kind)];
 }
 
+bool takes(const PluginInfo& info, const ParsedParam& given) {
+  const auto declared = std::ranges::find(info.params, given.name, &Param::name);
+  if (declared == info.params.end()) return false;
+  const auto& types = traits(declared->kind).types;
+  return std::ranges::find(types, given.type) != types.end();
+}
+
+/// "an rgb", "a float".
+std::string with_article(std::string_view type) {
+  const bool is_vowel_spoken = type == "rgb" || std::string_view("aeiou").find(type[0]) != std::string_view::npos;
+  return fmt::format("{} {}", is_vowel_spoken ? "an" : "a", type);
+}
+
 size_t value_count(const ParsedParam& p) {
   return std::visit([](const auto& v) { return v.size(); }, p.values);
 }
@@ -69,10 +82,10 @@ Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver
     : info_(info), parsed_(parsed), resolver_(resolver), read_(info.params.size(), false) {
   std::vector<std::string_view> names;
   for (const Param& p : info_.params) names.push_back(p.name);
+  std::erase_if(parsed_.params, [&](const ParsedParam& p) { return p.may_be_unused && !takes(info_, p); });
   for (size_t i = 0; i < parsed_.params.size(); ++i) {
     const ParsedParam& p = parsed_.params[i];
     const auto declared = std::find(names.begin(), names.end(), p.name);
-    if (declared == names.end() && p.may_be_unused) continue;
     if (declared == names.end())
       fail(p.where, "{} \"{}\" has no parameter \"{}\"{}", info_.kind, info_.name, p.name, suggestion(p.name, names));
     for (size_t j = 0; j < i; ++j)
@@ -88,7 +101,7 @@ Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver
 void Params::check(const Param& declared, const ParsedParam& p) const {
   const auto& [types, arity] = traits(declared.kind);
   if (std::find(types.begin(), types.end(), p.type) == types.end())
-    fail(p.where, "\"{}\" is {}, a {} was given", p.name, fmt::join(types, " or "), p.type);
+    fail(p.where, "\"{}\" is {}, {} was given", p.name, fmt::join(types, " or "), with_article(p.type));
   const size_t count = value_count(p), unit = p.type == "texture" ? 1 : arity;
   if (unit > 0) {
     if (!declared.list && count != unit)
