@@ -92,8 +92,8 @@ class Checkerboard {
   }
   /// Of the alternating sign, whose first is a triangle wave, 0 to 1.
   static double second_integral(double x) {
-    const double t = x / 2 - std::floor(x / 2) - 0.5;
-    return x / 2 + t * (1 - 2 * std::abs(t));
+    const double periods = std::floor(x / 2), up = x - 2 * periods, down = 2 - up;
+    return periods + (up < 1 ? up * up / 2 : 1 - down * down / 2);
   }
 
   bool is_solid_;
@@ -286,7 +286,7 @@ class Marble final : public SpectrumTexture {
   bool needs_details() const override { return true; }
 
  private:
-  /// From 0 to 1, by cubic Bézier curves over four colours in turn; the colours are pbrt-v4's.
+  /// From 0 to 1, by cubic Bézier curves over four colours in turn; the colours are those of pbrt-v4 (Apache 2.0).
   static Float4 color(float t) {
     constexpr Float4 kLight{.58f, .58f, .6f, 0};
     constexpr std::array<Float4, 9> kColors{kLight,
