@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/texture.h"
+#include "scene/clamped.h"
 #include "scene/noise.h"
 #include "scene/registry.h"
 #include "scene/texture_mapping.h"
@@ -90,7 +91,7 @@ class Checkerboard {
                   second_integral(double(in_period) - double(radius))) /
                  (double(radius) * double(radius)));
   }
-  /// Of the alternating sign, whose first is a triangle wave, 0 to 1.
+  /// Of the alternating sign: the first is a triangle wave from 0 to 1, of area 1 in each period of 2.
   static double second_integral(double x) {
     const double periods = std::floor(x / 2), up = x - 2 * periods, down = 2 - up;
     return periods + (up < 1 ? up * up / 2 : 1 - down * down / 2);
@@ -179,9 +180,7 @@ class BilerpSpectrum final : public SpectrumTexture {
     const auto w = corner_weights(mapping_.at(at).st);
     SampledSpectrum sum;
     for (size_t i = 0; i < 4; ++i) sum += w[i] * v_[i]->sample(lambda);
-    constexpr Float4 kOne{1, 1, 1, 1};
-    const Float4 positive = larger(Float4{}, sum.v);
-    return SampledSpectrum(positive < kOne ? positive : kOne);
+    return SampledSpectrum(clamped_to_unit(sum.v));
   }
   Interval range_nm() const override {
     Interval common = v_[0]->range_nm();

@@ -115,7 +115,11 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
     const Info& info = table.get(t.plugin.name, t.plugin.where);
     bool needs_details = false;
     std::shared_ptr<const Texture> result = make(
-        key, [&] { return info.make(Params(info, t.plugin, *this), {t.world_from_texture}); }, needs_details);
+        key,
+        [&] {
+          return info.make(Params(info, t.plugin, *this), {t.world_from_texture, &shared_});
+        },
+        needs_details);
     pass_on(needs_details);
     made.emplace(name, MadeTexture<Texture>{result, needs_details});
     return result;

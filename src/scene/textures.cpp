@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "core/texture.h"
+#include "scene/clamped.h"
 #include "scene/registry.h"
 
 namespace frond {
@@ -34,9 +35,7 @@ class ScaleSpectrum final : public SpectrumTexture {
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
     const SampledSpectrum product = tex_->evaluate(at, lambda) * scale_->evaluate(at);
     if (!is_clamped_) return product;
-    constexpr Float4 kOne{1, 1, 1, 1};
-    const Float4 positive = larger(Float4{}, product.v);
-    return SampledSpectrum(positive < kOne ? positive : kOne);
+    return SampledSpectrum(clamped_to_unit(product.v));
   }
   Interval range_nm() const override { return tex_->range_nm(); }
   float max_value() const override { return std::clamp(tex_->max_value() * float(scale_->range().max), 0.f, 1.f); }
