@@ -18,11 +18,16 @@ namespace {
 
 const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
 
-/// A name such as "stdillum-D65", or that of an .spd file.
+/// A name such as "stdillum-D65", or that of a file.
 SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneSettings& description) {
   const auto& words = std::get<std::vector<std::string>>(p.values);
   if (words.size() != 1) fail(p.value_where, "\"{}\" takes one spectrum, {} names given", p.name, words.size());
-  if (words[0].ends_with(".spd")) return read_spd(description.resolve(words[0], p.value_where), p.value_where);
+  const auto names = spectrum_names();
+  const std::filesystem::path path = description.resolve(words[0], p.value_where);
+  std::error_code error;
+  const bool is_named = std::ranges::find(names, words[0]) != names.end();
+  if (!is_named && (words[0].ends_with(".spd") || std::filesystem::is_regular_file(path, error)))
+    return read_spd(path, p.value_where);
   return named_spectrum(words[0], p.value_where);
 }
 
