@@ -46,6 +46,7 @@ void DescriptionBuilder::world_begin(const Location& where) {
   in_world_ = true;
   if (!scene_.film.where.file) set_film_space();
   state_.transform = Transform();
+  activate_transforms(true);
   name_transform("world", where);
 }
 
