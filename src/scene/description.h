@@ -83,6 +83,8 @@ struct SceneSettings {
 
   /// What directives that could not be read would have given a name to: what misses it is no error of its own.
   std::set<std::string, std::less<>> unread;
+  bool is_incomplete = false;  ///< a file that another one includes could not be read: any name may have been there
+  bool may_be_unread(std::string_view name) const { return is_incomplete || unread.contains(name); }
 
   /// A file name in the scene as a path: relative to the main file, as in pbrt, or else to the file that names it, or
   /// else to where the program runs, which a name on the command line is relative to first. Backslashes are as good as

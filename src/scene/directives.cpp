@@ -263,7 +263,11 @@ void carry_out(const Token& name, DirectiveContext& context) {
   if (!entry) fail_unknown(name, where);
   const bool in_world = context.scene.in_world();
   if (entry->block == Block::options && in_world) fail(where, "{} belongs before WorldBegin", entry->name);
-  if (entry->block == Block::world && !in_world) fail(where, "{} belongs after WorldBegin", entry->name);
+  if (entry->block == Block::world && !in_world) {
+    const std::string message = fmt::format("{} belongs after WorldBegin", entry->name);
+    if (context.scene.is_incomplete()) throw Consequence(where, message);
+    fail(where, "{}", message);
+  }
   entry->carry_out({entry->name, where, context});
 }
 

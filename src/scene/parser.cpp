@@ -82,6 +82,8 @@ void SceneReader::read_directive(Tokenizer& tokens, DirectiveContext& context) {
       carry_out(word, context);
   } catch (const InputError&) {
     if (argument.kind == Token::Kind::string) scene_.unread.emplace(argument.text);
+    if (word.text == "Include" || word.text == "Import") scene_.is_incomplete = true;
+    if (word.text == "ObjectBegin") builder_.refused_object_begin(tokens.where(word));
     throw;
   }
 }
@@ -96,7 +98,7 @@ void SceneReader::import(Tokenizer& tokens, const Location& where) {
   Location name_where;
   const fs::path path = next_file(tokens, "Import", name_where);
   builder_.import_begin(where);
-  problems_.attempt([&] { read(read_file_bytes(path, name_where), path, nullptr); });
+  if (!problems_.attempt([&] { read(read_file_bytes(path, name_where), path, nullptr); })) scene_.is_incomplete = true;
   builder_.import_end();
 }
 

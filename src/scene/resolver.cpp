@@ -135,7 +135,7 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
 void SceneResolver::fail_unknown(std::string_view kind, const std::string& name,
                                  const std::vector<std::string_view>& names, const Location& where) const {
   const std::string message = fmt::format("there is no {} \"{}\"{}", kind, name, suggestion(name, names));
-  if (description_.unread.contains(name)) throw Consequence(where, message);
+  if (description_.may_be_unread(name)) throw Consequence(where, message);
   fail(where, "{}", message);
 }
 
