@@ -144,19 +144,41 @@ SceneDescription parse_scene(const fs::path& path, const Log& log, const Unsuppo
   return scene;
 }
 
+namespace {
+
+/// `main` has the files that have been looked at, the main one first.
+bool holds_world(SceneSettings& main, const fs::path& path) {
+  if (std::ranges::find(main.files, path) != main.files.end()) return false;
+  main.files.push_back(path);
+  std::string text = read_file_bytes(path, {});
+  if (is_gzip(text)) text = unpack_gzip(text, path.string(), {});
+  Tokenizer tokens(text, std::make_shared<const std::string>(path.string()));
+  while (!tokens.at_end()) {
+    const Token word = tokens.peek();
+    const bool is_word = word.kind == Token::Kind::word;
+    if (is_word && word.text == "WorldBegin") return true;
+    Problems ignored;
+    bool holds = false;
+    const bool is_right = ignored.attempt([&] {
+      tokens.next();
+      if (!is_word || word.text != "Include") return;
+      const Token name = tokens.next();
+      holds = holds_world(main, main.resolve(tokens.text_of(name), tokens.where(name)));
+    });
+    if (holds) return true;
+    if (!is_right) tokens.skip_to_directive(word, is_directive);
+  }
+  return false;
+}
+
+}  // namespace
+
 bool holds_world(const fs::path& path) {
+  if (path == "-") return false;
   bool holds = false;
-  Problems ignored;
-  ignored.attempt([&] {
-    std::string text = read_file_bytes(path, {});
-    if (is_gzip(text)) text = unpack_gzip(text, path.string(), {});
-    Tokenizer tokens(text, std::make_shared<const std::string>(path.string()));
-    while (!holds && !tokens.at_end()) {
-      const Token token = tokens.next();
-      holds = token.kind == Token::Kind::word && token.text == "WorldBegin";
-    }
-  });
-  return holds;
+  Problems problems;
+  SceneSettings main;
+  return !problems.attempt([&] { holds = holds_world(main, path); }) || holds;
 }
 
 SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log,
