@@ -192,7 +192,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"ObjectBegin", Block::world, with_name<&Builder::object_begin>},
     {"ObjectEnd", Block::world, alone<&Builder::object_end>},
     {"ObjectInstance", Block::world, with_name<&Builder::object_instance>},
-    {"Option", Block::options, option},
+    {"Option", Block::any, option},
     {"PixelFilter", Block::options, option_plugin<&Scene::filter>},
     {"ReverseOrientation", Block::world, [](Directive d) { d.scene().reverse_orientation(); }},
     {"Rotate", Block::any, rotate},
