@@ -81,6 +81,9 @@ struct SceneSettings {
   std::vector<LightDescription> lights;
   std::vector<ParsedPlugin> area_lights;
 
+  /// What `Attribute` gives defaults of, (target, name) of each parameter and where the first stands.
+  std::map<std::pair<std::string, std::string>, Location> attributes;
+
   /// What directives that could not be read would have given a name to: what misses it is no error of its own.
   std::set<std::string, std::less<>> unread;
   bool is_incomplete = false;  ///< a file that another one includes could not be read: any name may have been there

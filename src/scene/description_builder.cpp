@@ -26,7 +26,7 @@ ParsedPlugin typed_by_parameter(const std::string& name, ParsedPlugin plugin) {
   const auto type =
       std::find_if(plugin.params.begin(), plugin.params.end(), [](const ParsedParam& p) { return p.name == "type"; });
   if (type == plugin.params.end()) fail(plugin.where, "MakeNamedMaterial \"{}\" needs parameter \"string type\"", name);
-  if (type->type != "string") fail(type->where, "\"type\" is string, a {} was given", type->type);
+  if (type->type != "string") fail(type->where, "\"type\" is string, type {} was given", type->type);
   const auto& values = std::get<std::vector<std::string>>(type->values);
   if (values.size() != 1) fail(type->value_where, "\"type\" takes 1 value, {} given", values.size());
   plugin.name = values[0];
@@ -206,11 +206,11 @@ void DescriptionBuilder::transform_begin(const Location& where) {
   push(Opener::transform, where);
 }
 
-void DescriptionBuilder::attribute_end(const Location& where) {
+void DescriptionBuilder::end(std::string_view directive, std::string_view beginner, const Location& where) {
   if (saved_.empty() || saved_.back().by == Opener::import)
-    return log_.warn(where, "AttributeEnd without AttributeBegin is left out");
+    return log_.warn(where, fmt::format("{} without {} is left out", directive, beginner));
   const Saved& last = saved_.back();
-  if (last.by == Opener::object) fail(where, "AttributeEnd while the ObjectBegin at {} is open", place(last.where));
+  if (last.by == Opener::object) fail(where, "{} while the ObjectBegin at {} is open", directive, place(last.where));
   pop();
 }
 
@@ -223,6 +223,7 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
   note_color_space(params);
   for (ParsedParam& param : params) {
     param.may_be_unused = true;
+    scene_.attributes.emplace(std::pair(target, param.name), param.where);
     std::erase_if(defaults, [&](const ParsedParam& older) { return older.name == param.name; });
     defaults.push_back(std::move(param));
   }

@@ -50,9 +50,10 @@ class DescriptionBuilder {
 
   // Graphics state
   void attribute_begin(const Location& where) { push(Opener::attribute, where); }
-  void attribute_end(const Location& where);
+  void attribute_end(const Location& where) { end("AttributeEnd", "AttributeBegin", where); }
   /// As AttributeBegin, also for the material: pbrt-v4 has it so.
   void transform_begin(const Location& where);
+  void transform_end(const Location& where) { end("TransformEnd", "TransformBegin", where); }
   void attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params);
   void reverse_orientation() { state_.reverse_orientation = !state_.reverse_orientation; }
   void material(ParsedPlugin plugin);
@@ -105,6 +106,8 @@ class DescriptionBuilder {
   static std::string_view ender_of(Opener opener);
   void push(Opener by, const Location& where) { saved_.push_back({by, where, state_, {}}); }
   void pop() { state_ = std::move(saved_.back().state), saved_.pop_back(); }
+  /// As pbrt, either takes what the other begins.
+  void end(std::string_view directive, std::string_view beginner, const Location& where);
   void settle_unknown_materials(Problems& problems);
   ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
   void note_color_space(std::vector<ParsedParam>& params) const;

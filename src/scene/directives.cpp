@@ -202,7 +202,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"Texture", Block::world, texture},
     {"Transform", Block::any, [](Directive d) { d.scene().set_transform(matrix(d), d.name, d.where); }},
     {"TransformBegin", Block::world, alone<&Builder::transform_begin>},
-    {"TransformEnd", Block::world, alone<&Builder::attribute_end>},
+    {"TransformEnd", Block::world, alone<&Builder::transform_end>},
     {"TransformTimes", Block::options, [](Directive d) { (void)d.numbers<2>(); }},  // ActiveTransform asks for it
     {"Translate", Block::any,
      [](Directive d) { d.scene().concat(Transform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},

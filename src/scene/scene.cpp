@@ -81,6 +81,16 @@ class OptionResolver final : public ParamResolver {
   const Log& log_;
 };
 
+/// The scene's options, whose names are all known.
+Params option_params(const SceneSettings& description, OptionResolver& resolver) {
+  std::vector<std::string_view> names;
+  for (const Param& p : kOptionParams) names.push_back(p.name);
+  for (const ParsedParam& p : description.options)
+    if (std::ranges::find(names, p.name) == names.end())
+      fail(p.where, "there is no option \"{}\"{}", p.name, suggestion(p.name, names));
+  return {kOptions, {"Option", {}, description.options}, resolver};
+}
+
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
   return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
            return p.type == q.type && p.name == q.name && p.values == q.values && p.color_space == q.color_space;
@@ -257,7 +267,7 @@ class SceneBuilder {
 
   void build_options() {
     OptionResolver resolver(description_, log_);
-    const Params p(kOptions, {"Option", {}, description_.options}, resolver);
+    const Params p = option_params(description_, resolver);
     for (const std::string_view name : {"forcediffuse", "pixelstats", "wavefront"})
       if (p.boolean(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
     for (const std::string_view name : {"displacementedgescale", "msereferenceimage", "msereferenceout"})
@@ -463,7 +473,7 @@ uint32_t Scene::occluded(const RayPacket& packet) const {
 
 WavelengthChoice wavelength_choice(const SceneSettings& description, const SceneOverrides& overrides) {
   OptionResolver resolver(description);
-  const Params p(kOptions, {"Option", {}, description.options}, resolver);
+  const Params p = option_params(description, resolver);
   if (!overrides.wavelengths.empty()) return {overrides.wavelengths, {}};
   return {p.string("wavelengths"), p.where("wavelengths")};
 }
