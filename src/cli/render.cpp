@@ -59,7 +59,15 @@ class RenderCommand {
 
   /// The program's exit code.
   int run() {
-    prepare();
+    try {
+      prepare();
+    } catch (const InputError& error) {
+      if (!options_.reading.strict) throw;
+      Problems problems;  // what else would have been refused
+      problems.add(error);
+      problems.attempt([this] { log_.check(); });
+      problems.check();
+    }
     if (options_.pilot) return 0;
     if (names_) kept_.emplace(*names_, log_);
     RenderPart part = first_part();
