@@ -8,7 +8,6 @@
 
 #include "core/problems.h"
 #include "scene/parser.h"
-#include "scene/unsupported.h"
 
 namespace frond {
 namespace {
@@ -56,6 +55,10 @@ void add_reading_options(CLI::App& command, ReadingOptions& options) {
                                "warning: all of it, or --ignore-unsupported=KINDS, some of {}.",
                                fmt::join(Unsupported::kinds(), ",")));
   command.add_flag("--strict", options.strict, "Warnings are errors.");
+}
+
+Unsupported unsupported_of(const ReadingOptions& o) {
+  return o.ignore_unsupported.empty() ? Unsupported() : Unsupported(o.ignore_unsupported);
 }
 
 std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/unsupported.h"
+
 namespace CLI {
 class App;
 }
@@ -15,6 +17,9 @@ struct ReadingOptions {
   std::string ignore_unsupported;  ///< empty: nothing
   bool strict = false;
 };
+
+/// What they let pass. Throws InputError.
+Unsupported unsupported_of(const ReadingOptions& options);
 
 /// `--ignore-unsupported[=KINDS]` and `--strict`.
 void add_reading_options(CLI::App& command, ReadingOptions& options);

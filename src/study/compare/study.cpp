@@ -58,7 +58,7 @@ Study::Study(const StudyOptions& options, ThreadPool& pool, const Log& log)
       pool_(pool),
       log_(log),
       registry_(load_registry(options.plugins)),
-      description_(read_scene(options.scene, registry_, log)) {
+      description_(read_scene(options.scene, registry_, log, options.unsupported)) {
   resize(description_.film, Scene::film_settings(description_, registry_), options.size);
   film_ = Scene::film_settings(description_, registry_);
   drop_requests(description_);
