@@ -155,6 +155,12 @@ column is the difference of the whole picture's mean, red, green and blue, in pe
     return text
 
 
+def agreeing(listed, results, others, forget):
+    """The names for agrees.txt: none goes by itself."""
+    kept = [name for name in listed if not forget or name not in others]
+    return sorted({*kept, *(name for name in results if name not in others)})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="*", default=["*"], help="patterns of scenes' names; nothing is written")
@@ -164,7 +170,11 @@ def main():
     parser.add_argument("--z", type=float, default=6)
     parser.add_argument("--no-docs", action="store_true")
     parser.add_argument("--test", action="store_true", help="those of agrees.txt alone; an error where one does not agree")
+    parser.add_argument("--forget", action="store_true",
+                        help="take scenes that agree no longer out of agrees.txt; without it they stay, and are an error")
     options = parser.parse_args()
+    if options.seeds < 2:
+        parser.error("--seeds: 2 at least tell how much renders differ")
     names = sorted(path.stem for path in FOLDER.glob("*.csv"))
     if options.test:
         names = AGREES.read_text().split()
@@ -181,9 +191,14 @@ def main():
     print(f"{len(results) - len(others)} of {len(results)} agree")
     if options.test:
         return 1 if others else 0
+    listed = AGREES.read_text().split()
+    lost = [name for name in listed if name in others]
     if not options.no_docs and options.only == ["*"]:
         PAGE.write_text(page(results, options))
-        AGREES.write_text("".join(f"{name}\n" for name in results if name not in others))
+        AGREES.write_text("".join(f"{name}\n" for name in agreeing(listed, results, others, options.forget)))
+    if lost and not options.forget:
+        print(f"{', '.join(lost)}: agreed, and now no longer", file=sys.stderr)
+        return 1
     return 0
 
 

@@ -12,6 +12,7 @@
 #include "cli/number_list.h"
 #include "cli/progress.h"
 #include "cli/radiometer_options.h"
+#include "cli/strict_log.h"
 #include "radiometry/brf_comparison.h"
 #include "render/part_file.h"
 #include "report/brf_chart.h"
@@ -172,9 +173,9 @@ std::optional<BrfReading> measure(const BrfOptions& o, const BrfMeter& meter, Se
 }
 
 /// The scene with one leaf model in place of its leaves, and then with the others.
-void run_comparison(const BrfOptions& o, const BrfRequest& request, const ConsoleLog& log) {
+void run_comparison(const BrfOptions& o, const BrfRequest& request, const StrictLog& log) {
   Session session(log, session_options_of(o));
-  const SceneDescription description = session.read(o.scene);
+  const SceneDescription description = session.read(o.scene, unsupported_of(o.reading));
   std::unique_ptr<BrfMeter> first;
   const auto measured = [&](const compare::Candidate& model) {
     if (!model.wavelengths.empty() || model.integrator)
@@ -183,6 +184,7 @@ void run_comparison(const BrfOptions& o, const BrfRequest& request, const Consol
     overrides.swaps.push_back({"*", model.material});
     auto meter =
         std::make_unique<BrfMeter>(session, description, overrides, request, first ? &first->scene().scene() : nullptr);
+    log.check();
     const double start = cpu_seconds();
     ModelReading result{model, *measure(o, *meter, session, nullptr)};
     const double paths = double(result.brf.paths) * double(result.brf.views.size());
@@ -201,7 +203,8 @@ void run_comparison(const BrfOptions& o, const BrfRequest& request, const Consol
 
 /// Returns the program's exit code.
 int run_brf(const BrfOptions& o) {
-  const ConsoleLog log(o.quiet);
+  const ConsoleLog console(o.quiet);
+  const StrictLog log(console, o.reading.strict);
   if (!o.csv.empty()) check_text_output(o.csv);
   if (!o.plot.empty()) check_chart(o.plot);
   const BrfRequest request{views_of(o), target_of(o), period_of(o), wavelengths_of(o)};
@@ -213,7 +216,8 @@ int run_brf(const BrfOptions& o) {
   }
   const auto kept = kept_file_of(o, log);
   Session session(log, session_options_of(o));
-  const BrfMeter meter(session, session.read(o.scene), overrides_of(o), request);
+  const BrfMeter meter(session, session.read(o.scene, unsupported_of(o.reading)), overrides_of(o), request);
+  log.check();
   const auto measured = measure(o, meter, session, kept.get());
   if (!measured) return kept->say_how_to_go_on();
   const BrfReading& reading = *measured;

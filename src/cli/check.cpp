@@ -6,6 +6,7 @@
 #include "cli/common_options.h"
 #include "cli/reading_options.h"
 #include "cli/strict_log.h"
+#include "image/image_file.h"
 #include "render/session.h"
 
 namespace frond {
@@ -21,11 +22,10 @@ Problems problems_of(const std::vector<std::filesystem::path>& files, const Chec
   const ConsoleLog console;
   const StrictLog log(console, o.reading.strict);
   Session session(log, {.plugins = o.plugins});
-  const auto unsupported =
-      o.reading.ignore_unsupported.empty() ? Unsupported() : Unsupported(o.reading.ignore_unsupported);
   Problems problems;
-  const SceneDescription description = session.read(files, unsupported, problems);
+  const SceneDescription description = session.read(files, unsupported_of(o.reading), problems);
   if (!description.files.empty()) problems.attempt([&] { session.check(description, {}); });
+  problems.attempt([&] { check_picture_name(session.film(description, false).filename, description.film.where); });
   problems.attempt([&] { log.check(); });
   return problems;
 }

@@ -5,6 +5,8 @@
 #include "cli/common_options.h"
 #include "cli/number_list.h"
 #include "cli/progress.h"
+#include "cli/reading_options.h"
+#include "cli/strict_log.h"
 #include "core/log.h"
 #include "render/plugins.h"
 #include "scene/words.h"
@@ -36,6 +38,7 @@ struct CompareOptions {
   uint64_t seed = 0;
   std::optional<double> exposure;
   std::vector<double> rms;
+  ReadingOptions reading;
   bool quick = false, quiet = false, no_cache = false, relative = false, seed_given = false;
 };
 
@@ -80,6 +83,7 @@ Request request_of(const CompareOptions& o) {
 
 StudyOptions study_options(const CompareOptions& o, const Plan& plan) {
   StudyOptions s{.scene = o.scene, .wavelengths = o.wavelengths, .leaves = o.leaves, .plugins = o.plugins};
+  s.unsupported = unsupported_of(o.reading);
   s.size = o.size > 0 ? o.size : o.quick ? kQuick.size : kFull.size;
   if (o.seed_given) s.seed = o.seed;
   s.cache = plan.cache;
@@ -130,7 +134,8 @@ std::string leaf_by_leaf(double rms, const std::string& wavelengths, const compa
 
 void run_compare(const CompareOptions& o) {
   const auto start = std::chrono::steady_clock::now();
-  const ConsoleLog log(o.quiet);
+  const ConsoleLog console(o.quiet);
+  const StrictLog log(console, o.reading.strict);
   Plan plan = plan_of(o);
   ProgressLine progress(o.quiet);
   plan.progress = &progress;
@@ -138,7 +143,10 @@ void run_compare(const CompareOptions& o) {
   compare::check_report_folder(o.output);
   ThreadPool pool(o.threads);
   const compare::Study study(study_options(o, plan), pool, log);
+  if (o.reading.strict) (void)study.scene(plan.reference);  // what it warns of is told before the renders
+  log.check();
   Comparison result = compare::measure(study, plan, request, pool, log);
+  log.check();
   // The chooser knows absolute errors alone.
   for (const double rms : request.relative ? std::vector<double>{} : request.rms)
     result.leaf_by_leaf +=
@@ -190,6 +198,7 @@ void add_options(CLI::App& command, CompareOptions& o) {
       ->check(is_within({-20, 20}));
   command.add_option("--threads", o.threads, "Threads; all by default.")->check(CLI::Range(1, 1024));
   add_plugin_option(command, o.plugins);
+  add_reading_options(command, o.reading);
   command.add_option("--cache", o.cache, "Folder for references and tables; ~/.cache/frond by default.");
   command.add_flag("--no-cache", o.no_cache, "Keep neither references nor tables on disk.");
   command.add_flag("--quick", o.quick, "A first look: 128 pixels, up to 32 samples, a reference of 2 x 128.");

@@ -9,6 +9,7 @@
 #include "cli/number_list.h"
 #include "cli/progress.h"
 #include "cli/radiometer_options.h"
+#include "cli/strict_log.h"
 #include "radiometry/photons.h"
 #include "report/text_output.h"
 #include "spectra/named.h"
@@ -156,15 +157,17 @@ std::vector<double> bands_of(const Scene& scene) {
 
 /// Returns the program's exit code.
 int run_flux(const FluxOptions& o) {
-  const ConsoleLog log(o.quiet);
+  const ConsoleLog console(o.quiet);
+  const StrictLog log(console, o.reading.strict);
   if (!o.csv.empty()) check_text_output(o.csv);
   const auto kept = kept_file_of(o, log);
   Session session(log, session_options_of(o));
   const SpectrumPtr irradiance =
       o.irradiance.ends_with(".spd") ? read_spd(o.irradiance, {}) : named_spectrum(o.irradiance, {});
   const bool by_instance = o.by == "instance";
-  FluxMeter meter(session, session.read(o.scene), overrides_of(o),
+  FluxMeter meter(session, session.read(o.scene, unsupported_of(o.reading)), overrides_of(o),
                   {target_of(o), period_of(o), wavelengths_of(o), by_instance});
+  log.check();
   const auto photons = PhotonWeights::of(bands_of(meter.scene()), *irradiance);
   const auto measured = measure(o, meter, session, kept.get());
   if (!measured) return kept->say_how_to_go_on();

@@ -45,6 +45,7 @@ void add_radiometer_options(CLI::App& command, RadiometerOptions& o, const std::
   command.add_option("--threads", o.threads, "Threads; all by default. The figures do not depend on it.")
       ->check(CLI::Range(1, 1024));
   add_plugin_option(command, o.plugins);
+  add_reading_options(command, o.reading);
   command.add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.");
   command.add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
   command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors and what is asked for.");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/kept_file.h"
+#include "cli/reading_options.h"
 #include "radiometry/brf.h"
 
 namespace CLI {
@@ -23,6 +24,7 @@ struct RadiometerOptions {
   std::optional<uint64_t> seed;
   double rms = 0, time_limit_seconds = 0, checkpoint_seconds = 0;
   int threads = 0;
+  ReadingOptions reading;
   bool no_cache = false, quiet = false, resume = false;
 };
 

@@ -59,7 +59,15 @@ class RenderCommand {
 
   /// The program's exit code.
   int run() {
-    prepare();
+    try {
+      prepare();
+    } catch (const InputError& error) {
+      if (!options_.reading.strict) throw;
+      Problems problems;  // what else would have been refused
+      problems.add(error);
+      problems.attempt([this] { log_.check(); });
+      problems.check();
+    }
     if (options_.pilot) return 0;
     if (names_) kept_.emplace(*names_, log_);
     RenderPart part = first_part();
@@ -116,8 +124,7 @@ class RenderCommand {
   /// Where something is wrong with the file, what else is wrong with the scene is told too.
   void read() {
     Problems problems;
-    const std::string& ignored = options_.reading.ignore_unsupported;
-    description_ = session_.read(files_, ignored.empty() ? Unsupported() : Unsupported(ignored), problems);
+    description_ = session_.read(files_, unsupported_of(options_.reading), problems);
     set_scene_options(options_, description_);
     if (!problems.empty() && !description_.files.empty())
       problems.attempt([this] { session_.check(description_, {}); });

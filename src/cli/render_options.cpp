@@ -55,8 +55,10 @@ void add_idle_options(CLI::App& command, RenderOptions& o) {
   add_with_value("--log-level", "pbrt's: warns.");
   add_with_value("--log-file", "pbrt's: warns.");
   add_with_value("--displacement-edge-scale", "pbrt's: warns.");
-  command.add_option_function<std::string>(
-      "--render-coord-sys", [](const std::string&) {}, "pbrt's: changes no picture.");
+  command
+      .add_option_function<std::string>(
+          "--render-coord-sys", [](const std::string&) {}, "pbrt's: changes no picture.")
+      ->check(CLI::IsMember({"camera", "cameraworld", "world"}));
 }
 
 /// Options of pbrt that ask for something else than a picture.

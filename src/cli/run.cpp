@@ -49,7 +49,7 @@ int run(int argc, const char* const* argv) {
   add_goniophotometer_command(app);
   add_bench_command(app);
   try {
-    std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc});
+    std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc}, *app.get_subcommand("render"));
     std::ranges::reverse(words);  // CLI11 takes them from the end
     app.parse(std::move(words));
     return 0;

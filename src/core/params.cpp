@@ -39,6 +39,19 @@ const KindTraits& traits(ParamKind kind) {
   return table[static_cast<size_t>(kind)];
 }
 
+bool takes(const PluginInfo& info, const ParsedParam& given) {
+  const auto declared = std::ranges::find(info.params, given.name, &Param::name);
+  if (declared == info.params.end()) return false;
+  const auto& types = traits(declared->kind).types;
+  return std::ranges::find(types, given.type) != types.end();
+}
+
+/// "an rgb", "a float".
+std::string with_article(std::string_view type) {
+  const bool is_vowel_spoken = type == "rgb" || std::string_view("aeiou").find(type[0]) != std::string_view::npos;
+  return fmt::format("{} {}", is_vowel_spoken ? "an" : "a", type);
+}
+
 size_t value_count(const ParsedParam& p) {
   return std::visit([](const auto& v) { return v.size(); }, p.values);
 }
@@ -69,10 +82,10 @@ Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver
     : info_(info), parsed_(parsed), resolver_(resolver), read_(info.params.size(), false) {
   std::vector<std::string_view> names;
   for (const Param& p : info_.params) names.push_back(p.name);
+  std::erase_if(parsed_.params, [&](const ParsedParam& p) { return p.may_be_unused && !takes(info_, p); });
   for (size_t i = 0; i < parsed_.params.size(); ++i) {
     const ParsedParam& p = parsed_.params[i];
     const auto declared = std::find(names.begin(), names.end(), p.name);
-    if (declared == names.end() && p.may_be_unused) continue;
     if (declared == names.end())
       fail(p.where, "{} \"{}\" has no parameter \"{}\"{}", info_.kind, info_.name, p.name, suggestion(p.name, names));
     for (size_t j = 0; j < i; ++j)
@@ -88,7 +101,7 @@ Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver
 void Params::check(const Param& declared, const ParsedParam& p) const {
   const auto& [types, arity] = traits(declared.kind);
   if (std::find(types.begin(), types.end(), p.type) == types.end())
-    fail(p.where, "\"{}\" is {}, a {} was given", p.name, fmt::join(types, " or "), p.type);
+    fail(p.where, "\"{}\" is {}, {} was given", p.name, fmt::join(types, " or "), with_article(p.type));
   const size_t count = value_count(p), unit = p.type == "texture" ? 1 : arity;
   if (unit > 0) {
     if (!declared.list && count != unit)
@@ -238,6 +251,7 @@ class ClampedFloatTexture final : public FloatTexture {
     const Interval own = texture_->range();
     return {std::clamp(own.min, range_.min, range_.max), std::clamp(own.max, range_.min, range_.max)};
   }
+  bool is_range_tight() const override { return texture_->is_range_tight(); }
   bool needs_details() const override { return texture_->needs_details(); }
 
  private:
@@ -250,13 +264,13 @@ std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, co
   auto texture = resolver.float_texture(name, where);
   const Interval values = texture->range(), range = declared.range;
   if (range.contains(values.min) && range.contains(values.max)) return texture;
-  const std::string message =
-      fmt::format("texture \"{}\" has values from {} to {}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
-                  values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);
+  const std::string message = fmt::format(
+      "texture \"{}\" has values from {:.3g} to {:.3g}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
+      values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);
   // What has a unit is physics, and most likely in another one.
   if (!declared.unit.empty() || values.max < range.min || values.min > range.max || !(values.min <= values.max))
     fail(where, "{}", message);
-  resolver.warn(where, message + ": they are clamped");
+  if (texture->is_range_tight()) resolver.warn(where, message + ": they are clamped");
   return std::make_shared<ClampedFloatTexture>(std::move(texture), range);
 }
 

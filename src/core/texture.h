@@ -4,6 +4,7 @@
 
 #include "core/params.h"
 #include "core/plugin.h"
+#include "core/shared_work.h"
 #include "core/spectrum.h"
 #include "core/transform.h"
 #include "core/vec.h"
@@ -64,6 +65,8 @@ class FloatTexture {
   virtual float evaluate(const TexturePoint& at) const = 0;
   /// Bounds of the values.
   virtual Interval range() const = 0;
+  /// Whether values come near to them; those of noise hardly do.
+  virtual bool is_range_tight() const { return true; }
   /// Reads more of its points than (u, v) and instance. What it is made of says so for itself.
   virtual bool needs_details() const { return false; }
   bool is_constant() const { return range().min == range().max; }
@@ -106,9 +109,10 @@ class ConstantSpectrumTexture final : public SpectrumTexture {
   SpectrumPtr value_;
 };
 
-/// Where a texture was defined.
+/// Where a texture was defined, and among which others.
 struct TexturePlacement {
   Transform world_from_texture;
+  SharedWork* shared = nullptr;  ///< what textures of one scene have in common; nullptr: each has its own
 };
 
 struct FloatTextureInfo : PluginInfo {

@@ -19,14 +19,14 @@ namespace fs = std::filesystem;
 
 enum class Format { exr, png, jpeg };
 
-Format format_of(const fs::path& path) {
+Format format_of(const fs::path& path, const Location& where = {}) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".exr") return Format::exr;
   if (extension == ".png") return Format::png;
   if (extension == ".jpg" || extension == ".jpeg") return Format::jpeg;
-  fail({}, "cannot write \"{}\": images are .exr, .png, .jpg or .jpeg", path.string());
+  fail(where, "cannot write \"{}\": images are .exr, .png, .jpg or .jpeg", path.string());
 }
 
 std::time_t file_time() {
@@ -42,6 +42,8 @@ std::time_t file_time() {
 }
 
 }  // namespace
+
+void check_picture_name(const fs::path& path, const Location& where) { (void)format_of(path, where); }
 
 bool is_exr(const fs::path& path) { return format_of(path) == Format::exr; }
 

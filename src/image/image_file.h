@@ -32,6 +32,9 @@ enum class ExrDepth { half, single };
 /// something that is no regular file. Nothing is left behind.
 void check_writable(const std::filesystem::path& path);
 
+/// Refuses, by InputError at `where`, an extension that `write_image` does not know.
+void check_picture_name(const std::filesystem::path& path, const Location& where);
+
 /// By the extension, in whatever case.
 bool is_exr(const std::filesystem::path& path);
 

@@ -29,6 +29,11 @@ void check_finite(const Image& image, const std::filesystem::path& path, const L
           fail(where, "{} holds the value {} in column {}, row {}", path.string(), v, x, y);
 }
 
+bool is_near(const Chromaticity& a, const Chromaticity& b) {
+  constexpr double kSame = 2e-3;  // of rounded figures
+  return std::abs(a.x - b.x) < kSame && std::abs(a.y - b.y) < kSame;
+}
+
 [[noreturn]] void refuse_without_colors(const std::string& path, const Image& image) {
   const auto bands = bands_of(image);
   if (bands.empty()) fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
@@ -39,6 +44,18 @@ void check_finite(const Image& image, const std::filesystem::path& path, const L
 }
 
 }  // namespace
+
+const ColorSpace* color_space_of(const ImageFile& file) {
+  if (const ColorSpace* named = find_color_space(file.header.color_space)) return named;
+  if (!file.chromaticities) return find_color_space("srgb");
+  const Chromaticities& c = *file.chromaticities;
+  for (const ColorSpace& space : color_spaces()) {
+    const Chromaticities& s = space.chromaticities;
+    if (is_near(c.red, s.red) && is_near(c.green, s.green) && is_near(c.blue, s.blue) && is_near(c.white, s.white))
+      return &space;
+  }
+  return nullptr;
+}
 
 ImageFile read_finite(const std::filesystem::path& path, const Location& where) {
   ImageFile file = read_image(path, where);
@@ -56,8 +73,10 @@ ImageFile read_rgb(const std::filesystem::path& path, const Location& where) {
   return file;
 }
 
+float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+
 void decode_srgb(Image& image) {
-  for (float& v : image.pixels) v = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+  for (float& v : image.pixels) v = decode_srgb(v);
 }
 
 LinearFile read_linear(const std::string& path) {

@@ -8,10 +8,15 @@ namespace frond {
 /// lights. Throws InputError at `where`, for values that are not finite too.
 ImageFile read_rgb(const std::filesystem::path& path, const Location& where);
 
+/// By the name in its header or its chromaticities; sRGB where the file says nothing, nullptr for a space of its own
+/// that is not known.
+const ColorSpace* color_space_of(const ImageFile& file);
+
 /// An image file with all of its channels, as read_image, whose values are finite. Throws InputError at `where`.
 ImageFile read_finite(const std::filesystem::path& path, const Location& where);
 
-/// To linear values, by the curve of IEC 61966-2-1.
+/// To a linear value, by the curve of IEC 61966-2-1.
+float decode_srgb(float v);
 void decode_srgb(Image& image);
 
 /// What a linear image file says: of a render, if it has a leaf channel and a seed.

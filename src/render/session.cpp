@@ -200,7 +200,9 @@ RenderPart LoadedScene::empty_part() const {
 Session::Session(const Log& log, SessionOptions options)
     : log_(log), options_(std::move(options)), registry_(load_registry(options_.plugins)), pool_(options_.threads) {}
 
-SceneDescription Session::read(const std::filesystem::path& path) const { return read_scene(path, registry_, log_); }
+SceneDescription Session::read(const std::filesystem::path& path, const Unsupported& unsupported) const {
+  return read_scene(path, registry_, log_, unsupported);
+}
 
 SceneDescription Session::read(const std::vector<std::filesystem::path>& paths, const Unsupported& unsupported,
                                Problems& problems) const {

@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "render/part.h"
 #include "render/render_loop.h"
-#include "scene/pbrt_plugins.h"
+#include "scene/read_scene.h"
 #include "scene/scene.h"
 
 namespace frond {
@@ -95,7 +95,7 @@ class Session {
   ThreadPool& pool() { return pool_; }
 
   /// A scene file; "-" is standard input.
-  SceneDescription read(const std::filesystem::path& path) const;
+  SceneDescription read(const std::filesystem::path& path, const Unsupported& unsupported = {}) const;
   /// One that may be in several files. What is wrong goes to `problems`, and all that could be read is returned.
   SceneDescription read(const std::vector<std::filesystem::path>& paths, const Unsupported& unsupported,
                         Problems& problems) const;

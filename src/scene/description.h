@@ -81,11 +81,17 @@ struct SceneSettings {
   std::vector<LightDescription> lights;
   std::vector<ParsedPlugin> area_lights;
 
+  /// What `Attribute` gives defaults of, (target, name) of each parameter and where the first stands.
+  std::map<std::pair<std::string, std::string>, Location> attributes;
+
   /// What directives that could not be read would have given a name to: what misses it is no error of its own.
   std::set<std::string, std::less<>> unread;
+  bool is_incomplete = false;  ///< a file that another one includes could not be read: any name may have been there
+  bool may_be_unread(std::string_view name) const { return is_incomplete || unread.contains(name); }
 
-  /// A file name in the scene as a path: relative to the file that names it, or else to the main file, or else to where
-  /// the program runs. Backslashes are as good as slashes where no file is called so.
+  /// A file name in the scene as a path: relative to the main file, as in pbrt, or else to the file that names it, or
+  /// else to where the program runs, which a name on the command line is relative to first. Backslashes are as good as
+  /// slashes where no file is called so.
   std::filesystem::path resolve(const std::string& name, const Location& where) const;
 };
 

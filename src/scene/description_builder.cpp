@@ -26,7 +26,7 @@ ParsedPlugin typed_by_parameter(const std::string& name, ParsedPlugin plugin) {
   const auto type =
       std::find_if(plugin.params.begin(), plugin.params.end(), [](const ParsedParam& p) { return p.name == "type"; });
   if (type == plugin.params.end()) fail(plugin.where, "MakeNamedMaterial \"{}\" needs parameter \"string type\"", name);
-  if (type->type != "string") fail(type->where, "\"type\" is string, a {} was given", type->type);
+  if (type->type != "string") fail(type->where, "\"type\" is string, type {} was given", type->type);
   const auto& values = std::get<std::vector<std::string>>(type->values);
   if (values.size() != 1) fail(type->value_where, "\"type\" takes 1 value, {} given", values.size());
   plugin.name = values[0];
@@ -46,6 +46,7 @@ void DescriptionBuilder::world_begin(const Location& where) {
   in_world_ = true;
   if (!scene_.film.where.file) set_film_space();
   state_.transform = Transform();
+  activate_transforms(true);
   name_transform("world", where);
 }
 
@@ -70,7 +71,7 @@ void DescriptionBuilder::finish(const Location& where, Problems& problems) {
   for (const auto& [text, name] : objects_)
     if (name.is_defined) defined.push_back(text);
   for (const auto& [text, name] : objects_)
-    if (!name.is_defined && !scene_.unread.contains(text))
+    if (!name.is_defined && !scene_.may_be_unread(text))
       problems.attempt([&] {
         fail(name.first_use, "there is no object \"{}\"{}", text,
              defined.empty() ? "; ObjectBegin makes them" : suggestion(text, defined));
@@ -94,7 +95,7 @@ void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
         fmt::format("there is no named material \"{}\"{}", text,
                     defined.empty() ? "; MakeNamedMaterial makes them" : suggestion(text, defined));
     scene_.materials[name.index] = {"", {"diffuse", name.first_use, {}}};
-    if (scene_.unread.contains(text)) continue;
+    if (scene_.may_be_unread(text)) continue;
     if (is_used[name.index])
       problems.add(InputError(name.first_use, message));
     else
@@ -112,7 +113,6 @@ void DescriptionBuilder::import_end() {
   while (saved_.back().by != Opener::import) {
     const Saved open = std::move(saved_.back());
     saved_.pop_back();
-    if (open.by == Opener::object) open_object_.reset();
     if (saved_.back().by == Opener::import) {  // the outermost is told
       scene_.coordinate_systems = std::move(saved_.back().coordinate_systems);
       pop();
@@ -206,11 +206,11 @@ void DescriptionBuilder::transform_begin(const Location& where) {
   push(Opener::transform, where);
 }
 
-void DescriptionBuilder::attribute_end(const Location& where) {
+void DescriptionBuilder::end(std::string_view directive, std::string_view beginner, const Location& where) {
   if (saved_.empty() || saved_.back().by == Opener::import)
-    return log_.warn(where, "AttributeEnd without AttributeBegin is left out");
+    return log_.warn(where, fmt::format("{} without {} is left out", directive, beginner));
   const Saved& last = saved_.back();
-  if (last.by == Opener::object) fail(where, "AttributeEnd while the ObjectBegin at {} is open", place(last.where));
+  if (last.by == Opener::object) fail(where, "{} while the ObjectBegin at {} is open", directive, place(last.where));
   pop();
 }
 
@@ -223,6 +223,7 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
   note_color_space(params);
   for (ParsedParam& param : params) {
     param.may_be_unused = true;
+    scene_.attributes.emplace(std::pair(target, param.name), param.where);
     std::erase_if(defaults, [&](const ParsedParam& older) { return older.name == param.name; });
     defaults.push_back(std::move(param));
   }
@@ -267,8 +268,8 @@ void DescriptionBuilder::make_named_material(const std::string& name, ParsedPlug
   const Location where = plugin.where;
   Name& entry = material_called(name, where);
   if (entry.is_defined) fail(where, "material \"{}\" is defined again", name);
-  entry.is_defined = true;
   plugin = with_name_of_interface(typed_by_parameter(name, std::move(plugin)));
+  entry.is_defined = true;
   scene_.materials[entry.index].plugin = with_defaults(std::move(plugin), Target::material);
 }
 
@@ -292,9 +293,9 @@ void DescriptionBuilder::area_light(ParsedPlugin plugin) {
 
 void DescriptionBuilder::shape(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) return;
-  auto& shapes = open_object_ ? scene_.objects[*open_object_].shapes : scene_.shapes;
+  auto& shapes = state_.open_object ? scene_.objects[*state_.open_object].shapes : scene_.shapes;
   std::optional<size_t> area_light = state_.area_light;
-  if (area_light && open_object_) {
+  if (area_light && state_.open_object) {
     log_.warn(plugin.where,
               fmt::format("shapes in objects give off no light, as in pbrt-v4; the area light of {} is in "
                           "force here",
@@ -311,29 +312,43 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
 
 void DescriptionBuilder::light(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) return;
-  if (open_object_) log_.warn(plugin.where, "a light inside an object is not part of its instances: it shines once");
+  if (state_.open_object)
+    log_.warn(plugin.where, "a light inside an object is not part of its instances: it shines once");
   scene_.lights.push_back({with_defaults(std::move(plugin), Target::light), state_.transform});
 }
 
 void DescriptionBuilder::object_begin(const std::string& name, const Location& where) {
-  if (open_object_)
+  if (state_.open_object)
     fail(where, "ObjectBegin inside object \"{}\"; ObjectInstance places one object in another",
-         scene_.objects[*open_object_].name);
+         scene_.objects[*state_.open_object].name);
   Name& entry = object_called(name, where);
   ObjectDescription& object = scene_.objects[entry.index];
   if (entry.is_defined) fail(where, "object \"{}\" is defined again; first at {}", name, place(object.where));
   entry.is_defined = true;
   object.where = where;
-  open_object_ = entry.index;
+  open_object(entry.index, where);
+}
+
+void DescriptionBuilder::refused_object_begin(const Location& where) {
+  if (!in_world_) return;
+  scene_.objects.push_back({"", where, {}, {}});
+  open_object(scene_.objects.size() - 1, where);
+}
+
+void DescriptionBuilder::open_object(size_t index, const Location& where) {
   push(Opener::object, where);
+  state_.open_object = index;
 }
 
 void DescriptionBuilder::object_end(const Location& where) {
-  if (!open_object_) fail(where, "ObjectEnd without ObjectBegin");
+  if (!state_.open_object) {
+    const std::string message = "ObjectEnd without ObjectBegin";
+    if (scene_.is_incomplete) throw Consequence(where, message);
+    fail(where, "{}", message);
+  }
   if (const Saved& last = saved_.back(); last.by != Opener::object)
     fail(where, "ObjectEnd while the {} at {} is open", name_of(last.by), place(last.where));
   pop();
-  open_object_.reset();
 }
 
 void DescriptionBuilder::object_instance(const std::string& name, const Location& where) {
@@ -342,7 +357,7 @@ void DescriptionBuilder::object_instance(const std::string& name, const Location
   if (const std::string problem = problem_of(map); !problem.empty())
     fail(where, "this copy is not possible: {}", problem);
   const auto object = uint32_t(object_called(name, where).index);
-  CopyList& copies = open_object_ ? scene_.objects[*open_object_].copies : scene_.copies;
+  CopyList& copies = state_.open_object ? scene_.objects[*state_.open_object].copies : scene_.copies;
   copies.maps->push_back(map);
   copies.objects.push_back(object);
 }

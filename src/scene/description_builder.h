@@ -24,6 +24,7 @@ class DescriptionBuilder {
   DescriptionBuilder(SceneDescription& scene, const Log& log);
 
   bool in_world() const { return in_world_; }
+  bool is_incomplete() const { return scene_.is_incomplete; }
   void world_begin(const Location& where);
   /// End of the main file: everything must be closed and every name known. `where` is that end.
   void finish(const Location& where, Problems& problems);
@@ -49,9 +50,10 @@ class DescriptionBuilder {
 
   // Graphics state
   void attribute_begin(const Location& where) { push(Opener::attribute, where); }
-  void attribute_end(const Location& where);
+  void attribute_end(const Location& where) { end("AttributeEnd", "AttributeBegin", where); }
   /// As AttributeBegin, also for the material: pbrt-v4 has it so.
   void transform_begin(const Location& where);
+  void transform_end(const Location& where) { end("TransformEnd", "TransformBegin", where); }
   void attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params);
   void reverse_orientation() { state_.reverse_orientation = !state_.reverse_orientation; }
   void material(ParsedPlugin plugin);
@@ -64,6 +66,8 @@ class DescriptionBuilder {
   void shape(ParsedPlugin plugin);
   void light(ParsedPlugin plugin);
   void object_begin(const std::string& name, const Location& where);
+  /// In place of an ObjectBegin that is wrong: what comes up to its ObjectEnd goes into an object that nobody can name.
+  void refused_object_begin(const Location& where);
   void object_end(const Location& where);
   void object_instance(const std::string& name, const Location& where);
 
@@ -78,6 +82,7 @@ class DescriptionBuilder {
     bool reverse_orientation = false;
     size_t material = 0;
     std::optional<size_t> area_light;
+    std::optional<size_t> open_object;
     std::string color_space = "srgb";
     Location color_space_where;
     std::array<std::vector<ParsedParam>, kTargets.size()> defaults;
@@ -101,11 +106,14 @@ class DescriptionBuilder {
   static std::string_view ender_of(Opener opener);
   void push(Opener by, const Location& where) { saved_.push_back({by, where, state_, {}}); }
   void pop() { state_ = std::move(saved_.back().state), saved_.pop_back(); }
+  /// As pbrt, either takes what the other begins.
+  void end(std::string_view directive, std::string_view beginner, const Location& where);
   void settle_unknown_materials(Problems& problems);
   ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
   void note_color_space(std::vector<ParsedParam>& params) const;
   /// The colour space that holds here is the film's.
   void set_film_space();
+  void open_object(size_t index, const Location& where);
   size_t new_material(MaterialDescription material);
   Name& material_called(const std::string& name, const Location& where);
   Name& object_called(const std::string& name, const Location& where);
@@ -116,7 +124,6 @@ class DescriptionBuilder {
   std::vector<Saved> saved_;
   bool in_world_ = false;
   bool has_warned_of_transform_begin_ = false;
-  std::optional<size_t> open_object_;
   Names materials_, objects_;
   std::map<std::pair<TextureDescription::Value, std::string>, Location> textures_;
 };

@@ -192,7 +192,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"ObjectBegin", Block::world, with_name<&Builder::object_begin>},
     {"ObjectEnd", Block::world, alone<&Builder::object_end>},
     {"ObjectInstance", Block::world, with_name<&Builder::object_instance>},
-    {"Option", Block::options, option},
+    {"Option", Block::any, option},
     {"PixelFilter", Block::options, option_plugin<&Scene::filter>},
     {"ReverseOrientation", Block::world, [](Directive d) { d.scene().reverse_orientation(); }},
     {"Rotate", Block::any, rotate},
@@ -202,7 +202,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"Texture", Block::world, texture},
     {"Transform", Block::any, [](Directive d) { d.scene().set_transform(matrix(d), d.name, d.where); }},
     {"TransformBegin", Block::world, alone<&Builder::transform_begin>},
-    {"TransformEnd", Block::world, alone<&Builder::attribute_end>},
+    {"TransformEnd", Block::world, alone<&Builder::transform_end>},
     {"TransformTimes", Block::options, [](Directive d) { (void)d.numbers<2>(); }},  // ActiveTransform asks for it
     {"Translate", Block::any,
      [](Directive d) { d.scene().concat(Transform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},
@@ -263,7 +263,11 @@ void carry_out(const Token& name, DirectiveContext& context) {
   if (!entry) fail_unknown(name, where);
   const bool in_world = context.scene.in_world();
   if (entry->block == Block::options && in_world) fail(where, "{} belongs before WorldBegin", entry->name);
-  if (entry->block == Block::world && !in_world) fail(where, "{} belongs after WorldBegin", entry->name);
+  if (entry->block == Block::world && !in_world) {
+    const std::string message = fmt::format("{} belongs after WorldBegin", entry->name);
+    if (context.scene.is_incomplete()) throw Consequence(where, message);
+    fail(where, "{}", message);
+  }
   entry->carry_out({entry->name, where, context});
 }
 

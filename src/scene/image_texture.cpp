@@ -2,10 +2,12 @@
 #include <charconv>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "core/error.h"
 #include "core/texture.h"
 #include "image/rgb_file.h"
+#include "scene/clamped.h"
 #include "scene/mip_map.h"
 #include "scene/registry.h"
 #include "spectra/reflectance_table.h"
@@ -46,17 +48,32 @@ ColorEncoding parse_encoding(const Params& p) {
        text);
 }
 
-/// As pbrt-v4: pictures of floats are linear, whatever the scene says.
-ColorEncoding encoding_of(const Params& p, const std::filesystem::path& path, const ImageFile& file) {
+/// Of files of this name, whatever the scene says, as in pbrt-v4: pictures of floats are linear, those of bytes but PNG
+/// are for a display. Nothing for others.
+std::optional<ColorEncoding> fixed_encoding(std::string_view extension) {
+  constexpr std::string_view kOfFloats[] = {".exr", ".hdr", ".pfm"},
+                             kOfBytes[] = {".jpg", ".jpeg", ".tga", ".bmp", ".gif", ".pgm", ".ppm"};
+  if (std::ranges::find(kOfFloats, extension) != std::end(kOfFloats)) return ColorEncoding{};
+  if (std::ranges::find(kOfBytes, extension) != std::end(kOfBytes)) return ColorEncoding{ColorEncoding::Curve::srgb};
+  return {};
+}
+
+/// What the file's name or the scene says; nothing where the file's values decide.
+std::optional<ColorEncoding> known_encoding(const Params& p, const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   const bool is_given = p.given("encoding");
-  if (extension == ".exr" || extension == ".hdr" || extension == ".pfm") {
-    if (is_given && parse_encoding(p).curve != ColorEncoding::Curve::linear)
-      p.warn("encoding", fmt::format("values of {} files are linear: \"encoding\" is ignored", extension));
-    return {};
+  if (const auto fixed = fixed_encoding(extension)) {
+    if (is_given && parse_encoding(p).curve != fixed->curve)
+      p.warn("encoding", fmt::format("values of {} files are {}, as in pbrt-v4: \"encoding\" is ignored", extension,
+                                     fixed->curve == ColorEncoding::Curve::linear ? "linear" : "sRGB"));
+    return fixed;
   }
   if (is_given) return parse_encoding(p);
+  return {};
+}
+
+ColorEncoding default_encoding(const ImageFile& file) {
   return {file.is_encoded ? ColorEncoding::Curve::srgb : ColorEncoding::Curve::linear};
 }
 
@@ -67,6 +84,10 @@ struct Scaling {
   explicit Scaling(const Params& p) : scale(float(p.real("scale"))), invert(p.boolean("invert")) {}
   float operator()(float v) const { return invert ? std::max(0.f, 1 - scale * v) : scale * v; }
   Float4 operator()(Float4 v) const { return invert ? larger(Float4{}, 1.f - scale * v) : scale * v; }
+  Interval operator()(const Interval& values) const {
+    const double a = double((*this)(float(values.min))), b = double((*this)(float(values.max)));
+    return {std::min(a, b), std::max(a, b)};
+  }
 };
 
 [[noreturn]] void refuse_scale(const Params& p) {
@@ -96,56 +117,100 @@ Image one_channel(const Params& p, const Image& image) {
   return image.selected(rgb, {"R", "G", "B"});
 }
 
+/// A file as textures look it up, whatever they make of its values.
+struct LoadedImage {
+  MipMap map;
+  Interval values{INFINITY, -INFINITY};
+  bool is_red_alone = false;  ///< of three channels
+
+  explicit LoadedImage(MipMap m, bool is_red = false) : map(std::move(m)), is_red_alone(is_red) {
+    const int channels = map.channels();
+    map.each([&](Float4 v) {
+      for (int c = 0; c < channels; ++c)
+        values = {std::min(values.min, double(v[c])), std::max(values.max, double(v[c]))};
+    });
+  }
+};
+
+Image mean_of_channels(const Image& image, const ColorEncoding& encoding) {
+  Image mean(image.width, image.height, {"Y"});
+  for (size_t i = 0; i < mean.pixels.size(); ++i) {
+    const float* v = &image.pixels[3 * i];
+    mean.pixels[i] = (encoding.decode(v[0]) + encoding.decode(v[1]) + encoding.decode(v[2])) / 3;
+  }
+  return mean;
+}
+
+LoadedImage load_numbers(const Params& p, const std::filesystem::path& path, std::optional<ColorEncoding> known) {
+  const ImageFile file = read_finite(path, p.where("filename"));
+  const ColorEncoding encoding = known ? *known : default_encoding(file);
+  const MipMap::Options options = options_of(p);
+  const Image image = one_channel(p, file.image);
+  if (image.channels.size() == 1) return LoadedImage(MipMap(image, encoding, file.eight_bit, options));
+  if (options.filter == MipMap::Filter::point || options.filter == MipMap::Filter::ewa)
+    return LoadedImage(MipMap(image.selected(std::array<size_t, 1>{0}, {"R"}), encoding, file.eight_bit, options),
+                       true);
+  return LoadedImage(MipMap(mean_of_channels(image, encoding), {}, false, options));
+}
+
+/// Of linear colours in a space that the file names.
+void convert_to_srgb(const ColorSpace& from, Image& image) {
+  const Matrix3 m = find_color_space("srgb")->rgb_from_xyz * from.xyz_from_rgb;
+  for (size_t i = 0; i + 2 < image.pixels.size(); i += 3) {
+    float* v = &image.pixels[i];
+    const Triple rgb = m * Triple{double(v[0]), double(v[1]), double(v[2])};
+    for (size_t c = 0; c < 3; ++c) v[c] = float(rgb[c]);
+  }
+}
+
+LoadedImage load_colors(const Params& p, const std::filesystem::path& path, std::optional<ColorEncoding> known) {
+  ImageFile file = read_rgb(path, p.where("filename"));
+  const ColorSpace* space = color_space_of(file);
+  if (!space) p.warn("filename", "the image has a colour space of its own that is not known: sRGB is taken");
+  if (space && space->name != "srgb" && !file.eight_bit) convert_to_srgb(*space, file.image);
+  return LoadedImage(MipMap(file.image, known ? *known : default_encoding(file), file.eight_bit, options_of(p)));
+}
+
+/// Once for all textures of a scene that look it up alike.
+template <class Load>
+std::shared_ptr<const LoadedImage> loaded(const Params& p, SharedWork* shared, std::string_view what,
+                                          const Load& load) {
+  const std::filesystem::path path = p.file("filename");
+  const auto encoding = known_encoding(p, path);
+  const MipMap::Options o = options_of(p);
+  const std::string key =
+      fmt::format("image {} {} {} {} {} {}", what, int(o.filter), int(o.wrap), o.max_anisotropy,
+                  encoding ? fmt::format("{} {}", int(encoding->curve), encoding->gamma) : "-", path.string());
+  SharedWork own;
+  return (shared ? *shared : own).get<LoadedImage>(key, [&] { return load(p, path, encoding); });
+}
+
 class ImageFloat final : public FloatTexture {
  public:
-  ImageFloat(const Params& p, const TexturePlacement& placement) : mapping_(p, placement), scaling_(p) {
-    const std::filesystem::path path = p.file("filename");
-    const ImageFile file = read_finite(path, p.where("filename"));
-    const ColorEncoding encoding = encoding_of(p, path, file);
-    const MipMap::Options options = options_of(p);
-    Image image = one_channel(p, file.image);
-    bool eight_bit = file.eight_bit;
-    if (image.channels.size() == 3) {
-      if (options.filter == MipMap::Filter::point || options.filter == MipMap::Filter::ewa) {
-        image = image.selected(std::array<size_t, 1>{0}, {"R"});
-        p.warn("filter", fmt::format("filter \"{}\" takes the red channel of this image, as pbrt-v4 does; bilinear and "
-                                     "trilinear take alpha, or the mean where there is none",
-                                     p.string("filter")));
-      } else {
-        image_ = MipMap(mean_of_channels(image, encoding), {}, false, options);
-        eight_bit = false;
-      }
-    }
-    if (image.channels.size() == 1) image_ = MipMap(image, encoding, eight_bit, options);
+  ImageFloat(const Params& p, const TexturePlacement& placement)
+      : mapping_(p, placement), scaling_(p), image_(loaded(p, placement.shared, "of numbers", load_numbers)) {
+    if (image_->is_red_alone)
+      p.warn("filter", fmt::format("filter \"{}\" takes the red channel of this image, as pbrt-v4 does; bilinear and "
+                                   "trilinear take alpha, or the mean where there is none",
+                                   p.string("filter")));
     set_range(p);
   }
-  float evaluate(const TexturePoint& at) const override { return scaling_(image_.at(mapping_.at(at))[0]); }
+  float evaluate(const TexturePoint& at) const override { return scaling_(image_->map.at(mapping_.at(at))[0]); }
   Interval range() const override { return range_; }
   bool needs_details() const override { return true; }
 
  private:
-  static Image mean_of_channels(const Image& image, const ColorEncoding& encoding) {
-    Image mean(image.width, image.height, {"Y"});
-    for (size_t i = 0; i < mean.pixels.size(); ++i) {
-      const float* v = &image.pixels[3 * i];
-      mean.pixels[i] = (encoding.decode(v[0]) + encoding.decode(v[1]) + encoding.decode(v[2])) / 3;
-    }
-    return mean;
-  }
   void set_range(const Params& p) {
-    Interval values{INFINITY, -INFINITY};
-    const auto add = [&](float v) {
-      if (!std::isfinite(v)) refuse_scale(p);
-      values = {std::min(values.min, double(v)), std::max(values.max, double(v))};
-    };
-    image_.each([&](Float4 v) { add(scaling_(v[0])); });
-    if (p.string("wrap") == "black") add(scaling_(0.f));
-    range_ = values;
+    range_ = scaling_(image_->values);
+    if (!std::isfinite(range_.min) || !std::isfinite(range_.max)) refuse_scale(p);
+    if (p.string("wrap") != "black") return;
+    const double beyond = double(scaling_(0.f));
+    range_ = {std::min(range_.min, beyond), std::max(range_.max, beyond)};
   }
 
   TextureMapping mapping_;
   Scaling scaling_;
-  MipMap image_;
+  std::shared_ptr<const LoadedImage> image_;
   Interval range_{};
 };
 
@@ -153,30 +218,24 @@ class ImageFloat final : public FloatTexture {
 class ImageSpectrum final : public SpectrumTexture {
  public:
   ImageSpectrum(const Params& p, const TexturePlacement& placement)
-      : mapping_(p, placement), scaling_(p), table_(ReflectanceTable::srgb()) {
-    const std::filesystem::path path = p.file("filename");
-    ImageFile file = read_rgb(path, p.where("filename"));
-    const ColorEncoding encoding = encoding_of(p, path, file);
-    image_ = MipMap(file.image, encoding, file.eight_bit, options_of(p));
-    Float4 least{}, most{};
-    image_.each([&](Float4 v) {
-      const Float4 value = scaling_(v);
-      most = larger(most, value), least = -larger(-least, -value);
-    });
-    const float low = std::min({least[0], least[1], least[2]}), high = std::max({most[0], most[1], most[2]});
-    if (!std::isfinite(low) || !std::isfinite(high)) refuse_scale(p);
-    if (low < 0 || high > 1)
-      p.warn("filename", fmt::format("the image holds the value {}, a reflectance lies in 0 to 1: it is clamped",
-                                     low < 0 ? low : high));
+      : mapping_(p, placement),
+        scaling_(p),
+        image_(loaded(p, placement.shared, "of colours", load_colors)),
+        table_(ReflectanceTable::srgb()) {
+    const Interval values = scaling_(image_->values);
+    if (!std::isfinite(values.min) || !std::isfinite(values.max)) refuse_scale(p);
+    if (values.min < 0 || values.max > 1)
+      p.warn("filename", fmt::format("the image holds the value {:.3g}, a reflectance lies in 0 to 1: it is clamped",
+                                     values.min < 0 ? values.min : values.max));
   }
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
-    return table_.sample(color(image_.at(mapping_.at(at))), lambda);
+    return table_.sample(color(image_->map.at(mapping_.at(at))), lambda);
   }
   Interval range_nm() const override { return {360, 830}; }
   float max_value() const override {
     std::call_once(max_found_, [this] {
       Float4 last{-1, 0, 0, 0};
-      image_.each([&](Float4 v) {
+      image_->map.each([&](Float4 v) {
         if (are_equal(v, last)) return;
         last = v;
         const Float4 c = color(v);
@@ -189,15 +248,11 @@ class ImageSpectrum final : public SpectrumTexture {
   bool needs_details() const override { return true; }
 
  private:
-  Float4 color(Float4 v) const {
-    constexpr Float4 kOne{1, 1, 1, 1};
-    const Float4 c = larger(Float4{}, scaling_(v));
-    return c < kOne ? c : kOne;
-  }
+  Float4 color(Float4 v) const { return clamped_to_unit(scaling_(v)); }
 
   TextureMapping mapping_;
   Scaling scaling_;
-  MipMap image_;
+  std::shared_ptr<const LoadedImage> image_;
   const ReflectanceTable& table_;
   mutable std::once_flag max_found_;
   mutable float max_ = 0;
@@ -225,7 +280,8 @@ constexpr Param kImageMap[] = {
      .choices = kWraps},
     {.name = "encoding",
      .kind = ParamKind::string,
-     .doc = "Of the file's values: sRGB, linear or \"gamma X\"; sRGB by default for 8 bits and PNG, else linear."},
+     .doc = "Of the file's values: sRGB, linear or \"gamma X\"; sRGB by default for 8 bits and PNG, else linear. No "
+            "effect on EXR, HDR, PFM; JPEG, TGA and BMP are sRGB."},
     {.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor."},
     {.name = "invert",
      .kind = ParamKind::boolean,

@@ -16,23 +16,6 @@ Rgb rgb_at(const Image& image, size_t texel) {
   return {image.pixels[3 * texel], image.pixels[3 * texel + 1], image.pixels[3 * texel + 2]};
 }
 
-bool is_near(const Chromaticity& a, const Chromaticity& b) {
-  constexpr double kSame = 2e-3;  // of rounded figures
-  return std::abs(a.x - b.x) < kSame && std::abs(a.y - b.y) < kSame;
-}
-
-const ColorSpace* space_of(const ImageFile& file) {
-  if (const ColorSpace* named = find_color_space(file.header.color_space)) return named;
-  if (!file.chromaticities) return find_color_space("srgb");
-  const Chromaticities& c = *file.chromaticities;
-  for (const ColorSpace& space : color_spaces()) {
-    const Chromaticities& s = space.chromaticities;
-    if (is_near(c.red, s.red) && is_near(c.green, s.green) && is_near(c.blue, s.blue) && is_near(c.white, s.white))
-      return &space;
-  }
-  return nullptr;
-}
-
 /// Colours whose brightest channel is 1/2 as smooth reflectances, between fits on a grid: photographs have millions of
 /// colours, of which a fit takes 25 us each. Off by 1e-3 of the brightest channel at most, mostly much less.
 class FitTable {
@@ -124,7 +107,7 @@ ColorImage read_light_image(const Params& p) {
   for (float& v : file.image.pixels) lowest = std::min(lowest, v), v = std::max(v, 0.f);
   if (lowest < 0)
     p.warn("filename", fmt::format("the image holds values down to {}: light is not negative, 0 is taken", lowest));
-  const ColorSpace* space = space_of(file);
+  const ColorSpace* space = color_space_of(file);
   if (!space) p.warn("filename", "the image has a colour space of its own that is not known: sRGB is taken");
   return {std::move(file.image), space ? space : find_color_space("srgb")};
 }

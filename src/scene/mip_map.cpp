@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "image/rgb_file.h"
+
 namespace frond {
 namespace {
 
@@ -36,19 +38,20 @@ float larger_part(Vec2 v) { return std::max(std::abs(v.x), std::abs(v.y)); }
 float length_of(Vec2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
 /// Gaussian over the square of the distance from an ellipse's centre, 0 at its rim: Heckbert 1989.
-std::array<float, 128> make_ellipse_weights() {
-  std::array<float, 128> w{};
+constexpr size_t kEllipseSteps = 128;
+std::array<float, kEllipseSteps> make_ellipse_weights() {
+  std::array<float, kEllipseSteps> w{};
   for (size_t i = 0; i < w.size(); ++i) w[i] = std::exp(-2 * float(i) / float(w.size() - 1)) - std::exp(-2.f);
   return w;
 }
-const std::array<float, 128> kEllipseWeights = make_ellipse_weights();
+const std::array<float, kEllipseSteps> kEllipseWeights = make_ellipse_weights();
 
 }  // namespace
 
 float ColorEncoding::decode(float v) const {
   switch (curve) {
     case Curve::srgb:
-      return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+      return decode_srgb(v);
     case Curve::power:
       return std::pow(std::max(v, 0.f), gamma);
     case Curve::linear:
@@ -155,45 +158,40 @@ Float4 MipMap::filtered(const TexturePlace& place) const {
   return (1 - t) * bilinear(levels_[at], place.st) + t * bilinear(levels_[at + 1], place.st);
 }
 
-/// Over the ellipse that the footprint is in texture space: pbrt 4th ed., 10.4.4.
+/// Over the ellipse that the footprint is in texture space, between the two levels on which it is about a texel wide,
+/// and no longer than the anisotropy allows: Heckbert 1989, pbrt 4th ed., 10.4.4.
 Float4 MipMap::of_ellipse(const TexturePlace& place) const {
-  Vec2 longer = place.dst_dx, shorter = place.dst_dy;
-  float length = length_of(longer), width = length_of(shorter);
-  if (length < width) std::swap(longer, shorter), std::swap(length, width);
-  if (width * options_.max_anisotropy < length && width > 0) {
-    const float stretch = length / (width * options_.max_anisotropy);
-    shorter = shorter * stretch;
-    width *= stretch;
-  }
-  if (!(width > 0) || !std::isfinite(length)) return bilinear(levels_[0], place.st);
-  const float level = std::max(0.f, std::log2(width * size_));
-  const size_t at = std::min(size_t(level), levels_.size());
-  const float t = level - float(at);
-  if (at + 1 > levels_.size()) return value(levels_.back(), 0);
-  return (1 - t) * ellipse(at, place.st, longer, shorter) + t * ellipse(at + 1, place.st, longer, shorter);
+  const float along_x = length_of(place.dst_dx), along_y = length_of(place.dst_dy);
+  const float length = std::max(along_x, along_y), narrow = std::min(along_x, along_y);
+  if (!(narrow > 0) || !std::isfinite(length)) return bilinear(levels_[0], place.st);
+  const float widening = std::max(1.f, length / (narrow * options_.max_anisotropy));
+  const Vec2 p = place.dst_dx * (along_x < along_y ? widening : 1),
+             q = place.dst_dy * (along_x < along_y ? 1 : widening);
+  const float level = std::clamp(std::log2(narrow * widening * size_), 0.f, float(levels_.size()));
+  const size_t finer = size_t(level);
+  const float t = level - float(finer);
+  return (1 - t) * ellipse(finer, place.st, p, q) + t * ellipse(finer + 1, place.st, p, q);
 }
 
-Float4 MipMap::ellipse(size_t index, Vec2 st, Vec2 longer, Vec2 shorter) const {
+/// Weighs texels by a Gaussian whose covariance is that of the axes p and q and of a texel's own extent, cut off at 1.
+Float4 MipMap::ellipse(size_t index, Vec2 st, Vec2 p, Vec2 q) const {
   if (index >= levels_.size()) return value(levels_.back(), 0);
   const Level& level = levels_[index];
   const float w = float(level.width), h = float(level.height), x = st.x * w - 0.5f, y = st.y * h - 0.5f;
-  const Vec2 p{longer.x * w, longer.y * h}, q{shorter.x * w, shorter.y * h};
-  // Of a dx^2 + b dx dy + c dy^2 < 1, which is a texel wide at least.
-  float a = p.y * p.y + q.y * q.y + 1, b = -2 * (p.x * p.y + q.x * q.y), c = p.x * p.x + q.x * q.x + 1;
-  const float f = 1 / (a * c - b * b / 4);
-  a *= f, b *= f, c *= f;
-  const float det = 4 * a * c - b * b, reach_x = 2 * std::sqrt(std::max(0.f, c / det)),
-              reach_y = 2 * std::sqrt(std::max(0.f, a / det));
+  const float xx = w * w * (p.x * p.x + q.x * q.x) + 1, yy = h * h * (p.y * p.y + q.y * q.y) + 1;
+  const float xy = w * h * (p.x * p.y + q.x * q.y), determinant = xx * yy - xy * xy;
+  const float reach_x = std::sqrt(xx), reach_y = std::sqrt(yy);
   constexpr float kMost = 1 << 12;  // no ellipse of that anisotropy and level is so wide
-  if (!(reach_x < kMost && reach_y < kMost)) return bilinear(level, st);
+  if (!(reach_x < kMost && reach_y < kMost && determinant > 0)) return bilinear(level, st);
+  constexpr auto kLast = float(kEllipseSteps - 1);
   Float4 sum{};
   float weights = 0;
   for (int j = int(std::ceil(y - reach_y)); j <= int(std::floor(y + reach_y)); ++j)
     for (int i = int(std::ceil(x - reach_x)); i <= int(std::floor(x + reach_x)); ++i) {
-      const float dx = float(i) - x, dy = float(j) - y, square = a * dx * dx + b * dx * dy + c * dy * dy;
+      const float dx = float(i) - x, dy = float(j) - y;
+      const float square = (yy * dx * dx - 2 * xy * dx * dy + xx * dy * dy) / determinant;
       if (!(square < 1)) continue;
-      const auto last = float(kEllipseWeights.size() - 1);
-      const float weight = kEllipseWeights[size_t(std::min(square * float(kEllipseWeights.size()), last))];
+      const float weight = kEllipseWeights[size_t(std::min(square * float(kEllipseSteps), kLast))];
       sum += weight * texel(level, i, j);
       weights += weight;
     }

@@ -35,6 +35,7 @@ class MipMap {
 
   /// Linear values; v runs up, the image's rows run down.
   Float4 at(const TexturePlace& place) const;
+  int channels() const { return channels_; }
   /// Calls use(values) for each texel of the image.
   template <class Use>
   void each(const Use& use) const {
@@ -53,7 +54,7 @@ class MipMap {
   Float4 texel(const Level& level, int x, int y) const;
   Float4 bilinear(const Level& level, Vec2 st) const;
   Float4 filtered(const TexturePlace& place) const;
-  Float4 ellipse(size_t level, Vec2 st, Vec2 longer, Vec2 shorter) const;
+  Float4 ellipse(size_t level, Vec2 st, Vec2 p, Vec2 q) const;
   Float4 of_ellipse(const TexturePlace& place) const;
 
   Options options_;

@@ -63,24 +63,31 @@ float perlin_noise(const Vec3& p) {
   return mixed(wz, layer(0), layer(1));
 }
 
-float fractal_noise(const SolidPlace& at, float gain, int octaves) {
+namespace {
+
+/// `value` of the noise of each octave; `absent` in place of what the footprint leaves out.
+template <class Value>
+float sum_of_octaves(const SolidPlace& at, float gain, int octaves, float absent, const Value& value) {
   const float left = octaves_left(at, octaves);
-  const int whole = int(left);
-  float sum = 0, frequency = 1, weight = 1;
-  for (int i = 0; i < whole; ++i, frequency *= 1.99f, weight *= gain) sum += weight * perlin_noise(at.p * frequency);
-  return sum + weight * smooth_step(left - float(whole), 0.3f, 0.7f) * perlin_noise(at.p * frequency);
+  const int last = int(left);  // which fades away
+  float sum = 0, weight = 1, frequency = 1;
+  for (int i = 0; i <= last; ++i, frequency *= 1.99f) {
+    if (i > 0) weight *= gain;
+    sum += weight * mixed(smooth_step(left - float(i), 0.3f, 0.7f), absent, value(perlin_noise(at.p * frequency)));
+  }
+  for (int i = last; i < octaves; ++i, weight *= gain) sum += weight * absent;
+  return sum;
+}
+
+}  // namespace
+
+float fractal_noise(const SolidPlace& at, float gain, int octaves) {
+  return sum_of_octaves(at, gain, octaves, 0, [](float noise) { return noise; });
 }
 
 float turbulence(const SolidPlace& at, float gain, int octaves) {
   constexpr float kMean = 0.2f;
-  const float left = octaves_left(at, octaves);
-  const int whole = int(left);
-  float sum = 0, frequency = 1, weight = 1;
-  for (int i = 0; i < whole; ++i, frequency *= 1.99f, weight *= gain)
-    sum += weight * std::abs(perlin_noise(at.p * frequency));
-  sum += weight * mixed(smooth_step(left - float(whole), 0.3f, 0.7f), kMean, std::abs(perlin_noise(at.p * frequency)));
-  for (int i = whole; i < octaves; ++i, weight *= gain) sum += weight * kMean;
-  return sum;
+  return sum_of_octaves(at, gain, octaves, kMean, [](float noise) { return std::abs(noise); });
 }
 
 double largest_sum(double gain, int octaves) {

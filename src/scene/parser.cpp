@@ -82,6 +82,8 @@ void SceneReader::read_directive(Tokenizer& tokens, DirectiveContext& context) {
       carry_out(word, context);
   } catch (const InputError&) {
     if (argument.kind == Token::Kind::string) scene_.unread.emplace(argument.text);
+    if (word.text == "Include" || word.text == "Import") scene_.is_incomplete = true;
+    if (word.text == "ObjectBegin") builder_.refused_object_begin(tokens.where(word));
     throw;
   }
 }
@@ -96,7 +98,7 @@ void SceneReader::import(Tokenizer& tokens, const Location& where) {
   Location name_where;
   const fs::path path = next_file(tokens, "Import", name_where);
   builder_.import_begin(where);
-  problems_.attempt([&] { read(read_file_bytes(path, name_where), path, nullptr); });
+  if (!problems_.attempt([&] { read(read_file_bytes(path, name_where), path, nullptr); })) scene_.is_incomplete = true;
   builder_.import_end();
 }
 
@@ -142,19 +144,41 @@ SceneDescription parse_scene(const fs::path& path, const Log& log, const Unsuppo
   return scene;
 }
 
+namespace {
+
+/// `main` has the files that have been looked at, the main one first.
+bool holds_world(SceneSettings& main, const fs::path& path) {
+  if (std::ranges::find(main.files, path) != main.files.end()) return false;
+  main.files.push_back(path);
+  std::string text = read_file_bytes(path, {});
+  if (is_gzip(text)) text = unpack_gzip(text, path.string(), {});
+  Tokenizer tokens(text, std::make_shared<const std::string>(path.string()));
+  while (!tokens.at_end()) {
+    const Token word = tokens.peek();
+    const bool is_word = word.kind == Token::Kind::word;
+    if (is_word && word.text == "WorldBegin") return true;
+    Problems ignored;
+    bool holds = false;
+    const bool is_right = ignored.attempt([&] {
+      tokens.next();
+      if (!is_word || word.text != "Include") return;
+      const Token name = tokens.next();
+      holds = holds_world(main, main.resolve(tokens.text_of(name), tokens.where(name)));
+    });
+    if (holds) return true;
+    if (!is_right) tokens.skip_to_directive(word, is_directive);
+  }
+  return false;
+}
+
+}  // namespace
+
 bool holds_world(const fs::path& path) {
+  if (path == "-") return false;
   bool holds = false;
-  Problems ignored;
-  ignored.attempt([&] {
-    std::string text = read_file_bytes(path, {});
-    if (is_gzip(text)) text = unpack_gzip(text, path.string(), {});
-    Tokenizer tokens(text, std::make_shared<const std::string>(path.string()));
-    while (!holds && !tokens.at_end()) {
-      const Token token = tokens.next();
-      holds = token.kind == Token::Kind::word && token.text == "WorldBegin";
-    }
-  });
-  return holds;
+  Problems problems;
+  SceneSettings main;
+  return !problems.attempt([&] { holds = holds_world(main, path); }) || holds;
 }
 
 SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log,
@@ -166,22 +190,6 @@ SceneDescription parse_scene_text(const std::string& text, const std::string& na
   reader.finish();
   problems.check();
   return scene;
-}
-
-fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
-  if (name.empty() || fs::path(name).is_absolute() || !where.file) return name;
-  std::string slashed = name;  // as exporters on Windows mean it
-  std::ranges::replace(slashed, '\\', '/');
-  std::error_code error;
-  for (const fs::path& path : {fs::path(name), fs::path(slashed)}) {
-    const fs::path beside = (fs::path(*where.file).parent_path() / path).lexically_normal();
-    if (fs::exists(beside, error)) return beside;
-    if (files.empty()) continue;
-    if (fs::path from_main = (files.front().parent_path() / path).lexically_normal(); fs::exists(from_main, error))
-      return from_main;
-    if (fs::exists(path, error)) return path;
-  }
-  return (fs::path(*where.file).parent_path() / name).lexically_normal();
 }
 
 }  // namespace frond

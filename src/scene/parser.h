@@ -21,8 +21,9 @@ SceneDescription parse_scene(const std::filesystem::path& path, const Log& log, 
 SceneDescription parse_scene(const std::vector<std::filesystem::path>& paths, const Log& log,
                              const Unsupported& unsupported, Problems& problems);
 
-/// Whether this file, without those that it includes, holds WorldBegin: then it is a scene, else a piece of one. False
-/// where it cannot be read.
+/// Whether this file or one that it includes holds WorldBegin: then it is a scene, else a piece of one. Whatever else
+/// is wrong there; one that cannot be read is a scene of its own, but standard input, which can be read once, is a
+/// piece.
 bool holds_world(const std::filesystem::path& path);
 
 /// As the first from text; `name` is what errors call it, and what Include resolves against.

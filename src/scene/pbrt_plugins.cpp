@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <span>
 
-#include "scene/parser.h"
+#include "scene/normal_map.h"
 
 namespace frond {
 namespace {
@@ -159,6 +160,29 @@ void warn_of_regularize(const ParsedPlugin& integrator, const Log& log) {
     log.warn(p->where, "\"regularize\" has no effect: nothing is blurred, what pbrt leaves out shows as noise");
 }
 
+void add_params(std::span<const Param> params, std::vector<std::string_view>& names) {
+  for (const Param& p : params)
+    if (std::ranges::find(names, p.name) == names.end()) names.push_back(p.name);
+}
+
+/// What no plugin of the target takes is passed over by all of them.
+void warn_of_attributes(const SceneSettings& description, const Registry& r, const Log& log) {
+  std::map<std::string_view, std::vector<std::string_view>> names;
+  const auto add = [&names](std::string_view target, const auto& table) {
+    for (const auto* info : table.all()) add_params(info->params, names[target]);
+  };
+  add("shape", r.shapes), add("light", r.lights), add("light", r.area_lights);
+  add("material", r.materials), add("texture", r.float_textures), add("texture", r.spectrum_textures);
+  add_params(normal_bend_params.params, names["material"]);
+  for (const auto& [key, where] : description.attributes) {
+    const auto& [target, name] = key;
+    if (std::ranges::find(names[target], name) != names[target].end()) continue;
+    const std::string_view match = nearest(name, names[target]);
+    log.warn(where, fmt::format("no {} has a parameter \"{}\"{}", target, name,
+                                match.empty() ? "" : fmt::format("; did you mean \"{}\"?", match)));
+  }
+}
+
 /// Hair's colour goes by two names.
 void rename_color(ParsedPlugin& material) {
   if (find(material, "reflectance")) return;
@@ -190,6 +214,7 @@ void set_constant(TextureDescription& texture) {
 
 void answer_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,
                          const Log& log, Problems& problems) {
+  warn_of_attributes(description, registry, log);
   Answerer answerer(unsupported, log, problems);
   SceneDescription& d = description;
   problems.attempt([&] {
@@ -199,8 +224,9 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   warn_of_regularize(d.integrator, log);
   if (d.integrator.name == "path")
     std::erase_if(d.integrator.params, [](const auto& p) { return p.name == "regularize"; });
-  // Shadow rays of these pass what only parts media; those of "path" do not.
-  const bool sees_through_interfaces = d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
+  // Shadow rays of these pass what only parts media; those of "path" do not. pbrt takes volpath where none is given.
+  const bool sees_through_interfaces =
+      !d.integrator.where.file || d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
   answerer.answer("Integrator", registry.integrators, kIntegrators, kOldIntegrators, d.integrator);
   const bool is_realistic = d.camera.name == "realistic";
   if (answerer.answer("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)
@@ -233,21 +259,6 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   if (answerer.old().empty()) return;
   problems = answerer.old();  // all there is to say
   d = {};
-}
-
-SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,
-                            const Unsupported& unsupported, Problems& problems) {
-  SceneDescription description = parse_scene(paths, log, unsupported, problems);
-  answer_pbrt_plugins(description, registry, unsupported, log, problems);
-  return description;
-}
-
-SceneDescription read_scene(const std::filesystem::path& path, const Registry& registry, const Log& log,
-                            const Unsupported& unsupported) {
-  Problems problems;
-  SceneDescription description = read_scene(std::vector{path}, registry, log, unsupported, problems);
-  problems.check();
-  return description;
 }
 
 }  // namespace frond

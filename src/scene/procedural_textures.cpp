@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/texture.h"
+#include "scene/clamped.h"
 #include "scene/noise.h"
 #include "scene/registry.h"
 #include "scene/texture_mapping.h"
@@ -27,6 +28,7 @@ class SharedFloat final : public FloatTexture {
     return (t < 1 ? (1 - t) * first_->evaluate(at) : 0) + (t > 0 ? t * second_->evaluate(at) : 0);
   }
   Interval range() const override { return hull(first_->range(), second_->range()); }
+  bool is_range_tight() const override { return first_->is_range_tight() && second_->is_range_tight(); }
   bool needs_details() const override { return share_.needs_details(); }
 
  private:
@@ -89,10 +91,10 @@ class Checkerboard {
                   second_integral(double(in_period) - double(radius))) /
                  (double(radius) * double(radius)));
   }
-  /// Of the alternating sign, whose first is a triangle wave, 0 to 1.
+  /// Of the alternating sign: the first is a triangle wave from 0 to 1, of area 1 in each period of 2.
   static double second_integral(double x) {
-    const double t = x / 2 - std::floor(x / 2) - 0.5;
-    return x / 2 + t * (1 - 2 * std::abs(t));
+    const double periods = std::floor(x / 2), up = x - 2 * periods, down = 2 - up;
+    return periods + (up < 1 ? up * up / 2 : 1 - down * down / 2);
   }
 
   bool is_solid_;
@@ -178,9 +180,7 @@ class BilerpSpectrum final : public SpectrumTexture {
     const auto w = corner_weights(mapping_.at(at).st);
     SampledSpectrum sum;
     for (size_t i = 0; i < 4; ++i) sum += w[i] * v_[i]->sample(lambda);
-    constexpr Float4 kOne{1, 1, 1, 1};
-    const Float4 positive = larger(Float4{}, sum.v);
-    return SampledSpectrum(positive < kOne ? positive : kOne);
+    return SampledSpectrum(clamped_to_unit(sum.v));
   }
   Interval range_nm() const override {
     Interval common = v_[0]->range_nm();
@@ -216,6 +216,7 @@ class Fbm final : public FloatTexture {
     const double most = largest_sum(double(octaves_.gain), octaves_.count);
     return {-most, most};
   }
+  bool is_range_tight() const override { return false; }
   bool needs_details() const override { return true; }
 
  private:
@@ -233,6 +234,7 @@ class Wrinkled final : public FloatTexture {
     const double most = largest_sum(double(octaves_.gain), octaves_.count);
     return {octaves_.gain < 0 ? -most : 0, most};
   }
+  bool is_range_tight() const override { return false; }
   bool needs_details() const override { return true; }
 
  private:
@@ -254,6 +256,7 @@ class Windy final : public FloatTexture {
     const double most = largest_sum(double(kGain), kGustOctaves) * largest_sum(double(kGain), kWaveOctaves);
     return {-most, most};
   }
+  bool is_range_tight() const override { return false; }
   bool needs_details() const override { return true; }
 
  private:
@@ -282,7 +285,7 @@ class Marble final : public SpectrumTexture {
   bool needs_details() const override { return true; }
 
  private:
-  /// From 0 to 1, by cubic Bézier curves over four colours in turn; the colours are pbrt-v4's.
+  /// From 0 to 1, by cubic Bézier curves over four colours in turn; the colours are those of pbrt-v4 (Apache 2.0).
   static Float4 color(float t) {
     constexpr Float4 kLight{.58f, .58f, .6f, 0};
     constexpr std::array<Float4, 9> kColors{kLight,

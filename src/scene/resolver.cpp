@@ -18,11 +18,16 @@ namespace {
 
 const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
 
-/// A name such as "stdillum-D65", or that of an .spd file.
+/// A name such as "stdillum-D65", or that of a file.
 SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneSettings& description) {
   const auto& words = std::get<std::vector<std::string>>(p.values);
   if (words.size() != 1) fail(p.value_where, "\"{}\" takes one spectrum, {} names given", p.name, words.size());
-  if (words[0].ends_with(".spd")) return read_spd(description.resolve(words[0], p.value_where), p.value_where);
+  const auto names = spectrum_names();
+  const std::filesystem::path path = description.resolve(words[0], p.value_where);
+  std::error_code error;
+  const bool is_named = std::ranges::find(names, words[0]) != names.end();
+  if (!is_named && (words[0].ends_with(".spd") || std::filesystem::is_regular_file(path, error)))
+    return read_spd(path, p.value_where);
   return named_spectrum(words[0], p.value_where);
 }
 
@@ -116,7 +121,11 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
     const Info& info = table.get(t.plugin.name, t.plugin.where);
     bool needs_details = false;
     std::shared_ptr<const Texture> result = make(
-        key, [&] { return info.make(Params(info, t.plugin, *this), {t.world_from_texture}); }, needs_details);
+        key,
+        [&] {
+          return info.make(Params(info, t.plugin, *this), {t.world_from_texture, &shared_});
+        },
+        needs_details);
     pass_on(needs_details);
     made.emplace(name, MadeTexture<Texture>{result, needs_details});
     return result;
@@ -127,7 +136,7 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
 void SceneResolver::fail_unknown(std::string_view kind, const std::string& name,
                                  const std::vector<std::string_view>& names, const Location& where) const {
   const std::string message = fmt::format("there is no {} \"{}\"{}", kind, name, suggestion(name, names));
-  if (description_.unread.contains(name)) throw Consequence(where, message);
+  if (description_.may_be_unread(name)) throw Consequence(where, message);
   fail(where, "{}", message);
 }
 

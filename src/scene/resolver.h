@@ -5,6 +5,7 @@
 
 #include "core/log.h"
 #include "core/params.h"
+#include "core/shared_work.h"
 #include "core/wavelengths.h"
 #include "scene/description.h"
 #include "scene/registry.h"
@@ -74,6 +75,7 @@ class SceneResolver final : public ParamResolver {
   MadeTextures<FloatTexture> float_textures_;
   MadeTextures<SpectrumTexture> spectrum_textures_;
   std::map<size_t, MadeMaterial> materials_;
+  SharedWork shared_;                  ///< of textures
   std::set<std::string> in_progress_;  ///< textures and materials being made: a second visit is a cycle
   std::set<std::string> warned_;
   std::vector<bool> needs_details_;  ///< of what is being made, level by level

@@ -73,6 +73,7 @@ class SceneBuilder {
     const auto resolver = build_settings();
     bind_all(*resolver);
     build_world(description, *resolver);
+    problems_.attempt([this] { check_period(); });
     problems_.check();
   }
 
@@ -208,14 +209,19 @@ class SceneBuilder {
   }
 
   /// Lights that stand in the scene would have to be there again too.
-  void build_tiling() {
-    if (!period_) return;
+  void check_period() const {
+    if (!period_ || !scene_.lights_) return;
     for (const Light* light : scene_.lights_->all)
       if (!light->is_distant()) {
         const auto known = light_where_.find(light);
         fail(known == light_where_.end() ? period_where_ : known->second,
              "a scene with a \"period\" takes light from outside alone: \"distant\", or \"infinite\" without a portal");
       }
+  }
+
+  void build_tiling() {
+    if (!period_) return;
+    check_period();
     scene_.period_ = period_;
     scene_.tiling_.emplace(*period_, scene_.geometry_->bounds());
   }

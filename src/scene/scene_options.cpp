@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/plugin.h"
 
 namespace frond {
@@ -55,9 +57,19 @@ constexpr Param kOptionParams[] = {
 };
 constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
 
+/// Refuses names that are none.
+void check_names(const std::vector<ParsedParam>& options) {
+  std::vector<std::string_view> names;
+  for (const Param& p : kOptionParams) names.push_back(p.name);
+  for (const ParsedParam& p : options)
+    if (std::ranges::find(names, p.name) == names.end())
+      fail(p.where, "there is no option \"{}\"{}", p.name, suggestion(p.name, names));
+}
+
 }  // namespace
 
 SceneOptions read_options(const SceneSettings& description, const Log& log) {
+  check_names(description.options);
   OptionResolver resolver(description, log);
   const Params p(kOptions, {"Option", {}, description.options}, resolver);
   for (const std::string_view name : {"forcediffuse", "pixelstats", "wavefront"})

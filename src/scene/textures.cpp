@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "core/texture.h"
+#include "scene/clamped.h"
 #include "scene/registry.h"
 
 namespace frond {
@@ -14,6 +15,7 @@ class ScaleFloat final : public FloatTexture {
     const auto corners = {a.min * b.min, a.min * b.max, a.max * b.min, a.max * b.max};
     return {std::min(corners), std::max(corners)};
   }
+  bool is_range_tight() const override { return tex_->is_range_tight() && scale_->is_range_tight(); }
 
  private:
   std::shared_ptr<const FloatTexture> tex_, scale_;
@@ -25,7 +27,7 @@ class ScaleSpectrum final : public SpectrumTexture {
     const Interval r = scale_->range();
     const double most = r.max * double(tex_->max_value());
     is_clamped_ = r.min < 0 || most > 1;
-    if (is_clamped_)
+    if (is_clamped_ && scale_->is_range_tight())
       p.warn("scale", fmt::format("this takes \"tex\", up to {:.3g}, out of [0, 1], for it is {:.3g} to {:.3g}: the "
                                   "product is clamped",
                                   tex_->max_value(), r.min, r.max));
@@ -33,9 +35,7 @@ class ScaleSpectrum final : public SpectrumTexture {
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
     const SampledSpectrum product = tex_->evaluate(at, lambda) * scale_->evaluate(at);
     if (!is_clamped_) return product;
-    constexpr Float4 kOne{1, 1, 1, 1};
-    const Float4 positive = larger(Float4{}, product.v);
-    return SampledSpectrum(positive < kOne ? positive : kOne);
+    return SampledSpectrum(clamped_to_unit(product.v));
   }
   Interval range_nm() const override { return tex_->range_nm(); }
   float max_value() const override { return std::clamp(tex_->max_value() * float(scale_->range().max), 0.f, 1.f); }
@@ -59,6 +59,9 @@ class MixFloat final : public FloatTexture {
     const auto at = [](double x, double y, double s) { return (1 - s) * x + s * y; };
     return {std::min(at(a.min, b.min, t.min), at(a.min, b.min, t.max)),
             std::max(at(a.max, b.max, t.min), at(a.max, b.max, t.max))};
+  }
+  bool is_range_tight() const override {
+    return a_->is_range_tight() && b_->is_range_tight() && amount_->is_range_tight();
   }
 
  private:

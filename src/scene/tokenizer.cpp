@@ -68,6 +68,7 @@ Tokenizer::Tokenizer(std::string_view text, std::shared_ptr<const std::string> f
   at_ = line_start_ = text.data();
   end_ = at_ + text.size();
   next_ = scan();
+  if (outer_) outer_->last_capital_ = {};  // what is taken from there later may end a directive of this file
 }
 
 Token Tokenizer::next() {
@@ -88,9 +89,10 @@ Token Tokenizer::token_at(const char* start) const {
 
 void Tokenizer::skip_blanks() {
   for (; at_ != end_; ++at_) {
-    if (*at_ == '#') at_ = std::find(at_, end_, '\n');
+    if (*at_ == '#') at_ = std::find_if(at_, end_, [](char c) { return c == '\n' || c == '\r'; });
     if (at_ == end_ || !is_blank(*at_)) return;
-    if (*at_ == '\n') ++line_, line_start_ = at_ + 1;
+    const bool is_lone_return = *at_ == '\r' && (at_ + 1 == end_ || at_[1] != '\n');
+    if (*at_ == '\n' || is_lone_return) ++line_, line_start_ = at_ + 1;
   }
 }
 
@@ -135,9 +137,8 @@ void Tokenizer::go_back_to(const Token& word) {
 }
 
 void Tokenizer::skip_to_directive(const Token& failed, bool (*is_directive)(std::string_view)) {
-  if (last_capital_.text.data() != failed.text.data() && last_capital_.from == this &&
-      last_capital_.text.data() > failed.text.data() && is_directive(last_capital_.text))
-    return go_back_to(last_capital_);
+  const bool came_later = failed.from != this || last_capital_.text.data() > failed.text.data();
+  if (last_capital_.from == this && came_later && is_directive(last_capital_.text)) return go_back_to(last_capital_);
   while (is_broken_ || !at_end()) {
     if (!is_broken_ && is_capital(next_) && (begins_line(next_) || is_directive(next_.text))) return;
     is_broken_ = false;

@@ -74,6 +74,93 @@ TEST_F(PbrtOptions, PiecesAreOneSceneAndScenesFollowEachOther) {
               HasSubstr("scene.pbrt: nothing is wrong\n" + path("scene.pbrt")));
 }
 
+TEST_F(PbrtOptions, AScenesErrorsAreItsOwn) {
+  folder_.write("broken.pbrt", "Film \"rgb\n" + std::string(kOptions) + std::string(kWorld));
+  folder_.write("world.inc", kWorld);
+  folder_.write("in_two.pbrt", std::string(kOptions) + "Include \"world.inc\"\n");
+  const Outcome check =
+      frond_command({"check", path("broken.pbrt"), path("none.pbrt"), path("in_two.pbrt"), path("scene.pbrt")});
+  EXPECT_EQ(check.code, 1);
+  EXPECT_THAT(check.out, AllOf(HasSubstr("broken.pbrt: 1 error\n"), HasSubstr("none.pbrt: 1 error\n"),
+                               HasSubstr("in_two.pbrt: nothing is wrong"), HasSubstr("scene.pbrt: nothing is wrong")));
+}
+
+TEST_F(PbrtOptions, SpectrumFilesMayHaveAnyName) {
+  folder_.write("leaf.txt", "360 0.5\n830 0.25\n");
+  folder_.write("leaf.pbrt", std::string(kOptions) + std::string(kWorld) +
+                                 "Material \"diffuse\" \"spectrum reflectance\" \"leaf.txt\" Shape \"disk\"\n"
+                                 "Material \"diffuse\" \"spectrum reflectance\" \"leaf.text\" Shape \"disk\"\n");
+  const Outcome check = frond_command({"check", path("leaf.pbrt")});
+  EXPECT_THAT(check.err, AllOf(HasSubstr("leaf.pbrt:6:43: "), HasSubstr("leaf.text"), Not(HasSubstr("leaf.txt"))));
+}
+
+TEST_F(PbrtOptions, NamesOfOptionsAreThoseOfPbrtInAnySpelling) {
+  for (const char* samples : {"-spp", "--SPP", "--s_pp"})
+    EXPECT_EQ(
+        frond_command({path("scene.pbrt"), samples, "1", "--NThreads=1", "-out_file", path("c.exr"), "--Quiet"}).code,
+        0)
+        << samples;
+  EXPECT_EQ(frond_command({"render", path("scene.pbrt"), "--SPP", "1"}).code, 1);
+  const Outcome refused = frond_command({path("scene.pbrt"), "--render-coord-sys", "nonsense"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("cameraworld"));
+}
+
+TEST_F(PbrtOptions, WhatRenderRefusesCheckRefuses) {
+  folder_.write("name.pbrt", "Film \"rgb\" \"string filename\" \"a.xyz\"\n" + std::string(kWorld));
+  folder_.write("period.pbrt", "Option \"float period\" [ 1 1 ]\n" + std::string(kOptions) + std::string(kWorld) +
+                                   "LightSource \"point\"\n");
+  folder_.write("seed.pbrt", "Option \"integer sead\" 1\n" + std::string(kOptions) + std::string(kWorld));
+  EXPECT_THAT(frond_command({"check", path("name.pbrt")}).err,
+              HasSubstr("name.pbrt:1:6: cannot write \"a.xyz\": images are .exr"));
+  EXPECT_THAT(frond_command({"check", path("period.pbrt")}).err, HasSubstr("period.pbrt:6:13: a scene with a"));
+  EXPECT_THAT(frond_command({"check", path("seed.pbrt")}).err,
+              HasSubstr("seed.pbrt:1:8: there is no option \"sead\"; did you mean \"seed\"?"));
+}
+
+TEST_F(PbrtOptions, WarningsOfManyPlacesAreToldOnce) {
+  std::string fog, names;
+  for (int i = 0; i < 100; ++i) fog += "MediumInterface \"fog\" \"\" Shape \"sphere\"\n";
+  for (int i = 0; i < 100; ++i) names += fmt::format("CoordSysTransform \"c{}\"\n", i);
+  folder_.write("fog.pbrt", std::string(kOptions) + std::string(kWorld) + fog + names);
+  const Outcome lenient = frond_command({"check", "--ignore-unsupported", path("fog.pbrt")});
+  EXPECT_EQ(lenient.code, 0);
+  EXPECT_EQ(std::ranges::count(lenient.err, '\n'), 1 + 1 + 20 + 1) << lenient.err;
+  EXPECT_THAT(lenient.err, AllOf(HasSubstr("fog.pbrt:5:1: warning: MediumInterface of pbrt-v4"),
+                                 HasSubstr("here and at 99 more places"), HasSubstr("here and 80 more like it")));
+}
+
+TEST_F(PbrtOptions, StrictTellsWarningsBesideErrors) {
+  folder_.write("both.pbrt", std::string(kOptions) + std::string(kWorld) + "AttributeEnd\nFoo\n");
+  for (const char* command : {"check", "render"})
+    EXPECT_THAT(frond_command({command, "--strict", path("both.pbrt")}).err,
+                AllOf(HasSubstr("both.pbrt:6:1: unknown directive Foo"), HasSubstr("both.pbrt:5:1: AttributeEnd")))
+        << command;
+}
+
+TEST_F(PbrtOptions, RadiometersAndComparisonsReadScenesAsRenderDoes) {
+  for (const char* command : {"brf", "flux"}) {
+    std::vector<std::string> words{command, path("media.pbrt"), "--paths", "64", "--integrator", "path"};
+    EXPECT_THAT(frond_command(words).err, HasSubstr("with --ignore-unsupported=media")) << command;
+    words.emplace_back("--ignore-unsupported");
+    EXPECT_THAT(frond_command(words).err, Not(HasSubstr("with --ignore-unsupported=media"))) << command;
+  }
+  const Outcome compared =
+      frond_command({"compare", path("media.pbrt"), "-o", path("report"), "--ignore-unsupported", "--quick"});
+  EXPECT_THAT(compared.err, HasSubstr("none of the materials is a leaf"));
+}
+
+TEST(OurScenes, HaveNothingToWarnOf) {
+  size_t count = 0;
+  for (const auto& folder : std::filesystem::directory_iterator(FROND_SOURCE_DIR "/scenes"))
+    if (const auto scene = folder.path() / "scene.pbrt"; std::filesystem::exists(scene)) {
+      const Outcome check = frond_command({"check", "--strict", scene.string()});
+      EXPECT_EQ(check.code, 0) << check.err;
+      ++count;
+    }
+  EXPECT_GT(count, 0u);
+}
+
 TEST_F(PbrtOptions, AllThatIsWrongIsTold) {
   for (const char* command : {"check", "render"}) {
     const Outcome bad = frond_command({command, path("bad.pbrt")});

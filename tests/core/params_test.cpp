@@ -103,6 +103,14 @@ class ParamsTest : public ::testing::Test {
   RecordingResolver resolver_;
 };
 
+TEST_F(ParamsTest, DefaultsOfAnAttributeThatAreNotTakenArePassedOver) {
+  ParsedParam other_type = parsed("string", "roughness", Words{"t"}), unknown = parsed("float", "roughnes", Numbers{1});
+  other_type.may_be_unused = unknown.may_be_unused = true;
+  const Params p = make({other_type, unknown});
+  EXPECT_FALSE(p.given("roughness"));
+  EXPECT_EQ(p.real("roughness"), 0.1);
+}
+
 TEST_F(ParamsTest, DefaultsHoldWhereNothingIsGiven) {
   const Params p = make({});
   EXPECT_EQ(p.real("roughness"), 0.1);

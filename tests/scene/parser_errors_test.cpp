@@ -60,7 +60,7 @@ TEST(ParserErrors, NameWhatOfPbrtIsNotThereYet) {
 }
 
 TEST(ParserErrors, TellWhichBlockADirectiveBelongsTo) {
-  for (const char* name : {"Accelerator", "Camera", "Film", "Integrator", "Option", "PixelFilter", "Sampler"})
+  for (const char* name : {"Accelerator", "Camera", "Film", "Integrator", "PixelFilter", "Sampler"})
     expect_errors_in_world({{fmt::format("{} \"x\"", name), fmt::format("s:2:1: {} belongs before WorldBegin", name)}});
   for (const char* name :
        {"AreaLightSource", "AttributeBegin", "AttributeEnd", "LightSource", "MakeNamedMaterial", "Material",
@@ -96,7 +96,7 @@ TEST(ParserErrors, TellWhichNameIsUnknownOrDefinedAgain) {
        "s:2:15: there is no named material \"leaf\"; MakeNamedMaterial makes them"},
       {leaf + leaf, "s:3:19: material \"leaf\" is defined again"},
       {"MakeNamedMaterial \"m\"", "s:2:19: MakeNamedMaterial \"m\" needs parameter \"string type\""},
-      {"MakeNamedMaterial \"m\" \"float type\" 1", "s:2:23: \"type\" is string, a float was given"},
+      {"MakeNamedMaterial \"m\" \"float type\" 1", "s:2:23: \"type\" is string, type float was given"},
       {"MakeNamedMaterial \"m\" \"string type\" [\"a\" \"b\"]", "s:2:38: \"type\" takes 1 value, 2 given"},
       {"ObjectBegin \"leaf\" ObjectEnd\nObjectInstance \"leave\"",
        "s:3:16: there is no object \"leave\"; did you mean \"leaf\"?"},

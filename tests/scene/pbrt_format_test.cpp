@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "core/problems.h"
 #include "render/plugins.h"
+#include "scene/directives.h"
 #include "scene/parser.h"
 #include "scene/pbrt_plugins.h"
 #include "tests/support/input_error.h"
@@ -131,6 +132,7 @@ TEST(PbrtFormat, WhatCannotBeInvertedIsLeftOut) {
 TEST(PbrtFormat, WhatPbrtOnlyWarnsOfIsAWarning) {
   const std::vector<std::pair<std::string, std::string>> scenes{
       {"AttributeEnd", "s:2:1: AttributeEnd without AttributeBegin is left out"},
+      {"TransformEnd", "s:2:1: TransformEnd without TransformBegin is left out"},
       {"CoordSysTransform \"wurld\"", "s:2:19: unknown coordinate system \"wurld\"; did you mean \"world\"?"},
       {"NamedMaterial \"m\"", "s:2:15: there is no named material \"m\""},
       {"Shape \"disk\" \"float radius\" 1 \"float radius\" 2", "s:2:31: parameter \"radius\" is given twice"}};
@@ -157,6 +159,88 @@ TEST(PbrtFormat, AllErrorsAreToldAndNoneThatFollows) {
                   HasSubstr("s:6:13: unknown kind of texture"), HasSubstr("s:7:25: this string"),
                   HasSubstr("s:8:1: unknown directive Foo"), HasSubstr("s:9:16: there is no object")));
 }
+
+/// The one text stands before the other in memory, and behind it.
+TEST(PbrtFormat, AfterAnErrorAtAnIncludedFilesEndTheFileThatIncludesGoesOn) {
+  const std::string inner_text = "Translate 1 x", outer_text = "Include \"i\" Shape \"disk\"";
+  for (const std::string& both : {inner_text + ' ' + outer_text, outer_text + ' ' + inner_text}) {
+    const auto piece = [&](const std::string& text) {
+      return std::string_view(both).substr(both.find(text), text.size());
+    };
+    const auto name = std::make_shared<const std::string>("s");
+    Tokenizer outer(piece(outer_text), name);
+    outer.next(), outer.next();
+    Tokenizer inner(piece(inner_text), name, &outer);
+    const Token failed = inner.next();
+    inner.next(), inner.next();
+    inner.skip_to_directive(failed, is_directive);
+    EXPECT_EQ(outer.peek().text, "Shape") << both;
+  }
+}
+
+TEST(PbrtFormat, WhatAnIncludedFileTakesOfItsIncluderIsReadAgain) {
+  const TestFolder folder("include_end");
+  folder.write("inner.pbrt", "Shape \"disk\"\nTranslate 1 2");
+  Problems problems;
+  const auto scene =
+      parse_scene({folder.write("main.pbrt", "WorldBegin\nInclude \"inner.pbrt\"\nShape \"sphere\"\nFoo 1")},
+                  silent_log(), {}, problems);
+  EXPECT_THAT(problems.messages(), ElementsAre(HasSubstr("main.pbrt:3:1: Translate takes 3 numbers"),
+                                               HasSubstr("main.pbrt:4:1: unknown directive Foo")));
+  EXPECT_EQ(scene.shapes.size(), 2u);
+}
+
+TEST(PbrtFormat, FilesAreRelativeToTheMainFileFirst) {
+  const TestFolder folder("relative");
+  folder.write("a.pbrt", "Shape \"disk\"");
+  folder.write("sub/a.pbrt", "Shape \"sphere\"");
+  folder.write("sub/b.pbrt", "Shape \"sphere\"");
+  folder.write("sub/inner.pbrt", "Include \"a.pbrt\" Include \"b.pbrt\"");
+  const auto scene = parse_scene(folder.write("main.pbrt", "WorldBegin Include \"sub/inner.pbrt\""), silent_log());
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_EQ(scene.shapes[0].plugin.name, "disk");
+  EXPECT_EQ(scene.shapes[1].plugin.name, "sphere");
+}
+
+TEST(PbrtFormat, CommentsEndWithALineOfAnyKind) {
+  EXPECT_EQ(parse_world("# one\rShape \"disk\"\r# two\r\nShape \"disk\"").shapes.size(), 2u);
+  EXPECT_THAT(error_of([] { parse_world("# one\r\r Foo"); }), HasSubstr("s:4:2: unknown directive Foo"));
+}
+
+TEST(PbrtFormat, AMissingIncludeIsTheOnlyError) {
+  const TestFolder folder("missing");
+  for (const char* text :
+       {"Include \"none.pbrt\" Shape \"disk\" NamedMaterial \"m\" Shape \"disk\"",
+        "WorldBegin Include \"none.pbrt\" NamedMaterial \"m\" Shape \"disk\" ObjectInstance \"o\" ObjectEnd",
+        "WorldBegin Import \"none.pbrt\" NamedMaterial \"m\" Shape \"disk\" ObjectInstance \"o\""}) {
+    Problems problems;
+    parse_scene({folder.write("main.pbrt", text)}, silent_log(), {}, problems);
+    EXPECT_THAT(problems.messages(), ElementsAre(HasSubstr("none.pbrt"))) << text;
+  }
+}
+
+TEST(PbrtFormat, WhatARefusedObjectHoldsIsNotInTheWorld) {
+  const TestFolder folder("refused_object");
+  Problems problems;
+  const auto scene =
+      parse_scene({folder.write("main.pbrt",
+                                "WorldBegin ObjectBegin \"o\" ObjectEnd ObjectBegin \"o\" Shape \"disk\" ObjectEnd\n"
+                                "ObjectBegin \"p\" ObjectBegin \"q\" Shape \"disk\" ObjectEnd ObjectEnd\n"
+                                "ObjectBegin 3 Shape \"disk\" ObjectEnd ObjectInstance \"o\"")},
+                  silent_log(), {}, problems);
+  EXPECT_THAT(problems.messages(),
+              ElementsAre(HasSubstr("object \"o\" is defined again"), HasSubstr("ObjectBegin inside object \"p\""),
+                          HasSubstr("ObjectBegin needs a quoted name")));
+  EXPECT_THAT(scene.shapes, IsEmpty());
+}
+
+TEST(PbrtFormat, WorldBeginMakesAllTransformsActive) {
+  const auto scene = parse_scene_text("ActiveTransform EndTime WorldBegin Translate 1 0 0 Shape \"disk\"", "s",
+                                      silent_log(), Unsupported("motion"));
+  EXPECT_EQ(scene.shapes.at(0).world_from_object, Transform::translate({1, 0, 0}));
+}
+
+TEST(PbrtFormat, OptionsMayStandInTheWorld) { EXPECT_EQ(parse_world("Option \"integer seed\" 3").options.size(), 1u); }
 
 /// What becomes of a scene's plugins, and what is said.
 struct Answer {
@@ -190,6 +274,27 @@ TEST(PbrtFormat, SamplersAreAnsweredByOurs) {
   EXPECT_EQ(answer("Sampler \"zsobol\" \"string randomization\" \"owen\" WorldBegin").scene.sampler.params.size(), 0u);
 }
 
+TEST(PbrtFormat, ANamedMaterialWithoutTypeIsOneError) {
+  Problems problems;
+  const TestFolder folder("untyped");
+  const Registry registry = builtin_registry();
+  auto scene = parse_scene({folder.write("main.pbrt",
+                                         "WorldBegin MakeNamedMaterial \"m\" NamedMaterial \"m\"\n"
+                                         "Shape \"disk\"")},
+                           silent_log(), {}, problems);
+  answer_pbrt_plugins(scene, registry, {}, silent_log(), problems);
+  for (const MaterialDescription& m : scene.materials) EXPECT_TRUE(registry.materials.find(m.plugin.name));
+  EXPECT_THAT(problems.messages(), ElementsAre(HasSubstr("needs parameter \"string type\"")));
+}
+
+TEST(PbrtFormat, AttributesThatNothingTakesAreWarnedOf) {
+  const Answer a = answer(
+      "WorldBegin\nAttribute \"shape\" \"float radious\" 1 \"float radius\" 2\n"
+      "Attribute \"material\" \"string normalmap\" \"n.png\" Attribute \"light\" \"float L\" 1");
+  EXPECT_THAT(a.log.warnings, ElementsAre(HasSubstr("s:2:19: no shape has a parameter \"radious\"; did you mean "
+                                                    "\"radius\"?")));
+}
+
 TEST(PbrtFormat, VolpathIsPathWhereThereAreNoMedia) {
   const Answer a = answer("Integrator \"volpath\" \"integer maxdepth\" 7 \"bool regularize\" true WorldBegin");
   EXPECT_EQ(a.scene.integrator.name, "path");
@@ -201,6 +306,7 @@ TEST(PbrtFormat, VolpathIsPathWhereThereAreNoMedia) {
 TEST(PbrtFormat, VolpathSeesThroughInterfaces) {
   const std::string world = " WorldBegin Material \"interface\" Shape \"sphere\" Material \"diffuse\" Shape \"disk\"";
   EXPECT_EQ(answer("Integrator \"volpath\"" + world).scene.shapes.size(), 1u);
+  EXPECT_EQ(answer(world).scene.shapes.size(), 1u);  // pbrt's default
   EXPECT_EQ(answer("Integrator \"path\"" + world).scene.shapes.size(), 2u);
 }
 

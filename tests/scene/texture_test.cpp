@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "image/image_file.h"
 #include "scene/mip_map.h"
 #include "scene/noise.h"
 #include "scene/registry.h"
@@ -13,7 +14,8 @@
 namespace frond {
 
 extern const FloatTextureInfo bilerp_float_texture, checkerboard_float_texture, dots_float_texture, fbm_float_texture,
-    wrinkled_float_texture;
+    wrinkled_float_texture, image_float_texture;
+extern const SpectrumTextureInfo image_spectrum_texture;
 
 namespace {
 
@@ -141,6 +143,72 @@ TEST(MipMap, IsBlackBeyondABlackEdgeAndWhereThereIsNoPlace) {
   }
 }
 
+/// Of files alone.
+class FileLookup final : public ParamResolver {
+ public:
+  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location& w) override { none(w); }
+  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location& w) override { none(w); }
+  std::shared_ptr<Material> material(const std::string&, const Location& w) override { none(w); }
+  SpectrumPtr spectrum(const ParsedParam& p, SpectrumUse) override { none(p.where); }
+  std::filesystem::path file(const std::string& name, const Location&) override { return name; }
+
+ private:
+  [[noreturn]] static void none(const Location& where) { fail(where, "this test resolves files alone"); }
+};
+
+TEST(ImageTexture, OneFileIsReadOnceForTexturesThatLookItUpAlike) {
+  const TestFolder folder("shared_image");
+  const std::string path = folder.name_of("a.exr");
+  Image image(2, 2, {"R", "G", "B"});
+  image.pixels.assign(12, 0.25f);
+  write_image(path, image, {"linear sRGB", {}});
+  FileLookup files;
+  SharedWork shared;
+  const auto make = [&](SharedWork* work, const char* wrap, double scale) {
+    return image_float_texture.make(Params(image_float_texture,
+                                           {"imagemap",
+                                            {},
+                                            {{"string", "filename", {}, {}, std::vector<std::string>{path}},
+                                             {"string", "wrap", {}, {}, std::vector<std::string>{wrap}},
+                                             number("float", "scale", {scale})}},
+                                           files),
+                                    {{}, work});
+  };
+  const auto first = make(&shared, "repeat", 1);
+  std::filesystem::remove(path);
+  EXPECT_EQ(make(&shared, "repeat", 2)->evaluate({.uv = {0.5f, 0.5f}}), 0.5f);
+  EXPECT_EQ(first->evaluate({.uv = {0.5f, 0.5f}}), 0.25f);
+  EXPECT_THROW(make(&shared, "clamp", 1), InputError);
+  EXPECT_THROW(make(nullptr, "repeat", 1), InputError);
+}
+
+/// Of an image's colour at 440, 545 and 620 nm.
+SampledSpectrum colors_of(const std::string& path) {
+  FileLookup files;
+  const Params params(image_spectrum_texture,
+                      {"imagemap", {}, {{"string", "filename", {}, {}, std::vector<std::string>{path}}}}, files);
+  SampledWavelengths lambda;
+  lambda.count = 3;
+  lambda.nm = {440, 545, 620, 0};
+  return image_spectrum_texture.make(params, {})->evaluate({.uv = {0.5f, 0.5f}}, lambda);
+}
+
+TEST(ImageTexture, ColoursAreInTheSpaceThatTheFileNames) {
+  const TestFolder folder("image_space");
+  const Triple rgb{0.5, 0.3, 0.2};
+  const ColorSpace& wide = *find_color_space("rec2020");
+  const Triple in_wide = wide.rgb_from_xyz * (find_color_space("srgb")->xyz_from_rgb * rgb);
+  const auto write = [&](const char* name, const Triple& color, std::string_view space) {
+    Image image(1, 1, {"R", "G", "B"});
+    for (size_t c = 0; c < 3; ++c) image.pixels[c] = float(color[c]);
+    write_image(folder.name_of(name), image, {std::string(space), {}});
+    return folder.name_of(name);
+  };
+  const SampledSpectrum srgb = colors_of(write("srgb.exr", rgb, "linear sRGB"));
+  const SampledSpectrum converted = colors_of(write("wide.exr", in_wide, wide.linear_name));
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(converted[i], srgb[i], 1e-4);
+}
+
 TEST(Noise, IsZeroAtWholeNumbersAndBetweenMinusOneAndOne) {
   RandomStream random(1);
   for (int i = 0; i < 1000; ++i) {
@@ -193,6 +261,11 @@ TEST(Bilerp, MeetsItsCorners) {
   EXPECT_EQ(value(bilerp_float_texture, params, {.uv = {1, 0}}), 3);
   EXPECT_EQ(value(bilerp_float_texture, params, {.uv = {1, 1}}), 4);
   EXPECT_EQ(value(bilerp_float_texture, params, {.uv = {0.5f, 0.5f}}), 2.5f);
+}
+
+TEST(NoiseTextures, HardlyComeNearTheirBounds) {
+  EXPECT_FALSE(make_plugin(wrinkled_float_texture, {}, TexturePlacement{})->is_range_tight());
+  EXPECT_TRUE(make_plugin(bilerp_float_texture, {}, TexturePlacement{})->is_range_tight());
 }
 
 TEST(NoiseTextures, StayInTheirRangesAndLoseWhatIsFinerThanTheFootprint) {

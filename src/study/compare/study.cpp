@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "render/inputs.h"
 #include "render/plugins.h"
-#include "scene/pbrt_plugins.h"
+#include "scene/read_scene.h"
 #include "scene/resolver.h"
 #include "study/paired_films.h"
 
@@ -58,7 +58,7 @@ Study::Study(const StudyOptions& options, ThreadPool& pool, const Log& log)
       pool_(pool),
       log_(log),
       registry_(load_registry(options.plugins)),
-      description_(read_scene(options.scene, registry_, log)) {
+      description_(read_scene(options.scene, registry_, log, options.unsupported)) {
   resize(description_.film, Scene::film_settings(description_, registry_), options.size);
   film_ = Scene::film_settings(description_, registry_);
   drop_requests(description_);

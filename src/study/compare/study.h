@@ -4,6 +4,7 @@
 
 #include "core/log.h"
 #include "scene/scene.h"
+#include "scene/unsupported.h"
 #include "study/compare/candidate.h"
 
 namespace frond::compare {
@@ -13,6 +14,7 @@ struct StudyOptions {
   std::string scene = {}, wavelengths = {};  ///< wavelengths: a PluginText; empty: the scene's
   std::vector<std::string> leaves = {};      ///< names of the materials that candidates replace; empty: every leaf
   std::vector<std::string> plugins = {};
+  Unsupported unsupported = {};
   std::optional<uint64_t> seed = {};  ///< 0 by default
   int size = 256;                     ///< pixels of the picture's longer side
   std::filesystem::path cache = {};

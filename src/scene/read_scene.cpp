@@ -1,0 +1,23 @@
+#include "scene/read_scene.h"
+
+#include "scene/parser.h"
+#include "scene/pbrt_plugins.h"
+
+namespace frond {
+
+SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,
+                            const Unsupported& unsupported, Problems& problems) {
+  SceneDescription description = parse_scene(paths, log, unsupported, problems);
+  answer_pbrt_plugins(description, registry, unsupported, log, problems);
+  return description;
+}
+
+SceneDescription read_scene(const std::filesystem::path& path, const Registry& registry, const Log& log,
+                            const Unsupported& unsupported) {
+  Problems problems;
+  SceneDescription description = read_scene(std::vector{path}, registry, log, unsupported, problems);
+  problems.check();
+  return description;
+}
+
+}  // namespace frond

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/log.h"
+#include "core/problems.h"
+#include "scene/description.h"
+#include "scene/registry.h"
+#include "scene/unsupported.h"
+
+namespace frond {
+
+/// Reads a scene as parse_scene does, and answers pbrt's plugins.
+SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,
+                            const Unsupported& unsupported, Problems& problems);
+
+/// All errors at once as InputErrors.
+SceneDescription read_scene(const std::filesystem::path& path, const Registry& registry, const Log& log,
+                            const Unsupported& unsupported = {});
+
+}  // namespace frond
