@@ -28,7 +28,7 @@ class LocalBsdf {
     Vec3 wi;                 ///< world space
     SampledSpectrum weight;  ///< f |cos theta_i| / pdf
     float pdf;               ///< for the balance with light sampling
-    float radiance_factor;   ///< what refraction has done to the weight
+    float power_factor;      ///< by which refraction has divided the weight
     bool is_specular;
   };
   /// False where nothing is scattered.
@@ -38,7 +38,7 @@ class LocalBsdf {
     sample.wi = frame_.to_world(s->wi);
     sample.weight = s->f * (std::abs(s->wi.z) / s->pdf);
     sample.pdf = s->pdf_is_approximate ? bsdf_->pdf(wo_, s->wi) : s->pdf;
-    sample.radiance_factor = 1 / (s->eta * s->eta);
+    sample.power_factor = s->eta * s->eta;
     sample.is_specular = any(s->flags & Lobes::specular);
     return true;
   }

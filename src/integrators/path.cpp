@@ -29,7 +29,7 @@ struct Path {
   SampledSpectrum throughput;
   /// Density of the last direction, for the balance with light sampling; infinite where no light sample competes.
   float scatter_pdf;
-  float radiance_factor;          ///< by which refraction alone has changed the throughput
+  float power_factor;             ///< by which refraction alone has divided the throughput
   int depth;                      ///< scattering events so far
   LightSelector::Place previous;  ///< the last vertex
   VertexKey key;                  ///< of the vertex that it is at
@@ -119,7 +119,7 @@ class PathTracer final : public Tracer {
       path.lambda = bundle_->lambda[i];
       path.throughput = SampledSpectrum(1);
       path.scatter_pdf = INFINITY;
-      path.radiance_factor = 1;
+      path.power_factor = 1;
       path.depth = 0;
       path.previous = {path.ray.o, {0, 0, 1}};
       PathResult& result = bundle_->results[i];
@@ -334,7 +334,7 @@ class PathTracer final : public Tracer {
     LocalBsdf::Sample sample;
     if (!bsdf.sample(uc, u, path.key.stream(Use::bsdf), sample)) return false;
     path.throughput *= sample.weight;
-    path.radiance_factor *= sample.radiance_factor;
+    path.power_factor *= sample.power_factor;
     path.lambda.retire_black_lanes(path.throughput);
     path.scatter_pdf = !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf;
     set_ray(hit, sample.wi, path);
@@ -345,8 +345,8 @@ class PathTracer final : public Tracer {
   /// that go on make more noise in dark places than the others save time.
   bool ends(Path& path) const {
     if (path.throughput.is_black()) return true;
-    if (settings_.cut_off_attenuation) return attenuation(path) < settings_.cutoff;
-    const float survival = path.throughput.max() / path.radiance_factor;
+    if (settings_.cut_off_attenuation) return attenuation(path) * path.power_factor < settings_.cutoff;
+    const float survival = path.throughput.max() * path.power_factor;
     if (path.depth < kSafeScatterings - 1 || survival >= 1) return false;
     if (path.key.stream(Use::roulette).uniform() >= survival) return true;
     path.throughput *= 1 / survival;
