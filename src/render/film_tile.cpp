@@ -185,7 +185,7 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
   Pixel& pixel = pixels_[at];
   const Exposure exposure(format);
   ModestSums modest;
-  std::optional<SplatSums> splats;
+  SplatSums splats(kernel);
   for (const Sample& sample : samples) {
     Double4 value;
     const bool is_kept = exposure.expose(sample, value);
@@ -206,13 +206,13 @@ void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sampl
     }
     if (!kernel) continue;
     const SplatValue splat(value);
-    if (!splats || splats->exponent() != splat.exponent) {
-      if (splats) add_splats(x, y, *splats);
-      splats.emplace(*kernel, splat.exponent);
+    if (splats.exponent() != splat.exponent) {
+      if (splats.exponent()) add_splats(x, y, splats);
+      splats.restart(splat.exponent);
     }
-    splats->add(sample.place, splat);
+    splats.add(sample.place, splat);
   }
-  if (splats) add_splats(x, y, *splats);
+  if (splats.exponent()) add_splats(x, y, splats);
   modest.add_to(pixel);
 }
 

@@ -122,16 +122,17 @@ SplatValue::SplatValue(const Double4& values) : exponent(kLeastExponent) {
   multiples = values * scale + kRounds - kRounds;
 }
 
-SplatSums::SplatSums(const SplatKernel& kernel, int exponent) : kernel_(kernel), exponent_(exponent) {
-  std::fill_n(sums_.begin(), kernel_.width() * kernel_.height(), Sums{});
+void SplatSums::restart(int exponent) {
+  exponent_ = exponent;
+  std::fill_n(sums_.begin(), kernel_->width() * kernel_->height(), Sums{});
 }
 
 void SplatSums::add(Vec2 u, const SplatValue& value) {
-  const SplatKernel::Weights weights = kernel_.at(u);
+  const SplatKernel::Weights weights = kernel_->at(u);
   const Double2 red_green{value.multiples[0], value.multiples[1]}, blue_weight{value.multiples[2], 1};
   Sums* sums = sums_.data();
-  for (size_t row = 0; row < size_t(kernel_.height()); ++row)
-    for (size_t column = 0; column < size_t(kernel_.width()); ++column, ++sums) {
+  for (size_t row = 0; row < size_t(kernel_->height()); ++row)
+    for (size_t column = 0; column < size_t(kernel_->width()); ++column, ++sums) {
       const auto weight = double(weights.at(column, row));
       sums->red_green += red_green * weight;
       sums->blue_weight += blue_weight * weight;

@@ -131,9 +131,12 @@ struct SplatValue {
 /// What samples of one pixel, of the same exponent, give to each pixel that they reach.
 class SplatSums {
  public:
-  SplatSums(const SplatKernel& kernel, int exponent);
+  /// Of nothing yet: `restart` comes first. The room for the widest kernel is not cleared, which would take longer than
+  /// a few samples do.
+  explicit SplatSums(const SplatKernel* kernel) : kernel_(kernel) {}
 
-  int exponent() const { return exponent_; }
+  void restart(int exponent);
+  std::optional<int> exponent() const { return exponent_; }
   /// Of a sample at `u` in its pixel, [0, 1)^2. At most kMost of them.
   void add(Vec2 u, const SplatValue& value);
   static constexpr int kMost = 64;
@@ -144,7 +147,7 @@ class SplatSums {
     const Sums& sums = sums_[at(column, row)];
     return SplatValue::whole(color < 2 ? sums.red_green[color] : sums.blue_weight[0]);
   }
-  int shift() const { return exponent_ - SplatValue::kLeastExponent; }
+  int shift() const { return *exponent_ - SplatValue::kLeastExponent; }
   int64_t weight(size_t column, size_t row) const { return int64_t(sums_[at(column, row)].blue_weight[1] * 0x1p30); }
 
  private:
@@ -154,10 +157,10 @@ class SplatSums {
     Double2 red_green, blue_weight;
   };
 
-  size_t at(size_t column, size_t row) const { return row * size_t(kernel_.width()) + column; }
+  size_t at(size_t column, size_t row) const { return row * size_t(kernel_->width()) + column; }
 
-  const SplatKernel& kernel_;
-  int exponent_;
+  const SplatKernel* kernel_;
+  std::optional<int> exponent_;
   std::array<Sums, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums_;
 };
 
