@@ -35,11 +35,25 @@ TEST(Solver, GivesTheCheckFigures) {
   const TissueModel soybean(find_specimen("soybean")->params);
   for (const auto& f : kFigures) {
     const std::vector<Shares> s = solve(soybean.at(f.lambda_nm), std::array{8.0, 172.0});
-    // Printed to five digits from a solution good to 1e-5.
-    EXPECT_NEAR(s[0].surface + s[0].subsurface, f.r, 1.5e-5) << f.lambda_nm;
-    EXPECT_NEAR(s[0].transmitted, f.t, 1.5e-5) << f.lambda_nm;
-    EXPECT_NEAR(s[1].surface + s[1].subsurface, f.r_abaxial, 1.5e-5) << f.lambda_nm;
-    EXPECT_NEAR(s[1].transmitted, f.t_abaxial, 1.5e-5) << f.lambda_nm;
+    // Solved by another program from constants with fewer nodes.
+    EXPECT_NEAR(s[0].surface + s[0].subsurface, f.r, 3e-4) << f.lambda_nm;
+    EXPECT_NEAR(s[0].transmitted, f.t, 3e-4) << f.lambda_nm;
+    EXPECT_NEAR(s[1].surface + s[1].subsurface, f.r_abaxial, 3e-4) << f.lambda_nm;
+    EXPECT_NEAR(s[1].transmitted, f.t_abaxial, 3e-4) << f.lambda_nm;
+  }
+}
+
+/// Of the program of the model's authors: soybean from above at 8 degrees, a million rays, absorption by Beer's law.
+/// Standard errors are 0.0005 at most.
+TEST(Solver, MeetsTheAuthorsFigures) {
+  struct {
+    double lambda_nm, r, t;
+  } constexpr kFigures[] = {{550, 0.07596, 0.14765}, {750, 0.4211, 0.4422}, {800, 0.44096, 0.45714}};
+  const TissueModel soybean(find_specimen("soybean")->params);
+  for (const auto& f : kFigures) {
+    const Shares s = solve(soybean.at(f.lambda_nm), std::array{8.0})[0];
+    EXPECT_NEAR(s.surface + s.subsurface, f.r, 4 * 0.0005) << f.lambda_nm;
+    EXPECT_NEAR(s.transmitted, f.t, 4 * 0.0005) << f.lambda_nm;
   }
 }
 
