@@ -14,6 +14,7 @@ install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}")
 foreach(layer IN LISTS frond_layers)
   install(DIRECTORY "src/${layer}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond" FILES_MATCHING PATTERN "*.h")
 endforeach()
+install(FILES LICENSE NOTICE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES "${frond_generated}/core/build_identity.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond/core")
 configure_package_config_file(cmake/frondConfig.cmake.in "${CMAKE_CURRENT_BINARY_DIR}/frondConfig.cmake"
                               INSTALL_DESTINATION "${frond_package_dir}")

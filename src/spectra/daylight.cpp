@@ -1,61 +1,43 @@
 #include "spectra/daylight.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "spectra/analytic.h"
+#include "spectra/named_tables.h"
 #include "spectra/tabulated.h"
 
 namespace frond {
 namespace {
 
-struct Components {
-  double s0, s1, s2;
-};
-
-// From 300 nm in steps of 5 nm to 830 nm: CIE 15:2004, Colorimetry, 3rd edition, table T.2.
-constexpr double kFirst_nm = 300, kStep_nm = 5;
-constexpr Components kComponents[] = {
-    {0.04, 0.02, 0},       {3.02, 2.26, 1},        {6, 4.5, 2},           {17.8, 13.45, 3},      {29.6, 22.4, 4},
-    {42.45, 32.2, 6.25},   {55.3, 42, 8.5},        {56.3, 41.3, 8.15},    {57.3, 40.6, 7.8},     {59.55, 41.1, 7.25},
-    {61.8, 41.6, 6.7},     {61.65, 39.8, 6},       {61.5, 38, 5.3},       {65.15, 40.2, 5.7},    {68.8, 42.4, 6.1},
-    {66.1, 40.45, 4.55},   {63.4, 38.5, 3},        {64.6, 36.75, 2.1},    {65.8, 35, 1.2},       {80.3, 39.2, 0.05},
-    {94.8, 43.4, -1.1},    {99.8, 44.85, -0.8},    {104.8, 46.3, -0.5},   {105.35, 45.1, -0.6},  {105.9, 43.9, -0.7},
-    {101.35, 40.5, -0.95}, {96.8, 37.1, -1.2},     {105.35, 36.9, -1.9},  {113.9, 36.7, -2.6},   {119.75, 36.3, -2.75},
-    {125.6, 35.9, -2.9},   {125.55, 34.25, -2.85}, {125.5, 32.6, -2.8},   {123.4, 30.25, -2.7},  {121.3, 27.9, -2.6},
-    {121.3, 26.1, -2.6},   {121.3, 24.3, -2.6},    {117.4, 22.2, -2.2},   {113.5, 20.1, -1.8},   {113.3, 18.15, -1.65},
-    {113.1, 16.2, -1.5},   {111.95, 14.7, -1.4},   {110.8, 13.2, -1.3},   {108.65, 10.9, -1.25}, {106.5, 8.6, -1.2},
-    {107.65, 7.35, -1.1},  {108.8, 6.1, -1},       {107.05, 5.15, -0.75}, {105.3, 4.2, -0.5},    {104.85, 3.05, -0.4},
-    {104.4, 1.9, -0.3},    {102.2, 0.95, -0.15},   {100, -0, 0},          {98, -0.8, 0.1},       {96, -1.6, 0.2},
-    {95.55, -2.55, 0.35},  {95.1, -3.5, 0.5},      {92.1, -3.5, 1.3},     {89.1, -3.5, 2.1},     {89.8, -4.65, 2.65},
-    {90.5, -5.8, 3.2},     {90.4, -6.5, 3.65},     {90.3, -7.2, 4.1},     {89.35, -7.9, 4.4},    {88.4, -8.6, 4.7},
-    {86.2, -9.05, 4.9},    {84, -9.5, 5.1},        {84.55, -10.2, 5.9},   {85.1, -10.9, 6.7},    {83.5, -10.8, 7},
-    {81.9, -10.7, 7.3},    {82.25, -11.35, 7.95},  {82.6, -12, 8.6},      {83.75, -13, 9.2},     {84.9, -14, 9.8},
-    {83.1, -13.8, 10},     {81.3, -13.6, 10.2},    {76.6, -12.8, 9.25},   {71.9, -12, 8.3},      {73.1, -12.65, 8.95},
-    {74.3, -13.3, 9.6},    {75.35, -13.1, 9.05},   {76.4, -12.9, 8.5},    {69.85, -11.75, 7.75}, {63.3, -10.6, 7},
-    {67.5, -11.1, 7.3},    {71.7, -11.6, 7.6},     {74.35, -11.9, 7.8},   {77, -12.2, 8},        {71.1, -11.2, 7.35},
-    {65.2, -10.2, 6.7},    {56.45, -9, 5.95},      {47.7, -7.8, 5.2},     {58.15, -9.5, 6.3},    {68.6, -11.2, 7.4},
-    {66.8, -10.8, 7.1},    {65, -10.4, 6.8},       {65.5, -10.5, 6.9},    {66, -10.6, 7},        {63.5, -10.15, 6.7},
-    {61, -9.7, 6.4},       {57.15, -9, 5.95},      {53.3, -8.3, 5.5},     {56.1, -8.8, 5.8},     {58.9, -9.3, 6.1},
-    {60.4, -9.55, 6.3},    {61.9, -9.8, 6.5},
-};
-static_assert(std::size(kComponents) == 107);
+constexpr double kRevised = 1.4388 / 1.4380;  // of Planck's second constant, since the series was defined
 
 }  // namespace
 
-SpectrumPtr daylight(double kelvin) {
-  constexpr double kRevised = 1.4388 / 1.4380;  // of Planck's second constant, since the series was defined
-  const double t = kelvin * kRevised;
-  if (t < 4000) return std::make_shared<BlackbodySpectrum>(t);
-  const double k = 1e3 / t;
-  const double x = t <= 7000 ? ((-4.6070 * k + 2.9678) * k + 0.09911) * k + 0.244063
-                             : ((-2.0064 * k + 1.9018) * k + 0.24748) * k + 0.237040;
+SpectrumPtr cie_daylight(double kelvin, DaylightDigits digits) {
+  const double k = 1e3 / kelvin;
+  const double x = kelvin <= 7000 ? ((-4.6070 * k + 2.9678) * k + 0.09911) * k + 0.244063
+                                  : ((-2.0064 * k + 1.9018) * k + 0.24748) * k + 0.237040;
   const double y = (-3 * x + 2.870) * x - 0.275;
   const double m = 0.0241 + 0.2562 * x - 0.7341 * y;
-  const double m1 = (-1.3515 - 1.7703 * x + 5.9114 * y) / m, m2 = (0.0300 - 31.4424 * x + 30.0717 * y) / m;
-  std::vector<SpectrumPoint> points;
-  for (size_t i = 0; i < std::size(kComponents); ++i) {
-    const Components& c = kComponents[i];
-    points.push_back({kFirst_nm + kStep_nm * double(i), std::max(0.0, c.s0 + m1 * c.s1 + m2 * c.s2)});
-  }
+  const auto rounded = [digits](double share) {
+    return digits == DaylightDigits::three ? std::round(1e3 * share) / 1e3 : share;
+  };
+  const double m1 = rounded((-1.3515 - 1.7703 * x + 5.9114 * y) / m),
+               m2 = rounded((0.0300 - 31.4424 * x + 30.0717 * y) / m);
+  std::vector<SpectrumPoint> points = named_column("S0");
+  const auto s1 = named_column("S1"), s2 = named_column("S2");
+  for (size_t i = 0; i < points.size(); ++i)
+    points[i].value = std::max(0.0, points[i].value + m1 * s1[i].value + m2 * s2[i].value);
   return make_tabulated(points);
+}
+
+double kelvin_by_scale_of_1931(double kelvin) { return kelvin * kRevised; }
+
+SpectrumPtr daylight(double kelvin) {
+  const double t = kelvin_by_scale_of_1931(kelvin);
+  if (t < 4000) return std::make_shared<BlackbodySpectrum>(t);
+  return cie_daylight(t, DaylightDigits::all);
 }
 
 }  // namespace frond

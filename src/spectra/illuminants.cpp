@@ -1,7 +1,7 @@
 #include "spectra/illuminants.h"
 
 #include "spectra/analytic.h"
-#include "spectra/named_tables.h"
+#include "spectra/daylight.h"
 
 namespace frond {
 namespace {
@@ -24,44 +24,29 @@ class IlluminantA final : public Spectrum {
   static double planck(double lambda_nm) { return std::expm1(1.435e7 / (2848 * lambda_nm)); }
 };
 
-/// Daylight of a correlated colour temperature from 4000 to 25000 K: its chromaticity, and by that the shares of the
-/// components, to three places as the CIE has them.
-SpectrumPtr daylight(double kelvin) {
-  const double t = 1e3 / kelvin;
-  const double x = kelvin <= 7000 ? ((-4.6070 * t + 2.9678) * t + 0.09911) * t + 0.244063
-                                  : ((-2.0064 * t + 1.9018) * t + 0.24748) * t + 0.237040;
-  const double y = (-3 * x + 2.870) * x - 0.275;
-  const double m = 0.0241 + 0.2562 * x - 0.7341 * y;
-  const double m1 = std::round(1e3 * (-1.3515 - 1.7703 * x + 5.9114 * y) / m) / 1e3;
-  const double m2 = std::round(1e3 * (0.0300 - 31.4424 * x + 30.0717 * y) / m) / 1e3;
-  std::vector<SpectrumPoint> points = named_column("S0");
-  const auto s1 = named_column("S1"), s2 = named_column("S2");
-  for (size_t i = 0; i < points.size(); ++i) points[i].value += m1 * s1[i].value + m2 * s2[i].value;
-  return make_tabulated(points);
+SpectrumPtr standard_daylight(double kelvin) {
+  return cie_daylight(kelvin_by_scale_of_1931(kelvin), DaylightDigits::three);
 }
-
-/// Names are of temperatures by the constant c2 of 1931, 1.4380e-2 m K.
-double by_scale_of_1931(double kelvin) { return kelvin * 1.4388 / 1.4380; }
 
 }  // namespace
 
 SpectrumPtr d50() {
-  static const SpectrumPtr spectrum = daylight(by_scale_of_1931(5000));
+  static const SpectrumPtr spectrum = standard_daylight(5000);
   return spectrum;
 }
 
 SpectrumPtr d55() {
-  static const SpectrumPtr spectrum = daylight(by_scale_of_1931(5500));
+  static const SpectrumPtr spectrum = standard_daylight(5500);
   return spectrum;
 }
 
 SpectrumPtr d75() {
-  static const SpectrumPtr spectrum = daylight(by_scale_of_1931(7500));
+  static const SpectrumPtr spectrum = standard_daylight(7500);
   return spectrum;
 }
 
 SpectrumPtr aces_d60() {
-  static const SpectrumPtr spectrum = daylight(6000);
+  static const SpectrumPtr spectrum = cie_daylight(6000, DaylightDigits::three);
   return spectrum;
 }
 
