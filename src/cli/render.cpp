@@ -13,6 +13,7 @@
 #include "cli/strict_log.h"
 #include "render/adaptive.h"
 #include "render/checkpoint.h"
+#include "render/error_tail.h"
 #include "render/image_output.h"
 #include "render/part_file.h"
 #include "render/session.h"
@@ -215,12 +216,19 @@ class RenderCommand {
     else if (samples.least < range_.count())
       log_.warn({}, fmt::format("the time was over: pixels have {} to {} samples, not {}", samples.least, samples.most,
                                 range_.count()));
+    const ErrorTail tail = error_tail(part.film);
+    if (tail.is_heavy())  // no fault of the scene's, so nothing to --strict
+      console_.warn(
+          {}, fmt::format("a thousandth of the pixels holds {:.0f} % of the noise: rare samples outweigh all others "
+                          "there, and estimates of the noise are too small",
+                          100 * tail.share));
     if (output_) output_->write(part.film, finished_picture(part));
     if (options_.quiet && !options_.json) return;
     print_report({.statistics = statistics_,
                   .load_seconds = load_seconds_,
                   .samples = samples,
                   .foliar_ratio = part.film.foliar_ratio(),
+                  .error_tail = tail.share,
                   .choice = choice_,
                   .output = output_ ? output_->path() : names_->finished.string()},
                  options_.json);

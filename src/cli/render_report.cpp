@@ -35,6 +35,7 @@ void print_report(const RenderReport& r, bool json) {
                              {"cpu_us_per_path", us_per_path},
                              {"rays_per_path", rays_per_path},
                              {"foliar_ratio", r.foliar_ratio},
+                             {"variance_in_worst_thousandth", r.error_tail},
                              {"paths_escaped_by_depth", counts(s.ends.escaped)},
                              {"paths_absorbed_by_depth", counts(s.ends.absorbed)}};
     if (r.choice) j["choice"] = nlohmann::ordered_json::parse(choose::choice_json(*r.choice));

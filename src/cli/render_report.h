@@ -14,6 +14,7 @@ struct RenderReport {
   double load_seconds;
   SampleCount samples;
   double foliar_ratio;
+  double error_tail;  ///< ErrorTail's share
   std::optional<choose::Choice> choice;
   std::string output;
 };
