@@ -41,7 +41,7 @@ def reciprocity(report):
     report.add(f"""
 ## Reciprocity
 
-Neither leaf model is reciprocal: light that goes from a to b and light that goes from b to a are not scattered alike.
+Neither leaf model is reciprocal, and [reciprocal_leaf.md](reciprocal_leaf.md) has what can be done about it: light that goes from a to b and light that goes from b to a are not scattered alike.
 The table has f(a to b) / f(b to a) at 800 nm for light that the model calls incident at {a}° and leaves at {b}° from the
 normal, on the adaxial side or (transmission) the abaxial one. 1 would be reciprocal. Means over azimuth are those of rings
 5° wide, computed from f, for `abm` by its solution, and beside it as rays measure them ({rays} of them). In the plane of
@@ -130,7 +130,7 @@ def lossless(report):
         r = readings(f"abm {leaf} incident={incident}", angles, 551, report.rays(1e7), "--rendered")
         body.append(["`abm`, by rays", incident] + [f"{x['R'] + x['T']:.4f} ± {x['A_se']:.4f}" for x in r.values()])
     for material in ("leaf_solved", "leaf_simplified"):
-        for incident in ("traced", "light"):
+        for incident in ("traced", "light", "reciprocal"):
             sums = {}
             for p in rows(frond("goniophotometer", material, *leaf.split(), f"incident={incident}", "--angles", angles,
                                 "--wavelengths", 551, "--rendered", "--integrate", "--csv", "-", "-q")):

@@ -17,7 +17,8 @@ constexpr Param kOwn[] = {
      .doc = "Absorption: analog kills whole rays, as published; weighted takes a share of each, with the same mean.",
      .choices = kModes},
 };
-constexpr auto kAbm = with_leaf_params(kOwn);
+// The walk has no f of the way back to be balanced with: leaf_solved has both.
+constexpr auto kAbm = without_reciprocal(with_leaf_params(kOwn));
 
 Vec3d in_double(const Vec3& w) { return normalize(Vec3d{w.x, w.y, w.z}); }
 Vec3 in_float(const Vec3d& w) { return {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}; }
@@ -175,7 +176,7 @@ class Abm final : public Material {
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const LeafLanes lanes = leaf_at(hit.at, lambda, arena);
-    if (leaf_.from_light()) return arena.make<AbmFromLightBsdf>(lanes, absorption_);
+    if (leaf_.incident() == Incident::light) return arena.make<AbmFromLightBsdf>(lanes, absorption_);
     return arena.make<AbmBsdf>(lanes, absorption_);
   }
 

@@ -35,7 +35,7 @@ constexpr Param kOwn[] = {
      .kind = ParamKind::string,
      .default_value = kAuto,
      .doc = "The material that stands for the leaf; auto: frond render takes the cheapest that meets maxrms "
-            "(docs/choosing.md), all else takes abm, by weighted walks.",
+            "(docs/choosing.md), all else takes abm, by weighted walks, or, of a reciprocal leaf, leaf_solved.",
      .choices = kModels},
     {.name = "maxrms",
      .kind = ParamKind::real,
@@ -45,8 +45,8 @@ constexpr Param kOwn[] = {
 };
 constexpr auto kLeaf = with_leaf_params(kOwn);
 
-const MaterialInfo& material_of(std::string_view model) {
-  if (model == kAuto) return abm_material;
+const MaterialInfo& material_of(std::string_view model, bool is_reciprocal) {
+  if (model == kAuto) return is_reciprocal ? leaf_solved_material : abm_material;
   const auto found = std::ranges::find(kLadder, model, &Model::name);
   if (found == kLadder.end()) throw std::logic_error("no leaf model is called " + std::string(model));
   return *found->info;
@@ -57,7 +57,7 @@ ParsedParam weighted_walks() { return {"string", "mode", {}, {}, std::vector<std
 /// A material cannot see the picture, so it does not choose: who can writes down what was chosen as "model".
 std::unique_ptr<Material> make_leaf(const Params& p) {
   (void)p.real("maxrms");
-  const MaterialInfo& info = material_of(p.string("model"));
+  const MaterialInfo& info = material_of(p.string("model"), p.string("incident") == "reciprocal");
   const bool walks = &info == &abm_material;
   return info.make(p.forwarded(info, walks ? std::vector{weighted_walks()} : std::vector<ParsedParam>{}));
 }

@@ -44,6 +44,20 @@ struct alignas(16) TwoSides {
   float front_reflected, front_transmitted, back_reflected, back_transmitted;
 };
 
+/// The reciprocal leaf nearest to it, as of leaf/table/reciprocal_body.h: with d of either side
+///   d_f (d_f R_f + d_b T) = R_f + T_f,   d_b (d_b R_b + d_f T) = R_b + T_b,   T = (T_f + T_b) / 2,
+/// and d_f d_b solves a quadratic equation.
+TwoSides make_reciprocal(const TwoSides& s) {
+  const double front = double(s.front_reflected) + double(s.front_transmitted),
+               back = double(s.back_reflected) + double(s.back_transmitted);
+  const double through = (double(s.front_transmitted) + double(s.back_transmitted)) / 2;
+  const double reflects = double(s.front_reflected) * double(s.back_reflected);
+  const double b = through * (front + back), root = through * (front - back);
+  const double denominator = b + std::sqrt(root * root + 4 * front * back * reflects);
+  const double t = denominator > 0 ? 2 * front * back * through / denominator : 0;
+  return {float(front - t), float(t), float(back - t), float(t)};
+}
+
 /// Front and back shares by wavelength: lane by lane where the lanes are always the same, linear in between otherwise.
 class TwoSidedSpectra {
  public:
@@ -101,15 +115,17 @@ class LeafLambert final : public Material {
           leaf::cached_table(request, leaf_.specimen(), preparation.pool, preparation.log, preparation.cache_dir);
       return means(table, !preparation.wavelengths.fixed_nm().empty());
     };
+    const std::string what = leaf_.is_reciprocal() ? "reciprocal means, " : "means, ";
     spectra_ = preparation.share<TwoSidedSpectra>(
-        "means, " + wavelengths_key(preparation.wavelengths) + leaf::describe(request), make);
+        what + wavelengths_key(preparation.wavelengths) + leaf::describe(request), make);
   }
 
   const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
     const auto [front, back] = spectra_->at(lambda);
-    return arena.make<TwoSidedLambertianBsdf>(front, back, leaf_.from_light());
+    return arena.make<TwoSidedLambertianBsdf>(front, back, leaf_.incident() == Incident::light);
   }
 
+  bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
   bool is_leaf() const override { return true; }
 
  private:
@@ -129,8 +145,9 @@ class LeafLambert final : public Material {
     std::vector<TwoSides> values;
     for (size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
       const leaf::Shares front = mean(table, w, false), back = mean(table, w, true);
-      values.push_back(
-          {float(front.subsurface), float(front.transmitted), float(back.subsurface), float(back.transmitted)});
+      const TwoSides sides{float(front.subsurface), float(front.transmitted), float(back.subsurface),
+                           float(back.transmitted)};
+      values.push_back(leaf_.is_reciprocal() ? make_reciprocal(sides) : sides);
     }
     return {table.wavelengths_nm, std::move(values), fixed_lanes};
   }

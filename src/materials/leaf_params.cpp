@@ -9,12 +9,21 @@ namespace frond {
 
 using leaf::TissueParams;
 
+namespace {
+
+Incident incident_of(std::string_view word) {
+  if (word == "reciprocal") return Incident::reciprocal;
+  return word == "light" ? Incident::light : Incident::traced;
+}
+
+}  // namespace
+
 LeafParams::LeafParams(const Params& p)
     : specimen_(p.string("specimen")),
       where_(p.where()),
       pigments_where_(p.where("pigments")),
       tissue_(leaf::find_specimen(specimen_)->params),
-      from_light_(p.string("incident") == "light"),
+      incident_(incident_of(p.string("incident"))),
       depth_(read(p)) {}
 
 leaf::DepthMap LeafParams::read(const Params& p) {

@@ -9,6 +9,7 @@
 #include "core/wavelengths.h"
 #include "leaf/table/depth_map.h"
 #include "leaf/tissue/specimens.h"
+#include "materials/incident.h"
 
 namespace frond {
 
@@ -16,7 +17,7 @@ namespace detail {
 
 inline constexpr Unit kDensity = "kg/m^3";
 
-inline constexpr std::string_view kIncident[] = {"traced", "light"};
+inline constexpr std::string_view kIncident[] = {"traced", "light", "reciprocal"};
 
 constexpr Param leaf_number(std::string_view name, Unit unit, Interval range, std::string_view doc) {
   return {.name = name, .kind = ParamKind::float_texture, .unit = unit, .range = range, .doc = doc};
@@ -72,7 +73,8 @@ inline constexpr std::array kLeafParams{
           .kind = ParamKind::string,
           .default_value = std::string_view("traced"),
           .doc = "What the model, which is not reciprocal, takes for its incident ray: the one that is traced, as "
-                 "published, or the light.",
+                 "published, the light, or neither: reciprocal is the leaf nearest to the model that is "
+                 "(docs/reciprocal_leaf.md).",
           .choices = detail::kIncident},
 };
 
@@ -82,6 +84,20 @@ constexpr auto with_leaf_params(const Param (&own)[N]) {
   std::array<Param, kLeafParams.size() + N> all{};
   std::copy(own, own + N, std::copy(kLeafParams.begin(), kLeafParams.end(), all.begin()));
   return all;
+}
+
+/// Of a material that cannot be reciprocal.
+template <size_t N>
+constexpr std::array<Param, N> without_reciprocal(std::array<Param, N> params) {
+  for (Param& p : params)
+    if (p.name == "incident") {
+      p.doc =
+          "What the model, which is not reciprocal, takes for its incident ray: the one that is traced, as published, "
+          "or "
+          "the light.";
+      p.choices = std::span(detail::kIncident).first(2);
+    }
+  return params;
 }
 
 /// A leaf as a scene gives it.
@@ -104,7 +120,12 @@ class LeafParams {
   const Aspect& spongy_aspect() const { return aspects_[2]; }
   const Aspect& palisade_aspect() const { return aspects_[3]; }
 
-  bool from_light() const { return from_light_; }  ///< "incident" is "light"
+  Incident incident() const { return incident_; }
+  bool is_reciprocal() const { return incident_ == Incident::reciprocal; }
+  /// Exponents of the surface's lobe that the texture of the cuticle gives, or else this one.
+  Interval exponents(double constant) const {
+    return cuticle_aspect() ? cuticle_aspect()->range() : Interval{constant, constant};
+  }
   std::string specimen() const { return specimen_; }
 
   /// Throws InputError where a texture says how the walls inside spread light, for materials whose tables hold for one
@@ -130,7 +151,7 @@ class LeafParams {
   leaf::TissueParams tissue_;
   std::array<Aspect, 4> aspects_;
   std::vector<PigmentData> pigment_data_;
-  bool from_light_;
+  Incident incident_;
   leaf::DepthMap depth_;
 };
 

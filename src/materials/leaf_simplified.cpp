@@ -72,7 +72,7 @@ class LeafSimplified final : public Material {
         varies_(!leaf_.depth().is_constant() && !p.given("tablefile")),
         surface_texture_(p.given("oblateness") ? nullptr : leaf_.cuticle_aspect()),
         exponent_(p.given("oblateness") ? p.real("oblateness") : leaf_.tissue().cuticle_aspect),
-        manner_{p.boolean("surfacedirect"), leaf_.from_light()},
+        manner_{p.boolean("surfacedirect"), leaf_.incident()},
         file_(p, kOfTable) {
     request_.params = leaf_.tissue();
     request_.theta_deg = table_angles(request_.params, p.real("tablestep"));
@@ -96,6 +96,10 @@ class LeafSimplified final : public Material {
     else
       lookup_ =
           preparation.share<leaf::TableLookup>(key_of_request(preparation), [&] { return made_lookup(preparation); });
+    reciprocal_.reset();
+    if (leaf_.is_reciprocal())
+      reciprocal_ = std::make_shared<const leaf::ReciprocalLookup>(
+          *lookup_, surface_texture_ ? surface_texture_->range() : Interval{exponent_, exponent_});
   }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
@@ -104,9 +108,15 @@ class LeafSimplified final : public Material {
     const leaf::Lobe* surface = surface_texture_
                                     ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at)))
                                     : surface_.get();
-    return arena.make<ThreeLobeBsdf>(LeafHit{lookup_.get(), selection, surface, lane_mask(lambda)}, manner_);
+    LeafHit at{lookup_.get(), selection, surface, lane_mask(lambda)};
+    if (reciprocal_) {
+      at.reciprocal = reciprocal_.get();
+      at.exponent = reciprocal_->place(static_cast<float>(surface->exponent()));
+    }
+    return arena.make<ThreeLobeBsdf>(at, manner_);
   }
 
+  bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
   bool is_leaf() const override { return true; }
 
  private:
@@ -164,9 +174,10 @@ class LeafSimplified final : public Material {
   bool varies_;  ///< the depth does, from place to place
   leaf::TableRequest request_;
   std::shared_ptr<const leaf::TableLookup> lookup_;
-  LeafParams::Aspect surface_texture_;            ///< nullptr: surface_
-  double exponent_;                               ///< of the surface, where no texture says it
-  std::shared_ptr<const leaf::CutLobe> surface_;  ///< with that exponent
+  std::shared_ptr<const leaf::ReciprocalLookup> reciprocal_;  ///< nullptr: it is not
+  LeafParams::Aspect surface_texture_;                        ///< nullptr: surface_
+  double exponent_;                                           ///< of the surface, where no texture says it
+  std::shared_ptr<const leaf::CutLobe> surface_;              ///< with that exponent
   LeafManner manner_;
   TableFileParam file_;
 };

@@ -4,6 +4,7 @@
 #include "leaf/table/body_cache.h"
 #include "leaf/table/body_file.h"
 #include "leaf/table/body_table.h"
+#include "leaf/table/reciprocal_body.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/solved_bsdf.h"
@@ -51,11 +52,11 @@ class LeafSolved final : public Material {
     fixed_.reset();
     if (file_.is_given())
       table_ = preparation.share<leaf::BodyTable>(
-          wavelengths_key(preparation.wavelengths) +
-              fmt::format("leaf modes file {} {}", tolerance_, file_.path().string()),
+          key(preparation, fmt::format("leaf modes file {} {}", tolerance_, file_.path().string())),
           [&] { return read_table(preparation); });
     else
       make_table(preparation);
+    if (leaf_.is_reciprocal()) scale_surface(preparation);
     if (table_->lanes_are_columns()) fixed_ = table_->select(preparation.wavelengths.sample(0));
   }
 
@@ -63,10 +64,15 @@ class LeafSolved final : public Material {
     const leaf::Lobe* surface = surface_texture_
                                     ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at)))
                                     : surface_.get();
-    return arena.make<SolvedBsdf>(
-        SolvedHit{table_.get(), selection(hit, lambda, arena), surface, lane_mask(lambda), leaf_.from_light()});
+    SolvedHit at{table_.get(), selection(hit, lambda, arena), surface, lane_mask(lambda), leaf_.incident()};
+    if (scaling_) {
+      at.scaling = scaling_.get();
+      at.exponent = scaling_->place(static_cast<float>(surface->exponent()));
+    }
+    return arena.make<SolvedBsdf>(at);
   }
 
+  bool is_reciprocal() const override { return leaf_.is_reciprocal(); }
   bool is_leaf() const override { return true; }
 
  private:
@@ -82,13 +88,25 @@ class LeafSolved final : public Material {
     const leaf::BodyRequest request = request_for(preparation.wavelengths);
     const bool vary = preparation.wavelengths.fixed_nm().empty();
     const auto make = [&] {
-      const leaf::BodySpectrum spectrum = leaf::cached_body_spectrum(request, leaf_.specimen(), preparation.pool,
-                                                                     preparation.log, preparation.cache_dir);
+      leaf::BodySpectrum spectrum = leaf::cached_body_spectrum(request, leaf_.specimen(), preparation.pool,
+                                                               preparation.log, preparation.cache_dir);
+      if (leaf_.is_reciprocal()) spectrum = leaf::make_reciprocal(spectrum).value();
       leaf::BodyTable table(request, spectrum, vary);
       preparation.log.info(fmt::format("leaf modes: {}, {} kB in memory", leaf_.specimen(), table.bytes() / 1024));
       return table;
     };
-    table_ = preparation.share<leaf::BodyTable>(wavelengths_key(preparation.wavelengths) + describe(request), make);
+    table_ = preparation.share<leaf::BodyTable>(key(preparation, describe(request)), make);
+  }
+
+  std::string key(const Preparation& preparation, const std::string& what) const {
+    return (leaf_.is_reciprocal() ? "reciprocal " : "") + wavelengths_key(preparation.wavelengths) + what;
+  }
+
+  void scale_surface(const Preparation& preparation) {
+    const Interval exponents = leaf_.exponents(exponent_), indices = table_->indices();
+    scaling_ = preparation.share<leaf::SurfaceScaling>(
+        fmt::format("surface scaling {} {} {} {}", exponents.min, exponents.max, indices.min, indices.max),
+        [&] { return leaf::SurfaceScaling(exponents, indices); });
   }
 
   leaf::BodyTable read_table(const Preparation& preparation) const {
@@ -98,7 +116,14 @@ class LeafSolved final : public Material {
         .params = {},
         .wavelengths_nm = file_wavelengths(file.wavelengths_nm(), preparation.wavelengths, file_.where(), name),
         .tolerance = tolerance_};
-    const leaf::BodySpectrum spectrum = leaf::at_wavelengths(file, request.wavelengths_nm);
+    leaf::BodySpectrum spectrum = leaf::at_wavelengths(file, request.wavelengths_nm);
+    if (leaf_.is_reciprocal()) {
+      auto reciprocal = leaf::make_reciprocal(spectrum);
+      if (!reciprocal)
+        fail(file_.where(), "{}: no reciprocal leaf gives back as much light as these modes do in every direction",
+             name);
+      spectrum = std::move(*reciprocal);
+    }
     leaf::BodyTable table(request, spectrum, preparation.wavelengths.fixed_nm().empty());
     preparation.log.info(fmt::format("leaf modes: {}, {} wavelengths x {} cells, {} kB in memory", name,
                                      file.columns.size(), spectrum.cells, table.bytes() / 1024));
@@ -106,7 +131,8 @@ class LeafSolved final : public Material {
   }
 
   leaf::BodyRequest request_for(const WavelengthStrategy& wavelengths) const {
-    leaf::BodyRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance_};
+    const double tolerance = leaf_.is_reciprocal() ? tolerance_ / leaf::kReciprocalFiner : tolerance_;
+    leaf::BodyRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance};
     request.params.cuticle_aspect = 0;  // of no concern to light inside: leaves with other cuticles share the table
     request.wavelengths_nm = varies_ ? index_wavelengths(wavelengths) : table_wavelengths(wavelengths);
     if (varies_) request.depths = depth_axis(leaf_.depth(), wavelengths, kDepthStep);
@@ -114,10 +140,11 @@ class LeafSolved final : public Material {
   }
 
   LeafParams leaf_;
-  bool varies_;                                   ///< the depth does, from place to place
-  LeafParams::Aspect surface_texture_;            ///< nullptr: surface_
-  double exponent_;                               ///< of the surface, where no texture says it
-  std::shared_ptr<const leaf::CutLobe> surface_;  ///< with that exponent
+  bool varies_;                                          ///< the depth does, from place to place
+  LeafParams::Aspect surface_texture_;                   ///< nullptr: surface_
+  double exponent_;                                      ///< of the surface, where no texture says it
+  std::shared_ptr<const leaf::CutLobe> surface_;         ///< with that exponent
+  std::shared_ptr<const leaf::SurfaceScaling> scaling_;  ///< nullptr: not reciprocal
   double tolerance_;
   TableFileParam file_;
   std::shared_ptr<const leaf::BodyTable> table_;

@@ -51,8 +51,8 @@ class BrfMeter {
  public:
   static constexpr int kRows = 32;
 
-  /// Throws InputError. Leaves for which the scene does not say what they take for incident take the light's
-  /// direction, as energy asks for.
+  /// Throws InputError. Leaves are reciprocal, or take the light's direction for incident, where the scene does not
+  /// say which, as energy asks for.
   /// `other`: a scene in which the same stands, which is then not made again.
   BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request,
            const Scene* other = nullptr);

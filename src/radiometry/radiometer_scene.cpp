@@ -22,12 +22,34 @@ void set(std::vector<ParsedParam>& params, ParsedParam param) {
   params.push_back(std::move(param));
 }
 
-/// Energy is kept where the incident direction of a leaf is the light's.
-void take_light_for_incident(SceneDescription& description, const Registry& registry) {
-  for (MaterialDescription& m : description.materials)
-    if (declares(registry.materials.get(m.plugin.name, m.plugin.where), "incident") &&
-        !gives(m.plugin.params, "incident"))
-      m.plugin.params.push_back({"string", "incident", {}, {}, std::vector<std::string>{"light"}});
+const Param* incident_of(const PluginInfo& info) {
+  const auto found = std::ranges::find(info.params, std::string_view("incident"), &Param::name);
+  return found == info.params.end() ? nullptr : &*found;
+}
+
+bool can_be_reciprocal(const PluginInfo& info) {
+  const Param* incident = incident_of(info);
+  return incident && std::ranges::count(incident->choices, std::string_view("reciprocal")) > 0;
+}
+
+/// Of a `leaf`, what stands for it.
+std::string_view model_of(const ParsedPlugin& plugin) {
+  for (const ParsedParam& p : plugin.params)
+    if (const auto* words = std::get_if<std::vector<std::string>>(&p.values);
+        p.name == "model" && words && words->size() == 1)
+      return words->front();
+  return plugin.name;
+}
+
+/// Energy is kept by a leaf that is reciprocal, or whose incident direction is the light's, which is noisier.
+void keep_energy(SceneDescription& description, const Registry& registry) {
+  for (MaterialDescription& m : description.materials) {
+    const MaterialInfo& info = registry.materials.get(m.plugin.name, m.plugin.where);
+    if (!incident_of(info) || gives(m.plugin.params, "incident")) continue;
+    const MaterialInfo* model = registry.materials.find(model_of(m.plugin));
+    const std::string word = can_be_reciprocal(info) && (!model || can_be_reciprocal(*model)) ? "reciprocal" : "light";
+    m.plugin.params.push_back({"string", "incident", {}, {}, std::vector<std::string>{word}});
+  }
 }
 
 }  // namespace
@@ -42,7 +64,7 @@ void prepare_for_radiometry(const Session& session, const std::string& wavelengt
   constexpr double kDeepest = 1 << 20;
   apply_swaps(description, overrides.swaps, session.registry(), session.log());
   overrides.swaps.clear();
-  take_light_for_incident(description, session.registry());
+  keep_energy(description, session.registry());
   if (!wavelengths.empty()) overrides.wavelengths = wavelengths;
   if (period) set(description.options, parsed_numbers("float", "period", {(*period)[0], (*period)[1]}));
   const IntegratorInfo& integrator =

@@ -131,8 +131,12 @@ TEST(Lossless, LeavesWithoutMesophyllReturnAllLight) {
   for (const std::string specimen : {"soybean", "maize"})
     for (const std::string mode : {"analog", "weighted"})
       expect_lossless("abm", {nothing_absorbs, given("string", "specimen", specimen), given("string", "mode", mode)});
-  for (const std::string incident : {"traced", "light"})
+  for (const std::string incident : {"traced", "light", "reciprocal"})
     expect_lossless("leaf_lambert", {nothing_absorbs, given("string", "incident", incident)});
+  for (const std::string name : {"leaf_solved", "leaf_simplified"})
+    for (const std::string specimen : {"soybean", "maize"})
+      expect_lossless(name, {nothing_absorbs, given("string", "specimen", specimen),
+                             given("string", "incident", std::string("reciprocal"))});
   for (const std::string specimen : {"soybean", "maize"})
     expect_lossless("leaf_solved", {nothing_absorbs, given("string", "specimen", specimen)});
   for (const std::string method : {"montecarlo", "solve"})

@@ -22,6 +22,8 @@ Theme directions();
 Theme table_files();
 /// Requests to the instruments.
 Theme instruments();
+/// Weights of samples: whether noise settles.
+Theme tails();
 /// Scenes: normals that disagree, places far from the origin.
 Theme scenes();
 

@@ -184,6 +184,18 @@ TEST_F(Choosing, WavelengthsAreAQuestionWhereNobodyNamesThem) {
   EXPECT_EQ(choice.answers[1].chosen, "leaf_lambert");
 }
 
+/// Walks cannot be: the solution of them is what counts as right.
+TEST_F(Choosing, AReciprocalLeafIsHeldToTheSolvedOne) {
+  const Registry registry = builtin_registry();
+  SceneDescription description = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), silent_log());
+  for (MaterialDescription& m : description.materials)
+    if (m.plugin.name == "leaf")
+      m.plugin.params.push_back({"string", "incident", {}, {}, std::vector<std::string>{"reciprocal"}});
+  const Choice choice = chosen_from(standard_ladder(registry), registry, description, with_smpte());
+  for (const Answer& answer : choice.answers) EXPECT_NE(answer.chosen, "abm");
+  EXPECT_EQ(choice.ground, Choice::Ground::met);
+}
+
 /// The pilot's leaves are the very ones that a scene made for them has.
 TEST_F(Choosing, AVariantRendersAsTheSceneItStandsFor) {
   const Registry registry = builtin_registry();

@@ -27,6 +27,9 @@ struct BodySpectrum {
   /// Estimate of the largest error of pi f that interpolation between the sines leaves. At most the tolerance, but
   /// where that would take more than kMostCells.
   double error = 0;
+  /// The modes are those of f / ((1 - F_i) (1 - F_o)), which is the same both ways round
+  /// (leaf/table/reciprocal_body.h).
+  bool is_reciprocal = false;
 };
 
 inline constexpr int kMostCells = 32;

@@ -1,31 +1,15 @@
 #include "leaf/table/body_table.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <numeric>
 
-#include "leaf/solve/quadrature.h"
-#include "leaf/tissue/fresnel.h"
+#include "leaf/table/exit_weights.h"
 
 namespace frond::leaf {
 namespace {
 
 /// Share of the tolerance that the functions of SeriesTable may leave out, and their small terms once more.
 constexpr double kTableShare = 1.0 / 8;
-
-/// Of each node of the leaving sine in the integral of series / (1 - F_i) over the hemisphere.
-std::vector<double> exit_weights(double index, size_t cells, const std::vector<QuadratureNode>& rule) {
-  std::vector<double> weights(cells + 3, 0.0);
-  for (const auto& [x, weight] : rule) {
-    const double mu = x * x;  // dense at grazing, where the chance to leave is like a square root
-    const Crossing out = fresnel(mu, 1 / index);
-    const double whole = weight * 2 * x * mu * 2 * std::numbers::pi * (1 - out.reflectance) / out.cos_t;
-    const SineNodes nodes(static_cast<float>(std::sqrt(1 - mu * mu)), static_cast<int>(cells));
-    for (size_t k = 0; k < 4; ++k) weights[nodes.first + k] += whole * static_cast<double>(nodes.weight[k]);
-  }
-  return weights;
-}
 
 }  // namespace
 
@@ -43,9 +27,9 @@ BodyTable::BodyTable(const BodyRequest& request, const BodySpectrum& spectrum, b
 /// By mode 0, interpolated as a look-up does.
 void BodyTable::add_ways(const BodySpectrum& spectrum) {
   const size_t side = cells_ + 3;
-  const std::vector<QuadratureNode> rule = gauss_legendre(16);
+  const Measure measure = spectrum.is_reciprocal ? Measure::plain : Measure::over_inner_cosine;
   for (size_t c = 0; c < index_.size(); ++c) {
-    const std::vector<double> weights = exit_weights(static_cast<double>(index_[c]), cells_, rule);
+    const std::vector<double> weights = exit_weights(static_cast<double>(index_[c]), cells_, measure);
     const auto share = [&](bool from_below, bool crosses, size_t incident) {
       const double* h = &spectrum.modes[c].series(from_below, crosses)[0][incident * side];
       return static_cast<float>(std::inner_product(weights.begin(), weights.end(), h, 0.0));
@@ -54,6 +38,11 @@ void BodyTable::add_ways(const BodySpectrum& spectrum) {
       for (size_t i = 0; i < side; ++i)
         ways_[below].push_back(Float4{share(below, false, i), share(below, true, i), share(!below, true, i), 0});
   }
+}
+
+Interval BodyTable::indices() const {
+  const auto [least, most] = std::ranges::minmax_element(index_);
+  return {double(*least), double(*most)};
 }
 
 size_t BodyTable::bytes() const {

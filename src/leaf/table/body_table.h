@@ -37,6 +37,19 @@ class BodyTable {
     return lanes_are_columns() ? table.at(incident, leaving, cos_phi) : table.at(incident, leaving, cos_phi, columns);
   }
 
+  /// A direction outside.
+  struct Way {
+    bool below;
+    float sine;
+    Nodes nodes;
+  };
+  /// The same of a reciprocal spectrum: to the last bit the same both ways round.
+  Float4 mutual(const Way& a, const Way& b, float cos_phi, const TableSelection& columns) const {
+    const bool crosses = a.below != b.below, in_order = crosses ? b.below : a.sine >= b.sine;
+    const Way &first = in_order ? a : b, &second = in_order ? b : a;
+    return series(first.below, crosses, first.nodes, second.nodes, cos_phi, columns);
+  }
+
   /// Shares of light that came in through the surface.
   struct Ways {
     float back, across;
@@ -45,6 +58,8 @@ class BodyTable {
   /// Sums over the lanes of `light`, which has come in, times these shares.
   Ways ways(bool from_below, const Nodes& incident, Float4 light, const TableSelection& columns) const;
 
+  /// Least and greatest index of the cuticle.
+  Interval indices() const;
   size_t bytes() const;
 
  private:

@@ -34,18 +34,35 @@ class TableLookup {
 
   /// cos_theta in [-1, 1], of the incident direction to the adaxial normal. Lanes not in use: undefined.
   SampledShares operator()(float cos_theta, const TableSelection& selection) const {
-    const float x = std::sqrt(std::min(std::abs(cos_theta), 1.f)) * kCells;
-    const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
-    const float t = x - static_cast<float>(cell);
-    const size_t node = (cos_theta < 0 ? kCells + 1 : 0) + cell;
+    const auto [node, t] = place(cos_theta);
     if (selection.lane_count == 0) return mix(lanes_[node], lanes_[node + 1], t);
     return sum_columns(node, t, selection);
   }
 
- private:
   static constexpr size_t kCells = 128;
   static constexpr size_t kNodes = 2 * (kCells + 1);  ///< adaxial side, then abaxial, each from grazing to the normal
+  /// Where a cosine in [-1, 1] lies.
+  struct Place {
+    size_t node;  ///< the one below; the next is the one above
+    float t;      ///< of the way between them
+  };
+  static Place place(float cos_theta) {
+    const float x = std::sqrt(std::min(std::abs(cos_theta), 1.f)) * kCells;
+    const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
+    return {(cos_theta < 0 ? kCells + 1 : 0) + cell, x - static_cast<float>(cell)};
+  }
+  /// Wavelengths and depths; where lanes are wavelengths, kLanes, of which those not in use hold 0.
+  size_t columns() const { return lanes_.empty() ? columns_.size() / kNodes : kLanes; }
+  /// Of one of `columns` at one of kNodes.
+  Shares shares(size_t column, size_t node) const {
+    const auto lane = static_cast<int>(column);
+    if (!lanes_.empty())
+      return {lanes_[node].surface[lane], lanes_[node].subsurface[lane], lanes_[node].transmitted[lane]};
+    const Node& n = columns_[column * kNodes + node];
+    return {n[0], n[1], n[2]};
+  }
 
+ private:
   /// (Rs, Rd, T, 0): one column at one node.
   using Node = SampledSpectrum;
 

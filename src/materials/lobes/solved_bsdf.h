@@ -4,6 +4,8 @@
 
 #include "core/bsdf.h"
 #include "leaf/table/body_table.h"
+#include "leaf/table/surface_scaling.h"
+#include "materials/incident.h"
 #include "materials/lobes/surface_lobe.h"
 
 namespace frond {
@@ -14,7 +16,9 @@ struct SolvedHit {
   const leaf::BodyTable::Selection* selection;
   const leaf::Lobe* surface;
   SampledSpectrum active;  ///< 1 in active lanes, 0 elsewhere
-  bool from_light;         ///< wi, not wo, is the model's incident direction
+  Incident incident;
+  const leaf::SurfaceScaling* scaling = nullptr;  ///< of a reciprocal leaf, whose table is, too
+  leaf::SurfaceScaling::Place exponent = {};      ///< likewise: of the surface's lobe
 };
 
 /// A leaf by the solution of its walk: the surface's lobe, exactly, and the light that has been inside by its modes
@@ -25,7 +29,7 @@ class SolvedBsdf final : public Bsdf {
   explicit SolvedBsdf(const SolvedHit& hit) : hit_(hit), surface_(hit.surface) {}
 
   Lobes flags() const override {
-    const Lobes way_round = hit_.from_light ? Lobes::from_light : Lobes::none;
+    const Lobes way_round = from_light() ? Lobes::from_light : Lobes::none;
     return Lobes::reflection | Lobes::transmission | Lobes::diffuse | Lobes::glossy | Lobes::surface | way_round;
   }
 
@@ -52,12 +56,14 @@ class SolvedBsdf final : public Bsdf {
   /// What the model says of its incident direction, whichever way round a path asks.
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
     SolvedHit hit = hit_;
-    hit.from_light = false;
-    const SolvedBsdf traced(hit);
-    traced.Bsdf::scatter(incident, rng, rays);
+    if (from_light()) hit.incident = Incident::traced;
+    SolvedBsdf(hit).Bsdf::scatter(incident, rng, rays);
   }
 
  private:
+  bool from_light() const { return hit_.incident == Incident::light; }
+  bool is_reciprocal() const { return hit_.incident == Incident::reciprocal; }
+
   /// Probabilities of the lobes for one wo.
   struct Choice {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
@@ -71,6 +77,7 @@ class SolvedBsdf final : public Bsdf {
     leaf::SineNodes nodes;
     Float4 reflectance;  ///< of the surface; 0 in lanes that are not active
     Float4 enters;       ///< 1 - reflectance, likewise
+    Float4 surface;      ///< of a reciprocal leaf: what scales the surface's lobe for this direction
   };
 
   /// Light of some direction outside at the surface, where it always finds a way through.
@@ -92,15 +99,19 @@ class SolvedBsdf final : public Bsdf {
 
   /// f, pdf and sample come in turn for one direction: looked up once.
   const Incidence& incidence_at(const Vec3& incident) const {
-    Incidence& in = incidence_;
-    if (in.direction == incident) return in;
+    if (incidence_.direction != incident) set(incidence_, incident);
+    return incidence_;
+  }
+
+  void set(Incidence& in, const Vec3& incident) const {
     in.direction = incident;
     in.sine = std::sqrt(sine2(incident));
     in.nodes = hit_.table->nodes(in.sine);
     const Float4 active = hit_.active.v;
     in.enters = active * passage(incident).through;
     in.reflectance = active - in.enters;
-    return in;
+    if (is_reciprocal())
+      in.surface = in.reflectance / hit_.scaling->at(hit_.exponent, std::abs(incident.z), hit_.selection->index.v);
   }
 
   /// Each way keeps a little, so that no direction is left without density.
@@ -110,7 +121,7 @@ class SolvedBsdf final : public Bsdf {
     const Incidence& in = incidence_at(wo);
     const auto ways = hit_.table->ways(wo.z < 0, in.nodes, in.enters, hit_.selection->columns);
     const float surface = sum(in.reflectance);
-    float reflected = ways.back, transmitted = hit_.from_light ? ways.across_to : ways.across;
+    float reflected = ways.back, transmitted = from_light() ? ways.across_to : ways.across;
     constexpr float kLeastPart = 0.01f;
     const float least = kLeastPart * (surface + reflected + transmitted);
     reflected = std::max(reflected, least);
@@ -136,8 +147,25 @@ class SolvedBsdf final : public Bsdf {
     return result;
   }
 
+  /// To the last bit the same both ways round.
+  Float4 reciprocal_f(const Vec3& wo, const Vec3& wi, float lobe) const {
+    const Incidence& a = incidence_at(wo);
+    Incidence b;
+    set(b, wi);
+    const Float4 body = a.enters * b.enters *
+                        hit_.table->mutual({wo.z < 0, a.sine, a.nodes}, {wi.z < 0, b.sine, b.nodes},
+                                           cos_phi(wo, wi, a.sine * b.sine), hit_.selection->columns);
+    return lobe == 0 ? body : body + a.surface * b.surface * lobe;
+  }
+
+  /// Of the azimuth from straight ahead; `sines`: their product.
+  static float cos_phi(const Vec3& wo, const Vec3& wi, float sines) {
+    return sines > 0 ? std::clamp(-(wo.x * wi.x + wo.y * wi.y) / sines, -1.f, 1.f) : 1;
+  }
+
   Float4 leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
-    const Vec3 &incident = hit_.from_light ? wi : wo, &leaving = hit_.from_light ? wo : wi;
+    if (is_reciprocal()) return reciprocal_f(wo, wi, lobe);
+    const Vec3 &incident = from_light() ? wi : wo, &leaving = from_light() ? wo : wi;
     const Incidence& in = incidence_at(incident);
     const Float4 body = body_f(in, incident, leaving);
     if (lobe == 0) return body;
@@ -146,12 +174,10 @@ class SolvedBsdf final : public Bsdf {
 
   Float4 body_f(const Incidence& in, const Vec3& incident, const Vec3& leaving) const {
     const Float4 leaves = passage(leaving).over_cosine;
-    const float sine_o = std::sqrt(sine2(leaving)), both = in.sine * sine_o;
-    const float cos_phi =
-        both > 0 ? std::clamp(-(incident.x * leaving.x + incident.y * leaving.y) / both, -1.f, 1.f) : 1;
+    const float sine_o = std::sqrt(sine2(leaving));
     return in.enters * leaves *
            hit_.table->series(incident.z < 0, !same_side(incident, leaving), in.nodes, hit_.table->nodes(sine_o),
-                              cos_phi, hit_.selection->columns);
+                              cos_phi(incident, leaving, in.sine * sine_o), hit_.selection->columns);
   }
 
   float leaf_pdf(const Vec3& wo, const Vec3& wi, float lobe) const {

@@ -4,6 +4,8 @@
 
 #include "core/bsdf.h"
 #include "leaf/table/lookup.h"
+#include "leaf/table/reciprocal_lookup.h"
+#include "materials/incident.h"
 #include "materials/lobes/surface_lobe.h"
 
 namespace frond {
@@ -13,7 +15,9 @@ struct LeafHit {
   const leaf::TableLookup* table;
   leaf::TableSelection selection;  ///< the table's columns for this hit
   const leaf::Lobe* surface;
-  SampledSpectrum active;  ///< 1 in active lanes, 0 elsewhere
+  SampledSpectrum active;                              ///< 1 in active lanes, 0 elsewhere
+  const leaf::ReciprocalLookup* reciprocal = nullptr;  ///< of a leaf that is
+  leaf::ReciprocalLookup::Place exponent = {};         ///< likewise: of the surface's lobe
 };
 
 /// How a leaf is asked.
@@ -21,7 +25,7 @@ struct LeafManner {
   /// False: `f` and `pdf` leave the surface lobe out, and `sample` returns it as if it were a delta lobe, so that light
   /// sampling never sees it.
   bool surface_direct = true;
-  bool from_light = false;  ///< wi, not wo, is the model's incident direction
+  Incident incident = Incident::traced;
 };
 
 /// A leaf as three lobes, each scaled by its share of the light (Baranoski and Rokne): the mirror direction spread by a
@@ -50,8 +54,7 @@ class ThreeLobeBsdf final : public Bsdf {
     if (reflects) return reflected(wo, wi, Lobes::reflection | Lobes::diffuse);
     const float density = choice.transmitted * std::abs(wi.z) * kInvPi;
     if (density == 0) return {};  // black
-    return made(shares_at(manner_.from_light ? wi.z : wo.z).transmitted * kInvPi, wi, density,
-                Lobes::transmission | Lobes::diffuse);
+    return made(leaf_f(wo, wi, 0), wi, density, Lobes::transmission | Lobes::diffuse);
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
@@ -60,8 +63,9 @@ class ThreeLobeBsdf final : public Bsdf {
 
   /// What the model says of its incident direction, whichever way round a path asks.
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
-    const ThreeLobeBsdf traced(hit_, {manner_.surface_direct, false});
-    traced.Bsdf::scatter(incident, rng, rays);
+    LeafManner manner = manner_;
+    if (from_light()) manner.incident = Incident::traced;
+    ThreeLobeBsdf(hit_, manner).Bsdf::scatter(incident, rng, rays);
   }
 
  private:
@@ -76,10 +80,18 @@ class ThreeLobeBsdf final : public Bsdf {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
     leaf::SampledShares shares;  ///< 0 in lanes that are not active
   };
+  /// Of a reciprocal leaf, what either direction has to say.
+  struct Mutual {
+    float cos_theta = std::numeric_limits<float>::quiet_NaN();
+    leaf::SampledShares shares;
+    leaf::ReciprocalLookup::Factors factors;  ///< 0 in lanes that are not active
+  };
 
   static float sum(const SampledSpectrum& s) { return (s[0] + s[1]) + (s[2] + s[3]); }
 
-  Lobes way_round() const { return manner_.from_light ? Lobes::from_light : Lobes::none; }
+  bool from_light() const { return manner_.incident == Incident::light; }
+  bool is_reciprocal() const { return manner_.incident == Incident::reciprocal; }
+  Lobes way_round() const { return from_light() ? Lobes::from_light : Lobes::none; }
 
   /// f, pdf and sample come in turn for one direction: looked up once.
   const leaf::SampledShares& shares_at(float cos_theta) const {
@@ -97,7 +109,11 @@ class ThreeLobeBsdf final : public Bsdf {
     if (choice_.cos_theta == wo.z) return choice_;
     choice_.cos_theta = wo.z;
     float surface = sum(shares_at(wo.z).surface), subsurface, transmitted;
-    if (manner_.from_light) {
+    if (is_reciprocal()) {
+      subsurface = sum(hit_.active * mutual_of(wo).factors.back);
+      transmitted = sum(shares_at(wo.z).subsurface) + sum(shares_at(wo.z).transmitted) - subsurface;
+      transmitted = std::max(transmitted, 0.f);
+    } else if (from_light()) {
       // Light comes from everywhere: about the mean over a hemisphere, on either side.
       constexpr float kMeanCosine = 2.f / 3;
       const float mean = wo.z > 0 ? kMeanCosine : -kMeanCosine;
@@ -117,8 +133,29 @@ class ThreeLobeBsdf final : public Bsdf {
   /// Of the surface lobe; 0 where `f` leaves it out.
   float spread(const Vec3& wo, const Vec3& wi) const { return manner_.surface_direct ? surface_.spread(wo, wi) : 0; }
 
+  Mutual mutual_at(float cos_theta) const {
+    Mutual m{cos_theta, (*hit_.table)(cos_theta, hit_.selection),
+             (*hit_.reciprocal)(cos_theta, hit_.exponent, hit_.selection)};
+    m.factors.surface *= hit_.active;
+    m.factors.body *= hit_.active;
+    return m;
+  }
+  const Mutual& mutual_of(const Vec3& wo) const {
+    if (mutual_.cos_theta != wo.z) mutual_ = mutual_at(wo.z);
+    return mutual_;
+  }
+
+  SampledSpectrum reciprocal_f(const Vec3& wo, const Vec3& wi, float lobe) const {
+    const Mutual &a = mutual_of(wo), b = mutual_at(wi.z);
+    const SampledSpectrum both = a.factors.body * b.factors.body * (kInvPi / 2);
+    if (!same_side(wo, wi)) return both * (a.shares.transmitted + b.shares.transmitted);
+    const SampledSpectrum body = both * (a.shares.subsurface + b.shares.subsurface);
+    return lobe == 0 ? body : body + a.factors.surface * b.factors.surface * lobe;
+  }
+
   SampledSpectrum leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
-    const Vec3 &incident = manner_.from_light ? wi : wo, &leaving = manner_.from_light ? wo : wi;
+    if (is_reciprocal()) return reciprocal_f(wo, wi, lobe);
+    const Vec3 &incident = from_light() ? wi : wo, &leaving = from_light() ? wo : wi;
     const leaf::SampledShares& shares = shares_at(incident.z);
     if (!same_side(wo, wi)) return shares.transmitted * kInvPi;
     const SampledSpectrum body = shares.subsurface * kInvPi;
@@ -160,8 +197,9 @@ class ThreeLobeBsdf final : public Bsdf {
 
   /// f of the surface lobe where wi, drawn from it, counts as a delta lobe's only direction.
   SampledSpectrum as_delta(const Vec3& wo, const Vec3& wi) const {
-    if (!manner_.from_light) return shares_at(wo.z).surface * (1 / std::abs(wi.z));
     const float drawn = surface_.made_good(wo.z);
+    if (is_reciprocal()) return mutual_of(wo).factors.surface * mutual_at(wi.z).factors.surface * (1 / drawn);
+    if (!from_light()) return shares_at(wo.z).surface * (1 / std::abs(wi.z));
     return shares_at(wi.z).surface * (surface_.made_good(wi.z) / (drawn * std::abs(wo.z)));
   }
 
@@ -169,6 +207,7 @@ class ThreeLobeBsdf final : public Bsdf {
   LeafManner manner_;
   SurfaceLobe surface_;
   mutable Incidence incidence_;
+  mutable Mutual mutual_;
   mutable Choice choice_;
 };
 

@@ -26,19 +26,40 @@ bool same_leaf(const ParsedPlugin& a, const ParsedPlugin& b) {
   });
 }
 
+/// Whether a model that has the choice of `name` has this one.
+bool takes(const Registry& registry, std::string_view model, std::string_view name, const std::string& word) {
+  const MaterialInfo* info = registry.materials.find(model);
+  if (!info) return true;
+  const auto param = std::ranges::find(info->params, name, &Param::name);
+  return param == info->params.end() || std::ranges::count(param->choices, word) > 0;
+}
+
+/// What counts as right: the last of the ladder, but walks cannot tell of a reciprocal leaf.
+const ModelOption* right_for(const ParsedPlugin& leaf, const Registry& registry,
+                             const std::vector<ModelOption>& models) {
+  const ParsedParam* incident = find(leaf.params, "incident");
+  const auto* words = incident ? std::get_if<std::vector<std::string>>(&incident->values) : nullptr;
+  if (!words || words->size() != 1) return &models.back();
+  const auto right = std::ranges::find_if(models.rbegin(), models.rend(), [&](const ModelOption& rung) {
+    return takes(registry, rung.name, "incident", words->front());
+  });
+  return right == models.rend() ? &models.back() : &*right;
+}
+
 /// With the rungs that the leaf can take. Leaves the description as it is.
 void add_options(OpenChoice& question, SceneSettings& description, const Registry& registry,
                  const WavelengthStrategy& wavelengths, const std::vector<ModelOption>& models) {
   const size_t place = question.materials.front();
   ParsedPlugin& plugin = description.materials[place].plugin;
   const ParsedPlugin open = plugin;
+  const ModelOption* right = right_for(open, registry, models);
   for (const ModelOption& rung : models) {
     swap_material(plugin, rung.plugin, registry, silent_log());
     try {
       SceneResolver(description, registry, wavelengths).material(place);
       question.options.push_back(rung);
     } catch (const InputError& error) {
-      if (&rung == &models.back()) throw;
+      if (&rung == right) throw;
       question.refused.push_back({rung.name, error.what()});
     }
     plugin = open;

@@ -1,0 +1,114 @@
+#include "leaf/table/reciprocal_body.h"
+
+#include <Eigen/Core>
+
+#include "leaf/table/exit_weights.h"
+
+namespace frond::leaf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Grid = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+/// Light that comes in on one side and leaves on one, as in BodyModes.
+struct Route {
+  bool from_below, crosses;
+  Route back() const { return {from_below != crosses, crosses}; }
+};
+constexpr Route kAbove{false, false}, kBelow{true, false}, kThrough{false, true};
+
+VectorXd inner_cosines(const std::vector<double>& sines, double index) {
+  VectorXd mu(static_cast<Index>(sines.size()));
+  for (Index i = 0; i < mu.size(); ++i) {
+    const double sine = sines[static_cast<size_t>(i)] / index;
+    mu[i] = std::sqrt(1 - sine * sine);
+  }
+  return mu;
+}
+
+Grid grid(const BodyModes& modes, const Route& route, size_t mode) {
+  const auto side = static_cast<Index>(modes.sines().size());
+  return {modes.series(route.from_below, route.crosses)[mode].data(), side, side};
+}
+
+/// f / ((1 - F_i) (1 - F_o)) of one mode, the mean of both ways round: rows are directions where the route begins.
+MatrixXd both_ways(const BodyModes& modes, const VectorXd& inner, const Route& route, size_t mode) {
+  const auto over = inner.cwiseInverse().asDiagonal();
+  const MatrixXd there = grid(modes, route, mode) * over, back = grid(modes, route.back(), mode) * over;
+  return (there + back.transpose()) / 2;
+}
+
+VectorXd as_vector(const std::vector<double>& v) {
+  return Eigen::Map<const VectorXd>(v.data(), static_cast<Index>(v.size()));
+}
+
+/// Share that comes out again of light that has come in, by direction: those above the leaf, then those below.
+VectorXd outgoing(const BodyModes& modes, double index, size_t cells) {
+  const VectorXd weight = as_vector(exit_weights(index, cells, Measure::over_inner_cosine));
+  VectorXd share(2 * weight.size());
+  share << (grid(modes, kAbove, 0) + grid(modes, kThrough, 0)) * weight,
+      (grid(modes, kBelow, 0) + grid(modes, kThrough.back(), 0)) * weight;
+  return share;
+}
+
+/// d with d_i sum over j of k_ij d_j = share_i, k not far from symmetric up to factors of its columns.
+std::optional<VectorXd> scaling(const MatrixXd& k, const VectorXd& share) {
+  constexpr int kMostSteps = 1000;
+  constexpr double kNothing = 1e-12, kDone = 1e-12, kGoodEnough = 1e-9;
+  VectorXd d = VectorXd::Ones(share.size());
+  if (share.cwiseAbs().maxCoeff() < kNothing) return d;  // black: nothing to scale
+  double off = 0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const VectorXd sum = k * d;
+    if (!(sum.minCoeff() > 0 && share.minCoeff() > 0)) return {};
+    off = (d.cwiseProduct(sum).cwiseQuotient(share).array() - 1).abs().maxCoeff();
+    if (off < kDone) return d;
+    d = (d.cwiseProduct(share).cwiseQuotient(sum)).cwiseSqrt();
+  }
+  if (off < kGoodEnough) return d;
+  return {};
+}
+
+BodyModes::Grid row_by_row(const MatrixXd& matrix) {
+  BodyModes::Grid values(static_cast<size_t>(matrix.size()));
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(values.data(), matrix.rows(),
+                                                                                     matrix.cols()) = matrix;
+  return values;
+}
+
+std::optional<BodyModes> make_reciprocal(const BodyModes& modes, double index, size_t cells) {
+  const VectorXd inner = inner_cosines(modes.sines(), index);
+  const VectorXd weight = as_vector(exit_weights(index, cells, Measure::plain));
+  const Index side = weight.size();
+  MatrixXd k(2 * side, 2 * side);
+  const MatrixXd through = both_ways(modes, inner, kThrough, 0);
+  k << both_ways(modes, inner, kAbove, 0), through, through.transpose(), both_ways(modes, inner, kBelow, 0);
+  const auto d = scaling(k * weight.replicate(2, 1).asDiagonal(), outgoing(modes, index, cells));
+  if (!d) return {};
+  BodyModes result(modes.sines());
+  const auto scaled = [&](const Route& route, size_t mode) -> MatrixXd {
+    const auto of = [&](bool below) { return d->segment(below ? side : 0, side); };
+    return of(route.from_below).asDiagonal() * both_ways(modes, inner, route, mode) *
+           of(route.back().from_below).asDiagonal();
+  };
+  for (const Route& route : {kAbove, kBelow, kThrough, kThrough.back()})
+    for (size_t m = 0; m < modes.series(route.from_below, route.crosses).size(); ++m)
+      result.series(route.from_below, route.crosses).push_back(row_by_row(scaled(route, m)));
+  return result;
+}
+
+}  // namespace
+
+std::optional<BodySpectrum> make_reciprocal(const BodySpectrum& spectrum) {
+  BodySpectrum result{.cells = spectrum.cells, .index = spectrum.index, .error = spectrum.error, .is_reciprocal = true};
+  for (size_t c = 0; c < spectrum.modes.size(); ++c) {
+    auto modes = make_reciprocal(spectrum.modes[c], spectrum.index[c], static_cast<size_t>(spectrum.cells));
+    if (!modes) return {};
+    result.modes.push_back(std::move(*modes));
+  }
+  return result;
+}
+
+}  // namespace frond::leaf

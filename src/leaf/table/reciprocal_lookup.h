@@ -1,0 +1,54 @@
+#pragma once
+
+#include "leaf/table/lobe_axes.h"
+#include "leaf/table/lookup.h"
+
+namespace frond::leaf {
+
+/// What makes a leaf of three lobes reciprocal, by direction and column of a TableLookup:
+///   f_r(i, o) = s(i) p(i, o) s(o) + d(i) (Rd(i) + Rd(o)) / (2 pi) d(o) on one side, p the surface's lobe before its
+///   cut, f_r(i, o) = d(i) (T(i) + T(o)) / (2 pi) d(o) to the other,
+/// such that every direction gives back Rs by the first lobe, and Rd + T by the other two (docs/reciprocal_leaf.md).
+class ReciprocalLookup {
+ public:
+  /// `exponents` of the surface's lobe.
+  ReciprocalLookup(const TableLookup& shares, const Interval& exponents);
+
+  struct Factors {
+    SampledSpectrum surface, body;  ///< s and d by lane; lanes not in use: undefined
+    SampledSpectrum back;           ///< of Rd + T, what leaves on the side of incidence
+  };
+  using Place = ExponentAxis::Place;
+  Place place(float exponent) const { return axis_.place(exponent); }
+
+  /// cos_theta in [-1, 1], as in TableLookup, whose `select` makes the selection.
+  Factors operator()(float cos_theta, const Place& exponent, const TableSelection& selection) const {
+    const auto [node, t] = TableLookup::place(cos_theta);
+    if (selection.lane_count > 0) return sum_columns(node, t, exponent, selection);
+    Factors f;
+    f.surface.v = between(surface_lanes_, exponent.below, node, t);
+    if (exponent.t > 0) f.surface.v += exponent.t * (between(surface_lanes_, exponent.above, node, t) - f.surface.v);
+    f.body.v = between(body_lanes_, 0, node, t);
+    f.back.v = between(back_lanes_, 0, node, t);
+    return f;
+  }
+
+ private:
+  static constexpr size_t kNodes = TableLookup::kNodes;
+
+  template <class T>
+  static T between(const std::vector<T>& values, size_t row, size_t node, float t) {
+    const T* at = &values[row * kNodes + node];
+    return (1 - t) * at[0] + t * at[1];
+  }
+  Factors sum_columns(size_t node, float t, const Place& exponent, const TableSelection& selection) const;
+
+  ExponentAxis axis_;
+  size_t columns_ = 0;
+  std::vector<float> surface_;      ///< [exponent][column][node]
+  std::vector<float> body_, back_;  ///< [column][node]
+  // The same where lanes are columns, one by one: [exponent][node] and [node].
+  std::vector<Float4> surface_lanes_, body_lanes_, back_lanes_;
+};
+
+}  // namespace frond::leaf

@@ -1,0 +1,81 @@
+#include <cmath>
+
+#include "core/sampling.h"
+#include "tests/stability/cases.h"
+#include "tests/stability/comparison.h"
+#include "tests/stability/specimen.h"
+
+namespace frond::stability {
+namespace {
+
+constexpr double kNm = 551;
+
+/// Weights of samples, of paths that arrive from everywhere alike: what a path through leaves is multiplied by.
+struct Weights {
+  double largest = 0;
+  double share_of_largest = 0;  ///< of the sum of squares
+};
+
+Weights weights_of(const Bsdf& bsdf) {
+  constexpr int kSamples = 1 << 20;
+  Weights result;
+  RandomStream rng(7);
+  double squares = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const float a = rng.uniform(), b = rng.uniform();
+    Vec3 wo = sample_cosine_hemisphere({a, b});
+    if (rng.uniform() < 0.5f) wo.z = -wo.z;
+    const float uc = rng.uniform(), u = rng.uniform(), v = rng.uniform();
+    const auto s = bsdf.sample(wo, uc, {u, v}, rng);
+    if (!s) continue;
+    const double weight = double(s->f[0]) * std::abs(double(s->wi.z)) / double(s->pdf);
+    squares += weight * weight;
+    result.largest = std::max(result.largest, weight);
+  }
+  result.share_of_largest = squares > 0 ? result.largest * result.largest / squares : 0;
+  return result;
+}
+
+Cell bounded(const Weights& w) {
+  constexpr double kMost = 6, kShare = 1e-4;
+  return {fmt::format("weights up to {}", rounded_up(w.largest)), w.largest > kMost || w.share_of_largest > kShare};
+}
+
+Cell unbounded(const Weights& w) {
+  constexpr double kLeast = 15;  // grows like the root of their number
+  return {
+      fmt::format("weights up to {}; one has {} of all squares", rounded_up(w.largest), rounded_up(w.share_of_largest)),
+      w.largest < kLeast};
+}
+
+Specimen leaf(std::string_view material, const std::string& specimen, const std::string& incident) {
+  return {material, {test::words("specimen", {specimen}), test::words("incident", {incident})}, kNm};
+}
+
+}  // namespace
+
+Theme tails() {
+  Theme theme{
+      "Tails",
+      "Weights of a million samples, f |cos| / pdf at 551 nm, of paths that arrive from everywhere alike. By "
+      "\"light\" f grows like 1 / cos toward grazing views, and the square of a weight has no mean: the noise of "
+      "a picture in which leaves light each other does not settle (reciprocal_leaf.md)."};
+  for (const std::string specimen : {"soybean", "maize"})
+    for (const std::string incident : {"traced", "light", "reciprocal"}) {
+      const bool settles = incident != "light";
+      Row& row = theme.add(fmt::format("{}, incident {}", specimen, incident),
+                           settles ? "bounded, no weight above 6" : "not bounded; lambert, which is flat, is");
+      for (const auto& [method, name] : kLeafMaterials) {
+        if (method == Method::abm && incident == "reciprocal") {
+          row.add(method, refusal("reciprocal", [&] { leaf("abm", specimen, incident); }));
+          continue;
+        }
+        Specimen made = leaf(name, specimen, incident);
+        const Weights weights = weights_of(made.bsdf());
+        row.add(method, settles || method == Method::lambert ? bounded(weights) : unbounded(weights));
+      }
+    }
+  return theme;
+}
+
+}  // namespace frond::stability
