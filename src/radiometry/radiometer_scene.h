@@ -11,8 +11,9 @@ namespace frond {
 ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values);
 
 /// What radiometry asks of a scene that was made for pictures: swaps are carried out, and leaves for which nothing is
-/// said are reciprocal, or take the light's direction for incident where they cannot be; paths end by roulette alone, unless the overrides say how; the period
-/// and the wavelengths, a PluginText of `bands`, are those asked for. Throws InputError.
+/// said are reciprocal, or take the light's direction for incident where they cannot be; paths end by roulette alone,
+/// unless the overrides say how; the period and the wavelengths, a PluginText of `bands`, are those asked for. Throws
+/// InputError.
 void prepare_for_radiometry(const Session& session, const std::string& wavelengths,
                             const std::optional<std::array<double, 2>>& period, SceneDescription& description,
                             SceneOverrides& overrides);

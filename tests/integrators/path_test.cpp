@@ -48,15 +48,18 @@ double expect_mean(const Film& film, double expected) {
   return worst;
 }
 
-// Refraction changes radiance by n^2 at the way in and by its inverse at the way out: what roulette and cut-off see must
-// not, or paths inside glass would be ended, or kept, by it.
+// Refraction changes radiance by n^2 at the way in and by its inverse at the way out: what roulette and cut-off see
+// must not, or paths inside glass would be ended, or kept, by it.
 TEST(Path, LosslessGlassAroundWhiteIsNotSeenInAFurnace) {
   const std::string sky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n";
-  const std::string glass = "Material \"dielectric\" \"spectrum eta\" [360 1.7 2500 1.7]\n"
-                            "Shape \"sphere\" \"float radius\" 0.5\n";
-  const std::string white = "Material \"diffuse\" \"spectrum reflectance\" [360 1 2500 1]\n"
-                            "Shape \"sphere\" \"float radius\" 0.3\n";
-  for (const std::string integrator : {"\"integer maxdepth\" 100000", "\"integer maxdepth\" 100000 \"float cutoff\" 0.5"})
+  const std::string glass =
+      "Material \"dielectric\" \"spectrum eta\" [360 1.7 2500 1.7]\n"
+      "Shape \"sphere\" \"float radius\" 0.5\n";
+  const std::string white =
+      "Material \"diffuse\" \"spectrum reflectance\" [360 1 2500 1]\n"
+      "Shape \"sphere\" \"float radius\" 0.3\n";
+  for (const std::string integrator :
+       {"\"integer maxdepth\" 100000", "\"integer maxdepth\" 100000 \"float cutoff\" 0.5"})
     for (const std::string& world : {sky + glass, sky + glass + white}) {
       const Film film = render_text(looking_down(world, 0.6, 8, integrator), {.samples = 64});
       // No path weighs more or less than another: without noise, but for what floats round.
