@@ -104,9 +104,9 @@ def main():
     if options.programs:
         running = [p for p in running if p.name.startswith("frond") or any(word in p.name for word in options.programs)]
     names = options.only or (["front", "ambient"] if options.quick else list(scenes.SCENES))
-    results = []
-    load = os.getloadavg()[0]
+    raced = {}
     for name in names:
+        load, results = os.getloadavg()[0], []
         with tempfile.TemporaryDirectory(prefix="frond_race.", dir=os.environ.get("TMPDIR")) as temporary:
             folder = pathlib.Path(temporary)
             scene = scenes.SCENES[name](folder)
@@ -118,17 +118,33 @@ def main():
                 for program in able:
                     program.close()
                 load = max(load, os.getloadavg()[0])
-    about = {"machine": machine(), "system": f"{platform.system()} {platform.machine()}", "load": load, "missing": missing,
-             "versions": sorted({program.version() for program in running}), "setting": dataclasses.asdict(setting),
-             "scenes": {name: scenes.SCENES[name].__doc__ for name in names}}
-    FIGURES.parent.mkdir(parents=True, exist_ok=True)
-    FIGURES.write_text(json.dumps({"about": about, "results": results}, indent=1), encoding="utf-8")
-    text = page.page(about, results)
+        raced[name] = {"what": scenes.SCENES[name].__doc__, "load": load, "setting": dataclasses.asdict(setting),
+                       "results": results}
+        if not options.no_docs:
+            keep(raced)
+    about = {"machine": machine(), "system": f"{platform.system()} {platform.machine()}", "missing": missing,
+             "versions": sorted({program.version() for program in running})}
     if options.no_docs:
-        print(text)
+        print(page.page(about, raced))
     else:
-        DOCUMENT.write_text(text, encoding="utf-8")
+        DOCUMENT.write_text(page.page(about, kept()), encoding="utf-8")
         print(f"Written: {DOCUMENT}")
+
+
+def kept():
+    """Figures of scenes that this machine has raced, in their order."""
+    if not FIGURES.exists():
+        return {}
+    figures = json.loads(FIGURES.read_text(encoding="utf-8"))
+    of_here = figures["scenes"] if figures.get("machine") == machine() else {}
+    return {name: of_here[name] for name in scenes.SCENES if name in of_here}
+
+
+def keep(raced):
+    """So that a scene can be raced by itself, and a race that is stopped has not been for nothing."""
+    figures = {"machine": machine(), "scenes": kept() | raced}
+    FIGURES.parent.mkdir(parents=True, exist_ok=True)
+    FIGURES.write_text(json.dumps(figures, indent=1), encoding="utf-8")
 
 
 if __name__ == "__main__":

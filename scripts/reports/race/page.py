@@ -11,8 +11,7 @@ PAGE = """# Beside others
 
 Written by `scripts/race`: the same scenes by frond, Mitsuba 3 and pbrt-v4, in turn, in one run.
 
-{machine}, {system}; {versions}. {threads}; {size} × {size} pixels, {samples} samples each, {rounds} rounds.
-The machine's load was up to {load:.1f}.
+{machine}, {system}; {versions}.
 {missing}
 {tables}
 ## What is measured
@@ -71,8 +70,16 @@ def whole(result, paths):
     return max(0, result["set_up_cpu"]) + statistics.median(result["cpu"]) * paths / 1e6
 
 
-def scene_tables(name, what, results, paths):
-    text = f"## {name}\n\n{what}\n\n"
+def scene_tables(name, raced):
+    setting, results = raced["setting"], raced["results"]
+    paths = setting["size"]**2 * setting["samples"]
+    threads = "One thread" if setting["threads"] == 1 else f"{setting['threads']} threads"
+    text = f"""## {name}
+
+{raced["what"]} {setting["size"]} × {setting["size"]} pixels, {setting["samples"]} samples each, {setting["rounds"]} rounds.
+{threads}; the machine's load was up to {raced["load"]:.1f}.
+
+"""
     for leaf in dict.fromkeys(r["leaf"] for r in results):
         for reconstruction in dict.fromkeys(r["filter"] for r in results):
             chosen = [r for r in results if (r["leaf"], r["filter"]) == (leaf, reconstruction)]
@@ -90,16 +97,12 @@ def scene_tables(name, what, results, paths):
     return text
 
 
-def page(about, results):
-    setting = about["setting"]
+def page(about, raced):
     missing = "\nLeft out: " + "; ".join(about["missing"]) + ".\n" if about["missing"] else ""
-    tables = "".join(scene_tables(name, what, [r for r in results if r["scene"] == name], setting["size"]**2 * setting["samples"])
-                     for name, what in about["scenes"].items())
+    tables = "".join(scene_tables(name, of_scene) for name, of_scene in raced.items())
     reflectance, transmittance = scenes.LEAVES["leaf"]
-    threads = "One thread" if setting["threads"] == 1 else f"{setting['threads']} threads"
-    return PAGE.format(machine=about["machine"], system=about["system"], load=about["load"], missing=missing, tables=tables,
-                       versions="; ".join(v for v in about["versions"] if not v.startswith("frond")), threads=threads,
-                       size=setting["size"], samples=setting["samples"], rounds=setting["rounds"], depth=scenes.DEPTH,
+    return PAGE.format(machine=about["machine"], system=about["system"], missing=missing, tables=tables,
+                       versions="; ".join(v for v in about["versions"] if not v.startswith("frond")), depth=scenes.DEPTH,
                        most_traced=thousands(MOST_TRACED), opaque=scenes.LEAVES["opaque"][0],
                        reflectance=reflectance, transmittance=transmittance,
                        **scenes.GAUSSIAN)
