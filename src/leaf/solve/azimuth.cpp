@@ -6,25 +6,49 @@
 
 namespace frond::leaf {
 
-AzimuthModes::AzimuthModes(double exponent) : exponent_(exponent), fraction_(exponent - std::floor(exponent)) {
-  if (fraction_ > 0) quadrature_ = gauss_legendre(24);
+namespace {
+
+/// Of lobes whose exponent is no whole number.
+struct Place {
+  double share;  ///< phi over phi_max
+  double weight;
+  double cosine;  ///< of phi where the lobe is not cut, and phi_max is pi
+};
+
+const std::vector<Place>& places() {
+  static const std::vector<Place> all = [] {
+    std::vector<Place> result;
+    for (const auto& [x, weight] : gauss_legendre(24))
+      result.push_back({1 - x * x, weight * 2 * x, std::cos(std::numbers::pi * (1 - x * x))});
+    return result;
+  }();
+  return all;
 }
+
+}  // namespace
+
+AzimuthModes::AzimuthModes(double exponent) : exponent_(exponent), fraction_(exponent - std::floor(exponent)) {}
 
 AzimuthModes::Angles::Angles(double mu_axis, double mu)
     : a(mu_axis * mu),
       b(std::sqrt(std::max(0.0, (1 - mu_axis * mu_axis) * (1 - mu * mu)))),
       phi_max(a >= b ? std::numbers::pi : std::acos(-a / b)) {}
 
-/// (1 / pi) times the integral of (a + b cos phi)^power up to phi_max, by quadrature that is dense at phi_max, where
-/// the base may reach 0.
-double AzimuthModes::direct(double power, const Angles& angles) const {
+/// (1 / pi) times the integrals of (a + b cos phi)^power and ^(power + 1) up to phi_max, by quadrature that is dense at
+/// phi_max, where the base may reach 0.
+AzimuthModes::Means AzimuthModes::direct(double power, const Angles& angles) const {
   const auto [a, b, phi_max] = angles;
-  double sum = 0;
-  for (const auto& [x, weight] : quadrature_) {
-    const double phi = phi_max * (1 - x * x);
-    sum += weight * 2 * x * std::pow(std::max(0.0, a + b * std::cos(phi)), power);
+  const bool is_cut = a < b;
+  Means sums{0, 0};
+  for (const Place& p : places()) {
+    const double cosine = is_cut ? std::cos(phi_max * p.share) : p.cosine;
+    const double base = std::max(0.0, a + b * cosine);
+    const double value = p.weight * std::pow(base, power);
+    sums.value += value;
+    sums.next += value * base;
   }
-  return sum * phi_max / std::numbers::pi;
+  const double scale = phi_max / std::numbers::pi;
+  return {sums.value * scale, sums.next * scale};
 }
 
 AzimuthModes::Means AzimuthModes::means(const Angles& angles) const {
@@ -34,7 +58,7 @@ AzimuthModes::Means AzimuthModes::means(const Angles& angles) const {
   const auto [a, b, phi_max] = angles;
   Means m;
   if (fraction_ > 0)
-    m = {direct(fraction_, angles), direct(fraction_ + 1, angles)};
+    m = direct(fraction_, angles);
   else
     m = {phi_max / std::numbers::pi, a * phi_max / std::numbers::pi + b * std::sin(phi_max) / std::numbers::pi};
   const auto steps = static_cast<int>(exponent_);

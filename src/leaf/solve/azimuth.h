@@ -28,12 +28,11 @@ class AzimuthModes {
     double value, next;
   };
   Means means(const Angles& angles) const;
-  double direct(double power, const Angles& angles) const;
+  Means direct(double power, const Angles& angles) const;
   void forward(const Angles& angles, const Means& means, std::span<double> modes) const;
   void backward(const Angles& angles, const Means& means, std::span<double> modes) const;
 
   double exponent_, fraction_;
-  std::vector<QuadratureNode> quadrature_;  ///< empty where the exponent is an integer
 };
 
 }  // namespace frond::leaf

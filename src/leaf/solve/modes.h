@@ -10,7 +10,7 @@
 namespace frond::leaf {
 
 /// Increase with any change that may change results: tables on disk are kept by it.
-inline constexpr int kModesVersion = 2;
+inline constexpr int kModesVersion = 3;
 
 /// f of light that has been inside a leaf, at one wavelength and without noise, as a Fourier series over azimuth:
 ///   f = (1 - F_i) (1 - F_o) / mu_o' * sum over m of h_m(sin theta_i, sin theta_o) cos(m phi)   [1/sr],
