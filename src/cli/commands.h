@@ -17,6 +17,7 @@ void add_difference_command(CLI::App& app);
 void add_list_command(CLI::App& app);
 void add_describe_command(CLI::App& app);
 void add_table_command(CLI::App& app);
+void add_fit_command(CLI::App& app);
 void add_brf_command(CLI::App& app);
 void add_flux_command(CLI::App& app);
 void add_canopy_command(CLI::App& app);

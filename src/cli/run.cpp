@@ -40,6 +40,7 @@ int run(int argc, const char* const* argv) {
   add_list_command(app);
   add_describe_command(app);
   add_table_command(app);
+  add_fit_command(app);
   add_brf_command(app);
   add_flux_command(app);
   add_canopy_command(app);

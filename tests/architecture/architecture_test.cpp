@@ -26,7 +26,7 @@ const Layers kAllowed{
     {"render", {"core", "system", "spectra", "image", "scene", "integrators", "materials", "instruments"}},
     {"instruments", {"core", "spectra"}},
     {"radiometry", {"core", "system", "spectra", "scene", "instruments", "render"}},
-    {"report", {"core", "system", "spectra", "instruments", "radiometry"}},
+    {"report", {"core", "system", "spectra", "leaf", "instruments", "radiometry"}},
     {"study", {"core", "system", "spectra", "image", "scene", "render", "instruments", "report"}},
     {"cli",
      {"core", "system", "spectra", "leaf", "materials", "image", "scene", "integrators", "render", "instruments",

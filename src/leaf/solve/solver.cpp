@@ -100,7 +100,12 @@ std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_de
 }
 
 std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg) {
-  const LeafSolver solver(tissues[0], theta_deg, solver_nodes(tissues[0]));
+  return solve_depths(tissues, theta_deg, solver_nodes(tissues[0]));
+}
+
+std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg,
+                                              int nodes) {
+  const LeafSolver solver(tissues[0], theta_deg, nodes);
   std::vector<std::vector<Shares>> result;
   for (const Tissue& tissue : tissues) result.push_back(solver.solve(tissue));
   return result;

@@ -8,7 +8,7 @@
 namespace frond::leaf {
 
 /// Increase with any change that may change results: tables on disk are kept by it.
-inline constexpr int kSolverVersion = 4;
+inline constexpr int kSolverVersion = 5;
 
 /// What becomes of light that meets the leaf at one angle: shares of 1. The rest is absorbed.
 struct Shares {
@@ -36,5 +36,7 @@ std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_de
 
 /// The same for tissues that differ in their optical depth alone, with less work: [tissue][angle].
 std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg);
+std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg,
+                                              int nodes);
 
 }  // namespace frond::leaf

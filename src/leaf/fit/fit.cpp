@@ -1,0 +1,402 @@
+#include "leaf/fit/fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <unsupported/Eigen/NonLinearOptimization>
+
+#include "leaf/fit/optics_surface.h"
+#include "leaf/solve/solver.h"
+#include "leaf/tissue/absorption.h"
+
+namespace frond::leaf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Grade = OpticsSurface::Grade;
+
+/// What follows another number, and which.
+struct Companion {
+  std::string_view name;
+  double TissueParams::*number;
+  double TissueParams::*leader;
+};
+constexpr Companion kCompanions[] = {
+    {"chlorophyllb", &TissueParams::chlorophyll_b, &TissueParams::chlorophyll_a},
+    {"lignin", &TissueParams::lignin, &TissueParams::cellulose},
+};
+
+const Specimen& specimen_of(Structure structure) {
+  return *std::ranges::find(kSpecimens, structure, [](const Specimen& s) { return s.params.structure; });
+}
+
+double depth_of(const TissueParams& p, double lambda_nm) {
+  return p.thickness_m * p.mesophyll_fraction * absorption_coefficient(p, lambda_nm);
+}
+
+/// One kind of leaf (structure, sieve), and which of its numbers are free.
+class LeafSpace {
+ public:
+  LeafSpace(const FitRequest& request, Structure structure, bool sieve)
+      : specimen_(request.like && request.like->params.structure == structure ? *request.like : specimen_of(structure)),
+        origin_(specimen_.params) {
+    origin_.sieve_and_detour = sieve;
+    const auto fix = [&](std::string_view name, double TissueParams::*number) {
+      const auto found = std::ranges::find(request.fixed, name, &FitRequest::Fixed::name);
+      if (found != request.fixed.end()) origin_.*number = found->value;
+      return found != request.fixed.end();
+    };
+    fix("mesophyllfraction", &TissueParams::mesophyll_fraction);
+    for (const FitVariable& v : kFitVariables) {
+      const bool exists = v.number != &TissueParams::palisade_aspect || structure == Structure::bifacial;
+      if (!fix(v.name, v.number) && exists) free_.push_back(&v);
+    }
+    for (const Companion& c : kCompanions) {
+      if (fix(c.name, c.number)) continue;
+      const double leader = specimen_.params.*c.leader;
+      followers_.push_back({c.number, c.leader, leader > 0 ? specimen_.params.*c.number / leader : 0});
+      origin_.*c.number = origin_.*c.leader * followers_.back().ratio;
+    }
+  }
+
+  const Specimen& specimen() const { return specimen_; }
+  const TissueParams& origin() const { return origin_; }
+  const std::vector<const FitVariable*>& free() const { return free_; }
+  Index count() const { return static_cast<Index>(free_.size()); }
+
+  TissueParams with(TissueParams p, const FitVariable& v, double value) const {
+    p.*v.number = value;
+    for (const Follower& f : followers_)
+      if (f.leader == v.number) p.*f.number = f.ratio * value;
+    return p;
+  }
+
+  // Logarithms of numbers are drawn out to the whole line by the logistic function.
+  TissueParams at(const VectorXd& q) const {
+    TissueParams p = origin_;
+    for (Index i = 0; i < count(); ++i) p = with(p, variable(i), std::exp(log_at(i, q[i])));
+    return p;
+  }
+  VectorXd of(const TissueParams& p) const {
+    VectorXd q(count());
+    for (Index i = 0; i < count(); ++i) {
+      constexpr double kEdge = 1e-3;
+      const double s = (std::log(p.*variable(i).number) - low(i)) / width(i), c = std::clamp(s, kEdge, 1 - kEdge);
+      q[i] = std::log(c / (1 - c));
+    }
+    return q;
+  }
+  double log_at(Index i, double q) const { return low(i) + width(i) / (1 + std::exp(-q)); }
+  /// Of the logarithm, by q.
+  double slope(Index i, double q) const {
+    const double s = 1 / (1 + std::exp(-q));
+    return width(i) * s * (1 - s);
+  }
+  const FitVariable& variable(Index i) const { return *free_[static_cast<size_t>(i)]; }
+
+ private:
+  struct Follower {
+    double TissueParams::*number;
+    double TissueParams::*leader;
+    double ratio;
+  };
+  double low(Index i) const { return std::log(variable(i).range.min); }
+  double width(Index i) const { return std::log(variable(i).range.max) - low(i); }
+
+  const Specimen& specimen_;
+  TissueParams origin_;
+  std::vector<const FitVariable*> free_;
+  std::vector<Follower> followers_;
+};
+
+/// Least squares up to `kFar`, beyond it by the distance: the residual whose square is that.
+struct Huber {
+  static constexpr double kFar = 0.06;
+  static double value(double x) {
+    const double a = std::abs(x);
+    return a <= kFar ? x : std::copysign(std::sqrt(2 * kFar * a - kFar * kFar), x);
+  }
+  static double slope(double x) {
+    const double a = std::abs(x);
+    return a <= kFar ? 1 : kFar / std::sqrt(2 * kFar * a - kFar * kFar);
+  }
+};
+
+/// Readings against the leaves of a space.
+class Problem {
+ public:
+  using Scalar = double;
+  using InputType = VectorXd;
+  using ValueType = VectorXd;
+  using JacobianType = MatrixXd;
+  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+
+  Problem(const FitRequest& request, const LeafSpace& space, Grade grade, bool structure_is_free,
+          const ThreadPool& pool)
+      : request_(request), space_(space), grade_(grade), structure_is_free_(structure_is_free), pool_(pool) {
+    for (const LeafReading& r : request.readings) {
+      const auto place = std::ranges::find(theta_deg_, r.theta_deg);
+      angle_.push_back(static_cast<size_t>(place - theta_deg_.begin()));
+      if (place == theta_deg_.end()) theta_deg_.push_back(r.theta_deg);
+      first_nm_ = std::min(first_nm_, r.lambda_nm), last_nm_ = std::max(last_nm_, r.lambda_nm);
+      rows_ += (r.r ? 1 : 0) + (r.t ? 1 : 0);
+    }
+  }
+
+  int inputs() const { return static_cast<int>(space_.count()); }
+  int values() const { return static_cast<int>(rows_ + space_.count()); }
+  Index rows() const { return rows_; }
+
+  /// Residuals, then what is expected of the numbers.
+  int operator()(const VectorXd& q, VectorXd& f) const {
+    const TissueParams p = space_.at(q);
+    const OpticsSurface& surface = surface_of(p, grade_);
+    Index row = 0;
+    for (size_t i = 0; i < request_.readings.size(); ++i) {
+      const LeafReading& reading = request_.readings[i];
+      const auto v = surface.at(angle_[i], reading.lambda_nm, depth_of(p, reading.lambda_nm));
+      if (reading.r) f[row++] = Huber::value(v.r - *reading.r);
+      if (reading.t) f[row++] = Huber::value(v.t - *reading.t);
+    }
+    for (Index i = 0; i < space_.count(); ++i)
+      f[row++] =
+          expectation() * (space_.log_at(i, q[i]) - std::log(space_.specimen().params.*space_.variable(i).number));
+    return 0;
+  }
+
+  int df(const VectorXd& q, MatrixXd& j) const {
+    MatrixXd by_log(rows_, space_.count());
+    jacobian(space_.at(q), by_log, true);
+    j.setZero();
+    for (Index i = 0; i < space_.count(); ++i) {
+      const double slope = space_.slope(i, q[i]);
+      j.col(i).head(rows_) = by_log.col(i) * slope;
+      j(rows_ + i, i) = expectation() * slope;
+      if (!structure_is_free_ && space_.variable(i).is_structure) j.col(i).setZero();
+    }
+    return 0;
+  }
+
+  /// Of the model's R and T, or of the residuals that least squares see, by the logarithms of the free numbers.
+  void jacobian(const TissueParams& p, MatrixXd& j, bool of_residuals) const {
+    constexpr double kStep = 0.02, kSmall = 1e-5;
+    // How structures differ is smooth: coarse tables tell it.
+    const OpticsSurface &surface = surface_of(p, grade_), &coarse = surface_of(p, Grade::coarse);
+    for (Index c = 0; c < space_.count(); ++c) {
+      const FitVariable& variable = space_.variable(c);
+      if (variable.is_structure && !structure_is_free_) {
+        j.col(c).setZero();
+        continue;
+      }
+      const double step = variable.is_structure ? kStep : kSmall;
+      const TissueParams moved = space_.with(p, variable, p.*variable.number * std::exp(step));
+      const OpticsSurface& other = variable.is_structure ? surface_of(moved, Grade::coarse) : surface;
+      Index row = 0;
+      for (size_t i = 0; i < request_.readings.size(); ++i) {
+        const LeafReading& reading = request_.readings[i];
+        const double depth = depth_of(p, reading.lambda_nm);
+        const auto v = surface.at(angle_[i], reading.lambda_nm, depth);
+        double r, t;
+        if (variable.is_structure) {
+          const auto here = coarse.at(angle_[i], reading.lambda_nm, depth),
+                     there = other.at(angle_[i], reading.lambda_nm, depth);
+          r = (there.r - here.r) / step, t = (there.t - here.t) / step;
+        } else {
+          const double slope = (depth_of(moved, reading.lambda_nm) - depth) / step;
+          r = v.r_slope * slope, t = v.t_slope * slope;
+        }
+        if (reading.r) j(row++, c) = r * (of_residuals ? Huber::slope(v.r - *reading.r) : 1);
+        if (reading.t) j(row++, c) = t * (of_residuals ? Huber::slope(v.t - *reading.t) : 1);
+      }
+    }
+  }
+
+  /// Weight of a logarithm's distance from the specimen's, in units of reflectance.
+  double expectation() const { return request_.has_prior ? 0.03 : 3e-4; }
+
+ private:
+  using Aspects = std::array<double, 3>;
+
+  const OpticsSurface& surface_of(const TissueParams& p, Grade grade) const {
+    auto& surface = surfaces_[{grade, {p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect}}];
+    if (!surface) surface = std::make_unique<OpticsSurface>(p, theta_deg_, first_nm_, last_nm_, grade, pool_);
+    return *surface;
+  }
+
+  const FitRequest& request_;
+  const LeafSpace& space_;
+  Grade grade_;
+  bool structure_is_free_;
+  const ThreadPool& pool_;
+  std::vector<double> theta_deg_;
+  std::vector<size_t> angle_;  ///< of each reading
+  double first_nm_ = kConstantsRange_nm.max, last_nm_ = kConstantsRange_nm.min;
+  Index rows_ = 0;
+  mutable std::map<std::pair<Grade, Aspects>, std::unique_ptr<OpticsSurface>> surfaces_;
+};
+
+/// Where a search ended.
+struct Candidate {
+  std::unique_ptr<LeafSpace> space;
+  VectorXd q;
+  double cost;  ///< sum of squares, with what is expected
+};
+
+/// `done`: relative change of the sum of squares.
+double search(const Problem& problem, VectorXd& q, int most_evaluations, double done) {
+  Eigen::LevenbergMarquardt<Problem> solver(const_cast<Problem&>(problem));
+  solver.parameters.ftol = done, solver.parameters.xtol = done;
+  solver.parameters.maxfev = most_evaluations;
+  solver.minimize(q);
+  return solver.fnorm * solver.fnorm;
+}
+
+/// Structures that a search begins with, beside the specimen's.
+constexpr std::array<std::array<double, 3>, 3> kStarts{{{5, 5, 1}, {2, 2, 1}, {12, 8, 4}}};
+
+/// The best of each kind of leaf with chemistry alone free, the likeliest first.
+std::vector<Candidate> first_candidates(const FitRequest& request, const ThreadPool& pool) {
+  constexpr int kEvaluations = 40;
+  constexpr double kRoughly = 1e-3;
+  std::vector<Candidate> best;
+  for (const Structure structure : {Structure::bifacial, Structure::unifacial}) {
+    if (request.structure && *request.structure != structure) continue;
+    for (const bool sieve : {false, true}) {
+      if (request.sieve && *request.sieve != sieve) continue;
+      Candidate candidate{std::make_unique<LeafSpace>(request, structure, sieve), {}, HUGE_VAL};
+      const Problem problem(request, *candidate.space, Grade::coarse, false, pool);
+      for (const auto& [epidermis, spongy, palisade] : kStarts) {
+        TissueParams p = candidate.space->origin();
+        for (const FitVariable* v : candidate.space->free()) {
+          if (v->number == &TissueParams::epidermis_aspect) p.epidermis_aspect = epidermis;
+          if (v->number == &TissueParams::spongy_aspect) p.spongy_aspect = spongy;
+          if (v->number == &TissueParams::palisade_aspect) p.palisade_aspect = palisade;
+        }
+        VectorXd q = candidate.space->of(p);
+        const double cost = search(problem, q, kEvaluations, kRoughly);
+        if (cost < candidate.cost) candidate.cost = cost, candidate.q = q;
+      }
+      best.push_back(std::move(candidate));
+    }
+  }
+  std::ranges::sort(best, {}, &Candidate::cost);
+  return best;
+}
+
+/// Correlation of neighbours, along the spectrum.
+double neighbours(const std::vector<double>& residuals) {
+  double product = 0, square = 0;
+  for (size_t i = 0; i + 1 < residuals.size(); ++i) product += residuals[i] * residuals[i + 1];
+  for (const double x : residuals) square += x * x;
+  return square > 0 ? std::clamp(product / square, 0.0, 0.99) : 0;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double x : values) sum += x * x;
+  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// R and T at the readings, solved anew.
+void solve_readings(const FitRequest& request, FitResult& result, const ThreadPool& pool) {
+  constexpr int kNodes = 4;
+  const TissueModel model(result.params);
+  result.fitted.resize(request.readings.size());
+  pool.for_each(static_cast<int64_t>(request.readings.size()), [&](int64_t index, int) {
+    const auto i = static_cast<size_t>(index);
+    const LeafReading& reading = request.readings[i];
+    const Shares s = solve(model.at(reading.lambda_nm), std::array{reading.theta_deg}, kNodes)[0];
+    result.fitted[i] = {s.surface + s.subsurface, s.transmitted, false};
+  });
+}
+
+void judge(const FitRequest& request, const Problem& problem, const LeafSpace& space, FitResult& result) {
+  std::vector<double> r, t;
+  for (size_t i = 0; i < request.readings.size(); ++i) {
+    const LeafReading& reading = request.readings[i];
+    FitResult::Fitted& fitted = result.fitted[i];
+    if (reading.r) r.push_back(fitted.r - *reading.r);
+    if (reading.t) t.push_back(fitted.t - *reading.t);
+    fitted.is_outlier = (reading.r && std::abs(fitted.r - *reading.r) > Huber::kFar) ||
+                        (reading.t && std::abs(fitted.t - *reading.t) > Huber::kFar);
+  }
+  result.rmse_r = root_mean_square(r), result.rmse_t = root_mean_square(t);
+  const double rho = (static_cast<double>(r.size()) * neighbours(r) + static_cast<double>(t.size()) * neighbours(t)) /
+                     static_cast<double>(r.size() + t.size());
+  r.insert(r.end(), t.begin(), t.end());
+  result.rmse = root_mean_square(r);
+
+  const Index n = space.count();
+  const double spare = std::max(1.0, static_cast<double>(problem.rows() - n));
+  const double error = std::max(request.least_error, result.rmse * std::sqrt(static_cast<double>(r.size()) / spare));
+  const double variance = error * error * (1 + rho) / (1 - rho);
+  MatrixXd j(problem.rows(), n);
+  problem.jacobian(result.params, j, false);
+  // With next to nothing known beforehand, a number that the data do not tell has a large error, and not an endless
+  // one.
+  constexpr double kVague = 10;
+  MatrixXd information = j.transpose() * j / variance;
+  for (Index i = 0; i < n; ++i) {
+    const double expected = request.has_prior ? problem.expectation() / error : 0;
+    information(i, i) += expected * expected + 1 / (kVague * kVague);
+  }
+  const MatrixXd covariance = information.ldlt().solve(MatrixXd::Identity(n, n));
+  result.correlations.assign(static_cast<size_t>(n), std::vector<double>(static_cast<size_t>(n)));
+  for (Index a = 0; a < n; ++a)
+    for (Index b = 0; b < n; ++b)
+      result.correlations[static_cast<size_t>(a)][static_cast<size_t>(b)] =
+          covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+  for (const FitVariable& v : kFitVariables) {
+    FittedNumber number{&v, result.params.*v.number};
+    const auto place = std::ranges::find(space.free(), &v);
+    number.is_fixed = place == space.free().end();
+    if (!number.is_fixed) {
+      const auto i = static_cast<Index>(place - space.free().begin());
+      number.relative_error = std::sqrt(covariance(i, i));
+      constexpr double kNear = 1.02;
+      number.is_at_bound = number.value < v.range.min * kNear || number.value > v.range.max / kNear;
+    }
+    result.numbers.push_back(number);
+  }
+}
+
+}  // namespace
+
+std::optional<double> rmse_between(const FitRequest& request, const FitResult& result, const Interval& nm) {
+  std::vector<double> residuals;
+  for (size_t i = 0; i < request.readings.size(); ++i) {
+    const LeafReading& reading = request.readings[i];
+    if (!nm.contains(reading.lambda_nm)) continue;
+    if (reading.r) residuals.push_back(result.fitted[i].r - *reading.r);
+    if (reading.t) residuals.push_back(result.fitted[i].t - *reading.t);
+  }
+  if (residuals.empty()) return {};
+  return root_mean_square(residuals);
+}
+
+FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool) {
+  constexpr size_t kKept = 2;  // kinds of leaves whose structure is searched, too
+  constexpr int kCoarse = 12, kCoarseOfSecond = 6, kFine = 10;
+  constexpr double kRoughly = 1e-2, kDone = 1e-3;
+  std::vector<Candidate> candidates = first_candidates(request, pool);
+  candidates.resize(std::min(candidates.size(), kKept));
+  for (Candidate& c : candidates)
+    c.cost = search(Problem(request, *c.space, Grade::coarse, true, pool), c.q,
+                    &c == &candidates.front() ? kCoarse : kCoarseOfSecond, kRoughly);
+  Candidate& best = *std::ranges::min_element(candidates, {}, &Candidate::cost);
+  const Problem problem(request, *best.space, Grade::fine, true, pool);
+  search(problem, best.q, kFine, kDone);
+  FitResult result;
+  result.params = best.space->at(best.q), result.specimen = &best.space->specimen();
+  solve_readings(request, result, pool);
+  judge(request, problem, *best.space, result);
+  return result;
+}
+
+}  // namespace frond::leaf

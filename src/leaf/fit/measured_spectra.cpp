@@ -1,0 +1,247 @@
+#include "leaf/fit/measured_spectra.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "leaf/tissue/constants.h"
+#include "system/file_bytes.h"
+
+namespace frond::leaf {
+namespace {
+
+enum class Column : uint8_t { wavelength, r, t, theta, side, leaf, other };
+
+struct Field {
+  std::string_view text;
+  Location where;
+};
+
+std::string lower(std::string_view s) {
+  std::string result(s);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+std::string_view trimmed(std::string_view s) {
+  constexpr std::string_view kSpace = " \t\r\"";
+  const size_t begin = s.find_first_not_of(kSpace);
+  return begin == s.npos ? std::string_view() : s.substr(begin, s.find_last_not_of(kSpace) - begin + 1);
+}
+
+char separator_of(std::string_view line) {
+  for (const char c : {';', '\t', ','})
+    if (line.find(c) != line.npos) return c;
+  return ' ';
+}
+
+std::vector<Field> split(std::string_view line, char separator, Location where) {
+  std::vector<Field> fields;
+  for (size_t begin = 0; begin <= line.size();) {
+    if (separator == ' ') begin = std::min(line.find_first_not_of(" \r", begin), line.size());
+    const size_t end = std::min(line.find(separator, begin), line.size());
+    where.column = static_cast<int>(begin) + 1;
+    if (separator != ' ' || end > begin) fields.push_back({trimmed(line.substr(begin, end - begin)), where});
+    begin = end + 1;
+  }
+  return fields;
+}
+
+std::optional<double> to_number(std::string_view text, char separator) {
+  std::string plain(text);
+  if (separator != ',') std::ranges::replace(plain, ',', '.');
+  double value = 0;
+  const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+  if (error != std::errc() || end != plain.data() + plain.size()) return {};
+  return value;
+}
+
+/// "Reflectance (%)" is "reflectance".
+Column column_of(std::string_view name) {
+  const std::string word = lower(trimmed(name.substr(0, std::min(name.find_first_of("([/"), name.size()))));
+  const auto is = [&word](std::initializer_list<std::string_view> names) {
+    return std::ranges::find(names, word) != names.end();
+  };
+  if (is({"wavelength", "wavelength_nm", "wavelengths", "nm", "lambda", "lambda_nm", "wvl", "wl"}))
+    return Column::wavelength;
+  if (is({"r", "reflectance", "refl", "r_mean", "reflectance_mean"})) return Column::r;
+  if (is({"t", "transmittance", "trans", "tran", "t_mean", "transmittance_mean"})) return Column::t;
+  if (is({"theta_deg", "theta", "angle", "angle_deg", "incidence_deg"})) return Column::theta;
+  if (is({"side"})) return Column::side;
+  if (is({"leaf", "material", "sample", "name"})) return Column::leaf;
+  return Column::other;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& name, const SpectraReading& how)
+      : how_(how), where_{std::make_shared<const std::string>(name), 0, 1} {}
+
+  void line(std::string_view text) {
+    ++where_.line;
+    const std::string_view content = trimmed(text);
+    if (content.empty() || content.front() == '#') return;
+    if (!separator_) separator_ = separator_of(text);
+    const std::vector<Field> fields = split(text, *separator_, where_);
+    if (columns_.empty()) {
+      if (begin(fields)) return;
+    }
+    row(fields);
+  }
+
+  MeasuredSpectra finish() {
+    if (columns_.empty()) fail(where_, "there are no spectra in this file");
+    if (how_.leaf.empty() && leaves_.size() > 1)
+      fail(first_row_, "the file has {} leaves: --leaf chooses one of {}", leaves_.size(), fmt::join(leaves_, ", "));
+    if (!how_.leaf.empty() && !leaves_.contains(how_.leaf)) {
+      if (leaves_.empty()) fail(first_row_, "the file names no leaves: --leaf has no effect");
+      const std::string_view meant = nearest(how_.leaf, std::vector<std::string_view>(leaves_.begin(), leaves_.end()));
+      fail(first_row_, "there is no leaf \"{}\" in this file{}", how_.leaf,
+           meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant));
+    }
+    scale();
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr double kPercent = 1.5;  ///< values above it are no shares
+
+  /// True: these were the names.
+  bool begin(const std::vector<Field>& fields) {
+    first_row_ = where_;
+    if (to_number(fields[0].text, *separator_)) {
+      if (fields.size() < 2 || fields.size() > 3)
+        fail(where_,
+             "a file without names of columns has wavelength, R and, if there are three, T: here are {} columns",
+             fields.size());
+      columns_ = {Column::wavelength, Column::r};
+      if (fields.size() == 3) columns_.push_back(Column::t);
+      return false;
+    }
+    for (const Field& f : fields) columns_.push_back(column_of(f.text));
+    for (const Column once : {Column::wavelength, Column::r, Column::t, Column::theta, Column::side, Column::leaf})
+      if (std::ranges::count(columns_, once) > 1)
+        fail(where_, "two columns are called alike: wavelength, R, T, theta_deg, side and leaf are there once at most");
+    if (std::ranges::count(columns_, Column::wavelength) == 0)
+      fail(where_, "there is no column of wavelengths: \"wavelength_nm\", \"nm\" or \"wavelength\"");
+    if (std::ranges::count(columns_, Column::r) + std::ranges::count(columns_, Column::t) == 0)
+      fail(where_, "there is neither a column of reflectances, \"R\", nor one of transmittances, \"T\"");
+    return true;
+  }
+
+  void row(const std::vector<Field>& fields) {
+    if (fields.size() != columns_.size())
+      fail(where_, "{} fields, but the file has {} columns", fields.size(), columns_.size());
+    LeafReading reading{0, how_.theta_deg, {}, {}};
+    bool is_below = false;
+    for (size_t i = 0; i < fields.size(); ++i) {
+      const auto& [text, where] = fields[i];
+      switch (columns_[i]) {
+        case Column::wavelength:
+          reading.lambda_nm = wavelength(fields[i]);
+          break;
+        case Column::r:
+          reading.r = value(fields[i], "R");
+          break;
+        case Column::t:
+          reading.t = value(fields[i], "T");
+          break;
+        case Column::theta: {
+          const auto theta = to_number(text, *separator_);
+          if (!theta || !(*theta >= 0 && *theta <= 180))
+            fail(where, "theta_deg is from 0 to 180 degrees, \"{}\" was given", text);
+          reading.theta_deg = *theta;
+          break;
+        }
+        case Column::side:
+          is_below = below(fields[i]);
+          break;
+        case Column::leaf:
+          leaves_.insert(std::string(text));
+          if (!how_.leaf.empty() && text != how_.leaf) return;
+          break;
+        case Column::other:
+          break;
+      }
+    }
+    if (is_below && reading.theta_deg <= 90) reading.theta_deg = 180 - reading.theta_deg;
+    if (reading.theta_deg == 90) fail(where_, "light along the leaf, at 90 degrees, meets neither side");
+    if ((!reading.r && !reading.t) || !kConstantsRange_nm.contains(reading.lambda_nm)) {
+      ++result_.left_out;
+      return;
+    }
+    result_.readings.push_back(reading);
+    wheres_.push_back(where_);
+  }
+
+  double wavelength(const Field& field) const {
+    constexpr double kMicrometres = 100;
+    const auto number = to_number(field.text, *separator_);
+    if (!number || !(*number > 0 && std::isfinite(*number)))
+      fail(field.where, "a wavelength in nm is a number above 0, \"{}\" was given", field.text);
+    return *number < kMicrometres ? *number * 1000 : *number;
+  }
+
+  /// None where a field is empty or says that there is no number.
+  std::optional<double> value(const Field& field, std::string_view what) {
+    const std::string word = lower(field.text);
+    if (word.empty() || word == "nan" || word == "na" || word == "null" || word == "-") return {};
+    const auto number = to_number(field.text, *separator_);
+    constexpr double kLeast = -5, kMost = 150;  // noise about 0, and percents
+    if (!number || !(*number >= kLeast && *number <= kMost))
+      fail(field.where, "{} is a share of the light, from 0 to 1 or in percent; \"{}\" was given", what, field.text);
+    largest_ = std::max(largest_, *number);
+    return number;
+  }
+
+  static bool below(const Field& field) {
+    const std::string word = lower(field.text);
+    if (word == "abaxial" || word == "lower" || word == "below" || word == "back") return true;
+    if (word == "adaxial" || word == "upper" || word == "above" || word == "front") return false;
+    fail(field.where, "a side is adaxial (upper) or abaxial (lower), \"{}\" was given", field.text);
+  }
+
+  void scale() {
+    result_.is_in_percent = largest_ > kPercent;
+    for (size_t i = 0; i < result_.readings.size(); ++i) {
+      LeafReading& reading = result_.readings[i];
+      for (std::optional<double>* share : {&reading.r, &reading.t})
+        if (*share && result_.is_in_percent) **share /= 100;
+      constexpr double kNoise = 0.05;
+      const double sum = reading.r.value_or(0) + reading.t.value_or(0);
+      if (sum > 1 + kNoise) fail(wheres_[i], "R + T is {:.4g}: a leaf gives back 1 at most", sum);
+    }
+  }
+
+  const SpectraReading& how_;
+  Location where_, first_row_;
+  std::optional<char> separator_;
+  std::vector<Column> columns_;
+  std::set<std::string> leaves_;
+  double largest_ = 0;
+  MeasuredSpectra result_;
+  std::vector<Location> wheres_;  ///< of the readings
+};
+
+}  // namespace
+
+MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraReading& how) {
+  Reader reader(name, how);
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    reader.line(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return reader.finish();
+}
+
+MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraReading& how) {
+  return parse_measured_spectra(read_file_bytes(path, {}, "measured spectra"), path.string(), how);
+}
+
+}  // namespace frond::leaf

@@ -1,0 +1,71 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/command.h"
+#include "tests/cli/table.h"
+#include "tests/support/input_error.h"
+
+namespace frond {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr const char* kSpectrum =
+    "# a leaf\nnm,R,T\n450,0.045,0.016\n550,0.08,0.15\n650,0.05,0.05\n680,0.045,0.02\n"
+    "720,0.25,0.28\n800,0.44,0.45\n1200,0.41,0.44\n1450,0.12,0.15\n1650,0.29,0.33\n"
+    "1940,0.04,0.03\n2200,0.12,0.16\n";
+
+class Fitting : public ::testing::Test {
+ protected:
+  TestFolder folder_{"fit"};
+  std::string spectrum_ = folder_.write("leaf.csv", kSpectrum).string();
+  std::string name_of(const char* name) const { return folder_.name_of(name); }
+};
+
+TEST_F(Fitting, WritesALeafThatAScenesReaderTakes) {
+  const std::string leaf = name_of("leaf.pbrt"), json = name_of("leaf.json"), csv = name_of("fitted.csv");
+  const auto done = frond_command(
+      {"fit", spectrum_, "-o", leaf, "--json", json, "--csv", csv, "--structure", "bifacial", "--sieve", "off"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("RMSE"), HasSubstr("chlorophylla"), HasSubstr("near infrared")));
+  EXPECT_THAT(bytes_of(leaf), AllOf(HasSubstr("Material \"leaf\" \"string specimen\" \"soybean\""),
+                                    HasSubstr("\"float palisadeaspect\""), HasSubstr("# Fitted to leaf.csv")));
+  const auto j = nlohmann::json::parse(bytes_of(json));
+  EXPECT_LT(j["rmse"], 0.03);
+  EXPECT_EQ(j["spectra"].size(), 11u);
+  EXPECT_EQ(j["correlations"]["matrix"].size(), j["correlations"]["names"].size());
+  EXPECT_THAT(bytes_of(csv), HasSubstr("R_fitted"));
+  const std::string scene =
+      folder_
+          .write(
+              "scene.pbrt",
+              "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\nInclude \"leaf.pbrt\"\nShape \"disk\"\n")
+          .string();
+  EXPECT_EQ(frond_command({"check", "--strict", scene}).code, 0);
+}
+
+TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
+  const auto error = [this](std::vector<std::string> more) {
+    std::vector<std::string> words{"fit", spectrum_};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto done = frond_command(words);
+    EXPECT_NE(done.code, 0);
+    return done.err;
+  };
+  EXPECT_THAT(error({"--fix", "chlorophylla"}), HasSubstr("chlorophylla=NUMBER"));
+  EXPECT_THAT(error({"--fix", "clorophylla=1"}), HasSubstr("did you mean \"chlorophylla\"?"));
+  EXPECT_THAT(error({"--like", "oak"}), HasSubstr("soybean, maize"));
+  EXPECT_THAT(error({"--like", "maize", "--structure", "bifacial"}), HasSubstr("unifacial"));
+  EXPECT_THAT(error({"--leaf", "oak"}), HasSubstr("names no leaves"));
+  EXPECT_THAT(error({"-o", "/nowhere/leaf.pbrt"}), HasSubstr("/nowhere"));
+  const std::string short_one = folder_.write("short.csv", "nm,R\n550,0.1\n").string();
+  const auto done = frond_command({"fit", short_one});
+  EXPECT_NE(done.code, 0);
+  EXPECT_THAT(done.err, HasSubstr("fewer"));
+}
+
+}  // namespace
+}  // namespace frond

@@ -1,0 +1,155 @@
+#include "leaf/fit/fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "leaf/fit/measured_spectra.h"
+#include "leaf/solve/solver.h"
+#include "tests/support/input_error.h"
+
+namespace frond::leaf {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::vector<LeafReading> spectra_of(const TissueParams& params, const std::vector<double>& theta_deg, double step_nm) {
+  const TissueModel model(params);
+  std::vector<LeafReading> readings;
+  for (double nm = 400; nm <= 2500; nm += step_nm) {
+    const std::vector<Shares> shares = solve(model.at(nm), theta_deg);
+    for (size_t a = 0; a < theta_deg.size(); ++a)
+      readings.push_back({nm, theta_deg[a], shares[a].surface + shares[a].subsurface, shares[a].transmitted});
+  }
+  return readings;
+}
+
+TissueParams another(std::string_view specimen) {
+  TissueParams p = find_specimen(specimen)->params;
+  p.thickness_m *= 1.6;
+  p.chlorophyll_a *= 0.5, p.chlorophyll_b *= 0.5;
+  p.carotenoids *= 1.4;
+  p.protein *= 1.5;
+  p.cellulose *= 0.7, p.lignin *= 0.7;
+  p.epidermis_aspect = 3, p.spongy_aspect = 7, p.palisade_aspect = 2;
+  p.sieve_and_detour = true;
+  return p;
+}
+
+void expect_found(const TissueParams& truth, const FitRequest& request, double tolerance) {
+  const FitResult result = fit_leaf(request, ThreadPool(2));
+  EXPECT_LT(result.rmse, 1e-4);
+  EXPECT_EQ(result.params.structure, truth.structure);
+  EXPECT_EQ(result.params.sieve_and_detour, truth.sieve_and_detour);
+  int identified = 0;
+  for (const FittedNumber& n : result.numbers) {
+    if (!n.is_identified()) continue;
+    ++identified;
+    EXPECT_NEAR(n.value / (truth.*n.variable->number), 1, tolerance) << n.variable->name;
+  }
+  EXPECT_GE(identified, 4);
+}
+
+TEST(Fit, FindsALeafAgainByItsSpectra) {
+  for (const std::string_view specimen : {"soybean", "maize"}) {
+    const TissueParams truth = another(specimen);
+    expect_found(truth, {.readings = spectra_of(truth, {8}, 10)}, 0.01);
+  }
+}
+
+TEST(Fit, TakesBothSidesAndSeveralAngles) {
+  const TissueParams truth = another("soybean");
+  expect_found(truth, {.readings = spectra_of(truth, {8, 50, 172}, 25), .structure = truth.structure}, 0.02);
+}
+
+TEST(Fit, KeepsWhatIsFixed) {
+  const TissueParams truth = another("soybean");
+  FitRequest request{.readings = spectra_of(truth, {8}, 50), .structure = truth.structure, .sieve = true};
+  request.fixed = {{"chlorophylla", truth.chlorophyll_a}, {"chlorophyllb", truth.chlorophyll_b}, {"palisadeaspect", 2}};
+  const FitResult result = fit_leaf(request, ThreadPool(2));
+  EXPECT_EQ(result.params.chlorophyll_a, truth.chlorophyll_a);
+  EXPECT_EQ(result.params.chlorophyll_b, truth.chlorophyll_b);
+  EXPECT_EQ(result.params.palisade_aspect, 2);
+  EXPECT_EQ(std::ranges::count(result.numbers, true, &FittedNumber::is_fixed), 2);
+  EXPECT_LT(result.rmse, 1e-3);
+}
+
+/// One reading in twenty is anything at all.
+TEST(Fit, IsNotLedAstrayByBadPoints) {
+  const TissueParams truth = another("soybean");
+  FitRequest request{.readings = spectra_of(truth, {8}, 10), .structure = truth.structure, .sieve = true};
+  RandomStream rng(4);
+  for (size_t i = 0; i < request.readings.size(); i += 20) request.readings[i].r = rng.uniform_double();
+  const FitResult result = fit_leaf(request, ThreadPool(2));
+  double largest = 0;
+  for (size_t i = 0; i < request.readings.size(); ++i)
+    if (i % 20 != 0) largest = std::max(largest, std::abs(result.fitted[i].r - *request.readings[i].r));
+  EXPECT_LT(largest, 0.02);
+  EXPECT_GE(std::ranges::count(result.fitted, true, &FitResult::Fitted::is_outlier), 5);
+}
+
+/// Visible light alone says nothing of what absorbs beyond.
+TEST(Fit, SaysWhatTheDataDoNotTell) {
+  const TissueParams truth = find_specimen("soybean")->params;
+  FitRequest request{.readings = spectra_of(truth, {8}, 10), .structure = truth.structure, .sieve = false};
+  std::erase_if(request.readings, [](const LeafReading& r) { return r.lambda_nm > 700; });
+  const FitResult result = fit_leaf(request, ThreadPool(2));
+  for (const FittedNumber& n : result.numbers) {
+    if (n.variable->name == "protein" || n.variable->name == "cellulose") {
+      EXPECT_FALSE(n.is_identified()) << n.variable->name;
+    }
+  }
+}
+
+TEST(Fit, IsTheSameOnAnyNumberOfThreads) {
+  const FitRequest request{.readings = spectra_of(find_specimen("maize")->params, {8}, 100)};
+  EXPECT_EQ(fit_leaf(request, ThreadPool(1)).params, fit_leaf(request, ThreadPool(3)).params);
+}
+
+TEST(MeasuredSpectra, AreReadAsInstrumentsWriteThem) {
+  const auto read = [](std::string_view text, const SpectraReading& how = {}) {
+    return parse_measured_spectra(text, "a.csv", how);
+  };
+  const MeasuredSpectra own =
+      read("# a comment\ntheta_deg,wavelength_nm,Rs,Rd,R,T,A\n8,550,.04,.06,.1,.2,.7\n172,550,0,0,.2,,1\n");
+  ASSERT_EQ(own.readings.size(), 2u);
+  EXPECT_EQ(own.readings[0].r, 0.1);
+  EXPECT_EQ(own.readings[0].t, 0.2);
+  EXPECT_EQ(own.readings[1].theta_deg, 172);
+  EXPECT_FALSE(own.readings[1].t.has_value());
+  const MeasuredSpectra percents =
+      read("Wavelength [nm];Reflectance (%);Transmittance (%)\r\n550,5;10,5;20\r\n350;1;1\r\n");
+  EXPECT_TRUE(percents.is_in_percent);
+  EXPECT_EQ(percents.left_out, 1u);
+  ASSERT_EQ(percents.readings.size(), 1u);
+  EXPECT_EQ(percents.readings[0].lambda_nm, 550.5);
+  EXPECT_DOUBLE_EQ(*percents.readings[0].r, 0.105);
+  const MeasuredSpectra plain = read("0.55  0.1\n0.56  0.2\n");
+  ASSERT_EQ(plain.readings.size(), 2u);
+  EXPECT_DOUBLE_EQ(plain.readings[1].lambda_nm, 560);
+  const std::string two = "leaf,nm,R,side\noak,550,.1,upper\nelm,550,.2,lower\n";
+  const MeasuredSpectra elm = read(two, {.leaf = "elm"});
+  ASSERT_EQ(elm.readings.size(), 1u);
+  EXPECT_EQ(elm.readings[0].theta_deg, 172);
+}
+
+TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
+  const auto error = [](std::string_view text, const SpectraReading& how = {}) {
+    return error_of([&] { parse_measured_spectra(text, "a.csv", how); });
+  };
+  EXPECT_THAT(error(""), HasSubstr("no spectra"));
+  EXPECT_THAT(error("nm,x\n1,2\n"), AllOf(HasSubstr("a.csv:1:1"), HasSubstr("\"R\"")));
+  EXPECT_THAT(error("R,T\n.1,.2\n"), HasSubstr("no column of wavelengths"));
+  EXPECT_THAT(error("nm,R\n550,.1\n560,abc\n"), AllOf(HasSubstr("a.csv:3:5"), HasSubstr("\"abc\"")));
+  EXPECT_THAT(error("nm,R\n550\n"), AllOf(HasSubstr("a.csv:2:1"), HasSubstr("2 columns")));
+  EXPECT_THAT(error("nm,R\n-3,.1\n"), HasSubstr("above 0"));
+  EXPECT_THAT(error("nm,R,T\n550,.7,.6\n"), AllOf(HasSubstr("a.csv:2"), HasSubstr("R + T is 1.3")));
+  EXPECT_THAT(error("leaf,nm,R\noak,550,.1\nelm,550,.2\n"), AllOf(HasSubstr("2 leaves"), HasSubstr("elm, oak")));
+  EXPECT_THAT(error("leaf,nm,R\noak,550,.1\n", {.leaf = "oaks"}), HasSubstr("did you mean \"oak\"?"));
+  EXPECT_THAT(error("nm,R\n550,.1\n", {.leaf = "oak"}), HasSubstr("names no leaves"));
+  EXPECT_THAT(error("nm,R,side\n550,.1,middle\n"), HasSubstr("adaxial"));
+  EXPECT_THAT(error("550 .1 .2 .3\n"), HasSubstr("4 columns"));
+}
+
+}  // namespace
+}  // namespace frond::leaf
