@@ -50,6 +50,9 @@ follow from their slopes. Levenberg and Marquardt's method begins with three str
 kinds go on with the structure free, the best one by the finer table. A residual beyond 0.06 counts by its distance, not
 by its square. At the end R and T are solved anew at every reading.
 
+**Specimens.** The seven leaves below are in the library: `"string specimen" "walnut"` (`frond list specimens`). A leaf of your own is
+the file that `-o` writes, by `Include`.
+
 ## Beside PROSPECT-D
 
 Written by `scripts/fit`. {machine}. PROSPECT-D (prosail {version}) has seven numbers to fit: N, chlorophyll, carotenoids, anthocyanins,

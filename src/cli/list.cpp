@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
+#include "leaf/tissue/specimens.h"
 #include "render/plugins.h"
 
 namespace frond {
@@ -17,13 +18,20 @@ void list(const std::vector<std::string>& plugins) {
   }
 }
 
+void list_specimens() {
+  for (const leaf::Specimen& s : leaf::kSpecimens) fmt::print("  {:<20} {} {}\n", s.name, s.doc, s.source);
+}
+
 }  // namespace
 
 void add_list_command(CLI::App& app) {
   auto* command = app.add_subcommand("list", "List every plugin that a scene can name.");
   auto plugins = std::make_shared<std::vector<std::string>>();
   add_plugin_option(*command, *plugins);
-  command->callback([plugins] { list(*plugins); });
+  auto what = std::make_shared<std::string>();
+  command->add_option("what", *what, "specimens: the leaves that \"string specimen\" can name.")
+      ->check(CLI::IsMember({"specimens"}));
+  command->callback([plugins, what] { what->empty() ? list(*plugins) : list_specimens(); });
 }
 
 }  // namespace frond

@@ -54,7 +54,7 @@ leaf::DepthMap LeafParams::read(const Params& p) {
               replace(&TissueParams::epidermis_aspect, "epidermisaspect"),
               replace(&TissueParams::spongy_aspect, "spongyaspect"),
               replace(&TissueParams::palisade_aspect, "palisadeaspect")};
-  tissue_.sieve_and_detour = p.boolean("sieve");
+  if (p.given("sieve")) tissue_.sieve_and_detour = p.boolean("sieve");
   read_pigments(p, varying);
   return {tissue_, varying};
 }

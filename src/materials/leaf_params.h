@@ -31,7 +31,9 @@ inline constexpr std::array kLeafParams{
     Param{.name = "specimen",
           .kind = ParamKind::string,
           .default_value = std::string_view("soybean"),
-          .doc = "A leaf from the literature: its structure, and the numbers that are not given (docs/conventions.md).",
+          .doc =
+              "A leaf of the literature, or one fitted to measurements (frond list specimens): its structure, and the "
+              "numbers that are not given.",
           .choices = leaf::kSpecimenNames},
     detail::leaf_number("thickness", "m", {1e-6, 1e-2}, "Thickness of the leaf; by default the specimen's."),
     detail::leaf_number("mesophyllfraction", "", {0, 1},
@@ -67,8 +69,8 @@ inline constexpr std::array kLeafParams{
           .list = true},
     Param{.name = "sieve",
           .kind = ParamKind::boolean,
-          .default_value = false,
-          .doc = "Absorb with the sieve and detour effects of the later model (Baranoski and Eng 2007)."},
+          .doc = "Absorb with the sieve and detour effects of the later model (Baranoski and Eng 2007); by default the "
+                 "specimen's, which of soybean and maize is false."},
     Param{.name = "incident",
           .kind = ParamKind::string,
           .default_value = std::string_view("traced"),

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
+
+#include "leaf/fit/measured_spectra.h"
+#include "leaf/solve/solver.h"
 
 namespace frond::leaf {
 namespace {
@@ -35,6 +39,35 @@ TEST(Specimens, TheConventionsSayWhatTheyAre) {
   expect_row("epidermisaspect", "", &TissueParams::epidermis_aspect);
   expect_row("spongyaspect", "", &TissueParams::spongy_aspect);
   EXPECT_NE(page.find(fmt::format("| `palisadeaspect` | | {} | – |\n", soybean.palisade_aspect)), std::string::npos);
+}
+
+/// Of R and T together at 8 degrees, over all that was measured.
+double rmse(const Specimen& specimen, const std::vector<LeafReading>& readings) {
+  const TissueModel model(specimen.params);
+  double sum = 0;
+  for (const LeafReading& reading : readings) {
+    const Shares s = solve(model.at(reading.lambda_nm), std::array{reading.theta_deg})[0];
+    sum += std::pow(s.surface + s.subsurface - *reading.r, 2) + std::pow(s.transmitted - *reading.t, 2);
+  }
+  return std::sqrt(sum / static_cast<double>(2 * readings.size()));
+}
+
+TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
+  const std::string folder = FROND_SOURCE_DIR "/tests/reference/";
+  int fitted = 0;
+  for (const Specimen& specimen : kSpecimens) {
+    const std::string name(specimen.name);
+    const size_t said = specimen.source.find("RMSE ");
+    if (said == std::string_view::npos) continue;
+    ++fitted;
+    const auto readings =
+        name == "soybean-lopex"
+            ? read_measured_spectra(folder + "lopex93_soybean.csv", {}).readings
+            : read_measured_spectra(folder + "leaf_spectra.csv", {.leaf = name.substr(0, name.find('-')) + "_0000"})
+                  .readings;
+    EXPECT_NEAR(rmse(specimen, readings), std::stod(std::string(specimen.source.substr(said + 5))), 2e-4) << name;
+  }
+  EXPECT_EQ(fitted, 7);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ class LeafSpace {
   VectorXd of(const TissueParams& p) const {
     VectorXd q(count());
     for (Index i = 0; i < count(); ++i) {
-      constexpr double kEdge = 1e-3;
+      constexpr double kEdge = 0.03;  // nearer to the ends nothing moves
       const double s = (std::log(p.*variable(i).number) - low(i)) / width(i), c = std::clamp(s, kEdge, 1 - kEdge);
       q[i] = std::log(c / (1 - c));
     }

@@ -35,9 +35,9 @@ inline constexpr FitVariable kFitVariables[] = {
     {"carotenoids", &TissueParams::carotenoids, {1e-3, 100}},
     {"protein", &TissueParams::protein, {0.1, 1500}},
     {"cellulose", &TissueParams::cellulose, {0.1, 1500}},
-    {"epidermisaspect", &TissueParams::epidermis_aspect, {0.5, 60}, true},
-    {"spongyaspect", &TissueParams::spongy_aspect, {0.5, 60}, true},
-    {"palisadeaspect", &TissueParams::palisade_aspect, {0.5, 60}, true},  // of bifacial leaves
+    {"epidermisaspect", &TissueParams::epidermis_aspect, {0.7, 20}, true},
+    {"spongyaspect", &TissueParams::spongy_aspect, {0.7, 20}, true},
+    {"palisadeaspect", &TissueParams::palisade_aspect, {0.7, 20}, true},  // of bifacial leaves
 };
 
 struct FitRequest {
