@@ -57,6 +57,8 @@ class Material {
   virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
   /// Claims f(a, b) = f(b, a), as Bsdf says where light is refracted, and the laws hold it to that.
   virtual bool is_reciprocal() const { return false; }
+  /// What it lets through may have been refracted: its BSDFs have an index_ratio other than 1.
+  virtual bool refracts() const { return false; }
   /// Reads derivatives of the hit, or the direction of its shading.x. Textures say for themselves what they need.
   virtual bool needs_details() const { return false; }
   /// Counts as foliage in the foliar ratio.

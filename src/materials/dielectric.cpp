@@ -23,6 +23,7 @@ class Dielectric final : public Material {
     return arena.make<RoughDielectricBsdf>(facets, indices);
   }
   bool is_reciprocal() const override { return true; }
+  bool refracts() const override { return true; }
   bool needs_details() const override { return roughness_.has_direction(); }
 
  private:

@@ -40,7 +40,12 @@ class Mix final : public Material {
     return arena.make<MixtureBsdf>(*first, *second, amount);
   }
 
-  bool is_reciprocal() const override { return materials_[0]->is_reciprocal() && materials_[1]->is_reciprocal(); }
+  /// Not claimed where either refracts: unless the other does the same or is opaque, which materials do not say, no
+  /// index of the mixture makes both reciprocal.
+  bool is_reciprocal() const override {
+    return materials_[0]->is_reciprocal() && materials_[1]->is_reciprocal() && !refracts();
+  }
+  bool refracts() const override { return materials_[0]->refracts() || materials_[1]->refracts(); }
   bool is_leaf() const override { return materials_[0]->is_leaf() || materials_[1]->is_leaf(); }
 
  private:

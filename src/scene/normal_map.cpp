@@ -130,6 +130,7 @@ class BentMaterial final : public Material {
   }
   bool needs_details() const override { return true; }
   bool is_leaf() const override { return material_->is_leaf(); }
+  bool refracts() const override { return material_->refracts(); }
 
  private:
   std::shared_ptr<Material> material_;

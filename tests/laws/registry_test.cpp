@@ -243,6 +243,64 @@ struct NotThere final : Material {
   const Bsdf* evaluate(const Hit&, const SampledWavelengths&, Arena&) const override { return nullptr; }
 };
 
+/// A built-in material of its own parameters, as half of a `mix`.
+struct Half {
+  std::string name;
+  std::vector<ParsedParam> params = {};
+};
+const Half kOpaque{"diffuse"}, kSheet{"diffusetransmission"}, kPane{"thindielectric"};
+const Half kGlass{"dielectric", {level("eta", 1.5), given("float", "roughness", 0.3)}};
+const Half kWater{"dielectric", {level("eta", 1.3), given("float", "roughness", 0.3)}};
+
+/// Of the first set that the sweep of `mix` has.
+class Halves {
+ public:
+  Halves(const Half& one, const Half& two) : one_(one), two_(two) {}
+
+  bool claims_reciprocity() { return info_.make(Params(info_, sets_[0].plugin, resolver_))->is_reciprocal(); }
+  std::set<Law> broken(const Claims& claims) {
+    const GivenWavelengths three({608, 551, 455});
+    const Setup setup(three);
+    Findings findings = examine(
+        info_, std::span(sets_).first(1),
+        {.preparation = setup.preparation, .resolver = resolver_, .claims = claims, .effort = {.samples = 4000}});
+    judge(findings, kFalseAlarmRate);
+    return broken_laws(findings);
+  }
+
+ private:
+  const Half &one_, &two_;
+  const MaterialInfo& info_ = material("mix");
+  std::vector<ParameterSet> sets_ = parameter_sweep(info_, {});
+  PlainResolver resolver_{[this](const std::string& name) {
+    const Half& half = name == "one" ? one_ : two_;
+    const MaterialInfo& info = material(half.name);
+    PlainResolver nothing([](const std::string&) { return nullptr; });
+    return std::shared_ptr<Material>(info.make(Params(info, {half.name, {}, half.params}, nothing)));
+  }};
+};
+
+TEST(Mix, ClaimsReciprocityWhereNothingIsRefracted) {
+  const std::initializer_list<const Half*> all{&kOpaque, &kSheet, &kPane, &kGlass, &kWater};
+  for (const Half* one : all)
+    for (const Half* two : all) {
+      Halves mix(*one, *two);
+      const bool refracts = one->name == "dielectric" || two->name == "dielectric";
+      EXPECT_EQ(mix.claims_reciprocity(), !refracts) << one->name << ", " << two->name;
+      if (refracts) continue;
+      EXPECT_THAT(mix.broken({}), ::testing::IsEmpty()) << one->name << ", " << two->name;
+    }
+}
+
+/// What it need not claim: a mixture has one index, by which the laws count its power.
+TEST(Mix, IsReciprocalUnlessBothLetLightThroughAndRefractItOtherwise) {
+  const Claims reciprocal{.reciprocal = true};
+  EXPECT_THAT(Halves(kOpaque, kGlass).broken(reciprocal), ::testing::IsEmpty());
+  EXPECT_THAT(Halves(kGlass, kGlass).broken(reciprocal), ::testing::IsEmpty());
+  for (const auto& [one, two] : {std::pair(&kGlass, &kSheet), {&kSheet, &kGlass}, {&kGlass, &kWater}})
+    EXPECT_THAT(Halves(*one, *two).broken(reciprocal), ::testing::Contains(Law::reciprocity));
+}
+
 TEST(Mix, ObeysWithAStochasticMaterialInIt) { expect_lawful_mixture(planted<GoodStochastic>("noisy")); }
 TEST(Mix, ObeysWithARandomWalkInIt) { expect_lawful_mixture(material("abm")); }
 TEST(Mix, ObeysWithANarrowLobeInIt) { expect_lawful_mixture(planted<GoodNarrowLobe>("narrow")); }
