@@ -1,5 +1,6 @@
 #include "materials/registry.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -62,13 +63,13 @@ const SweepOptions kSweep{.pinned = {given("string", "tablemethod", std::string(
 
 /// Of coats over something, roughness and g stay where they are likely: far from that, as with slopes a thousand times
 /// wider one way than the other, or g = 0.99 under a smooth coat, the mean of so few walks is no estimate of f's.
-SweepOptions sweep_of(const MaterialInfo& info) {
+SweepOptions sweep_of(const MaterialInfo& info, bool smooth_coat = false) {
   SweepOptions options = kSweep;
   if (!info.name.starts_with("coated")) return options;
   options.pinned.push_back(given("float", "g", 0.4));
   for (const std::string prefix : {"", "interface.", "conductor."})
     for (const auto& [name, value] : {std::pair("roughness", 0.1), {"uroughness", 0.15}, {"vroughness", 0.1}})
-      options.pinned.push_back(given("float", prefix + name, value));
+      options.pinned.push_back(given("float", prefix + name, smooth_coat && prefix != "conductor." ? 0 : value));
   return options;
 }
 
@@ -107,12 +108,31 @@ TEST_P(Laws, HoldAtTheDefaultsWithARetiredLane) {
   expect_defaults_hold(GivenWavelengths({430, 550, 670, 800}, {0, 2}));
 }
 
-TEST_P(Laws, HoldOverTheDeclaredBox) {
-  const auto sets = parameter_sweep(info(), sweep_of(info()));
+void expect_lawful_over_the_box(const MaterialInfo& info, const SweepOptions& sweep) {
+  const auto sets = parameter_sweep(info, sweep);
   const Findings findings =
-      expect_lawful(info(), sets, GivenWavelengths({608, 551, 455}), {.samples = 4000, .angles_deg = {0, 50, 89}});
+      expect_lawful(info, sets, GivenWavelengths({608, 551, 455}), {.samples = 4000, .angles_deg = {0, 50, 89}});
   const auto made = std::ranges::count(findings, Law::parameters, &Finding::law);
   EXPECT_GE(made, static_cast<ptrdiff_t>(sets.size() / 2)) << "most sets are refused: the sweep says little";
+}
+
+TEST_P(Laws, HoldOverTheDeclaredBox) { expect_lawful_over_the_box(info(), sweep_of(info())); }
+
+TEST(SmoothCoats, ObeyOverTheDeclaredBox) {
+  for (const std::string_view name : {"coateddiffuse", "coatedconductor"})
+    expect_lawful_over_the_box(material(name), sweep_of(material(name), true));
+}
+
+TEST(SmoothCoats, ObeyOverAMediumThatScattersEitherWay) {
+  for (const double g : {-0.7, 0.0, 0.7})
+    for (const std::string_view name : {"coateddiffuse", "coatedconductor"}) {
+      const ParameterSet set{fmt::format("g = {}", g),
+                             {std::string(name),
+                              {},
+                              {given("float", "g", g), level("albedo", 0.9), given("float", "thickness", 1.0),
+                               given("integer", "maxdepth", 100.0)}}};
+      expect_lawful(material(name), {&set, 1}, GivenWavelengths({608, 551, 455}), {});
+    }
 }
 
 void expect_lossless(std::string_view name, std::vector<ParsedParam> params) {
