@@ -175,7 +175,7 @@ Theme absorption() {
       "No absorption, and all",
       "At 10, 75, 89.99 and 140 degrees and 800 nm, against 1, against 0, against Beer's law in closed form, and "
       "against the solver with twice its nodes. A walk that nothing absorbs is as long as it likes."};
-  for (const leaf::Specimen& s : leaf::kSpecimens) {
+  for (const leaf::Specimen& s : std::span(leaf::kSpecimens).first(2)) {
     add_lossless(theme, fmt::format("{}, no absorption", s.name), s.params);
     TissueParams narrow = s.params;
     narrow.cuticle_aspect = 1000;
