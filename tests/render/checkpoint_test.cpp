@@ -92,8 +92,11 @@ TEST_F(Checkpoints, ComeByTheClockAndWarnWhereTheyCannotBeWritten) {
   const Checkpointer checkpointer(path_, 0.005, part, nullptr, log);
   wait_for([&] { return fs::exists(path_); });
   EXPECT_TRUE(log.messages().empty());
-  // A folder is no place for a file. The clock may bring one between the two steps.
-  for (std::error_code error; !fs::create_directory(path_, error);) fs::remove(path_);
+  // A folder is no place for a file. Between the two calls the clock may put another checkpoint there.
+  std::error_code taken;
+  do {
+    fs::remove(path_);
+  } while (!fs::create_directory(path_, taken));
   wait_for([&] { return !log.messages().empty(); });
   EXPECT_THAT(log.messages().front(), HasSubstr("no checkpoint was written, rendering goes on: "));
   fs::remove(path_);
@@ -111,10 +114,10 @@ TEST_F(Checkpoints, OfARenderAtWorkCanBeGoneOnFrom) {
   std::vector<RenderPart> checkpoints;
   {
     const std::jthread writer([&](const std::stop_token& stop) {
-      while (!stop.stop_requested()) {
+      do {  // once at least, however late this thread begins
         checkpointer.write();
         checkpoints.push_back(read_part(path_));
-      }
+      } while (!stop.stop_requested());
     });
     session_.render(scene, kSamples, part, {.progress = &checkpointer});
   }
