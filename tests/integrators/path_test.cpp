@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "tests/support/render_text.h"
 
@@ -171,6 +172,58 @@ TEST(Path, WhiteFurnaceIsWhite) {
       const Film film = render_text(looking_down(world, 1, 16, "\"integer maxdepth\" 1000"), {.samples = 64});
       EXPECT_LT(expect_mean(film, 1), 0.02) << material << shape;
     }
+  }
+}
+
+/// Glass keeps its light: among light that is even it cannot be seen. Each pixel and channel is tested, 432 that may
+/// have noise: a false alarm at one change of the seed in 4000.
+class GlassFurnace : public ::testing::Test {
+ protected:
+  static constexpr int kSize = 6;
+
+  static std::string lit_by_the_sky(const std::string& world) {
+    return looking_down("LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n" + world, 0.9, kSize,
+                        "\"integer maxdepth\" 1000");
+  }
+  static void expect_white_pixels(const Film& film, const std::string& what) {
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x)
+        for (size_t c = 0; c < 3; ++c) {
+          const double error = std::sqrt(film.variance(x, y)[c]);
+          EXPECT_LT(error, 0.05) << "the test has lost its power";
+          EXPECT_NEAR(film.mean(x, y)[c], 1, kSigmas * error + 1e-4) << what << ", pixel " << x << ' ' << y;
+        }
+  }
+};
+
+TEST_F(GlassFurnace, WhateverTheShape) {
+  const std::string sphere = R"(Shape "sphere" "float radius" .7)";
+  const std::string cube = R"(Rotate 40 1 2 3
+Shape "trianglemesh" "point3 P" [-.4 -.4 -.4  .4 -.4 -.4  .4 .4 -.4  -.4 .4 -.4  -.4 -.4 .4  .4 -.4 .4  .4 .4 .4  -.4 .4 .4]
+"integer indices" [0 2 1  0 3 2  4 5 6  4 6 7  0 1 5  0 5 4  1 2 6  1 6 5  2 3 7  2 7 6  3 0 4  3 4 7])";
+  for (const std::string& shape : {sphere, cube})
+    for (const char* eta : {R"("float eta" 1.5)", R"("spectrum eta" [360 1.8 2500 1.3])"}) {
+      const std::string world = fmt::format("Material \"dielectric\" {}\n{}\n", eta, shape);
+      expect_white_pixels(render_text(lit_by_the_sky(world), {.samples = 2048}), world);
+    }
+}
+
+/// A body in the glass absorbs, and gives off as much of the light that is there, eta^2 times what is outside: all
+/// stays white. Paths that have been on it a few times are left to roulette.
+TEST_F(GlassFurnace, AroundABodyThatLeavesPathsToRoulette) {
+  constexpr double kAlbedo = 0.3;
+  for (const double eta : {1.5, 0.7}) {
+    const std::string world = fmt::format(
+        R"(AttributeBegin Material "dielectric" "float eta" {} Shape "sphere" "float radius" .8 AttributeEnd
+Material "diffuse" "spectrum reflectance" [360 {} 2500 {}]
+AreaLightSource "diffuse" "spectrum L" "stdillum-D65" "float scale" {} Shape "sphere" "float radius" .7
+)",
+        eta, kAlbedo, kAlbedo, eta * eta * (1 - kAlbedo));
+    RenderStatistics statistics;
+    expect_white_pixels(render_text(lit_by_the_sky(world), {.samples = 4096, .statistics = &statistics}), world);
+    const auto& absorbed = statistics.ends.absorbed;
+    EXPECT_GT(std::accumulate(absorbed.begin(), absorbed.end(), uint64_t{0}), statistics.paths / 200);
+    EXPECT_EQ(absorbed.back(), 0u) << "cut off: roulette would have ended them before";
   }
 }
 
