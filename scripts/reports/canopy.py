@@ -145,7 +145,7 @@ from the published description), against the reference of Eradiate's regression 
 Disks of 5 cm at random, soybean leaves over soil, under the sun alone; views of the principal plane from −60 to 60°, negative
 ones from the sun's side. Differences of the BRF from that with `leaf_solved`, the walk's exact BSDF: what a Lambertian leaf of
 the same reflectance and transmittance gets wrong (`leaf_lambert`), and three lobes scaled by a table (`leaf_simplified`).
-Standard errors are about {noise:.1f} % of a difference. All leaves take the light's direction for incident
+Standard errors are about {noise:.1f} % of a difference. All leaves are reciprocal
 ([conventions](conventions.md)).
 
 ![Differences of the BRF by band and direction](images/canopy.svg)
