@@ -1,18 +1,33 @@
 """What the models get wrong, in words, with the figures that show it."""
 
+from tools import frond, rows
 from validation_spectra import measured_leaf, spectrum
+
+
+def black_leaf(*numbers):
+    """R of both sides of a soybean whose mesophyll takes all light, at 450 nm: (adaxial, abaxial)."""
+    text = frond("table", "--specimen", "soybean", "otherabsorption=1e5", *numbers, "--wavelengths", "450", "--angles", "8,172",
+                 "-q", "-o", "-")
+    reflectance = {r["theta_deg"]: r["Rs"] + r["Rd"] for r in rows(text)}
+    return reflectance[8], reflectance[172]
 
 
 def weaknesses(report):
     lopex = {r["wavelength_nm"]: r for r in measured_leaf()}
     plain, sieve = spectrum("soybean", False), spectrum("soybean", True)
+    black = black_leaf()
     at = lambda curve, nm, theta, i: curve[nm, theta][i]
     report.add(f"""
 ## What the models get wrong
 
 - **Blue from below.** The abaxial side reflects {at(plain, 450, 172, 0):.3f} at 450 nm; the measured adaxial sides
   {lopex[450]['R_mean']:.3f} (LOPEX93 has no abaxial ones). A ray that enters from below meets
-  the air space behind the epidermis, which reflects it before any pigment does, whatever the wavelength.
+  the air space behind the epidermis, which reflects it before any pigment does, whatever the wavelength: a soybean
+  whose mesophyll takes all light still reflects {black[1]:.3f} from below, and {black[0]:.3f} from above. Of the
+  parameters only `epidermisaspect` moves that: {black_leaf('spongyaspect=20')[1]:.3f} with `spongyaspect` 20,
+  {black_leaf('epidermisaspect=20')[1]:.3f} with `epidermisaspect` 20, {black_leaf('epidermisaspect=1')[1]:.3f} with 1.
+  The model has no abaxial side that is dark in the blue as the measured adaxial one is; the order of its tissues, which
+  is the authors', is the reason. Maize has mesophyll on both sides of its air space, and is dark from below.
 - **No sieve effect, no detours in plain Beer's law.** Pigments stand in chloroplasts, not spread evenly, and light goes
   round about between cells. The switch puts cos(cos θ) in place of cos θ: a formula that fits, not a path length. Steep
   ways then absorb more and flat ones less. For soybean lit from above it comes nearer to the measured leaves at most

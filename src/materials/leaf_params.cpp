@@ -47,7 +47,8 @@ leaf::DepthMap LeafParams::read(const Params& p) {
        {Named{&TissueParams::thickness_m, "thickness"}, Named{&TissueParams::mesophyll_fraction, "mesophyllfraction"},
         Named{&TissueParams::chlorophyll_a, "chlorophylla"}, Named{&TissueParams::chlorophyll_b, "chlorophyllb"},
         Named{&TissueParams::carotenoids, "carotenoids"}, Named{&TissueParams::protein, "protein"},
-        Named{&TissueParams::cellulose, "cellulose"}, Named{&TissueParams::lignin, "lignin"}})
+        Named{&TissueParams::cellulose, "cellulose"}, Named{&TissueParams::lignin, "lignin"},
+        Named{&TissueParams::other_absorption, "otherabsorption"}})
     if (auto texture = replace(number, name))
       varying.push_back({[number = number](TissueParams& t) -> double& { return t.*number; }, std::move(texture)});
   aspects_ = {replace(&TissueParams::cuticle_aspect, "cuticleaspect"),

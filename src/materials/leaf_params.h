@@ -48,6 +48,9 @@ inline constexpr std::array kLeafParams{
     detail::leaf_number("cellulose", detail::kDensity, {0, 1500},
                         "Cellulose in the mesophyll; by default the specimen's."),
     detail::leaf_number("lignin", detail::kDensity, {0, 1500}, "Lignin in the mesophyll; by default the specimen's."),
+    detail::leaf_number("otherabsorption", "1/m", {0, 1e5},
+                        "Absorption of what else is in the mesophyll (starch, sugars, tannins), at every wavelength "
+                        "alike; by default the specimen's."),
     detail::leaf_number("cuticleaspect", "", {0, 1000},
                         "Aspect ratio of the cuticle's undulations: the exponent of the surface lobe; by default the "
                         "specimen's."),

@@ -7,10 +7,21 @@
 namespace frond {
 namespace {
 
-constexpr std::string_view kOfTissue[] = {
-    "thickness",       "mesophyllfraction", "chlorophylla", "chlorophyllb", "carotenoids",
-    "protein",         "cellulose",         "lignin",       "pigments",     "pigmentconcentrations",
-    "epidermisaspect", "palisadeaspect",    "spongyaspect", "sieve"};
+constexpr std::string_view kOfTissue[] = {"thickness",
+                                          "mesophyllfraction",
+                                          "chlorophylla",
+                                          "chlorophyllb",
+                                          "carotenoids",
+                                          "protein",
+                                          "cellulose",
+                                          "lignin",
+                                          "otherabsorption",
+                                          "pigments",
+                                          "pigmentconcentrations",
+                                          "epidermisaspect",
+                                          "palisadeaspect",
+                                          "spongyaspect",
+                                          "sieve"};
 
 }  // namespace
 

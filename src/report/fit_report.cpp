@@ -41,6 +41,7 @@ std::vector<Said> said(const FitReport& report) {
                         {"protein", p.protein},
                         {"cellulose", p.cellulose},
                         {"lignin", p.lignin},
+                        {"otherabsorption", p.other_absorption},
                         {"epidermisaspect", p.epidermis_aspect},
                         {"spongyaspect", p.spongy_aspect}};
   if (p.structure == leaf::Structure::bifacial) all.push_back({"palisadeaspect", p.palisade_aspect});

@@ -31,6 +31,7 @@ TissueParams another(std::string_view specimen) {
   p.carotenoids *= 1.4;
   p.protein *= 1.5;
   p.cellulose *= 0.7, p.lignin *= 0.7;
+  p.other_absorption = 90;
   p.epidermis_aspect = 3, p.spongy_aspect = 7, p.palisade_aspect = 2;
   p.sieve_and_detour = true;
   return p;

@@ -33,6 +33,7 @@ TEST(Specimens, TheConventionsSayWhatTheyAre) {
                                      {"cellulose", &TissueParams::cellulose},
                                      {"lignin", &TissueParams::lignin}})
     expect_row(name, "kg/m³ ", number);
+  expect_row("otherabsorption", "1/m ", &TissueParams::other_absorption);
   expect_row("mesophyllfraction", "", &TissueParams::mesophyll_fraction);
   expect_row("thickness", "m ", &TissueParams::thickness_m);
   expect_row("cuticleaspect", "", &TissueParams::cuticle_aspect);

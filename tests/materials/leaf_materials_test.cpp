@@ -53,8 +53,11 @@ TEST(LeafMaterials, TakeFromTheSpecimenWhatIsNotGiven) {
   EXPECT_EQ(read({words("specimen", {"maize"})}), leaf::find_specimen("maize")->params);
   leaf::TissueParams changed = leaf::find_specimen("maize")->params;
   changed.lignin = 3;
+  changed.other_absorption = 50;
   changed.sieve_and_detour = true;
-  EXPECT_EQ(read({words("specimen", {"maize"}), number("float", "lignin", {3}), flag("sieve", true)}), changed);
+  EXPECT_EQ(read({words("specimen", {"maize"}), number("float", "lignin", {3}),
+                  number("float", "otherabsorption", {50}), flag("sieve", true)}),
+            changed);
 }
 
 TEST(LeafParams, KnowsWhatTexturesVary) {

@@ -19,12 +19,19 @@ struct Number {
   std::string_view name;
 };
 constexpr Number kNumbers[] = {
-    {&TissueParams::thickness_m, "thickness"},        {&TissueParams::mesophyll_fraction, "mesophyllfraction"},
-    {&TissueParams::chlorophyll_a, "chlorophylla"},   {&TissueParams::chlorophyll_b, "chlorophyllb"},
-    {&TissueParams::carotenoids, "carotenoids"},      {&TissueParams::protein, "protein"},
-    {&TissueParams::cellulose, "cellulose"},          {&TissueParams::lignin, "lignin"},
-    {&TissueParams::cuticle_aspect, "cuticleaspect"}, {&TissueParams::epidermis_aspect, "epidermisaspect"},
-    {&TissueParams::spongy_aspect, "spongyaspect"},   {&TissueParams::palisade_aspect, "palisadeaspect"},
+    {&TissueParams::thickness_m, "thickness"},
+    {&TissueParams::mesophyll_fraction, "mesophyllfraction"},
+    {&TissueParams::chlorophyll_a, "chlorophylla"},
+    {&TissueParams::chlorophyll_b, "chlorophyllb"},
+    {&TissueParams::carotenoids, "carotenoids"},
+    {&TissueParams::protein, "protein"},
+    {&TissueParams::cellulose, "cellulose"},
+    {&TissueParams::lignin, "lignin"},
+    {&TissueParams::other_absorption, "otherabsorption"},
+    {&TissueParams::cuticle_aspect, "cuticleaspect"},
+    {&TissueParams::epidermis_aspect, "epidermisaspect"},
+    {&TissueParams::spongy_aspect, "spongyaspect"},
+    {&TissueParams::palisade_aspect, "palisadeaspect"},
 };
 
 const Param& declared(std::string_view name) {

@@ -109,6 +109,7 @@ Parameters words_for(const TissueParams& leaf) {
           real("protein", leaf.protein),
           real("cellulose", leaf.cellulose),
           real("lignin", leaf.lignin),
+          real("otherabsorption", leaf.other_absorption),
           real("cuticleaspect", leaf.cuticle_aspect),
           real("epidermisaspect", leaf.epidermis_aspect),
           real("spongyaspect", leaf.spongy_aspect),

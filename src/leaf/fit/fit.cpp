@@ -55,7 +55,9 @@ class LeafSpace {
     fix("mesophyllfraction", &TissueParams::mesophyll_fraction);
     for (const FitVariable& v : kFitVariables) {
       const bool exists = v.number != &TissueParams::palisade_aspect || structure == Structure::bifacial;
-      if (!fix(v.name, v.number) && exists) free_.push_back(&v);
+      if (fix(v.name, v.number) || !exists) continue;
+      free_.push_back(&v);
+      if (origin_.*v.number == 0) origin_.*v.number = kLittle;  // none has no logarithm
     }
     for (const Companion& c : kCompanions) {
       if (fix(c.name, c.number)) continue;
@@ -108,6 +110,8 @@ class LeafSpace {
   };
   double low(Index i) const { return std::log(variable(i).range.min); }
   double width(Index i) const { return std::log(variable(i).range.max) - low(i); }
+
+  static constexpr double kLittle = 30;  ///< 1/m: hardly anything beside water and protein
 
   const Specimen& specimen_;
   TissueParams origin_;
@@ -165,8 +169,7 @@ class Problem {
       if (reading.t) f[row++] = Huber::value(v.t - *reading.t);
     }
     for (Index i = 0; i < space_.count(); ++i)
-      f[row++] =
-          expectation() * (space_.log_at(i, q[i]) - std::log(space_.specimen().params.*space_.variable(i).number));
+      f[row++] = expectation() * (space_.log_at(i, q[i]) - std::log(space_.origin().*space_.variable(i).number));
     return 0;
   }
 
@@ -382,7 +385,7 @@ std::optional<double> rmse_between(const FitRequest& request, const FitResult& r
 
 FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool) {
   constexpr size_t kKept = 2;  // kinds of leaves whose structure is searched, too
-  constexpr int kCoarse = 12, kCoarseOfSecond = 6, kFine = 10;
+  constexpr int kCoarse = 12, kCoarseOfSecond = 6, kFine = 8;
   constexpr double kRoughly = 1e-2, kDone = 1e-3;
   std::vector<Candidate> candidates = first_candidates(request, pool);
   candidates.resize(std::min(candidates.size(), kKept));

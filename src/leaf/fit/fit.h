@@ -35,6 +35,7 @@ inline constexpr FitVariable kFitVariables[] = {
     {"carotenoids", &TissueParams::carotenoids, {1e-3, 100}},
     {"protein", &TissueParams::protein, {0.1, 1500}},
     {"cellulose", &TissueParams::cellulose, {0.1, 1500}},
+    {"otherabsorption", &TissueParams::other_absorption, {1, 1e4}},
     {"epidermisaspect", &TissueParams::epidermis_aspect, {0.7, 20}, true},
     {"spongyaspect", &TissueParams::spongy_aspect, {0.7, 20}, true},
     {"palisadeaspect", &TissueParams::palisade_aspect, {0.7, 20}, true},  // of bifacial leaves

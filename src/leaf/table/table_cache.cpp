@@ -32,11 +32,11 @@ std::string list_text(const std::vector<double>& values) {
 std::string describe(const TissueParams& p) {
   std::string text = fmt::format(
       "# structure {}, thickness {} m, mesophyll fraction {}\n"
-      "# kg/m3: chlorophyll a {}, b {}, carotenoids {}, protein {}, cellulose {}, lignin {}\n"
+      "# kg/m3: chlorophyll a {}, b {}, carotenoids {}, protein {}, cellulose {}, lignin {}; else 1/m {}\n"
       "# aspect ratios: cuticle {}, epidermis {}, spongy {}, palisade {}; sieve and detour {}\n",
       p.structure == Structure::bifacial ? "bifacial" : "unifacial", p.thickness_m, p.mesophyll_fraction,
-      p.chlorophyll_a, p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose, p.lignin, p.cuticle_aspect,
-      p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.sieve_and_detour);
+      p.chlorophyll_a, p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose, p.lignin, p.other_absorption,
+      p.cuticle_aspect, p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.sieve_and_detour);
   for (const Pigment& pigment : p.pigments) {
     uint64_t curve = 0;
     for (const double x : pigment.specific_absorption) curve = hash_key(curve, std::bit_cast<uint64_t>(x));

@@ -5,7 +5,7 @@ namespace frond::leaf {
 double absorption_coefficient(const TissueParams& p, double lambda_nm) {
   const Constants c = constants_at(lambda_nm);
   double sum = (p.chlorophyll_a + p.chlorophyll_b) * c.chlorophyll + p.carotenoids * c.carotenoids +
-               p.protein * c.protein + (p.cellulose + p.lignin) * c.cellulose + c.water;
+               p.protein * c.protein + (p.cellulose + p.lignin) * c.cellulose + c.water + p.other_absorption;
   const auto [i, t] = kAbsorptionGrid.cell(lambda_nm);
   for (const Pigment& pigment : p.pigments) {
     const std::vector<double>& s = pigment.specific_absorption;

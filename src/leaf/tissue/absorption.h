@@ -31,7 +31,8 @@ struct WavelengthGrid {
 inline constexpr WavelengthGrid kAbsorptionGrid{360, 5, 429};
 static_assert(kAbsorptionGrid.nm(0) == kConstantsRange_nm.min && kAbsorptionGrid.nm(428) == kConstantsRange_nm.max);
 
-/// Of the mesophyll, 1/m: the sum over pigments, proteins, fibres and water of concentration times specific absorption.
+/// Of the mesophyll, 1/m: the sum over pigments, proteins, fibres and water of concentration times specific absorption,
+/// and what else absorbs.
 double absorption_coefficient(const TissueParams& params, double lambda_nm);
 
 /// The same at every wavelength of kAbsorptionGrid.

@@ -27,6 +27,7 @@ struct TissueParams {
   double mesophyll_fraction = 0;  ///< of the thickness, in [0, 1]: the part that absorbs
   /// Concentrations in the mesophyll, kg/m^3.
   double chlorophyll_a = 0, chlorophyll_b = 0, carotenoids = 0, protein = 0, cellulose = 0, lignin = 0;
+  double other_absorption = 0;  ///< 1/m, at every wavelength alike: of all else in the mesophyll
   std::vector<Pigment> pigments = {};
   /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
   double cuticle_aspect = 0, epidermis_aspect = 0, spongy_aspect = 0, palisade_aspect = 0;
