@@ -18,6 +18,8 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 FROND_BUILD="$root/build/release"
 FROND="$FROND_BUILD/frond"
 
+configure_options=()  # for CMake, beside those of the preset
+
 # Debian's packages that the project needs to build; callers add their own.
 build_packages=(
   g++ cmake ninja-build pkg-config ccache
@@ -54,8 +56,22 @@ quietly() {
   rm -f "$log"
 }
 
+# python_venv NAME PACKAGE...: Debian's Python with packages of PyPI in build/NAME. False where they cannot be had.
+python_venv() {
+  local venv="$root/build/$1"
+  shift
+  [ -x "$venv/bin/python" ] || /usr/bin/python3 -m venv "$venv" || return 1
+  local wanted="$*"
+  [ "$(cat "$venv/wanted" 2>/dev/null)" = "$wanted" ] && return
+  "$venv/bin/pip" install -q --disable-pip-version-check "$@" >&2 || return 1
+  echo "$wanted" >"$venv/wanted"
+}
+
+# What the Python module is built and tested with.
+python_module_packages=(nanobind==3.1.0 numpy pandas pytest nbclient ipykernel)
+
 configure() {
-  local options=()
+  local options=("${configure_options[@]}")
   command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   quietly cmake --preset "$1" "${options[@]}"
 }

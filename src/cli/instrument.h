@@ -1,11 +1,11 @@
 #pragma once
 
-#include "cli/measured_material.h"
 #include "cli/specimen_options.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "instruments/beam.h"
 #include "instruments/rays.h"
+#include "render/measured_material.h"
 
 namespace frond {
 

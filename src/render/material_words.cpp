@@ -1,4 +1,4 @@
-#include "cli/material_words.h"
+#include "render/material_words.h"
 
 #include <fmt/ranges.h>
 

@@ -8,7 +8,7 @@
 
 namespace frond {
 
-/// A material as the words of a command line give it: `abm specimen=soybean`.
+/// A material as words give it: `abm specimen=soybean`.
 struct MaterialWords {
   const MaterialInfo& info;
   ParsedPlugin plugin;

@@ -1,11 +1,11 @@
-#include "cli/measured_material.h"
+#include "render/measured_material.h"
 
 #include <fmt/ranges.h>
 
-#include "cli/material_words.h"
-#include "cli/refusing_log.h"
 #include "core/log.h"
 #include "instruments/beam.h"
+#include "render/material_words.h"
+#include "render/refusing_log.h"
 #include "scene/resolver.h"
 
 namespace frond {

@@ -11,13 +11,13 @@
 
 namespace frond {
 
-/// A material as the words of a command line give it, made without a scene and prepared for these wavelengths. Throws
+/// A material as words give it, made without a scene and prepared for these wavelengths. Throws
 /// InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not reach.
 std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, const Registry& registry,
                                          const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
                                          const std::filesystem::path& cache_dir);
 
-/// A material as a command line gives it, `abm specimen=soybean`, made without a scene and prepared for wavelengths one
+/// A material as words give it, `abm specimen=soybean`, made without a scene and prepared for wavelengths one
 /// by one.
 class MeasuredMaterial {
  public:

@@ -200,6 +200,16 @@ RenderPart LoadedScene::empty_part() const {
 Session::Session(const Log& log, SessionOptions options)
     : log_(log), options_(std::move(options)), registry_(load_registry(options_.plugins)), pool_(options_.threads) {}
 
+void Session::add_material(const MaterialInfo& info) {
+  if (registry_.materials.find(info.name)) fail({}, "there is a material \"{}\" already", info.name);
+  registry_.materials.add(info);
+}
+
+SceneDescription Session::read_text(const std::string& text, const std::string& name,
+                                    const Unsupported& unsupported) const {
+  return read_scene_text(text, name, registry_, log_, unsupported);
+}
+
 SceneDescription Session::read(const std::filesystem::path& path, const Unsupported& unsupported) const {
   return read_scene(path, registry_, log_, unsupported);
 }

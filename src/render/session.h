@@ -91,11 +91,17 @@ class Session {
   explicit Session(const Log& log, SessionOptions options = {});
 
   const Registry& registry() const { return registry_; }
+  /// One more material that scenes can name; `info` must outlive the session. Throws InputError for a name that is
+  /// taken.
+  void add_material(const MaterialInfo& info);
   const Log& log() const { return log_; }
   ThreadPool& pool() { return pool_; }
 
   /// A scene file; "-" is standard input.
   SceneDescription read(const std::filesystem::path& path, const Unsupported& unsupported = {}) const;
+  /// A scene that stands in a string; `name` is what errors call it, and files that it names are found from there.
+  SceneDescription read_text(const std::string& text, const std::string& name,
+                             const Unsupported& unsupported = {}) const;
   /// One that may be in several files. What is wrong goes to `problems`, and all that could be read is returned.
   SceneDescription read(const std::vector<std::filesystem::path>& paths, const Unsupported& unsupported,
                         Problems& problems) const;

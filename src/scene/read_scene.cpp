@@ -12,6 +12,15 @@ SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, con
   return description;
 }
 
+SceneDescription read_scene_text(const std::string& text, const std::string& name, const Registry& registry,
+                                 const Log& log, const Unsupported& unsupported) {
+  SceneDescription description = parse_scene_text(text, name, log, unsupported);
+  Problems problems;
+  answer_pbrt_plugins(description, registry, unsupported, log, problems);
+  problems.check();
+  return description;
+}
+
 SceneDescription read_scene(const std::filesystem::path& path, const Registry& registry, const Log& log,
                             const Unsupported& unsupported) {
   Problems problems;

@@ -15,6 +15,10 @@ namespace frond {
 SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,
                             const Unsupported& unsupported, Problems& problems);
 
+/// As the next from text; `name` is what errors call it, and what it includes is found from there.
+SceneDescription read_scene_text(const std::string& text, const std::string& name, const Registry& registry,
+                                 const Log& log, const Unsupported& unsupported = {});
+
 /// All errors at once as InputErrors.
 SceneDescription read_scene(const std::filesystem::path& path, const Registry& registry, const Log& log,
                             const Unsupported& unsupported = {});

@@ -1,0 +1,174 @@
+#include <deque>
+#include <map>
+
+#include "common.h"
+#include "instruments/conformance.h"
+#include "instruments/given_wavelengths.h"
+#include "report/conform_report.h"
+
+namespace frond::python {
+namespace {
+
+using namespace nb::literals;
+
+/// A BSDF that is written in Python: an object of frond.Bsdf. Each call takes the GIL, so that renders of it use one
+/// core. In an arena: the object is kept by whoever made this.
+class PythonBsdf final : public Bsdf {
+ public:
+  PythonBsdf(PyObject* object, Lobes flags, const SampledWavelengths& lambda)
+      : object_(object), flags_(flags), lambda_(lambda) {}
+
+  Lobes flags() const override { return flags_; }
+
+  SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
+    const nb::gil_scoped_acquire hold;
+    return spectrum(self().attr("f")(tuple(wo), tuple(wi), nm()));
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream&) const override {
+    const nb::gil_scoped_acquire hold;
+    const nb::object found = self().attr("sample")(tuple(wo), uc, nb::make_tuple(u.x, u.y), nm());
+    if (found.is_none()) return {};
+    const auto [wi, f, pdf] = nb::cast<std::tuple<std::array<float, 3>, nb::object, float>>(found);
+    BsdfSample s{.f = spectrum(f), .wi = {wi[0], wi[1], wi[2]}, .pdf = pdf};
+    const Lobes side = s.wi.z * wo.z > 0 ? Lobes::reflection : Lobes::transmission;
+    s.flags = side | (flags_ & (Lobes::diffuse | Lobes::glossy));
+    return s;
+  }
+
+  float pdf(const Vec3& wo, const Vec3& wi) const override {
+    const nb::gil_scoped_acquire hold;
+    return nb::cast<float>(self().attr("pdf")(tuple(wo), tuple(wi), nm()));
+  }
+
+ private:
+  nb::handle self() const { return object_; }
+  static nb::tuple tuple(const Vec3& v) { return nb::make_tuple(v.x, v.y, v.z); }
+
+  nb::tuple nm() const {
+    nb::list all;
+    for (int i = 0; i < lambda_.count; ++i) all.append(lambda_.nm[size_t(i)]);
+    return nb::tuple(all);
+  }
+
+  /// One number for all wavelengths, or one for each.
+  SampledSpectrum spectrum(const nb::object& value) const {
+    SampledSpectrum s;
+    const bool is_number = PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr());
+    const auto values = is_number ? std::vector<float>(size_t(lambda_.count), nb::cast<float>(value))
+                                  : nb::cast<std::vector<float>>(value);
+    if (values.size() != size_t(lambda_.count))
+      throw nb::value_error(
+          fmt::format("a BSDF is asked at {} wavelengths, and gave {} values", lambda_.count, values.size()).c_str());
+    for (int i = 0; i < lambda_.count; ++i)
+      if (lambda_.is_active(i)) s[i] = values[size_t(i)];
+    return s;
+  }
+
+  PyObject* object_;
+  Lobes flags_;
+  SampledWavelengths lambda_;
+};
+
+Lobes flags_of(const nb::handle& object) {
+  Lobes flags = Lobes::none;
+  for (const auto& word : nb::cast<std::vector<std::string>>(object.attr("flags"))) {
+    if (word == "reflection")
+      flags = flags | Lobes::reflection;
+    else if (word == "transmission")
+      flags = flags | Lobes::transmission;
+    else if (word == "diffuse")
+      flags = flags | Lobes::diffuse;
+    else if (word == "glossy")
+      flags = flags | Lobes::glossy;
+    else
+      throw nb::value_error(
+          fmt::format("flags: \"{}\" is none of reflection, transmission, diffuse, glossy", word).c_str());
+  }
+  return flags;
+}
+
+/// A material of which every hit has the same BSDF of Python's.
+class PythonMaterial final : public Material {
+ public:
+  explicit PythonMaterial(const nb::object& object)
+      : object_(object), flags_(flags_of(object)), is_reciprocal_(nb::cast<bool>(object.attr("reciprocal"))) {}
+  ~PythonMaterial() override {
+    const nb::gil_scoped_acquire hold;
+    object_.reset();
+  }
+  PythonMaterial(const PythonMaterial&) = delete;
+  PythonMaterial& operator=(const PythonMaterial&) = delete;
+
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
+    return arena.make<PythonBsdf>(object_.ptr(), flags_, lambda);
+  }
+  bool is_reciprocal() const override { return is_reciprocal_; }
+
+ private:
+  nb::object object_;
+  Lobes flags_;
+  bool is_reciprocal_;
+};
+
+/// Materials that Python has registered, by name. They stay as long as the process: scenes may refer to them.
+struct Registered {
+  std::string name, doc;
+  PyObject* object;
+  MaterialInfo info;
+};
+std::deque<Registered>& registered() {
+  static auto* all = new std::deque<Registered>;
+  return *all;
+}
+
+std::unique_ptr<Material> make_python_material(const Params& p) {
+  const nb::gil_scoped_acquire hold;
+  // The latest of that name, for sessions have their own.
+  const auto& all = registered();
+  const auto found = std::find_if(all.rbegin(), all.rend(), [&](const Registered& r) { return r.name == p.plugin(); });
+  return std::make_unique<PythonMaterial>(nb::borrow(found->object));
+}
+
+std::string conform(const nb::object& object, const std::string& name, const std::vector<float>& nm,
+                    const ExaminationEffort& effort, const Claims& claims, double false_alarm_rate) {
+  const PythonMaterial material(object);
+  const nb::gil_scoped_release release;
+  ConformReport report{name, {nm.begin(), nm.end()}, effort, false_alarm_rate, 0, {}};
+  if (nm.empty() || nm.size() > kLanes) fail({}, "a BSDF has one to four wavelengths, {} were given", nm.size());
+  Arena arena;
+  const SampledWavelengths lambda = GivenWavelengths(nm).sample(0);
+  const Claims all{claims.lossless, claims.reciprocal || material.is_reciprocal()};
+  report.findings = examine(*material.evaluate({}, lambda, arena), lambda, all, effort, name);
+  report.level = judge(report.findings, false_alarm_rate);
+  return conform_json(report);
+}
+
+}  // namespace
+
+void bind_python_bsdf(nb::module_& m) {
+  m.def(
+      "register_material",
+      [](const std::shared_ptr<SessionHandle>& owner, const std::string& name, const std::string& doc,
+         const nb::object& object) {
+        (void)flags_of(object);
+        Registered& r = registered().emplace_back(name, doc, object.ptr(), MaterialInfo{});
+        r.info.kind = "material", r.info.name = r.name, r.info.doc = r.doc, r.info.source = "Python";
+        r.info.make = make_python_material;
+        owner->session.add_material(r.info);
+        object.inc_ref();
+      },
+      "session"_a, "name"_a, "doc"_a, "bsdf"_a);
+  m.def(
+      "conform_python",
+      [](const nb::object& object, const std::string& name, const std::vector<float>& nm,
+         const std::vector<double>& angles_deg, int samples, uint64_t seed, bool lossless, bool reciprocal,
+         double false_alarm_rate) {
+        return conform(object, name, nm, {.samples = samples, .angles_deg = angles_deg, .seed = seed},
+                       {lossless, reciprocal}, false_alarm_rate);
+      },
+      "bsdf"_a, "name"_a, "wavelengths"_a, "angles_deg"_a, "samples"_a, "seed"_a, "lossless"_a, "reciprocal"_a,
+      "false_alarm_rate"_a);
+}
+
+}  // namespace frond::python

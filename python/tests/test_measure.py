@@ -1,0 +1,139 @@
+import json
+import math
+import os
+import subprocess
+
+import frond
+import numpy
+import pytest
+
+
+def test_spectrophotometer_is_the_commands():
+    found = frond.spectrophotometer("leaf_solved specimen=maize", [551, 800], [8, 172], rays=20_000, seed=3)
+    text = subprocess.run([os.environ["FROND"], "spectrophotometer", "leaf_solved", "specimen=maize", "--wavelengths", "551,800",
+                           "--angles", "8,172", "--rays", "20000", "--seed", "3", "--json", "-", "-q"], capture_output=True,
+                          text=True, check=True).stdout
+    expected = json.loads(text)["readings"]
+    assert numpy.allclose(list(found["R"]), [r["R"] for r in expected], rtol=1e-12)
+    assert numpy.allclose(list(found["T_se"]), [r["T_se"] for r in expected], rtol=1e-12)
+
+
+def test_f_integrates_to_reflectance():
+    """A leaf's f over patches, summed by their projected solid angles, is R and T: against the solver's table."""
+    found = frond.goniophotometer("leaf_solved", 551, [8, 172], integrate=True)
+    shares = frond.spectrophotometer("leaf_solved", 551, [8, 172], rays=1_000_000)
+    for i, theta in enumerate((8, 172)):
+        f = found["f"][i, 0] * found["projected_solid_angle_sr"]
+        upper = found["theta_o_deg"] < 90
+        lit = upper if theta < 90 else ~upper
+        for name, side in (("R", lit), ("T", ~lit)):
+            difference = f[side].sum() - shares[name][i]
+            assert abs(difference) < 5 * shares[name + "_se"][i] + 1e-4
+
+
+def test_f_of_a_leaf_is_reciprocal():
+    rng = numpy.random.default_rng(1)
+    w = rng.normal(size=(2, 1000, 3))
+    w /= numpy.linalg.norm(w, axis=2)[:, :, None]
+    bsdf = frond.bsdf("leaf_solved incident=reciprocal")
+    assert bsdf.is_reciprocal and not bsdf.is_stochastic
+    assert numpy.array_equal(bsdf.f(w[0], w[1]), bsdf.f(w[1], w[0]))
+    wi, weight, pdf = bsdf.sample(w[0])
+    assert numpy.allclose(bsdf.pdf(w[0], wi), pdf, rtol=1e-3)
+    cosine = abs(wi[:, 2:])
+    assert numpy.allclose(weight, bsdf.f(w[0], wi) * cosine / pdf[:, None], rtol=1e-3, atol=1e-6)
+
+
+class White(frond.Bsdf):
+    """White paper."""
+
+    flags, reciprocal = ("reflection", "diffuse"), True
+
+    def f(self, wo, wi, nm):
+        return 1 / math.pi if wo[2] * wi[2] > 0 else 0.0
+
+
+class Gains(White):
+    def f(self, wo, wi, nm):
+        return 1.2 / math.pi if wo[2] * wi[2] > 0 else 0.0
+
+
+class WrongDensity(White):
+    def pdf(self, wo, wi, nm):
+        return 1 / (2 * math.pi) if wo[2] * wi[2] > 0 else 0.0
+
+
+@pytest.mark.parametrize("bsdf, broken", [(White(), set()), (Gains(), {"energy"}), (WrongDensity(), {"sampling"})])
+def test_laws_hold_a_bsdf_in_python(bsdf, broken):
+    report = frond.conform(bsdf, samples=4000, angles=[0, 60])
+    found = {name for name, law in report["laws"].items() if law["verdict"] == "broken"}
+    assert broken <= found and bool(broken) == bool(found)
+    assert report["all_hold"] == (not broken)
+
+
+def test_a_bsdf_in_python_is_a_material(scene_text):
+    session = frond.Session(threads=2, cache=False)
+    frond.register_material("white", White(), session=session)
+    frond.register_material("three", Colored(), session=session)
+    text = scene_text.replace('"leaf_solved"', '"white"')
+    picture = frond.loads(text, session=session, wavelengths=[551, 800]).render(4)
+    of_ours = scene_text.replace('"leaf_solved"', '"diffuse" "spectrum reflectance" [ 300 1 900 1 ]')
+    expected = frond.loads(of_ours, session=session, wavelengths=[551, 800]).render(4)
+    assert numpy.allclose(picture.array[:, :, :2], expected.array[:, :, :2], rtol=1e-4)  # an even light: without noise
+    with pytest.raises(frond.InputError, match='there is a material "white" already'):
+        frond.register_material("white", White(), session=session)
+    with pytest.raises(ValueError, match="a BSDF is asked at 2 wavelengths, and gave 3 values"):
+        frond.loads(text.replace('"white"', '"three"'), session=session, wavelengths=[551, 800]).render(1)
+
+
+class Colored(White):
+    def f(self, wo, wi, nm):
+        return [0.1, 0.2, 0.3]
+
+
+def test_fit_of_arrays_and_of_a_file(reference):
+    of_file = frond.fit(path=reference / "lopex93_soybean.csv")
+    table = frond.read_spectra(reference / "lopex93_soybean.csv")
+    of_arrays = frond.fit(list(table["wavelength_nm"]), list(table["R"]), list(table["T"]))
+    assert of_file.leaf == of_arrays.leaf
+    assert of_file.rmse < 0.011
+    assert 'Material "leaf"' in of_file.scene()
+    shares = frond.spectrophotometer(["leaf_solved"] + of_file.material, 800, rays=100_000)
+    measured = [r for nm, r in zip(table["wavelength_nm"], table["R"]) if nm == 800][0]
+    assert abs(shares["R"][0] - measured) < 0.02
+    with pytest.raises(frond.InputError, match="fewer than the 9 numbers"):
+        frond.fit([550], [0.1])
+    with pytest.raises(ValueError, match="takes measurements, or the path"):
+        frond.fit()
+
+
+def test_brf_and_flux_of_a_scene(tmp_path):
+    (tmp_path / "canopy.pbrt").write_text("""
+WorldBegin
+LightSource "distant" "point3 from" [ 0 0 1 ] "point3 to" [ 0 0 0 ]
+Material "diffuse" "spectrum reflectance" [ 300 0.4 900 0.4 ]
+Shape "bilinearmesh" "point3 P" [ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ]
+""")
+    brf = frond.brf(tmp_path / "canopy.pbrt", [670, 800], zenith=[0, 30], period=(2, 2), paths=4096)
+    assert len(brf["brf"]) == 4
+    assert numpy.allclose(list(brf["brf"]), 0.4, atol=2e-3)
+    flux = frond.flux(tmp_path / "canopy.pbrt", [670], period=(2, 2), paths=65536)
+    share = {q: (s, e) for q, s, e in zip(flux["quantity"], flux["share"], flux["share_se"])}
+    assert abs(share["reflected"][0] - 0.4) < 5 * share["reflected"][1] + 1e-6
+    assert abs(share["sum"][0] - 1) < 5 * share["sum"][1] + 1e-9
+
+
+def test_compare(scene_text, tmp_path):
+    (tmp_path / "scene.pbrt").write_text(scene_text)
+    found = frond.compare(tmp_path / "scene.pbrt", ["leaf_solved", "leaf_lambert"], wavelengths="smpte", size=16, samples=4,
+                          reference_samples=16, session=frond.Session(cache=False))
+    assert set(found["model"]) == {"leaf_solved", "leaf_lambert"}
+    assert set(found["samples"]) == {1, 2, 4}
+
+
+def test_names_and_bad_words():
+    assert "leaf_solved" in frond.names() and "path" in frond.names("integrator")
+    with pytest.raises(frond.InputError, match="leaf_solved"):
+        frond.spectrophotometer("leaf_solvd", 551)
+    with pytest.raises(frond.InputError):
+        frond.spectrophotometer("leaf_solved", 5510)

@@ -1,0 +1,172 @@
+import logging
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import frond
+import numpy
+import pytest
+
+
+def test_a_picture_is_that_of_the_command(scene_text, tmp_path):
+    (tmp_path / "scene.pbrt").write_text(scene_text)
+    picture = frond.load(tmp_path / "scene.pbrt", wavelengths="smpte").render(4)
+    picture.save(tmp_path / "module.exr")
+    command = [os.environ["FROND"], "render", "scene.pbrt", "--spp", "4", "--wavelengths", "smpte", "-o", "command.exr", "-q"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    (names, ours), (_, theirs) = (frond.read_image(tmp_path / f"{name}.exr") for name in ("module", "command"))
+    assert numpy.array_equal(ours, theirs)
+    assert numpy.array_equal(ours[:, :, names.index("G")], picture["G"])
+
+
+def test_channels_and_arrays(scene_text):
+    picture = frond.loads(scene_text, channels=["normal", "depth"]).render(4)
+    assert picture.array.shape == (16, 16, len(picture.channels))
+    assert picture.array.dtype == numpy.float32
+    assert numpy.array_equal(picture["G"], picture.rgb[:, :, 1])
+    assert picture.variance.shape == (16, 16, 3)
+    assert picture.samples == (4, 4)
+    with pytest.raises(KeyError, match="no channel 'Q': there are R, G, B"):
+        picture["Q"]
+
+
+def test_a_picture_goes_on(scene_text):
+    scene = frond.loads(scene_text)
+    whole, pieces = scene.render(8), scene.render(3)
+    pieces.render_more(8)
+    assert numpy.array_equal(whole.array, pieces.array)
+
+
+def test_bands_have_no_colours(scene_text):
+    picture = frond.loads(scene_text, wavelengths=[551, 800]).render(4)
+    assert picture.color_space == ""
+    assert any("800" in name for name in picture.channels)
+
+
+def test_swap_and_pixels(scene_text):
+    one = frond.loads(scene_text, swap="leaf_lambert,specimen=maize", pixels=(0, 8, 0, 4))
+    assert one.materials[-1] == ("leaf", "leaf_lambert")
+    assert one.render(1).array.shape[:2] == (4, 8)
+    with pytest.raises(frond.InputError, match=r"pixels: \(0, 99, 0, 4\) is no part of a film of 16 x 16"):
+        frond.loads(scene_text, pixels=(0, 99, 0, 4))
+
+
+def test_adaptive(scene_text):
+    picture = frond.loads(scene_text, adaptive=True).render(max_rms=0.02)
+    assert picture.samples[0] >= 1
+    with pytest.raises(ValueError, match="adaptive=True"):
+        frond.loads(scene_text).render(max_rms=0.02)
+
+
+def test_an_open_leaf_is_chosen(scene_text):
+    scene = frond.loads(scene_text.replace("leaf_solved", "leaf"))
+    assert scene.choice is not None
+
+
+def test_errors_have_a_place(scene_text, tmp_path):
+    path = tmp_path / "scene.pbrt"
+    path.write_text(scene_text.replace("bilinearmesh", "bilinearmess").replace("orthographic", "ortographic"))
+    with pytest.raises(frond.InputError, match="orthographic") as caught:
+        frond.load(path)
+    error = caught.value
+    assert error.file == str(path) and error.line == 2 and error.column > 1
+    path.write_text(scene_text.replace("WorldBegin", "Wordl").replace("NamedMaterial \"leaf\"", "NamedMaterial leaf"))
+    with pytest.raises(frond.InputError) as caught:
+        frond.load(path)
+    assert len(caught.value.problems) >= 2
+    assert isinstance(error, ValueError)
+    with pytest.raises(frond.InputError, match="nowhere.pbrt"):
+        frond.load(tmp_path / "nowhere.pbrt")
+
+
+def test_messages_go_to_logging(scene_text, caplog):
+    with caplog.at_level(logging.INFO, logger="frond"):
+        frond.loads(scene_text)
+    assert any("leaf modes" in record.getMessage() for record in caplog.records)
+
+
+def test_progress_is_told_and_may_throw(scene_text):
+    told = []
+    frond.loads(scene_text).render(16, progress=told.append)
+    assert told[-1] == 1
+
+    def throws(share):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        frond.loads(scene_text).render(200_000, progress=throws)
+
+
+def test_the_lock_is_free_while_rendering(scene_text):
+    """Another thread of Python goes on meanwhile."""
+    scene, count, over = frond.loads(scene_text), [0], threading.Event()
+
+    def work():
+        while not over.is_set():
+            count[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    before = count[0]
+    scene.render(20_000)
+    during = count[0] - before
+    over.set()
+    thread.join()
+    assert during > 5
+
+
+def test_ctrl_c_ends_a_render(scene_text):
+    scene, code = frond.loads(scene_text), (
+        "import sys, frond; scene = frond.loads(sys.argv[1]); print('ready', flush=True)\n"
+        "try: scene.render(100_000_000)\n"
+        "except KeyboardInterrupt: print('stopped', flush=True)\n")
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+    process = subprocess.Popen([sys.executable, "-c", code, scene_text], stdout=subprocess.PIPE, text=True, env=environment)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    assert process.stdout.read() == "stopped\n"
+    assert process.wait() == 0
+
+
+def test_two_sessions_side_by_side(scene_text):
+    one, two = frond.Session(threads=1, cache=False), frond.Session(threads=2, cache=False)
+    pictures = [session.loads(scene_text).render(4).array for session in (one, two)]
+    assert one.threads == 1 and two.threads == 2
+    assert numpy.array_equal(*pictures)
+
+
+def test_a_plugin_from_a_shared_object():
+    session = frond.Session(cache=False, plugins=[os.environ["FROND_TEST_PLUGIN"]])
+    assert "wrong_pdf" in session.names("material")
+    assert not frond.conform("wrong_pdf", session=session)["all_hold"]
+    assert "wrong_pdf" not in frond.Session(cache=False).names("material")
+
+
+def test_nothing_is_left_behind(scene_text):
+    """Memory after many renders is what it was after some."""
+    def resident():
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    scene = frond.loads(scene_text)
+
+    def renders(count):
+        for _ in range(count):
+            scene.render(1).array.sum()
+
+    renders(200)
+    before = resident()
+    renders(1000)
+    assert resident() - before < 20e6  # a picture and its film are 40 kB
+
+
+def test_import_brings_nothing_along():
+    code = "import sys, frond; print([m for m in ('numpy', 'pandas') if m in sys.modules])"
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+    assert found.stdout == "[]\n"
