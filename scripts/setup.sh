@@ -68,7 +68,7 @@ python_venv() {
 }
 
 # What the Python module is built and tested with.
-python_module_packages=(nanobind==3.1.0 numpy pandas pytest nbclient ipykernel)
+python_module_packages=(nanobind==3.1.0 numpy pandas pytest nbclient ipykernel mitsuba==3.9.1)
 
 configure() {
   local options=("${configure_options[@]}")

@@ -71,6 +71,7 @@ void bind_instruments(nb::module_& m);
 void bind_radiometry(nb::module_& m);
 void bind_python_bsdf(nb::module_& m);
 void bind_fit(nb::module_& m);
+void bind_leaf(nb::module_& m);
 void bind_study(nb::module_& m);
 
 }  // namespace frond::python

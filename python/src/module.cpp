@@ -110,6 +110,7 @@ NB_MODULE(_frond, m) {
   bind_radiometry(m);
   bind_python_bsdf(m);
   bind_fit(m);
+  bind_leaf(m);
   bind_study(m);
 }
 

@@ -1,0 +1,165 @@
+"""The leaf in Mitsuba 3, run there for real; skipped where it, or an LLVM that it works with, is not installed."""
+
+import os
+import sys
+
+import numpy
+import pytest
+
+mitsuba = pytest.importorskip("mitsuba")
+import frond
+
+for path in ("/usr/lib/x86_64-linux-gnu/libLLVM-19.so", "/usr/lib/llvm-19/lib/libLLVM.so.1"):
+    if "DRJIT_LIBLLVM_PATH" not in os.environ and os.path.exists(path):
+        os.environ["DRJIT_LIBLLVM_PATH"] = path
+if "DRJIT_LIBLLVM_PATH" not in os.environ:
+    pytest.skip("libllvm19 is not installed: others of Debian 12 do not work with Mitsuba", allow_module_level=True)
+
+RGB_NM = [608, 551, 455]
+
+
+def variant(name):
+    mitsuba.set_variant(name)
+    if "frond.mitsuba" in sys.modules:
+        sys.modules["frond.mitsuba"].register()
+    else:
+        import frond.mitsuba
+    import drjit
+    return mitsuba, drjit
+
+
+def directions(count, seed=1):
+    w = numpy.random.default_rng(seed).normal(size=(2, count, 3))
+    # None that is flatter than 89.4 degrees: floats of f along the leaf have few digits, and no meaning there.
+    w[:, :, 2] = numpy.copysign(numpy.maximum(abs(w[:, :, 2]), 0.01 * numpy.linalg.norm(w, axis=2)), w[:, :, 2])
+    return (w / numpy.linalg.norm(w, axis=2)[:, :, None]).astype(numpy.float32)
+
+
+def evaluated(mi, dr, bsdf, wo, wi, nm=None):
+    si = dr.zeros(mi.SurfaceInteraction3f, len(wo))
+    si.wi = mi.Vector3f(wo.T)
+    if nm is not None:
+        si.wavelengths = type(si.wavelengths)(nm)
+    value = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wi.T))
+    return numpy.array(value).reshape(-1, len(wo)).T / abs(wi[:, 2:])
+
+
+@pytest.mark.parametrize("incident", ["traced", "light", "reciprocal"])
+@pytest.mark.parametrize("specimen", ["soybean", "maize"])
+def test_f_is_ours(specimen, incident):
+    mi, dr = variant("llvm_ad_rgb")
+    bsdf = mi.load_dict({"type": "frond_leaf", "specimen": specimen, "incident": incident})
+    wo, wi = directions(20_000)
+    expected = frond.bsdf(f"leaf_solved specimen={specimen} incident={incident}", RGB_NM).f(wo, wi)
+    difference = numpy.pi * (evaluated(mi, dr, bsdf, wo, wi) - expected)
+    assert numpy.sqrt((difference**2).mean()) < 5e-4
+
+
+def test_mono_and_spectral_variants():
+    wo, wi = directions(5000)
+    mi, dr = variant("llvm_ad_mono")
+    bsdf = mi.load_dict({"type": "frond_leaf", "wavelengths": "800"})
+    expected = frond.bsdf("leaf_solved", [800]).f(wo, wi)
+    assert abs(numpy.pi * (evaluated(mi, dr, bsdf, wo, wi) - expected)).max() < 2e-3
+    with pytest.raises(Exception, match="what a mono variant sees"):
+        mi.load_dict({"type": "frond_leaf"})
+    mi, dr = variant("llvm_ad_spectral")
+    bsdf = mi.load_dict({"type": "frond_leaf", "incident": "reciprocal"})
+    nm = [450.0, 551.3, 620.0, 701.1]
+    expected = frond.bsdf("leaf_solved incident=reciprocal", nm).f(wo, wi)
+    found = evaluated(mi, dr, bsdf, wo, wi, nm)
+    assert numpy.sqrt(((numpy.pi * (found - expected)) ** 2).mean()) < 5e-4
+
+
+@pytest.mark.parametrize("incident", ["traced", "reciprocal"])
+@pytest.mark.parametrize("theta_deg", [8, 60, 105, 172])
+def test_samples_follow_their_density(incident, theta_deg):
+    """Mitsuba's own chi-square test."""
+    mi, dr = variant("llvm_ad_rgb")
+    from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
+    theta = numpy.radians(theta_deg)
+    sample, pdf = BSDFAdapter("frond_leaf", f'<string name="incident" value="{incident}"/>',
+                              wi=[float(numpy.sin(theta)), 0.0, float(numpy.cos(theta))])
+    test = ChiSquareTest(domain=SphericalDomain(), sample_func=sample, pdf_func=pdf, sample_dim=3, sample_count=1_000_000,
+                         res=101, ires=16)
+    assert test.run(significance_level=1e-4)
+
+
+@pytest.mark.parametrize("theta_deg", [8, 45, 172])
+def test_reflectance_and_transmittance_are_ours(theta_deg):
+    mi, dr = variant("llvm_ad_rgb")
+    bsdf = mi.load_dict({"type": "frond_leaf"})
+    count, theta = 1_000_000, numpy.radians(theta_deg)
+    si = dr.zeros(mi.SurfaceInteraction3f, count)
+    si.wi = mi.Vector3f(float(numpy.sin(theta)), 0, float(numpy.cos(theta)))
+    random = mi.PCG32(count)
+    bs, weight = bsdf.sample(mi.BSDFContext(), si, random.next_float32(),
+                             mi.Point2f(random.next_float32(), random.next_float32()))
+    weight, reflects = numpy.array(weight), numpy.array(bs.wo.z) * numpy.cos(theta) > 0
+    for lane, nm in enumerate(RGB_NM):
+        expected = frond.goniophotometer("leaf_solved", nm, theta_deg, patches=(40, 40), integrate=True)
+        share = expected["f"][0, 0] * expected["projected_solid_angle_sr"]
+        lit = (expected["theta_o_deg"] < 90) == (theta_deg < 90)
+        for side, mask in ((lit, reflects), (~lit, ~reflects)):
+            values = weight[lane] * mask
+            error = values.std() / numpy.sqrt(count)
+            assert abs(values.mean() - share[side].sum()) < 5 * error + 1e-4
+
+
+def test_gradients_by_chemistry():
+    """Of f by each number: against finite differences of the plug-in, and of the leaf itself."""
+    mi, dr = variant("llvm_ad_rgb")
+    wo, wi = directions(64, seed=3)
+    bsdf = mi.load_dict({"type": "frond_leaf", "incident": "reciprocal", "differentiable": True, "tolerance": 1e-4})
+    params = mi.traverse(bsdf)
+    context = mi.BSDFContext()
+    si = dr.zeros(mi.SurfaceInteraction3f, len(wo))
+    si.wi, direction = mi.Vector3f(wo.T), mi.Vector3f(wi.T)
+    values = {"chlorophylla": 3.9775, "carotenoids": 1.1323, "thickness": 1.66e-4}
+    for name, value in values.items():
+        assert abs(params[name][0] / value - 1) < 1e-6
+        dr.enable_grad(params[name])
+        params.update()
+        total = dr.sum(dr.mean(bsdf.eval(context, si, direction)))
+        dr.backward(total)
+        gradient = dr.grad(params[name])[0]
+        dr.disable_grad(params[name])
+
+        def mean(x):
+            params[name] = mi.Float(x)
+            params.update()
+            return float(numpy.sum(numpy.mean(numpy.array(bsdf.eval(context, si, direction), dtype=numpy.float64), axis=0)))
+
+        step = 0.002 * value  # within a cell of the table's depth
+        difference = (mean(value + step) - mean(value - step)) / (2 * step)
+        mean(value)
+
+        def of_leaf(x):
+            f = frond.bsdf(f"leaf_solved incident=reciprocal tolerance=1e-5 {name}={x!r}", RGB_NM).f(wo, wi)
+            return float((f.astype(numpy.float64) * abs(wi[:, 2:])).mean(axis=1).sum())
+
+        step = 0.05 * value
+        exact = (of_leaf(value + step) - of_leaf(value - step)) / (2 * step)
+        assert gradient < 0
+        assert abs(gradient / difference - 1) < 0.02
+        assert abs(gradient / exact - 1) < 0.05
+
+
+def test_chemistry_by_textures():
+    mi, dr = variant("llvm_ad_rgb")
+    wo, wi = directions(2000)
+    map_of_2 = {"type": "bitmap", "data": mi.TensorXf(numpy.full((4, 4, 1), 2.0)), "raw": True}
+    bsdf = mi.load_dict({"type": "frond_leaf", "chlorophylla": map_of_2})
+    expected = frond.bsdf("leaf_solved chlorophylla=2", RGB_NM).f(wo, wi)
+    difference = numpy.pi * (evaluated(mi, dr, bsdf, wo, wi) - expected)
+    assert numpy.sqrt((difference**2).mean()) < 5e-4
+
+
+def test_what_is_refused():
+    mi, dr = variant("llvm_ad_rgb")
+    with pytest.raises(Exception, match="soyabean"):
+        mi.load_dict({"type": "frond_leaf", "specimen": "soyabean"})
+    mitsuba.set_variant("scalar_rgb")
+    with pytest.raises(RuntimeError, match="JIT variants"):
+        sys.modules["frond.mitsuba"].register()
+    mitsuba.set_variant("llvm_ad_rgb")
