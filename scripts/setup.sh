@@ -67,8 +67,13 @@ python_venv() {
   echo "$wanted" >"$venv/wanted"
 }
 
-# What the Python module is built and tested with.
-python_module_packages=(nanobind==3.1.0 numpy pandas pytest nbclient ipykernel mitsuba==3.9.1)
+# Builds will have the Python module; false where PyPI's packages cannot be had. Mitsuba's LLVM variants, which it is
+# tested with, load libllvm 19.
+with_python_module() {
+  python_venv python-venv nanobind==3.1.0 numpy pandas pytest nbclient ipykernel mitsuba==3.9.1 || return 1
+  if apt-cache show libllvm19 >/dev/null 2>&1; then install_missing libllvm19; fi
+  configure_options+=(-DFROND_PYTHON=ON "-DPython_EXECUTABLE=$root/build/python-venv/bin/python")
+}
 
 configure() {
   local options=("${configure_options[@]}")

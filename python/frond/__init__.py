@@ -20,10 +20,10 @@ from ._frond import version as __version__
 from ._session import Picture, Scene, Session, default_session, load, loads, read_image
 from ._measure import (brf, compare, conform, fit, flux, goniophotometer, names, read_spectra, register_material,
                        spectrophotometer)
-from ._bsdf import Bsdf, FlatBsdf, bsdf
+from ._bsdf import Bsdf, FlatBsdf, LeafTable, bsdf, leaf_table
 
 __all__ = [
-    "Bsdf", "FlatBsdf", "InputError", "Picture", "Scene", "Session", "__version__", "brf", "bsdf", "compare", "conform",
-    "default_session", "fit", "flux", "goniophotometer", "load", "loads", "names", "read_image", "read_spectra", "register_material",
+    "Bsdf", "FlatBsdf", "InputError", "LeafTable", "Picture", "Scene", "Session", "__version__", "brf", "bsdf", "compare", "conform",
+    "default_session", "fit", "flux", "goniophotometer", "leaf_table", "load", "loads", "names", "read_image", "read_spectra", "register_material",
     "spectrophotometer",
 ]

@@ -46,6 +46,22 @@ def bsdf(material, wavelengths=(608, 551, 455), *, session=None):
     return FlatBsdf(material, wavelengths, session=session)
 
 
+class LeafTable(dict):
+    """The solved leaf as arrays by name (docs/leaf_file.md): "wavelength_nm", "depth", "index", "surface", and series such as
+    "adaxial_reflected" [column][mode][incident sine][leaving sine]."""
+
+    def save(self, path):
+        """As a file for other programs: exports/cpp/frond_leaf.h reads it."""
+        with open(path, "wb") as file:
+            file.write(self["bytes"])
+
+
+def leaf_table(material, wavelengths, *, tolerance=5e-4, depths=None, session=None):
+    """All that `leaf_solved` looks up. material: words, "leaf_solved specimen=maize incident=reciprocal". depths: (least,
+    most) optical depth of the mesophyll that the table is to reach over, where chemistry varies."""
+    return LeafTable(_frond.leaf_table(_session_of(session), _words(material), sorted(_numbers(wavelengths)), tolerance, depths))
+
+
 class Bsdf:
     """A BSDF in Python, for prototypes: `f` is what it needs, and with its own `sample` and `pdf` it has less noise.
     `frond.conform` holds it to the laws, `frond.register_material` makes it a material.

@@ -155,6 +155,11 @@ class Fit:
     leaf = property(lambda self: self.report["leaf"], doc="The leaf's numbers, as a material takes them.")
 
     @property
+    def parameters(self):
+        """The leaf's parameters as a dictionary, for Mitsuba's frond_leaf."""
+        return {"specimen": self.report["specimen"], **self.leaf, "sieve": self.report["sieve"]}
+
+    @property
     def numbers(self):
         """A table of what was fitted: value, relative_standard_error, identified."""
         return _table(self.report["numbers"])

@@ -14,8 +14,7 @@ PythonLog::~PythonLog() {
 }
 
 void PythonLog::warn(const Location& where, std::string_view message) const {
-  const std::string place = where.text();
-  say("warning", place.empty() ? std::string(message) : fmt::format("{}: {}", place, message));
+  say("warning", where.text() + std::string(message));
 }
 
 void PythonLog::say(const char* level, const std::string& text) const {

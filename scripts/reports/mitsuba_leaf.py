@@ -1,0 +1,258 @@
+"""The leaf in Mitsuba 3 beside ours: docs/mitsuba.md. Run by the Python of build/python-venv."""
+
+import json
+import os
+import pathlib
+import sys
+import time
+
+import numpy
+
+import mitsuba as mi
+
+mi.set_variant("llvm_ad_rgb")
+import drjit as dr
+
+import frond
+import frond.mitsuba
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "race"))
+import mitsuba_worker
+import scenes
+from tools import ROOT, machine, table
+
+RGB_NM = [608, 551, 455]
+ANGLES = [8, 45, 70]
+SIZE, SAMPLES = 256, 256
+FOLDER = ROOT / "build" / "mitsuba"
+IMAGES = ROOT / "docs" / "images" / "mitsuba"
+
+PAGE = """# The leaf in Mitsuba 3
+
+`frond_leaf` is `leaf_solved` as a BSDF of Mitsuba's JIT variants: the same table, looked up by code that Dr.Jit compiles.
+
+```
+pip install . mitsuba          # frond's source tree; Mitsuba's LLVM variants need libllvm 19 on Debian 12
+```
+
+```python
+import mitsuba as mi
+mi.set_variant("llvm_ad_rgb")
+import frond.mitsuba
+
+leaf = {{"type": "frond_leaf", "specimen": "soybean", "incident": "reciprocal"}}
+```
+
+Parameters are those of `leaf_solved` ([plugins.md](plugins.md)): `specimen`, `incident`, `tolerance`, and the leaf's numbers.
+`chlorophylla` and the others of its chemistry, `thickness` and `mesophyllfraction` may be textures, and are differentiable then, or
+where `differentiable` is true. In rgb variants red, green and blue are 608, 551 and 455 nm, or the three of `wavelengths`
+("670, 551, 800"); mono variants need one; spectral ones take any from 360 to 830 nm. A leaf has two sides of its own: no
+`twosided` around it.
+
+A leaf that was fitted to a measured spectrum: `{{"type": "frond_leaf", **frond.fit(path="leaf.csv").parameters}}`.
+
+Written by `scripts/mitsuba`: {machine}; Mitsuba {version}, `llvm_ad_rgb`, frond {frond_version}.
+
+## How close it is
+
+**f**, {pairs:,} random pairs of directions on both sides, no flatter than 89.4°: root mean square and largest of π times the
+difference from `leaf_solved`, which is 1 for white paper.
+
+{f_table}
+**R and T** by 10⁶ samples of the plug-in (traced) less those of frond's goniophotometer, which integrates f: at 8, 45 and 70°, both
+sides, {rgb} nm. Root mean square {share_rms:.1e}, where the standard errors of the samples are {share_error:.1e}; furthest
+{share_z:.1f} standard errors of {shares}.
+
+**Pictures** of a hundred leaves ([the race's scenes](race.md), {size} x {size} pixels, {samples} samples a pixel, 16 scattering events, box filter):
+means over all pixels; errors follow from two renders each. Leaves of soybean, reciprocal; and the race's diffuse ones, where the
+leaf is nobody's and the programs differ by what else they do:
+
+{picture_table}
+![A hundred leaves in Mitsuba, and in frond](images/mitsuba/hundred-leaves.png)
+
+## What it costs
+
+CPU time a path, one plane of leaf under an even sky, camera rays and one scattering event, medians of {rounds} renders; compiling is
+not in it.
+
+{cost_table}
+## Derivatives
+
+`params = mi.traverse(scene)` has the leaf's numbers. They act through the optical depth of the mesophyll, over which the table stands
+in steps of 0.15 of its logarithm, linear between: derivatives are those of that interpolant. Against finite differences of the
+plug-in and of frond's own leaf: `python/tests/test_mitsuba.py`. `python/examples/chlorophyll_map.ipynb` finds a map of chlorophyll again in a picture.
+
+Aspect ratios of cells, `incident` and `specimen` are fixed when the leaf is loaded: other numbers take another table.
+
+## What it cannot do
+
+- Scalar variants: the table would be walked through in Python. Polarised ones: the model knows no polarisation.
+- `cuticleaspect` by a texture.
+- With `incident` "light" weights have no bound along a leaf, as in frond ([conventions.md](conventions.md)).
+"""
+
+
+def random_pairs(count):
+    w = numpy.random.default_rng(1).normal(size=(2, count, 3))
+    length = numpy.linalg.norm(w, axis=2)
+    w[:, :, 2] = numpy.copysign(numpy.maximum(abs(w[:, :, 2]), 0.01 * length), w[:, :, 2])
+    return (w / numpy.linalg.norm(w, axis=2)[:, :, None]).astype(numpy.float32)
+
+
+def differences_of_f(pairs):
+    wo, wi = random_pairs(pairs)
+    rows = []
+    for specimen in ("soybean", "maize"):
+        for incident in ("traced", "light", "reciprocal"):
+            bsdf = mi.load_dict({"type": "frond_leaf", "specimen": specimen, "incident": incident})
+            si = dr.zeros(mi.SurfaceInteraction3f, pairs)
+            si.wi = mi.Vector3f(wo.T)
+            found = numpy.array(bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wi.T))).T / abs(wi[:, 2:])
+            ours = frond.bsdf(f"leaf_solved specimen={specimen} incident={incident}", RGB_NM).f(wo, wi)
+            difference = numpy.pi * (found - ours)
+            rows.append([specimen, f"`{incident}`", f"{numpy.sqrt((difference**2).mean()):.1e}", f"{abs(difference).max():.1e}"])
+    return table(["leaf", "`incident`", "RMS", "largest"], rows)
+
+
+def differences_of_shares(count=1_000_000):
+    """R and T by samples less those integrated by frond, and their standard errors."""
+    bsdf = mi.load_dict({"type": "frond_leaf"})
+    found, errors = [], []
+    angles = ANGLES + [180 - a for a in ANGLES]
+    ours = frond.goniophotometer("leaf_solved", RGB_NM, angles, patches=(60, 60), integrate=True)
+    for a, theta_deg in enumerate(angles):
+        theta = numpy.radians(theta_deg)
+        si = dr.zeros(mi.SurfaceInteraction3f, count)
+        si.wi = mi.Vector3f(float(numpy.sin(theta)), 0, float(numpy.cos(theta)))
+        random = mi.PCG32(count, initstate=a)
+        bs, weight = bsdf.sample(mi.BSDFContext(), si, random.next_float32(),
+                                 mi.Point2f(random.next_float32(), random.next_float32()))
+        weight, reflects = numpy.array(weight), numpy.array(bs.wo.z) * numpy.cos(theta) > 0
+        lit = (ours["theta_o_deg"] < 90) == (theta_deg < 90)
+        for lane in range(3):
+            share = ours["f"][a, lane] * ours["projected_solid_angle_sr"]
+            for side, mask in ((lit, reflects), (~lit, ~reflects)):
+                values = (weight[lane] * mask).astype(numpy.float64)
+                found.append(values.mean() - share[side].sum())
+                errors.append(values.std() / numpy.sqrt(count))
+    return numpy.array(found), numpy.array(errors)
+
+
+def picture_of(mean_of_two):
+    """An image for people: sRGB of linear colours."""
+    clipped = numpy.clip(mean_of_two, 0, 1)
+    return numpy.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
+
+
+def pictures():
+    rows, shown = [], []
+    solved = {"type": "frond_leaf", "incident": "reciprocal"}, {"leaf": "leaf_solved,incident=reciprocal"}
+    for name, (leaf, swap) in (("front", solved), ("ambient", solved), ("front", (None, None)), ("ambient", (None, None))):
+        scene = scenes.SCENES[name](FOLDER)
+        scenes.write_pbrt(scene, FOLDER / f"{name}.pbrt", "leaf", True, SIZE)
+        scenes.write_json(scene, FOLDER / f"{name}.json", "leaf", SIZE)
+        document = json.loads((FOLDER / f"{name}.json").read_text())
+        theirs = load_with_leaf(document, leaf) if leaf else mitsuba_worker.load(document)
+        sensor = next(s for s in theirs.sensors() if s.id() == "box")
+        in_mitsuba = [numpy.array(mi.render(theirs, sensor=sensor, spp=SAMPLES, seed=seed))[:, :, :3] for seed in (1, 2)]
+        loaded = [frond.load(FOLDER / f"{name}.pbrt", swap=swap, wavelengths="smpte", seed=seed) for seed in (1, 2)]
+        in_frond = [scene.render(SAMPLES).rgb for scene in loaded]
+        for lane, color in enumerate(("red", "green", "blue")):
+            means, errors = [], []
+            for pair in (in_mitsuba, in_frond):
+                a, b = (p[:, :, lane].astype(numpy.float64) for p in pair)
+                means.append(((a + b) / 2).mean())
+                # Pixels are independent, and each pair tells its variance.
+                errors.append(numpy.sqrt(((a - b) ** 2 / 4).sum()) / a.size)
+            error = numpy.hypot(*errors)
+            if lane == 1 or leaf:  # the diffuse ones are grey
+                rows.append([name, color if leaf else "diffuse", f"{means[0]:.6f}", f"{means[1]:.6f}", f"{means[0] - means[1]:+.6f} ± {error:.6f}"])
+        if leaf:
+            shown.append(numpy.concatenate([picture_of((a + b) / 2) for a, b in (in_mitsuba, in_frond)], axis=1))
+    image = (255 * numpy.concatenate(shown, axis=0) + 0.5).astype(numpy.uint8)
+    mi.Bitmap(image).write(str(IMAGES / "hundred-leaves.png"))
+    return table(["scene", "", "Mitsuba", "frond", "difference"], rows)
+
+
+def load_with_leaf(document, leaf):
+    """The race's scene with this leaf in place of its own."""
+    load_dict = mi.load_dict
+
+    def load(world):
+        def put(part):
+            for key, value in part.items():
+                if isinstance(value, dict):
+                    part[key] = leaf if value.get("type") == "diffuse_leaf" else put(value)
+            return part
+        return load_dict(put(world))
+
+    mi.load_dict = load
+    try:
+        return mitsuba_worker.load(document)
+    finally:
+        mi.load_dict = load_dict
+
+
+def costs(rounds=5, size=512, samples=64):
+    def scene(bsdf):
+        to_world = mi.ScalarTransform4f()
+        film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+        sensor = {"type": "orthographic", "to_world": to_world.look_at([0, 0, 3], [0, 0, 0], [0, 1, 0]), "film": film}
+        return mi.load_dict({"type": "scene", "integrator": {"type": "path", "max_depth": 2}, "sensor": sensor,
+                             "sky": {"type": "constant"}, "leaf": {"type": "rectangle", "to_world": to_world.scale(2), "bsdf": bsdf}})
+
+    text = """Camera "orthographic" "float screenwindow" [ -1 1 -1 1 ]
+Film "rgb" "integer xresolution" {0} "integer yresolution" {0}
+PixelFilter "box"
+Integrator "path" "integer maxdepth" 1
+WorldBegin
+LightSource "infinite" "spectrum L" "stdillum-D65"
+MakeNamedMaterial "leaf" "string type" "{1}"
+NamedMaterial "leaf"
+Shape "bilinearmesh" "point3 P" [ -2 -2 1  2 -2 1  -2 2 1  2 2 1 ]
+"""
+    kinds = [("diffuse", {"type": "diffuse"}, "diffuse"),
+             ("leaf, traced", {"type": "frond_leaf"}, "leaf_solved"),
+             ("leaf, reciprocal", {"type": "frond_leaf", "incident": "reciprocal"}, 'leaf_solved" "string incident" "reciprocal'),
+             ("leaf, over depth", {"type": "frond_leaf", "differentiable": True}, None)]
+    rows = []
+    for label, theirs, ours in kinds:
+        loaded = scene(theirs)
+        times = []
+        for seed in range(rounds + 1):  # the first compiles
+            start = time.process_time()
+            numpy.array(mi.render(loaded, spp=samples, seed=seed))
+            times.append(time.process_time() - start)
+        paths = size * size * samples
+        cells = [label, f"{1e6 * numpy.median(times[1:]) / paths:.2f} µs"]
+        if ours:
+            of_ours = frond.loads(text.format(size, ours), wavelengths="smpte")
+            seconds = [of_ours.render(samples).statistics["cpu_seconds"] for _ in range(rounds)]
+            cells.append(f"{1e6 * numpy.median(seconds) / paths:.2f} µs")
+        rows.append(cells + [""] * (3 - len(cells)))
+    return rounds, table(["", "Mitsuba", "frond"], rows)
+
+
+def main():
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    mi.set_log_level(mi.LogLevel.Error)
+    pairs = 200_000
+    f_table = differences_of_f(pairs)
+    print(f_table)
+    found, errors = differences_of_shares()
+    print(f"shares: {numpy.sqrt((found**2).mean()):.1e} ± {numpy.sqrt((errors**2).mean()):.1e}, {abs(found / errors).max():.1f}")
+    picture_table = pictures()
+    print(picture_table)
+    rounds, cost_table = costs()
+    print(cost_table)
+    text = PAGE.format(machine=machine(), version=mi.__version__, frond_version=frond.__version__, pairs=pairs, f_table=f_table,
+                       rgb=", ".join(map(str, RGB_NM)), share_rms=numpy.sqrt((found**2).mean()),
+                       share_error=numpy.sqrt((errors**2).mean()), share_z=abs(found / errors).max(), shares=len(found), size=SIZE,
+                       samples=2 * SAMPLES, picture_table=picture_table, rounds=rounds, cost_table=cost_table)
+    (ROOT / "docs" / "mitsuba.md").write_text(text, encoding="utf-8")
+    print("Written: docs/mitsuba.md")
+
+
+if __name__ == "__main__":
+    main()
