@@ -1,4 +1,5 @@
-"""The solved leaf in Mitsuba 3: a BSDF `frond_leaf` for its JIT variants.
+"""The solved leaf in Mitsuba 3: a BSDF `frond_leaf`, compiled in JIT variants, and called in scalar ones, one direction at
+a time, as Eradiate needs it (frond.eradiate).
 
     import mitsuba as mi
     mi.set_variant("llvm_ad_rgb")
@@ -398,6 +399,92 @@ def _make(variant):
     return FrondLeaf
 
 
+def _make_scalar(variant):
+    """For scalar variants: each call goes to frond."""
+    lanes = 1 if "mono" in variant else 3
+
+    class FrondLeaf(mi.BSDF):
+        def __init__(self, props):
+            mi.BSDF.__init__(self, props)
+            self.words = ["leaf_solved"] + [f"{name}={props[name]}" for name in _WORDS if name in props]
+            self.words += [f"{name}={float(props[name])!r}" for name in _NUMBERS + ("tolerance",) if name in props]
+            if "sieve" in props:
+                self.words.append(f"sieve={'true' if props['sieve'] else 'false'}")
+            if lanes == 1 and "wavelengths" not in props and "wavelength" not in props:
+                raise ValueError('frond_leaf: "wavelength" says what a mono variant sees')
+            # A uniform spectrum of that value can be changed by its parameter, as Eradiate does.
+            given = _pop(props, "wavelength", _pop(props, "wavelengths", ",".join(map(str, _RGB_NM))))
+            self.wavelength = given if isinstance(given, mi.Texture) else None
+            if self.wavelength is not None:
+                given = self.wavelength.mean()
+            self.wavelengths = [float(x) for x in str(given).replace(",", " ").split()]
+            if len(self.wavelengths) != lanes:
+                raise ValueError(f"frond_leaf: {lanes} wavelengths are needed in variant {variant}")
+            self.ready, self.count = {}, 0
+            self._prepare()
+            sides = mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
+            self.m_components = [mi.BSDFFlags.GlossyReflection | sides, mi.BSDFFlags.DiffuseReflection | sides,
+                                 mi.BSDFFlags.DiffuseTransmission | sides]
+            self.m_flags = self.m_components[0] | self.m_components[1] | self.m_components[2]
+
+        def _prepare(self):
+            key = tuple(self.wavelengths)
+            if key not in self.ready:
+                self.ready[key] = _frond.FlatBsdf(default_session()._session, self.words, list(key))
+            self.bsdf = self.ready[key]
+
+        def _seed(self):
+            self.count += 1
+            return self.count
+
+        @staticmethod
+        def _tuple(w):
+            return (float(w.x), float(w.y), float(w.z))
+
+        def _f_and_pdf(self, si, wo):
+            f, pdf = self.bsdf.f_and_pdf(self._tuple(si.wi), self._tuple(wo), self._seed())
+            cosine = abs(float(wo.z))
+            return mi.UnpolarizedSpectrum([x * cosine for x in f] if lanes > 1 else f[0] * cosine), pdf
+
+        def eval(self, ctx, si, wo, active=True):
+            return self._f_and_pdf(si, wo)[0]
+
+        def pdf(self, ctx, si, wo, active=True):
+            return self._f_and_pdf(si, wo)[1]
+
+        def eval_pdf(self, ctx, si, wo, active=True):
+            return self._f_and_pdf(si, wo)
+
+        def sample(self, ctx, si, sample1, sample2, active=True):
+            bs = dr.zeros(mi.BSDFSample3f)
+            found = self.bsdf.sample_one(self._tuple(si.wi), min(float(sample1), 0.99999994),
+                                         (float(sample2.x), float(sample2.y)), self._seed())
+            if found is None:
+                return bs, mi.UnpolarizedSpectrum(0)
+            wi, weight, pdf, glossy = found
+            bs.wo, bs.pdf, bs.eta = mi.Vector3f(*wi), pdf, 1
+            reflects = wi[2] * float(si.wi.z) > 0
+            bs.sampled_component = 0 if glossy else 1 if reflects else 2
+            bs.sampled_type = int(+(mi.BSDFFlags.GlossyReflection if glossy else mi.BSDFFlags.DiffuseReflection if reflects
+                                    else mi.BSDFFlags.DiffuseTransmission))
+            return bs, mi.UnpolarizedSpectrum(weight if lanes > 1 else weight[0])
+
+        def traverse(self, callback):
+            if self.wavelength is not None:
+                put = callback.put if hasattr(callback, "put") else callback.put_object
+                put("wavelength", self.wavelength, mi.ParamFlags.NonDifferentiable)
+
+        def parameters_changed(self, keys):
+            if self.wavelength is not None:
+                self.wavelengths = [float(self.wavelength.mean())]
+                self._prepare()
+
+        def to_string(self):
+            return f"FrondLeaf[{' '.join(self.words)}, {self.wavelengths} nm]"
+
+    return FrondLeaf
+
+
 _registered = {}
 
 
@@ -406,12 +493,12 @@ def register():
     variant = mi.variant()
     if variant is None:
         raise RuntimeError("set a variant first: mitsuba.set_variant(\"llvm_ad_rgb\")")
-    if variant.startswith("scalar"):
-        raise RuntimeError(f"frond_leaf is for JIT variants (llvm_..., cuda_...), not for {variant}")
     if "polarized" in variant:
         raise RuntimeError("frond_leaf knows no polarisation")
+    if variant.startswith("scalar_spectral"):
+        raise RuntimeError(f"frond_leaf is for JIT variants, scalar_mono and scalar_rgb, not for {variant}")
     if variant not in _registered:
-        _registered[variant] = _make(variant)
+        _registered[variant] = (_make_scalar if variant.startswith("scalar") else _make)(variant)
         mi.register_bsdf("frond_leaf", _registered[variant])
 
 

@@ -132,6 +132,29 @@ class FlatBsdf {
                           to_array(std::move(pdf), {count}));
   }
 
+  using Numbers = std::array<float, 3>;
+
+  /// For callers that have one pair at a time: f by wavelength, and pdf.
+  std::pair<std::vector<float>, float> f_and_pdf(const Numbers& wo, const Numbers& wi, uint64_t seed) {
+    arena_.reset();
+    const Bsdf& bsdf = *material_->evaluate(flat_hit(), lambda_, arena_);
+    RandomStream rng(seed);
+    const SampledSpectrum s = bsdf.f(direction(wo), direction(wi), rng);
+    return {values(s), bsdf.pdf(direction(wo), direction(wi))};
+  }
+  /// wi, f |cos| / pdf by wavelength, pdf, and whether it is of the surface's lobe; None where there is none.
+  std::optional<std::tuple<Numbers, std::vector<float>, float, bool>> sample_one(const Numbers& wo, float uc,
+                                                                                 std::pair<float, float> u,
+                                                                                 uint64_t seed) {
+    arena_.reset();
+    RandomStream rng(seed);
+    const auto s =
+        material_->evaluate(flat_hit(), lambda_, arena_)->sample(direction(wo), uc, {u.first, u.second}, rng);
+    if (!s) return {};
+    return std::tuple{Numbers{s->wi.x, s->wi.y, s->wi.z}, values(s->f * (std::abs(s->wi.z) / s->pdf)), s->pdf,
+                      any(s->flags & Lobes::glossy)};
+  }
+
   bool is_stochastic() {
     arena_.reset();
     return any(material_->evaluate(flat_hit(), lambda_, arena_)->flags() & Lobes::stochastic);
@@ -139,6 +162,12 @@ class FlatBsdf {
   bool is_reciprocal() const { return material_->is_reciprocal(); }
 
  private:
+  static Vec3 direction(const Numbers& v) { return {v[0], v[1], v[2]}; }
+  std::vector<float> values(const SampledSpectrum& s) const {
+    std::vector<float> result;
+    for (int lane = 0; lane < lambda_.count; ++lane) result.push_back(s[lane]);
+    return result;
+  }
   static Vec3 direction(const Directions& d, size_t i) {
     const float* v = d.data() + 3 * i;
     return {v[0], v[1], v[2]};
@@ -213,6 +242,8 @@ void bind_instruments(nb::module_& m) {
       .def(nb::init<std::shared_ptr<SessionHandle>, const std::vector<std::string>&, const std::vector<float>&>(),
            "session"_a, "words"_a, "wavelengths"_a)
       .def("f", &FlatBsdf::f, "wo"_a, "wi"_a, "seed"_a)
+      .def("f_and_pdf", &FlatBsdf::f_and_pdf, "wo"_a, "wi"_a, "seed"_a)
+      .def("sample_one", &FlatBsdf::sample_one, "wo"_a, "uc"_a, "u"_a, "seed"_a)
       .def("pdf", &FlatBsdf::pdf, "wo"_a, "wi"_a)
       .def("sample", &FlatBsdf::sample, "wo"_a, "seed"_a)
       .def_prop_ro("is_stochastic", &FlatBsdf::is_stochastic)

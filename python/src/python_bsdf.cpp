@@ -21,11 +21,13 @@ class PythonBsdf final : public Bsdf {
   Lobes flags() const override { return flags_; }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
+    if (wo.z == 0 || wi.z == 0) return {};  // along the surface nothing is scattered
     const nb::gil_scoped_acquire hold;
     return spectrum(self().attr("f")(tuple(wo), tuple(wi), nm()));
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream&) const override {
+    if (wo.z == 0) return {};
     const nb::gil_scoped_acquire hold;
     const nb::object found = self().attr("sample")(tuple(wo), uc, nb::make_tuple(u.x, u.y), nm());
     if (found.is_none()) return {};
@@ -37,6 +39,7 @@ class PythonBsdf final : public Bsdf {
   }
 
   float pdf(const Vec3& wo, const Vec3& wi) const override {
+    if (wo.z == 0 || wi.z == 0) return 0;
     const nb::gil_scoped_acquire hold;
     return nb::cast<float>(self().attr("pdf")(tuple(wo), tuple(wi), nm()));
   }

@@ -106,6 +106,23 @@ def test_reflectance_and_transmittance_are_ours(theta_deg):
             assert abs(values.mean() - share[side].sum()) < 5 * error + 1e-4
 
 
+def test_a_scalar_variant():
+    """One direction at a time: means of a small picture are those of the compiled variant."""
+    world = {"type": "scene", "integrator": {"type": "path", "max_depth": 2}, "sky": {"type": "constant"}}
+    means = {}
+    for name in ("scalar_rgb", "llvm_ad_rgb"):
+        mi, dr = variant(name)
+        to_world = mi.ScalarTransform4f()
+        film = {"type": "hdrfilm", "width": 16, "height": 16, "rfilter": {"type": "box"}}
+        sensor = {"type": "orthographic", "to_world": to_world.look_at([0, 0, 3], [0, 0, 0], [0, 1, 0]), "film": film}
+        scene = mi.load_dict({**world, "sensor": sensor, "leaf": {"type": "rectangle", "to_world": to_world.scale(2),
+                                                                  "bsdf": {"type": "frond_leaf", "incident": "reciprocal"}}})
+        pixels = numpy.array(mi.render(scene, spp=64))[:, :, :3].reshape(-1, 3)
+        means[name] = pixels.mean(axis=0), pixels.std(axis=0) / numpy.sqrt(len(pixels))
+    (a, ea), (b, eb) = means.values()
+    assert (abs(a - b) < 5 * numpy.hypot(ea, eb)).all()
+
+
 def test_gradients_by_chemistry():
     """Of f by each number: against finite differences of the plug-in, and of the leaf itself."""
     mi, dr = variant("llvm_ad_rgb")
@@ -159,7 +176,7 @@ def test_what_is_refused():
     mi, dr = variant("llvm_ad_rgb")
     with pytest.raises(Exception, match="soyabean"):
         mi.load_dict({"type": "frond_leaf", "specimen": "soyabean"})
-    mitsuba.set_variant("scalar_rgb")
+    mitsuba.set_variant("scalar_spectral")
     with pytest.raises(RuntimeError, match="JIT variants"):
         sys.modules["frond.mitsuba"].register()
     mitsuba.set_variant("llvm_ad_rgb")
