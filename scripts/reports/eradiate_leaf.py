@@ -139,7 +139,7 @@ def main():
                    block(f"f{w}", [(x, found[v, w]) for v, x in enumerate(runs[0][0])]) for w in range(len(RGB)))
     plots = ", ".join(f"$f{w} with lines lw 2 lc rgb '{COLORS[1 + w]}' title 'frond brf, {nm:g} nm', $e{w} with yerrorbars pt 7 ps 0.6 lc rgb "
                       f"'{COLORS[1 + w]}' title 'Eradiate, {nm:g} nm'" for w, nm in enumerate(RGB))
-    gnuplot(images / "brf.svg", data + "set xlabel 'view zenith angle (degrees)'\nset ylabel 'BRF'\nset yrange [0:*]\nset key top left\n"
+    gnuplot(images / "brf.svg", data + "set xlabel 'view zenith angle (degrees)'\nset ylabel 'BRF'\nset yrange [0:*]\nset xrange [-65:65]\nset key top left\n"
             f"plot {plots}\n", (900, 500))
     (ROOT / "docs" / "eradiate.md").write_text(text, encoding="utf-8")
     print("Written: docs/eradiate.md")
