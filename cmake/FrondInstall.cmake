@@ -15,6 +15,15 @@ if(FROND_X86_64_V3)
 endif()
 install(TARGETS frond_image_codec LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT runtime)
 install(FILES LICENSE NOTICE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT runtime)
+install(DIRECTORY "${frond_manual_dir}/man1" DESTINATION "${CMAKE_INSTALL_MANDIR}" COMPONENT runtime)
+install(FILES "${frond_manual_dir}/frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT runtime)
+install(FILES "${frond_manual_dir}/frond.fish" DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d"
+        COMPONENT runtime)
+set(frond_zsh_folder site-functions)
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set(frond_zsh_folder vendor-completions)  # Debian's, for packages
+endif()
+install(FILES "${frond_manual_dir}/_frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${frond_zsh_folder}" COMPONENT runtime)
 # As they are in the repository; canopy/make makes the tables of leaves that those of canopy name.
 install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/frond" COMPONENT runtime USE_SOURCE_PERMISSIONS
         PATTERN ".gitignore" EXCLUDE PATTERN "*.md" EXCLUDE PATTERN "picture.*" EXCLUDE PATTERN "generator" EXCLUDE

@@ -183,8 +183,10 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--min-time", o->effort.min_time_s, "Seconds that a repetition takes at least; 0.01 by default.")
       ->check(is_positive);
   command->add_option("--samples", o->samples, "For the variance of each estimate; 1e5 by default.");
-  command->add_option("--json", o->json, "File for Google Benchmark's JSON; - for standard output, in place of text.");
-  command->add_option("--plot", o->plot, "Chart of variance against the cost of a hit, .svg or .png.");
+  command->add_option("--json", o->json, "File for Google Benchmark's JSON; - for standard output, in place of text.")
+      ->type_name("FILE");
+  command->add_option("--plot", o->plot, "Chart of variance against the cost of a hit, .svg or .png.")
+      ->type_name("FILE");
   command->callback([o] { run_bench(*o); });
 }
 

@@ -244,13 +244,15 @@ void add_brf_command(CLI::App& app) {
   command->add_option("--azimuth", o->azimuth,
                       "Degrees from the plane of the sun, or from +x toward +y where there is not one sun.");
   command->add_flag("--hemisphere", o->hemisphere, "Directions from everywhere above, every 5 and 15 degrees.");
-  command->add_option("--plot", o->plot, "Chart against the zenith angle, or maps of a hemisphere: .svg or .png.");
+  command->add_option("--plot", o->plot, "Chart against the zenith angle, or maps of a hemisphere: .svg or .png.")
+      ->type_name("FILE");
   command
       ->add_option(
           "--compare", o->compare,
           "MODEL[,parameter=value...],... in place of the scene's leaves, as in frond compare: which is enough?")
       ->allow_extra_args(false);
-  command->add_option("--reference", o->reference, "The model that counts as right; leaf_solved by default.");
+  command->add_option("--reference", o->reference, "The model that counts as right; leaf_solved by default.")
+      ->type_name("MATERIAL");
   command->add_option("--within", o->within, "Largest relative difference that is enough; 0.02 by default.")
       ->check(is_positive);
   command->callback([o] {

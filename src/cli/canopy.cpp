@@ -78,7 +78,7 @@ void add_canopy_command(CLI::App& app) {
   auto o = std::make_shared<CanopyOptions>();
   auto* command = app.add_subcommand("canopy", "Write a table of leaves at random, for Shape \"instances\".");
   HomogeneousCanopy& c = o->canopy;
-  command->add_option("-o,--output", o->output, "The table, a NumPy file (.npy).")->required();
+  command->add_option("-o,--output", o->output, "The table, a NumPy file (.npy).")->type_name("FILE")->required();
   command->add_option("--lai", c.leaf_area_index, "Leaf area index: one-sided area of leaves over that of ground.")
       ->check(is_positive);
   command->add_option("--count", c.count, "How many leaves, in place of --lai.")->check(CLI::Range(1.0, 4e9));

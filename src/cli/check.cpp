@@ -51,7 +51,7 @@ void add_check_command(CLI::App& app) {
   auto options = std::make_shared<CheckOptions>();
   auto* command = app.add_subcommand(
       "check", "Read scenes and all that they name, tell everything that is wrong, and render nothing.");
-  command->add_option("scene", options->scenes, "Scene files.")->required();
+  command->add_option("scene", options->scenes, "Scene files.")->type_name("SCENE")->required();
   add_reading_options(*command, options->reading);
   add_plugin_option(*command, options->plugins);
   command->callback([options] {

@@ -24,6 +24,8 @@ void add_canopy_command(CLI::App& app);
 void add_instances_command(CLI::App& app);
 void add_conform_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
+void add_man_command(CLI::App& app);
+void add_completion_command(CLI::App& app);
 void add_spectrophotometer_command(CLI::App& app);
 void add_goniophotometer_command(CLI::App& app);
 

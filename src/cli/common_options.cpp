@@ -56,6 +56,7 @@ void add_plugin_option(CLI::App& command, std::vector<std::string>& files) {
           "--plugin", files,
           "Shared object with further plugins; may be given again. Those in the folders of FROND_PLUGIN_PATH are "
           "loaded by themselves.")
+      ->type_name("FILE")
       ->allow_extra_args(false);
 }
 

@@ -163,8 +163,8 @@ void run_compare(const CompareOptions& o) {
 }
 
 void add_options(CLI::App& command, CompareOptions& o) {
-  command.add_option("scene", o.scene, "Scene file.")->required();
-  command.add_option("-o,--output", o.output, "Folder of the report.")->required();
+  command.add_option("scene", o.scene, "Scene file.")->type_name("SCENE")->required();
+  command.add_option("-o,--output", o.output, "Folder of the report.")->type_name("FOLDER")->required();
   command
       .add_option(
           "--materials", o.materials,
@@ -173,6 +173,7 @@ void add_options(CLI::App& command, CompareOptions& o) {
       ->allow_extra_args(false)
       ->default_str(kCandidates);
   command.add_option("--reference", o.reference, "Candidate that counts as right, once converged.")
+      ->type_name("MATERIAL")
       ->default_val(kReference);
   command.add_option("--rms", o.rms, "Name the cheapest candidate with this RMS error; may be given again.")
       ->check(is_positive)
@@ -186,7 +187,8 @@ void add_options(CLI::App& command, CompareOptions& o) {
                    "not chosen for one by one, which is by absolute errors.");
   command.add_option("--leaf", o.leaves, "Material to replace; may be given again. Every leaf by default.")
       ->allow_extra_args(false);
-  command.add_option("--wavelengths", o.wavelengths, "In place of the scene's; smpte for the paper's three.");
+  command.add_option("--wavelengths", o.wavelengths, "In place of the scene's; smpte for the paper's three.")
+      ->type_name("WAVELENGTHS");
   command.add_option("--size", o.size, "Pixels of the longer side; 256 by default.")->check(CLI::Range(1, 65536));
   add_count_option(command, "--spp", o.samples, 1 << 24, "Samples per pixel of the last rung; 256 by default.");
   add_count_option(command, "--reference-spp", o.reference_samples, 1 << 30,
@@ -199,7 +201,8 @@ void add_options(CLI::App& command, CompareOptions& o) {
   command.add_option("--threads", o.threads, "Threads; all by default.")->check(CLI::Range(1, 1024));
   add_plugin_option(command, o.plugins);
   add_reading_options(command, o.reading);
-  command.add_option("--cache", o.cache, "Folder for references and tables; ~/.cache/frond by default.");
+  command.add_option("--cache", o.cache, "Folder for references and tables; ~/.cache/frond by default.")
+      ->type_name("FOLDER");
   command.add_flag("--no-cache", o.no_cache, "Keep neither references nor tables on disk.");
   command.add_flag("--quick", o.quick, "A first look: 128 pixels, up to 32 samples, a reference of 2 x 128.");
   command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");

@@ -113,7 +113,7 @@ void add_conform_command(CLI::App& app) {
   auto* command = app.add_subcommand(
       "conform", "Test whether a material obeys the laws of scattering. Exit code 0: it does; 2: a law is broken.");
   auto o = std::make_shared<ConformOptions>();
-  command->add_option("material", o->material, "NAME parameter=value ...")->required();
+  command->add_option("material", o->material, "NAME parameter=value ...")->type_name("MATERIAL")->required();
   add_plugin_option(*command, o->plugins);
   command->add_flag("--sweep", o->sweep, "Also over the declared ranges of the parameters that are not given.");
   command->add_option("--samples", o->samples, "Samples for each direction; 20000 by default.");
@@ -127,10 +127,12 @@ void add_conform_command(CLI::App& app) {
       ->add_option("--false-alarm-rate", o->false_alarm_rate,
                    "Chance that a law is called broken though all hold; 1e-6 by default.")
       ->check(is_within({1e-12, 0.5}));
-  command->add_option("--json", o->json,
-                      "File for everything that was found; - for standard output, in place of text.");
-  command->add_option("--picture", o->picture,
-                      "Map of the directions of the worst finding, .svg or .png: where a law is broken.");
+  command->add_option("--json", o->json, "File for everything that was found; - for standard output, in place of text.")
+      ->type_name("FILE");
+  command
+      ->add_option("--picture", o->picture,
+                   "Map of the directions of the worst finding, .svg or .png: where a law is broken.")
+      ->type_name("FILE");
   command->callback([o] { conform(*o); });
 }
 

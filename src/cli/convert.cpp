@@ -55,8 +55,8 @@ void convert(const ConvertOptions& options) {
 void add_convert_command(CLI::App& app) {
   auto* command = app.add_subcommand("convert", "Average linear images and show them through a display transform.");
   auto o = std::make_shared<ConvertOptions>();
-  command->add_option("images", o->inputs, "EXR files of one size and colour space.")->required();
-  command->add_option("-o,--output", o->output, "Image: .png, .jpg or .exr.")->required();
+  command->add_option("images", o->inputs, "EXR files of one size and colour space.")->type_name("FILE")->required();
+  command->add_option("-o,--output", o->output, "Image: .png, .jpg or .exr.")->type_name("FILE")->required();
   auto* bands = command->add_option("--bands", o->bands_nm,
                                     "Wavelengths (nm) of three bands to show as red, green and blue, such as "
                                     "850,650,550; a white in equal-energy light is 1.");

@@ -138,7 +138,8 @@ void describe(const DescribeOptions& options) {
 void add_describe_command(CLI::App& app) {
   auto* command = app.add_subcommand("describe", "Print a plugin's parameters: types, defaults, units and ranges.");
   auto o = std::make_shared<DescribeOptions>();
-  command->add_option("name", o->name, "A plugin's name (see frond list), or a kind such as material.");
+  command->add_option("name", o->name, "A plugin's name (see frond list), or a kind such as material.")
+      ->type_name("PLUGIN");
   command->add_flag("--markdown", o->markdown, "Print Markdown; without a name, of every plugin.");
   add_plugin_option(*command, o->plugins);
   command->callback([o] {

@@ -137,10 +137,12 @@ void add_difference_command(CLI::App& app) {
   auto* command = app.add_subcommand("difference", "RMS error between two renders, with noise and bias told apart.");
   auto o = std::make_shared<DifferenceOptions>();
   command->add_option("images", o->images, "A1 A2 B1 B2: two halves of each render, with seeds of their own.")
+      ->type_name("FILE")
       ->required()
       ->expected(4);
-  command->add_option("-o,--output", o->output,
-                      "Picture of the signed difference in luminance: red where A is brighter.");
+  command
+      ->add_option("-o,--output", o->output, "Picture of the signed difference in luminance: red where A is brighter.")
+      ->type_name("FILE");
   command->add_option("--scale", o->scale, "Difference at full colour; 0.1 by default.")->check(is_positive);
   command->add_flag("--json", o->json, "Print JSON.");
   command->callback([o] { difference(*o); });

@@ -111,11 +111,14 @@ void add_fit_command(CLI::App& app) {
   auto* command = app.add_subcommand("fit", "Make a leaf of measured reflectance and transmittance.");
   auto o = std::make_shared<FitOptions>();
   command->add_option("file", o->file, "Measured spectra: CSV as frond spectrophotometer and spectroradiometers write.")
+      ->type_name("FILE")
       ->required();
-  command->add_option("-o,--output", o->output, "Scene file with the leaf's Material line; -: standard output.");
-  command->add_option("--json", o->json, "All that was found: numbers, errors, correlations, spectra.");
-  command->add_option("--csv", o->csv, "Measured and fitted spectra.");
-  command->add_option("--plot", o->plot, "Chart of measured and fitted, .svg or .png.");
+  command->add_option("-o,--output", o->output, "Scene file with the leaf's Material line; -: standard output.")
+      ->type_name("FILE");
+  command->add_option("--json", o->json, "All that was found: numbers, errors, correlations, spectra.")
+      ->type_name("FILE");
+  command->add_option("--csv", o->csv, "Measured and fitted spectra.")->type_name("FILE");
+  command->add_option("--plot", o->plot, "Chart of measured and fitted, .svg or .png.")->type_name("FILE");
   command->add_option("--leaf", o->reading.leaf, "Of a file with several leaves, the one to fit.");
   command->add_option("--angle", o->reading.theta_deg, "Of incidence, where the file does not say it: 8 degrees.")
       ->check(CLI::Range(0.0, 180.0));
@@ -125,8 +128,10 @@ void add_fit_command(CLI::App& app) {
       ->check(CLI::IsMember({"on", "off"}));
   command->add_option("--fix", o->fixed,
                       "NAME=NUMBER: a number that is known, in the scene's units. May be given again.");
-  command->add_option("--like", o->like,
-                      "A specimen that the leaf is like: its numbers are expected within a third or so.");
+  command
+      ->add_option("--like", o->like,
+                   "A specimen that the leaf is like: its numbers are expected within a third or so.")
+      ->type_name("SPECIMEN");
   command->add_option("--material", o->material, "That the leaf is written down for: leaf by default.")
       ->check(CLI::IsMember({"leaf", "leaf_solved", "leaf_simplified", "leaf_lambert", "abm"}));
   command->add_option("--threads", o->threads, "Threads; all by default. The leaf does not depend on it.")

@@ -73,8 +73,8 @@ void add_goniophotometer_command(CLI::App& app) {
   command->add_flag(
       "--integrate", o->integrate,
       "Integrate f over each patch, without noise, where it is no random estimate; shoot rays elsewhere.");
-  command->add_option("--plot", o->plot, "Chart of f in the plane of incidence, .svg or .png.");
-  command->add_option("--map", o->map, "Polar maps of f over both hemispheres, .svg or .png.");
+  command->add_option("--plot", o->plot, "Chart of f in the plane of incidence, .svg or .png.")->type_name("FILE");
+  command->add_option("--map", o->map, "Polar maps of f over both hemispheres, .svg or .png.")->type_name("FILE");
   command->add_option("--map-scale", o->map_scale, "Colours of the map: linear (default) or log.")
       ->check(CLI::IsMember({"linear", "log"}));
   command->callback([o] { run_goniophotometer(*o); });

@@ -212,8 +212,8 @@ void add_instances_command(CLI::App& app) {
       "of\n"
       "its z axis, which is a leaf's normal, and spin about it, or as qw,qx,qy,qz, or m00,m01 ... m22. All others are\n"
       "numbers that Texture \"instance\" knows.");
-  command->add_option("csv", o->input, "CSV file.")->required();
-  command->add_option("-o,--output", o->output, "The table, a NumPy file (.npy).")->required();
+  command->add_option("csv", o->input, "CSV file.")->type_name("FILE")->required();
+  command->add_option("-o,--output", o->output, "The table, a NumPy file (.npy).")->type_name("FILE")->required();
   command->add_flag("-q,--quiet", o->quiet, "Print nothing but errors.");
   command->callback([o] { run_instances(*o); });
 }

@@ -55,8 +55,8 @@ void add_instrument_options(CLI::App& command, InstrumentOptions& o) {
   command.add_flag(
       "--rendered", o.as_rendered,
       "As a renderer shows the material: light along wi, seen along wo, though the model call wo incident.");
-  command.add_option("--csv", o.csv, "Write CSV to a file, or - for standard output.");
-  command.add_option("--json", o.json, "Write JSON to a file, or - for standard output.");
+  command.add_option("--csv", o.csv, "Write CSV to a file, or - for standard output.")->type_name("FILE");
+  command.add_option("--json", o.json, "Write JSON to a file, or - for standard output.")->type_name("FILE");
 }
 
 InstrumentBench::InstrumentBench(const InstrumentOptions& o)

@@ -60,9 +60,12 @@ void merge(const MergeOptions& o) {
 void add_merge_command(CLI::App& app) {
   auto* command = app.add_subcommand("merge", "Add up parts of a render, which frond render --part has made.");
   auto o = std::make_shared<MergeOptions>();
-  command->add_option("parts", o->parts, "Parts of one render, which have no sample in common.")->required();
-  command->add_option("-o,--output", o->output, "Image: .exr (linear), .png or .jpg (through the display transform).");
-  command->add_option("--part", o->part, "Write a part again instead of an image.");
+  command->add_option("parts", o->parts, "Parts of one render, which have no sample in common.")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("-o,--output", o->output, "Image: .exr (linear), .png or .jpg (through the display transform).")
+      ->type_name("FILE");
+  command->add_option("--part", o->part, "Write a part again instead of an image.")->type_name("FILE");
   command->add_flag("--allow-holes", o->allow_holes, "Make an image although samples or pixels are missing.");
   command->add_option("--display", o->display.display, "Display of PNG and JPEG output; sRGB by default.");
   command->add_option("--view", o->display.view, "View of that display.");

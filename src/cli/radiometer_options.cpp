@@ -12,7 +12,7 @@
 namespace frond {
 
 void add_radiometer_options(CLI::App& command, RadiometerOptions& o, const std::string& paths) {
-  command.add_option("scene", o.scene, "Scene file.")->required();
+  command.add_option("scene", o.scene, "Scene file.")->type_name("SCENE")->required();
   command.add_option("--wavelengths", o.wavelengths,
                      "nm, as in 450,550,670 or 400:700:10, or bands,responses=...; 450,550,670,800 by default.");
   command
@@ -29,7 +29,7 @@ void add_radiometer_options(CLI::App& command, RadiometerOptions& o, const std::
       ->check(is_positive);
   command.add_option("--time-limit", o.time_limit_seconds, "End after so many seconds, with what there is then.")
       ->check(is_positive);
-  auto* csv = command.add_option("--csv", o.csv, "CSV file; - is standard output.");
+  auto* csv = command.add_option("--csv", o.csv, "CSV file; - is standard output.")->type_name("FILE");
   command
       .add_option("--checkpoint", o.checkpoint_seconds,
                   "Every so many seconds, and when stopped by SIGINT or SIGTERM, keep what is done in CSV.part.")
@@ -39,14 +39,17 @@ void add_radiometer_options(CLI::App& command, RadiometerOptions& o, const std::
   command
       .add_option("--swap", o.swaps,
                   "MATERIAL=PLUGIN[,parameter=value...]: another model; \"*=PLUGIN\": for every leaf.")
+      ->type_name("SWAP")
       ->allow_extra_args(false);
-  command.add_option("--integrator", o.integrator, "PLUGIN[,parameter=value...], in place of paths of any length.");
+  command.add_option("--integrator", o.integrator, "PLUGIN[,parameter=value...], in place of paths of any length.")
+      ->type_name("INTEGRATOR");
   command.add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
   command.add_option("--threads", o.threads, "Threads; all by default. The figures do not depend on it.")
       ->check(CLI::Range(1, 1024));
   add_plugin_option(command, o.plugins);
   add_reading_options(command, o.reading);
-  command.add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.");
+  command.add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.")
+      ->type_name("FOLDER");
   command.add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
   command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors and what is asked for.");
 }

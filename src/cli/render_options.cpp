@@ -165,9 +165,12 @@ std::optional<SampleRange> range_of(const RenderOptions& options) {
 
 void add_render_options(CLI::App& command, RenderOptions& o) {
   command.add_option("scene", o.scenes, "Scene file; of several, each is rendered, after pieces without WorldBegin.")
+      ->type_name("SCENE")
       ->required();
-  auto* output = command.add_option("-o,--output,--outfile", o.output,
-                                    "Image: .exr (linear), .png or .jpg (through the display transform).");
+  auto* output = command
+                     .add_option("-o,--output,--outfile", o.output,
+                                 "Image: .exr (linear), .png or .jpg (through the display transform).")
+                     ->type_name("FILE");
   add_count_option(command, "--spp", o.samples, 1 << 30, "Samples per pixel, in place of the scene's.");
   command.add_option("--threads,--nthreads", o.threads, "Threads; all by default. The image does not depend on it.")
       ->check(CLI::Range(1, 1024));
@@ -184,29 +187,39 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
       ->check(is_pixel)
       ->excludes(crop)
       ->excludes(pixels);
-  command.add_option("--wavelengths", o.wavelengths,
-                     "hero (also hero,lambdamin=400,lambdamax=700), meyer, smpte for the paper's three, or "
-                     "bands,wavelengths=450,550,850 (also bands,lambdamin=400,lambdamax=1000,step=10).");
-  command.add_option("--integrator", o.integrator,
-                     "PLUGIN[,parameter=value...]; one of the scene's kind keeps the scene's other parameters.");
-  command.add_option("--filter", o.filter,
-                     "Pixel filter: PLUGIN[,parameter=value...]; one of the scene's kind keeps the scene's other "
-                     "parameters. gaussian,reconstruction=importance: pixels share no samples.");
+  command
+      .add_option("--wavelengths", o.wavelengths,
+                  "hero (also hero,lambdamin=400,lambdamax=700), meyer, smpte for the paper's three, or "
+                  "bands,wavelengths=450,550,850 (also bands,lambdamin=400,lambdamax=1000,step=10).")
+      ->type_name("WAVELENGTHS");
+  command
+      .add_option("--integrator", o.integrator,
+                  "PLUGIN[,parameter=value...]; one of the scene's kind keeps the scene's other parameters.")
+      ->type_name("INTEGRATOR");
+  command
+      .add_option("--filter", o.filter,
+                  "Pixel filter: PLUGIN[,parameter=value...]; one of the scene's kind keeps the scene's other "
+                  "parameters. gaussian,reconstruction=importance: pixels share no samples.")
+      ->type_name("FILTER");
   command
       .add_option("--swap", o.swaps,
                   "MATERIAL=PLUGIN[,parameter=value...]: another model; \"*=PLUGIN\": for every leaf.")
+      ->type_name("SWAP")
       ->allow_extra_args(false);
   add_plugin_option(command, o.plugins);
   command.add_option("--display", o.display.display, "Display of PNG and JPEG output; sRGB by default.");
   command.add_option("--view", o.display.view, "View of that display.");
-  command.add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.");
+  command.add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.")
+      ->type_name("FOLDER");
   command.add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
   command.add_flag("--quick", o.quick, "A first look: half the resolution, a sixteenth of the samples.");
   command.add_flag("--pilot", o.pilot, "Choose the models of open leaves, say which, and render nothing.");
   command.add_flag("--json", o.json, "Print the statistics as JSON on standard output.");
   command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");
-  auto* part = command.add_option(
-      "--part", o.part, "Write the sums, which frond merge adds to those of other parts, instead of an image.");
+  auto* part = command
+                   .add_option("--part", o.part,
+                               "Write the sums, which frond merge adds to those of other parts, instead of an image.")
+                   ->type_name("FILE");
   part->excludes(output);
   auto* range = command.add_option("--samples", o.range,
                                    "FIRST:END of the samples to render, as 64:128; from 0 to --spp by default.");
@@ -226,7 +239,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
                   "is more; --spp is then the most that a pixel gets.")
       ->check(is_positive)
       ->excludes(range);
-  command.add_option("--channels", o.channels, channels_doc())->delimiter(',');
+  command.add_option("--channels", o.channels, channels_doc())->type_name("CHANNELS")->delimiter(',');
   add_reading_options(command, o.reading);
   command.add_flag("--disable-pixel-jitter", o.no_pixel_jitter, "All samples at the pixels' centres and the lens's.");
   command.add_flag("--disable-texture-filtering", o.no_texture_filtering, "Read textures at points.");

@@ -49,6 +49,8 @@ int run(int argc, const char* const* argv) {
   add_spectrophotometer_command(app);
   add_goniophotometer_command(app);
   add_bench_command(app);
+  add_man_command(app);
+  add_completion_command(app);
   try {
     std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc}, *app.get_subcommand("render"));
     std::ranges::reverse(words);  // CLI11 takes them from the end

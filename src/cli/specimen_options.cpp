@@ -20,15 +20,18 @@ std::vector<std::string> words_of(const std::string& text) {
 
 void add_specimen_options(CLI::App& command, SpecimenOptions& o) {
   command.add_option("material", o.material, "NAME [parameter=value ...] (frond list, frond describe NAME).")
+      ->type_name("MATERIAL")
       ->required();
   command
       .add_option("--with", o.with, "One more material to measure, \"NAME [parameter=value ...]\"; may be given again.")
+      ->type_name("MATERIAL")
       ->allow_extra_args(false);
   add_plugin_option(command, o.plugins);
   command.add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
   command.add_option("--threads", o.threads, "Threads; all by default. The figures do not depend on it.")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--cache", o.cache, "Folder for tables that materials compute; ~/.cache/frond by default.");
+  command.add_option("--cache", o.cache, "Folder for tables that materials compute; ~/.cache/frond by default.")
+      ->type_name("FOLDER");
   command.add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
   command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors and what was asked for.");
 }

@@ -67,7 +67,8 @@ void add_spectrophotometer_command(CLI::App& app) {
   command->add_option("--rays", o->rays, "Rays for each reading: 1e6 by default; with --se the most, 1e9 by default.");
   command->add_option("--se", o->standard_error, "Stop when the standard errors of R, T and A are no larger than this.")
       ->check(is_positive);
-  command->add_option("--plot", o->plot, "Chart of R and 1 - T against wavelength or angle, .svg or .png.");
+  command->add_option("--plot", o->plot, "Chart of R and 1 - T against wavelength or angle, .svg or .png.")
+      ->type_name("FILE");
   command->callback([o] { run_spectrophotometer(*o); });
 }
 

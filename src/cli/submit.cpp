@@ -113,13 +113,14 @@ void submit(SubmitOptions o) {
 void add_submit_command(CLI::App& app) {
   auto* command = app.add_subcommand("submit", "Render on a cluster: an array job of sample ranges, and their merge.");
   auto o = std::make_shared<SubmitOptions>();
-  command->add_option("scene", o->scene, "Scene file.")->required();
-  command->add_option("-o,--output", o->output, "Image that the merge writes.")->required();
+  command->add_option("scene", o->scene, "Scene file.")->type_name("SCENE")->required();
+  command->add_option("-o,--output", o->output, "Image that the merge writes.")->type_name("FILE")->required();
   add_count_option(*command, "--spp", o->samples, 1 << 30, "Samples per pixel.")->required();
   add_count_option(*command, "--tasks", o->tasks, 1'000'000, "Tasks that share them.")->required();
   command->add_flag("--slurm", o->slurm, "Write a job for Slurm.");
   command->add_flag("--run", o->run, "Submit it too, by sbatch.");
-  command->add_option("--folder", o->folder, "Where the job's scripts, parts and logs go; OUTPUT.slurm by default.");
+  command->add_option("--folder", o->folder, "Where the job's scripts, parts and logs go; OUTPUT.slurm by default.")
+      ->type_name("FOLDER");
   command->allow_extras();
   command->footer("Further options are handed to frond render, such as --wavelengths smpte.");
   command->callback([o, command] {

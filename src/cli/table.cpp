@@ -157,11 +157,13 @@ void add_table_command(CLI::App& app) {
   TableOptions& o = *options;
   auto* command =
       app.add_subcommand("table", "Write the table that a leaf material looks up, as a file that it can read.");
-  command->add_option(
-      "leaf", o.words,
-      "[MATERIAL] name=value ...: leaf_simplified (default), R and T by angle and wavelength as CSV, or "
-      "leaf_solved, the modes of its BSDF; and the leaf, as they take it (frond describe).");
-  command->add_option("--specimen", o.specimen, "A leaf from the literature; soybean by default.");
+  command
+      ->add_option("leaf", o.words,
+                   "[MATERIAL] name=value ...: leaf_simplified (default), R and T by angle and wavelength as CSV, or "
+                   "leaf_solved, the modes of its BSDF; and the leaf, as they take it (frond describe).")
+      ->type_name("MATERIAL");
+  command->add_option("--specimen", o.specimen, "A leaf from the literature; soybean by default.")
+      ->type_name("SPECIMEN");
   command->add_option("--method", o.method, "solve: without noise. montecarlo: random walks, as published.")
       ->check(CLI::IsMember({"solve", "montecarlo"}));
   command->add_option("--wavelengths", o.wavelengths, "In nm: 608,551,455 or 360:830:5.")->required();
@@ -175,7 +177,9 @@ void add_table_command(CLI::App& app) {
   command->add_option("--threads", o.threads, "Threads; all by default. The table does not depend on it.")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--equalsides", o.equal_sides, "The mean of both sides, on angles up to 90.");
-  command->add_option("-o,--output", o.output, "The table's file; - for standard output.")->required();
+  command->add_option("-o,--output", o.output, "The table's file; - for standard output.")
+      ->type_name("FILE")
+      ->required();
   command->add_flag("-q,--quiet", o.quiet, "Print nothing but errors.");
   command->callback([options, command] { make_table_file(*options, *command); });
 }

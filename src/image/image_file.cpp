@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
-#include <charconv>
-#include <cstdlib>
 
 #include "image/exr.h"
 #include "image/image_codec.h"
 #include "system/atomic_file.h"
+#include "system/file_time.h"
 
 namespace frond {
 namespace {
@@ -27,18 +26,6 @@ Format format_of(const fs::path& path, const Location& where = {}) {
   if (extension == ".png") return Format::png;
   if (extension == ".jpg" || extension == ".jpeg") return Format::jpeg;
   fail(where, "cannot write \"{}\": images are .exr, .png, .jpg or .jpeg", path.string());
-}
-
-std::time_t file_time() {
-  const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-  if (!epoch || !*epoch) return std::time(nullptr);
-  const std::string_view text(epoch);
-  std::time_t seconds = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  constexpr std::time_t kLastOfYear9999 = 253402300799;
-  if (error != std::errc() || end != text.data() + text.size() || seconds < 0 || seconds > kLastOfYear9999)
-    fail({}, "SOURCE_DATE_EPOCH is \"{}\", seconds since 1970 are needed", text);
-  return seconds;
 }
 
 }  // namespace
