@@ -31,8 +31,8 @@ class Scripts : public ::testing::Test {
 };
 
 TEST_F(Scripts, PrintTheirHelpAndDoNothing) {
-  for (const char* script : {"adaptive", "demo", "test", "tidy", "paper", "choosing", "validation", "wavelengths",
-                             "stability", "many_machines"})
+  for (const char* script : {"adaptive", "demo", "docs", "package", "test", "tidy", "paper", "choosing", "validation",
+                             "wavelengths", "stability", "many_machines"})
     for (const char* flag : {"-h", "--help"}) {
       const ChildResult r = run_script(script, flag);
       EXPECT_EQ(r.status, 0) << script;
@@ -44,7 +44,8 @@ TEST_F(Scripts, PrintTheirHelpAndDoNothing) {
 }
 
 TEST_F(Scripts, RefuseWordsThatTheyDoNotKnow) {
-  for (const std::string script : {"adaptive", "demo", "many_machines", "stability", "test", "tidy"}) {
+  for (const std::string script :
+       {"adaptive", "demo", "docs", "many_machines", "package", "stability", "test", "tidy"}) {
     const ChildResult r = run_script(script, "--quik");
     EXPECT_NE(r.status, 0) << script;
     EXPECT_THAT(r.err, HasSubstr("usage: scripts/" + script));

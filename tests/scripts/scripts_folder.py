@@ -19,7 +19,7 @@ class FolderTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
         self.tools = self.root / "tools"
-        for name in ("scripts", "src", "tests", "bench", "tools"):
+        for name in ("scripts", "src", "tests", "bench", "python", "tools"):
             (self.root / name).mkdir()
         for script in ("check-format", "llvm.sh", "setup.sh", "tidy"):
             shutil.copy(SCRIPTS / script, self.root / "scripts")
