@@ -9,7 +9,7 @@ from ._measure import _numbers, _session_of, _words
 class FlatBsdf:
     """The BSDF of a material on a flat specimen, at one to four wavelengths.
 
-    Directions are arrays [n][3] of unit vectors that point away from the surface, z along its normal, on a leaf's
+    Directions are arrays `[n][3]` of unit vectors that point away from the surface, z along its normal, on a leaf's
     adaxial side; `wo` goes toward where a path came from, `wi` toward where light comes from.
     """
 
@@ -28,15 +28,15 @@ class FlatBsdf:
         return [numpy.ascontiguousarray(numpy.broadcast_to(a, shape)) for a in arrays]
 
     def f(self, wo, wi, *, seed=0):
-        """In 1/sr, without cosine: [n][wavelength]."""
+        """In 1/sr, without cosine: `[n][wavelength]`."""
         return self._bsdf.f(*self._directions(wo, wi), seed)
 
     def pdf(self, wo, wi):
-        """Density of `sample` in 1/sr: [n]."""
+        """Density of `sample` in 1/sr: `[n]`."""
         return self._bsdf.pdf(*self._directions(wo, wi))
 
     def sample(self, wo, *, seed=0):
-        """A direction for each wo: wi [n][3], its weight f |cos| / pdf [n][wavelength], pdf [n], which is 0 where there
+        """A direction for each wo: wi `[n][3]`, its weight f |cos| / pdf `[n][wavelength]`, pdf `[n]`, which is 0 where there
         is none."""
         return self._bsdf.sample(*self._directions(wo), seed)
 
@@ -48,7 +48,7 @@ def bsdf(material, wavelengths=(608, 551, 455), *, session=None):
 
 class LeafTable(dict):
     """The solved leaf as arrays by name (docs/leaf_file.md): "wavelength_nm", "depth", "index", "surface", and series such as
-    "adaxial_reflected" [column][mode][incident sine][leaving sine]."""
+    "adaxial_reflected" `[column][mode][incident sine][leaving sine]`."""
 
     def save(self, path):
         """As a file for other programs: exports/cpp/frond_leaf.h reads it."""

@@ -55,8 +55,8 @@ def spectrophotometer(material, wavelengths, angles=8, *, rays=1_000_000, standa
 
 def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), rays=1_000_000, integrate=False,
                     rendered=False, seed=0, session=None):
-    """f in 1/sr over the whole sphere: a dictionary with arrays "f" and "f_se" [angle][wavelength][theta][phi], the
-    patches' middles "theta_o_deg" and "phi_o_deg" and "projected_solid_angle_sr" [theta][phi], "theta_i_deg" and
+    """f in 1/sr over the whole sphere: a dictionary with arrays "f" and "f_se" `[angle][wavelength][theta][phi]`, the
+    patches' middles "theta_o_deg" and "phi_o_deg" and "projected_solid_angle_sr" `[theta][phi]`, "theta_i_deg" and
     "wavelength_nm". integrate: without noise, where f is no random estimate.
     """
     import numpy
@@ -119,7 +119,7 @@ def flux(scene, wavelengths=(450, 550, 670, 800), *, swap=None, target=None, per
          by_instance=False, seed=None, progress=None, session=None):
     """Where the light goes that falls on a scene: a table of quantity, material, wavelength_nm, share and its standard
     error share_se. by_instance: with it a dictionary of what each copy absorbs: "absorbed", "absorbed_se"
-    [copy][wavelength], "areas" and "wavelengths_nm".
+    `[copy][wavelength]`, "areas" and "wavelengths_nm".
     """
     measurement = _measurement(wavelengths, swap, target, period, seed, paths, rms)
     found = _frond.flux(_session_of(session), _description(scene, session), measurement, by_instance, _show(progress))

@@ -110,7 +110,7 @@ def loads(text, folder=".", *, session=None, **over):
 
 
 def read_image(path):
-    """An image file: (channels' names, float32 array [row][column][channel])."""
+    """An image file: (channels' names, float32 array `[row][column][channel]`)."""
     return _frond.read_image(os.fspath(path))
 
 
@@ -165,7 +165,7 @@ class Picture:
 
     @property
     def array(self):
-        """float32, [row][column][channel], rows from the top."""
+        """float32, `[row][column][channel]`, rows from the top."""
         return self._load()[1]
 
     def __getitem__(self, channel):
@@ -180,7 +180,7 @@ class Picture:
 
     @property
     def rgb(self):
-        """Linear colours of `color_space`, [row][column][3]."""
+        """Linear colours of `color_space`, `[row][column][3]`."""
         return self._several("RGB")
 
     @property

@@ -127,7 +127,7 @@ def _make(variant):
             return (0.0, max(float(absorption * length), 1e-3))
 
         def _take(self, table):
-            """The table on the device: for each side and way [column][incident][leaving][mode], modes padded."""
+            """The table on the device: for each side and way `[column]`[incident][leaving]`[mode]`, modes padded."""
             self.reciprocal, self.cells, self.exponent = table["reciprocal"], int(table["cells"]), float(table["exponent"])
             side = self.side = self.cells + 3
             names = [f"{s}_{w}" for s in ("adaxial", "abaxial") for w in ("reflected", "transmitted")]
