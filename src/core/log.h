@@ -13,7 +13,7 @@ class Log {
   virtual void warn(const Location& where, std::string_view message) const = 0;
 };
 
-/// Standard error, or nothing when quiet.
+/// Standard error, or nothing when quiet. Messages of several threads stay whole.
 class ConsoleLog final : public Log {
  public:
   explicit ConsoleLog(bool quiet = false) : quiet_(quiet) {}

@@ -1,0 +1,88 @@
+#include "system/tcp_client.h"
+
+#include <gmock/gmock.h>
+
+#include <thread>
+#include <vector>
+
+#include "tests/support/input_error.h"
+#include "tests/support/tev_listener.h"
+
+namespace frond {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::Port;
+using testing::TevListener;
+
+TEST(ServerAddresses, AreHostsAndPorts) {
+  for (const char* text : {"localhost:14158", "127.0.0.1:1", "host-1.example.org:65535", "[::1]:14158"})
+    EXPECT_EQ(parse_server_address(text, "--at").text(), text);
+  EXPECT_EQ(parse_server_address("[::1]:14158", "--at").host, "::1");
+  EXPECT_EQ(parse_server_address("[::1]:14158", "--at").port, 14158);
+}
+
+TEST(ServerAddresses, ThatAreNoneAreRefused) {
+  for (const char* text :
+       {"", ":", "localhost", "localhost:", ":14158", "localhost:0", "localhost:65536", "localhost:-1", "localhost:+1",
+        "localhost: 1", "localhost:1x", "::1:14158", "[]:1", "[::1]", "[::1:1", "a b:1", "http://localhost:1"})
+    EXPECT_THAT(error_of([&] { parse_server_address(text, "--at"); }),
+                HasSubstr("--at takes HOST:PORT, such as localhost:14158"))
+        << text;
+}
+
+TEST(TcpClients, SayWhyThereIsNoConnection) {
+  const Port port;
+  const Patience patience(10);
+  EXPECT_THAT(error_of([&] {
+                TcpClient({"127.0.0.1", port.number()}, patience);
+              }),
+              HasSubstr("cannot connect to " + port.address() + ": Connection refused"));
+  EXPECT_THAT(error_of([&] {
+                TcpClient({"name.invalid", 1}, patience);
+              }),
+              HasSubstr("cannot connect to name.invalid:1: "));
+}
+
+TEST(TcpClients, SendAllBytes) {
+  TevListener listener(TevListener::Manner::reads);
+  const Patience patience(60);
+  std::vector<unsigned char> packet(10'000'000);  // one of nonsense
+  packet[0] = 0x80, packet[1] = 0x96, packet[2] = 0x98;
+  { TcpClient({"127.0.0.1", listener.port()}, patience).send(packet); }
+  listener.join();
+  EXPECT_EQ(listener.bytes(), packet.size());
+  EXPECT_THAT(listener.faults(), ::testing::ElementsAre("type 0 of \"\""));
+}
+
+TEST(TcpClients, LearnThatTheOtherSideHasGone) {
+  TevListener listener(TevListener::Manner::closes_early);
+  const Patience patience(60);
+  TcpClient client({"127.0.0.1", listener.port()}, patience);
+  const std::vector<unsigned char> bytes(1 << 20);
+  EXPECT_THAT(error_of([&] {
+                for (;;) client.send(bytes);
+              }),
+              HasSubstr("has closed the connection: "));
+}
+
+TEST(TcpClients, WaitForTheirPatienceAndNoLonger) {
+  const std::vector<unsigned char> bytes(64 << 20);
+  {
+    TevListener listener(TevListener::Manner::never_reads);
+    const Patience patience(0.1);
+    TcpClient client({"127.0.0.1", listener.port()}, patience);
+    EXPECT_THAT(error_of([&] { client.send(bytes); }), HasSubstr("takes no more data"));
+  }
+  TevListener listener(TevListener::Manner::never_reads);
+  Patience patience(1e6);
+  TcpClient client({"127.0.0.1", listener.port()}, patience);
+  std::jthread other([&patience] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    patience.end_at(Patience::Clock::now());
+  });
+  EXPECT_THAT(error_of([&] { client.send(bytes); }), HasSubstr("data"));
+}
+
+}  // namespace
+}  // namespace frond
