@@ -90,4 +90,8 @@ std::vector<unsigned char> encode_exr(const Image& image, const ImageHeader& hea
   fail({}, "cannot encode an EXR: {}", e.what());
 }
 
+void round_to_halves(std::span<float> values) {
+  for (float& v : values) v = half(v);
+}
+
 }  // namespace frond
