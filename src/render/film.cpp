@@ -69,6 +69,19 @@ bool Film::merge(size_t i, const FilmTile& part) {
   return tiles_[i].merge(part);
 }
 
+Film::Hold Film::hold(const Crop& pixels) const {
+  const Crop reaching = format_.splatting ? format_.splatting->reaching(pixels) : pixels;
+  const size_t first = tile_at(reaching.x0, reaching.y0), last = tile_at(reaching.x1 - 1, reaching.y1 - 1);
+  const size_t width = last % columns() - first % columns();
+  std::array<bool, kLocks> is_needed{};
+  for (size_t row = first; row <= last; row += columns())
+    for (size_t i = row; i <= row + width; ++i) is_needed[i % kLocks] = true;
+  Hold held;
+  for (size_t lock = 0; lock < kLocks; ++lock)  // in one order: no two threads wait for each other
+    if (is_needed[lock]) held.emplace_back((*locks_)[lock]);
+  return held;
+}
+
 template <class Each>
 void Film::for_each_reaching_tile(int x, int y, const Each& each) const {
   const Crop pixels = format_.splatting->reaching({x, y, x + 1, y + 1});
@@ -226,8 +239,24 @@ Triple Film::block_variance(int x, int y) const {
   return v;
 }
 
-Film::BandMean Film::band_mean(int x, int y, size_t band) const {
+double Film::own_weight(int x, int y, size_t band) const {
   const FilmTile::Pixel& p = pixel(x, y);
+  if (p.samples == 0) return 0;
+  // Few samples see a band, and filter weights may be negative: those of all samples say what one weighs.
+  const auto n = double(tiles_[tile_at(x, y)].band(x, y, band).samples);
+  return n * (double(p.weight) / FilmTile::kWeightsOfOne) / double(p.samples);
+}
+
+double Film::band(int x, int y, size_t band) const {
+  if (format_.splatting) {
+    const Gathered all = gathered(x, y, band);
+    return all.weight > 0 ? unit_ * (all.sum[0] / all.weight) : 0;
+  }
+  const double weight = own_weight(x, y, band);
+  return weight == 0 ? 0 : unit_ * tiles_[tile_at(x, y)].band(x, y, band).sum.value() / weight;
+}
+
+Film::BandMean Film::band_mean(int x, int y, size_t band) const {
   const FilmTile::BandSums& b = tiles_[tile_at(x, y)].band(x, y, band);
   if (format_.splatting) {
     const Gathered all = gathered(x, y, band);
@@ -242,11 +271,10 @@ Film::BandMean Film::band_mean(int x, int y, size_t band) const {
                                   }),
             b.samples};
   }
-  if (b.samples == 0 || p.weight == 0) return {};
-  // Few samples see a band, and filter weights may be negative: those of all samples say what one weighs.
-  const double n = double(b.samples), weight = n * (double(p.weight) / FilmTile::kWeightsOfOne) / double(p.samples);
-  return {unit_ * b.sum.value() / weight, unit_ * unit_ * variance_of_mean(b.sum.value(), b.square.value(), n, weight),
-          b.samples};
+  const double weight = own_weight(x, y, band);
+  if (weight == 0) return {};
+  return {unit_ * b.sum.value() / weight,
+          unit_ * unit_ * variance_of_mean(b.sum.value(), b.square.value(), double(b.samples), weight), b.samples};
 }
 
 Film::FeatureMeans Film::features(int x, int y) const {

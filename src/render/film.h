@@ -36,6 +36,10 @@ class Film {
   /// Adds what another thread, or machine, has rendered of tile `i`. Thread-safe. False where there is some of it
   /// already.
   bool merge(size_t i, const FilmTile& part);
+  /// Holds off `merge` from all tiles that have a part in these pixels of the picture, while it lives: what is read of
+  /// the pixels meanwhile is of whole items.
+  using Hold = std::vector<std::unique_lock<std::mutex>>;
+  [[nodiscard]] Hold hold(const Crop& pixels) const;
   /// The tile of a pixel.
   size_t tile_at(int x, int y) const;
   /// Adds one sample. No two threads at a time.
@@ -61,6 +65,8 @@ class Film {
     uint64_t samples = 0;
   };
   BandMean band_mean(int x, int y, size_t band) const;
+  /// The mean alone, which takes far less time.
+  double band(int x, int y, size_t band) const;
   /// Values of the film's channels: means over the samples that met something, and ids; 0 where none did.
   struct FeatureMeans {
     std::array<double, kMostMeans> means{};
@@ -92,6 +98,8 @@ class Film {
   void for_each_reaching_pixel(int x, int y, const Each& each) const;
   Gathered gathered(int x, int y) const;
   Gathered gathered(int x, int y, size_t band) const;
+  /// What those of a pixel's own samples weigh that saw a band.
+  double own_weight(int x, int y, size_t band) const;
   /// The sum of weights, or what it is on average where negative ones leave too little of it.
   template <class Count>
   double enough_weight(int x, int y, double weight, const Count& count) const;

@@ -44,4 +44,6 @@ void ImageOutput::write(const Film& film, const PictureFormat& format) const {
               s.half ? ExrDepth::half : ExrDepth::single);
 }
 
+bool ImageOutput::rounds_to_halves(const Film& film) const { return is_exr(path_) && film.settings().half; }
+
 }  // namespace frond

@@ -22,6 +22,9 @@ class ImageOutput {
   /// the image does not reach the disk.
   void write(const Film& film, const PictureFormat& format) const;
 
+  /// Whether `write` rounds the film's colours, or bands, to halves.
+  bool rounds_to_halves(const Film& film) const;
+
   const std::string& path() const { return path_; }
 
  private:

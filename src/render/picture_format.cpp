@@ -28,6 +28,13 @@ class PixelWriter {
       for (size_t c = 0; c < channel->size(); ++c) names_.emplace_back(channel->exr[c]);
   }
   const std::vector<std::string>& names() const { return names_; }
+  /// Of what is seen.
+  std::vector<std::string> picture_names() const {
+    if (!format_.space.empty()) return {names_.begin(), names_.begin() + 3};
+    std::vector<std::string> names(names_.begin(), names_.begin() + ptrdiff_t(format_.bands.size()));
+    if (!preview_.empty()) names.insert(names.end(), {"R", "G", "B"});
+    return names;
+  }
 
   void write(int x, int y, float* to) {
     to_ = to;
@@ -36,6 +43,17 @@ class PixelWriter {
     else
       write_colors(x, y);
     write_channels(x, y);
+  }
+  void write_picture(int x, int y, float* to) {
+    to_ = to;
+    if (!format_.space.empty()) return put(film_.mean(x, y));
+    Triple xyz{};
+    for (size_t b = 0; b < format_.bands.size(); ++b) {
+      const double mean = film_.band(x, y, b);
+      put(mean);
+      add_band(b, mean, xyz);
+    }
+    if (!preview_.empty()) put_preview(xyz);
   }
 
  private:
@@ -59,12 +77,17 @@ class PixelWriter {
       const Film::BandMean m = film_.band_mean(x, y, b);
       put(m.mean);
       variances[b] = float(std::min(m.variance, largest_));
-      for (size_t c = 0; c < 3 && !preview_.empty(); ++c) xyz[c] += preview_[b][c] * m.mean;
+      add_band(b, m.mean, xyz);
     }
     to_ += count;
     put(film_.leaf_fraction(x, y));
-    if (!preview_.empty()) put(find_color_space("srgb")->rgb_from_xyz * xyz);
+    if (!preview_.empty()) put_preview(xyz);
   }
+
+  void add_band(size_t band, double mean, Triple& xyz) const {
+    for (size_t c = 0; c < 3 && !preview_.empty(); ++c) xyz[c] += preview_[band][c] * mean;
+  }
+  void put_preview(const Triple& xyz) { put(find_color_space("srgb")->rgb_from_xyz * xyz); }
 
   void write_channels(int x, int y) {
     const ChannelList& channels = film_.format().channels;
@@ -114,6 +137,25 @@ Image film_image(const Film& film, const PictureFormat& format) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) writer.write(crop.x0 + x, crop.y0 + y, &image.at(x, y, 0));
   return image;
+}
+
+Image empty_picture(const Film& film, const PictureFormat& format) {
+  const Crop& crop = film.settings().crop;
+  return {crop.width(), crop.height(), PixelWriter(film, format).picture_names()};
+}
+
+bool renew_picture(const Film& film, const PictureFormat& format, const std::stop_token& stop, Image& picture) {
+  PixelWriter writer(film, format);
+  const Crop& crop = film.settings().crop;
+  for (size_t i = 0; i < film.tiles(); ++i) {
+    if (stop.stop_requested()) return false;
+    const Crop pixels = intersection(film.tile_pixels(i), crop);
+    if (pixels.width() <= 0 || pixels.height() <= 0) continue;  // others reach into the picture
+    const Film::Hold hold = film.hold(pixels);
+    for (int y = pixels.y0; y < pixels.y1; ++y)
+      for (int x = pixels.x0; x < pixels.x1; ++x) writer.write_picture(x, y, &picture.at(x - crop.x0, y - crop.y0, 0));
+  }
+  return true;
 }
 
 }  // namespace frond

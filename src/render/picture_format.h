@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,12 @@ struct PictureFormat {
 /// Colours, their variances and `leaf`, or those of bands in the layout of image/spectral_layout.h; and the channels
 /// that the format asks for.
 Image film_image(const Film& film, const PictureFormat& format);
+
+/// What film_image has of what is seen: colours, or bands and the colours that stand for them; no variances, no further
+/// channels. Black.
+Image empty_picture(const Film& film, const PictureFormat& format);
+/// Fills it with what the film holds by now. Others may render meanwhile: each tile is that of whole items. False where
+/// `stop` was asked for first.
+bool renew_picture(const Film& film, const PictureFormat& format, const std::stop_token& stop, Image& picture);
 
 }  // namespace frond

@@ -1,0 +1,33 @@
+#include "render/tev_viewer.h"
+
+#include <algorithm>
+
+#include "image/tev_packets.h"
+
+namespace frond {
+
+void TevViewer::show(const Image& picture) {
+  if (!client_) {
+    client_.emplace(at_, patience_);
+    client_->send(create_image_packet(name_, picture));
+    sent_.resize(picture.pixels.size());
+  }
+  const size_t row = size_t(picture.width) * picture.channels.size();
+  for (int y = 0; y < picture.height; y += Film::kTile) {
+    const int end = std::min(y + Film::kTile, picture.height);
+    const auto first = picture.pixels.begin() + ptrdiff_t(size_t(y) * row),
+               last = picture.pixels.begin() + ptrdiff_t(size_t(end) * row);
+    const auto before = sent_.begin() + ptrdiff_t(size_t(y) * row);
+    if (!is_last_ && std::equal(first, last, before)) continue;
+    client_->send(update_image_packet(name_, picture, y, end));
+    std::copy(first, last, before);
+  }
+}
+
+void TevViewer::end(bool at_once) {
+  constexpr std::chrono::seconds kMostSeconds{3};
+  patience_.end_at(Patience::Clock::now() + (at_once ? std::chrono::seconds{0} : kMostSeconds));
+  is_last_ = true;
+}
+
+}  // namespace frond
