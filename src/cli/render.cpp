@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "cli/render_report.h"
+#include "cli/render_views.h"
 #include "cli/strict_log.h"
 #include "render/adaptive.h"
 #include "render/checkpoint.h"
@@ -56,7 +57,8 @@ class RenderCommand {
         files_(std::move(files)),
         console_(options.quiet),
         log_(console_, options.reading.strict),
-        session_(log_, {options.threads, cache_directory(options.cache, options.no_cache), options.plugins}) {}
+        session_(log_, {options.threads, cache_directory(options.cache, options.no_cache), options.plugins}),
+        views_(options) {}
 
   /// The program's exit code.
   int run() {
@@ -71,7 +73,8 @@ class RenderCommand {
     }
     if (options_.pilot) return 0;
     if (names_) kept_.emplace(*names_, log_);
-    RenderPart part = first_part();
+    RenderPart& part = part_.emplace(first_part());
+    views_.begin(part.film, part.header.picture, output_ ? output_->path() : options_.part, console_);
     fill(part);
     const bool stopped = kept_ && kept_->was_stopped();
     if (kept_)  // a picture that is done is not lost with its checkpoint
@@ -119,6 +122,7 @@ class RenderCommand {
       fail({}, "--max-rms: {} samples per pixel at least tell how much noise there is, --spp allows {}", kLeastAdaptive,
            options_.samples);
     if (output_) output_->check(scene_->picture());
+    views_.check(scene_->picture());
     log_.check();
   }
 
@@ -202,7 +206,8 @@ class RenderCommand {
     statistics_ = session_.render_to(*scene_, request, part, control);
   }
 
-  void finish(const RenderPart& part) const {
+  void finish(const RenderPart& part) {
+    views_.finish_preview();
     const SampleCount samples = sample_count(part.film);
     if (output_ && samples.most == 0) fail({}, "--time-limit: the time was over before anything was rendered");
     if (const uint64_t count = part.film.not_finite(); count > 0)
@@ -223,6 +228,7 @@ class RenderCommand {
                           "there, and estimates of the noise are too small",
                           100 * tail.share));
     if (output_) output_->write(part.film, finished_picture(part));
+    views_.finish_display(output_ && output_->rounds_to_halves(part.film));
     if (options_.quiet && !options_.json) return;
     print_report({.statistics = statistics_,
                   .load_seconds = load_seconds_,
@@ -258,6 +264,8 @@ class RenderCommand {
   std::optional<choose::Choice> choice_;
   std::optional<LoadedScene> scene_;
   SampleRange range_;
+  std::optional<RenderPart> part_;
+  RenderViews views_;  ///< of the part
   double load_seconds_ = 0;
   RenderStatistics statistics_;
 };

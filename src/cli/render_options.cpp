@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "cli/common_options.h"
+#include "image/tev_packets.h"
 #include "render/channels.h"
 
 namespace frond {
@@ -72,12 +73,11 @@ void add_refused_options(CLI::App& command) {
     command.add_flag_callback(
         name, [name, instead] { fail({}, "{}: {}", name, instead); }, std::string("pbrt's, refused: ") + instead);
   };
-  refuse("--display-server", "frond talks to no viewer; --checkpoint and frond merge show what is done so far");
   refuse("--mse-reference-image", "frond difference compares pictures");
   refuse("--mse-reference-out", "frond difference compares pictures");
   refuse("--debugstart", "--pixels and --samples find one path again");
   refuse("--pixelmaterial", "--channels material writes what each pixel shows");
-  refuse_flag("--interactive", "frond has no window");
+  refuse_flag("--interactive", "frond has no window; --display-server shows the picture in a viewer's");
   refuse_flag("--fullscreen", "frond has no window");
   refuse_flag("--disable-image-textures", "frond has nothing like it");
   refuse_flag("--format", "pbrt-v4 itself rewrites scene files");
@@ -207,8 +207,21 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
       ->type_name("SWAP")
       ->allow_extra_args(false);
   add_plugin_option(command, o.plugins);
-  command.add_option("--display", o.display.display, "Display of PNG and JPEG output; sRGB by default.");
+  const auto set_display = [&o](const std::string& name) {
+    if (name == "tev")
+      o.display_server = kTevAddress;
+    else
+      o.display.display = name;
+  };
+  command.add_option_function<std::string>(
+      "--display", set_display,
+      "Display of PNG and JPEG output; sRGB by default. tev: short for --display-server 127.0.0.1:14158.");
   command.add_option("--view", o.display.view, "View of that display.");
+  command
+      .add_option("--display-server", o.display_server,
+                  "HOST:PORT where the image viewer tev listens: it shows the picture while it is rendered.")
+      ->type_name("ADDRESS");
+  command.add_flag("--preview", o.preview, "Show the picture in the terminal while it is rendered, and at the end.");
   command.add_option("--cache", o.cache, "Folder for tables computed at load; ~/.cache/frond by default.")
       ->type_name("FOLDER");
   command.add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");

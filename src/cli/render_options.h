@@ -24,10 +24,11 @@ struct RenderOptions {
   std::vector<int> pixels, pixel;
   std::vector<std::string> swaps, plugins, channels;
   DisplayChoice display;
+  std::optional<std::string> display_server;  ///< HOST:PORT
   int samples = 0, threads = 0;
   std::optional<uint64_t> seed;
   double checkpoint_seconds = 0, time_limit_seconds = 0, max_rms = 0;
-  bool quick = false, json = false, quiet = false, no_cache = false, pilot = false, resume = false;
+  bool quick = false, json = false, quiet = false, no_cache = false, pilot = false, resume = false, preview = false;
   bool no_pixel_jitter = false, no_texture_filtering = false, no_wavelength_jitter = false;
   std::vector<std::string> of_pbrt;  ///< its options that do nothing here, as they are spelled
 };

@@ -45,9 +45,9 @@ TEST_F(PbrtOptions, WhatDoesNothingHereWarnsAndWhatAsksForMoreIsRefused) {
       {"render", path("scene.pbrt"), "-o", path("a.exr"), "--spp", "1", "--gpu", "--stats", "--write-partial-images"});
   EXPECT_EQ(idle.code, 0);
   EXPECT_THAT(idle.err, AllOf(HasSubstr("--gpu of pbrt has no effect"), HasSubstr("--write-partial-images of pbrt")));
-  const Outcome refused = frond_command({"render", path("scene.pbrt"), "--display-server", "localhost:14158"});
+  const Outcome refused = frond_command({"render", path("scene.pbrt"), "--mse-reference-image", "a.exr"});
   EXPECT_EQ(refused.code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("--display-server: frond talks to no viewer"));
+  EXPECT_THAT(refused.err, HasSubstr("--mse-reference-image: frond difference compares"));
 }
 
 TEST_F(PbrtOptions, CropsTheWrongWayRoundArePutRight) {

@@ -1,0 +1,148 @@
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "image/image_file.h"
+#include "tests/cli/command.h"
+#include "tests/support/input_error.h"
+#include "tests/support/tev_listener.h"
+
+namespace frond {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+using testing::TevListener;
+using Manner = TevListener::Manner;
+
+class LiveDisplay : public ::testing::Test {
+ protected:
+  void SetUp() override { write_scene("scene.pbrt", 50, 40); }
+  void write_scene(const std::string& name, int width, int height) const {
+    folder_.write(name, fmt::format(R"(
+LookAt 0 0 2  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" {} "integer yresolution" {} "integer pixelbounds" [ 2 {} 1 {} ]
+Sampler "paddedsobol" "integer pixelsamples" 16
+Integrator "path" "integer maxdepth" 2
+WorldBegin
+LightSource "infinite" "rgb L" [.3 .4 .5]
+Material "diffuse" "rgb reflectance" [.2 .5 .1]
+Shape "sphere" "float radius" .5
+)",
+                                    width, height, width, height));
+  }
+  std::string path(const std::string& name) const { return folder_.name_of(name); }
+  Outcome render(const std::string& output, std::vector<std::string> more) const {
+    std::vector<std::string> words{"render", path("scene.pbrt"), "--no-cache", "-o", path(output)};
+    words.insert(words.end(), more.begin(), more.end());
+    return frond_command(words);
+  }
+  TestFolder folder_{"display"};
+};
+
+TEST_F(LiveDisplay, ShowsWhatTheFileHoldsInTheEnd) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{},
+                                               {"--filter", "box"},
+                                               {"--wavelengths", "bands,wavelengths=430,500,560,610,680,780"},
+                                               {"--wavelengths", "bands,wavelengths=600,650"},
+                                               {"--max-rms", "0.05", "--spp", "64"},
+                                               {"--channels", "normal", "--checkpoint", "100"}}) {
+    TevListener listener;
+    std::vector<std::string> words{"--display-server", listener.address()};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome o = render("a.exr", words);
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_THAT(o.err, Not(HasSubstr("display:")));
+    listener.join();
+    std::filesystem::remove(path("a.exr.part"));
+    const Image file = read_image(path("a.exr"), {}).image;
+    EXPECT_THAT(listener.faults(), IsEmpty());
+    ASSERT_THAT(listener.images(), SizeIs(1));
+    const auto& [name, shown] = *listener.images().begin();
+    EXPECT_THAT(name, StartsWith("a.exr ("));
+    EXPECT_EQ(shown.width, 48);
+    EXPECT_EQ(shown.height, 39);
+    ASSERT_EQ(shown.width, file.width);
+    ASSERT_EQ(shown.height, file.height);
+    ASSERT_THAT(shown.channels, Not(IsEmpty()));
+    for (const std::string& channel : shown.channels) {
+      ASSERT_TRUE(file.channel(channel)) << channel;
+      EXPECT_EQ(shown.values.at(channel), file.plane(*file.channel(channel))) << channel;
+    }
+    EXPECT_THAT(shown.updates, ::testing::Each(::testing::Ge(1)));
+  }
+}
+
+TEST_F(LiveDisplay, ShowsPartsAndPicturesOfEightBitsToo) {
+  for (const char* output : {"a.png", "a.part"}) {
+    TevListener listener;
+    const Outcome o =
+        frond_command({"render", path("scene.pbrt"), "--no-cache", "-q", "--display-server", listener.address(),
+                       std::string(output) == "a.part" ? "--part" : "-o", path(output)});
+    EXPECT_EQ(o.code, 0) << o.err;
+    listener.join();
+    EXPECT_THAT(listener.faults(), IsEmpty());
+    ASSERT_THAT(listener.images(), SizeIs(1));
+    const TevListener::Shown& shown = listener.images().begin()->second;
+    EXPECT_EQ(shown.channels, (std::vector<std::string>{"R", "G", "B"}));
+    EXPECT_GT(shown.values.at("G")[0], 0);
+  }
+}
+
+TEST_F(LiveDisplay, ThatIsNotThereIsAWarning) {
+  const testing::Port port;
+  const Outcome o = render("a.exr", {"--display-server", port.address(), "--strict"});
+  EXPECT_EQ(o.code, 0);
+  EXPECT_THAT(o.err, HasSubstr("warning: display: cannot connect to " + port.address() + ": Connection refused; "));
+  EXPECT_TRUE(std::filesystem::exists(path("a.exr")));
+}
+
+TEST_F(LiveDisplay, ThatGoesAwayIsAWarning) {
+  TevListener listener(Manner::closes_early);
+  write_scene("scene.pbrt", 400, 300);
+  const Outcome o = render("a.exr", {"--display-server", listener.address()});
+  EXPECT_EQ(o.code, 0);
+  EXPECT_THAT(o.err, AllOf(HasSubstr("display: " + listener.address()), HasSubstr("has closed the connection")));
+  EXPECT_TRUE(std::filesystem::exists(path("a.exr")));
+}
+
+TEST_F(LiveDisplay, ThatDoesNotReadIsAWarningAndTheFileIsWritten) {
+  TevListener listener(Manner::never_reads);
+  write_scene("scene.pbrt", 900, 600);  // more than the system keeps for one who does not read
+  const Outcome o = render("a.exr", {"--spp", "1", "--display-server", listener.address()});
+  EXPECT_EQ(o.code, 0);
+  EXPECT_THAT(o.err, AllOf(HasSubstr("display: " + listener.address()), HasSubstr("no more data")));
+  EXPECT_TRUE(std::filesystem::exists(path("a.exr")));
+}
+
+TEST_F(LiveDisplay, HasAnAddress) {
+  for (const char* address : {"", "localhost", "localhost:0", ":14158", "localhost:nonsense"}) {
+    const Outcome o = render("a.exr", {"--display-server", address});
+    EXPECT_EQ(o.code, 1) << address;
+    EXPECT_THAT(o.err, HasSubstr("--display-server takes HOST:PORT")) << address;
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("a.exr")));
+}
+
+// Whether a viewer is at home there or not.
+TEST_F(LiveDisplay, TevIsNoDisplayOfPictures) {
+  const Outcome o = render("a.exr", {"--display", "tev", "--spp", "1"});
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.err, ::testing::AnyOf(Not(HasSubstr("display:")), HasSubstr("127.0.0.1:14158")));
+  EXPECT_THAT(render("b.exr", {"--display", "sRGB"}).err, HasSubstr("holds linear values"));
+}
+
+TEST_F(LiveDisplay, NeedsATerminalForAPreview) {
+  const Outcome o = render("a.exr", {"--preview"});
+  EXPECT_EQ(o.code, 1);
+  EXPECT_EQ(o.err, "frond: --preview: neither standard error nor standard output is a terminal to draw on\n");
+}
+
+}  // namespace
+}  // namespace frond
