@@ -1,6 +1,6 @@
 // The solved leaf for any C++ renderer: one header, C++17, without dependencies.
 //
-//   frond::Leaf leaf("soybean.leaf");                        // frond export leaf_solved --format leaf ...
+//   frond::Leaf leaf("soybean.leaf");                        // frond table leaf_solved ... -o soybean.leaf
 //   frond::Leaf::At at = leaf.at(551.0);                     // once for a wavelength, and an optical depth if it varies
 //   double f = leaf.f(at, incident, leaving);                // 1/sr, without cosine
 //   frond::Leaf::Sample s = leaf.sample(at, incident, u0, u1, u2);

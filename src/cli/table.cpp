@@ -11,6 +11,8 @@
 #include "leaf/table/body_cache.h"
 #include "leaf/table/body_file.h"
 #include "leaf/table/body_table.h"
+#include "leaf/table/portable_leaf.h"
+#include "leaf/table/reciprocal_body.h"
 #include "leaf/table/table_cache.h"
 #include "leaf/table/table_file.h"
 #include "leaf/tissue/constants.h"
@@ -122,6 +124,29 @@ void make_modes_file(const TableOptions& options, const std::vector<std::string>
             fmt::format(", {} kB in a render, {:.2g} s of CPU", (bytes + 512) / 1024, seconds));
 }
 
+/// For programs that are not frond: docs/leaf_file.md.
+void make_leaf_file(const TableOptions& options, const std::vector<std::string>& words) {
+  const MaterialInfo& info = PluginTable<MaterialInfo>("material", builtin_materials()).get(kSolved, {});
+  const LeafParams leaf(leaf_from_words(info, words));
+  if (leaf.incident() == Incident::light)
+    fail({},
+         "a .leaf file is of incident \"traced\" or \"reciprocal\": \"light\" is the former with its directions "
+         "swapped");
+  leaf::BodyRequest request = modes_request_of(options, words);
+  std::ranges::sort(request.wavelengths_nm);
+  if (leaf.is_reciprocal()) request.tolerance /= leaf::kReciprocalFiner;
+  request.params.cuticle_aspect = 0;
+  leaf::BodySpectrum spectrum = leaf::make_body_spectrum(request, ThreadPool(options.threads));
+  if (leaf.is_reciprocal()) spectrum = leaf::make_reciprocal(spectrum).value();
+  const leaf::PortableLeaf table = leaf::make_portable(request, spectrum, leaf.tissue().cuticle_aspect);
+  const std::string bytes = leaf::portable_bytes(table);
+  write(options.output, bytes);
+  ConsoleLog(options.quiet)
+      .info(fmt::format("{}: {}{} wavelengths x {} cells, {} kB", options.output,
+                        table.is_reciprocal ? "reciprocal, " : "", table.wavelengths_nm.size(), table.cells,
+                        (bytes.size() + 512) / 1024));
+}
+
 /// Options that say nothing of a table of modes.
 void check_modes_options(const CLI::App& command) {
   for (const char* name : {"--method", "--angles", "--rays", "--seed", "--equalsides"})
@@ -144,6 +169,7 @@ void make_table_file(const TableOptions& options, const CLI::App& command) {
   const TableWords words = parse_table_words(options.words, options.specimen);
   if (words.material == kSolved) {
     check_modes_options(command);
+    if (options.output.ends_with(".leaf")) return make_leaf_file(options, words.leaf);
     return make_modes_file(options, words.leaf);
   }
   check_method_options(options, command);
@@ -160,7 +186,8 @@ void add_table_command(CLI::App& app) {
   command
       ->add_option("leaf", o.words,
                    "[MATERIAL] name=value ...: leaf_simplified (default), R and T by angle and wavelength as CSV, or "
-                   "leaf_solved, the modes of its BSDF; and the leaf, as they take it (frond describe).")
+                   "leaf_solved, the modes of its BSDF, or with an output FILE.leaf all of it for other programs "
+                   "(docs/leaf_file.md); and the leaf, as they take it (frond describe).")
       ->type_name("MATERIAL");
   command->add_option("--specimen", o.specimen, "A leaf from the literature; soybean by default.")
       ->type_name("SPECIMEN");
