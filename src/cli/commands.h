@@ -28,6 +28,7 @@ void add_man_command(CLI::App& app);
 void add_completion_command(CLI::App& app);
 void add_spectrophotometer_command(CLI::App& app);
 void add_goniophotometer_command(CLI::App& app);
+void add_export_command(CLI::App& app);
 
 /// Runs the frond command. 0: done; 1: bad use or bad input, with a message on standard error; 2: `conform` found a law
 /// broken; 75: another frond is at work on the same part; 130, 143: stopped by SIGINT or SIGTERM, what was done is

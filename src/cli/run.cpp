@@ -48,6 +48,7 @@ int run(int argc, const char* const* argv) {
   add_conform_command(app);
   add_spectrophotometer_command(app);
   add_goniophotometer_command(app);
+  add_export_command(app);
   add_bench_command(app);
   add_man_command(app);
   add_completion_command(app);

@@ -18,14 +18,10 @@ std::vector<std::string> words_of(const std::string& text) {
 
 }  // namespace
 
-void add_specimen_options(CLI::App& command, SpecimenOptions& o) {
+void add_material_options(CLI::App& command, SpecimenOptions& o) {
   command.add_option("material", o.material, "NAME [parameter=value ...] (frond list, frond describe NAME).")
       ->type_name("MATERIAL")
       ->required();
-  command
-      .add_option("--with", o.with, "One more material to measure, \"NAME [parameter=value ...]\"; may be given again.")
-      ->type_name("MATERIAL")
-      ->allow_extra_args(false);
   add_plugin_option(command, o.plugins);
   command.add_option("--seed", o.seed, "Seed of all random numbers.")->check(is_seed);
   command.add_option("--threads", o.threads, "Threads; all by default. The figures do not depend on it.")
@@ -34,6 +30,14 @@ void add_specimen_options(CLI::App& command, SpecimenOptions& o) {
       ->type_name("FOLDER");
   command.add_flag("--no-cache", o.no_cache, "Keep no tables on disk.");
   command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors and what was asked for.");
+}
+
+void add_specimen_options(CLI::App& command, SpecimenOptions& o) {
+  add_material_options(command, o);
+  command
+      .add_option("--with", o.with, "One more material to measure, \"NAME [parameter=value ...]\"; may be given again.")
+      ->type_name("MATERIAL")
+      ->allow_extra_args(false);
 }
 
 std::vector<std::vector<std::string>> specimen_words(const SpecimenOptions& o) {

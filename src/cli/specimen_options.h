@@ -22,6 +22,8 @@ struct SpecimenOptions {
 };
 
 void add_specimen_options(CLI::App& command, SpecimenOptions& options);
+/// The same for commands that take one material.
+void add_material_options(CLI::App& command, SpecimenOptions& options);
 
 /// The words of each material, that of the command line first.
 std::vector<std::vector<std::string>> specimen_words(const SpecimenOptions& options);

@@ -41,7 +41,12 @@ std::string_view model_of(const ParsedPlugin& plugin) {
   return plugin.name;
 }
 
-/// Energy is kept by a leaf that is reciprocal, or whose incident direction is the light's, which is noisier.
+}  // namespace
+
+ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values) {
+  return {type, name, {}, {}, std::move(values)};
+}
+
 void keep_energy(SceneDescription& description, const Registry& registry) {
   for (MaterialDescription& m : description.materials) {
     const MaterialInfo& info = registry.materials.get(m.plugin.name, m.plugin.where);
@@ -50,12 +55,6 @@ void keep_energy(SceneDescription& description, const Registry& registry) {
     const std::string word = can_be_reciprocal(info) && (!model || can_be_reciprocal(*model)) ? "reciprocal" : "light";
     m.plugin.params.push_back({"string", "incident", {}, {}, std::vector<std::string>{word}});
   }
-}
-
-}  // namespace
-
-ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values) {
-  return {type, name, {}, {}, std::move(values)};
 }
 
 void prepare_for_radiometry(const Session& session, const std::string& wavelengths,

@@ -10,6 +10,10 @@ namespace frond {
 /// A parameter as a scene file has it.
 ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values);
 
+/// Leaves for which nothing is said of their incident direction are made to keep energy: reciprocal, or where they
+/// cannot be, with the light's direction for incident, which is noisier.
+void keep_energy(SceneDescription& description, const Registry& registry);
+
 /// What radiometry asks of a scene that was made for pictures: swaps are carried out, and leaves for which nothing is
 /// said are reciprocal, or take the light's direction for incident where they cannot be; paths end by roulette alone,
 /// unless the overrides say how; the period and the wavelengths, a PluginText of `bands`, are those asked for. Throws

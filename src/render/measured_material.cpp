@@ -12,9 +12,10 @@ namespace frond {
 
 std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, const Registry& registry,
                                          const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
-                                         const std::filesystem::path& cache_dir) {
+                                         const std::filesystem::path& cache_dir, const AdjustMaterials& adjust) {
   SceneDescription description = scene_of_materials(registry);
   description.materials.push_back({"", parse_material(words, registry).plugin});
+  if (adjust) adjust(description, registry);
   const RefusingLog refusing;
   SceneResolver resolver(description, registry, wavelengths, refusing);
   auto material = resolver.material(description.materials.size() - 1);

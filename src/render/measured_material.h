@@ -1,21 +1,27 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/log.h"
 #include "core/material.h"
+#include "scene/description.h"
 #include "scene/registry.h"
 
 namespace frond {
+
+/// What is done to materials before they are made; may be empty.
+using AdjustMaterials = std::function<void(SceneDescription&, const Registry&)>;
 
 /// A material as words give it, made without a scene and prepared for these wavelengths. Throws
 /// InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not reach.
 std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, const Registry& registry,
                                          const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
-                                         const std::filesystem::path& cache_dir);
+                                         const std::filesystem::path& cache_dir,
+                                         const AdjustMaterials& adjust = {});
 
 /// A material as words give it, `abm specimen=soybean`, made without a scene and prepared for wavelengths one
 /// by one.

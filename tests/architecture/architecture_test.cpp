@@ -25,12 +25,13 @@ const Layers kAllowed{
     {"integrators", {"core", "spectra", "scene"}},
     {"render", {"core", "system", "spectra", "image", "scene", "integrators", "materials", "instruments"}},
     {"instruments", {"core", "spectra"}},
+    {"exports", {"core", "system", "spectra", "instruments"}},
     {"radiometry", {"core", "system", "spectra", "scene", "instruments", "render"}},
     {"report", {"core", "system", "spectra", "leaf", "instruments", "radiometry"}},
     {"study", {"core", "system", "spectra", "image", "scene", "render", "instruments", "report"}},
     {"cli",
      {"core", "system", "spectra", "leaf", "materials", "image", "scene", "integrators", "render", "instruments",
-      "radiometry", "report", "study"}},
+      "exports", "radiometry", "report", "study"}},
 };
 
 /// "file: includes" lines of every include that `allowed` does not permit.

@@ -1,0 +1,52 @@
+#include "exports/subject.h"
+
+#include "core/bsdf.h"
+#include "instruments/beam.h"
+#include "instruments/given_wavelengths.h"
+
+namespace frond {
+namespace {
+
+const Bsdf& evaluated(const Material& material, const std::vector<double>& nm, Arena& arena) {
+  const GivenWavelengths wavelengths({nm.begin(), nm.end()});
+  const Bsdf* bsdf = material.evaluate(flat_hit(), wavelengths.sample(0), arena);
+  if (!bsdf) fail({}, "the material says that it has no surface there: nothing can be exported");
+  return *bsdf;
+}
+
+void check(const Bsdf& bsdf, const std::string& label) {
+  if (any(bsdf.flags() & Lobes::stochastic))
+    fail({}, "{}: its f is a random estimate, which no table can hold; of a leaf by abm, leaf_solved is the mean",
+         label);
+  if (any(bsdf.flags() & Lobes::specular)) fail({}, "{}: it has a delta lobe, which no table of f can hold", label);
+  const SampledSpectrum ratio = bsdf.index_ratio();
+  for (int i = 0; i < kLanes; ++i)
+    if (ratio[i] != 1)
+      fail({}, "{}: it refracts light into another medium; exports are of sheets with air on both sides", label);
+}
+
+}  // namespace
+
+ExportedBsdf::ExportedBsdf(const ExportSubject& subject, std::vector<double> wavelengths_nm)
+    : wavelengths_nm_(std::move(wavelengths_nm)), material_(subject.prepare(wavelengths_nm_)) {
+  Arena arena;
+  check(evaluated(*material_, wavelengths_nm_, arena), subject.label);
+}
+
+ExportedBsdf::At::At(const ExportedBsdf& bsdf) : bsdf_(evaluated(*bsdf.material_, bsdf.wavelengths_nm_, arena_)) {}
+
+SampledSpectrum ExportedBsdf::At::operator()(const Vec3& light, const Vec3& seen) const {
+  RandomStream unused(0);
+  return bsdf_.f(seen, light, unused);
+}
+
+std::vector<std::vector<double>> in_fours(const std::vector<double>& wavelengths_nm) {
+  std::vector<std::vector<double>> runs;
+  for (const double nm : wavelengths_nm) {
+    if (runs.empty() || runs.back().size() == kLanes) runs.emplace_back();
+    runs.back().push_back(nm);
+  }
+  return runs;
+}
+
+}  // namespace frond
