@@ -1,0 +1,172 @@
+#include "exports/table.h"
+
+#ifdef FROND_NETCDF_FILE
+#include <netcdf.h>
+#include <netcdf_mem.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include "system/shared_object.h"
+#endif
+
+namespace frond {
+namespace {
+
+constexpr ExportOption kOptions[] = {ExportOption::angles, ExportOption::views};
+
+#ifdef FROND_NETCDF_FILE
+
+/// The library, opened when a file is asked for: it brings others with it that no other command needs.
+struct NetCdf {
+  SharedObject library{FROND_NETCDF_FILE, "the NetCDF library", SharedObject::Binding::lazy};
+
+  template <class Function>
+  Function* find(const char* name) const {
+    Function* function = library.find<Function>(name);
+    if (!function) fail({}, "the NetCDF library \"{}\" has no function {}", FROND_NETCDF_FILE, name);
+    return function;
+  }
+#define FROND_NC(name) decltype(::nc_##name)* name = find<decltype(::nc_##name)>("nc_" #name)
+  FROND_NC(strerror);
+  FROND_NC(create_mem);
+  FROND_NC(def_dim);
+  FROND_NC(def_var);
+  FROND_NC(put_att_text);
+  FROND_NC(put_att_schar);
+  FROND_NC(enddef);
+  FROND_NC(put_var_double);
+  FROND_NC(put_var_float);
+  FROND_NC(put_var_schar);
+  FROND_NC(close_memio);
+  FROND_NC(abort);
+#undef FROND_NC
+};
+
+/// A classic file that is made in memory.
+class NetCdfFile {
+ public:
+  NetCdfFile() { check(nc_.create_mem("frond", NC_CLOBBER, kFirstBytes, &id_)); }
+  ~NetCdfFile() {
+    if (id_ >= 0) nc_.abort(id_);
+  }
+  NetCdfFile(const NetCdfFile&) = delete;
+  NetCdfFile& operator=(const NetCdfFile&) = delete;
+
+  int dimension(const Quantity& q, size_t length) {
+    int id;
+    check(nc_.def_dim(id_, name(q).c_str(), length, &id));
+    return id;
+  }
+  int variable(const Quantity& q, nc_type type, const std::vector<int>& dimensions) {
+    int id;
+    check(nc_.def_var(id_, name(q).c_str(), type, int(dimensions.size()), dimensions.data(), &id));
+    attribute(id, "long_name", q.doc);
+    if (!q.unit.empty()) attribute(id, "units", q.unit);
+    return id;
+  }
+  void attribute(int variable, const char* key, std::string_view text) {
+    check(nc_.put_att_text(id_, variable, key, text.size(), text.data()));
+  }
+  /// A list of words, as the CF conventions have them: numbers with their meanings.
+  void flags(int variable, std::span<const std::string_view> words) {
+    std::string meanings;
+    for (const std::string_view word : words) (meanings += meanings.empty() ? "" : " ") += word;
+    const auto values = numbers_to(words.size());
+    check(nc_.put_att_schar(id_, variable, "flag_values", NC_BYTE, values.size(), values.data()));
+    attribute(variable, "flag_meanings", meanings);
+  }
+  void end_of_header() { check(nc_.enddef(id_)); }
+  void put(int variable, const std::vector<double>& v) { check(nc_.put_var_double(id_, variable, v.data())); }
+  void put(int variable, const std::vector<float>& v) { check(nc_.put_var_float(id_, variable, v.data())); }
+  void put_numbers_to(int variable, size_t count) { check(nc_.put_var_schar(id_, variable, numbers_to(count).data())); }
+
+  std::string finish() {
+    NC_memio memory{};
+    const int status = nc_.close_memio(id_, &memory);
+    id_ = -1;
+    const std::unique_ptr<void, decltype(&std::free)> bytes(memory.memory, &std::free);
+    check(status);
+    return {static_cast<const char*>(memory.memory), memory.size};
+  }
+
+ private:
+  static constexpr size_t kFirstBytes = 1;  // it grows: what is not needed of more would stay in the file
+
+  static std::string name(const Quantity& q) { return std::string(q.name); }
+  static std::vector<signed char> numbers_to(size_t count) {
+    std::vector<signed char> values;
+    for (size_t i = 0; i < count; ++i) values.push_back(static_cast<signed char>(i));
+    return values;
+  }
+  void check(int status) const {
+    if (status != NC_NOERR) fail({}, "NetCDF: {}", nc_.strerror(status));
+  }
+
+  NetCdf nc_;
+  int id_ = -1;
+};
+
+void check_netcdf(const ExportRequest& request) {
+  check_table(request);
+  const NetCdf library;
+}
+
+std::string netcdf_file(const ExportSubject& subject, const ExportRequest& request) {
+  const BsdfTable t = make_table(subject, request);
+  NetCdfFile file;
+  const std::vector<int> axes{file.dimension(kWavelength, t.wavelengths_nm.size()),
+                              file.dimension(kSide, BsdfTable::kSides.size()),
+                              file.dimension(kThetaI, t.theta_i_deg.size()),
+                              file.dimension(kThetaO, t.theta_o_deg.size()),
+                              file.dimension(kPhiO, t.phi_o_deg.size()),
+                              file.dimension(kKind, BsdfTable::kKinds.size())};
+  const int wavelength = file.variable(kWavelength, NC_DOUBLE, {axes[0]});
+  const int side = file.variable(kSide, NC_BYTE, {axes[1]});
+  const int theta_i = file.variable(kThetaI, NC_DOUBLE, {axes[2]});
+  const int theta_o = file.variable(kThetaO, NC_DOUBLE, {axes[3]});
+  const int phi_o = file.variable(kPhiO, NC_DOUBLE, {axes[4]});
+  const int kind = file.variable(kKind, NC_BYTE, {axes[5]});
+  const std::vector<int> of_light(axes.begin(), axes.begin() + 3);
+  const int reflectance = file.variable(kReflectance, NC_DOUBLE, of_light);
+  const int transmittance = file.variable(kTransmittance, NC_DOUBLE, of_light);
+  const int f = file.variable(kF, NC_FLOAT, axes);
+  file.attribute(wavelength, "standard_name", "radiation_wavelength");
+  file.flags(side, BsdfTable::kSides);
+  file.flags(kind, BsdfTable::kKinds);
+  file.attribute(NC_GLOBAL, "Conventions", "CF-1.8");
+  file.attribute(NC_GLOBAL, "title", "Bidirectional scattering distribution function of " + subject.label);
+  file.attribute(NC_GLOBAL, "source", "frond " FROND_VERSION " export");
+  file.attribute(NC_GLOBAL, "material", subject.label);
+  file.end_of_header();
+  file.put(wavelength, t.wavelengths_nm);
+  file.put(theta_i, t.theta_i_deg);
+  file.put(theta_o, t.theta_o_deg);
+  file.put(phi_o, t.phi_o_deg);
+  file.put_numbers_to(side, BsdfTable::kSides.size());
+  file.put_numbers_to(kind, BsdfTable::kKinds.size());
+  file.put(reflectance, t.reflectance);
+  file.put(transmittance, t.transmittance);
+  file.put(f, t.f);
+  return file.finish();
+}
+
+#else
+
+void check_netcdf(const ExportRequest&) {
+  fail({}, "--format netcdf: this frond was built without the NetCDF library (Debian's libnetcdf-dev)");
+}
+
+std::string netcdf_file(const ExportSubject&, const ExportRequest& request) {
+  check_netcdf(request);
+  return {};
+}
+
+#endif
+
+}  // namespace
+
+extern const ExportFormat netcdf_format{
+    "netcdf", "the same table as a classic NetCDF file", false, kOptions, check_netcdf, netcdf_file};
+
+}  // namespace frond
