@@ -6,7 +6,7 @@
 
 namespace frond {
 
-extern const ExportFormat radiance_format, csv_format, npz_format, netcdf_format;
+extern const ExportFormat radiance_format, csv_format, npz_format, netcdf_format, osl_format;
 
 void check_ascending(std::string_view option, const std::vector<double>& numbers) {
   const auto wrong = std::ranges::adjacent_find(numbers, std::greater_equal());
@@ -14,7 +14,8 @@ void check_ascending(std::string_view option, const std::vector<double>& numbers
 }
 
 std::span<const ExportFormat* const> export_formats() {
-  static const ExportFormat* const kFormats[] = {&radiance_format, &csv_format, &npz_format, &netcdf_format};
+  static const ExportFormat* const kFormats[] = {&radiance_format, &csv_format, &npz_format, &netcdf_format,
+                                                 &osl_format};
   return kFormats;
 }
 

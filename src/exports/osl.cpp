@@ -1,0 +1,180 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/bsdf.h"
+#include "exports/format.h"
+#include "instruments/cubature.h"
+#include "instruments/goniophotometer.h"
+#include "instruments/spectrophotometer.h"
+
+namespace frond {
+namespace {
+
+constexpr ExportOption kOptions[] = {ExportOption::rays};
+constexpr size_t kAngles = 37;  // every 2.5 degrees
+constexpr double kLastAngle_deg = 89.5;
+constexpr int64_t kRays = 1'000'000;
+using Color = std::array<double, 3>;
+
+double angle_deg(size_t i) { return std::min(kLastAngle_deg, 90.0 * double(i) / double(kAngles - 1)); }
+
+/// Of one side, over the angle.
+struct SideTable {
+  std::array<Color, kAngles> surface{}, body{}, transmitted{};  ///< Rs, Rd, T
+  double exponent = 0;  ///< of the surface's lobe about the mirror direction, power over the cosine
+};
+
+/// Mean cosine between the normal and what the surface reflects of light along the normal.
+struct SurfaceTally {
+  float lit_side;
+  Moments cosines = {};
+
+  void add(const Scattered& ray) {
+    if (any(ray.lobe & Lobes::surface) && ray.weight[0] > 0 && ray.direction.z * lit_side > 0)
+      cosines.add(double(std::abs(ray.direction.z)));
+  }
+  void add(const SurfaceTally& other) { cosines.add(other.cosines); }
+  void clear() { cosines = {}; }
+};
+
+/// e of a lobe whose share of the light goes with (cos alpha)^e about the mirror direction: of light along the normal
+/// the mean of cos alpha is (e + 1) / (e + 2).
+double surface_exponent(const Exposure& along_normal, int64_t rays, const ThreadPool& pool) {
+  SurfaceTally tally{toward_light(along_normal.beam).z};
+  shoot(along_normal, 0, rays, tally, pool, {});
+  if (tally.cosines.count() == 0) return 1;
+  const double mean = tally.cosines.mean();
+  return std::max(1.0, (2 * mean - 1) / (1 - mean));
+}
+
+/// Share of the light that Cycles' phong_ramp sends on, (e + 2) / 2 pi (cos alpha)^e to a solid angle that counts by
+/// its cosine with the normal.
+double phong_albedo(double exponent, double theta_deg) {
+  constexpr double kNegligible = 1e-9;
+  const double theta = theta_deg * std::numbers::pi / 180, s = std::sin(theta), c = std::cos(theta);
+  const Density density = [&](const Vec3& w) {
+    const double cosine = -s * double(w.x) + c * double(w.z);
+    return cosine > 0 ? (exponent + 2) / (2 * std::numbers::pi) * std::pow(cosine, exponent) * double(w.z) : 0;
+  };
+  const std::array mirror{SpherePoint({float(-s), 0, float(c)})};
+  return total(integrate({0, 1, 0, 2 * std::numbers::pi}, density, kNegligible, mirror));
+}
+
+/// The shares at one wavelength; true where the material tells its surface from its body.
+bool measure(const ExportSubject& subject, const ExportedBsdf& bsdf, bool front, size_t channel, int64_t rays,
+             SideTable& side) {
+  const double nm = bsdf.wavelengths_nm()[0];
+  const uint64_t seed = hash_key(subject.seed, hash_bytes(subject.label));
+  const auto exposure = [&](double theta_deg) {
+    return Exposure{bsdf.material(), {front ? theta_deg : 180 - theta_deg, nm}, seed};
+  };
+  constexpr int kThetas = 4, kPhis = 6;
+  bool tells_surface = true;
+  for (size_t i = 0; i < kAngles; ++i) {
+    const GoniophotometerReading whole =
+        integrate_f(exposure(angle_deg(i)), DetectorSphere(kThetas, kPhis), subject.pool);
+    const SpectrophotometerReading parts = measure_shares(exposure(angle_deg(i)), {.rays = rays}, subject.pool);
+    tells_surface = tells_surface && parts.tells_surface;
+    const double reflected = whole.share(true).mean;
+    const double surface = parts.tells_surface ? std::min(parts.surface.mean, reflected) : 0;
+    side.surface[i][channel] = surface;
+    side.body[i][channel] = reflected - surface;
+    side.transmitted[i][channel] = whole.share(false).mean;
+  }
+  if (channel == 0) side.exponent = surface_exponent(exposure(0), rays, subject.pool);
+  return tells_surface;
+}
+
+std::string array_text(const char* name, const char* doc, const std::array<std::array<Color, kAngles>, 2>& sides) {
+  std::string text = fmt::format("    // {}\n    color {}[{}] = {{", doc, name, 2 * kAngles);
+  for (const auto& side : sides)
+    for (const Color& c : side) {
+      const bool is_last = &c == &sides[1].back();
+      text += fmt::format("\n        color({:.6f}, {:.6f}, {:.6f}){}", c[0], c[1], c[2], is_last ? "};\n" : ",");
+    }
+  return text;
+}
+
+constexpr const char* kHead =
+    R"(// Light with the weights of the viewing angle and side, as Baranoski and Rokne's simplified model has it: the mirror
+// direction spread by a power of the cosine, a diffuse reflection and a diffuse transmission. Red, green and blue are
+// {:g}, {:g} and {:g} nm. Shares of the light that come back are those of frond's material, angle by angle; how they are
+// spread over directions is not (docs/exports.md says how far from it).
+
+// A lobe of Cycles (stdcycles.h): (e + 2) / 2 pi (cos alpha)^e, alpha from the mirror direction.
+closure color phong_ramp(normal N, float exponent, color colors[8]) [[int builtin = 1]];
+
+color at_angle(color shares[{}], int side, float place)
+{{
+    int below = min(int(place), {});
+    int i = side * {} + below;
+    return mix(shares[i], shares[i + 1], place - below);
+}}
+
+shader frond_leaf(normal Normal = N, output closure color BSDF = 0)
+{{
+    // From the front's normal to 90 degrees in even steps, then from the back's.
+)";
+
+constexpr const char* kTail =
+    R"(    color white[8] = {{color(1), color(1), color(1), color(1), color(1), color(1), color(1), color(1)}};
+    float exponents[2] = {{{:.4f}, {:.4f}}};
+    int side = backfacing();
+    float place = acos(clamp(fabs(dot(I, Normal)), 0.0, 1.0)) * ({} / M_PI_2);
+    BSDF = at_angle(surface, side, place) * phong_ramp(Normal, exponents[side], white) +
+           at_angle(body, side, place) * diffuse(Normal) +
+           at_angle(transmitted, side, place) * translucent(Normal);
+}}
+)";
+
+std::vector<double> colors_of(const ExportRequest& request) {
+  return request.wavelengths_nm.empty() ? std::vector<double>{608, 551, 455} : request.wavelengths_nm;
+}
+
+void check_osl(const ExportRequest& request) {
+  if (const size_t n = colors_of(request).size(); n != 3)
+    fail({}, "--wavelengths: --format osl takes three, red, green and blue; {} were given", n);
+}
+
+std::string osl_file(const ExportSubject& subject, const ExportRequest& request) {
+  const auto nm = colors_of(request);
+  const int64_t rays = request.rays == 0 ? kRays : request.rays;
+  std::array<SideTable, 2> sides;
+  bool tells_surface = true;
+  for (size_t channel = 0; channel < nm.size(); ++channel) {
+    const ExportedBsdf bsdf(subject, {nm[channel]});
+    if (any(ExportedBsdf::At(bsdf).bsdf().flags() & Lobes::from_light))
+      fail({},
+           "{}: its shares hang on the light's direction, those of an OSL closure on the viewer's: leave "
+           "incident=light out",
+           subject.label);
+    for (const bool front : {true, false})
+      tells_surface &= measure(subject, bsdf, front, channel, rays, sides[front ? 0 : 1]);
+  }
+  if (!tells_surface)
+    subject.log.warn({}, "the material does not tell its surface from its body: all that it reflects is diffuse here");
+  std::array<std::array<Color, kAngles>, 2> surface;
+  for (size_t s = 0; s < 2; ++s)
+    for (size_t i = 0; i < kAngles; ++i) {
+      const double albedo = phong_albedo(sides[s].exponent - 1, angle_deg(i));
+      for (size_t c = 0; c < 3; ++c) surface[s][i][c] = sides[s].surface[i][c] / albedo;
+    }
+  std::string text = "// frond " FROND_VERSION " export, " + subject.label + "\n//\n";
+  text += fmt::format(kHead, nm[0], nm[1], nm[2], 2 * kAngles, kAngles - 2, kAngles);
+  text += array_text("surface", "Rs, over what the lobe by itself sends on.", surface);
+  text += array_text("body", "Rd.", {sides[0].body, sides[1].body});
+  text += array_text("transmitted", "T.", {sides[0].transmitted, sides[1].transmitted});
+  // Cycles' lobe counts by the cosine with the normal, which along the normal is one power more.
+  return text + fmt::format(kTail, sides[0].exponent - 1, sides[1].exponent - 1, kAngles - 1);
+}
+
+}  // namespace
+
+extern const ExportFormat osl_format{
+    "osl", "an OSL shader of three lobes for Blender's Cycles", true, kOptions, check_osl, osl_file};
+
+}  // namespace frond
