@@ -5,12 +5,12 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "radiometry/radiometer_scene.h"
-#include "render/measured_material.h"
 #include "cli/number_list.h"
 #include "cli/specimen_options.h"
 #include "exports/format.h"
 #include "instruments/given_wavelengths.h"
+#include "radiometry/radiometer_scene.h"
+#include "render/measured_material.h"
 #include "render/plugins.h"
 #include "report/text_output.h"
 
@@ -88,11 +88,17 @@ void add_export_command(CLI::App& app) {
   auto* command = app.add_subcommand("export", "Write a material's BSDF as a file for other programs.");
   auto o = std::make_shared<ExportCommandOptions>();
   add_material_options(*command, *o);
-  std::string formats = "What to write:";
-  for (const ExportFormat* f : export_formats())
-    formats += fmt::format("{} {} ({})", f == export_formats().front() ? "" : ",", f->name, f->doc);
-  command->add_option("--format", o->format, formats + ".")->required();
-  command->add_option("-o,--output", o->output, "File; - for standard output, of formats that are text.")->required();
+  std::vector<std::string> names, docs;
+  for (const ExportFormat* f : export_formats()) {
+    names.emplace_back(f->name);
+    docs.push_back(fmt::format("{}: {}", f->name, f->doc));
+  }
+  command->add_option("--format", o->format, fmt::format("What to write. {}.", fmt::join(docs, "; ")))
+      ->type_name(fmt::format("TEXT:{{{}}}", fmt::join(names, ",")))
+      ->required();
+  command->add_option("-o,--output", o->output, "File; - for standard output, of formats that are text.")
+      ->type_name("FILE")
+      ->required();
   command->add_option("--wavelengths", o->wavelengths,
                       "nm, 360 to 2500: a list or a range; ascending, or red,green,blue of osl.");
   command->add_option("--angles", o->angles, "Of tables: degrees from the normal to the light, on either side.");

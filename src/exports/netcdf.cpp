@@ -27,20 +27,18 @@ struct NetCdf {
     if (!function) fail({}, "the NetCDF library \"{}\" has no function {}", FROND_NETCDF_FILE, name);
     return function;
   }
-#define FROND_NC(name) decltype(::nc_##name)* name = find<decltype(::nc_##name)>("nc_" #name)
-  FROND_NC(strerror);
-  FROND_NC(create_mem);
-  FROND_NC(def_dim);
-  FROND_NC(def_var);
-  FROND_NC(put_att_text);
-  FROND_NC(put_att_schar);
-  FROND_NC(enddef);
-  FROND_NC(put_var_double);
-  FROND_NC(put_var_float);
-  FROND_NC(put_var_schar);
-  FROND_NC(close_memio);
-  FROND_NC(abort);
-#undef FROND_NC
+  decltype(::nc_strerror)* strerror = find<decltype(::nc_strerror)>("nc_strerror");
+  decltype(::nc_create_mem)* create_mem = find<decltype(::nc_create_mem)>("nc_create_mem");
+  decltype(::nc_def_dim)* def_dim = find<decltype(::nc_def_dim)>("nc_def_dim");
+  decltype(::nc_def_var)* def_var = find<decltype(::nc_def_var)>("nc_def_var");
+  decltype(::nc_put_att_text)* put_att_text = find<decltype(::nc_put_att_text)>("nc_put_att_text");
+  decltype(::nc_put_att_schar)* put_att_schar = find<decltype(::nc_put_att_schar)>("nc_put_att_schar");
+  decltype(::nc_enddef)* enddef = find<decltype(::nc_enddef)>("nc_enddef");
+  decltype(::nc_put_var_double)* put_var_double = find<decltype(::nc_put_var_double)>("nc_put_var_double");
+  decltype(::nc_put_var_float)* put_var_float = find<decltype(::nc_put_var_float)>("nc_put_var_float");
+  decltype(::nc_put_var_schar)* put_var_schar = find<decltype(::nc_put_var_schar)>("nc_put_var_schar");
+  decltype(::nc_close_memio)* close_memio = find<decltype(::nc_close_memio)>("nc_close_memio");
+  decltype(::nc_abort)* abort = find<decltype(::nc_abort)>("nc_abort");
 };
 
 /// A classic file that is made in memory.

@@ -20,8 +20,7 @@ using AdjustMaterials = std::function<void(SceneDescription&, const Registry&)>;
 /// InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not reach.
 std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, const Registry& registry,
                                          const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
-                                         const std::filesystem::path& cache_dir,
-                                         const AdjustMaterials& adjust = {});
+                                         const std::filesystem::path& cache_dir, const AdjustMaterials& adjust = {});
 
 /// A material as words give it, `abm specimen=soybean`, made without a scene and prepared for wavelengths one
 /// by one.

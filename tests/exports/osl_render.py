@@ -133,7 +133,8 @@ class Sheet:
 
 def main():
     """osl_render.py SHADER ANSWERS < JSON: a list of {"shares": [theta, front], "samples": n}, answered by R, T and their
-    sum in a furnace, and of {"f": [theta, front, front of the viewer], "step": degrees}, answered by f of all views."""
+    sum in a furnace, and of {"f": [theta, front, front of the viewer], "step": degrees}, answered by [theta, phi
+    from the light's azimuth, f in three colours] for all views."""
     sheet = Sheet(pathlib.Path(sys.argv[1]).resolve())
     answers = []
     for question in json.load(sys.stdin):
@@ -147,12 +148,12 @@ def main():
                 shares[name] = sheet.seen_from(toward, n)
             answers.append(shares)
         else:
-            theta, front, viewer_in_front = question["f"]
+            (theta, front, viewer_in_front), step = question["f"], question["step"]
             sheet.sky(0, 0)
-            sheet.sunlight(direction(theta, 0, front), 1)
+            sheet.sunlight(direction(theta, step / 2, front), 1)  # so that a column of the picture is at its azimuth
             cosine = math.cos(math.radians(theta))
-            answers.append([[t, p, [x / cosine for x in color]]
-                            for t, p, color in sheet.seen_from_everywhere(question["step"], viewer_in_front)])
+            answers.append([[t, (p - step / 2) % 360, [x / cosine for x in color]]
+                            for t, p, color in sheet.seen_from_everywhere(step, viewer_in_front)])
     pathlib.Path(sys.argv[2]).write_text(json.dumps(answers))
 
 
