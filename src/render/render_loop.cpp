@@ -220,13 +220,10 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   RenderStatistics total;
   std::mutex mutex;
   int64_t done = 0;
-  std::atomic<bool> ended = false;
-  pool.for_each(items.count(), [&](int64_t i, int thread) {
-    if (ended) return;
-    if (control.stop.stop_requested() || (control.deadline && std::chrono::steady_clock::now() >= *control.deadline)) {
-      ended = true;
-      return;
-    }
+  struct Ended {};  // thrown: even to pass over each of millions of items would take a second
+  const auto render_item = [&](int64_t i, int thread) {
+    if (control.stop.stop_requested() || (control.deadline && std::chrono::steady_clock::now() >= *control.deadline))
+      throw Ended();
     auto& worker = workers[size_t(thread)];
     if (!worker) worker = std::make_unique<Worker>(job, film);
     // No other thread adds any of this item, so that what is missing of it stays the same.
@@ -238,7 +235,11 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
     total += worker->statistics();
     clock.stop(total);
     if (control.progress) control.progress->update(double(done) / double(items.count()), total);
-  });
+  };
+  try {
+    pool.for_each(items.count(), render_item);
+  } catch (const Ended&) {  // the film has what was done until then
+  }
   clock.stop(total);
   if (control.progress) control.progress->finish();
   return total;
