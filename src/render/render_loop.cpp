@@ -1,7 +1,6 @@
 #include "render/render_loop.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
