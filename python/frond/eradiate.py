@@ -4,7 +4,8 @@
     eradiate.set_mode("mono")
     from frond.eradiate import FrondLeafCloud
 
-    cloud = FrondLeafCloud.cuboid(n_leaves=..., leaf_radius=..., ..., leaf={"specimen": "soybean"})
+    cloud = FrondLeafCloud.cuboid(n_leaves=400, leaf_radius=0.1, l_horizontal=3.0, l_vertical=1.0)
+    cloud.leaf = {"specimen": "maize"}
 
 `leaf` has the parameters of `leaf_solved`; its convention is "reciprocal" where it says nothing. Spectra of reflectance and
 transmittance, which a LeafCloud takes, have no effect. The leaf's reflectance follows the experiment's wavelengths.
@@ -22,7 +23,7 @@ def _nm(ctx):
 
 @attrs.define(eq=False, slots=False)
 class FrondLeafCloud(LeafCloud):
-    """A LeafCloud of solved leaves: its constructors are those of LeafCloud, with `leaf`."""
+    """A LeafCloud of solved leaves: `leaf` goes to the class itself, or is set on what other constructors make."""
 
     leaf: dict = attrs.field(factory=dict, kw_only=True)
 

@@ -24,8 +24,8 @@ SAMPLES = 24_000
 
 PAGE = """# Leaves in Eradiate
 
-`frond.eradiate.FrondLeafCloud` is Eradiate's `LeafCloud` with the solved leaf on its disks in place of `bilambertian`. Its
-constructors take `leaf`, the parameters of `leaf_solved`; leaves are reciprocal where it does not say another convention.
+`frond.eradiate.FrondLeafCloud` is Eradiate's `LeafCloud` with the solved leaf on its disks in place of `bilambertian`. `leaf` has
+the parameters of `leaf_solved`; leaves are reciprocal where it does not say another convention.
 
 ```
 pip install . "eradiate[kernel]"       # an environment of its own: Eradiate brings its own Mitsuba
@@ -38,7 +38,8 @@ from frond.eradiate import FrondLeafCloud
 
 cloud = FrondLeafCloud(id="leaves", leaf_positions=positions, leaf_orientations=normals, leaf_radii=radii,
                        leaf={{"specimen": "soybean", "chlorophylla": 3.0}})
-canopy = {{"type": "discrete_canopy", "construct": "leaf_cloud", ...}}    # or InstancedCanopyElement, as any LeafCloud
+cloud = FrondLeafCloud.cuboid(n_leaves=400, leaf_radius=0.1, l_horizontal=3.0, l_vertical=1.0)    # or by other constructors;
+cloud.leaf = {{"specimen": "maize"}}                                                              # then the leaf afterwards
 ```
 
 Reflectance follows the wavelengths of the experiment. Eradiate's modes are scalar variants of Mitsuba: each event calls frond

@@ -29,7 +29,8 @@ IMAGES = ROOT / "docs" / "images" / "mitsuba"
 
 PAGE = """# The leaf in Mitsuba 3
 
-`frond_leaf` is `leaf_solved` as a BSDF of Mitsuba's JIT variants: the same table, looked up by code that Dr.Jit compiles.
+`frond_leaf` is `leaf_solved` as a BSDF of Mitsuba: in JIT variants the same table, looked up by code that Dr.Jit compiles; in
+`scalar_mono` and `scalar_rgb` each direction is a call of frond from Python, which is slow, and what [Eradiate](eradiate.md) takes.
 
 ```
 pip install . mitsuba          # frond's source tree; Mitsuba's LLVM variants need libllvm 19 on Debian 12
@@ -86,7 +87,7 @@ Aspect ratios of cells, `incident` and `specimen` are fixed when the leaf is loa
 
 ## What it cannot do
 
-- Scalar variants: the table would be walked through in Python. Polarised ones: the model knows no polarisation.
+- `scalar_spectral`, and textures and derivatives in scalar variants. Polarised ones: the model knows no polarisation.
 - `cuticleaspect` by a texture.
 - With `incident` "light" weights have no bound along a leaf, as in frond ([conventions.md](conventions.md)).
 """

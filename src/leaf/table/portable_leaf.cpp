@@ -13,24 +13,17 @@
 namespace frond::leaf {
 namespace {
 
-std::vector<double> cosines() {
-  std::vector<double> result;
-  for (size_t k = 0; k <= PortableLeaf::kCosineCells; ++k)
-    result.push_back(std::pow(static_cast<double>(k) / PortableLeaf::kCosineCells, 2));
-  return result;
-}
-
 void add_surface(PortableLeaf& leaf) {
   if (!leaf.is_reciprocal) {
     const TabulatedLobe lobe(leaf.exponent);
-    for (const double c : cosines()) leaf.surface.push_back(static_cast<float>(lobe.kept(c)));
+    for (const double c : CosineNodes::cosines()) leaf.surface.push_back(static_cast<float>(lobe.kept(c)));
     return;
   }
   const auto [least, most] = std::ranges::minmax_element(leaf.index);
   const SurfaceScaling scaling({leaf.exponent, leaf.exponent}, {double(*least), double(*most)});
   const auto place = scaling.place(static_cast<float>(leaf.exponent));
   for (const float n : leaf.index)
-    for (const double c : cosines())
+    for (const double c : CosineNodes::cosines())
       leaf.surface.push_back(scaling.at(place, static_cast<float>(c), Float4{n, n, n, n})[0]);
 }
 

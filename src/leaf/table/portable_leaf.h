@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "leaf/table/body_spectrum.h"
+#include "leaf/table/lobe_axes.h"
 
 namespace frond::leaf {
 
@@ -12,7 +13,7 @@ namespace frond::leaf {
 /// all that `leaf_solved` looks up, its surface too.
 struct PortableLeaf {
   /// Cosines of a direction to the normal at which `surface` stands: (k / kCosineCells)^2, k from 0 on.
-  static constexpr size_t kCosineCells = 64;
+  static constexpr size_t kCosineCells = CosineNodes::kCells;
 
   bool is_reciprocal = false;          ///< else f is that of incident "traced"
   size_t cells = 0;                    ///< of sines in [0, 1]: nodes go from -1 / cells to 1 + 1 / cells
