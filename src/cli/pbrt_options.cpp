@@ -1,0 +1,128 @@
+#include "cli/pbrt_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+
+#include "core/error.h"
+#include "scene/unsupported.h"
+
+namespace frond {
+namespace {
+
+struct PbrtOption {
+  const char* name;
+  const char* value;  ///< what it takes; "": nothing
+  bool is_refused;
+  const char* doc;
+};
+
+constexpr PbrtOption kOptions[] = {
+    {"--gpu", "", false, "The CPU renders."},
+    {"--gpu-device", "INDEX", false, "The CPU renders."},
+    {"--wavefront", "", false, "There is one integrator loop."},
+    {"--write-partial-images", "", false, "--checkpoint keeps partial results."},
+    {"--pixelstats", "", false, "--channels writes data of each pixel."},
+    {"--force-diffuse", "", false, "--swap replaces materials."},
+    {"--log-utilization", "", false, ""},
+    {"--log-level", "LEVEL", false, ""},
+    {"--log-file", "FILE", false, ""},
+    {"--displacement-edge-scale", "SCALE", false, "There is no displacement."},
+    {"--stats", "", false, "Statistics are always printed."},
+    {"--render-coord-sys", "SYSTEM", false, "The image does not depend on it."},
+    {"--mse-reference-image", "FILE", true, "frond difference compares images"},
+    {"--mse-reference-out", "FILE", true, "frond difference compares images"},
+    {"--debugstart", "VALUES", true, "--pixels and --samples render one path again"},
+    {"--pixelmaterial", "X,Y", true, "--channels material writes the material of each pixel"},
+    {"--interactive", "", true, "frond has no window; --display-server shows the image in a viewer"},
+    {"--fullscreen", "", true, "frond has no window"},
+    {"--disable-image-textures", "", true, "frond has no such option"},
+    {"--format", "", true, "pbrt-v4 itself rewrites scene files"},
+    {"--toply", "", true, "pbrt-v4 itself rewrites scene files"},
+    {"--upgrade", "", true, "pbrt-v4 itself upgrades files of pbrt-v3"},
+};
+
+constexpr const char* kIgnore = "--ignore-unsupported";
+
+bool are_kinds(const std::string& word) {
+  try {
+    (void)Unsupported(word);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Case, dashes and underscores do not count, as in pbrt-v4.
+std::string normalized(std::string_view name) {
+  std::string result;
+  for (const char c : name)
+    if (c != '-' && c != '_') result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+/// "-NThreads=2" as "--nthreads=2"; any other word as it is.
+std::string with_our_name(const std::string& word, const CLI::App& command) {
+  const std::string_view all = word;
+  const size_t name_end = std::min(all.find('='), all.size());
+  if (!all.starts_with('-') || name_end < 3) return word;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames())
+      if (normalized(name) == normalized(all.substr(0, name_end)))
+        return "--" + name + std::string(all.substr(name_end));
+  return word;
+}
+
+}  // namespace
+
+void add_pbrt_options(CLI::App& render) {
+  for (const PbrtOption& o : kOptions) {
+    CLI::Option* option = o.value[0] == '\0' ? render.add_flag(o.name)
+                                             : render.add_option(o.name, [](const CLI::results_t&) { return true; });
+    option->group("");  // not in --help
+  }
+  render.get_option("--render-coord-sys")->check(CLI::IsMember({"camera", "cameraworld", "world"}));
+  const std::string doc = "Print the options of pbrt-v4 that have no effect, or are refused.";
+  render.add_flag("--help-pbrt", doc);
+}
+
+std::string pbrt_options_text() {
+  std::string text = "Options of pbrt-v4 that frond render ignores with a warning, or refuses:\n";
+  for (const PbrtOption& o : kOptions)
+    text += fmt::format("  {:<32} {}{}\n", fmt::format("{} {}", o.name, o.value), o.is_refused ? "Refused: " : "", o.doc);
+  return text;
+}
+
+std::vector<std::string> pbrt_warnings(const CLI::App& render) {
+  std::vector<std::string> warnings;
+  for (const PbrtOption& o : kOptions) {
+    if (render.count(o.name) == 0) continue;
+    if (o.is_refused) fail({}, "{}: {}", o.name, o.doc);
+    const std::string_view name = o.name;
+    if (name != "--stats" && name != "--render-coord-sys")
+      warnings.push_back(fmt::format("{} of pbrt has no effect here", o.name));
+  }
+  return warnings;
+}
+
+bool is_scene_name(const std::string& word) {
+  return word.ends_with(".pbrt") || word.ends_with(".pbrt.gz") || word == "-";
+}
+
+std::vector<std::string> with_pbrt_spelling(std::vector<std::string> words, const CLI::App& render) {
+  if (!words.empty() && (words[0].starts_with('-') || is_scene_name(words[0])) &&
+      std::ranges::any_of(words, is_scene_name)) {
+    for (std::string& word : words) word = with_our_name(word, render);
+    words.insert(words.begin(), render.get_name());
+  }
+  for (size_t i = 1; i < words.size(); ++i)
+    if (words[i - 1] == kIgnore && are_kinds(words[i])) {
+      words[i - 1] += "=" + words[i];
+      words.erase(words.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  return words;
+}
+
+}  // namespace frond

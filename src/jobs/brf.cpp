@@ -1,0 +1,271 @@
+#include "radiometry/brf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "jobs/radiometry.h"
+#include "jobs/refine.h"
+#include "radiometry/brf_comparison.h"
+#include "render/part_file.h"
+#include "report/brf_chart.h"
+#include "report/gnuplot.h"
+#include "study/compare/candidate.h"
+#include "system/cpu_clock.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr JobParam kParams[] = {
+    kSceneParam,
+    kRadiometryWavelengthsParam,
+    {.name = "zenith",
+     .kind = numbers,
+     .doc = "Zenith angles of the views; under one sun a negative angle looks from the sun's side.",
+     .default_value = "-75:75:5",
+     .unit = "degrees",
+     .decides = true},
+    {.name = "azimuth",
+     .kind = numbers,
+     .doc = "Azimuths of the views from the plane of the sun, or from +x toward +y where there is not one sun.",
+     .default_value = "0",
+     .unit = "degrees",
+     .decides = true},
+    {.name = "hemisphere",
+     .kind = flag,
+     .doc = "Views of the whole hemisphere, every 5 degrees of zenith and 15 of azimuth.",
+     .decides = true,
+     .excludes = "zenith,azimuth"},
+    kTargetParam,
+    kPeriodParam,
+    {.name = "paths",
+     .kind = count,
+     .doc = "Number of paths for each view.",
+     .default_value = "65536",
+     .range = {1, 4294967296}},
+    kRmsParam,
+    kTimeLimitParam,
+    kSwapParam,
+    kIntegratorParam,
+    kSeedParam,
+    {.name = "compare",
+     .kind = texts,
+     .doc = "MODEL[,parameter=value...];...: leaf models that replace the scene's leaves: which is accurate enough?",
+     .type = "MATERIAL",
+     .excludes = "plot,checkpoint,resume"},
+    {.name = "reference",
+     .kind = text,
+     .doc = "Leaf model that the models of --compare are compared with.",
+     .type = "MATERIAL",
+     .default_value = "leaf_solved"},
+    {.name = "within",
+     .kind = real,
+     .doc = "Largest relative difference that is accurate enough for --compare.",
+     .default_value = "0.02",
+     .range = kAboveZero},
+    kIgnoreUnsupportedParam,
+    kStrictParam,
+    kCsvParam,
+    kJsonParam,
+    chart_param("plot", "Chart against the zenith angle, or maps of a hemisphere: .svg or .png."),
+    kCheckpointParam,
+    kResumeParam,
+};
+
+std::vector<ViewDirection> views_of(const Arguments& args) {
+  std::vector<ViewDirection> views;
+  if (args.flag("hemisphere")) {
+    constexpr int kZenithStep = 5, kLast = 85, kAzimuthStep = 15;
+    views.push_back({0, 0});
+    for (int zenith = kZenithStep; zenith <= kLast; zenith += kZenithStep)
+      for (int azimuth = 0; azimuth < 360; azimuth += kAzimuthStep) views.push_back({double(zenith), double(azimuth)});
+    return views;
+  }
+  for (const double azimuth : args.numbers("azimuth"))
+    for (const double zenith : args.numbers("zenith")) {
+      if (!(std::abs(zenith) < 90))
+        fail({}, "{}: {:g} is not above the horizon, which is at 90", args.spelled("zenith"), zenith);
+      views.push_back({zenith, azimuth});
+    }
+  return views;
+}
+
+/// Nothing, or the partial result of an earlier run. Throws InputError for that of another measurement.
+RenderPart first_part(const JobRun& run, const BrfMeter& meter, const KeptFile* kept) {
+  RenderPart fresh = meter.scene().empty_part();
+  const auto path = kept ? kept->found(run.args.flag("resume")) : std::nullopt;
+  if (!path) return fresh;
+  RenderPart part = read_part(*path);
+  const std::string difference =
+      fresh.header.identity.difference(part.header.identity, "this command", "\"" + path->string() + "\"");
+  if (!difference.empty())
+    fail({}, "{}: this is another measurement. {}", run.args.spelled("resume"), difference);
+  return part;
+}
+
+/// Nothing where it was stopped; `kept` may be nullptr.
+std::optional<BrfReading> measure(const JobRun& run, const BrfMeter& meter, const KeptFile* kept) {
+  RenderControl control = run.control_until(run.args.real("time-limit"));
+  constexpr uint64_t kFirst = 64;
+  const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
+  const bool refines = run.args.given("rms");
+  const auto paths = uint64_t(run.args.count("paths"));
+  const Effort effort{std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
+                      uint64_t{1} << 32, run.args.real("rms")};
+  RenderPart part = first_part(run, meter, kept);
+  std::optional<Checkpointer> checkpointer;
+  if (kept) {
+    checkpointer.emplace(kept->checkpoint(), checkpoint_seconds(run.args), part, control.progress, run.log());
+    control.progress = &*checkpointer;
+  }
+  const auto write = [&checkpointer](const auto&) { checkpointer->write(); };
+  std::optional<BrfReading> reading;
+  const RefineEnd end = refine(
+      effort, sample_count(part.film).most, control,
+      [&](uint64_t samples) { run.session().render(meter.scene(), {0, samples}, part, control); },
+      [&] { return reading.emplace(meter.read(part.film)).relative_error(); });
+  if (kept) kept->keep(end != RefineEnd::stopped, false, write);
+  if (end == RefineEnd::stopped) return {};
+  if (end == RefineEnd::time_over && sample_count(part.film).least == 0)
+    fail({}, "{}: the time was over before every direction had been seen", run.args.spelled("time-limit"));
+  return meter.read(part.film);
+}
+
+void add_rows(Table& table, const BrfReading& reading, const std::string& model) {
+  for (size_t view = 0; view < reading.views.size(); ++view)
+    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band) {
+      if (!model.empty()) table.add("model", model);
+      table.add("zenith_deg", reading.views[view].zenith_deg);
+      table.add("azimuth_deg", reading.views[view].azimuth_deg);
+      table.add("wavelength_nm", reading.wavelengths_nm[band]);
+      table.add("brf", reading.at(view, band).mean, reading.at(view, band).standard_error);
+    }
+}
+
+/// A row for each direction, a column for each wavelength.
+Table by_direction(const BrfReading& reading) {
+  Table table{"brf"};
+  for (size_t view = 0; view < reading.views.size(); ++view) {
+    table.add("zenith", reading.views[view].zenith_deg);
+    table.add("azimuth", reading.views[view].azimuth_deg);
+    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
+      table.add(fmt::format("{:g} nm", reading.wavelengths_nm[band]), reading.at(view, band).mean,
+                reading.at(view, band).standard_error);
+  }
+  return table;
+}
+
+/// A leaf model's BRF, and its cost.
+struct ModelReading {
+  compare::Candidate model;
+  BrfReading brf;
+  double cpu_us_per_path = 0;
+};
+
+Result comparison_result(const ModelReading& reference, const std::vector<ModelReading>& models, double within) {
+  using Answer = BrfVerdict::Answer;
+  Table differences{"brf"}, verdicts{"models"};
+  const auto add = [&](const ModelReading& m) {
+    add_rows(differences, m.brf, m.model.label);
+    for (const auto& d : relative_to(reference.brf, m.brf))
+      differences.add("relative_difference", d.mean, d.standard_error);
+  };
+  add(reference);
+  const ModelReading* enough = nullptr;
+  for (const ModelReading& m : models) {
+    add(m);
+    const BrfVerdict v = judge(reference.brf, m.brf, within);
+    verdicts.add("model", m.model.label);
+    verdicts.add("us_per_path", m.cpu_us_per_path);
+    verdicts.add("worst_difference", v.worst.mean, v.worst.standard_error);
+    verdicts.add("zenith_deg", m.brf.views[v.view].zenith_deg);
+    verdicts.add("wavelength_nm", m.brf.wavelengths_nm[v.band]);
+    verdicts.add("upper_bound", v.upper);
+    verdicts.add("enough", std::string(v.answer == Answer::enough       ? "yes"
+                                       : v.answer == Answer::not_enough ? "no"
+                                       : m.brf.has_heavy_tails          ? "unknown: its noise has no bound"
+                                                                        : "unknown: more paths would tell"));
+    if (v.answer == Answer::enough && !enough) enough = &m;
+  }
+  const std::string& cheapest = (enough ? *enough : reference).model.label;
+  return {.tables = {differences, verdicts},
+          .facts = {{"reference", reference.model.label}, {"within", within}, {"cheapest_enough", cheapest}},
+          .text = fmt::format("BRF relative to {} ({:.2f} µs of CPU per path); accurate enough: within {:g} % everywhere\n"
+                              "{}Cheapest model that is accurate enough: {}\n",
+                              reference.model.label, reference.cpu_us_per_path, 100 * within, to_text(verdicts),
+                              cheapest)};
+}
+
+/// The scene with one leaf model after another in place of its leaves.
+Result run_comparison(const JobRun& run, const BrfRequest& request) {
+  const SceneDescription description = run.session().read(run.args.text("scene"), unsupported_of(run.args));
+  std::unique_ptr<BrfMeter> first;
+  const auto measured = [&](const compare::Candidate& model) {
+    if (!model.wavelengths.empty() || model.integrator)
+      fail({}, "{} takes materials alone: \"{}\" has an @", run.args.spelled("compare"), model.text);
+    SceneOverrides overrides = overrides_of(run.args);
+    overrides.swaps.push_back({"*", model.material});
+    auto meter = std::make_unique<BrfMeter>(run.session(), description, overrides, request,
+                                            first ? &first->scene().scene() : nullptr);
+    run.context.log().check();
+    const double start = cpu_seconds();
+    auto reading = measure(run, *meter, nullptr);
+    if (!reading) throw Stopped();
+    ModelReading result{model, *std::move(reading)};
+    const double paths = double(result.brf.paths) * double(result.brf.views.size());
+    result.cpu_us_per_path = (cpu_seconds() - start) * 1e6 / paths;
+    if (!first) first = std::move(meter);
+    return result;
+  };
+  const auto models = compare::parse_candidates(run.args.texts("compare"));
+  const ModelReading reference = measured(compare::parse_candidate(run.args.text("reference")));
+  std::vector<ModelReading> readings;
+  for (const compare::Candidate& model : models) readings.push_back(measured(model));
+  std::ranges::sort(readings, {}, &ModelReading::cpu_us_per_path);
+  return comparison_result(reference, readings, run.args.real("within"));
+}
+
+Result brf(const JobRun& run) {
+  check_chart_param(run, "plot");
+  const BrfRequest request{views_of(run.args), target_of(run.args), period_of(run.args), wavelengths_text(run.args)};
+  if (run.args.given("compare")) return run_comparison(run, request);
+  std::optional<KeptFile> kept;
+  if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
+  const BrfMeter meter(run.session(), run.session().read(run.args.text("scene"), unsupported_of(run.args)),
+                       overrides_of(run.args), request);
+  run.context.log().check();
+  const auto measured = measure(run, meter, kept ? &*kept : nullptr);
+  if (!measured) {
+    if (kept) kept->report_stop();
+    return {.stopped = true};
+  }
+  const BrfReading& reading = *measured;
+  if (run.args.given("plot")) {
+    const BrfChart chart = run.args.flag("hemisphere") ? brf_hemisphere_chart(reading) : brf_plane_chart(reading);
+    write_chart(run.args.text("plot"), chart.width, chart.height, chart.script);
+  }
+  const double error = reading.relative_error(), rms = run.args.real("rms");
+  run.log().info(fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", reading.paths, 100 * error));
+  if (rms > 0 && error > rms) run.log().warn({}, fmt::format("{} {:g} was not reached", run.args.spelled("rms"), rms));
+  Result result{.tables = {{"brf"}}, .facts = {{"paths", double(reading.paths)}, {"relative_error", error}}};
+  add_rows(result.tables[0], reading, "");
+  result.text = to_text(by_direction(reading));
+  return result;
+}
+
+}  // namespace
+
+extern const JobInfo kBrfJob{
+    .name = "brf",
+    .group = "Measure",
+    .doc = "Measure the bidirectional reflectance factor of a scene from far away.",
+    .details = "Where the scene says nothing about the incident direction, leaves are reciprocal, or conserve energy "
+               "where they cannot be reciprocal.",
+    .params = kParams,
+    .session = SessionUse::all,
+    .run = brf};
+
+}  // namespace frond

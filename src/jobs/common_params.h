@@ -1,0 +1,83 @@
+#pragma once
+
+#include "jobs/job.h"
+#include "scene/unsupported.h"
+
+/// Parameters that several jobs have, with one spelling and one meaning, and how they are read.
+namespace frond {
+
+inline constexpr JobParam kSceneParam{.name = "scene",
+                                      .kind = ArgumentKind::text,
+                                      .doc = "Scene file (pbrt-v4 format).",
+                                      .type = "SCENE",
+                                      .path = PathUse::read,
+                                      .decides = true,
+                                      .positional = true,
+                                      .required = true};
+inline constexpr JobParam kSwapParam{
+    .name = "swap",
+    .kind = ArgumentKind::texts,
+    .doc = "MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; \"*=PLUGIN\" replaces every leaf.",
+    .type = "SWAP",
+    .decides = true};
+inline constexpr JobParam kIntegratorParam{
+    .name = "integrator",
+    .kind = ArgumentKind::text,
+    .doc = "PLUGIN[,parameter=value...]: integrator; one of the scene's kind keeps the scene's other parameters.",
+    .type = "INTEGRATOR",
+    .decides = true};
+inline constexpr JobParam kSeedParam{
+    .name = "seed", .kind = ArgumentKind::seed, .doc = "Seed of all random numbers.", .decides = true};
+inline constexpr JobParam kIgnoreUnsupportedParam{
+    .name = "ignore-unsupported",
+    .kind = ArgumentKind::text,
+    .doc = "Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a "
+           "list of media, materials, integrators, cameras, motion, textures, films, displacement.",
+    .type = "KINDS",
+    .decides = true,
+    .implied = "all"};
+inline constexpr JobParam kStrictParam{.name = "strict", .kind = ArgumentKind::flag, .doc = "Treat warnings as errors."};
+inline constexpr JobParam kTimeLimitParam{.name = "time-limit",
+                                          .kind = ArgumentKind::real,
+                                          .doc = "Time after which the job ends with the result it has by then.",
+                                          .unit = "s",
+                                          .range = kAboveZero};
+inline constexpr JobParam kCsvParam{.name = "csv",
+                                    .kind = ArgumentKind::text,
+                                    .doc = "CSV file to write; - is standard output.",
+                                    .type = "FILE",
+                                    .path = PathUse::write};
+inline constexpr JobParam kJsonParam{.name = "json",
+                                     .kind = ArgumentKind::text,
+                                     .doc = "JSON file to write; - is standard output.",
+                                     .type = "FILE",
+                                     .path = PathUse::write};
+/// A chart: .svg or .png. `doc` says of what.
+constexpr JobParam chart_param(std::string_view name, std::string_view doc) {
+  return {.name = name, .kind = ArgumentKind::text, .doc = doc, .type = "CHART", .path = PathUse::write};
+}
+
+inline constexpr JobParam kMaterialParam{.name = "material",
+                                         .kind = ArgumentKind::texts,
+                                         .doc = "NAME[,parameter=value...]: material, as in abm,specimen=maize.",
+                                         .type = "MATERIAL",
+                                         .decides = true,
+                                         .positional = true,
+                                         .required = true};
+inline constexpr JobParam kWithParam{.name = "with",
+                                     .kind = ArgumentKind::texts,
+                                     .doc = "NAME[,parameter=value...]: one more material.",
+                                     .type = "MATERIAL",
+                                     .decides = true};
+
+/// The job's material and those of --with, in the grammar of material_text.
+std::vector<std::string> materials_of(const JobRun& run);
+/// Overrides by --swap, --wavelengths, --integrator, --filter, --seed and --quick, as far as the job has them.
+SceneOverrides overrides_of(const Arguments& args);
+Unsupported unsupported_of(const Arguments& args);
+/// "smpte", "bands,wavelengths=450,550" or numbers alone, 450,550 or 400:700:10, which are bands.
+std::string wavelengths_text(const Arguments& args, std::string_view name = "wavelengths");
+/// Refuses a chart that cannot be written, if it is asked for.
+void check_chart_param(const JobRun& run, std::string_view name);
+
+}  // namespace frond
