@@ -8,22 +8,25 @@
     frond.spectrophotometer("leaf_solved", wavelengths=[450, 551, 680])
     frond.fit(path="leaf.csv").material
     frond.brf("canopy.pbrt", wavelengths=[670, 800])
-    frond.conform("leaf_solved specimen=maize")
+    frond.conform("leaf_solved,specimen=maize")
+    frond.run("flux", scene="canopy.pbrt").table    # any command of frond, by its name
 
-What is wrong with the input is an `InputError` with file, line and column; messages go to the logger "frond" of the
-module `logging`. Angles are in degrees, wavelengths in nm. Nothing is imported before it is needed: NumPy comes with the
-first array, pandas with the first table, where it is installed.
+Every command of frond is a function of the same name with the same parameters. Bad input is an `InputError` with file, line
+and column; messages go to the logger "frond" of the module `logging`. Angles are in degrees, wavelengths in nm. NumPy is
+imported with the first array, pandas, where it is installed, with the first table.
 """
 
+from . import _jobs
 from ._errors import InputError
 from ._frond import version as __version__
 from ._session import Picture, Scene, Session, default_session, load, loads, read_image
-from ._measure import (brf, compare, conform, fit, flux, goniophotometer, names, read_spectra, register_material,
+from ._jobs import Result, run
+from ._measure import (Fit, brf, compare, conform, fit, flux, goniophotometer, names, read_spectra, register_material,
                        spectrophotometer)
 from ._bsdf import Bsdf, FlatBsdf, LeafTable, bsdf, leaf_table
 
-__all__ = [
-    "Bsdf", "FlatBsdf", "InputError", "LeafTable", "Picture", "Scene", "Session", "__version__", "brf", "bsdf", "compare", "conform",
-    "default_session", "fit", "flux", "goniophotometer", "leaf_table", "load", "loads", "names", "read_image", "read_spectra", "register_material",
-    "spectrophotometer",
-]
+globals().update({name: function for name, function in _jobs.FUNCTIONS.items() if name not in globals()})
+
+__all__ = sorted({name for name in _jobs.FUNCTIONS if name != "list"} | {
+    "Bsdf", "Fit", "FlatBsdf", "InputError", "LeafTable", "Picture", "Result", "Scene", "Session", "__version__", "bsdf",
+    "default_session", "leaf_table", "load", "loads", "names", "read_image", "read_spectra", "register_material", "run"})

@@ -3,7 +3,7 @@
 import math
 
 from . import _frond
-from ._measure import _numbers, _session_of, _words
+from ._measure import _numbers, _session_of, material_text
 
 
 class FlatBsdf:
@@ -15,7 +15,7 @@ class FlatBsdf:
 
     def __init__(self, material, wavelengths, *, session=None):
         self.wavelengths = _numbers(wavelengths)
-        self._bsdf = _frond.FlatBsdf(_session_of(session), _words(material), self.wavelengths)
+        self._bsdf = _frond.FlatBsdf(_session_of(session), material_text(material), self.wavelengths)
 
     is_stochastic = property(lambda self: self._bsdf.is_stochastic, doc="f is a random estimate.")
     is_reciprocal = property(lambda self: self._bsdf.is_reciprocal, doc="The material claims f(a, b) = f(b, a).")
@@ -42,7 +42,7 @@ class FlatBsdf:
 
 
 def bsdf(material, wavelengths=(608, 551, 455), *, session=None):
-    """The BSDF of a material by its words, "leaf_solved specimen=maize", at one to four wavelengths."""
+    """The BSDF of a material as text, "leaf_solved,specimen=maize", at one to four wavelengths."""
     return FlatBsdf(material, wavelengths, session=session)
 
 
@@ -57,9 +57,9 @@ class LeafTable(dict):
 
 
 def leaf_table(material, wavelengths, *, tolerance=5e-4, depths=None, session=None):
-    """All that `leaf_solved` looks up. material: words, "leaf_solved specimen=maize incident=reciprocal". depths: (least,
+    """All that `leaf_solved` looks up. material: text, "leaf_solved,specimen=maize,incident=reciprocal". depths: (least,
     most) optical depth of the mesophyll that the table is to reach over, where chemistry varies."""
-    return LeafTable(_frond.leaf_table(_session_of(session), _words(material), sorted(_numbers(wavelengths)), tolerance, depths))
+    return LeafTable(_frond.leaf_table(_session_of(session), material_text(material), sorted(_numbers(wavelengths)), tolerance, depths))
 
 
 class Bsdf:

@@ -1,29 +1,15 @@
-"""Instruments, radiometers, fits and comparisons: functions that return tables.
+"""Jobs whose results have a form of their own in Python: fits, distributions of f, verdicts of laws; and measured spectra."""
 
-A table is a pandas.DataFrame where pandas is installed, else a dictionary of NumPy arrays by column.
-"""
-
-import json
 import os
 
 from . import _frond
-from ._session import _show, _swaps, _text_of_wavelengths, default_session
+from ._jobs import FUNCTIONS, _table, run
+from ._session import default_session
 
 
-def _table(rows, columns=None):
-    names = list(columns or (rows[0] if rows else ()))
-    data = {name: [row.get(name) for row in rows] for name in names}
-    try:
-        import pandas
-    except ImportError:
-        import numpy
-        return {name: numpy.array(values) for name, values in data.items()}
-    return pandas.DataFrame(data)
-
-
-def _words(material):
-    """"leaf_solved specimen=maize", or a list of such words."""
-    return material.split() if isinstance(material, str) else [str(word) for word in material]
+def material_text(material):
+    """"leaf_solved,specimen=maize"; also from a list of its parts."""
+    return material if isinstance(material, str) else ",".join(str(part) for part in material)
 
 
 def _numbers(values):
@@ -35,54 +21,66 @@ def _session_of(session):
 
 
 def names(kind="material", *, session=None):
-    """What scenes can name of a kind ("material", "integrator", "light", ...): {name: what it is}."""
+    """What scenes can name of a kind ("material", "integrator", "light", ...): {name: one line}."""
     return (session or default_session()).names(kind)
 
 
-def spectrophotometer(material, wavelengths, angles=8, *, rays=1_000_000, standard_error=0.0, rendered=False, seed=0,
-                      session=None):
-    """Reflectance R, transmittance T, absorptance A of a material, and where it tells them apart Rs and Rd of R, each
-    with its standard error: a table, one row for each wavelength and angle.
+def _of_table(name):
+    """The job `name` with its first table as result."""
+    job = FUNCTIONS[name]
 
-    material: as on the command line: "abm specimen=soybean". angles: of incidence, above 90 on the back. standard_error:
-    stop once those of R, T and A are no larger (`rays` then are the most). rendered: as a renderer shows it.
-    """
-    nm, theta = _numbers(wavelengths), _numbers(angles)
-    bench = _frond.Bench(_session_of(session), _words(material), nm)
-    return _table([bench.shares(w, angle, int(rays), standard_error, seed, rendered)
-                   for angle in theta for w in range(len(nm))])
+    def call(*args, **kwargs):
+        return job(*args, **kwargs).table
+
+    call.__name__ = call.__qualname__ = name
+    call.__signature__ = job.__signature__.replace(return_annotation="pandas.DataFrame | dict")
+    call.__doc__, call.__module__ = job.__doc__ + "\n\nReturns the job's table.", "frond"
+    return call
 
 
-def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), rays=1_000_000, integrate=False,
-                    rendered=False, seed=0, session=None):
+brf, compare = _of_table("brf"), _of_table("compare")
+
+
+def spectrophotometer(material, wavelengths, angles=8, **options):
+    return FUNCTIONS["spectrophotometer"](material_text(material), wavelengths, angles, **options).table
+
+
+def flux(scene, wavelengths=None, *, by_instance=False, **options):
+    result = FUNCTIONS["flux"](scene, wavelengths, by="instance" if by_instance else None, **options)
+    if not by_instance:
+        return result.table
+    return result.tables["flux"], result.tables["instances"]
+
+
+def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **options):
     """f in 1/sr over the whole sphere: a dictionary with arrays "f" and "f_se" `[angle][wavelength][theta][phi]`, the
-    patches' middles "theta_o_deg" and "phi_o_deg" and "projected_solid_angle_sr" `[theta][phi]`, "theta_i_deg" and
-    "wavelength_nm". integrate: without noise, where f is no random estimate.
-    """
+    patches' centres "theta_o_deg" and "phi_o_deg" and "projected_solid_angle_sr" `[theta][phi]`, "theta_i_deg" and
+    "wavelength_nm". Further keywords are those of the job: `help(frond.run)`, docs/commands.md."""
     import numpy
     nm, theta = _numbers(wavelengths), _numbers(angles)
-    bench = _frond.Bench(_session_of(session), _words(material), nm)
-    found = [[bench.patches(w, angle, int(rays), tuple(patches), integrate, seed, rendered) for w in range(len(nm))]
-             for angle in theta]
-    result = {name: found[0][0][name] for name in ("theta_o_deg", "phi_o_deg", "projected_solid_angle_sr")}
-    for name in ("f", "f_se"):
-        result[name] = numpy.array([[reading[name] for reading in row] for row in found])
+    counts = tuple(patches)
+    found = run("goniophotometer", material=material_text(material), wavelengths=nm, angles=theta,
+                patches="x".join(map(str, counts)), **options).columns["readings"]
+    arrays = {name: numpy.reshape(found[name], (len(theta), len(nm), *counts)) for name in
+              ("f_per_sr", "f_se", "theta_deg", "phi_deg", "projected_solid_angle_sr")}
+    result = {"theta_o_deg": arrays["theta_deg"][0, 0], "phi_o_deg": arrays["phi_deg"][0, 0],
+              "projected_solid_angle_sr": arrays["projected_solid_angle_sr"][0, 0], "f": arrays["f_per_sr"], "f_se": arrays["f_se"]}
     return {"theta_i_deg": numpy.array(theta), "wavelength_nm": numpy.array(nm), **result}
 
 
-def conform(material, *, wavelengths=(608, 551, 455), angles=(0, 30, 60, 80, 89), samples=20_000, lossless=False,
-            reciprocal=False, false_alarm_rate=1e-6, seed=1, session=None):
-    """Whether a BSDF obeys the laws of scattering: a material by its words, or an object of `frond.Bsdf`. What
-    `frond conform --json` finds, as a dictionary; `["laws"]` has the verdicts, `all_hold` is their sum.
-    """
-    asked = [[float(a) for a in angles], int(samples), seed, lossless, reciprocal, false_alarm_rate]
-    if isinstance(material, (str, list, tuple)):
-        text = _frond.conform(_session_of(session), _words(material), _numbers(wavelengths), *asked)
-    else:
-        text = _frond.conform_python(material, type(material).__name__, _numbers(wavelengths), *asked)
-    report = json.loads(text)
-    report["all_hold"] = all(law["verdict"] != "broken" for law in report["laws"].values())
-    return report
+def conform(material, *, session=None, **options):
+    """Whether a BSDF obeys the laws of scattering: a material as text, or an object of `frond.Bsdf`. A dictionary:
+    `["laws"]` has the verdicts by law, `["findings"]` a table, `all_hold` whether none is broken. Keywords are those of the
+    job."""
+    if not isinstance(material, (str, list, tuple)):
+        name = f"{type(material).__name__}-{id(material):x}"
+        if name not in names(session=session):
+            register_material(name, material, session=session)
+        material = name
+    result = run("conform", material=material_text(material), session=session, **options)
+    laws = result.columns["laws"]
+    rows = [dict(zip(laws, row)) for row in zip(*laws.values())]
+    return {**result.facts, "laws": {row["law"]: row for row in rows}, "findings": result.tables["findings"]}
 
 
 def register_material(name, bsdf, *, session=None):
@@ -91,107 +89,67 @@ def register_material(name, bsdf, *, session=None):
     _frond.register_material(_session_of(session), name, (type(bsdf).__doc__ or name).strip().split("\n")[0], bsdf)
 
 
-def _measurement(wavelengths, swap, target, period, seed, paths, rms):
-    return _frond.Measurement(_text_of_wavelengths(wavelengths), _swaps(swap), target, period, seed, int(paths), rms or 0.0)
-
-
-def _description(scene, session):
-    return _session_of(session).read(os.fspath(scene))
-
-
-def brf(scene, wavelengths=(450, 550, 670, 800), *, zenith=range(-75, 76, 5), azimuth=(0,), swap=None, target=None,
-        period=None, paths=65536, rms=None, seed=None, progress=None, session=None):
-    """Bidirectional reflectance factor of a scene from far away: a table of zenith_deg, azimuth_deg, wavelength_nm, brf
-    and its standard error brf_se.
-
-    Leaves are reciprocal where the scene does not say what is incident. target: (x0, x1, y0, y1, z); period: (x, y) after
-    which the scene is there again. rms: until the relative standard errors are below it.
-    """
-    views = [(float(z), float(a)) for a in _numbers(azimuth) for z in _numbers(zenith)]
-    measurement = _measurement(wavelengths, swap, target, period, seed, paths, rms)
-    found = _frond.brf(_session_of(session), _description(scene, session), views, measurement, _show(progress))
-    return _table([{"zenith_deg": view[0], "azimuth_deg": view[1], "wavelength_nm": nm, "brf": found["brf"][v, w],
-                    "brf_se": found["brf_se"][v, w]}
-                   for v, view in enumerate(views) for w, nm in enumerate(found["wavelengths_nm"])])
-
-
-def flux(scene, wavelengths=(450, 550, 670, 800), *, swap=None, target=None, period=None, paths=65536, rms=None,
-         by_instance=False, seed=None, progress=None, session=None):
-    """Where the light goes that falls on a scene: a table of quantity, material, wavelength_nm, share and its standard
-    error share_se. by_instance: with it a dictionary of what each copy absorbs: "absorbed", "absorbed_se"
-    `[copy][wavelength]`, "areas" and "wavelengths_nm".
-    """
-    measurement = _measurement(wavelengths, swap, target, period, seed, paths, rms)
-    found = _frond.flux(_session_of(session), _description(scene, session), measurement, by_instance, _show(progress))
-    table = _table(found.pop("rows"))
-    return (table, found) if by_instance else table
-
-
-def compare(scene, models=("abm", "leaf_simplified", "leaf_solved", "leaf_lambert"), *, reference="abm,mode=weighted",
-            wavelengths=None, size=128, samples=32, reference_samples=128, progress=None, session=None):
-    """What leaf models cost in a scene and how wrong they are: a table, one row for each model, number of samples and
-    region ("all" pixels, or those that see a "leaf"), with cpu_seconds and RMSE, its noise and its bias.
-    """
-    rows = _frond.compare(_session_of(session), os.fspath(scene), list(models), reference, _text_of_wavelengths(wavelengths),
-                          size, samples, reference_samples, _show(progress))
-    return _table(list(rows))
-
-
-def read_spectra(path, *, leaf="", angle=8.0):
-    """Measured spectra as `frond fit` reads them: a table of wavelength_nm, theta_deg, R and T."""
-    rows = _frond.read_spectra(os.fspath(path), leaf, angle)
-    return _table([dict(zip(("wavelength_nm", "theta_deg", "R", "T"), row)) for row in rows],
-                  ("wavelength_nm", "theta_deg", "R", "T"))
-
-
 class Fit:
-    """A leaf that was fitted to measurements."""
+    """A leaf that was fitted to measured spectra."""
 
-    def __init__(self, fit):
-        self._fit = fit
-        self.report = json.loads(fit.json())  #: everything, as `frond fit --json` writes it
+    def __init__(self, result, inputs):
+        self.result, self._inputs = result, inputs
+        leaf = result.columns["leaf"]
+        self.leaf = dict(zip(leaf["name"], (float(v) for v in leaf["value"])))  #: its parameters, as a material takes them
 
-    rmse = property(lambda self: self.report["rmse"], doc="Of R and T together.")
-    leaf = property(lambda self: self.report["leaf"], doc="The leaf's numbers, as a material takes them.")
+    rmse = property(lambda self: self.result.facts["rmse"], doc="Of R and T together.")
+    numbers = property(lambda self: self.result.tables["numbers"],
+                       doc="A table of what was fitted: value, relative_standard_error, identified.")
+    spectra = property(lambda self: self.result.tables["spectra"], doc="Measured and fitted spectra: a table.")
 
     @property
     def parameters(self):
         """The leaf's parameters as a dictionary, for Mitsuba's frond_leaf."""
-        return {"specimen": self.report["specimen"], **self.leaf, "sieve": self.report["sieve"]}
-
-    @property
-    def numbers(self):
-        """A table of what was fitted: value, relative_standard_error, identified."""
-        return _table(self.report["numbers"])
+        return {"specimen": self.result.facts["specimen"], **self.leaf, "sieve": self.result.facts["sieve"]}
 
     @property
     def material(self):
-        """The leaf as words: for instruments, `bsdf`, and with commas between them for `swap`."""
-        words = [f"specimen={self.report['specimen']}"] + [f"{name}={value!r}" for name, value in self.leaf.items()]
-        return words + (["sieve=true"] if self.report["sieve"] else [])
+        """The leaf's parts of a material in text: ["specimen=soybean", "thickness=0.00017", ...]; `swap` and the
+        instruments take "leaf_solved," and these with commas between."""
+        parts = [f"specimen={self.result.facts['specimen']}"] + [f"{name}={value!r}" for name, value in self.leaf.items()]
+        return parts + (["sieve=true"] if self.result.facts["sieve"] else [])
 
     def scene(self, material="leaf"):
         """A Material line of a scene file."""
-        return self._fit.scene(material)
+        return self.result.facts["scene"].replace('Material "leaf"', f'Material "{material}"', 1)
 
     def __str__(self):
-        return self._fit.text()
+        return self.result.text
 
 
-def fit(wavelengths=None, R=None, T=None, *, path=None, leaf="", angle=8.0, structure="", sieve=None, like="", fix=None,
-        session=None):
-    """The leaf whose solved walk comes nearest to measured reflectance and transmittance: arrays of `wavelengths` (nm) and
-    `R`, `T` (shares; either may be missing), or a file by `path`. `fix`: numbers that are known, {"chlorophylla": 3.9};
-    `like`: a specimen whose numbers are expected.
+def _csv(wavelengths, R, T, angle):
+    """Columns as the CSV text that the job reads."""
+    count = len(wavelengths)
+    columns = {"wavelength_nm": wavelengths, "R": R, "T": T}
+    columns = {name: list(values) for name, values in columns.items() if values is not None}
+    for name, values in columns.items():
+        if len(values) != count:
+            raise ValueError(f"fit: {count} wavelengths have {len(values)} {name}")
+    rows = zip(*columns.values())
+    lines = [",".join(columns)] + [",".join("" if v is None or v != v else repr(float(v)) for v in row) for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
+    """The leaf whose solved BSDF comes nearest to measured reflectance and transmittance: arrays of `wavelengths` (nm) and
+    `R`, `T` (shares of the light; either may be missing), or a file by `path`. Further keywords are those of the job: leaf,
+    angle, structure, sieve (True, False), like, fix ({"chlorophylla": 3.9}), output, plot, ...
     """
     if (path is None) == (wavelengths is None):
         raise ValueError("fit takes measurements, or the path of a file with them")
-    if path is not None:
-        rows, source = _frond.read_spectra(os.fspath(path), leaf, angle), os.path.basename(os.fspath(path))
-    else:
-        count = len(wavelengths)
-        columns = [[None] * count if c is None else [None if v != v else float(v) for v in c] for c in (R, T)]
-        if any(len(c) != count for c in columns):
-            raise ValueError(f"fit: {count} wavelengths have {len(columns[0])} R and {len(columns[1])} T")
-        rows, source = list(zip(_numbers(wavelengths), [float(angle)] * count, *columns)), "arrays"
-    return Fit(_frond.fit(_session_of(session), rows, structure, sieve, like, list((fix or {}).items()), source))
+    source = {"file": os.fspath(path)} if path is not None else {"data": _csv(wavelengths, R, T, options.get("angle"))}
+    if isinstance(sieve, bool):
+        sieve = "on" if sieve else "off"
+    return Fit(run("fit", **source, sieve=sieve, **options), source)
+
+
+def read_spectra(path, *, leaf="", angle=8.0):
+    """Measured spectra as the job fit reads them: a table of wavelength_nm, theta_deg, R and T."""
+    rows = _frond.read_spectra(os.fspath(path), leaf, angle)
+    columns = list(zip(*rows)) or [(), (), (), ()]
+    return _table(dict(zip(("wavelength_nm", "theta_deg", "R", "T"), map(list, columns))))

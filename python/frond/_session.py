@@ -8,29 +8,6 @@ from pathlib import Path
 from . import _frond
 
 
-def _cache_folder():
-    base = os.environ.get("XDG_CACHE_HOME") or (os.path.join(os.environ["HOME"], ".cache") if os.environ.get("HOME") else "")
-    return os.path.join(base, "frond") if base else ""
-
-
-def _swaps(swap):
-    """{"old": "new,parameter=value"}, "new" for every leaf, or None, as pairs."""
-    if not swap:
-        return []
-    if isinstance(swap, str):
-        return [("*", swap)]
-    return list(swap.items())
-
-
-def _text_of_wavelengths(wavelengths):
-    """A strategy as the command line has it, or numbers, which are bands."""
-    if wavelengths is None:
-        return ""
-    if isinstance(wavelengths, str):
-        return wavelengths
-    return "bands,wavelengths=" + ",".join(f"{float(nm):g}" for nm in wavelengths)
-
-
 def _show(progress):
     """What is called with the share that is done: nothing, a function, or with True a line on standard error."""
     if progress is not True:
@@ -52,7 +29,7 @@ class Session:
     """
 
     def __init__(self, threads=0, cache=True, plugins=()):
-        folder = _cache_folder() if cache is True else "" if not cache else os.fspath(cache)
+        folder = _frond.default_cache() if cache is True else "" if not cache else os.fspath(cache)
         self._session = _frond.Session(threads, folder, [os.fspath(p) for p in plugins])
 
     @property
@@ -65,20 +42,27 @@ class Session:
 
     def load(self, path, **over):
         """A scene from a file; `over` as of the function `load`."""
-        return self._scene(self._session.read(os.fspath(path)), **over)
+        return self._scene(os.fspath(path), None, **over)
 
     def loads(self, text, folder=".", **over):
         """A scene from a string; files that it names are found from `folder`."""
-        return self._scene(self._session.read(os.path.join(os.fspath(folder), "<string>"), text), **over)
+        return self._scene(os.path.join(os.fspath(folder), "<string>"), text, **over)
 
-    def _scene(self, description, *, swap=None, wavelengths=None, integrator="", filter="", channels=(), color_space="",
-               seed=None, pixels=None, samples=0, quick=False, adaptive=False):
-        scene = self._session.load(description, wavelengths=_text_of_wavelengths(wavelengths), swaps=_swaps(swap),
-                                   integrator=integrator, filter=filter, channels=list(channels), color_space=color_space,
-                                   seed=seed, pixels=pixels, samples=samples, quick=quick, adaptive=adaptive)
-        return Scene(scene, samples)
+    def _scene(self, path, text, *, adaptive=False, **over):
+        from ._jobs import JOBS, arguments, by_alias, python_name
+        over["spp"] = over.pop("samples", over.get("spp")) or None
+        params = [p for p in JOBS["render"]["params"] if p["name"] not in _NOT_OF_LOADING]
+        over = by_alias(params, over)
+        for name in over:
+            if name not in {python_name(p["name"]) for p in params}:
+                raise TypeError(f"load() got an unexpected keyword argument {name!r}")
+        scene = self._session.load(path, text, arguments(params, over), adaptive)
+        return Scene(scene, over["spp"])
 
 
+#: What of the job `render` is said to `Scene.render` and `Picture.save`.
+_NOT_OF_LOADING = {"scene", "output", "part", "samples", "checkpoint", "resume", "time-limit", "pilot", "preview",
+                   "display", "view", "display-server", "json"}
 _default = None
 _default_lock = threading.Lock()
 
@@ -93,13 +77,13 @@ def default_session():
 
 
 def load(path, *, session=None, **over):
-    """A scene from a pbrt-v4 file.
+    """A scene from a pbrt-v4 file. Keywords are those of `frond.render` that shape the image:
 
     swap: another material: "leaf_solved" in place of every leaf, or {"name": "plugin,parameter=value", ...}.
-    wavelengths: a strategy ("smpte", "hero", "bands,wavelengths=450,670"), or numbers in nm, which are bands.
-    integrator, filter: "plugin,parameter=value". channels: beside colour ("normal", "depth", ...). color_space: of the
-    picture. seed: of all random numbers. pixels: (x0, x1, y0, y1), a part of the film. samples: a pixel, in place of the
-    scene's. quick: half the resolution, a sixteenth of the samples. adaptive: to render until noise is small enough.
+    wavelengths: a strategy ("smpte", "hero"), or numbers in nm, which are bands. integrator, filter:
+    "plugin,parameter=value". channels: beside colour ("normal", "depth", ...). color_space: of the image. seed: of all
+    random numbers. pixels: (x0, x1, y0, y1), a crop. samples (or spp): of each pixel, in place of the scene's. quick: half
+    the resolution, a sixteenth of the samples. max_rms, or adaptive: to render until the noise is small enough.
     """
     return (session or default_session()).load(path, **over)
 
@@ -122,7 +106,7 @@ class Scene:
 
     width = property(lambda self: self._scene.width, doc="Of the film, in pixels.")
     height = property(lambda self: self._scene.height, doc="Of the film, in pixels.")
-    samples = property(lambda self: self._asked or self._scene.samples, doc="Of a pixel, that are asked for.")
+    samples = property(lambda self: self._asked or self._scene.samples, doc="Number of samples per pixel that is asked for.")
     materials = property(lambda self: self._scene.materials, doc="(name, plugin) of each, in the file's order.")
 
     @property

@@ -15,7 +15,7 @@
 
 #include <memory>
 
-#include "render/session.h"
+#include "jobs/job.h"
 
 namespace frond::python {
 
@@ -40,12 +40,17 @@ class PythonLog final : public Log {
 
 /// A session of Python's, with its log.
 struct SessionHandle {
-  explicit SessionHandle(SessionOptions given) : options(std::move(given)), session(log, options) {}
+  explicit SessionHandle(SessionOptions options) : context(log, std::move(options)) { context.session(); }
+  Session& session() { return context.session(); }
 
   PythonLog log;
-  SessionOptions options;
-  Session session;
+  JobContext context;
 };
+
+/// Arguments of a job, by name: one text for each time that a parameter is given.
+using GivenArguments = std::map<std::string, std::vector<std::string>>;
+/// Throws InputError.
+Arguments arguments_of(const JobInfo& job, const GivenArguments& given);
 
 /// A NumPy array that owns its values.
 template <class T>
@@ -67,11 +72,9 @@ void check_signals();
 void run(const std::function<void(const RenderControl&)>& work, const nb::object& progress);
 
 void bind_session(nb::module_& m);
-void bind_instruments(nb::module_& m);
-void bind_radiometry(nb::module_& m);
+void bind_jobs(nb::module_& m);
+void bind_bsdf(nb::module_& m);
 void bind_python_bsdf(nb::module_& m);
-void bind_fit(nb::module_& m);
 void bind_leaf(nb::module_& m);
-void bind_study(nb::module_& m);
 
 }  // namespace frond::python

@@ -104,13 +104,11 @@ NB_MODULE(_frond, m) {
       },
       nb::object(error).release().ptr());
   m.attr("version") = FROND_VERSION;
+  bind_jobs(m);
   bind_session(m);
-  bind_instruments(m);
-  bind_radiometry(m);
+  bind_bsdf(m);
   bind_python_bsdf(m);
-  bind_fit(m);
   bind_leaf(m);
-  bind_study(m);
 }
 
 }  // namespace frond::python

@@ -2,9 +2,6 @@
 #include <map>
 
 #include "common.h"
-#include "instruments/conformance.h"
-#include "instruments/given_wavelengths.h"
-#include "report/conform_report.h"
 
 namespace frond::python {
 namespace {
@@ -133,20 +130,6 @@ std::unique_ptr<Material> make_python_material(const Params& p) {
   return std::make_unique<PythonMaterial>(nb::borrow(found->object));
 }
 
-std::string conform(const nb::object& object, const std::string& name, const std::vector<float>& nm,
-                    const ExaminationEffort& effort, const Claims& claims, double false_alarm_rate) {
-  const PythonMaterial material(object);
-  const nb::gil_scoped_release release;
-  ConformReport report{name, {nm.begin(), nm.end()}, effort, false_alarm_rate, 0, {}};
-  if (nm.empty() || nm.size() > kLanes) fail({}, "a BSDF has one to four wavelengths, {} were given", nm.size());
-  Arena arena;
-  const SampledWavelengths lambda = GivenWavelengths(nm).sample(0);
-  const Claims all{claims.lossless, claims.reciprocal || material.is_reciprocal()};
-  report.findings = examine(*material.evaluate({}, lambda, arena), lambda, all, effort, name);
-  report.level = judge(report.findings, false_alarm_rate);
-  return conform_json(report);
-}
-
 }  // namespace
 
 void bind_python_bsdf(nb::module_& m) {
@@ -158,20 +141,10 @@ void bind_python_bsdf(nb::module_& m) {
         Registered& r = registered().emplace_back(name, doc, object.ptr(), MaterialInfo{});
         r.info.kind = "material", r.info.name = r.name, r.info.doc = r.doc, r.info.source = "Python";
         r.info.make = make_python_material;
-        owner->session.add_material(r.info);
+        owner->session().add_material(r.info);
         object.inc_ref();
       },
       "session"_a, "name"_a, "doc"_a, "bsdf"_a);
-  m.def(
-      "conform_python",
-      [](const nb::object& object, const std::string& name, const std::vector<float>& nm,
-         const std::vector<double>& angles_deg, int samples, uint64_t seed, bool lossless, bool reciprocal,
-         double false_alarm_rate) {
-        return conform(object, name, nm, {.samples = samples, .angles_deg = angles_deg, .seed = seed},
-                       {lossless, reciprocal}, false_alarm_rate);
-      },
-      "bsdf"_a, "name"_a, "wavelengths"_a, "angles_deg"_a, "samples"_a, "seed"_a, "lossless"_a, "reciprocal"_a,
-      "false_alarm_rate"_a);
 }
 
 }  // namespace frond::python

@@ -70,9 +70,9 @@ std::string needed(const JobParam& p) {
     case ArgumentKind::real:
       return "a number" + range_text(p.range) + unit;
     case ArgumentKind::numbers:
-      return p.values > 0 ? fmt::format("{} numbers{}{} with commas between", p.values, range_text(p.range), unit)
-                          : fmt::format("a list of numbers{}{}, as in 0,8,30 or first:last:step", range_text(p.range),
-                                        unit);
+      return fmt::format("{} {}numbers{}{}{}", p.values > 0 ? std::to_string(p.values) : "a list of",
+                         p.whole ? "whole " : "", range_text(p.range), unit,
+                         p.values > 0 ? " with commas between" : ", as in 0,8,30 or first:last:step");
     case ArgumentKind::text:
     case ArgumentKind::texts:
       return p.type.empty() ? "a text" : fmt::format("a text: {}", p.type);
@@ -121,7 +121,8 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
     fail({}, "{}: {} is needed; \"{}\" was given", p.positional ? std::string(p.name) : spelling_(p.name), needed(p),
          word);
   };
-  if (p.kind != ArgumentKind::texts && words.size() != 1)
+  const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
+  if (!repeats && words.size() != 1)
     fail({}, "{} takes one value, {} were given", spelling_(p.name), words.size());
   for (std::string& word : value.words) {
     if (word == "true" && !p.implied.empty()) word = p.implied;
@@ -138,8 +139,8 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
     if (!numbers || (p.values > 0 && numbers->size() != p.values)) refuse(word);
     if (p.kind != ArgumentKind::numbers && (numbers->size() != 1 || word.find(':') != std::string::npos)) refuse(word);
     for (const double x : *numbers)
-      if (!p.range.contains(x) || (p.kind == ArgumentKind::count && x != std::floor(x))) refuse(word);
-    value.numbers = *numbers;
+      if (!p.range.contains(x) || ((p.whole || p.kind == ArgumentKind::count) && x != std::floor(x))) refuse(word);
+    value.numbers.insert(value.numbers.end(), numbers->begin(), numbers->end());
   }
   return value;
 }

@@ -40,6 +40,7 @@ struct JobParam {
   std::span<const std::string_view> choices = {};
   std::string_view aliases = "";           ///< further names with commas between: "o,outfile"; one letter is a short option
   size_t values = 0;                       ///< numbers: exactly so many; 0: any number of them
+  bool whole = false;                      ///< numbers: each is a whole number
   PathUse path = PathUse::none;
   bool decides = false;                    ///< the result depends on it: part of a measurement's identity
   bool positional = false;

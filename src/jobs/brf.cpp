@@ -201,14 +201,14 @@ Result comparison_result(const ModelReading& reference, const std::vector<ModelR
 
 /// The scene with one leaf model after another in place of its leaves.
 Result run_comparison(const JobRun& run, const BrfRequest& request) {
-  const SceneDescription description = run.session().read(run.args.text("scene"), unsupported_of(run.args));
+  const SceneDescription description = described_scene(run);
   std::unique_ptr<BrfMeter> first;
   const auto measured = [&](const compare::Candidate& model) {
     if (!model.wavelengths.empty() || model.integrator)
       fail({}, "{} takes materials alone: \"{}\" has an @", run.args.spelled("compare"), model.text);
-    SceneOverrides overrides = overrides_of(run.args);
-    overrides.swaps.push_back({"*", model.material});
-    auto meter = std::make_unique<BrfMeter>(run.session(), description, overrides, request,
+    SceneDescription with_model = description;
+    apply_overrides({.swaps = {{"*", model.material}}}, with_model, run.session().registry(), run.log());
+    auto meter = std::make_unique<BrfMeter>(run.session(), std::move(with_model), request,
                                             first ? &first->scene().scene() : nullptr);
     run.context.log().check();
     const double start = cpu_seconds();
@@ -230,12 +230,15 @@ Result run_comparison(const JobRun& run, const BrfRequest& request) {
 
 Result brf(const JobRun& run) {
   check_chart_param(run, "plot");
-  const BrfRequest request{views_of(run.args), target_of(run.args), period_of(run.args), wavelengths_text(run.args)};
+  const BrfRequest request{.views = views_of(run.args),
+                           .target = target_of(run.args),
+                           .period = period_of(run.args),
+                           .wavelengths = wavelengths_text(run.args),
+                           .keeps_depth = run.args.given("integrator")};
   if (run.args.given("compare")) return run_comparison(run, request);
   std::optional<KeptFile> kept;
   if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
-  const BrfMeter meter(run.session(), run.session().read(run.args.text("scene"), unsupported_of(run.args)),
-                       overrides_of(run.args), request);
+  const BrfMeter meter(run.session(), described_scene(run), request);
   run.context.log().check();
   const auto measured = measure(run, meter, kept ? &*kept : nullptr);
   if (!measured) {

@@ -44,6 +44,12 @@ Unsupported unsupported_of(const Arguments& args) {
   return args.given("ignore-unsupported") ? Unsupported(args.text("ignore-unsupported")) : Unsupported();
 }
 
+SceneDescription described_scene(const JobRun& run) {
+  SceneDescription description = run.session().read(run.args.text("scene"), unsupported_of(run.args));
+  apply_overrides(overrides_of(run.args), description, run.session().registry(), run.log());
+  return description;
+}
+
 std::string wavelengths_text(const Arguments& args, std::string_view name) {
   const std::string text = args.text(name);
   if (text.empty() || std::string_view("0123456789.").find(text[0]) == std::string_view::npos) return text;

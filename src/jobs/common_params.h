@@ -1,6 +1,7 @@
 #pragma once
 
 #include "jobs/job.h"
+#include "scene/overrides.h"
 #include "scene/unsupported.h"
 
 /// Parameters that several jobs have, with one spelling and one meaning, and how they are read.
@@ -75,6 +76,8 @@ std::vector<std::string> materials_of(const JobRun& run);
 /// Overrides by --swap, --wavelengths, --integrator, --filter, --seed and --quick, as far as the job has them.
 SceneOverrides overrides_of(const Arguments& args);
 Unsupported unsupported_of(const Arguments& args);
+/// The scene file with the overrides written into it.
+SceneDescription described_scene(const JobRun& run);
 /// "smpte", "bands,wavelengths=450,550" or numbers alone, 450,550 or 400:700:10, which are bands.
 std::string wavelengths_text(const Arguments& args, std::string_view name = "wavelengths");
 /// Refuses a chart that cannot be written, if it is asked for.

@@ -1,0 +1,156 @@
+"""The jobs of frond as functions: signatures, docstrings and checks follow from the records that the command line has."""
+
+import inspect
+import operator
+import os
+import re
+
+from . import _frond
+from ._session import _show, default_session
+
+_ANNOTATIONS = {"flag": "bool", "count": "int", "seed": "int", "real": "float", "numbers": "float | Sequence[float] | str",
+                "text": "str | os.PathLike", "texts": "str | Sequence[str] | Mapping[str, str]"}
+
+
+def _text(value):
+    """A value as text, in the grammar of the command line. Numbers keep all their digits."""
+    if hasattr(value, "item") and getattr(value, "ndim", 0) == 0:
+        value = value.item()  # of NumPy
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if hasattr(value, "__index__"):
+        return str(operator.index(value))
+    if hasattr(value, "__float__"):
+        return repr(float(value))
+    return ",".join(_text(v) for v in value)
+
+
+def words(param, value):
+    """The texts that a parameter is set by: one, or for a parameter that may be given again any number."""
+    if param["kind"] != "texts":
+        return [_text(value)]
+    if isinstance(value, (str, os.PathLike)):
+        text = os.fspath(value)
+        if param["name"] == "swap" and "=" not in text.split(",")[0]:
+            text = "*=" + text  # a model for every leaf
+        return [text]
+    if hasattr(value, "items"):
+        return [f"{name}={_text(v)}" for name, v in value.items()]
+    return [_text(v) for v in value]
+
+
+def python_name(name):
+    return name.replace("-", "_")
+
+
+def arguments(params, given):
+    """{name: texts} of the keywords that are given, for the records `params`."""
+    found = {}
+    for param in params:
+        value = given.get(python_name(param["name"]))
+        if value is not None and not (param["kind"] == "flag" and value is False):
+            found[param["name"]] = words(param, value)
+    return found
+
+
+def by_alias(params, given):
+    """The same keywords with the records' own names in place of their aliases."""
+    names = {python_name(alias): python_name(p["name"]) for p in params for alias in p["aliases"].split(",") if len(alias) > 1}
+    return {names.get(name, name): value for name, value in given.items()}
+
+
+def _default(param):
+    text = param["default"]
+    if param["kind"] == "flag":
+        return False
+    if not text:
+        return inspect.Parameter.empty if param["required"] else None
+    return {"count": int, "seed": int, "real": float}.get(param["kind"], str)(text)
+
+
+def _doc(text):
+    """Options spelled as keywords."""
+    return re.sub(r"--([a-z][a-z-]*)", lambda match: python_name(match[1]), text)
+
+
+def _signature(job):
+    kinds, parameters = inspect.Parameter, []
+    for i, param in enumerate(job["params"]):
+        kind = kinds.POSITIONAL_OR_KEYWORD if i < 3 else kinds.KEYWORD_ONLY
+        parameters.append(kinds(python_name(param["name"]), kind, default=_default(param), annotation=_ANNOTATIONS[param["kind"]]))
+    # What has no default comes first, or is given by its name.
+    seen_default = False
+    for i, parameter in enumerate(parameters[:3]):
+        seen_default = seen_default or parameter.default is not kinds.empty
+        if seen_default and parameter.default is kinds.empty:
+            parameters[i] = parameter.replace(default=None)
+    parameters.append(kinds("progress", kinds.KEYWORD_ONLY, default=None))
+    parameters.append(kinds("session", kinds.KEYWORD_ONLY, default=None, annotation="Session | None"))
+    return inspect.Signature(parameters, return_annotation="Result")
+
+
+def _docstring(job):
+    lines = [job["doc"], "", *([job["details"], ""] if job["details"] else [])]
+    lines += [f"{python_name(p['name'])}: {_doc(p['doc'])}" for p in job["params"]]
+    return "\n".join(lines)
+
+
+class Result:
+    """What a job found: `tables` by name, single values as `facts`, `notes` and the `text` for a terminal.
+
+    A table is a pandas.DataFrame where pandas is installed, else a dictionary of columns. `table` is the first one.
+    """
+
+    def __init__(self, found):
+        self.columns, self.facts = found["tables"], found["facts"]
+        self.notes, self.text, self.code = found["notes"], found["text"], found["code"]
+
+    @property
+    def tables(self):
+        return {name: _table(columns) for name, columns in self.columns.items()}
+
+    @property
+    def table(self):
+        return _table(next(iter(self.columns.values())))
+
+    def __str__(self):
+        return self.text
+
+
+def _table(columns):
+    try:
+        import pandas
+    except ImportError:
+        import numpy
+        return {name: numpy.asarray(values) for name, values in columns.items()}
+    return pandas.DataFrame(columns)
+
+
+def run(name, *, progress=None, session=None, **given):
+    """Runs a job by its name, with the keywords of its function; returns a `Result`."""
+    job = JOBS[name]
+    given = by_alias(job["params"], given)
+    known = {python_name(p["name"]) for p in job["params"]}
+    for keyword in given:
+        if keyword not in known:
+            raise TypeError(f"{name}() got an unexpected keyword argument {keyword!r}")
+    owner = (session or default_session())._session
+    return Result(_frond.run(owner, name, arguments(job["params"], given), _show(progress)))
+
+
+def _function(job):
+    signature = _signature(job)
+
+    def call(*args, **kwargs):
+        bound = signature.bind(*args, **by_alias(job["params"], kwargs))
+        return run(job["name"], **bound.arguments)
+
+    call.__name__ = call.__qualname__ = job["name"]
+    call.__signature__, call.__doc__, call.__module__ = signature, _docstring(job), "frond"
+    return call
+
+
+JOBS = {job["name"]: job for job in _frond.jobs()}
+FUNCTIONS = {name: _function(job) for name, job in JOBS.items()}

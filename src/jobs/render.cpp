@@ -1,0 +1,373 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "image/tev_packets.h"
+#include "jobs/common_params.h"
+#include "jobs/kept_file.h"
+#include "jobs/render_task.h"
+#include "jobs/render_views.h"
+#include "render/adaptive.h"
+#include "render/checkpoint.h"
+#include "render/error_tail.h"
+#include "render/part_file.h"
+#include "study/choose/choice_report.h"
+#include "system/atomic_file.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+using Clock = std::chrono::steady_clock;
+
+constexpr JobParam kParams[] = {
+    {.name = "scene",
+     .kind = texts,
+     .doc = "Scene file (pbrt-v4 format). Of several files, each that has WorldBegin ends a scene.",
+     .type = "SCENE",
+     .path = PathUse::read,
+     .decides = true,
+     .positional = true,
+     .required = true},
+    {.name = "output",
+     .kind = text,
+     .doc = "Image: .exr (linear), .png or .jpg (through the display transform). By default the file that the scene's "
+            "film names.",
+     .type = "FILE",
+     .aliases = "o,outfile",
+     .path = PathUse::write,
+     .excludes = "part"},
+    {.name = "spp",
+     .kind = count,
+     .doc = "Number of samples per pixel; by default the scene's.",
+     .range = {1, 1 << 30}},
+    {.name = "wavelengths",
+     .kind = text,
+     .doc = "Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in "
+            "nm: 450,550,850 or 400:1000:10.",
+     .type = "WAVELENGTHS",
+     .decides = true},
+    kSwapParam,
+    kSeedParam,
+    {.name = "crop",
+     .kind = numbers,
+     .doc = "Crop as fractions of the film; ends are rounded up.",
+     .type = "X0,X1,Y0,Y1",
+     .range = {0, 1},
+     .aliases = "cropwindow",
+     .values = 4,
+     .excludes = "pixels,pixel"},
+    {.name = "pixels",
+     .kind = numbers,
+     .doc = "Crop in pixels; x1 and y1 are not part of it.",
+     .type = "X0,X1,Y0,Y1",
+     .range = {0, 1 << 30},
+     .aliases = "pixelbounds",
+     .values = 4,
+     .whole = true,
+     .excludes = "pixel"},
+    {.name = "pixel",
+     .kind = numbers,
+     .doc = "The one pixel to render.",
+     .type = "X,Y",
+     .range = {0, 1 << 30},
+     .values = 2,
+     .whole = true},
+    kIntegratorParam,
+    {.name = "filter",
+     .kind = text,
+     .doc = "PLUGIN[,parameter=value...]: pixel filter; one of the scene's kind keeps the scene's other parameters. "
+            "gaussian,reconstruction=importance: pixels share no samples.",
+     .type = "FILTER",
+     .decides = true},
+    {.name = "channels",
+     .kind = text,
+     .doc = "Data of the first surface that camera rays meet, beside the image's colours; names with commas between "
+            "(docs/scene_format.md).",
+     .type = "CHANNELS",
+     .decides = true},
+    {.name = "max-rms",
+     .kind = real,
+     .doc = "Stop when the RMS noise of the image's linear colours is below this; pixels with more noise get more "
+            "samples, up to --spp.",
+     .range = kAboveZero,
+     .excludes = "samples"},
+    kTimeLimitParam,
+    {.name = "quick", .kind = flag, .doc = "Preview: half the resolution, a sixteenth of the samples.", .decides = true},
+    {.name = "pilot", .kind = flag, .doc = "Choose the models of open leaves and report the choice; render nothing."},
+    {.name = "display", .kind = text, .doc = "Display of PNG and JPEG output; sRGB by default. tev: the same as --display-server 127.0.0.1:14158."},
+    {.name = "view", .kind = text, .doc = "View of that display."},
+    {.name = "color-space",
+     .kind = text,
+     .doc = "Colour space of an EXR file's R, G and B where the scene names none, such as linear sRGB.",
+     .decides = true},
+    {.name = "display-server",
+     .kind = text,
+     .doc = "Show the image in the viewer tev while it is rendered.",
+     .type = "HOST:PORT"},
+    {.name = "preview", .kind = flag, .doc = "Show the image in the terminal while it is rendered, and at the end."},
+    {.name = "part",
+     .kind = text,
+     .doc = "Write a part, to be combined with frond merge, instead of an image.",
+     .type = "FILE",
+     .path = PathUse::write},
+    {.name = "samples",
+     .kind = text,
+     .doc = "Range of samples to render, FIRST:END, as in 64:128; by default from 0 to --spp.",
+     .type = "FIRST:END"},
+    {.name = "checkpoint",
+     .kind = real,
+     .doc = "Keep the partial result at this interval, and when stopped by SIGINT or SIGTERM: in OUTPUT.part, or in "
+            "FILE.checkpoint where --part writes FILE.",
+     .unit = "s",
+     .range = kAboveZero},
+    {.name = "resume",
+     .kind = flag,
+     .doc = "Resume from OUTPUT.part, or --part's file, if it is there; keep one too."},
+    {.name = "disable-pixel-jitter",
+     .kind = flag,
+     .doc = "Sample at the centres of pixels and lens.",
+     .decides = true},
+    {.name = "disable-texture-filtering", .kind = flag, .doc = "Look textures up at points.", .decides = true},
+    {.name = "disable-wavelength-jitter",
+     .kind = flag,
+     .doc = "Use the same wavelengths for all samples.",
+     .decides = true},
+    kIgnoreUnsupportedParam,
+    kStrictParam,
+    {.name = "json", .kind = flag, .doc = "Print the statistics as JSON on standard output."},
+};
+
+/// Counts by depth, up to the last that is not 0.
+std::vector<uint64_t> counts(std::span<const uint64_t> by_depth) {
+  while (!by_depth.empty() && by_depth.back() == 0) by_depth = by_depth.first(by_depth.size() - 1);
+  return {by_depth.begin(), by_depth.end()};
+}
+
+double per_path(double value, const RenderStatistics& s) { return s.paths > 0 ? value / double(s.paths) : 0; }
+
+/// A render from its scene to its files.
+class SceneRender {
+ public:
+  SceneRender(const JobRun& run, std::vector<std::filesystem::path> files)
+      : run_(run), files_(std::move(files)), task_(run), views_(run.args) {}
+
+  /// Adds its statistics to the result.
+  void render(Result& result) {
+    try {
+      prepare();
+    } catch (const InputError& error) {
+      if (!run_.args.flag("strict")) throw;
+      Problems problems;  // the warnings so far are errors too
+      problems.add(error);
+      problems.attempt([this] { run_.context.log().check(); });
+      problems.check();
+    }
+    if (run_.args.flag("pilot")) return report_choice(result);
+    if (names_) kept_.emplace(*names_, run_.control.stop, run_.log());
+    RenderPart part = first_part();
+    views_.begin(part.film, part.header.picture, output_ ? output_->path() : run_.args.text("part"),
+                 run_.context.log().target());
+    fill(part);
+    result.stopped = run_.control.stop.stop_requested();
+    if (kept_)  // an image that is done is not lost with its checkpoint
+      kept_->keep(!result.stopped, !output_, [&part](const auto& path) { write_part(path, part.header, part.film); });
+    if (result.stopped && kept_) return kept_->report_stop();
+    if (!result.stopped) finish(part, result);
+  }
+
+ private:
+  /// What can be refused is refused before the render.
+  void prepare() {
+    task_.read(files_);
+    find_paths();
+    task_.choose(output_ ? &*output_ : nullptr);
+    if (run_.args.flag("pilot")) return;
+    if (task_.choice()) load_start_ = Clock::now();  // its time is reported apart
+    task_.load(output_ ? &*output_ : nullptr);
+    load_seconds_ = std::chrono::duration<double>(Clock::now() - load_start_).count();
+    views_.check(task_.scene().picture());
+    run_.context.log().check();
+  }
+
+  void find_paths() {
+    const Arguments& args = run_.args;
+    if (args.given("part")) {
+      const std::string part = args.text("part");
+      names_ = {part, part + ".checkpoint"};  // a part of this name is finished
+      return;
+    }
+    output_.emplace(args.given("output") ? args.text("output") : task_.film_file(),
+                    display_of(args));
+    if (!args.given("checkpoint") && !args.flag("resume")) return;
+    names_ = {output_->path() + ".part", output_->path() + ".part"};
+    check_replaceable(names_->finished);
+  }
+
+  void report_choice(Result& result) const {
+    const auto& choice = task_.choice();
+    if (!choice)
+      fail({}, "{}: the scene leaves no leaf's model open: Material \"leaf\" does, or {} \"*=leaf\"",
+           run_.args.spelled("pilot"), run_.args.spelled("swap"));
+    result.facts.push_back({"choice", choose::choice_json(*choice)});
+    if (!run_.args.flag("json")) return;
+    result.text += nlohmann::ordered_json::parse(choose::choice_json(*choice)).dump(2) + '\n';
+    result.is_requested = true;
+  }
+
+  /// The partial result of an earlier run, or an empty part.
+  RenderPart first_part() const {
+    RenderPart fresh = task_.empty_part();
+    const auto path = kept_ ? kept_->found(run_.args.flag("resume")) : std::nullopt;
+    if (!path) return fresh;
+    RenderPart part = read_part(*path);
+    check_same_render(fresh, part, *path);
+    part.header.request = fresh.header.request;
+    return part;
+  }
+
+  void check_same_render(const RenderPart& wanted, const RenderPart& found, const std::filesystem::path& path) const {
+    const std::string resume = run_.args.spelled("resume");
+    const std::string difference =
+        wanted.header.identity.difference(found.header.identity, "this command", "\"" + path.string() + "\"");
+    if (!difference.empty()) fail({}, "{}: this is another render. {}", resume, difference);
+    if (found.film.format().blocks != wanted.film.format().blocks)
+      fail({}, "{}: \"{}\" was made {} {}", resume, path.string(), task_.is_adaptive() ? "without" : "with",
+           run_.args.spelled("max-rms"));
+    if (found.film.settings().crop != wanted.film.settings().crop || found.film.sampled() != wanted.film.sampled())
+      fail({}, "{}: \"{}\" is of other pixels than this command asks for", resume, path.string());
+  }
+
+  /// Renders what is missing.
+  void fill(RenderPart& part) {
+    RenderControl control = run_.control;
+    if (run_.args.given("time-limit"))
+      control.deadline = start_ + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(run_.args.real("time-limit")));
+    std::optional<Checkpointer> checkpointer;
+    if (kept_) {
+      const double seconds = run_.args.given("checkpoint") ? run_.args.real("checkpoint") : KeptFile::kSeconds;
+      checkpointer.emplace(kept_->checkpoint(), seconds, part, control.progress, run_.log());
+      control.progress = &*checkpointer;
+    }
+    statistics_ = task_.render(part, control, [&checkpointer](const PartHeader& header) {
+      if (checkpointer) checkpointer->set_header(header);
+    });
+  }
+
+  void finish(const RenderPart& part, Result& result) {
+    views_.finish_preview();
+    const SampleCount samples = sample_count(part.film);
+    if (output_ && samples.most == 0)
+      fail({}, "{}: the time was over before anything was rendered", run_.args.spelled("time-limit"));
+    const Log& log = run_.log();
+    if (const uint64_t count = part.film.not_finite(); count > 0)
+      log.warn({}, fmt::format("{} samples were too bright for the film, or no numbers at all, and count as its brightest "
+                               "or as black",
+                               count));
+    if (task_.is_adaptive())
+      report_noise(part.film);
+    else if (samples.least < task_.samples().count())
+      log.warn({}, fmt::format("the time was over: pixels have {} to {} samples, not {}", samples.least, samples.most,
+                               task_.samples().count()));
+    const ErrorTail tail = error_tail(part.film);
+    if (tail.is_heavy())  // no fault of the scene's, so never an error
+      run_.context.log().target().warn(
+          {}, fmt::format("a thousandth of the pixels holds {:.0f} % of the noise: rare samples outweigh all others "
+                          "there, and estimates of the noise are too small",
+                          100 * tail.share));
+    if (output_) output_->write(part.film, finished_picture(part));
+    views_.finish_display(output_ && output_->rounds_to_halves(part.film));
+    report(part.film, samples, tail.share, result);
+  }
+
+  void report_noise(const Film& film) const {
+    const NoiseEstimate noise = picture_noise(film, noise_z());
+    const double max_rms = run_.args.real("max-rms");
+    if (noise.upper_rms() <= max_rms)
+      run_.log().info(fmt::format("noise RMS {:.5f}, {:.5f} at most ({:.0f} %)", noise.rms(), noise.upper_rms(),
+                                  100 * kNoiseConfidence));
+    else
+      run_.log().warn({}, fmt::format("noise RMS {:.5f}, {:.5f} at most: more than the {:g} asked for", noise.rms(),
+                                      noise.upper_rms(), max_rms));
+  }
+
+  void report(const Film& film, const SampleCount& samples, double error_tail, Result& result) const {
+    const RenderStatistics& s = statistics_;
+    const std::string output = output_ ? output_->path() : names_->finished.string();
+    const double us_per_path = per_path(s.cpu_seconds, s) * 1e6, rays_per_path = per_path(double(s.rays), s);
+    Table& table = result.tables[0];
+    table.add("output", output);
+    for (const auto& [name, value] :
+         {std::pair{"samples_per_pixel", double(samples.most)}, {"least_samples_per_pixel", double(samples.least)},
+          {"load_seconds", load_seconds_}, {"wall_seconds", s.wall_seconds}, {"cpu_seconds", s.cpu_seconds},
+          {"paths", double(s.paths)}, {"rays", double(s.rays)}, {"cpu_us_per_path", us_per_path},
+          {"rays_per_path", rays_per_path}, {"foliar_ratio", film.foliar_ratio()},
+          {"variance_in_worst_thousandth", error_tail}})
+      table.add(name, value);
+    if (run_.args.flag("json")) return add_json(result);
+    const std::string count = samples.least == samples.most ? fmt::format("{}", samples.most)
+                                                            : fmt::format("{} to {}", samples.least, samples.most);
+    run_.log().info(fmt::format(
+        "{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), loaded in {:.2f} s",
+        output, count, s.wall_seconds, s.cpu_seconds, us_per_path, rays_per_path, load_seconds_));
+    run_.log().info(fmt::format("foliar ratio {:.2f} %", 100 * film.foliar_ratio()));
+  }
+
+  void add_json(Result& result) const {
+    nlohmann::ordered_json json;
+    const Table& table = result.tables[0];
+    for (const Column& c : table.columns) {
+      if (!c.is_number())
+        json[c.name] = std::get<1>(c.values).back();
+      else if (const double v = std::get<0>(c.values).back(); v == double(uint64_t(v)))
+        json[c.name] = uint64_t(v);
+      else
+        json[c.name] = v;
+    }
+    json["paths_escaped_by_depth"] = counts(statistics_.ends.escaped);
+    json["paths_absorbed_by_depth"] = counts(statistics_.ends.absorbed);
+    if (task_.choice()) json["choice"] = nlohmann::ordered_json::parse(choose::choice_json(*task_.choice()));
+    result.text += json.dump(2) + '\n';
+    result.is_requested = true;
+  }
+
+  const JobRun& run_;
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point load_start_ = start_;
+  std::vector<std::filesystem::path> files_;
+  RenderTask task_;
+  RenderViews views_;
+  std::optional<ImageOutput> output_;     ///< empty: a part is asked for
+  std::optional<KeptFile::Names> names_;  ///< empty: no part is kept
+  std::optional<KeptFile> kept_;          ///< until all is written: signals come while the last part is
+  double load_seconds_ = 0;
+  RenderStatistics statistics_;
+};
+
+Result render(const JobRun& run) {
+  const auto scenes = scenes_of(run.args.texts("scene"));
+  for (const char* name : {"output", "part"})
+    if (scenes.size() > 1 && run.args.given(name))
+      fail({}, "{} scenes cannot all be written to {}: without it each goes where its Film says", scenes.size(),
+           run.args.text(name));
+  Result result{.tables = {{"renders"}}};
+  for (const auto& files : scenes) {
+    SceneRender(run, files).render(result);
+    if (result.stopped) break;
+  }
+  return result;
+}
+
+}  // namespace
+
+const JobInfo kRenderJob{.name = "render",
+                         .group = "Render",
+                         .doc = "Render a pbrt-v4 scene file.",
+                         .details = "",
+                         .params = kParams,
+                         .session = SessionUse::all,
+                         .run = render};
+
+}  // namespace frond

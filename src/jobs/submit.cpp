@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/error.h"
+#include "jobs/render_task.h"
+#include "jobs/slurm_templates.h"
+#include "report/text_output.h"
+#include "system/child_process.h"
+
+namespace frond {
+namespace {
+
+namespace fs = std::filesystem;
+using enum ArgumentKind;
+
+constexpr JobParam kParams[] = {
+    {.name = "scene",
+     .kind = text,
+     .doc = "Scene file.",
+     .type = "SCENE",
+     .path = PathUse::read,
+     .positional = true,
+     .required = true},
+    {.name = "output",
+     .kind = text,
+     .doc = "Image that the merge job writes.",
+     .type = "FILE",
+     .aliases = "o,outfile",
+     .path = PathUse::write,
+     .required = true},
+    {.name = "spp", .kind = count, .doc = "Number of samples per pixel.", .range = {1, 1 << 30}, .required = true},
+    {.name = "tasks",
+     .kind = count,
+     .doc = "Number of tasks that share the samples.",
+     .range = {1, 1e6},
+     .required = true},
+    {.name = "slurm", .kind = flag, .doc = "Write a job for Slurm.", .required = true},
+    {.name = "run", .kind = flag, .doc = "Submit it too, by sbatch."},
+    {.name = "folder",
+     .kind = text,
+     .doc = "Folder of the job's scripts, parts and logs; OUTPUT.slurm by default.",
+     .type = "FOLDER",
+     .path = PathUse::write},
+};
+
+/// Parameters of render that each task sets itself.
+constexpr std::string_view kSetByTasks[] = {"part", "samples", "checkpoint", "resume", "time-limit", "threads", "pilot"};
+
+/// As a shell reads it.
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
+std::string filled(std::string_view text_template, const std::vector<std::pair<std::string, std::string>>& values) {
+  std::string text(text_template);
+  for (const auto& [name, value] : values)
+    for (size_t at = 0; (at = text.find(name, at)) != std::string::npos; at += value.size())
+      text.replace(at, name.size(), value);
+  return text;
+}
+
+/// The frond program that tasks run: this one, or from Python the one on their PATH.
+std::string program() {
+  const fs::path self = fs::read_symlink("/proc/self/exe");
+  return self.filename().string().starts_with("python") ? "frond" : self.string();
+}
+
+/// Those that are handed on to render: its own, but for what submit and the tasks set.
+std::vector<const JobParam*> handed_on(const JobRun& run) {
+  std::vector<const JobParam*> params;
+  for (const JobParam* p : params_of(kRenderJob)) {
+    const bool is_set = std::ranges::find(kParams, p->name, &JobParam::name) != std::end(kParams);
+    const bool by_task = std::ranges::count(kSetByTasks, p->name) > 0;
+    if (by_task && run.args.given(p->name)) fail({}, "{} is set by each task", run.args.spelled(p->name));
+    if (!is_set && !by_task) params.push_back(p);
+  }
+  return params;
+}
+
+/// Renders next to nothing: what each task would refuse an hour later is refused here.
+void try_out(const JobRun& run, const fs::path& folder, std::span<const JobParam* const> params) {
+  const fs::path part = folder / "parts" / "trial.part";
+  Arguments args(params_of(kRenderJob), run.args.spelling());
+  for (const JobParam* p : params)
+    if (run.args.given(p->name)) args.set(p->name, run.args.words(p->name));
+  args.set("scene", run.args.text("scene"));
+  args.set("samples", fmt::format("0:{}", run.args.count("spp") / run.args.count("tasks")));
+  args.set("time-limit", "0.001");
+  args.set("part", part.string());
+  try {
+    run_job(kRenderJob, {run.context, args, {}});
+    fs::remove(part);
+  } catch (...) {
+    std::error_code ignored;
+    for (const fs::path& left : {part, part.parent_path(), folder}) fs::remove(left, ignored);
+    throw;
+  }
+}
+
+Result submit(const JobRun& run) {
+  const Arguments& args = run.args;
+  const int64_t tasks = args.count("tasks"), samples = args.count("spp");
+  if (tasks > samples) fail({}, "{} tasks cannot share {} samples: each needs at least one", tasks, samples);
+  const std::string output = args.text("output");
+  if (!fs::path(output).has_filename()) fail({}, "{} names no image: \"{}\"", args.spelled("output"), output);
+  const fs::path folder = fs::absolute(args.given("folder") ? args.text("folder") : output + ".slurm");
+  std::error_code error;
+  if (fs::exists(folder / "render.sbatch", error))
+    fail({}, "\"{}\" holds a job already: its submit.sh renders what is missing; delete it to begin anew",
+         folder.string());
+  const auto params = handed_on(run);
+  fs::create_directories(folder / "parts");
+  try_out(run, folder, params);
+  std::string options;
+  for (const std::string& word : absolute_words(args, params)) options += (options.empty() ? "" : " ") + quoted(word);
+  const std::vector<std::pair<std::string, std::string>> values{
+      {"@FROND@", quoted(program())},
+      {"@SCENE@", quoted(fs::absolute(args.text("scene")).string())},
+      {"@OUT@", quoted(fs::absolute(output).string())},
+      {"@OPTIONS@", options},
+      {"@SPP@", std::to_string(samples)},
+      {"@TASKS@", std::to_string(tasks)},
+      {"@LAST_TASK@", std::to_string(tasks - 1)}};
+  const fs::path script = folder / "submit.sh";
+  write_text((folder / "merge.sbatch").string(), filled(merge_sbatch, values));
+  write_text(script.string(), filled(submit_sh, values));
+  fs::permissions(script, fs::perms::owner_exec | fs::perms::group_exec, fs::perm_options::add);
+  write_text((folder / "render.sbatch").string(), filled(render_sbatch, values));
+  Result result{.facts = {{"script", script.string()}}};
+  if (!args.flag("run")) {
+    result.text = fmt::format(
+        "{} submits {} tasks and the merge after them; edit render.sbatch beside it first, for your cluster\n",
+        script.string(), tasks);
+    return result;
+  }
+  const auto child = run_child({script.string()}, "");
+  if (!child || child->status != 0)
+    fail({}, "\"{}\" could not submit the job: {}", script.string(), child ? child->err : "it cannot be run");
+  result.text = child->out;
+  return result;
+}
+
+}  // namespace
+
+extern const JobInfo kSubmitJob{
+    .name = "submit",
+    .group = "Cluster",
+    .doc = "Render on a cluster: an array job of sample ranges, and the job that merges them.",
+    .details = "The options of frond render are handed on to the tasks.",
+    .params = kParams,
+    .session = SessionUse::all,
+    .run = submit,
+    .extends = &kRenderJob};
+
+}  // namespace frond
