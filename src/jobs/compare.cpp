@@ -191,10 +191,14 @@ class StoppingProgress final : public Progress {
 
 /// What `frond render` would select for leaves that ask for this error; "" where wavelengths have no colours.
 std::string leaf_by_leaf(const JobRun& run, double rms, const compare::Study& study, const Plan& plan) {
-  const auto choice = study.choose_models(rms, plan.top_samples);
-  if (!choice) return {};
-  run.log().info(choose::choice_text(*choice));
-  return choose::choice_sentence(*choice);
+  SceneDescription description{study.description(), {}, {}, {}};  // the geometry is the study's
+  const PluginText open{"leaf", {{"model", "auto"}, {"maxrms", fmt::format("{}", rms)}}};
+  apply_overrides({.swaps = study.swaps_to(open), .seed = study.seed()}, description, study.registry(), silent_log());
+  const choose::ChoiceTask task{study.session(), description, plan.top_samples, study.any_scene().get()};
+  const auto chosen = choose::choose_models(task, choose::standard_ladder(study.registry()), silent_log());
+  if (!chosen) return {};
+  run.log().info(choose::choice_text(chosen->choice));
+  return choose::choice_sentence(chosen->choice);
 }
 
 Result compare_models(const JobRun& run) {
