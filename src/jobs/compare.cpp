@@ -166,8 +166,8 @@ Table rows_of(const Comparison& c) {
           for (const auto& [name, m] : {std::pair{"rms", e.total}, {"rms_clipped", e.clipped}, {"noise", e.noise},
                                         {"bias", e.bias}}) {
             table.add(name, m.root());
-            table.add(std::string(name) + "_low", m.root_at(-compare::kZ95));
-            table.add(std::string(name) + "_high", m.root_at(compare::kZ95));
+            table.add(std::string(name) + "_low", m.root_at(-kZ95));
+            table.add(std::string(name) + "_high", m.root_at(kZ95));
           }
         }
   return table;

@@ -27,26 +27,17 @@ void set_scene_options(const Arguments& args, SceneDescription& description) {
   }
 }
 
-/// Bounds with ends in ascending order: those of --pixels, --pixel or --crop.
-template <size_t N>
-std::array<double, N> ordered(std::vector<double> bounds, const Log& log) {
-  bool changed = false;
-  for (const size_t i : {0, 2})
-    if (bounds[i] > bounds[i + 1]) std::swap(bounds[i], bounds[i + 1]), changed = true;
-  if (changed)
-    log.warn({}, fmt::format("the crop's ends are the wrong way round: taken for {}", fmt::join(bounds, ",")));
-  return {bounds[0], bounds[1], bounds[2], bounds[3]};
-}
-
 /// The crop that the arguments ask for; the scene's if they do not. Throws InputError where it holds no pixel.
 Crop crop_of(const Arguments& args, const FilmSettings& film, const Log& log) {
   const char* name = args.given("pixel") ? "pixel" : args.given("pixels") ? "pixels" : "crop";
   std::vector<double> bounds = args.numbers(name);
   if (bounds.empty()) return film.crop;
   if (bounds.size() == 2) bounds = {bounds[0], bounds[0] + 1, bounds[1], bounds[1] + 1};
-  const auto b = ordered<4>(bounds, log);
-  const Crop crop = args.given("crop") ? crop_of_fractions(b, film.width, film.height)
-                                       : crop_of_pixels({int(b[0]), int(b[1]), int(b[2]), int(b[3])}, film.width, film.height);
+  if (put_in_order(bounds))
+    log.warn({}, fmt::format("the crop's ends are the wrong way round: taken for {}", fmt::join(bounds, ",")));
+  const Crop crop = args.given("crop")
+                        ? crop_of_fractions(bounds, film.width, film.height)
+                        : crop_of_pixels(std::vector<int>(bounds.begin(), bounds.end()), film.width, film.height);
   if (crop.width() <= 0 || crop.height() <= 0)
     fail({}, "{} {} holds no pixel of the {} x {} film: x0,x1,y0,y1 is needed", args.spelled(name), args.words(name)[0],
          film.width, film.height);

@@ -92,7 +92,8 @@ void try_out(const JobRun& run, const fs::path& folder, std::span<const JobParam
   args.set("time-limit", "0.001");
   args.set("part", part.string());
   try {
-    run_job(kRenderJob, {run.context, args, {}});
+    JobContext silent(silent_log(), run.context.options());
+    run_job(kRenderJob, {silent, args, {}});
     fs::remove(part);
   } catch (...) {
     std::error_code ignored;
