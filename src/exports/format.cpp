@@ -8,24 +8,15 @@ namespace frond {
 
 extern const ExportFormat radiance_format, csv_format, npz_format, netcdf_format, osl_format;
 
-void check_ascending(std::string_view option, const std::vector<double>& numbers) {
+void check_ascending(std::string_view what, const std::vector<double>& numbers) {
   const auto wrong = std::ranges::adjacent_find(numbers, std::greater_equal());
-  if (wrong != numbers.end()) fail({}, "{} ascend: {:g} comes after {:g}", option, *std::next(wrong), *wrong);
+  if (wrong != numbers.end()) fail({}, "{} ascend: {:g} comes after {:g}", what, *std::next(wrong), *wrong);
 }
 
 std::span<const ExportFormat* const> export_formats() {
   static const ExportFormat* const kFormats[] = {&radiance_format, &csv_format, &npz_format, &netcdf_format,
                                                  &osl_format};
   return kFormats;
-}
-
-const ExportFormat& export_format(const std::string& name) {
-  std::vector<std::string_view> names;
-  for (const ExportFormat* format : export_formats()) {
-    if (format->name == name) return *format;
-    names.push_back(format->name);
-  }
-  fail({}, "--format: nothing is called \"{}\"{}", name, suggestion(name, names));
 }
 
 }  // namespace frond

@@ -29,13 +29,10 @@ struct ExportFormat {
   std::string (*write)(const ExportSubject&, const ExportRequest&);  ///< the whole file; throws InputError
 };
 
-/// Throws InputError, which names the option, for numbers that do not ascend.
-void check_ascending(std::string_view option, const std::vector<double>& numbers);
+/// Throws InputError for numbers that do not ascend; `what` they are.
+void check_ascending(std::string_view what, const std::vector<double>& numbers);
 
 /// All of them. A new format is one file and its name in two lines of format.cpp.
 std::span<const ExportFormat* const> export_formats();
-
-/// Throws InputError, with what there is, for another name.
-const ExportFormat& export_format(const std::string& name);
 
 }  // namespace frond

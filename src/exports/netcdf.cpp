@@ -152,7 +152,7 @@ std::string netcdf_file(const ExportSubject& subject, const ExportRequest& reque
 #else
 
 void check_netcdf(const ExportRequest&) {
-  fail({}, "--format netcdf: this frond was built without the NetCDF library (Debian's libnetcdf-dev)");
+  fail({}, "format netcdf: this frond was built without the NetCDF library (Debian's libnetcdf-dev)");
 }
 
 std::string netcdf_file(const ExportSubject&, const ExportRequest& request) {

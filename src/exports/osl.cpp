@@ -137,7 +137,7 @@ std::vector<double> colors_of(const ExportRequest& request) {
 
 void check_osl(const ExportRequest& request) {
   if (const size_t n = colors_of(request).size(); n != 3)
-    fail({}, "--wavelengths: --format osl takes three, red, green and blue; {} were given", n);
+    fail({}, "the format osl takes three wavelengths, red, green and blue; {} were given", n);
 }
 
 std::string osl_file(const ExportSubject& subject, const ExportRequest& request) {

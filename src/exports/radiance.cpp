@@ -143,7 +143,7 @@ double largest_share(const KlemsMatrices& matrices, size_t wavelengths) {
   return largest;
 }
 
-void check_radiance(const ExportRequest& request) { check_ascending("--wavelengths", request.wavelengths_nm); }
+void check_radiance(const ExportRequest& request) { check_ascending("wavelengths", request.wavelengths_nm); }
 
 std::string radiance_file(const ExportSubject& subject, const ExportRequest& request) {
   const auto nm = request.wavelengths_nm.empty() ? default_wavelengths() : request.wavelengths_nm;

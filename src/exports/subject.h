@@ -13,7 +13,7 @@ namespace frond {
 
 /// What is exported: a material without a scene, whose f is exact and has no delta lobe, with air on both of its sides.
 struct ExportSubject {
-  std::string label;  ///< as the command line names it
+  std::string label;  ///< the material's text
   /// The material, prepared for one to four wavelengths (nm). Throws InputError where its data do not reach them.
   std::function<std::shared_ptr<const Material>(const std::vector<double>&)> prepare;
   uint64_t seed;  ///< of whatever is random

@@ -64,11 +64,11 @@ void fill(const ExportedBsdf& bsdf, const ExportSubject& subject, size_t wavelen
 
 void check_table(const ExportRequest& request) {
   constexpr double kMost = 1 << 28;
-  if (request.wavelengths_nm.empty()) fail({}, "--wavelengths: a table needs them, as in 400:700:10");
-  check_ascending("--wavelengths", request.wavelengths_nm);
-  check_ascending("--angles", request.theta_i_deg);
-  check_ascending("--view-angles", request.theta_o_deg);
-  check_ascending("--view-azimuths", request.phi_o_deg);
+  if (request.wavelengths_nm.empty()) fail({}, "a table needs wavelengths, as in 400:700:10");
+  check_ascending("wavelengths", request.wavelengths_nm);
+  check_ascending("angles", request.theta_i_deg);
+  check_ascending("view angles", request.theta_o_deg);
+  check_ascending("view azimuths", request.phi_o_deg);
   const BsdfTable axes = axes_of(request);
   const double numbers = double(axes.wavelengths_nm.size()) * 4 * double(axes.theta_i_deg.size()) *
                          double(axes.theta_o_deg.size()) * double(axes.phi_o_deg.size());

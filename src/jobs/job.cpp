@@ -61,10 +61,11 @@ void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) 
   for (const JobParam& p : job.params) {
     if (p.kind != text || !run.args.given(p.name)) continue;
     if (p.name == "csv") write_text(run.args.text(p.name), to_csv(result.tables.at(0), result.notes));
-    if (p.name == "json") write_text(run.args.text(p.name), to_json(result.notes, result.facts, result.tables));
+    if (p.name != "json") continue;
+    const bool is_own = !result.json.empty();
+    write_text(run.args.text(p.name), is_own ? result.json : to_json(result.notes, result.facts, result.tables));
   }
 }
-
 
 }  // namespace
 
@@ -92,7 +93,7 @@ void JobRun::check_stop() const {
 }
 
 std::span<const JobParam> session_params(SessionUse use) {
-  constexpr size_t kUsed[] = {1, 2, std::size(kSession)};
+  constexpr size_t kUsed[] = {1, 2, 3, std::size(kSession)};
   return std::span(kSession).first(kUsed[size_t(use)]);
 }
 
@@ -107,6 +108,7 @@ SessionOptions session_options(const Arguments& args) {
   if (args.declares("plugin")) options.plugins = args.texts("plugin");
   if (!args.declares("threads")) return options;
   options.threads = int(args.count("threads"));
+  if (!args.declares("cache")) return options;
   if (!args.flag("no-cache")) options.cache = args.given("cache") ? std::filesystem::path(args.text("cache")) : default_cache();
   return options;
 }
@@ -166,18 +168,19 @@ std::vector<std::string> absolute_words(const Arguments& args, std::span<const J
 
 std::string material_text(const std::vector<std::string>& words, const Log& log) {
   const auto is_parameter = [](const std::string& word) { return word.find('=') != std::string::npos; };
-  std::vector<std::string> parts;
+  std::string text;
+  bool is_old = words.size() > 1;
   for (const std::string& word : words) {
-    auto inside = split(word, ' ');
-    std::erase(inside, "");
-    if (inside.size() > 1 && std::all_of(inside.begin() + 1, inside.end(), is_parameter))
-      parts.insert(parts.end(), inside.begin(), inside.end());
-    else
-      parts.push_back(word);
+    auto parts = split(word, ' ');
+    std::erase(parts, "");
+    // "abm specimen=maize" is a name and its parameters; a blank elsewhere is part of a value, such as a file's path.
+    const bool is_split = parts.size() > 1 && parts[0].find_first_of("=,") == std::string::npos && is_parameter(parts[1]);
+    if (!is_split) parts = {word};
+    is_old = is_old || is_split;
+    for (size_t i = 0; i < parts.size(); ++i)
+      text += (i > 1 && !is_parameter(parts[i]) ? " " : text.empty() ? "" : ",") + parts[i];
   }
-  const std::string text = fmt::format("{}", fmt::join(parts, ","));
-  if (parts.size() > 1)
-    log.info(fmt::format("a material is one word, {}: the form with blanks will go", text));
+  if (is_old) log.info(fmt::format("write a material as one word, {}; the form with blanks is deprecated", text));
   return text;
 }
 

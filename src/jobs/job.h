@@ -23,6 +23,7 @@ struct Result {
   std::vector<Fact> facts = {};         ///< single values
   std::vector<std::string> notes = {};  ///< comments of CSV: who measured what
   std::string text = {};                ///< for a terminal
+  std::string json = {};                ///< what --json writes, where that is not made of notes, facts and tables
   bool is_requested = false;            ///< the text is what was asked for, by --json for one: --quiet keeps it
   int code = 0;                         ///< of the program: 0 done, 1 something is wrong, 2 a law is broken
   bool stopped = false;                 ///< by the control's stop token; what was done is kept
@@ -71,6 +72,7 @@ struct Stopped : std::runtime_error {
 enum class SessionUse : uint8_t {
   none,     ///< quiet
   plugins,  ///< quiet, plugin
+  threads,  ///< quiet, plugin, threads
   all,      ///< quiet, plugin, threads, cache, no-cache
 };
 
@@ -113,8 +115,8 @@ std::vector<std::string> absolute_words(const Arguments& args, std::span<const J
 
 // Helpers that jobs share.
 
-/// A material in text: NAME[,parameter=value...]. Words that a shell has parted, `abm specimen=maize`, are the same: the
-/// old form.
+/// A material in text: NAME[,parameter=value...]. The old form, in several words or in one with blanks, `abm
+/// specimen=maize`, is accepted with a note.
 std::string material_text(const std::vector<std::string>& words, const Log& log);
 
 }  // namespace frond

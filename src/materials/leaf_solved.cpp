@@ -29,9 +29,6 @@ constexpr Param kOwn[] = {
 };
 constexpr auto kLeafSolved = with_leaf_params(kOwn);
 
-/// Step of the natural logarithm of tables over depth: linear interpolation leaves errors of pi f below 3e-4.
-constexpr double kDepthStep = 0.15;
-
 /// The walk of `abm`, solved beforehand: its BSDF without its noise.
 class LeafSolved final : public Material {
  public:
@@ -135,7 +132,7 @@ class LeafSolved final : public Material {
     leaf::BodyRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance};
     request.params.cuticle_aspect = 0;  // of no concern to light inside: leaves with other cuticles share the table
     request.wavelengths_nm = varies_ ? index_wavelengths(wavelengths) : table_wavelengths(wavelengths);
-    if (varies_) request.depths = depth_axis(leaf_.depth(), wavelengths, kDepthStep);
+    if (varies_) request.depths = depth_axis(leaf_.depth(), wavelengths, leaf::kDepthStep);
     return request;
   }
 

@@ -1,22 +1,25 @@
 #include "render/material_words.h"
 
-#include <fmt/ranges.h>
-
-#include "scene/plugin_text.h"
+#include "core/random.h"
 
 namespace frond {
 
-MaterialWords parse_material(std::span<const std::string> words, const Registry& registry) {
-  PluginText text{words[0], {}};
-  for (const std::string& word : words.subspan(1)) {
-    const size_t equals = word.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
-      fail({}, "a material looks like NAME parameter=value ...: \"{}\" in {}", word, fmt::join(words, " "));
-    text.params.emplace_back(word.substr(0, equals), word.substr(equals + 1));
-  }
-  MaterialWords material{registry.materials.get(text.name, {}), {text.name, {}, {}}};
-  set_params(text, material.info, {}, material.plugin);
+MaterialWords parse_material(const std::string& text, const Registry& registry) {
+  const PluginText parsed = parse_plugin_text(text, {});
+  MaterialWords material{registry.materials.get(parsed.name, {}), {parsed.name, {}, {}}};
+  set_params(parsed, material.info, {}, material.plugin);
   return material;
+}
+
+std::string words_of(const PluginText& material) {
+  std::string words;
+  for (const auto& [name, value] : material.params) words += (words.empty() ? "" : " ") + name + '=' + value;
+  return words;
+}
+
+uint64_t material_seed(const std::string& text) {
+  const PluginText material = parse_plugin_text(text, {});
+  return hash_bytes(material.params.empty() ? material.name : material.name + ' ' + words_of(material));
 }
 
 SceneDescription scene_of_materials(const Registry& registry) {

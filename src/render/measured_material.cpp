@@ -1,7 +1,5 @@
 #include "render/measured_material.h"
 
-#include <fmt/ranges.h>
-
 #include "core/log.h"
 #include "instruments/beam.h"
 #include "render/material_words.h"
@@ -10,11 +8,11 @@
 
 namespace frond {
 
-std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, const Registry& registry,
+std::shared_ptr<Material> ready_material(const std::string& text, const Registry& registry,
                                          const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
                                          const std::filesystem::path& cache_dir, const AdjustMaterials& adjust) {
   SceneDescription description = scene_of_materials(registry);
-  description.materials.push_back({"", parse_material(words, registry).plugin});
+  description.materials.push_back({"", parse_material(text, registry).plugin});
   if (adjust) adjust(description, registry);
   const RefusingLog refusing;
   SceneResolver resolver(description, registry, wavelengths, refusing);
@@ -23,12 +21,12 @@ std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, 
   return material;
 }
 
-MeasuredMaterial::MeasuredMaterial(const std::vector<std::string>& words, const Registry& registry,
+MeasuredMaterial::MeasuredMaterial(const std::string& text, const Registry& registry,
                                    const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
                                    const std::filesystem::path& cache_dir)
-    : label_(fmt::format("{}", fmt::join(words, " "))) {
+    : label_(text), seed_(material_seed(text)) {
   for (const double nm : wavelengths_nm)
-    materials_.push_back(ready_material(words, registry, OneWavelength(nm), pool, log, cache_dir));
+    materials_.push_back(ready_material(text, registry, OneWavelength(nm), pool, log, cache_dir));
 }
 
 }  // namespace frond

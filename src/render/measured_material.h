@@ -13,30 +13,32 @@
 
 namespace frond {
 
-/// What is done to materials before they are made; may be empty.
+/// Changes materials before they are made; may be empty.
 using AdjustMaterials = std::function<void(SceneDescription&, const Registry&)>;
 
-/// A material as words give it, made without a scene and prepared for these wavelengths. Throws
+/// A material given in text, `abm,specimen=soybean`, made without a scene and prepared for these wavelengths. Throws
 /// InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not reach.
-std::shared_ptr<Material> ready_material(const std::vector<std::string>& words, const Registry& registry,
+std::shared_ptr<Material> ready_material(const std::string& text, const Registry& registry,
                                          const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
                                          const std::filesystem::path& cache_dir, const AdjustMaterials& adjust = {});
 
-/// A material as words give it, `abm specimen=soybean`, made without a scene and prepared for wavelengths one
-/// by one.
+/// A material under test: given in text, made without a scene and prepared for wavelengths one by one.
 class MeasuredMaterial {
  public:
   /// Throws as ready_material does.
-  MeasuredMaterial(const std::vector<std::string>& words, const Registry& registry,
-                   const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
-                   const std::filesystem::path& cache_dir);
+  MeasuredMaterial(const std::string& text, const Registry& registry, const std::vector<double>& wavelengths_nm,
+                   ThreadPool& pool, const Log& log, const std::filesystem::path& cache_dir);
 
+  /// The text that it was given by.
   const std::string& label() const { return label_; }
+  /// For random numbers: material_seed of the label.
+  uint64_t seed() const { return seed_; }
   /// Prepared for the wavelength of that index.
   const Material& at(size_t wavelength) const { return *materials_[wavelength]; }
 
  private:
   std::string label_;
+  uint64_t seed_;
   std::vector<std::shared_ptr<Material>> materials_;
 };
 

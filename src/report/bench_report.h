@@ -13,9 +13,9 @@ namespace frond {
 enum class BsdfCall { sample, f, pdf, hit };
 inline constexpr std::array<std::string_view, 4> kBsdfCalls{"sample", "f", "pdf", "hit"};
 
-/// What `frond bench` finds out about a material seen from one direction with so many wavelengths.
+/// The measurements of a material seen from one direction with so many wavelengths.
 struct BenchReading {
-  std::string material;  ///< the words of the command line
+  std::string material;  ///< its text
   double theta_deg = 0;
   int lanes = 1;
   std::array<Estimate, kBsdfCalls.size()> time_ns;  ///< CPU time of a call, by BsdfCall
@@ -23,12 +23,6 @@ struct BenchReading {
 
   const Estimate& time(BsdfCall call) const { return time_ns[static_cast<size_t>(call)]; }
 };
-
-/// CPU seconds until the standard error is 1 % of the mean; infinite where the mean is 0.
-double seconds_to_percent(const Worth& worth, const Estimate& time_ns);
-
-/// For people: a table of times and one of what samples are worth for each material.
-std::string bench_text(const std::vector<BenchReading>& readings);
 
 /// A gnuplot script: relative variance of the lit planes against the time of a hit, at the largest number of
 /// wavelengths; a colour for each material, a mark for each angle, lines where time x variance is the same.

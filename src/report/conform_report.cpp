@@ -3,7 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <limits>
 
 #include "core/build_identity.h"
 
@@ -81,38 +81,37 @@ std::string conform_text(const ConformReport& r) {
   return text + (r.all_hold() ? "\nEvery law that was asked holds.\n" : "\nBroken: " + broken_text(r) + ".\n");
 }
 
-std::string conform_json(const ConformReport& r) {
-  using Json = nlohmann::ordered_json;
-  Json laws = Json::object(), findings = Json::array();
+std::vector<Fact> conform_facts(const ConformReport& r) {
+  return {{"frond", std::string(FROND_BUILD_IDENTITY)},
+          {"material", r.material},
+          {"wavelengths_nm", r.wavelengths_nm},
+          {"angles_deg", r.effort.angles_deg},
+          {"samples", double(r.effort.samples)},
+          {"seed", double(r.effort.seed)},
+          {"false_alarm_rate", r.false_alarm_rate},
+          {"level", r.level},
+          {"all_hold", r.all_hold()}};
+}
+
+std::vector<Table> conform_tables(const ConformReport& r) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Table laws{"laws"}, findings{"findings"};
   for (const LawSummary& law : summarise(r.findings)) {
-    Json& j = laws[std::string(law.law.name)];
-    j = {{"verdict", law.tests == 0      ? "not asked"
-                     : law.failures == 0 ? "holds"
-                                         : "broken"},
-         {"tests", law.tests},
-         {"failures", law.failures},
-         {"says", law.law.text}};
-    if (law.worst && law.worst->statistical) j["worst_p"] = law.worst->p_value;
+    laws.add("law", std::string(law.law.name));
+    laws.add("verdict", std::string(law.failures > 0 ? "broken" : verdict(law)));
+    laws.add("tests", law.tests);
+    laws.add("failures", law.failures);
+    laws.add("worst_p", law.worst && law.worst->statistical ? law.worst->p_value : kNone);
+    laws.add("says", std::string(law.law.text));
   }
   for (const Finding& f : r.findings) {
-    Json j{{"law", law_name(f.law)}, {"holds", f.passed}, {"where", f.where}};
-    if (!f.message.empty()) j["message"] = f.message;
-    if (f.statistical) j["p"] = f.p_value;
-    findings.push_back(std::move(j));
+    findings.add("law", std::string(law_name(f.law)));
+    findings.add_flag("holds", f.passed);
+    findings.add("where", f.where);
+    findings.add("message", f.message);
+    findings.add("p", f.statistical ? f.p_value : kNone);
   }
-  return Json{{"frond", FROND_BUILD_IDENTITY},
-              {"material", r.material},
-              {"wavelengths_nm", r.wavelengths_nm},
-              {"angles_deg", r.effort.angles_deg},
-              {"samples", r.effort.samples},
-              {"seed", r.effort.seed},
-              {"false_alarm_rate", r.false_alarm_rate},
-              {"level", r.level},
-              {"all_hold", r.all_hold()},
-              {"laws", std::move(laws)},
-              {"findings", std::move(findings)}}
-             .dump(2) +
-         "\n";
+  return {laws, findings};
 }
 
 const Finding* finding_to_draw(const ConformReport& report) {

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "instruments/conformance.h"
+#include "report/table.h"
 
 namespace frond {
 
-/// Everything that `frond conform` found out, judged.
+/// All findings of the job conform, judged.
 struct ConformReport {
-  std::string material;  ///< the words of the command line
+  std::string material;  ///< its text
   std::vector<double> wavelengths_nm;
   ExaminationEffort effort;
   double false_alarm_rate = 0;
@@ -19,9 +20,12 @@ struct ConformReport {
   bool all_hold() const;
 };
 
-/// For people: a line for each law, and the failures of those that are broken.
+/// For a terminal: a line for each law, and the failures of those that are broken.
 std::string conform_text(const ConformReport& report);
-std::string conform_json(const ConformReport& report);
+/// How it was tested, and whether all laws hold.
+std::vector<Fact> conform_facts(const ConformReport& report);
+/// "laws": verdicts; "findings": each test.
+std::vector<Table> conform_tables(const ConformReport& report);
 
 /// The finding to draw: of the broken ones, or where all hold of all, that with the smallest p which has a map. nullptr
 /// where none has.

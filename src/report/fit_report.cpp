@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "report/gnuplot.h"
@@ -62,8 +62,8 @@ std::vector<std::string> not_told(const FitReport& report) {
 
 std::string note(const FittedNumber& n) {
   if (n.is_fixed) return "as given";
-  if (n.is_at_bound) return "at the end of its range: not told by the data";
-  return n.is_identified() ? "" : "not told by the data";
+  if (n.is_at_bound) return "at the end of its range: not determined by the data";
+  return n.is_identified() ? "" : "not determined by the data";
 }
 
 std::vector<const FittedNumber*> free_numbers(const FitReport& report) {
@@ -88,7 +88,7 @@ std::string fit_scene(const FitReport& report) {
   std::string text = fmt::format("# Fitted to {} by frond fit: RMSE {:.4f} (R {:.4f}, T {:.4f}).\n", report.source,
                                  result.rmse, result.rmse_r, result.rmse_t);
   if (const auto names = not_told(report); !names.empty())
-    text += fmt::format("# Not told by the data, so no measurement: {}.\n", fmt::join(names, ", "));
+    text += fmt::format("# Not determined by the data, so no measurement: {}.\n", fmt::join(names, ", "));
   text += fmt::format("Material \"{}\" \"string specimen\" \"{}\"\n", report.material, result.specimen->name);
   for (const auto& [name, value] : said(report)) text += fmt::format("    \"float {}\" {:.6g}\n", name, value);
   if (result.params.sieve_and_detour) text += "    \"bool sieve\" true\n";
@@ -97,13 +97,13 @@ std::string fit_scene(const FitReport& report) {
 
 std::string fit_text(const FitReport& report) {
   const leaf::FitResult& result = report.result;
-  std::string text = fmt::format("{}: {} readings, RMSE {:.4f} (R {:.4f}, T {:.4f})\n", report.source,
+  std::string text = fmt::format("{}: {} measurements, RMSE {:.4f} (R {:.4f}, T {:.4f})\n", report.source,
                                  report.request.readings.size(), result.rmse, result.rmse_r, result.rmse_t);
   for (const Band& band : kBands)
     if (const auto rmse = leaf::rmse_between(report.request, result, band.nm))
       text += fmt::format("  {:<20} {:4.0f} to {:4.0f} nm   RMSE {:.4f}\n", band.name, band.nm.min, band.nm.max, *rmse);
   if (const auto far = std::ranges::count(result.fitted, true, &leaf::FitResult::Fitted::is_outlier); far > 0)
-    text += fmt::format("  {} readings are further off than 0.06 and count for less\n", far);
+    text += fmt::format("  {} measurements differ by more than 0.06 and have less weight\n", far);
   text += fmt::format("structure of {}, {} the sieve effect\n", result.specimen->name,
                       result.params.sieve_and_detour ? "with" : "without");
   for (const FittedNumber& n : result.numbers)
@@ -123,54 +123,57 @@ std::string fit_text(const FitReport& report) {
   return text;
 }
 
-std::string fit_json(const FitReport& report) {
-  const leaf::FitResult& result = report.result;
-  nlohmann::ordered_json j{
-      {"source", report.source},
-      {"readings", report.request.readings.size()},
-      {"rmse", result.rmse},
-      {"rmse_R", result.rmse_r},
-      {"rmse_T", result.rmse_t},
-      {"specimen", result.specimen->name},
-      {"structure", result.params.structure == leaf::Structure::bifacial ? "bifacial" : "unifacial"},
-      {"sieve", result.params.sieve_and_detour}};
-  for (const Band& band : kBands)
-    if (const auto rmse = leaf::rmse_between(report.request, result, band.nm))
-      j["bands"].push_back({{"name", band.name}, {"from_nm", band.nm.min}, {"to_nm", band.nm.max}, {"rmse", *rmse}});
-  for (const auto& [name, value] : said(report)) j["leaf"][name] = value;
-  for (const FittedNumber& n : result.numbers)
-    if (exists(report, n))
-      j["numbers"].push_back({{"name", n.variable->name},
-                              {"value", n.value},
-                              {"relative_standard_error", n.relative_error},
-                              {"fixed", n.is_fixed},
-                              {"at_bound", n.is_at_bound},
-                              {"identified", n.is_identified()}});
-  for (const FittedNumber* n : free_numbers(report)) j["correlations"]["names"].push_back(n->variable->name);
-  j["correlations"]["matrix"] = result.correlations;
-  for (size_t i = 0; i < result.fitted.size(); ++i) {
-    const leaf::LeafReading& reading = report.request.readings[i];
-    nlohmann::ordered_json row{{"wavelength_nm", reading.lambda_nm}, {"theta_deg", reading.theta_deg}};
-    row["R"] = reading.r ? nlohmann::ordered_json(*reading.r) : nlohmann::ordered_json();
-    row["T"] = reading.t ? nlohmann::ordered_json(*reading.t) : nlohmann::ordered_json();
-    row["R_fitted"] = result.fitted[i].r, row["T_fitted"] = result.fitted[i].t;
-    row["outlier"] = result.fitted[i].is_outlier;
-    j["spectra"].push_back(std::move(row));
-  }
-  return j.dump(1) + "\n";
+std::vector<Fact> fit_facts(const FitReport& report) {
+  const leaf::FitResult& r = report.result;
+  return {{"source", report.source},
+          {"measurements", double(report.request.readings.size())},
+          {"rmse", r.rmse},
+          {"rmse_R", r.rmse_r},
+          {"rmse_T", r.rmse_t},
+          {"specimen", std::string(r.specimen->name)},
+          {"structure", std::string(r.params.structure == leaf::Structure::bifacial ? "bifacial" : "unifacial")},
+          {"sieve", r.params.sieve_and_detour}};
 }
 
-std::string fit_csv(const FitReport& report) {
-  std::string text =
-      fmt::format("# {}, fitted by frond fit: RMSE {:.4f}\ntheta_deg,wavelength_nm,R,T,R_fitted,T_fitted\n",
-                  report.source, report.result.rmse);
-  const auto share = [](const std::optional<double>& x) { return x ? fmt::format("{:.6g}", *x) : std::string(); };
-  for (size_t i = 0; i < report.result.fitted.size(); ++i) {
+std::vector<Table> fit_tables(const FitReport& report) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const leaf::FitResult& result = report.result;
+  Table spectra{"spectra"}, leaf{"leaf"}, numbers{"numbers"}, bands{"bands"}, correlations{"correlations"};
+  for (size_t i = 0; i < result.fitted.size(); ++i) {
     const leaf::LeafReading& r = report.request.readings[i];
-    text += fmt::format("{:.6g},{:.6g},{},{},{:.6f},{:.6f}\n", r.theta_deg, r.lambda_nm, share(r.r), share(r.t),
-                        report.result.fitted[i].r, report.result.fitted[i].t);
+    spectra.add("theta_deg", r.theta_deg);
+    spectra.add("wavelength_nm", r.lambda_nm);
+    spectra.add("R", r.r.value_or(kNone));
+    spectra.add("T", r.t.value_or(kNone));
+    spectra.add("R_fitted", result.fitted[i].r);
+    spectra.add("T_fitted", result.fitted[i].t);
+    spectra.add_flag("outlier", result.fitted[i].is_outlier);
   }
-  return text;
+  for (const auto& [name, value] : said(report)) leaf.add("name", std::string(name)), leaf.add("value", value);
+  for (const FittedNumber& n : result.numbers) {
+    if (!exists(report, n)) continue;
+    numbers.add("name", std::string(n.variable->name));
+    numbers.add("value", n.value);
+    numbers.add("relative_standard_error", n.relative_error);
+    numbers.add_flag("fixed", n.is_fixed);
+    numbers.add_flag("at_bound", n.is_at_bound);
+    numbers.add_flag("identified", n.is_identified());
+  }
+  for (const Band& band : kBands) {
+    const auto rmse = leaf::rmse_between(report.request, result, band.nm);
+    if (!rmse) continue;
+    bands.add("name", std::string(band.name));
+    bands.add("from_nm", band.nm.min);
+    bands.add("to_nm", band.nm.max);
+    bands.add("rmse", *rmse);
+  }
+  const auto free = free_numbers(report);
+  for (size_t a = 0; a < free.size(); ++a) {
+    correlations.add("name", std::string(free[a]->variable->name));
+    for (size_t b = 0; b < free.size(); ++b)
+      correlations.add(std::string(free[b]->variable->name), result.correlations[a][b]);
+  }
+  return {spectra, leaf, numbers, bands, correlations};
 }
 
 std::string fit_chart(const FitReport& report) {

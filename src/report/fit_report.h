@@ -3,25 +3,26 @@
 #include <string>
 
 #include "leaf/fit/fit.h"
+#include "report/table.h"
 
 namespace frond {
 
-/// A leaf that was fitted to measurements, as people and programs read it.
+/// A leaf that was fitted to measurements.
 struct FitReport {
   const leaf::FitRequest& request;
   const leaf::FitResult& result;
   std::string source;    ///< the file with the measurements
-  std::string material;  ///< that the leaf is written down for
+  std::string material;  ///< plug-in of the Material line
 };
 
-/// A `Material` line of a scene file, with comments that say where it comes from and what is not told by the data.
+/// A `Material` line of a scene file, with comments: its source, and the numbers that the data do not determine.
 std::string fit_scene(const FitReport& report);
-/// Errors by band, the numbers with their errors, which of them go together, and what is not told.
+/// For a terminal: errors by band, the numbers with their errors, strong correlations, and what is not determined.
 std::string fit_text(const FitReport& report);
-/// All of it, and the spectra.
-std::string fit_json(const FitReport& report);
-/// Measured and fitted, wavelength by wavelength.
-std::string fit_csv(const FitReport& report);
+/// Errors, and what is not a number of the leaf.
+std::vector<Fact> fit_facts(const FitReport& report);
+/// "spectra", "leaf", "numbers", "bands", "correlations".
+std::vector<Table> fit_tables(const FitReport& report);
 /// A gnuplot script: R from below, T from above, measured as points, fitted as lines.
 std::string fit_chart(const FitReport& report);
 

@@ -7,21 +7,11 @@
 
 namespace frond {
 
-/// A spectrophotometer's reading and the material it is of.
+/// A spectrophotometer's measurement and the material under test.
 struct LabelledReading {
   std::string material;
   SpectrophotometerReading reading;
 };
-
-/// Comment lines, a line of names, a line for each reading; Rs and Rd blank where the material does not tell them
-/// apart.
-std::string shares_csv(const std::vector<std::string>& notes, const std::vector<LabelledReading>& readings);
-
-/// The same, null for blank, and the notes as a list.
-std::string shares_json(const std::vector<std::string>& notes, const std::vector<LabelledReading>& readings);
-
-/// For people: each value with its standard error in units of its last digits.
-std::string shares_text(const std::vector<LabelledReading>& readings);
 
 /// A gnuplot script: reflectance from below and transmittance from above, as is usual for leaves, so that what lies
 /// between is absorbed. Against wavelength or angle, whichever has more values; a colour for each material and each

@@ -19,11 +19,14 @@ const Column* error_of(const Table& table, const Column& mean) { return table.fi
 
 double number(const Column& c, size_t row) { return std::get<0>(c.values)[row]; }
 
+bool is_whole(double v) { return v == std::floor(v) && std::abs(v) < 1e15; }
+
 Json json_value(const Column& c, size_t row) {
   if (!c.is_number()) return std::get<1>(c.values)[row];
   const double v = number(c, row);
   if (!std::isfinite(v)) return nullptr;
-  if (v == std::floor(v) && std::abs(v) < 1e15) return int64_t(v);
+  if (c.is_flag) return v != 0;
+  if (is_whole(v)) return int64_t(v);
   return v;
 }
 
@@ -39,6 +42,7 @@ std::string with_error(double mean, double error) {
 std::string cell(const Table& table, const Column& c, size_t row) {
   if (!c.is_number()) return std::get<1>(c.values)[row];
   const double v = number(c, row);
+  if (c.is_flag) return c.csv(row);
   if (const Column* error = error_of(table, c)) return with_error(v, number(*error, row));
   return std::isfinite(v) ? fmt::format("{:.6g}", v) : "";
 }
@@ -58,7 +62,16 @@ std::string Column::csv(size_t row) const {
   if (!is_number()) return csv_field(std::get<1>(values)[row]);
   const double v = number(*this, row);
   if (!std::isfinite(v)) return "";
+  if (is_flag) return v != 0 ? "true" : "false";
+  if (is_whole(v)) return fmt::format("{}", int64_t(v));
   return is_error(name) ? fmt::format("{:.4g}", v) : fmt::format("{:.9g}", v);
+}
+
+template <class T>
+std::vector<T>& Table::values(const std::string& column) {
+  auto found = std::ranges::find(columns, column, &Column::name);
+  if (found == columns.end()) found = columns.insert(columns.end(), {column, std::vector<T>()});
+  return std::get<std::vector<T>>(found->values);
 }
 
 const Column* Table::find(const std::string& column) const {
@@ -66,14 +79,15 @@ const Column* Table::find(const std::string& column) const {
   return found == columns.end() ? nullptr : &*found;
 }
 
-void Table::add(const std::string& column, double value) {
-  if (!find(column)) columns.push_back({column, std::vector<double>()});
-  std::get<0>(std::ranges::find(columns, column, &Column::name)->values).push_back(value);
-}
+void Table::add(const std::string& column, double value) { values<double>(column).push_back(value); }
 
 void Table::add(const std::string& column, std::string value) {
-  if (!find(column)) columns.push_back({column, std::vector<std::string>()});
-  std::get<1>(std::ranges::find(columns, column, &Column::name)->values).push_back(std::move(value));
+  values<std::string>(column).push_back(std::move(value));
+}
+
+void Table::add_flag(const std::string& column, bool value) {
+  add(column, value ? 1.0 : 0.0);
+  std::ranges::find(columns, column, &Column::name)->is_flag = true;
 }
 
 void Table::add(const std::string& column, double mean, double standard_error) {

@@ -12,10 +12,12 @@ struct Column {
   std::variant<std::vector<double>, std::vector<std::string>> values;
   std::string doc = {};    ///< one line: meaning and unit; may be empty
   bool only_data = false;  ///< left out of the text for terminals
+  bool is_flag = false;    ///< of numbers 0 and 1, which are written false and true
 
   bool is_number() const { return values.index() == 0; }
   size_t size() const;
-  std::string csv(size_t row) const;  ///< a field of CSV (RFC 4180): 9 significant digits, 4 of a standard error
+  std::string csv(size_t row) const;  ///< a field of CSV (RFC 4180): 9 significant digits, 4 of a standard error, all of a
+                                      ///< whole number
 };
 
 /// A result as rows and columns. All columns have one length. This is what front ends print, write and convert.
@@ -32,14 +34,21 @@ struct Table {
   void add(const std::string& column, std::string value);
   /// `column` and `column`_se.
   void add(const std::string& column, double mean, double standard_error);
+  /// "true" or "false". Not an overload of add: a literal would convert to bool.
+  void add_flag(const std::string& column, bool value);
   /// Sets the column's documentation; the column has to exist.
   void document(const std::string& column, std::string doc);
+
+ private:
+  /// Those of the column of that name, which becomes the last one if it is new.
+  template <class T>
+  std::vector<T>& values(const std::string& column);
 };
 
 /// A single named value of a result.
 struct Fact {
   std::string name;
-  std::variant<bool, double, std::string> value;
+  std::variant<bool, double, std::string, std::vector<double>> value;
 };
 
 /// CSV: comment lines that begin with "# " (the notes, then a line for each documented column), a line of column names,

@@ -95,9 +95,10 @@ class Reader {
   MeasuredSpectra finish() {
     if (columns_.empty()) fail(where_, "there are no spectra in this file");
     if (how_.leaf.empty() && leaves_.size() > 1)
-      fail(first_row_, "the file has {} leaves: --leaf chooses one of {}", leaves_.size(), fmt::join(leaves_, ", "));
+      fail(first_row_, "the file has {} leaves: {} chooses one of {}", leaves_.size(), how_.leaf_option,
+           fmt::join(leaves_, ", "));
     if (!how_.leaf.empty() && !leaves_.contains(how_.leaf)) {
-      if (leaves_.empty()) fail(first_row_, "the file names no leaves: --leaf has no effect");
+      if (leaves_.empty()) fail(first_row_, "the file names no leaves: {} has no effect", how_.leaf_option);
       const std::string_view meant = nearest(how_.leaf, std::vector<std::string_view>(leaves_.begin(), leaves_.end()));
       fail(first_row_, "there is no leaf \"{}\" in this file{}", how_.leaf,
            meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant));
@@ -191,8 +192,7 @@ class Reader {
     if (word.empty() || word == "nan" || word == "na" || word == "null" || word == "-") return {};
     const auto number = to_number(field.text, *separator_);
     constexpr double kLeast = -5, kMost = 150;  // noise about 0, and percents
-    if (!number || !(*number >= kLeast && *number <= kMost))
-      fail(field.where, "{} is a share of the light, from 0 to 1 or in percent; \"{}\" was given", what, field.text);
+    if (!number || !(*number >= kLeast && *number <= kMost)) refuse_share(field.where, what, field.text);
     largest_ = std::max(largest_, *number);
     return number;
   }
@@ -204,13 +204,20 @@ class Reader {
     fail(field.where, "a side is adaxial (upper) or abaxial (lower), \"{}\" was given", field.text);
   }
 
+  [[noreturn]] static void refuse_share(const Location& where, std::string_view what, std::string_view given) {
+    fail(where, "{} is a share of the light, from 0 to 1 or in percent; \"{}\" was given", what, given);
+  }
+
   void scale() {
+    constexpr double kNoise = 0.05;
     result_.is_in_percent = largest_ > kPercent;
     for (size_t i = 0; i < result_.readings.size(); ++i) {
       LeafReading& reading = result_.readings[i];
-      for (std::optional<double>* share : {&reading.r, &reading.t})
-        if (*share && result_.is_in_percent) **share /= 100;
-      constexpr double kNoise = 0.05;
+      for (const auto& [what, share] : {std::pair{"R", &reading.r}, {"T", &reading.t}}) {
+        if (!*share) continue;
+        if (result_.is_in_percent) **share /= 100;
+        if (**share < -kNoise) refuse_share(wheres_[i], what, fmt::format("{}", **share));
+      }
       const double sum = reading.r.value_or(0) + reading.t.value_or(0);
       if (sum > 1 + kNoise) fail(wheres_[i], "R + T is {:.4g}: a leaf gives back 1 at most", sum);
     }

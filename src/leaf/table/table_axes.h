@@ -37,6 +37,9 @@ class WavelengthAxis {
   float bins_per_nm_ = 0, last_bin_ = 0;
 };
 
+/// Step of the natural logarithm of depth in tables of modes: linear interpolation leaves errors of pi f below 3e-4.
+inline constexpr double kDepthStep = 0.15;
+
 /// Optical depths of a table, even in their logarithm, after 0 where they begin there.
 class DepthAxis {
  public:

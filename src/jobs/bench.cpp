@@ -1,0 +1,257 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "core/build_identity.h"
+#include "instruments/beam.h"
+#include "instruments/bsdf_calls.h"
+#include "instruments/given_wavelengths.h"
+#include "jobs/call_benchmarks.h"
+#include "jobs/common_params.h"
+#include "render/material_words.h"
+#include "render/measured_material.h"
+#include "report/gnuplot.h"
+#include "study/compare/machine.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr JobParam kParams[] = {
+    kMaterialParam,
+    kWithParam,
+    {.name = "angles",
+     .kind = numbers,
+     .doc = "Angles of the path's ray from the front's normal; above 90 it meets the back.",
+     .default_value = "0,45,80",
+     .unit = "degrees",
+     .range = {0, 180},
+     .aliases = "angle"},
+    {.name = "lanes",
+     .kind = numbers,
+     .doc = "Numbers of wavelengths that a path carries.",
+     .default_value = "1,2,3,4",
+     .range = {1, kLanes}},
+    {.name = "wavelengths",
+     .kind = numbers,
+     .doc = "Wavelengths; a path of n lanes carries the first n. By default those of frond_bench (docs/bench.md).",
+     .unit = "nm",
+     .range = kAboveZero,
+     .aliases = "wavelength"},
+    {.name = "repetitions",
+     .kind = count,
+     .doc = "Number of repetitions of each benchmark.",
+     .default_value = "5",
+     .range = {1, 10000}},
+    {.name = "min-time",
+     .kind = real,
+     .doc = "Least duration of a repetition.",
+     .default_value = "0.01",
+     .unit = "s",
+     .range = kAboveZero},
+    {.name = "samples",
+     .kind = count,
+     .doc = "Number of samples for the variance of each estimate.",
+     .default_value = "1e5",
+     .range = {1000, kCounts.max}},
+    kSeedParam,
+    kCsvParam,
+    {.name = "json",
+     .kind = text,
+     .doc = "File for Google Benchmark's JSON with frond's counters; - is standard output.",
+     .type = "FILE",
+     .path = PathUse::write},
+    chart_param("plot", "Chart of variance against the cost of a hit: .svg or .png."),
+};
+
+std::vector<double> angles_of(const Arguments& args) {
+  const auto angles = args.numbers("angles");
+  if (std::ranges::count(angles, 90) > 0)
+    fail({}, "{}: at 90 degrees a path meets neither side", args.spelled("angles"));
+  return angles;
+}
+
+/// The wavelengths of each number of lanes.
+std::vector<GivenWavelengths> wavelengths_of(const Arguments& args) {
+  const auto nm = args.numbers("wavelengths");
+  const double most = nm.empty() ? kLanes : std::min(double(nm.size()), double(kLanes));
+  const std::vector<float> given(nm.begin(), nm.end());
+  std::vector<GivenWavelengths> strategies;
+  for (const double lanes : args.numbers("lanes")) {
+    if (lanes > most || lanes != std::floor(lanes))
+      fail({}, "{}: a path carries 1 to {} wavelengths, {} were given", args.spelled("lanes"), most, lanes);
+    const int n = int(lanes);
+    strategies.emplace_back(nm.empty() ? benchmark_wavelengths(n) : std::vector(given.begin(), given.begin() + n));
+  }
+  return strategies;
+}
+
+/// The materials under test, each prepared for each number of lanes.
+class TimedMaterials {
+ public:
+  explicit TimedMaterials(const JobRun& run)
+      : wavelengths_(wavelengths_of(run.args)), angles_deg_(angles_of(run.args)), seed_(run.args.seed("seed")) {
+    for (const std::string& text : materials_of(run)) {
+      if (std::ranges::count(labels_, text) > 0) fail({}, "{}: the same material twice", text);
+      labels_.push_back(text);
+      for (const GivenWavelengths& w : wavelengths_) {
+        materials_.push_back(ready_material(text, run.session().registry(), w, run.session().pool(), run.log(),
+                                            run.context.options().cache));
+        Arena arena;
+        if (!materials_.back()->evaluate(flat_hit(), w.sample(0), arena))
+          fail({}, "{}: the material says that it has no surface there: nothing can be measured", text);
+      }
+    }
+  }
+
+  size_t count() const { return labels_.size(); }
+  size_t angles() const { return angles_deg_.size(); }
+
+  /// Numbers of lanes run fastest, then angles, then materials.
+  std::vector<TimedHit> hits() const {
+    std::vector<TimedHit> all;
+    for (size_t m = 0; m < labels_.size(); ++m)
+      for (const double theta : angles_deg_)
+        for (size_t w = 0; w < wavelengths_.size(); ++w)
+          all.push_back({labels_[m],
+                         {*materials_[m * wavelengths_.size() + w], wavelengths_[w].sample(0), theta,
+                          hash_key(seed_, material_seed(labels_[m]))}});
+    return all;
+  }
+
+ private:
+  std::vector<GivenWavelengths> wavelengths_;
+  std::vector<double> angles_deg_;
+  uint64_t seed_;
+  std::vector<std::string> labels_;
+  std::vector<std::shared_ptr<Material>> materials_;
+};
+
+/// What an estimate of one sample gives: its expectation and relative variance, by which its time is multiplied.
+struct NamedWorth {
+  const char* name;
+  Worth SampleWorth::*worth;
+  BsdfCall call;
+  const char* variance;  ///< in Google Benchmark's JSON
+};
+constexpr NamedWorth kWorths[] = {{"albedo", &SampleWorth::albedo, BsdfCall::sample, "variance"},
+                                  {"sky", &SampleWorth::sky, BsdfCall::hit, "sky_variance"},
+                                  {"sun", &SampleWorth::sun, BsdfCall::hit, "sun_variance"}};
+
+/// CPU microseconds until the standard error is 1 % of the mean; infinite where the mean is 0.
+double us_to_percent(const Worth& worth, double variance, const Estimate& time_ns) {
+  constexpr double kPercent = 0.01;
+  if (worth.mean.mean == 0) return std::numeric_limits<double>::infinity();
+  const double error = kPercent * worth.mean.mean;
+  return time_ns.mean * 1e-3 * variance / (error * error);
+}
+
+void add_row_head(Table& table, const BenchReading& r) {
+  table.add("material", r.material);
+  table.add("theta_deg", r.theta_deg);
+  table.add("wavelengths", r.lanes);
+}
+
+Table times_table(const std::vector<BenchReading>& readings) {
+  Table table{"times"};
+  for (const BenchReading& r : readings) {
+    add_row_head(table, r);
+    for (size_t call = 0; call < kBsdfCalls.size(); ++call)
+      table.add(fmt::format("{}_ns", kBsdfCalls[call]), r.time_ns[call].mean, r.time_ns[call].standard_error());
+  }
+  return table;
+}
+
+Table worths_table(const std::vector<BenchReading>& readings) {
+  constexpr double kRounding = 1e-12;  // of floats, in the variance
+  Table table{"worths"};
+  for (const BenchReading& r : readings) {
+    add_row_head(table, r);
+    for (const NamedWorth& w : kWorths) {
+      const Worth& worth = r.worth.*w.worth;
+      const double variance = worth.variance.mean < kRounding ? 0 : worth.variance.mean;
+      const std::string name = w.name;
+      table.add(name, worth.mean.mean, worth.mean.standard_error());
+      table.add(name + "_variance", variance, worth.variance.standard_error());
+      table.add(name + "_us", us_to_percent(worth, variance, r.time(w.call)));
+    }
+  }
+  return table;
+}
+
+using Json = nlohmann::ordered_json;
+
+/// Google Benchmark's JSON with frond's counters.
+std::string json_of(const std::string& of_times, const Arguments& args, std::span<const TimedHit> hits,
+                    const std::vector<BenchReading>& readings) {
+  Json json = Json::parse(of_times);
+  Json& context = json["context"];
+  context["frond_version"] = FROND_VERSION;
+  context["frond"] = FROND_BUILD_IDENTITY;
+  context["machine"] = compare::machine_description();
+  context["min_time"] = args.real("min-time");
+  context["samples"] = args.count("samples");
+  context["seed"] = args.seed("seed");
+  std::map<std::string, Json> counters;
+  const auto add = [](Json& entry, const std::string& name, const Estimate& e) {
+    entry[name] = e.mean;
+    entry[name + "_se"] = e.standard_error();
+  };
+  for (size_t i = 0; i < hits.size(); ++i)
+    for (const NamedWorth& w : kWorths) {
+      Json& entry = counters[hits[i].name(w.call)];
+      add(entry, w.name, (readings[i].worth.*w.worth).mean);
+      add(entry, w.variance, (readings[i].worth.*w.worth).variance);
+    }
+  for (Json& entry : json["benchmarks"])
+    if (const auto found = counters.find(entry["name"]); found != counters.end() && entry["run_type"] == "iteration")
+      entry.update(found->second);
+  return json.dump(2) + '\n';
+}
+
+void warn_where_busy(const Log& log) {
+  double load = 0;
+  const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
+  if (getloadavg(&load, 1) == 1 && load > threads)
+    log.warn({}, fmt::format("the machine had other work to do: a load of {:.1f} on {} processors", load, threads));
+}
+
+Result bench(const JobRun& run) {
+  check_chart_param(run, "plot");
+  const TimedMaterials materials(run);
+  if (run.args.given("plot")) check_bench_chart(materials.count(), materials.angles());
+  const std::vector<TimedHit> hits = materials.hits();
+  const CallTimes times = time_calls(hits, {int(run.args.count("repetitions")), run.args.real("min-time")});
+  warn_where_busy(run.log());
+  std::vector<BenchReading> readings;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    run.check_stop();
+    readings.push_back({hits[i].material, hits[i].hit.theta_deg, hits[i].hit.lambda.count, times.ns[i],
+                        measure_worth(hits[i].hit, run.args.count("samples"), run.session().pool())});
+  }
+  if (run.args.given("plot")) write_chart(run.args.text("plot"), 1000, 560, bench_chart(readings));
+  const Table time = times_table(readings), worth = worths_table(readings);
+  return {.tables = {time, worth},
+          .text = fmt::format("CPU time of a call, ns\n{}\nExpectation and variance of one-sample estimates; us: CPU "
+                              "time in microseconds to a standard error of 1 %\n{}",
+                              to_text(time), to_text(worth)),
+          .json = json_of(times.json, run.args, hits, readings)};
+}
+
+}  // namespace
+
+extern const JobInfo kBenchJob{
+    .name = "bench",
+    .group = "Materials",
+    .doc = "Time the calls of a material's BSDF, and measure the variance of its samples.",
+    .details = "",
+    .params = kParams,
+    .session = SessionUse::all,
+    .run = bench};
+
+}  // namespace frond

@@ -1,0 +1,151 @@
+#include <algorithm>
+
+#include "instruments/given_wavelengths.h"
+#include "instruments/material_conformance.h"
+#include "jobs/common_params.h"
+#include "render/material_words.h"
+#include "render/refusing_log.h"
+#include "report/conform_report.h"
+#include "report/gnuplot.h"
+#include "report/sphere_chart.h"
+#include "scene/resolver.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr double kFewestSamples = 1000;  // below it, tests have next to no power
+constexpr double kMostSamples = 1 << 30;
+constexpr double kGrazing_deg = 89.9999;
+
+constexpr JobParam kParams[] = {
+    kMaterialParam,
+    {.name = "sweep",
+     .kind = flag,
+     .doc = "Test over the declared ranges of the parameters that are not given, too.",
+     .decides = true},
+    {.name = "samples",
+     .kind = count,
+     .doc = "Number of samples for each direction.",
+     .default_value = "20000",
+     .range = {kFewestSamples, kMostSamples},
+     .decides = true},
+    {.name = "angles",
+     .kind = numbers,
+     .doc = "Angles of wo from the normal, on both sides.",
+     .default_value = "0,30,60,80,89",
+     .unit = "degrees",
+     .range = {0, kGrazing_deg},
+     .aliases = "angle",
+     .decides = true},
+    {.name = "wavelengths",
+     .kind = numbers,
+     .doc = "Wavelengths, tested in groups of four.",
+     .default_value = "608,551,455",
+     .unit = "nm",
+     .range = kAboveZero,
+     .aliases = "wavelength",
+     .decides = true},
+    {.name = "seed", .kind = seed, .doc = "Seed of all random numbers.", .default_value = "1", .decides = true},
+    {.name = "lossless",
+     .kind = flag,
+     .doc = "Claim that the material absorbs nothing with these parameters: all light that comes in leaves.",
+     .decides = true},
+    {.name = "reciprocal",
+     .kind = flag,
+     .doc = "Claim f(a, b) = f(b, a), in addition to the material's own claims.",
+     .decides = true},
+    {.name = "false-alarm-rate",
+     .kind = real,
+     .doc = "Probability that any law is called broken although all hold.",
+     .default_value = "1e-6",
+     .range = {1e-12, 0.5},
+     .decides = true},
+    kCsvParam,
+    kJsonParam,
+    chart_param("picture", "Map of the directions of the worst finding, where a law is broken: .svg or .png."),
+};
+
+std::vector<ParameterSet> parameter_sets(const MaterialWords& material, const PluginText& text, const Arguments& args) {
+  if (args.flag("sweep"))
+    return parameter_sweep(material.info, {.pinned = material.plugin.params, .seed = args.seed("seed")});
+  return {{text.params.empty() ? "defaults" : words_of(text), material.plugin}};
+}
+
+/// Whether the material may refuse more than its own declared values: parameters, wavelengths, or parameters that it
+/// requires.
+bool is_asked_for(const MaterialWords& material, const Arguments& args) {
+  return !material.plugin.params.empty() || args.given("wavelengths") ||
+         std::ranges::any_of(material.info.params, &Param::required);
+}
+
+/// As many at once as a path carries.
+std::vector<GivenWavelengths> in_lanes(const std::vector<double>& nm) {
+  std::vector<GivenWavelengths> groups;
+  for (size_t i = 0; i < nm.size(); i += kLanes) {
+    const auto group = std::span(nm).subspan(i, std::min<size_t>(kLanes, nm.size() - i));
+    groups.emplace_back(std::vector<float>(group.begin(), group.end()));
+  }
+  return groups;
+}
+
+ConformReport examine_material(const JobRun& run) {
+  const Arguments& args = run.args;
+  const Registry& registry = run.session().registry();
+  const std::string text = material_text(args.texts("material"), run.log());
+  const MaterialWords material = parse_material(text, registry);
+  const SceneDescription others = scene_of_materials(registry);
+  const auto sets = parameter_sets(material, parse_plugin_text(text, {}), args);
+  ConformReport report{.material = text,
+                       .wavelengths_nm = args.numbers("wavelengths"),
+                       .effort = {.samples = int(args.count("samples")),
+                                  .angles_deg = args.numbers("angles"),
+                                  .seed = args.seed("seed"),
+                                  .maps = args.given("picture")},
+                       .false_alarm_rate = args.real("false-alarm-rate"),
+                       .findings = {}};
+  const Claims claims{args.flag("lossless"), args.flag("reciprocal")};
+  const RefusingLog refusing;
+  const std::filesystem::path no_cache;  // a sweep would fill it with leaves that no scene has
+  for (const GivenWavelengths& wavelengths : in_lanes(report.wavelengths_nm)) {
+    run.check_stop();
+    SceneResolver resolver(others, registry, wavelengths, refusing);
+    const Preparation preparation{wavelengths, run.session().pool(), run.log(),
+                                  args.flag("sweep") ? no_cache : run.context.options().cache};
+    const Findings findings =
+        examine(material.info, sets, {preparation, resolver, claims, report.effort, is_asked_for(material, args)});
+    report.findings.insert(report.findings.end(), findings.begin(), findings.end());
+  }
+  report.level = judge(report.findings, report.false_alarm_rate);
+  return report;
+}
+
+Result conform(const JobRun& run) {
+  constexpr int kBroken = 2;
+  check_chart_param(run, "picture");
+  const ConformReport report = examine_material(run);
+  if (run.args.given("picture")) {
+    const std::string path = run.args.text("picture");
+    const Finding* finding = finding_to_draw(report);
+    if (!finding) fail({}, "{}: no finding has directions to draw", path);
+    write_chart(path, 1000, 640, sphere_chart(*finding));
+  }
+  return {.tables = conform_tables(report),
+          .facts = conform_facts(report),
+          .text = conform_text(report),
+          .code = report.all_hold() ? 0 : kBroken};
+}
+
+}  // namespace
+
+extern const JobInfo kConformJob{
+    .name = "conform",
+    .group = "Materials",
+    .doc = "Test whether a material obeys the laws of scattering.",
+    .details = "Exit code 0: all laws hold; 2: a law is broken.",
+    .params = kParams,
+    .session = SessionUse::all,
+    .run = conform};
+
+}  // namespace frond

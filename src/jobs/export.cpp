@@ -1,0 +1,127 @@
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exports/format.h"
+#include "instruments/given_wavelengths.h"
+#include "jobs/common_params.h"
+#include "radiometry/radiometer_scene.h"
+#include "render/measured_material.h"
+#include "report/text_output.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr Interval kBelowHorizon_deg{0, 89.9999};
+
+/// "radiance", "csv", ...
+std::vector<std::string_view> format_names() {
+  std::vector<std::string_view> names;
+  for (const ExportFormat* format : export_formats()) names.push_back(format->name);
+  return names;
+}
+
+std::string format_doc() {
+  std::string doc = "File format.";
+  for (const ExportFormat* format : export_formats()) doc += fmt::format(" {}: {}.", format->name, format->doc);
+  return doc;
+}
+
+const std::vector<std::string_view> kFormatNames = format_names();
+const std::string kFormatDoc = format_doc();
+
+const JobParam kParams[] = {
+    kMaterialParam,
+    {.name = "format", .kind = text, .doc = kFormatDoc, .choices = kFormatNames, .decides = true, .required = true},
+    {.name = "output",
+     .kind = text,
+     .doc = "File to write; - is standard output, for formats that are text.",
+     .type = "FILE",
+     .aliases = "o",
+     .path = PathUse::write,
+     .required = true},
+    {.name = "wavelengths",
+     .kind = numbers,
+     .doc = "Wavelengths, ascending, or red,green,blue of osl.",
+     .unit = "nm",
+     .range = {360, 2500},
+     .decides = true},
+    {.name = "angles",
+     .kind = numbers,
+     .doc = "Angles of a table from the normal to the light, on either side.",
+     .unit = "degrees",
+     .range = kBelowHorizon_deg,
+     .decides = true},
+    {.name = "view-angles",
+     .kind = numbers,
+     .doc = "Angles of a table from the normal to the viewer.",
+     .unit = "degrees",
+     .range = kBelowHorizon_deg,
+     .decides = true},
+    {.name = "view-azimuths",
+     .kind = numbers,
+     .doc = "Azimuths of a table from the light to the viewer; the mirror direction is at 180.",
+     .unit = "degrees",
+     .range = {0, 359.9999},
+     .decides = true},
+    {.name = "rays",
+     .kind = count,
+     .doc = "Number of rays for each share of the light that is measured by rays.",
+     .range = {2, kCounts.max},
+     .decides = true},
+    kSeedParam,
+};
+
+/// Refuses arguments that the format does not use.
+void check_arguments(const Arguments& args, const ExportFormat& format) {
+  constexpr std::pair<std::string_view, ExportOption> kOptions[] = {{"angles", ExportOption::angles},
+                                                                    {"view-angles", ExportOption::views},
+                                                                    {"view-azimuths", ExportOption::views},
+                                                                    {"rays", ExportOption::rays}};
+  const auto uses = [](const ExportFormat& f, ExportOption option) { return std::ranges::count(f.options, option) > 0; };
+  for (const auto& [name, option] : kOptions) {
+    if (!args.given(name) || uses(format, option)) continue;
+    std::vector<std::string_view> others;
+    for (const ExportFormat* f : export_formats())
+      if (uses(*f, option)) others.push_back(f->name);
+    fail({}, "{} is for {} {}", args.spelled(name), args.spelled("format"), fmt::join(others, ", "));
+  }
+  if (args.text("output") == "-" && !format.is_text)
+    fail({}, "{} {} is no text: it goes to a file", args.spelled("format"), format.name);
+}
+
+Result export_material(const JobRun& run) {
+  const Arguments& args = run.args;
+  const ExportFormat& format =
+      **std::ranges::find(export_formats(), args.text("format"), [](const ExportFormat* f) { return f->name; });
+  check_arguments(args, format);
+  const ExportRequest request{args.numbers("wavelengths"), args.numbers("angles"), args.numbers("view-angles"),
+                              args.numbers("view-azimuths"), args.count("rays")};
+  format.check(request);
+  const std::string material = material_text(args.texts("material"), run.log());
+  Session& session = run.session();
+  const auto prepare = [&](const std::vector<double>& nm) -> std::shared_ptr<const Material> {
+    run.check_stop();
+    return ready_material(material, session.registry(), GivenWavelengths({nm.begin(), nm.end()}), session.pool(),
+                          run.log(), run.context.options().cache, keep_energy);
+  };
+  write_text(args.text("output"),
+             format.write({material, prepare, args.seed("seed"), session.pool(), run.log()}, request));
+  return {};
+}
+
+}  // namespace
+
+extern const JobInfo kExportJob{
+    .name = "export",
+    .group = "Materials",
+    .doc = "Write a material's BSDF as a file for other programs.",
+    .details = "",
+    .params = kParams,
+    .session = SessionUse::all,
+    .run = export_material};
+
+}  // namespace frond

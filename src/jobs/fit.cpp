@@ -1,0 +1,169 @@
+#include "leaf/fit/fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "jobs/common_params.h"
+#include "leaf/fit/measured_spectra.h"
+#include "report/fit_report.h"
+#include "report/gnuplot.h"
+#include "report/text_output.h"
+#include "scene/tokenizer.h"
+#include "system/cpu_clock.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr std::string_view kStructures[] = {"bifacial", "unifacial"}, kSieve[] = {"on", "off"},
+                           kMaterials[] = {"leaf", "leaf_solved", "leaf_simplified", "leaf_lambert", "abm"};
+
+constexpr JobParam kParams[] = {
+    {.name = "file",
+     .kind = text,
+     .doc = "Measured spectra: CSV as frond spectrophotometer and spectroradiometers write.",
+     .type = "FILE",
+     .path = PathUse::read,
+     .decides = true,
+     .positional = true,
+     .excludes = "data"},
+    {.name = "data", .kind = text, .doc = "The content of such a file, in its place.", .type = "CSV", .decides = true},
+    {.name = "output",
+     .kind = text,
+     .doc = "Scene file to write, with the leaf's Material line; - is standard output.",
+     .type = "FILE",
+     .aliases = "o",
+     .path = PathUse::write},
+    kJsonParam,
+    kCsvParam,
+    chart_param("plot", "Chart of measured and fitted spectra: .svg or .png."),
+    {.name = "leaf",
+     .kind = text,
+     .doc = "Name of the leaf to fit, in a file with several leaves.",
+     .type = "LEAF",
+     .decides = true},
+    {.name = "angle",
+     .kind = real,
+     .doc = "Angle of incidence, where the file does not have it.",
+     .default_value = "8",
+     .unit = "degrees",
+     .range = {0, 180},
+     .decides = true},
+    {.name = "structure",
+     .kind = text,
+     .doc = "Structure of the leaf; by default the one that fits better.",
+     .choices = kStructures,
+     .decides = true},
+    {.name = "sieve",
+     .kind = text,
+     .doc = "Absorption with sieve and detour effects; by default what fits better.",
+     .choices = kSieve,
+     .decides = true},
+    {.name = "fix",
+     .kind = texts,
+     .doc = "NAME=NUMBER: a known number, in the scene's units.",
+     .type = "NAME=NUMBER",
+     .decides = true},
+    {.name = "like",
+     .kind = text,
+     .doc = "Specimen used as a prior (standard deviation about one third).",
+     .choices = leaf::kSpecimenNames,
+     .decides = true},
+    {.name = "material",
+     .kind = text,
+     .doc = "Material type to write.",
+     .default_value = "leaf",
+     .choices = kMaterials,
+     .decides = true},
+};
+
+/// A number that is fitted, or that follows one.
+leaf::FitRequest::Fixed fixed_of(const std::string& word, const std::string& option) {
+  std::vector<std::string_view> names{"mesophyllfraction", "chlorophyllb", "lignin"};
+  for (const leaf::FitVariable& v : leaf::kFitVariables) names.push_back(v.name);
+  const size_t equals = word.find('=');
+  const std::string name = word.substr(0, equals);
+  if (std::ranges::find(names, name) == names.end())
+    fail({}, "{}: a fit has no number \"{}\"{}", option, name, suggestion(name, names));
+  const auto value = equals == word.npos ? std::nullopt : parse_number(word.substr(equals + 1));
+  if (!value || !(*value >= 0) || !std::isfinite(*value))
+    fail({}, "{} {}: {}=NUMBER is needed, 0 at least, in the scene's units", option, word, name);
+  for (const leaf::FitVariable& v : leaf::kFitVariables)
+    if (v.name == name && !(*value > 0) && (v.is_structure || v.number == &leaf::TissueParams::thickness_m))
+      fail({}, "{} {}: {} is above 0", option, word, name);
+  return {name, *value};
+}
+
+std::optional<leaf::Structure> structure_of(const Arguments& args, const leaf::Specimen* like) {
+  using enum leaf::Structure;
+  const std::string given = args.text("structure");
+  if (!like) return given.empty() ? std::nullopt : std::optional(given == "bifacial" ? bifacial : unifacial);
+  const std::string_view own = like->params.structure == bifacial ? "bifacial" : "unifacial";
+  if (!given.empty() && given != own)
+    fail({}, "{} {} is {}, {} says otherwise", args.spelled("like"), like->name, own, args.spelled("structure"));
+  return like->params.structure;
+}
+
+leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafReading> measurements) {
+  leaf::FitRequest request{.readings = std::move(measurements)};
+  request.like = leaf::find_specimen(args.text("like"));
+  request.has_prior = request.like != nullptr;
+  request.structure = structure_of(args, request.like);
+  if (args.given("sieve")) request.sieve = args.text("sieve") == "on";
+  for (const std::string& word : args.texts("fix")) request.fixed.push_back(fixed_of(word, args.spelled("fix")));
+  size_t values = 0;
+  for (const leaf::LeafReading& r : request.readings) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
+  const size_t all = std::size(leaf::kFitVariables), free = all - std::min(all, request.fixed.size());
+  if (values == 0) fail({}, "there is no value to fit within 360 to 2500 nm");
+  if (values < free && !request.has_prior)
+    fail({}, "{} values are fewer than the {} numbers to fit: {} some, or {} a specimen", values, free,
+         args.spelled("fix"), args.spelled("like"));
+  return request;
+}
+
+std::vector<leaf::LeafReading> measurements_of(const JobRun& run) {
+  const Arguments& args = run.args;
+  if (!args.given("file") && !args.given("data"))
+    fail({}, "measured spectra are needed: a file, or {}", args.spelled("data"));
+  const leaf::SpectraReading how{args.text("leaf"), args.real("angle"), args.spelled("leaf")};
+  leaf::MeasuredSpectra measured = args.given("file")
+                                       ? leaf::read_measured_spectra(args.text("file"), how)
+                                       : leaf::parse_measured_spectra(args.text("data"), args.spelled("data"), how);
+  if (measured.is_in_percent) run.log().info("values are in percent");
+  if (measured.left_out > 0)
+    run.log().warn({},
+                   fmt::format("{} rows are left out: beyond 360 to 2500 nm, or without a number", measured.left_out));
+  return std::move(measured.readings);
+}
+
+Result fit(const JobRun& run) {
+  const Arguments& args = run.args;
+  check_chart_param(run, "plot");
+  const leaf::FitRequest request = request_of(args, measurements_of(run));
+  const double start = cpu_seconds();
+  const leaf::FitResult fitted = leaf::fit_leaf(request, run.session().pool());
+  run.log().info(fmt::format("fitted in {:.2g} s of CPU", cpu_seconds() - start));
+  std::string source = args.given("file") ? std::filesystem::path(args.text("file")).filename().string() : "data";
+  if (args.given("leaf")) source += ", " + args.text("leaf");
+  const FitReport report{request, fitted, source, args.text("material")};
+  if (args.given("output")) write_text(args.text("output"), fit_scene(report));
+  if (args.given("plot")) write_chart(args.text("plot"), 900, 600, fit_chart(report));
+  return {.tables = fit_tables(report),
+          .facts = fit_facts(report),
+          .notes = {fmt::format("{}, fitted by frond fit: RMSE {:.4f}", source, fitted.rmse)},
+          .text = fit_text(report)};
+}
+
+}  // namespace
+
+extern const JobInfo kFitJob{
+    .name = "fit",
+    .group = "Leaf models",
+    .doc = "Fit a leaf to measured reflectance and transmittance.",
+    .details = "",
+    .params = kParams,
+    .session = SessionUse::threads,
+    .run = fit};
+
+}  // namespace frond

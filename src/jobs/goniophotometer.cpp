@@ -1,0 +1,167 @@
+#include "instruments/goniophotometer.h"
+
+#include <algorithm>
+
+#include "jobs/instrument.h"
+#include "report/gnuplot.h"
+#include "report/patch_charts.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr std::string_view kScales[] = {"linear", "log"};
+
+constexpr JobParam kParams[] = {
+    kMaterialParam,
+    kWithParam,
+    kAnglesParam,
+    kInstrumentWavelengthsParam,
+    {.name = "rays",
+     .kind = count,
+     .doc = "Number of rays for each measurement.",
+     .default_value = "1e6",
+     .range = kRayCounts,
+     .decides = true},
+    {.name = "patches",
+     .kind = text,
+     .doc = "THETAxPHI: numbers of detectors, patches of equal angles over the whole sphere.",
+     .type = "THETAxPHI",
+     .default_value = "20x40",
+     .decides = true},
+    {.name = "integrate",
+     .kind = flag,
+     .doc = "Integrate f over each patch, without noise, where it is not a random estimate; use rays elsewhere.",
+     .decides = true},
+    kRenderedParam,
+    kSeedParam,
+    kCsvParam,
+    kJsonParam,
+    chart_param("plot", "Chart of f in the plane of incidence: .svg or .png."),
+    chart_param("map", "Polar maps of f over both hemispheres: .svg or .png."),
+    {.name = "map-scale", .kind = text, .doc = "Colour scale of the map.", .default_value = "linear", .choices = kScales},
+};
+
+/// "20x40"; "20,40" as well, which is how a program writes two numbers.
+DetectorSphere sphere_of(const Arguments& args) {
+  std::string words = args.text("patches");
+  std::ranges::replace(words, 'x', ',');
+  const auto counts = parse_numbers(words).value_or(std::vector<double>());
+  const auto is_count = [](double n) { return n == std::floor(n) && std::abs(n) <= DetectorSphere::kMostPatches; };
+  if (counts.size() != 2 || !std::ranges::all_of(counts, is_count))
+    fail({}, "{}: two whole numbers are needed, as in 20x40; \"{}\" was given", args.spelled("patches"),
+         args.text("patches"));
+  return {int(counts[0]), int(counts[1])};
+}
+
+std::string kind_of(const GoniophotometerReading& r, const Patch& p) { return r.is_reflected(p) ? "BRDF" : "BTDF"; }
+
+Table table_of(const std::vector<LabelledPatches>& readings) {
+  Table table{"readings"};
+  for (const auto& [material, r] : readings)
+    for (size_t i = 0; i < r.sphere.size(); ++i) {
+      const Patch p = r.sphere.patch(i);
+      table.add("incidence_deg", r.beam.theta_deg);
+      table.add("wavelength_nm", r.beam.lambda_nm);
+      table.add("theta_min_deg", p.theta_min_deg);
+      table.add("theta_max_deg", p.theta_max_deg);
+      table.add("theta_deg", p.theta_deg());
+      table.add("phi_min_deg", p.phi_min_deg);
+      table.add("phi_max_deg", p.phi_max_deg);
+      table.add("phi_deg", p.phi_deg());
+      table.add("solid_angle_sr", p.solid_angle);
+      table.add("projected_solid_angle_sr", p.projected_solid_angle);
+      table.add("kind", kind_of(r, p));
+      table.add("f_per_sr", r.f(i).mean);
+      table.add("f_se", r.f(i).standard_error());
+      table.add("caught", double(r.count(i)));
+      table.add("rays", double(r.rays));
+      table.add("material", material);
+    }
+  table.document("incidence_deg",
+                 "from the front's normal to the light, degrees; above 90 the back (abaxial side) is lit");
+  table.document("theta_deg", "of the detector, from the front's normal; patches are equal in theta and in phi");
+  table.document("phi_deg", "from the light's azimuth; the first patch is centred on 0, the mirror direction is at 180");
+  table.document("f_per_sr", "BRDF (on the lit side) or BTDF, 1/sr: weight sum / (rays * projected solid angle)");
+  table.document("f_se", "standard error of f_per_sr");
+  table.document("caught", "number of rays that reached the patch");
+  table.document("rays", "number of rays of light; 0 where f was integrated over the patches, without noise");
+  return table;
+}
+
+/// Of each side of each measurement: the share of the light, and where f is largest.
+Table summary_of(const std::vector<LabelledPatches>& readings) {
+  Table table{"summary"};
+  for (const auto& [material, r] : readings)
+    for (const bool reflected : {true, false}) {
+      size_t largest = r.sphere.size();
+      for (size_t i = 0; i < r.sphere.size(); ++i)
+        if (r.is_reflected(r.sphere.patch(i)) == reflected &&
+            (largest == r.sphere.size() || r.f(i).mean > r.f(largest).mean))
+          largest = i;
+      const Patch p = r.sphere.patch(largest);
+      const Estimate share = r.share(reflected), f = r.f(largest);
+      table.add("material", material);
+      table.add("incidence_deg", r.beam.theta_deg);
+      table.add("wavelength_nm", r.beam.lambda_nm);
+      table.add("measured_by", r.is_integrated() ? std::string("integration") : fmt::format("{} rays", r.rays));
+      table.add("kind", kind_of(r, p));
+      table.add("share", share.mean, share.standard_error());
+      table.add("largest_per_sr", f.mean, f.standard_error());
+      table.add("at_theta_deg", p.theta_deg());
+      table.add("at_phi_deg", p.phi_deg());
+    }
+  return table;
+}
+
+/// Refuses what would fail after the measurements.
+void check(const JobRun& run, const MaterialsUnderTest& tested, const DetectorSphere& sphere) {
+  const ReadingCounts counts{tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size()};
+  if (run.args.given("plot")) check_plane_chart(counts, sphere);
+  if (run.args.given("map")) check_map_chart(counts, sphere);
+  for (size_t i = 0; i < tested.size(); ++i) check_no_delta_lobe(tested.exposure(i));
+}
+
+GoniophotometerReading measure(const JobRun& run, const MaterialsUnderTest& tested, size_t i,
+                               const DetectorSphere& sphere) {
+  run.check_stop();
+  const Exposure exposure = tested.exposure(i);
+  if (run.args.flag("integrate") && has_exact_f(exposure)) return integrate_f(exposure, sphere, run.session().pool());
+  const int64_t rays = run.args.count("rays");
+  return measure_f(exposure, sphere, rays, run.session().pool(), tested.progress(i, rays));
+}
+
+void draw(const std::string& path, const Chart& chart) { write_chart(path, chart.width, chart.height, chart.script); }
+
+Result goniophotometer(const JobRun& run) {
+  check_chart_param(run, "plot");
+  check_chart_param(run, "map");
+  const DetectorSphere sphere = sphere_of(run.args);
+  const MaterialsUnderTest tested(run);
+  check(run, tested, sphere);
+  std::vector<LabelledPatches> readings;
+  for (size_t i = 0; i < tested.size(); ++i)
+    readings.push_back({tested.material(i).label(), measure(run, tested, i, sphere)});
+  if (run.control.progress) run.control.progress->finish();
+  if (run.args.given("plot")) draw(run.args.text("plot"), plane_chart(readings));
+  if (run.args.given("map")) draw(run.args.text("map"), map_chart(readings, run.args.text("map-scale") == "log"));
+  const Table summary = summary_of(readings);
+  return {.tables = {table_of(readings), summary},
+          .notes = tested.notes("goniophotometer"),
+          .text = fmt::format("{} x {} patches; where f is largest\n{}", sphere.thetas(), sphere.phis(),
+                              to_text(summary))};
+}
+
+}  // namespace
+
+extern const JobInfo kGoniophotometerJob{
+    .name = "goniophotometer",
+    .group = "Measure",
+    .doc = "Measure a material's BRDF and BTDF over the whole sphere.",
+    .details = "",
+    .params = kParams,
+    .session = SessionUse::all,
+    .run = goniophotometer};
+
+}  // namespace frond

@@ -1,0 +1,120 @@
+#include "instruments/spectrophotometer.h"
+
+#include <limits>
+
+#include "jobs/instrument.h"
+#include "report/gnuplot.h"
+#include "report/share_tables.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr JobParam kParams[] = {
+    kMaterialParam,
+    kWithParam,
+    kAnglesParam,
+    kInstrumentWavelengthsParam,
+    {.name = "rays",
+     .kind = count,
+     .doc = "Number of rays for each measurement: 1e6 by default; with --se the largest number, 1e9 by default.",
+     .range = kRayCounts,
+     .decides = true},
+    {.name = "se",
+     .kind = real,
+     .doc = "Stop when the standard errors of R, T and A are no larger than this.",
+     .range = kAboveZero,
+     .decides = true},
+    kRenderedParam,
+    kSeedParam,
+    kCsvParam,
+    kJsonParam,
+    chart_param("plot", "Chart of R and 1 - T against wavelength or angle: .svg or .png."),
+};
+
+struct Share {
+  const char* name;
+  Estimate SpectrophotometerReading::*value;
+  bool is_optional;  ///< known of materials whose flags tell surface and body apart
+};
+constexpr Share kShares[] = {{"Rs", &SpectrophotometerReading::surface, true},
+                             {"Rd", &SpectrophotometerReading::subsurface, true},
+                             {"R", &SpectrophotometerReading::reflectance, false},
+                             {"T", &SpectrophotometerReading::transmittance, false},
+                             {"A", &SpectrophotometerReading::absorptance, false}};
+
+Table table_of(std::span<const LabelledReading> readings) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Table table{"readings"};
+  for (const auto& [material, r] : readings) {
+    table.add("theta_deg", r.beam.theta_deg);
+    table.add("wavelength_nm", r.beam.lambda_nm);
+    const auto is_known = [&](const Share& s) { return !s.is_optional || r.tells_surface; };
+    for (const Share& s : kShares) table.add(s.name, is_known(s) ? (r.*s.value).mean : kNone);
+    for (const Share& s : kShares)
+      table.add(std::string(s.name) + "_se", is_known(s) ? (r.*s.value).standard_error() : kNone);
+    table.add("rays", double(r.rays));
+    table.add("material", material);
+  }
+  table.document("theta_deg", "from the front's normal to the light, degrees; above 90 the back (abaxial side) is lit");
+  table.document("Rs", "share of the light, 0 to 1, that the surface reflects at the first event; blank where the "
+                       "material does not tell Rs and Rd apart");
+  table.document("Rd", "share that leaves the body on the lit side");
+  table.document("R", "Rs + Rd, the share that is reflected; R_se and the like: standard errors");
+  table.document("T", "share that leaves by the other side");
+  table.document("A", "1 - R - T, the share that is absorbed");
+  table.document("rays", "number of rays of light");
+  table.columns.back().only_data = true;
+  return table;
+}
+
+/// A table for each material, below its name.
+std::string text_of(const std::vector<LabelledReading>& readings, size_t per_material) {
+  std::string text;
+  for (size_t i = 0; i < readings.size(); i += per_material)
+    text += (i > 0 ? "\n" : "") + readings[i].material + '\n' +
+            to_text(table_of(std::span(readings).subspan(i, per_material)));
+  return text;
+}
+
+void warn_where_not_reached(const JobRun& run, const Dose& dose, const std::vector<LabelledReading>& readings) {
+  const auto missed = std::ranges::count_if(
+      readings, [&](const LabelledReading& r) { return r.reading.standard_error() > dose.standard_error; });
+  if (dose.standard_error > 0 && missed > 0)
+    run.log().warn({}, fmt::format("{} of {} measurements ended at {} rays before their standard error was {}", missed,
+                                   readings.size(), dose.rays, dose.standard_error));
+}
+
+Result spectrophotometer(const JobRun& run) {
+  check_chart_param(run, "plot");
+  constexpr int64_t kRays = 1'000'000, kMostRays = 1'000'000'000;
+  const int64_t by_default = run.args.given("se") ? kMostRays : kRays;
+  const Dose dose{run.args.given("rays") ? run.args.count("rays") : by_default, run.args.real("se")};
+  const MaterialsUnderTest tested(run);
+  if (run.args.given("plot"))
+    check_shares_chart(tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size());
+  std::vector<LabelledReading> readings;
+  for (size_t i = 0; i < tested.size(); ++i)
+    readings.push_back({tested.material(i).label(), measure_shares(tested.exposure(i), dose, run.session().pool(),
+                                                                   tested.progress(i, dose.rays))});
+  if (run.control.progress) run.control.progress->finish();
+  warn_where_not_reached(run, dose, readings);
+  if (run.args.given("plot")) write_chart(run.args.text("plot"), 900, 600, shares_chart(readings));
+  return {.tables = {table_of(readings)},
+          .notes = tested.notes("spectrophotometer"),
+          .text = text_of(readings, tested.per_material())};
+}
+
+}  // namespace
+
+extern const JobInfo kSpectrophotometerJob{
+    .name = "spectrophotometer",
+    .group = "Measure",
+    .doc = "Measure a material's reflectance, transmittance and absorptance.",
+    .details = "",
+    .params = kParams,
+    .session = SessionUse::all,
+    .run = spectrophotometer};
+
+}  // namespace frond

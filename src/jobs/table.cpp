@@ -1,0 +1,259 @@
+#include "leaf/table/table.h"
+
+#include <algorithm>
+#include <map>
+
+#include "jobs/common_params.h"
+#include "leaf/table/body_cache.h"
+#include "leaf/table/body_file.h"
+#include "leaf/table/body_table.h"
+#include "leaf/table/table_cache.h"
+#include "leaf/table/table_file.h"
+#include "leaf/tissue/constants.h"
+#include "materials/portable_leaf.h"
+#include "materials/registry.h"
+#include "report/text_output.h"
+#include "scene/plugin_text.h"
+#include "system/cpu_clock.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr std::string_view kSimplified = "leaf_simplified", kSolved = "leaf_solved";
+constexpr std::string_view kMethods[] = {"solve", "montecarlo"};
+
+constexpr JobParam kParams[] = {
+    {.name = "leaf",
+     .kind = texts,
+     .doc = "[MATERIAL][,parameter=value...]: leaf_simplified (default) or leaf_solved, with the leaf's parameters.",
+     .type = "MATERIAL",
+     .decides = true,
+     .positional = true},
+    {.name = "specimen",
+     .kind = text,
+     .doc = "Specimen of the leaf; soybean by default.",
+     .choices = leaf::kSpecimenNames,
+     .decides = true},
+    {.name = "method",
+     .kind = text,
+     .doc = "solve: without noise. montecarlo: random walks, as published.",
+     .default_value = "solve",
+     .choices = kMethods,
+     .decides = true},
+    {.name = "wavelengths",
+     .kind = numbers,
+     .doc = "Wavelengths.",
+     .unit = "nm",
+     .range = leaf::kConstantsRange_nm,
+     .aliases = "wavelength",
+     .decides = true,
+     .required = true},
+    {.name = "angles",
+     .kind = numbers,
+     .doc = "Angles of incidence, ascending; above 90 on the abaxial side.",
+     .default_value = "0:180:1",
+     .unit = "degrees",
+     .range = {0, 180},
+     .decides = true},
+    {.name = "rays",
+     .kind = count,
+     .doc = "Number of random walks of montecarlo for each angle and wavelength.",
+     .default_value = "1e6",
+     .range = {1, 1e9},
+     .decides = true},
+    {.name = "nodes",
+     .kind = count,
+     .doc = "Number of nodes of the solution for each segment of directions; by default as many as it needs.",
+     .range = {2, 200},
+     .decides = true},
+    {.name = "depths",
+     .kind = numbers,
+     .doc = "LEAST,MOST: optical depths of a .leaf file, for leaves whose chemistry varies.",
+     .type = "LEAST,MOST",
+     .range = {0, kAnyValue.max},
+     .values = 2,
+     .decides = true},
+    kSeedParam,
+    {.name = "equalsides", .kind = flag, .doc = "Write the mean of both sides, at angles up to 90.", .decides = true},
+    {.name = "output",
+     .kind = text,
+     .doc = "File to write; - is standard output. FILE.leaf of leaf_solved: for other programs (docs/leaf_file.md).",
+     .type = "FILE",
+     .aliases = "o",
+     .path = PathUse::write,
+     .required = true},
+};
+
+/// The leaf's parameters are numbers and words alone.
+class NoReferences final : public ParamResolver {
+ public:
+  std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { refuse(); }
+  std::shared_ptr<const SpectrumTexture> spectrum_texture(const std::string&, const Location&) override { refuse(); }
+  std::shared_ptr<Material> material(const std::string&, const Location&) override { refuse(); }
+  SpectrumPtr spectrum(const ParsedParam&, SpectrumUse) override { refuse(); }
+  std::filesystem::path file(const std::string& name, const Location&) override { return name; }
+
+ private:
+  [[noreturn]] static void refuse() { fail({}, "a leaf's table is made for one leaf: numbers alone, no textures"); }
+};
+
+Params params_of(const PluginInfo& info, const PluginText& leaf) {
+  ParsedPlugin plugin{std::string(info.name), {}, {}};
+  set_params(leaf, info, {}, plugin);
+  static NoReferences none;
+  return Params(info, plugin, none);
+}
+
+/// A render makes its own table by these; here the job's parameters say the same.
+void check_is_of_leaf(const std::string& name, const Arguments& args) {
+  const std::map<std::string, std::string> instead{
+      {"tablemethod", args.spelled("method") + " solve or montecarlo"},
+      {"tablerays", args.spelled("rays")},
+      {"tablestep", args.spelled("angles") + " first:last:step"}};
+  if (name == "tablefile") fail({}, "a table is made of a leaf, not of a \"tablefile\"");
+  if (const auto found = instead.find(name); found != instead.end())
+    fail({}, "\"{}\" is for renders that make their table: use {}", name, found->second);
+}
+
+/// The material whose table is made, and its parameters.
+PluginText leaf_of(const JobRun& run) {
+  std::string text = material_text(run.args.texts("leaf"), run.log());
+  const size_t end = text.find(',');
+  if (text.empty() || text.substr(0, end).find('=') != std::string::npos)
+    text = std::string(kSimplified) + (text.empty() ? "" : ",") + text;
+  PluginText leaf = parse_plugin_text(text, {});
+  if (leaf.name != kSimplified && leaf.name != kSolved)
+    fail({}, "\"{}\" is neither a material that looks up a table, {} or {}, nor name=value of a leaf", leaf.name,
+         kSimplified, kSolved);
+  if (run.args.given("specimen")) leaf.params.emplace_back("specimen", run.args.text("specimen"));
+  std::map<std::string, std::string> given;
+  for (const auto& [name, value] : leaf.params) {
+    check_is_of_leaf(name, run.args);
+    if (const auto [first, is_new] = given.emplace(name, value); !is_new)
+      fail({}, "\"{}\" is given twice, as {} and as {}", name, first->second, value);
+  }
+  return leaf;
+}
+
+std::vector<double> wavelengths_of(const Arguments& args) {
+  const auto nm = args.numbers("wavelengths");
+  auto sorted = nm;
+  std::ranges::sort(sorted);
+  if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+    fail({}, "{} has {} twice", args.spelled("wavelengths"), *twice);
+  return nm;
+}
+
+/// Ascending; for equal sides those up to 90 and their counterparts on the other side.
+std::vector<double> angles_of(const Arguments& args) {
+  auto theta_deg = args.numbers("angles");
+  const auto wrong = std::ranges::adjacent_find(theta_deg, std::greater_equal());
+  if (wrong != theta_deg.end())
+    fail({}, "{} ascend, {} comes after {}", args.spelled("angles"), *std::next(wrong), *wrong);
+  if (!args.flag("equalsides")) return theta_deg;
+  std::erase_if(theta_deg, [](double theta) { return theta > 90; });
+  if (theta_deg.empty()) fail({}, "{} needs angles up to 90", args.spelled("equalsides"));
+  for (size_t i = theta_deg.size(); i-- > 0;)
+    if (theta_deg[i] < 90) theta_deg.push_back(180 - theta_deg[i]);
+  return theta_deg;
+}
+
+/// Writes the file, and logs what it holds.
+Result write_table(const JobRun& run, const std::string& content, const std::string& summary) {
+  write_text(run.args.text("output"), content);
+  run.log().info(summary);
+  return {};
+}
+
+std::string kilobytes(size_t bytes) { return fmt::format("{} kB", (bytes + 512) / 1024); }
+
+Result make_shares_file(const JobRun& run, const PluginText& leaf) {
+  static constexpr PluginInfo kLeaf{"the table of", kSimplified, "", "", kLeafParams};
+  const Arguments& args = run.args;
+  leaf::TableRequest request{.params = LeafParams(params_of(kLeaf, leaf)).tissue(),
+                             .wavelengths_nm = wavelengths_of(args),
+                             .theta_deg = angles_of(args),
+                             .rays = int(args.count("rays")),
+                             .nodes = int(args.count("nodes")),
+                             .seed = args.seed("seed")};
+  if (args.text("method") == "montecarlo") request.method = leaf::TableMethod::monte_carlo;
+  const double start = cpu_seconds();
+  leaf::Table table = leaf::make_table(request, run.session().pool());
+  const double seconds = cpu_seconds() - start;
+  std::string header = leaf::describe(request);
+  if (args.flag("equalsides")) {
+    table = leaf::mean_of_sides(table);
+    header += "# mean of both sides\n";
+  }
+  return write_table(
+      run, leaf::to_csv(table, header),
+      leaf::summary(request, args.text("output"), table) + fmt::format(", {:.2g} s of CPU", seconds));
+}
+
+Result make_modes_file(const JobRun& run, const Params& params) {
+  const leaf::BodyRequest request{.params = LeafParams(params).tissue(),
+                                  .wavelengths_nm = wavelengths_of(run.args),
+                                  .tolerance = params.real("tolerance"),
+                                  .nodes = int(run.args.count("nodes"))};
+  const double start = cpu_seconds();
+  const leaf::BodySpectrum spectrum = leaf::make_body_spectrum(request, run.session().pool());
+  const double seconds = cpu_seconds() - start;
+  return write_table(run, leaf::to_text(request, spectrum, leaf::describe(request)),
+                     leaf::summary(request, run.args.text("output"), spectrum) +
+                         fmt::format(", {} in a render, {:.2g} s of CPU",
+                                     kilobytes(leaf::BodyTable(request, spectrum, false).bytes()), seconds));
+}
+
+/// For programs other than frond: docs/leaf_file.md.
+Result make_leaf_file(const JobRun& run, const Params& params) {
+  PortableLeafRequest request{
+      .wavelengths_nm = wavelengths_of(run.args), .tolerance = params.real("tolerance"), .nodes = int(run.args.count("nodes"))};
+  if (const auto depths = run.args.numbers("depths"); !depths.empty()) request.depths = {depths[0], depths[1]};
+  const leaf::PortableLeaf table = make_portable_leaf(LeafParams(params), std::move(request), run.session().pool(),
+                                                      run.log(), run.context.options().cache);
+  const std::string bytes = leaf::portable_bytes(table);
+  return write_table(run, bytes,
+                     fmt::format("{}: {}{} wavelengths x {} cells, {}", run.args.text("output"),
+                                 table.is_reciprocal ? "reciprocal, " : "", table.wavelengths_nm.size(), table.cells,
+                                 kilobytes(bytes.size())));
+}
+
+/// Refuses those that are given, which have no effect on this kind of table.
+void refuse(const Arguments& args, std::initializer_list<std::string_view> names, const std::string& use) {
+  for (const std::string_view name : names)
+    if (args.given(name)) fail({}, "{} is for {}", args.spelled(name), use);
+}
+
+Result table(const JobRun& run) {
+  const PluginText leaf = leaf_of(run);
+  const bool is_leaf_file = run.args.text("output").ends_with(".leaf");
+  if (leaf.name != kSolved || !is_leaf_file) refuse(run.args, {"depths"}, "a .leaf file of leaf_solved");
+  if (leaf.name == kSolved) {
+    refuse(run.args, {"method", "angles", "rays", "seed", "equalsides"},
+           fmt::format("tables of {}; those of {} follow from its \"tolerance\"", kSimplified, kSolved));
+    const MaterialInfo& info = PluginTable<MaterialInfo>("material", builtin_materials()).get(kSolved, {});
+    return is_leaf_file ? make_leaf_file(run, params_of(info, leaf)) : make_modes_file(run, params_of(info, leaf));
+  }
+  const std::string method = run.args.spelled("method");
+  if (run.args.text("method") == "montecarlo")
+    refuse(run.args, {"nodes"}, method + " solve");
+  else
+    refuse(run.args, {"rays", "seed"}, method + " montecarlo");
+  return make_shares_file(run, leaf);
+}
+
+}  // namespace
+
+extern const JobInfo kTableJob{
+    .name = "table",
+    .group = "Leaf models",
+    .doc = "Write the table that a leaf material looks up, as a file that it can read.",
+    .details = "leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the modes of its BSDF, or as "
+               "FILE.leaf all of it for other programs.",
+    .params = kParams,
+    .session = SessionUse::all,
+    .run = table};
+
+}  // namespace frond
