@@ -92,8 +92,8 @@ def register_material(name, bsdf, *, session=None):
 class Fit:
     """A leaf that was fitted to measured spectra."""
 
-    def __init__(self, result, inputs):
-        self.result, self._inputs = result, inputs
+    def __init__(self, result):
+        self.result = result
         leaf = result.columns["leaf"]
         self.leaf = dict(zip(leaf["name"], (float(v) for v in leaf["value"])))  #: its parameters, as a material takes them
 
@@ -116,13 +116,14 @@ class Fit:
 
     def scene(self, material="leaf"):
         """A Material line of a scene file."""
-        return self.result.facts["scene"].replace('Material "leaf"', f'Material "{material}"', 1)
+        of_leaf = self.result.facts["scene"]
+        return of_leaf.replace(of_leaf.split('"')[1].join('""'), f'"{material}"', 1)
 
     def __str__(self):
         return self.result.text
 
 
-def _csv(wavelengths, R, T, angle):
+def _csv(wavelengths, R, T):
     """Columns as the CSV text that the job reads."""
     count = len(wavelengths)
     columns = {"wavelength_nm": wavelengths, "R": R, "T": T}
@@ -142,10 +143,10 @@ def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
     """
     if (path is None) == (wavelengths is None):
         raise ValueError("fit takes measurements, or the path of a file with them")
-    source = {"file": os.fspath(path)} if path is not None else {"data": _csv(wavelengths, R, T, options.get("angle"))}
+    source = {"file": os.fspath(path)} if path is not None else {"data": _csv(wavelengths, R, T)}
     if isinstance(sieve, bool):
         sieve = "on" if sieve else "off"
-    return Fit(run("fit", **source, sieve=sieve, **options), source)
+    return Fit(run("fit", **source, sieve=sieve, **options))
 
 
 def read_spectra(path, *, leaf="", angle=8.0):

@@ -75,14 +75,14 @@ def _make(variant):
             order = numpy.argsort(nm)
             self.column_of_lane = [int(c) for c in numpy.argsort(order)]
             session = default_session()._session
-            chemistry = _frond.leaf_chemistry(session, table_words, [float(x) for x in nm[order]])
+            chemistry = _frond.leaf_chemistry(session, ",".join(table_words), [float(x) for x in nm[order]])
             self.amount = {n: Float(chemistry["amount"][n]) for n in CHEMISTRY if n not in self.textures}
             self.absorption = {n: Float(a) for n, a in chemistry["specific_absorption"].items()}
             self.geometry = {n: Float(chemistry[n]) for n in _GEOMETRY if n not in self.textures}
             self.over_depth = bool(self.textures) or bool(_pop(props, "differentiable", False))
             depths = self._depth_range(chemistry) if self.over_depth else None
             tolerance = float(_pop(props, "tolerance", 5e-4))
-            self._take(_frond.leaf_table(session, table_words, [float(x) for x in nm[order]], tolerance, depths))
+            self._take(_frond.leaf_table(session, ",".join(table_words), [float(x) for x in nm[order]], tolerance, depths))
             reflection = mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
             self.m_components = [mi.BSDFFlags.GlossyReflection | reflection, mi.BSDFFlags.DiffuseReflection | reflection,
                                  mi.BSDFFlags.DiffuseTransmission | reflection]
@@ -430,7 +430,7 @@ def _make_scalar(variant):
         def _prepare(self):
             key = tuple(self.wavelengths)
             if key not in self.ready:
-                self.ready[key] = _frond.FlatBsdf(default_session()._session, self.words, list(key))
+                self.ready[key] = _frond.FlatBsdf(default_session()._session, ",".join(self.words), list(key))
             self.bsdf = self.ready[key]
 
         def _seed(self):
@@ -480,7 +480,7 @@ def _make_scalar(variant):
                 self._prepare()
 
         def to_string(self):
-            return f"FrondLeaf[{' '.join(self.words)}, {self.wavelengths} nm]"
+            return f"FrondLeaf[{','.join(self.words)}, {self.wavelengths} nm]"
 
     return FrondLeaf
 

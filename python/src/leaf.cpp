@@ -1,11 +1,8 @@
 #include "common.h"
 #include "instruments/given_wavelengths.h"
-#include "leaf/table/body_cache.h"
-#include "leaf/table/portable_leaf.h"
-#include "leaf/table/reciprocal_body.h"
-#include "leaf/tissue/absorption.h"
+#include "leaf/fit/measured_spectra.h"
 #include "leaf/tissue/constants.h"
-#include "materials/leaf_params.h"
+#include "materials/portable_leaf.h"
 #include "render/material_words.h"
 #include "render/refusing_log.h"
 #include "scene/resolver.h"
@@ -15,46 +12,26 @@ namespace {
 
 using namespace nb::literals;
 
-LeafParams leaf_of(SessionHandle& owner, const std::vector<std::string>& words) {
-  const Registry& registry = owner.session.registry();
-  const MaterialWords material = parse_material(words, registry);
+LeafParams leaf_of(SessionHandle& owner, const std::string& material) {
+  const Registry& registry = owner.session().registry();
+  const MaterialWords words = parse_material(material_text({material}, owner.session().log()), registry);
   SceneDescription description = scene_of_materials(registry);
   const RefusingLog refusing;
   const GivenWavelengths any({551});
   SceneResolver resolver(description, registry, any, refusing);
-  return LeafParams(Params(material.info, material.plugin, resolver));
+  return LeafParams(Params(words.info, words.plugin, resolver));
 }
 
-/// Steps of the logarithm of depth, as leaf_solved has them (materials/leaf_solved.cpp).
-constexpr double kDepthStep = 0.15;
-
-nb::dict leaf_table(const std::shared_ptr<SessionHandle>& owner, const std::vector<std::string>& words,
+nb::dict leaf_table(const std::shared_ptr<SessionHandle>& owner, const std::string& material,
                     const std::vector<double>& wavelengths_nm, double tolerance,
                     const std::optional<std::pair<double, double>>& depths) {
   leaf::PortableLeaf table;
   {
     const nb::gil_scoped_release release;
-    const LeafParams leaf = leaf_of(*owner, words);
-    if (leaf.incident() == Incident::light)
-      fail({},
-           "leaf_table: incident is \"traced\" or \"reciprocal\"; of \"light\" the former with its directions in turn");
-    if (wavelengths_nm.empty() || !std::ranges::is_sorted(wavelengths_nm))
-      fail({}, "leaf_table: wavelengths are one at least, and ascend");
-    for (const double nm : wavelengths_nm) leaf.check_wavelengths(GivenWavelengths({float(nm)}));
-    leaf::BodyRequest request{.params = leaf.tissue(),
-                              .wavelengths_nm = wavelengths_nm,
-                              .tolerance = leaf.is_reciprocal() ? tolerance / leaf::kReciprocalFiner : tolerance};
-    request.params.cuticle_aspect = 0;
-    if (depths) {
-      if (!(0 <= depths->first && depths->first < depths->second))
-        fail({}, "leaf_table: depths from {} to {} are no range", depths->first, depths->second);
-      request.depths = leaf::DepthAxis(depths->first, depths->second, kDepthStep);
-    }
-    Session& session = owner->session;
-    leaf::BodySpectrum spectrum =
-        leaf::cached_body_spectrum(request, leaf.specimen(), session.pool(), session.log(), owner->options.cache);
-    if (leaf.is_reciprocal()) spectrum = leaf::make_reciprocal(spectrum).value();
-    table = leaf::make_portable(request, spectrum, leaf.tissue().cuticle_aspect);
+    PortableLeafRequest request{.wavelengths_nm = wavelengths_nm, .tolerance = tolerance};
+    if (depths) request.depths = {depths->first, depths->second};
+    table = make_portable_leaf(leaf_of(*owner, material), std::move(request), owner->session().pool(),
+                               owner->session().log(), owner->context.options().cache);
   }
   nb::dict d;
   const std::string bytes = leaf::portable_bytes(table);
@@ -78,9 +55,9 @@ nb::dict leaf_table(const std::shared_ptr<SessionHandle>& owner, const std::vect
 }
 
 /// Specific absorption of what a leaf is made of, and how much of it there is.
-nb::dict leaf_chemistry(const std::shared_ptr<SessionHandle>& owner, const std::vector<std::string>& words,
+nb::dict leaf_chemistry(const std::shared_ptr<SessionHandle>& owner, const std::string& material,
                         const std::vector<double>& wavelengths_nm) {
-  const LeafParams leaf = leaf_of(*owner, words);
+  const LeafParams leaf = leaf_of(*owner, material);
   const leaf::TissueParams& p = leaf.tissue();
   if (!p.pigments.empty()) fail({}, "leaf_chemistry: further pigments are none of its numbers");
   std::vector<double> chlorophyll, carotenoids, protein, cellulose, water;
@@ -109,8 +86,17 @@ nb::dict leaf_chemistry(const std::shared_ptr<SessionHandle>& owner, const std::
 }  // namespace
 
 void bind_leaf(nb::module_& m) {
-  m.def("leaf_table", &leaf_table, "session"_a, "words"_a, "wavelengths"_a, "tolerance"_a, "depths"_a.none());
-  m.def("leaf_chemistry", &leaf_chemistry, "session"_a, "words"_a, "wavelengths"_a);
+  m.def(
+      "read_spectra",
+      [](const std::string& path, const std::string& leaf, double theta_deg) {
+        std::vector<std::tuple<double, double, std::optional<double>, std::optional<double>>> rows;
+        for (const leaf::LeafReading& r : leaf::read_measured_spectra(path, {leaf, theta_deg}).readings)
+          rows.emplace_back(r.lambda_nm, r.theta_deg, r.r, r.t);
+        return rows;
+      },
+      "path"_a, "leaf"_a, "theta_deg"_a);
+  m.def("leaf_table", &leaf_table, "session"_a, "material"_a, "wavelengths"_a, "tolerance"_a, "depths"_a.none());
+  m.def("leaf_chemistry", &leaf_chemistry, "session"_a, "material"_a, "wavelengths"_a);
 }
 
 }  // namespace frond::python

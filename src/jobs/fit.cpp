@@ -149,8 +149,10 @@ Result fit(const JobRun& run) {
   const FitReport report{request, fitted, source, args.text("material")};
   if (args.given("output")) write_text(args.text("output"), fit_scene(report));
   if (args.given("plot")) write_chart(args.text("plot"), 900, 600, fit_chart(report));
+  auto facts = fit_facts(report);
+  facts.push_back({"scene", fit_scene(report)});
   return {.tables = fit_tables(report),
-          .facts = fit_facts(report),
+          .facts = std::move(facts),
           .notes = {fmt::format("{}, fitted by frond fit: RMSE {:.4f}", source, fitted.rmse)},
           .text = fit_text(report)};
 }
