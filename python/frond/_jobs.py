@@ -1,6 +1,7 @@
 """The jobs of frond as functions: signatures, docstrings and checks follow from the records that the command line has."""
 
 import inspect
+import keyword
 import operator
 import os
 import re
@@ -42,7 +43,7 @@ def words(param, value):
 
 
 def python_name(name):
-    return name.replace("-", "_")
+    return name.replace("-", "_") + ("_" if keyword.iskeyword(name) else "")
 
 
 def arguments(params, given):
@@ -67,7 +68,7 @@ def _default(param):
         return False
     if not text:
         return inspect.Parameter.empty if param["required"] else None
-    return {"count": int, "seed": int, "real": float}.get(param["kind"], str)(text)
+    return {"count": lambda t: int(float(t)), "seed": int, "real": float}.get(param["kind"], str)(text)
 
 
 def _doc(text):
@@ -133,9 +134,8 @@ def run(name, *, progress=None, session=None, **given):
     job = JOBS[name]
     given = by_alias(job["params"], given)
     known = {python_name(p["name"]) for p in job["params"]}
-    for keyword in given:
-        if keyword not in known:
-            raise TypeError(f"{name}() got an unexpected keyword argument {keyword!r}")
+    for unknown in given.keys() - known:
+        raise TypeError(f"{name}() got an unexpected keyword argument {unknown!r}")
     owner = (session or default_session())._session
     return Result(_frond.run(owner, name, arguments(job["params"], given), _show(progress)))
 

@@ -111,7 +111,7 @@ class FlatBsdf {
   void for_blocks(size_t count, const Body& body) {
     constexpr size_t kBlock = 4096;
     const nb::gil_scoped_release release;
-    owner_->session.pool().for_each(int64_t((count + kBlock - 1) / kBlock), [&](int64_t block, int) {
+    owner_->session().pool().for_each(int64_t((count + kBlock - 1) / kBlock), [&](int64_t block, int) {
       Arena arena;
       const Bsdf& bsdf = *material_->evaluate(flat_hit(), lambda_, arena);
       for (size_t i = size_t(block) * kBlock; i < std::min(count, (size_t(block) + 1) * kBlock); ++i) body(bsdf, i);

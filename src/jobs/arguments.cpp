@@ -84,6 +84,7 @@ std::string command_spelling(std::string_view name) { return "--" + std::string(
 
 std::string python_spelling(std::string_view name) {
   std::string result(name);
+  if (name == "with") result += '_';  // a keyword of the language
   std::ranges::replace(result, '-', '_');
   return result;
 }
