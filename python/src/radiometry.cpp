@@ -18,11 +18,12 @@ struct Measurement {
   double rms;
 };
 
-SceneOverrides overrides_of(const Measurement& a) {
+SceneDescription edited(SceneDescription description, const Measurement& a, const Session& session) {
   SceneOverrides overrides;
   overrides.seed = a.seed;
   for (const auto& [from, to] : a.swaps) overrides.swaps.push_back({from, parse_plugin_text(to, {})});
-  return overrides;
+  apply_overrides(overrides, description, session.registry(), session.log());
+  return description;
 }
 
 std::optional<Target> target_of(const Measurement& a) {
@@ -42,7 +43,7 @@ nb::dict brf(const std::shared_ptr<SessionHandle>& owner, const SceneDescription
   BrfReading reading;
   run(
       [&](const RenderControl& control) {
-        const BrfMeter meter(owner->session, description, overrides_of(a), request);
+        const BrfMeter meter(owner->session, edited(description, a, owner->session), request);
         RenderPart part = meter.scene().empty_part();
         constexpr uint64_t kFirst = 64, kMost = uint64_t{1} << 32;
         uint64_t samples = a.rms > 0 ? kFirst : (a.paths + BrfMeter::kRows - 1) / BrfMeter::kRows;
@@ -70,7 +71,7 @@ nb::dict flux(const std::shared_ptr<SessionHandle>& owner, const SceneDescriptio
   FluxReading reading;
   run(
       [&](const RenderControl& control) {
-        FluxMeter meter(owner->session, description, overrides_of(a),
+        FluxMeter meter(owner->session, edited(description, a, owner->session),
                         {target_of(a), a.period, a.wavelengths, by_instance});
         constexpr uint64_t kFirst = 1 << 16, kMost = uint64_t{1} << 40;
         for (uint64_t paths = a.rms > 0 ? kFirst : a.paths;; paths *= 2) {

@@ -41,19 +41,17 @@ std::shared_ptr<SceneHandle> load(const std::shared_ptr<SessionHandle>& owner, S
                                   const LoadArguments& a) {
   const nb::gil_scoped_release release;
   Session& session = owner->session;
-  std::vector<MaterialSwap> swaps;
-  for (const auto& [from, to] : a.swaps) swaps.push_back({from, parse_plugin_text(to, {})});
-  apply_swaps(description, swaps, session.registry(), session.log());
   SceneOverrides overrides;
+  for (const auto& [from, to] : a.swaps) overrides.swaps.push_back({from, parse_plugin_text(to, {})});
   overrides.wavelengths = a.wavelengths, overrides.seed = a.seed, overrides.quick = a.quick;
-  overrides.cache_dir = owner->options.cache;
   if (!a.integrator.empty()) overrides.integrator = parse_plugin_text(a.integrator, {});
   if (!a.filter.empty()) overrides.filter = parse_plugin_text(a.filter, {});
+  apply_overrides(overrides, description, session.registry(), session.log());
   PictureRequest request{
       .channels = a.channels, .color_space = a.color_space, .adaptive = a.adaptive, .command = "python"};
   if (a.pixels) {
     const auto [x0, x1, y0, y1] = *a.pixels;
-    const FilmSettings film = session.film(description, a.quick);
+    const FilmSettings film = session.film(description);
     if (!(0 <= x0 && x0 < x1 && x1 <= film.width && 0 <= y0 && y0 < y1 && y1 <= film.height))
       fail({}, "pixels: ({}, {}, {}, {}) is no part of a film of {} x {}: (x0, x1, y0, y1) is needed", x0, x1, y0, y1,
            film.width, film.height);
@@ -61,18 +59,11 @@ std::shared_ptr<SceneHandle> load(const std::shared_ptr<SessionHandle>& owner, S
   }
   auto handle = std::make_shared<SceneHandle>(owner, LoadedScene{}, "", a.adaptive);
   std::shared_ptr<const Scene> pilot;
-  const choose::ChoiceTask task{description, session.registry(), overrides, session.film(description, a.quick),
-                                a.samples};
-  auto chosen = choose::choose_models(task, choose::standard_ladder(session.registry()), session.pool(), session.log());
-  if (chosen) {
-    session.log().info(choose::choice_text(chosen->choice));
+  if (auto chosen = choose::choose_for(session, description, a.samples, request)) {
     handle->choice = choose::choice_json(chosen->choice);
-    request.attributes = choose::choice_attributes(chosen->choice);
-    description.materials = chosen->materials;
-    overrides.wavelengths = chosen->wavelengths;
     pilot = std::move(chosen->scene);
   }
-  handle->scene = session.load(std::move(description), overrides, request, pilot.get());
+  handle->scene = session.load(std::move(description), request, pilot.get());
   return handle;
 }
 

@@ -33,15 +33,12 @@ void bind_study(nb::module_& m) {
             [&](const RenderControl& control) {
               Session& session = owner->session;
               StopByProgress progress_or_stop(control);
-              compare::StudyOptions options{
-                  .scene = scene, .wavelengths = wavelengths, .plugins = owner->options.plugins, .size = size};
-              options.cache = owner->options.cache;
-              const compare::Study study(options, session.pool(), session.log());
+              const compare::Study study(session, {.scene = scene, .wavelengths = wavelengths, .size = size});
               compare::Plan plan{.reference = compare::parse_candidate(reference),
                                  .candidates = compare::parse_candidates(models)};
               plan.top_samples = samples, plan.reference_samples = reference_samples;
-              plan.cache = owner->options.cache, plan.progress = &progress_or_stop;
-              found = compare::measure(study, plan, {}, session.pool(), session.log());
+              plan.progress = &progress_or_stop;
+              found = compare::measure(study, plan, {});
             },
             progress);
         nb::list rows;

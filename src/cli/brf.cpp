@@ -175,15 +175,15 @@ std::optional<BrfReading> measure(const BrfOptions& o, const BrfMeter& meter, Se
 /// The scene with one leaf model in place of its leaves, and then with the others.
 void run_comparison(const BrfOptions& o, const BrfRequest& request, const StrictLog& log) {
   Session session(log, session_options_of(o));
-  const SceneDescription description = session.read(o.scene, unsupported_of(o.reading));
+  const SceneDescription description = scene_of(o, session);
   std::unique_ptr<BrfMeter> first;
   const auto measured = [&](const compare::Candidate& model) {
     if (!model.wavelengths.empty() || model.integrator)
       fail({}, "--compare takes materials alone: \"{}\" has an @", model.text);
-    SceneOverrides overrides = overrides_of(o);
-    overrides.swaps.push_back({"*", model.material});
+    SceneDescription with_model = description;
+    apply_overrides({.swaps = {{"*", model.material}}}, with_model, session.registry(), log);
     auto meter =
-        std::make_unique<BrfMeter>(session, description, overrides, request, first ? &first->scene().scene() : nullptr);
+        std::make_unique<BrfMeter>(session, std::move(with_model), request, first ? &first->scene().scene() : nullptr);
     log.check();
     const double start = cpu_seconds();
     ModelReading result{model, *measure(o, *meter, session, nullptr)};
@@ -207,7 +207,7 @@ int run_brf(const BrfOptions& o) {
   const StrictLog log(console, o.reading.strict);
   if (!o.csv.empty()) check_text_output(o.csv);
   if (!o.plot.empty()) check_chart(o.plot);
-  const BrfRequest request{views_of(o), target_of(o), period_of(o), wavelengths_of(o)};
+  const BrfRequest request{views_of(o), target_of(o), period_of(o), wavelengths_of(o), !o.integrator.empty()};
   if (!o.compare.empty()) {
     if (!o.plot.empty()) fail({}, "--plot is of one model's BRF: --csv has those of --compare");
     if (o.checkpoint_seconds > 0 || o.resume) fail({}, "--checkpoint and --resume are of one model's BRF");
@@ -216,7 +216,7 @@ int run_brf(const BrfOptions& o) {
   }
   const auto kept = kept_file_of(o, log);
   Session session(log, session_options_of(o));
-  const BrfMeter meter(session, session.read(o.scene, unsupported_of(o.reading)), overrides_of(o), request);
+  const BrfMeter meter(session, scene_of(o, session), request);
   log.check();
   const auto measured = measure(o, meter, session, kept.get());
   if (!measured) return kept->say_how_to_go_on();

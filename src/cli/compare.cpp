@@ -8,7 +8,6 @@
 #include "cli/reading_options.h"
 #include "cli/strict_log.h"
 #include "core/log.h"
-#include "render/plugins.h"
 #include "scene/words.h"
 #include "study/choose/choice_report.h"
 #include "study/compare/curve_style.h"
@@ -57,7 +56,6 @@ Plan plan_of(const CompareOptions& o) {
          compare::kMostCurves);
   plan.top_samples = o.samples > 0 ? uint64_t(o.samples) : setting.samples;
   plan.reference_samples = o.reference_samples > 0 ? uint64_t(o.reference_samples) : setting.reference_samples;
-  plan.cache = cache_directory(o.cache, o.no_cache);
   return plan;
 }
 
@@ -81,12 +79,11 @@ Request request_of(const CompareOptions& o) {
   return request;
 }
 
-StudyOptions study_options(const CompareOptions& o, const Plan& plan) {
-  StudyOptions s{.scene = o.scene, .wavelengths = o.wavelengths, .leaves = o.leaves, .plugins = o.plugins};
+StudyOptions study_options(const CompareOptions& o) {
+  StudyOptions s{.scene = o.scene, .wavelengths = o.wavelengths, .leaves = o.leaves};
   s.unsupported = unsupported_of(o.reading);
   s.size = o.size > 0 ? o.size : o.quick ? kQuick.size : kFull.size;
   if (o.seed_given) s.seed = o.seed;
-  s.cache = plan.cache;
   return s;
 }
 
@@ -115,18 +112,12 @@ std::string scene_name(const std::filesystem::path& scene) {
 }
 
 /// What `frond render` would choose for leaves that ask for this error; "" where wavelengths have no colours.
-std::string leaf_by_leaf(double rms, const std::string& wavelengths, const compare::Study& study, const Plan& plan,
-                         ThreadPool& pool, const Log& log) {
+std::string leaf_by_leaf(double rms, const compare::Study& study, const Plan& plan, const Log& log) {
   SceneDescription description{study.description(), {}, {}, {}};  // what stands in it stands already
   const PluginText open{"leaf", {{"model", "auto"}, {"maxrms", fmt::format("{}", rms)}}};
-  apply_swaps(description, study.swaps_to(open), study.registry(), silent_log());
-  SceneOverrides overrides;
-  overrides.wavelengths = wavelengths;
-  overrides.seed = study.seed();
-  overrides.cache_dir = plan.cache;
-  const choose::ChoiceTask subject{description,  study.registry(), overrides,
-                                   study.film(), plan.top_samples, study.any_scene().get()};
-  const auto chosen = choose::choose_models(subject, choose::standard_ladder(study.registry()), pool, silent_log());
+  apply_overrides({.swaps = study.swaps_to(open), .seed = study.seed()}, description, study.registry(), silent_log());
+  const choose::ChoiceTask subject{study.session(), description, plan.top_samples, study.any_scene().get()};
+  const auto chosen = choose::choose_models(subject, choose::standard_ladder(study.registry()), silent_log());
   if (!chosen) return {};
   log.info(choose::choice_text(chosen->choice));
   return choose::choice_sentence(chosen->choice);
@@ -141,16 +132,15 @@ void run_compare(const CompareOptions& o) {
   plan.progress = &progress;
   const Request request = request_of(o);
   compare::check_report_folder(o.output);
-  ThreadPool pool(o.threads);
-  const compare::Study study(study_options(o, plan), pool, log);
+  Session session(log, {o.threads, cache_directory(o.cache, o.no_cache), o.plugins});
+  const compare::Study study(session, study_options(o));
   if (o.reading.strict) (void)study.scene(plan.reference);  // what it warns of is told before the renders
   log.check();
-  Comparison result = compare::measure(study, plan, request, pool, log);
+  Comparison result = compare::measure(study, plan, request);
   log.check();
   // The chooser knows absolute errors alone.
   for (const double rms : request.relative ? std::vector<double>{} : request.rms)
-    result.leaf_by_leaf +=
-        (result.leaf_by_leaf.empty() ? "" : "\n") + leaf_by_leaf(rms, o.wavelengths, study, plan, pool, log);
+    result.leaf_by_leaf += (result.leaf_by_leaf.empty() ? "" : "\n") + leaf_by_leaf(rms, study, plan, log);
   result.scene = scene_name(o.scene);
   result.command = command_line_of(o);
   result.machine = compare::machine_description();

@@ -165,8 +165,8 @@ int run_flux(const FluxOptions& o) {
   const SpectrumPtr irradiance =
       o.irradiance.ends_with(".spd") ? read_spd(o.irradiance, {}) : named_spectrum(o.irradiance, {});
   const bool by_instance = o.by == "instance";
-  FluxMeter meter(session, session.read(o.scene, unsupported_of(o.reading)), overrides_of(o),
-                  {target_of(o), period_of(o), wavelengths_of(o), by_instance});
+  FluxMeter meter(session, scene_of(o, session),
+                  {target_of(o), period_of(o), wavelengths_of(o), by_instance, !o.integrator.empty()});
   log.check();
   const auto photons = PhotonWeights::of(bands_of(meter.scene()), *irradiance);
   const auto measured = measure(o, meter, session, kept.get());

@@ -71,12 +71,14 @@ std::optional<std::array<double, 2>> period_of(const RadiometerOptions& o) {
   return std::array{o.period[0], o.period[1]};
 }
 
-SceneOverrides overrides_of(const RadiometerOptions& o) {
+SceneDescription scene_of(const RadiometerOptions& o, const Session& session) {
   SceneOverrides overrides;
   overrides.swaps = swaps_of(o.swaps);
   if (!o.integrator.empty()) overrides.integrator = parse_plugin_text(o.integrator, {});
   overrides.seed = o.seed;
-  return overrides;
+  SceneDescription description = session.read(o.scene, unsupported_of(o.reading));
+  apply_overrides(overrides, description, session.registry(), session.log());
+  return description;
 }
 
 SessionOptions session_options_of(const RadiometerOptions& o) {

@@ -35,7 +35,8 @@ void add_radiometer_options(CLI::App& command, RadiometerOptions& options, const
 std::string wavelengths_of(const RadiometerOptions& options);
 std::optional<Target> target_of(const RadiometerOptions& options);
 std::optional<std::array<double, 2>> period_of(const RadiometerOptions& options);
-SceneOverrides overrides_of(const RadiometerOptions& options);
+/// What is measured, with the overrides in it. Throws InputError.
+SceneDescription scene_of(const RadiometerOptions& options, const Session& session);
 SessionOptions session_options_of(const RadiometerOptions& options);
 /// The file beside that of --csv that checkpoints are kept in; empty where none are asked for.
 std::unique_ptr<KeptFile> kept_file_of(const RadiometerOptions& options, const Log& log);

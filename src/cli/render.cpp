@@ -26,22 +26,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Writes what is chosen into the description and the overrides. The whole picture decides, whatever part of it is
-/// rendered: parts of one picture go together.
-std::optional<choose::Chosen> choose_models(const RenderOptions& options, Session& session,
-                                            SceneDescription& description, SceneOverrides& overrides) {
-  const choose::ChoiceTask task{description, session.registry(), overrides, session.film(description, options.quick),
-                                uint64_t(options.samples)};
-  auto chosen = choose::choose_models(task, choose::standard_ladder(session.registry()), session.pool(), session.log());
-  if (!chosen) return {};
-  session.log().info(choose::choice_text(chosen->choice));
-  if (const std::string warning = choose::choice_warning(chosen->choice); !warning.empty())
-    session.log().warn({}, warning);
-  description.materials = chosen->materials;
-  overrides.wavelengths = chosen->wavelengths;
-  return chosen;
-}
-
 /// In place of a render. People have it in the log.
 void print_choice(const std::optional<choose::Choice>& choice, bool json) {
   if (!choice) fail({}, "--pilot: the scene leaves no leaf's model open: Material \"leaf\" does, or --swap \"*=leaf\"");
@@ -89,31 +73,26 @@ class RenderCommand {
   /// What can be refused is refused now, not after an hour.
   void prepare() {
     read();
-    apply_swaps(description_, swaps_of(options_.swaps), session_.registry(), log_);
-    SceneOverrides overrides = overrides_of(options_);
-    FilmSettings film = session_.film(description_, false);
+    FilmSettings film = session_.film(description_);  // all of it: --crop and --pixels are told before --quick halves
+    apply_overrides(overrides_of(options_), description_, session_.registry(), log_);
     film.crop = crop_of(options_, film, log_);
     if (options_.quick) film = halved(film);
     find_paths(film.filename);
-    check_bands(overrides);
+    check_bands();
     PictureRequest request{.pixels = film.crop,
                            .is_piece = !options_.part.empty(),
                            .channels = options_.channels,
                            .adaptive = is_adaptive(),
                            .command = command_line_of(options_, files_.back())};
     std::shared_ptr<const Scene> pilot;
-    if (auto chosen = choose_models(options_, session_, description_, overrides)) {
+    // The whole picture decides, whatever part of it is rendered: parts of one picture go together.
+    if (auto chosen = choose::choose_for(session_, description_, uint64_t(options_.samples), request)) {
       choice_ = std::move(chosen->choice);
       pilot = std::move(chosen->scene);
     }
     if (options_.pilot) return print_choice(choice_, options_.json);
-    if (choice_) {
-      load_start_ = Clock::now();  // its time is told apart
-      request.attributes = choose::choice_attributes(*choice_);
-      // What is chosen shall not change the space.
-      if (!choice_->answers.front().is_leaf) request.color_space = "linear sRGB";
-    }
-    scene_.emplace(session_.load(std::move(description_), overrides, request, pilot.get()));
+    if (choice_) load_start_ = Clock::now();  // its time is told apart
+    scene_.emplace(session_.load(std::move(description_), request, pilot.get()));
     load_seconds_ = std::chrono::duration<double>(Clock::now() - load_start_).count();
     range_ = {0, options_.samples > 0 ? uint64_t(options_.samples) : scene_->samples()};
     if (const auto range = range_of(options_)) range_ = *range;
@@ -131,8 +110,7 @@ class RenderCommand {
     Problems problems;
     description_ = session_.read(files_, unsupported_of(options_.reading), problems);
     set_scene_options(options_, description_);
-    if (!problems.empty() && !description_.files.empty())
-      problems.attempt([this] { session_.check(description_, {}); });
+    if (!problems.empty() && !description_.files.empty()) problems.attempt([this] { session_.check(description_); });
     problems.check();
     for (const std::string& name : options_.of_pbrt) log_.warn({}, fmt::format("{} of pbrt has no effect here", name));
   }
@@ -150,10 +128,8 @@ class RenderCommand {
   }
 
   /// Before anything is chosen or loaded.
-  void check_bands(const SceneOverrides& overrides) const {
-    const auto [text, where] = wavelength_choice(description_, overrides);
-    if (output_)
-      output_->check_channels(make_wavelengths(text, where, description_, session_.registry())->film_space());
+  void check_bands() const {
+    if (output_) output_->check_channels(make_wavelengths(description_, session_.registry())->film_space());
   }
 
   bool is_adaptive() const { return options_.max_rms > 0; }

@@ -124,11 +124,11 @@ Crop crop_of(const RenderOptions& o, const FilmSettings& film, const Log& log) {
 
 SceneOverrides overrides_of(const RenderOptions& options) {
   SceneOverrides overrides;
+  overrides.swaps = swaps_of(options.swaps);
   overrides.wavelengths = options.wavelengths;
   if (!options.integrator.empty()) overrides.integrator = parse_plugin_text(options.integrator, {});
   if (!options.filter.empty()) overrides.filter = parse_plugin_text(options.filter, {});
   overrides.seed = options.seed;
-  overrides.cache_dir = cache_directory(options.cache, options.no_cache);  // of pilots; the session has its own
   overrides.quick = options.quick;
   return overrides;
 }

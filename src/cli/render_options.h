@@ -7,7 +7,7 @@
 #include "cli/reading_options.h"
 #include "image/display_image.h"
 #include "render/work.h"
-#include "scene/scene.h"
+#include "scene/overrides.h"
 
 namespace CLI {
 class App;
