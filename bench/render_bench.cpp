@@ -7,6 +7,7 @@
 #include "render/plugins.h"
 #include "render/render_loop.h"
 #include "scene/embree.h"
+#include "scene/overrides.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
 
@@ -63,17 +64,15 @@ class RecordingWorld final : public World {
 struct LoadedScene {
   explicit LoadedScene(const std::string& file, std::vector<MaterialSwap> swaps = {})
       : pool(1),
-        description(parse_scene(std::string(FROND_SOURCE_DIR "/scenes/") + file, log)),
         registry(builtin_registry()),
-        overrides(make_overrides(std::move(swaps))),
-        scene(description, registry, overrides, pool, log),
+        description(described(file, std::move(swaps))),
+        scene(description, registry, pool, log),
         film_settings(Scene::film_settings(description, registry)) {}
 
-  static SceneOverrides make_overrides(std::vector<MaterialSwap> swaps) {
-    SceneOverrides o;
-    o.wavelengths = "smpte";
-    o.swaps = std::move(swaps);
-    return o;
+  SceneDescription described(const std::string& file, std::vector<MaterialSwap> swaps) const {
+    SceneDescription d = parse_scene(std::string(FROND_SOURCE_DIR "/scenes/") + file, log);
+    apply_overrides({.swaps = std::move(swaps), .wavelengths = "smpte"}, d, registry, log);
+    return d;
   }
   RenderJob job(const World& world) const {
     return {world,          scene.camera(),  scene.integrator(), scene.wavelengths(),
@@ -84,9 +83,8 @@ struct LoadedScene {
 
   const Log& log = silent_log();
   ThreadPool pool;
-  SceneDescription description;
   Registry registry;
-  SceneOverrides overrides;
+  SceneDescription description;
   Scene scene;
   FilmSettings film_settings;
 };

@@ -16,10 +16,8 @@ std::filesystem::path cache() {
 }
 
 compare::StudyOptions options(const std::string& name) {
-  return {.scene = FROND_SOURCE_DIR "/scenes/" + name + "/scene.pbrt",
-          .wavelengths = "smpte",
-          .size = SceneStudy::kPixels,
-          .cache = cache()};
+  return {
+      .scene = FROND_SOURCE_DIR "/scenes/" + name + "/scene.pbrt", .wavelengths = "smpte", .size = SceneStudy::kPixels};
 }
 
 std::array<Image, 2> pictures_of(const PairedRender& render, const ColorManager& colors) {
@@ -57,7 +55,7 @@ ChannelAccuracy accuracy_of(std::span<const std::array<Image, 2>> candidate,
 
 }  // namespace
 
-SceneStudy::SceneStudy(const std::string& name) : study_(options(name), pool_, log_) {}
+SceneStudy::SceneStudy(const std::string& name) : session_(log_, {.cache = cache()}), study_(session_, options(name)) {}
 
 const Scene& SceneStudy::scene(const std::string& material) {
   auto& scene = scenes_[material];
@@ -85,16 +83,17 @@ const std::vector<SceneStudy::Pictures>& SceneStudy::reference() {
 
 std::vector<SceneStudy::Pictures> SceneStudy::render(const std::string& material, SeedUse use, uint64_t samples) const {
   const compare::Candidate candidate = compare::parse_candidate(material);
-  const uint64_t identity = study_.identity(candidate);
   const ColorManager colors;
   std::vector<Pictures> result;
   for (uint64_t repeat = 0; repeat < kRepeats; ++repeat) {
     const auto seed = [&](uint64_t half) { return hash_key(study_.seed(), uint64_t{use} + half, repeat); };
     PairedRender render(study_, candidate, seed(0), seed(1));
-    const compare::ReferenceStore store(cache(), hash_key(identity, uint64_t{use}, repeat), log_);
+    Identity identity = study_.identity(candidate);
+    identity.add("repeat", fmt::format("{} of use {}", repeat, uint64_t{use}));
+    const compare::ReferenceStore store(session_.cache(), identity, log_);
     store.load(render);
     if (render.samples() < samples) {
-      render.advance_to(samples, pool_, nullptr);
+      render.advance_to(samples, session_.pool(), nullptr);
       store.save(render);
     }
     result.push_back(pictures_of(render, colors));

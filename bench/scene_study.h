@@ -52,8 +52,8 @@ class SceneStudy {
   const std::vector<Pictures>& reference();
   std::vector<Pictures> render(const std::string& material, SeedUse use, uint64_t samples) const;
 
-  ThreadPool pool_;
   const Log& log_ = silent_log();
+  Session session_;
   compare::Study study_;
   std::map<std::string, std::shared_ptr<const Scene>> scenes_;
   std::map<std::string, Accuracy> accuracies_;

@@ -18,9 +18,10 @@ class Dots final : public frond::Progress {
   int shown_ = 0;
 };
 
-frond::Image render(frond::Session& session, const frond::SceneDescription& description, const char* leaf) {
-  const frond::SceneOverrides overrides{.wavelengths = "smpte", .swaps = {{"*", {leaf, {}}}}, .quick = true};
-  const frond::LoadedScene scene = session.load(description, overrides, {.channels = {"normal"}});
+frond::Image render(frond::Session& session, frond::SceneDescription description, const char* leaf) {
+  apply_overrides({.swaps = {{"*", {leaf, {}}}}, .wavelengths = "smpte", .quick = true}, description,
+                  session.registry(), session.log());
+  const frond::LoadedScene scene = session.load(std::move(description), {.channels = {"normal"}});
   frond::RenderPart part = scene.empty_part();
   Dots dots;
   session.render(scene, {0, 8}, part, {.progress = &dots});

@@ -66,11 +66,10 @@ double BrfReading::relative_error() const {
   return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
 }
 
-BrfMeter::BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request,
-                   const Scene* other)
+BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequest& request, const Scene* other)
     : request_(request) {
-  prepare_for_radiometry(session, request.wavelengths, request.period, description, overrides);
-  const LoadedScene first = session.load(description, overrides, {}, other);
+  prepare_for_radiometry(session.registry(), request.wavelengths, request.period, request.keeps_depth, description);
+  const LoadedScene first = session.load(description, {}, other);
   const Scene& scene = first.scene();
   const Target target = request.target ? *request.target : default_target(scene);
   const std::optional<Vec3> sun = direction_to_sun(scene.lights());
@@ -81,7 +80,7 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, SceneOverride
                       {},
                       {parsed_numbers("integer", "xresolution", {double(request.views.size())}),
                        parsed_numbers("integer", "yresolution", {double(kRows)})}};
-  scene_ = session.load(std::move(description), overrides,
+  scene_ = session.load(std::move(description),
                         {.command = measurement_text(text_of(request.views), request.target, request.period)}, &scene);
   has_heavy_tails_ = has_heavy_tails(scene, scene_.description().materials.size());
   if (has_heavy_tails_)

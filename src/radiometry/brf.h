@@ -24,6 +24,7 @@ struct BrfRequest {
   std::optional<Target> target = {};                 ///< empty: one period, or the scene's bounds, at its top
   std::optional<std::array<double, 2>> period = {};  ///< in place of the scene's own
   std::string wavelengths = {};                      ///< a PluginText of `bands`
+  bool keeps_depth = false;  ///< paths are as long as the description's integrator has them; else of any length
 };
 
 /// One direction and band: the radiance toward it over that of a white Lambertian plane in the same light.
@@ -54,8 +55,7 @@ class BrfMeter {
   /// Throws InputError. Leaves are reciprocal, or take the light's direction for incident, where the scene does not
   /// say which, as energy asks for.
   /// `other`: a scene in which the same stands, which is then not made again.
-  BrfMeter(Session& session, SceneDescription description, SceneOverrides overrides, const BrfRequest& request,
-           const Scene* other = nullptr);
+  BrfMeter(Session& session, SceneDescription description, const BrfRequest& request, const Scene* other = nullptr);
 
   const LoadedScene& scene() const { return scene_; }
   BrfReading read(const Film& film) const;

@@ -278,12 +278,11 @@ class FluxMeter::Sums {
   std::vector<uint64_t> seen;
 };
 
-FluxMeter::FluxMeter(Session& session, SceneDescription description, SceneOverrides overrides,
-                     const FluxRequest& request) {
-  prepare_for_radiometry(session, request.wavelengths, request.period, description, overrides);
+FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxRequest& request) {
+  prepare_for_radiometry(session.registry(), request.wavelengths, request.period, request.keeps_depth, description);
   const char* what = request.by_instance ? "flux by instance" : "flux";
-  LoadedScene loaded = session.load(std::move(description), overrides,
-                                    {.command = measurement_text(what, request.target, request.period)});
+  LoadedScene loaded =
+      session.load(std::move(description), {.command = measurement_text(what, request.target, request.period)});
   const Scene& scene = loaded.scene();
   const Target target = request.target ? *request.target : default_target(scene);
   Incoming incoming(scene.lights(), scene.wavelengths());

@@ -18,6 +18,7 @@ struct FluxRequest {
   std::optional<std::array<double, 2>> period = {};  ///< in place of the scene's own
   std::string wavelengths = {};                      ///< a PluginText of `bands`
   bool by_instance = false;                          ///< what each copy of an object absorbs, too
+  bool keeps_depth = false;                          ///< as of a BrfRequest
 };
 
 /// A part of the light that falls through the target, and its standard error.
@@ -52,7 +53,7 @@ struct FluxReading {
 class FluxMeter {
  public:
   /// Throws InputError, also where copies are too many to count them one by one.
-  FluxMeter(Session& session, SceneDescription description, SceneOverrides overrides, const FluxRequest& request);
+  FluxMeter(Session& session, SceneDescription description, const FluxRequest& request);
   ~FluxMeter();
 
   /// Follows so many paths more, or fewer where it is stopped or the time is over. The figures depend on their number

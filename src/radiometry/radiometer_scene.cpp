@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "core/log.h"
+#include "scene/plugin_text.h"
+#include "scene/scene_options.h"
 
 namespace frond {
 namespace {
@@ -15,11 +17,6 @@ bool declares(const PluginInfo& info, std::string_view name) {
 
 bool gives(const std::vector<ParsedParam>& params, std::string_view name) {
   return std::ranges::any_of(params, [name](const ParsedParam& p) { return p.name == name; });
-}
-
-void set(std::vector<ParsedParam>& params, ParsedParam param) {
-  std::erase_if(params, [&param](const ParsedParam& p) { return p.name == param.name; });
-  params.push_back(std::move(param));
 }
 
 const Param* incident_of(const PluginInfo& info) {
@@ -57,19 +54,16 @@ void keep_energy(SceneDescription& description, const Registry& registry) {
   }
 }
 
-void prepare_for_radiometry(const Session& session, const std::string& wavelengths,
-                            const std::optional<std::array<double, 2>>& period, SceneDescription& description,
-                            SceneOverrides& overrides) {
+void prepare_for_radiometry(const Registry& registry, const std::string& wavelengths,
+                            const std::optional<std::array<double, 2>>& period, bool keeps_depth,
+                            SceneDescription& description) {
   constexpr double kDeepest = 1 << 20;
-  apply_swaps(description, overrides.swaps, session.registry(), session.log());
-  overrides.swaps.clear();
-  keep_energy(description, session.registry());
-  if (!wavelengths.empty()) overrides.wavelengths = wavelengths;
-  if (period) set(description.options, parsed_numbers("float", "period", {(*period)[0], (*period)[1]}));
-  const IntegratorInfo& integrator =
-      session.registry().integrators.get(description.integrator.name, description.integrator.where);
-  if (!overrides.integrator && declares(integrator, "maxdepth"))
-    set(description.integrator.params, parsed_numbers("integer", "maxdepth", {kDeepest}));
+  keep_energy(description, registry);
+  if (!wavelengths.empty()) set_wavelengths(description, wavelengths);
+  if (period) set_param(description.options, parsed_numbers("float", "period", {(*period)[0], (*period)[1]}));
+  ParsedPlugin& integrator = description.integrator;
+  if (!keeps_depth && declares(registry.integrators.get(integrator.name, integrator.where), "maxdepth"))
+    set_param(integrator.params, parsed_numbers("integer", "maxdepth", {kDeepest}));
 }
 
 std::string measurement_text(const std::string& what, const std::optional<Target>& target,

@@ -14,13 +14,12 @@ ParsedParam parsed_numbers(const char* type, const char* name, std::vector<doubl
 /// cannot be, with the light's direction for incident, which is noisier.
 void keep_energy(SceneDescription& description, const Registry& registry);
 
-/// What radiometry asks of a scene that was made for pictures: swaps are carried out, and leaves for which nothing is
-/// said are reciprocal, or take the light's direction for incident where they cannot be; paths end by roulette alone,
-/// unless the overrides say how; the period and the wavelengths, a PluginText of `bands`, are those asked for. Throws
-/// InputError.
-void prepare_for_radiometry(const Session& session, const std::string& wavelengths,
-                            const std::optional<std::array<double, 2>>& period, SceneDescription& description,
-                            SceneOverrides& overrides);
+/// What radiometry asks of a scene that was made for pictures: leaves for which nothing is said are reciprocal, or take
+/// the light's direction for incident where they cannot be; paths end by roulette alone, unless `keeps_depth`; the
+/// period and the wavelengths, a PluginText of `bands`, are those asked for. Throws InputError.
+void prepare_for_radiometry(const Registry& registry, const std::string& wavelengths,
+                            const std::optional<std::array<double, 2>>& period, bool keeps_depth,
+                            SceneDescription& description);
 
 /// A measurement in words: with the scene's own identity all that decides its figures. `what`: its kind, and whatever
 /// else it asks for.

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "scene/description.h"
+#include "scene/film_settings.h"
 
 namespace frond {
 
@@ -16,6 +21,7 @@ class Identity {
   };
   void add(std::string name, std::string value) { fields_.push_back({std::move(name), std::move(value)}); }
   const std::vector<Field>& fields() const { return fields_; }
+  uint64_t hash() const;
 
   /// What differs first, for people: `seed: 1 here, 2 there`. Empty where nothing does.
   std::string difference(const Identity& other, const std::string& here, const std::string& there) const;
@@ -25,5 +31,21 @@ class Identity {
  private:
   std::vector<Field> fields_;
 };
+
+/// What decides a picture's pixels beside its description.
+struct PictureFacts {
+  std::vector<std::filesystem::path> plugins;  ///< shared objects
+  uint64_t seed;
+  ParsedPlugin wavelengths;  ///< the description's, with its parameters
+  FilmSettings film;
+  bool splats;                        ///< samples are shared between pixels
+  std::vector<std::string> channels;  ///< beside the image's colours
+  std::string color_space;
+  std::string command;  ///< what asks for the picture
+};
+
+/// The identity of such a picture of the description. Reads every file that the description names, and frond's own
+/// code.
+Identity identity_of(const SceneDescription& description, const PictureFacts& facts);
 
 }  // namespace frond

@@ -2,7 +2,6 @@
 
 #include <fmt/ranges.h>
 
-#include "core/random.h"
 #include "render/adaptive.h"
 #include "render/inputs.h"
 #include "render/plugins.h"
@@ -75,30 +74,6 @@ PictureFormat picture_of(const SceneSettings& description, const PictureRequest&
   return picture;
 }
 
-std::string text_of(const ParsedPlugin& plugin) {
-  std::string text = plugin.name;
-  for (const ParsedParam& p : plugin.params)
-    std::visit([&](const auto& values) { text += fmt::format(",{}={}", p.name, fmt::join(values, " ")); }, p.values);
-  return text;
-}
-
-uint64_t hash_materials(const SceneSettings& description) {
-  uint64_t hash = 0;
-  for (const MaterialDescription& m : description.materials) hash = hash_bytes(m.name + '\n' + text_of(m.plugin), hash);
-  return hash;
-}
-
-/// Embree's hits differ in their last bits from one to the next.
-const char* instruction_set() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return "avx2";
-  if (__builtin_cpu_supports("avx")) return "avx";
-  return "sse";
-#else
-  return "generic";
-#endif
-}
-
 /// Nothing where pixels have samples of their own.
 std::optional<Splatting> splatting_of(const Scene& scene, const Crop& whole, const Crop& pixels, bool is_piece) {
   if (scene.camera().pixels_are_apart() || !scene.has_pixel_jitter() || !splats(scene.filter())) return {};
@@ -113,8 +88,6 @@ std::optional<Splatting> splatting_of(const Scene& scene, const Crop& whole, con
   }
   return splatting;
 }
-
-std::string hexadecimal(uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 bool has_all(const Film& film, const std::vector<uint64_t>& tile_ends) {
   for (size_t i = 0; i < film.tiles(); ++i)
@@ -163,27 +136,14 @@ RenderJob LoadedScene::job() const {
 }
 
 Identity LoadedScene::identity() const {
-  Identity id;
-  const FilmSettings& film = format_.settings;
-  id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_program(0))));
-  id.add("instruction set", instruction_set());
-  for (const auto& plugin : plugins_)
-    id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_library(plugin, 0)));
-  id.add("seed", std::to_string(scene_->seed()));
-  id.add("wavelengths", scene_->wavelengths_name());
-  id.add("integrator", text_of(description_.integrator));
-  id.add("filter",
-         fmt::format("{}, {}", text_of(description_.filter), format_.splatting ? "splatting" : "importance sampling"));
-  id.add("resolution", fmt::format("{} x {}", film.width, film.height));
-  id.add("film", fmt::format("exposure {}, maxcomponentvalue {}", film.exposure, film.max_component));
-  id.add("channels", fmt::format("{}", fmt::join(format_.channels.names(), ",")));
-  id.add("color space", picture_.space);
-  id.add("command", command_);
-  id.add("scene", hexadecimal(description_.content_hash));
-  id.add("materials", hexadecimal(hash_materials(description_)));
-  for (const auto& file : input_files(description_, wavelengths_))
-    id.add("file " + file.filename().string(), hexadecimal(hash_file(file, 0)));
-  return id;
+  return identity_of(description_, {.plugins = plugins_,
+                                    .seed = scene_->seed(),
+                                    .wavelengths = wavelengths_,
+                                    .film = format_.settings,
+                                    .splats = format_.splatting.has_value(),
+                                    .channels = format_.channels.names(),
+                                    .color_space = picture_.space,
+                                    .command = command_});
 }
 
 RenderPart LoadedScene::empty_part() const {
@@ -193,12 +153,14 @@ RenderPart LoadedScene::empty_part() const {
   header.picture = picture_;
   header.command = command_;
   header.scene_crop = scene_crop_;
-  header.pixel_scale = is_quick_ ? 2 : 1;
+  header.pixel_scale = description_.is_quick ? 2 : 1;
   return {std::move(header), std::move(film)};
 }
 
 Session::Session(const Log& log, SessionOptions options)
     : log_(log), options_(std::move(options)), registry_(load_registry(options_.plugins)), pool_(options_.threads) {}
+
+std::vector<std::filesystem::path> Session::plugins() const { return plugin_files(options_.plugins); }
 
 void Session::add_material(const MaterialInfo& info) {
   if (registry_.materials.find(info.name)) fail({}, "there is a material \"{}\" already", info.name);
@@ -219,37 +181,20 @@ SceneDescription Session::read(const std::vector<std::filesystem::path>& paths, 
   return read_scene(paths, registry_, log_, unsupported, problems);
 }
 
-void Session::check(const SceneDescription& description, const SceneOverrides& overrides) {
-  Scene::check(description, registry_, overrides, pool_, log_);
+void Session::check(const SceneDescription& description) { Scene::check(description, registry_, pool_, log_); }
+
+FilmSettings Session::film(const SceneSettings& description) const {
+  return Scene::film_settings(description, registry_);
 }
 
-FilmSettings Session::film(const SceneDescription& description, bool quick) const {
-  const FilmSettings settings = Scene::film_settings(description, registry_);
-  return quick ? halved(settings) : settings;
-}
-
-LoadedScene Session::load(SceneDescription description, SceneOverrides overrides, const PictureRequest& request,
-                          const Scene* other) {
+LoadedScene Session::load(SceneDescription description, const PictureRequest& request, const Scene* other) {
   LoadedScene loaded;
   loaded.command_ = request.command;
-  loaded.is_quick_ = overrides.quick;
-  loaded.plugins_ = plugin_files(options_.plugins);
-  apply_swaps(description, overrides.swaps, registry_, log_);
-  overrides.swaps.clear();
-  if (const auto& own = overrides.integrator) {
-    override_plugin(*own, registry_.integrators.get(own->name, {}), {}, description.integrator);
-    overrides.integrator.reset();
-  }
-  if (const auto& own = overrides.filter) {
-    override_plugin(*own, registry_.filters.get(own->name, {}), {}, description.filter);
-    overrides.filter.reset();
-  }
-  overrides.cache_dir = options_.cache;
-  const auto [text, where] = wavelength_choice(description, overrides);
-  loaded.wavelengths_ = wavelengths_plugin(text, where, registry_);
+  loaded.plugins_ = plugins();
+  loaded.wavelengths_ = wavelengths_plugin(description, registry_);
   SharedWork shared;
-  loaded.scene_ = other ? std::make_unique<Scene>(*other, description, registry_, overrides, pool_, log_, shared)
-                        : std::make_unique<Scene>(description, registry_, overrides, pool_, log_);
+  loaded.scene_ = other ? std::make_unique<Scene>(*other, description, registry_, pool_, log_, shared, cache())
+                        : std::make_unique<Scene>(description, registry_, pool_, log_, cache());
   FilmSettings film = loaded.scene_->film();
   loaded.scene_crop_ = film.crop;
   if (request.pixels) film.crop = *request.pixels;
@@ -268,9 +213,9 @@ LoadedScene Session::load(SceneDescription description, SceneOverrides overrides
   format.bands = wavelengths.bands().size();
   format.blocks = request.adaptive;
   if (format.bands > 0 && format.channels.has("albedo"))
-    fail({}, "channel \"albedo\" is a colour: wavelengths \"{}\" give bands", text);
+    fail({}, "channel \"albedo\" is a colour: wavelengths \"{}\" give bands", loaded.scene_->wavelengths_name());
   if (request.adaptive && format.bands > 0)
-    fail({}, "noise is measured in colours: wavelengths \"{}\" give bands", text);
+    fail({}, "noise is measured in colours: wavelengths \"{}\" give bands", loaded.scene_->wavelengths_name());
   if (format.bands == 0) {
     format.color = matrix_of(wavelengths.film_space(), loaded.picture_.space);
     format.white = white_of(wavelengths, format.color);

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "render/part.h"
 #include "render/render_loop.h"
+#include "scene/overrides.h"
 #include "scene/read_scene.h"
 #include "scene/scene.h"
 
@@ -56,7 +57,6 @@ class LoadedScene {
   std::vector<std::filesystem::path> plugins_;
   std::unique_ptr<Scene> scene_;
   Crop scene_crop_{};
-  bool is_quick_ = false;
   FilmFormat format_;
   PictureFormat picture_;
 };
@@ -79,7 +79,7 @@ struct SessionOptions {
 /// that render with frond:
 ///
 ///   Session session(log);
-///   const LoadedScene scene = session.load(session.read("scene.pbrt"), {});
+///   const LoadedScene scene = session.load(session.read("scene.pbrt"));
 ///   RenderPart part = scene.empty_part();
 ///   session.render(scene, SampleRange{0, 64}, part);
 ///   const Image image = film_image(part.film, part.header.picture);
@@ -96,6 +96,10 @@ class Session {
   void add_material(const MaterialInfo& info);
   const Log& log() const { return log_; }
   ThreadPool& pool() { return pool_; }
+  /// Folder of tables that are computed at load; empty: nothing is kept.
+  const std::filesystem::path& cache() const { return options_.cache; }
+  /// Shared objects that have been loaded.
+  std::vector<std::filesystem::path> plugins() const;
 
   /// A scene file; "-" is standard input.
   SceneDescription read(const std::filesystem::path& path, const Unsupported& unsupported = {}) const;
@@ -106,13 +110,12 @@ class Session {
   SceneDescription read(const std::vector<std::filesystem::path>& paths, const Unsupported& unsupported,
                         Problems& problems) const;
   /// Loads all that a scene names and renders nothing. Throws all that is wrong.
-  void check(const SceneDescription& description, const SceneOverrides& overrides);
+  void check(const SceneDescription& description);
   /// The film that a scene asks for; half of it where a first look will do.
-  FilmSettings film(const SceneDescription& description, bool quick) const;
-  /// The cache is the session's, whatever the overrides say. `other`: a scene in which the same stands, which is then
-  /// not made again.
-  LoadedScene load(SceneDescription description, SceneOverrides overrides, const PictureRequest& request = {},
-                   const Scene* other = nullptr);
+  FilmSettings film(const SceneSettings& description) const;
+  /// The description says all: overrides have been written into it (scene/overrides.h). `other`: a scene in which the
+  /// same stands, which is then not made again.
+  LoadedScene load(SceneDescription description, const PictureRequest& request = {}, const Scene* other = nullptr);
 
   /// Adds these samples of all the part's pixels to it, but what it has already. Says what this call took; the part's
   /// own statistics grow by it.

@@ -58,7 +58,8 @@ struct ObjectDescription {
   CopyList copies;
 };
 
-/// What a scene file says but for the shapes, which may be large.
+/// What a scene file says but for the shapes, which may be large, and what overrides have made of it
+/// (scene/overrides.h).
 struct SceneSettings {
   // Options, with what holds where the file says nothing.
   ParsedPlugin camera{"perspective", {}, {}};
@@ -70,6 +71,8 @@ struct SceneSettings {
   Location color_space_where;
   /// `Option "type name" value`; without a type it follows from the value: bool, integer, float or string.
   std::vector<ParsedParam> options;
+  std::optional<uint64_t> seed;  ///< of all random numbers; empty: that of the options, or else the sampler's own
+  bool is_quick = false;         ///< a first look: half the film's resolution, a sixteenth of the samples
   Transform camera_from_world;
 
   std::map<std::string, Transform> coordinate_systems;  ///< "camera", "world" and the file's own

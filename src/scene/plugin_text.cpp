@@ -89,6 +89,11 @@ PluginText parse_plugin_text(const std::string& text, const Location& where) {
   return result;
 }
 
+void set_param(std::vector<ParsedParam>& params, ParsedParam param) {
+  std::erase_if(params, [&param](const ParsedParam& p) { return p.name == param.name; });
+  params.push_back(std::move(param));
+}
+
 void set_params(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin) {
   for (const auto& param : text.params) {
     const std::string &name = param.first, &value = param.second;
@@ -99,8 +104,7 @@ void set_params(const PluginText& text, const PluginInfo& info, const Location& 
       for (const Param& p : info.params) names.push_back(p.name);
       fail(where, "{} \"{}\" has no parameter \"{}\"{}", info.kind, info.name, name, suggestion(name, names));
     }
-    std::erase_if(plugin.params, [&](const ParsedParam& p) { return p.name == name; });
-    plugin.params.push_back(typed(*declared, value, where));
+    set_param(plugin.params, typed(*declared, value, where));
   }
 }
 

@@ -18,6 +18,9 @@ struct PluginText {
 /// Throws InputError at `where` when the text has another form.
 PluginText parse_plugin_text(const std::string& text, const Location& where);
 
+/// In place of one of the same name.
+void set_param(std::vector<ParsedParam>& params, ParsedParam param);
+
 /// Puts the text's parameters into `plugin`, in place of those of the same name there; types follow from the
 /// declarations of `info`: lists have commas in them, and a spectrum is one number (the same at every wavelength),
 /// three (rgb), pairs of wavelength (nm) and value, the name of one, or an .spd file. Throws InputError at `where` for

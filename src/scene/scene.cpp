@@ -8,15 +8,11 @@
 #include "scene/geometry_builder.h"
 #include "scene/instances.h"
 #include "scene/normal_map.h"
+#include "scene/plugin_text.h"
 #include "scene/scene_options.h"
 
 namespace frond {
 namespace {
-
-WavelengthChoice wavelength_choice(const SceneOptions& options, const SceneOverrides& overrides) {
-  if (!overrides.wavelengths.empty()) return {overrides.wavelengths, {}};
-  return {options.wavelengths, options.wavelengths_where};
-}
 
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
   return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
@@ -39,6 +35,25 @@ std::vector<ParsedParam> sensor_params(const SceneSettings& description) {
   return params;
 }
 
+ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry) {
+  const PluginText choice = parse_plugin_text(text, where);
+  ParsedPlugin plugin{choice.name, where, {}};
+  set_params(choice, registry.wavelengths.get(choice.name, where), where, plugin);
+  return plugin;
+}
+
+/// The strategy that a PluginText names, with what the film says of its responses.
+std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
+                                                     const SceneSettings& description, const Registry& registry) {
+  OptionResolver resolver(description);
+  ParsedPlugin plugin = wavelengths_plugin(text, where, registry);
+  const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
+  for (const ParsedParam& p : sensor_params(description))
+    if (declares(info, p.name) && std::ranges::find(plugin.params, p.name, &ParsedParam::name) == plugin.params.end())
+      plugin.params.push_back(p);
+  return info.make(Params(info, plugin, resolver));
+}
+
 /// Of a camera's shutter, in seconds; 1 of one that has none.
 double open_time(const Params& camera, const CameraInfo& info) {
   if (!declares(info, "shutterclose")) return 1;
@@ -56,9 +71,9 @@ bool is_mixture(const MaterialInfo& info) {
 /// not depend on it; all are thrown together.
 class SceneBuilder {
  public:
-  SceneBuilder(Scene& scene, const SceneSettings& settings, const Registry& registry, const SceneOverrides& overrides,
-               ThreadPool& pool, const Log& log)
-      : scene_(scene), description_(settings), registry_(registry), overrides_(overrides), pool_(pool), log_(log) {}
+  SceneBuilder(Scene& scene, const SceneSettings& settings, const Registry& registry, ThreadPool& pool, const Log& log,
+               const std::filesystem::path& cache)
+      : scene_(scene), description_(settings), registry_(registry), pool_(pool), log_(log), cache_(cache) {}
 
   /// With these shapes.
   void build(const SceneDescription& description, SharedWork& shared) {
@@ -112,13 +127,6 @@ class SceneBuilder {
 
   /// What has no wavelengths cannot be bound.
   std::unique_ptr<SceneResolver> build_settings() {
-    problems_.attempt([this] {
-      apply_swaps(description_, overrides_.swaps, registry_, log_);
-      if (const auto& text = overrides_.integrator)
-        override_plugin(*text, registry_.integrators.get(text->name, {}), {}, description_.integrator);
-      if (const auto& text = overrides_.filter)
-        override_plugin(*text, registry_.filters.get(text->name, {}), {}, description_.filter);
-    });
     problems_.attempt([this] { build_options(); });
     if (!scene_.wavelengths_) problems_.check();
     auto resolver = std::make_unique<SceneResolver>(description_, registry_, *scene_.wavelengths_, log_);
@@ -127,7 +135,7 @@ class SceneBuilder {
   }
 
   void finish(SceneResolver& resolver, SharedWork& shared) {
-    const Preparation preparation{*scene_.wavelengths_, pool_, log_, overrides_.cache_dir, &shared};
+    const Preparation preparation{*scene_.wavelengths_, pool_, log_, cache_, &shared};
     for (const auto& [place, made] : resolver.materials()) {
       made.material->prepare(preparation);
       scene_.materials_.emplace(place, made);
@@ -197,9 +205,10 @@ class SceneBuilder {
     scene_.has_pixel_jitter_ = options.has_pixel_jitter;
     scene_.has_wavelength_jitter_ = options.has_wavelength_jitter;
     filters_textures_ = options.filters_textures;
-    seed_ = overrides_.seed ? overrides_.seed : options.seed;
+    seed_ = options.seed;
     period_ = options.period, period_where_ = options.period_where;
-    const auto [text, where] = wavelength_choice(options, overrides_);
+    const std::string& text = options.wavelengths;
+    const Location& where = options.wavelengths_where;
     scene_.wavelengths_name_ = text;
     scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
     const WavelengthsInfo& info = registry_.wavelengths.get(parse_plugin_text(text, where).name, where);
@@ -229,8 +238,7 @@ class SceneBuilder {
   void build_view(SceneResolver& resolver) {
     CameraPlacement placement{description_.camera_from_world.inverse(), 0, 0};
     const bool has_film = problems_.attempt([&] {
-      const FilmSettings film = Scene::film_settings(description_, registry_, log_);
-      scene_.film_ = overrides_.quick ? halved(film) : film;
+      scene_.film_ = Scene::film_settings(description_, registry_, log_);
       placement.width = scene_.film_.width, placement.height = scene_.film_.height;
     });
     // A camera's frame hangs on the film's shape: without one only its parameters can be looked at.
@@ -247,7 +255,7 @@ class SceneBuilder {
     if (!problems_.empty()) return;
     if (filters_textures_) scene_.footprint_ = Footprint(*scene_.camera_, placement, scene_.has_pixel_jitter_);
     const int samples = scene_.sampler_->samples_per_pixel();
-    scene_.samples_per_pixel_ = overrides_.quick ? std::max(1, samples / 16) : samples;
+    scene_.samples_per_pixel_ = description_.is_quick ? std::max(1, samples / 16) : samples;
     problems_.attempt([this] { check_filter(); });
   }
 
@@ -333,16 +341,16 @@ class SceneBuilder {
   }
 
   Scene& scene_;
-  std::optional<uint64_t> seed_;  ///< of the command line or the scene's options; the sampler's own where there is none
+  std::optional<uint64_t> seed_;  ///< empty: the sampler's own
   std::optional<Vec2> period_;
   Location period_where_;
   bool filters_textures_ = true;
   Problems problems_;
-  SceneSettings description_;
+  const SceneSettings& description_;
   const Registry& registry_;
-  const SceneOverrides& overrides_;
   ThreadPool& pool_;
   const Log& log_;
+  const std::filesystem::path& cache_;
   std::shared_ptr<LightTable> lights_ = std::make_shared<LightTable>();
   std::map<const Light*, Location> light_where_;          ///< where there is a period
   std::vector<std::unique_ptr<AreaEmission>> emissions_;  ///< by area light of the description; made when needed
@@ -411,26 +419,14 @@ uint32_t Scene::occluded(const RayPacket& packet) const {
   return tiling_ ? World::occluded(packet) : geometry_->occluded(packet);
 }
 
-WavelengthChoice wavelength_choice(const SceneSettings& description, const SceneOverrides& overrides) {
-  return wavelength_choice(read_options(description), overrides);
+ParsedPlugin wavelengths_plugin(const SceneSettings& description, const Registry& registry) {
+  const SceneOptions options = read_options(description);
+  return wavelengths_plugin(options.wavelengths, options.wavelengths_where, registry);
 }
 
-ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry) {
-  const PluginText choice = parse_plugin_text(text, where);
-  ParsedPlugin plugin{choice.name, where, {}};
-  set_params(choice, registry.wavelengths.get(choice.name, where), where, plugin);
-  return plugin;
-}
-
-std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
-                                                     const SceneSettings& description, const Registry& registry) {
-  OptionResolver resolver(description);
-  ParsedPlugin plugin = wavelengths_plugin(text, where, registry);
-  const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
-  for (const ParsedParam& p : sensor_params(description))
-    if (declares(info, p.name) && std::ranges::find(plugin.params, p.name, &ParsedParam::name) == plugin.params.end())
-      plugin.params.push_back(p);
-  return info.make(Params(info, plugin, resolver));
+std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& description, const Registry& registry) {
+  const SceneOptions options = read_options(description);
+  return make_wavelengths(options.wavelengths, options.wavelengths_where, description, registry);
 }
 
 FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry, const Log& log) {
@@ -439,7 +435,7 @@ FilmSettings Scene::film_settings(const SceneSettings& description, const Regist
   FilmSettings film = info.make(Params(info, description.film, resolver));
   const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
   film.exposure *= open_time(Params(camera, description.camera, resolver), camera);
-  return film;
+  return description.is_quick ? halved(film) : film;
 }
 
 std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, const Registry& registry) {
@@ -455,21 +451,20 @@ std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, cons
   return leaves;
 }
 
-Scene::Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
-             ThreadPool& pool, const Log& log) {
+Scene::Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,
+             const std::filesystem::path& cache) {
   SharedWork shared;
-  SceneBuilder(*this, description, registry, overrides, pool, log).build(description, shared);
+  SceneBuilder(*this, description, registry, pool, log, cache).build(description, shared);
 }
 
-Scene::Scene(const Scene& other, const SceneSettings& settings, const Registry& registry,
-             const SceneOverrides& overrides, ThreadPool& pool, const Log& log, SharedWork& shared) {
-  SceneBuilder(*this, settings, registry, overrides, pool, log).build(other, shared);
+Scene::Scene(const Scene& other, const SceneSettings& settings, const Registry& registry, ThreadPool& pool,
+             const Log& log, SharedWork& shared, const std::filesystem::path& cache) {
+  SceneBuilder(*this, settings, registry, pool, log, cache).build(other, shared);
 }
 
-void Scene::check(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
-                  ThreadPool& pool, const Log& log) {
+void Scene::check(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log) {
   Scene scene;
-  SceneBuilder(scene, description, registry, overrides, pool, log).check(description);
+  SceneBuilder(scene, description, registry, pool, log, {}).check(description);
 }
 
 Scene::Scene() = default;

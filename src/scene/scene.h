@@ -10,38 +10,17 @@
 #include "scene/description.h"
 #include "scene/footprint.h"
 #include "scene/geometry.h"
-#include "scene/plugin_text.h"
 #include "scene/registry.h"
 #include "scene/resolver.h"
-#include "scene/swap.h"
 #include "scene/tiling.h"
 
 namespace frond {
 
-/// What the command line says over the scene file.
-struct SceneOverrides {
-  std::string wavelengths;  ///< a PluginText; empty: the scene's
-  /// Of the scene's own kind: these parameters over the scene's. Of another: in its place.
-  std::optional<PluginText> integrator, filter;
-  std::optional<uint64_t> seed;
-  std::vector<MaterialSwap> swaps;
-  bool quick = false;               ///< half the resolution, a sixteenth of the samples
-  std::filesystem::path cache_dir;  ///< empty: no files are kept
-};
+/// The strategy that the description's options name, with its parameters as a scene file has them. Throws InputError.
+ParsedPlugin wavelengths_plugin(const SceneSettings& description, const Registry& registry);
 
-/// Which wavelengths the command line asks for, or else the scene's options, or else their default.
-struct WavelengthChoice {
-  std::string text;  ///< a PluginText
-  Location where;
-};
-WavelengthChoice wavelength_choice(const SceneSettings& description, const SceneOverrides& overrides);
-
-/// A strategy, which a PluginText names, with its parameters as a scene file has them. Throws InputError at `where`.
-ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry);
-
-/// The strategy that a PluginText names, of the command line or else the scene's options. Throws InputError at `where`.
-std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
-                                                     const SceneSettings& description, const Registry& registry);
+/// The strategy itself. Throws InputError.
+std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& description, const Registry& registry);
 
 /// Of a surface: the light that all of it is, or one for each of its primitives.
 struct SurfaceLights {
@@ -65,7 +44,7 @@ struct LightTable {
 /// A scene ready to be rendered: a geometry, and what the things in it are made of.
 class Scene final : public World {
  public:
-  /// What the scene says of its image, at its full size; throws InputError.
+  /// What the scene says of its image, half of it where a first look will do; throws InputError.
   static FilmSettings film_settings(const SceneSettings& description, const Registry& registry,
                                     const Log& log = silent_log());
 
@@ -73,20 +52,19 @@ class Scene final : public World {
   /// parts stand for themselves. Throws InputError.
   static std::vector<size_t> leaf_materials(const SceneSettings& description, const Registry& registry);
 
-  /// Throws InputError.
-  Scene(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
-        ThreadPool& pool, const Log& log);
+  /// `cache`: folder of tables that are computed here; empty: no files are kept. Throws InputError.
+  Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,
+        const std::filesystem::path& cache = {});
   /// What stands in `other`, with other materials, wavelengths, integrator or view: the geometry is the same one, and
   /// so are lights and materials as far as they do not differ. `settings` is the other's but for what stands in the
   /// place of its materials. `shared` holds what such scenes have in common. Throws InputError.
-  Scene(const Scene& other, const SceneSettings& settings, const Registry& registry, const SceneOverrides& overrides,
-        ThreadPool& pool, const Log& log, SharedWork& shared);
+  Scene(const Scene& other, const SceneSettings& settings, const Registry& registry, ThreadPool& pool, const Log& log,
+        SharedWork& shared, const std::filesystem::path& cache = {});
   ~Scene() override;
 
   /// Loads all that the scene names, whether a shape needs it or not, and makes nothing of it. Throws InputError, with
   /// all that is wrong.
-  static void check(const SceneDescription& description, const Registry& registry, const SceneOverrides& overrides,
-                    ThreadPool& pool, const Log& log);
+  static void check(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log);
 
   bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override;
   bool occluded(const Ray& ray, uint64_t key) const override;
@@ -98,7 +76,6 @@ class Scene final : public World {
 
   const WavelengthStrategy& wavelengths() const override { return *wavelengths_; }
   const std::string& wavelengths_name() const { return wavelengths_name_; }
-  /// Half the description's where a first look will do.
   const FilmSettings& film() const { return film_; }
   const Camera& camera() const { return *camera_; }
   const Sampler& sampler() const { return *sampler_; }

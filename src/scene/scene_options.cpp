@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/plugin.h"
+#include "scene/plugin_text.h"
 
 namespace frond {
 namespace {
@@ -78,6 +79,7 @@ SceneOptions read_options(const SceneSettings& description, const Log& log) {
     if (p.given(name)) p.warn(name, fmt::format("option \"{}\" has no effect", name));
   SceneOptions options;
   if (p.given("seed")) options.seed = uint64_t(p.integer("seed"));
+  if (description.seed) options.seed = description.seed;
   options.wavelengths = p.string("wavelengths"), options.wavelengths_where = p.where("wavelengths");
   if (p.given("period")) {
     const std::vector<double> period = p.reals("period");
@@ -89,6 +91,10 @@ SceneOptions read_options(const SceneSettings& description, const Log& log) {
   options.has_wavelength_jitter = !p.boolean("disablewavelengthjitter");
   options.filters_textures = !p.boolean("disabletexturefiltering");
   return options;
+}
+
+void set_wavelengths(SceneSettings& description, const std::string& text) {
+  set_param(description.options, {"string", "wavelengths", {}, {}, std::vector<std::string>{text}});
 }
 
 }  // namespace frond

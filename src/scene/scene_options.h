@@ -8,7 +8,7 @@
 
 namespace frond {
 
-/// What a scene's `Option`s say.
+/// What a scene's `Option`s say, and what stands over them.
 struct SceneOptions {
   std::optional<uint64_t> seed;  ///< empty: the sampler's own
   std::string wavelengths;       ///< a PluginText
@@ -20,6 +20,9 @@ struct SceneOptions {
 
 /// Throws InputError.
 SceneOptions read_options(const SceneSettings& description, const Log& log = silent_log());
+
+/// `text`: a PluginText.
+void set_wavelengths(SceneSettings& description, const std::string& text);
 
 /// Binding of what can refer to files, but to nothing else of the scene: options, wavelengths, films.
 class OptionResolver final : public ParamResolver {

@@ -10,12 +10,13 @@ namespace {
 Film render_scene(const std::string& path) {
   const Log& quiet = silent_log();
   ThreadPool pool(2);
-  const SceneDescription description = parse_scene(FROND_SOURCE_DIR "/scenes/" + path, quiet);
+  SceneDescription description = parse_scene(FROND_SOURCE_DIR "/scenes/" + path, quiet);
   const Registry registry = make_registry(builtin_materials(), builtin_integrators());
   SceneOverrides overrides;
   overrides.wavelengths = "smpte";
   if (path.starts_with("soybean")) overrides.swaps = {{"leaf", {"leaf_simplified", {{"tablemethod", "solve"}}}}};
-  const Scene scene(description, registry, overrides, pool, quiet);
+  apply_overrides(overrides, description, registry, quiet);
+  const Scene scene(description, registry, pool, quiet);
   Film film({.settings = scene.film()});
   const RenderJob job{scene,          scene.camera(),  scene.integrator(), scene.wavelengths(),
                       scene.filter(), scene.sampler(), scene.seed()};

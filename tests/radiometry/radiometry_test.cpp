@@ -51,7 +51,7 @@ class Radiometry : public ::testing::Test {
   }
   BrfReading brf(const std::string& world, const BrfRequest& request, uint64_t samples, int threads = 2) const {
     Session session(silent_log(), {threads, {}, {}});
-    const BrfMeter meter(session, description(world), {}, request);
+    const BrfMeter meter(session, description(world), request);
     RenderPart part = meter.scene().empty_part();
     session.render(meter.scene(), {0, samples}, part);
     return meter.read(part.film);
@@ -59,7 +59,7 @@ class Radiometry : public ::testing::Test {
   FluxReading flux(const std::string& world, const FluxRequest& request, uint64_t paths, int threads = 2,
                    const std::string& options = "") const {
     Session session(silent_log(), {threads, {}, {}});
-    FluxMeter meter(session, description(world, options), {}, request);
+    FluxMeter meter(session, description(world, options), request);
     meter.trace(paths, session.pool());
     return meter.read();
   }
@@ -85,9 +85,8 @@ const std::array<double, 2> kPlot{2, 2};
 TEST_F(Radiometry, TheIrradianceOfSunAndSkyIsTheClosedForm) {
   Session session(silent_log(), {1, {}, {}});
   const auto irradiance = [&](const std::string& lights) {
-    SceneOverrides overrides;
-    overrides.wavelengths = "bands,wavelengths=400,550,700,900,1500";
-    const LoadedScene loaded = session.load(description(lights + soil(0)), overrides);
+    const std::string bands = "Option \"string wavelengths\" \"bands,wavelengths=400,550,700,900,1500\"\n";
+    const LoadedScene loaded = session.load(description(lights + soil(0), bands));
     const HorizontalIrradiance e(loaded.scene().lights(), loaded.scene().wavelengths());
     EXPECT_EQ(e.bands().size(), 5u);
     return e.bands()[1];
@@ -269,7 +268,7 @@ TEST_F(Radiometry, AMeterGoesOnFromItsFileAsIfItHadNotBeenStopped) {
   const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .by_instance = true};
   const FluxReading whole = flux(world, request, 5120);
   Session session(silent_log(), {2, {}, {}});
-  const auto meter = [&](const FluxRequest& r) { return FluxMeter(session, description(world), {}, r); };
+  const auto meter = [&](const FluxRequest& r) { return FluxMeter(session, description(world), r); };
   const auto file = folder_.name_of("flux.part");
   FluxMeter first = meter(request);
   first.trace(2048, session.pool());

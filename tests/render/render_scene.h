@@ -60,7 +60,9 @@ struct SceneRender {
     if (!swap.empty()) overrides.swaps.push_back({"thing", parse_plugin_text(swap, {}), {}});
     if (!integrator.empty()) overrides.integrator = parse_plugin_text(integrator, {});
     if (!filter.empty()) overrides.filter = parse_plugin_text(filter, {});
-    return session.load(session.read(scene), overrides,
+    SceneDescription description = session.read(scene);
+    apply_overrides(overrides, description, session.registry(), session.log());
+    return session.load(std::move(description),
                         {.pixels = pixels, .is_piece = is_piece, .channels = channels, .adaptive = adaptive});
   }
   RenderPart part(const std::filesystem::path& scene, SampleRange samples) const {

@@ -12,6 +12,7 @@
 #include "scene/light_image.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 #include "spectra/cie.h"
 #include "tests/support/input_error.h"
 
@@ -36,11 +37,10 @@ struct Loaded {
       std::vector<std::string>& to_;
     };
     const Keep log(warnings);
-    const SceneDescription description = parse_scene_text(text, "t", log);
+    SceneDescription description = parse_scene_text(text, "t", log);
     ThreadPool pool(1);
-    SceneOverrides overrides;
-    overrides.wavelengths = wavelengths;
-    scene.emplace(description, make_registry(builtin_materials(), builtin_integrators()), overrides, pool, log);
+    set_wavelengths(description, wavelengths);
+    scene.emplace(description, make_registry(builtin_materials(), builtin_integrators()), pool, log);
   }
   const Light& light() const { return *scene->lights()[0]; }
   SampledWavelengths lambda() const { return scene->wavelengths().sample(0.5f); }

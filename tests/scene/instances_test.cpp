@@ -15,6 +15,7 @@
 #include "scene/npy.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -36,9 +37,9 @@ class Instances : public ::testing::Test {
   }
   std::unique_ptr<Scene> scene(const std::string& world) {
     const fs::path path = write("scene.pbrt", "WorldBegin\nLightSource \"infinite\"\n" + world);
-    SceneOverrides overrides;
-    overrides.wavelengths = "smpte";
-    return std::make_unique<Scene>(parse_scene(path, silent_log()), registry_, overrides, pool_, silent_log());
+    SceneDescription description = parse_scene(path, silent_log());
+    set_wavelengths(description, "smpte");
+    return std::make_unique<Scene>(description, registry_, pool_, silent_log());
   }
 
   TestFolder folder_{"instances"};

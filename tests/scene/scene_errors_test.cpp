@@ -20,8 +20,8 @@ std::vector<std::string> errors_of(const std::string& text) {
   ThreadPool pool(1);
   Problems problems;
   problems.attempt([&] {
-    Scene(parse_scene_text(text, "s", silent_log()), make_registry(builtin_materials(), builtin_integrators()), {},
-          pool, silent_log());
+    Scene(parse_scene_text(text, "s", silent_log()), make_registry(builtin_materials(), builtin_integrators()), pool,
+          silent_log());
   });
   return problems.messages();
 }

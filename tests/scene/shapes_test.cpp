@@ -14,6 +14,7 @@
 #include "scene/parser.h"
 #include "scene/ply.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 #include "scene/subdivision.h"
 #include "tests/support/input_error.h"
 
@@ -25,10 +26,9 @@ using ::testing::HasSubstr;
 class Shapes : public ::testing::Test {
  protected:
   std::unique_ptr<Scene> scene(const std::string& world) {
-    SceneOverrides overrides;
-    overrides.wavelengths = "smpte";
-    return std::make_unique<Scene>(parse_scene_text("WorldBegin\n" + world, "s", silent_log()), registry_, overrides,
-                                   pool_, silent_log());
+    SceneDescription description = parse_scene_text("WorldBegin\n" + world, "s", silent_log());
+    set_wavelengths(description, "smpte");
+    return std::make_unique<Scene>(description, registry_, pool_, silent_log());
   }
   static bool meet(const Scene& scene, const Vec3& o, const Vec3& d, SurfacePoint& point) {
     return scene.intersect({o, d, INFINITY}, 0, point);

@@ -8,6 +8,7 @@
 #include "materials/registry.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -17,11 +18,10 @@ constexpr int kAround = 12;
 
 std::unique_ptr<Scene> scene(const std::string& options, const std::string& world, ThreadPool& pool) {
   const Registry registry = make_registry(builtin_materials(), builtin_integrators());
-  SceneOverrides overrides;
-  overrides.wavelengths = "smpte";
   const std::string text = options + "WorldBegin LightSource \"infinite\"\n" + world;
-  return std::make_unique<Scene>(parse_scene_text(text, "test.pbrt", silent_log()), registry, overrides, pool,
-                                 silent_log());
+  SceneDescription description = parse_scene_text(text, "test.pbrt", silent_log());
+  set_wavelengths(description, "smpte");
+  return std::make_unique<Scene>(description, registry, pool, silent_log());
 }
 
 /// What stands in the scene reaches beyond a period, in both directions.

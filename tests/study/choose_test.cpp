@@ -6,6 +6,7 @@
 #include "image/image_file.h"
 #include "render/plugins.h"
 #include "scene/parser.h"
+#include "scene/scene_options.h"
 #include "study/choose/choice_report.h"
 #include "tests/cli/command.h"
 #include "tests/planted/planted.h"
@@ -43,6 +44,7 @@ class Choosing : public ::testing::Test {
   TestFolder folder_{"choose"};
 };
 
+const std::string kSmpte = "Option \"string wavelengths\" \"smpte\"\n";
 const std::vector<std::string> kQuick{"--wavelengths", "smpte", "--spp", "4", "--json"};
 
 nlohmann::json choice_of(const Outcome& o) {
@@ -140,29 +142,20 @@ TEST_F(Choosing, BandsAreNoPicture) {
   EXPECT_THAT(o.err, HasSubstr("bands are none"));
 }
 
-SceneOverrides with_smpte() {
-  SceneOverrides overrides;
-  overrides.wavelengths = "smpte";
-  return overrides;
-}
-
 /// What is chosen for two leaves.
-Choice chosen_from(const Ladder& ladder, const Registry& registry, const SceneDescription& description,
-                   const SceneOverrides& overrides) {
-  ThreadPool pool(2);
-  const ChoiceTask subject{description, registry, overrides, Scene::film_settings(description, registry), 64};
-  return choose_models(subject, ladder, pool, silent_log()).value().choice;
+Choice chosen_from(const Ladder& ladder, Session& session, SceneDescription description) {
+  return choose_models({session, description, 64}, ladder, silent_log()).value().choice;
 }
 
 /// A cheap model that is wrong stands at the foot of the ladder.
 TEST_F(Choosing, AWrongModelIsNotChosenHoweverCheap) {
   const MaterialInfo wrong = test::planted<test::GoodLambertian>("planted_wrong");
-  Registry registry = builtin_registry();
-  registry.materials.add(wrong);
-  Ladder ladder = standard_ladder(registry);
+  Session session(silent_log(), {.threads = 2});
+  session.add_material(wrong);
+  Ladder ladder = standard_ladder(session.registry());
   ladder.models.insert(ladder.models.begin(), {"planted_wrong", {"planted_wrong", {}}, 0.01});
-  const SceneDescription description = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), silent_log());
-  const Choice choice = chosen_from(ladder, registry, description, with_smpte());
+  const Choice choice =
+      chosen_from(ladder, session, session.read(folder_.write("scene.pbrt", kSmpte + two_leaves("", ""))));
   const Answer& near = choice.answers.front();
   EXPECT_EQ(near.findings.front().name, "planted_wrong");
   EXPECT_GT(near.findings.front().bias.low, 0.01);
@@ -171,13 +164,13 @@ TEST_F(Choosing, AWrongModelIsNotChosenHoweverCheap) {
 }
 
 TEST_F(Choosing, WavelengthsAreAQuestionWhereNobodyNamesThem) {
-  const Registry registry = builtin_registry();
-  Ladder ladder = standard_ladder(registry);
+  Session session(silent_log(), {.threads = 2});
+  Ladder ladder = standard_ladder(session.registry());
   std::erase_if(ladder.models, [](const ModelOption& r) { return r.name != "leaf_lambert" && r.name != "abm"; });
-  SceneDescription description = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), silent_log());
+  SceneDescription description = session.read(folder_.write("scene.pbrt", two_leaves("", "")));
   for (MaterialDescription& m : description.materials)
     if (m.plugin.name == "leaf") m.plugin.params.push_back({"float", "maxrms", {}, {}, std::vector<double>{0.3}});
-  const Choice choice = chosen_from(ladder, registry, description, {});
+  const Choice choice = chosen_from(ladder, session, description);
   ASSERT_EQ(choice.answers.size(), 3u);
   EXPECT_EQ(choice.answers[0].question, "wavelengths");
   EXPECT_NE(choice.answers[0].chosen, "hero");
@@ -186,14 +179,35 @@ TEST_F(Choosing, WavelengthsAreAQuestionWhereNobodyNamesThem) {
 
 /// Walks cannot be: the solution of them is what counts as right.
 TEST_F(Choosing, AReciprocalLeafIsHeldToTheSolvedOne) {
-  const Registry registry = builtin_registry();
-  SceneDescription description = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), silent_log());
+  Session session(silent_log(), {.threads = 2});
+  SceneDescription description = session.read(folder_.write("scene.pbrt", kSmpte + two_leaves("", "")));
   for (MaterialDescription& m : description.materials)
     if (m.plugin.name == "leaf")
       m.plugin.params.push_back({"string", "incident", {}, {}, std::vector<std::string>{"reciprocal"}});
-  const Choice choice = chosen_from(standard_ladder(registry), registry, description, with_smpte());
+  const Choice choice = chosen_from(standard_ladder(session.registry()), session, description);
   for (const Answer& answer : choice.answers) EXPECT_NE(answer.chosen, "abm");
   EXPECT_EQ(choice.ground, Choice::Ground::met);
+}
+
+TEST_F(Choosing, TheAnswersAreWrittenIntoTheDescriptionAndTheRequest) {
+  Session session(silent_log(), {.threads = 2, .cache = tables().name_of("")});
+  const SceneDescription open = session.read(folder_.write("scene.pbrt", two_leaves("", "")));
+  SceneDescription description = open;
+  PictureRequest request;
+  const auto chosen = choose_for(session, description, 4, request);
+  ASSERT_TRUE(chosen);
+  EXPECT_FALSE(choose_for(session, description, 4, request)) << "nothing is open any more";
+  const Answer& first = chosen->choice.answers.front();
+  EXPECT_EQ(first.question, "wavelengths");
+  EXPECT_EQ(read_options(description).wavelengths, first.chosen);
+  EXPECT_THAT(request.attributes, Contains(Key("frond:choice")));
+  EXPECT_EQ(session.load(description, request, chosen->scene.get()).picture().space,
+            session.load(open).picture().space);
+  EXPECT_EQ(request.color_space, "linear sRGB");
+  description = open;
+  request.color_space = "ACEScg";
+  (void)choose_for(session, description, 4, request);
+  EXPECT_EQ(request.color_space, "ACEScg") << "who names a space has it";
 }
 
 /// The pilot's leaves are the very ones that a scene made for them has.
@@ -201,15 +215,14 @@ TEST_F(Choosing, AVariantRendersAsTheSceneItStandsFor) {
   const Registry registry = builtin_registry();
   ThreadPool pool(2);
   const Log& quiet = silent_log();
-  const SceneDescription open = parse_scene(folder_.write("scene.pbrt", two_leaves("", "")), quiet);
+  const SceneDescription open = parse_scene(folder_.write("scene.pbrt", kSmpte + two_leaves("", "")), quiet);
   const SceneDescription closed = parse_scene(
       folder_.write("closed.pbrt",
-                    two_leaves("\"string model\" \"leaf_simplified\"", "\"string model\" \"leaf_lambert\"")),
+                    kSmpte + two_leaves("\"string model\" \"leaf_simplified\"", "\"string model\" \"leaf_lambert\"")),
       quiet);
-  const SceneOverrides overrides = with_smpte();
-  const Scene scene(open, registry, overrides, pool, quiet), direct(closed, registry, overrides, pool, quiet);
+  const Scene scene(open, registry, pool, quiet), direct(closed, registry, pool, quiet);
   SharedWork shared;
-  const Scene variant(scene, closed, registry, overrides, pool, quiet, shared);
+  const Scene variant(scene, closed, registry, pool, quiet, shared);
   EXPECT_EQ(&variant.geometry(), &scene.geometry());
   const FilmSettings film = Scene::film_settings(open, registry);
   PairedFilms a(film, 0, {1, 2}, open, registry, variant), b(film, 0, {1, 2}, open, registry, direct);

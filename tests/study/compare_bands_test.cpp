@@ -25,9 +25,9 @@ class CompareBands : public ::testing::Test {
  protected:
   ChannelList channels(const std::string& wavelengths, std::string_view scene = kLeafScene) const {
     const Log& quiet = silent_log();
-    ThreadPool pool(1);
-    const Study study({.scene = folder_.write("scene.pbrt", scene).string(), .wavelengths = wavelengths, .size = 8},
-                      pool, quiet);
+    Session session(quiet, {.threads = 1});
+    const Study study(session,
+                      {.scene = folder_.write("scene.pbrt", scene).string(), .wavelengths = wavelengths, .size = 8});
     return channels_of(*study.scene(parse_candidate("leaf_lambert")));
   }
   Outcome compare(std::vector<std::string> more) const {

@@ -14,10 +14,11 @@ struct Setting {
   std::string wavelengths;
   TestFolder folder{"reference"};
   const Log& quiet = silent_log();
-  mutable ThreadPool pool{2};
+  mutable Session session{quiet, {.threads = 2}};
+  const ThreadPool& pool = session.pool();
   Candidate walk = parse_candidate("abm");
-  Study study{
-      {.scene = folder.write("scene.pbrt", kLeafScene).string(), .wavelengths = wavelengths, .size = 16}, pool, quiet};
+  Study study{session,
+              {.scene = folder.write("scene.pbrt", kLeafScene).string(), .wavelengths = wavelengths, .size = 16}};
 
   PairedRender render() const { return {study, walk, 1, 2}; }
   ReferenceStore store() const { return {folder.name_of("cache"), study.identity(walk), quiet}; }
@@ -83,7 +84,7 @@ TEST(ReferenceStore, AFileThatCannotBeReadCountsAsNone) {
 TEST(Study, ItsIdentityHangsOnEverythingThatDecidesThePixels) {
   const Setting s;
   const auto identity = [&](StudyOptions options, const char* candidate = "abm") {
-    return Study(options, s.pool, s.quiet).identity(parse_candidate(candidate));
+    return Study(s.session, options).identity(parse_candidate(candidate));
   };
   const StudyOptions base{.scene = s.folder.name_of("scene.pbrt"), .wavelengths = "smpte", .size = 16};
   EXPECT_EQ(identity(base), s.study.identity(s.walk));
@@ -93,6 +94,8 @@ TEST(Study, ItsIdentityHangsOnEverythingThatDecidesThePixels) {
   other = base, other.seed = 1;
   EXPECT_NE(identity(other), identity(base));
   EXPECT_NE(identity(base, "abm,mode=weighted"), identity(base));
+  EXPECT_NE(identity(base, "abm@wavelengths=hero"), identity(base));
+  EXPECT_NE(identity(base, "abm@integrator=path,maxdepth=3"), identity(base));
   s.folder.write("scene.pbrt", std::string(kLeafScene) + "# another\n");
   EXPECT_NE(identity(base), s.study.identity(s.walk));
 }
@@ -119,7 +122,7 @@ TEST(Study, ItsIdentityHangsOnWhatIsInTheFilesThatAreNamed) {
       {"the candidate's pigment", {.scene = plain}, "abm,pigments=" + red + ",pigmentconcentrations=1", red},
       {"the candidate's table", {.scene = plain}, "leaf_simplified,tablefile=" + table, table}};
   for (const Case& c : cases) {
-    const auto identity = [&] { return Study(c.options, s.pool, s.quiet).identity(parse_candidate(c.candidate)); };
+    const auto identity = [&] { return Study(s.session, c.options).identity(parse_candidate(c.candidate)).hash(); };
     const uint64_t before = identity();
     EXPECT_EQ(identity(), before) << c.what;
     std::ofstream(c.file, std::ios::app) << "  700 0.5\n";
@@ -133,7 +136,7 @@ TEST(Study, TakesTheWholePictureOrItsPartToSize) {
   EXPECT_EQ(s.study.film().height, 8);
   std::string text(kLeafScene);
   text.replace(text.find("Film \"rgb\""), 10, "Film \"rgb\" \"integer pixelbounds\" [32 64 0 32]");
-  const Study part({.scene = s.folder.write("part.pbrt", text).string(), .size = 16}, s.pool, s.quiet);
+  const Study part(s.session, {.scene = s.folder.write("part.pbrt", text).string(), .size = 16});
   EXPECT_EQ(part.film().width, 32);
   EXPECT_EQ(part.film().crop.x0, 16);
   EXPECT_EQ(part.film().crop.width(), 16);

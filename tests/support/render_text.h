@@ -6,6 +6,7 @@
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "render/render_loop.h"
+#include "scene/overrides.h"
 #include "scene/parser.h"
 #include "scene/scene.h"
 
@@ -25,14 +26,12 @@ struct RenderSettings {
 inline Film render_text(const std::string& text, const RenderSettings& settings = {}) {
   const Log& quiet = silent_log();
   ThreadPool pool(settings.threads);
-  const SceneDescription description = parse_scene_text(text, "test.pbrt", quiet);
+  SceneDescription description = parse_scene_text(text, "test.pbrt", quiet);
   Registry registry = make_registry(builtin_materials(), builtin_integrators());
   for (const MaterialInfo* info : settings.materials) registry.materials.add(*info);
-  SceneOverrides overrides;
-  overrides.wavelengths = settings.wavelengths;
-  overrides.seed = settings.seed;
-  overrides.swaps = settings.swaps;
-  const Scene scene(description, registry, overrides, pool, quiet);
+  apply_overrides({.swaps = settings.swaps, .wavelengths = settings.wavelengths, .seed = settings.seed}, description,
+                  registry, quiet);
+  const Scene scene(description, registry, pool, quiet);
   Film film({.settings = scene.film(), .bands = scene.wavelengths().bands().size()});
   const RenderJob job{scene,          scene.camera(),  scene.integrator(), scene.wavelengths(),
                       scene.filter(), scene.sampler(), scene.seed()};

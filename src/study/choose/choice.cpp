@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/log.h"
+#include "study/choose/choice_report.h"
 #include "study/choose/screening.h"
 
 namespace frond::choose {
@@ -49,8 +50,7 @@ size_t count_combinations(const std::vector<OpenChoice>& questions) {
 /// Asks a pilot until it knows.
 class Chooser {
  public:
-  Chooser(Pilot& pilot, const ChoiceTask& subject)
-      : pilot_(pilot), questions_(pilot.questions()), reference_(pilot.reference()), subject_(subject) {
+  explicit Chooser(Pilot& pilot) : pilot_(pilot), questions_(pilot.questions()), reference_(pilot.reference()) {
     choice_.rms = 1;
     for (const OpenChoice& q : questions_) {
       base_.push_back(q.base());
@@ -226,7 +226,7 @@ class Chooser {
 
   uint64_t most_samples() const {
     const double paths =
-        double(subject_.film.crop.width()) * double(subject_.film.crop.height()) * double(choice_.samples);
+        double(pilot_.film().crop.width()) * double(pilot_.film().crop.height()) * double(choice_.samples);
     const auto samples = uint64_t(kLargestPart * paths / (4 * double(pilot_.cost().pixels)));
     return std::bit_floor(std::clamp(samples, kLeastLimit, kMostSamples));
   }
@@ -254,7 +254,6 @@ class Chooser {
   Pilot& pilot_;
   const std::vector<OpenChoice>& questions_;
   Configuration reference_, base_;
-  const ChoiceTask& subject_;
   std::vector<double> weights_;
   ByOption<OptionResult> findings_;
   double z_ = 0;
@@ -289,18 +288,31 @@ double Choice::reference_samples_needed() const { return reference_effort().samp
 
 double Choice::time_saved() const { return reference_effort().seconds / effort().seconds; }
 
-std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool, const Log& log) {
+std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& ladder, const Log& log) {
   if (!has_open_leaf(subject.description)) return {};
-  Pilot pilot(subject, ladder, pool);
+  Pilot pilot(subject, ladder);
   if (!pilot.has_colors()) {
     log.warn({},
              "a leaf's model is chosen by pictures of colours, and bands are none: leaves without \"model\" are abm");
     return {};
   }
-  Chooser chooser(pilot, subject);
-  const Configuration answers = chooser.run();
-  return Chosen{chooser.choice(), answered(subject.description, subject.registry, pilot.questions(), answers),
-                wavelengths_of(pilot.questions(), answers, subject.overrides.wavelengths), pilot.scene()};
+  Chooser chooser(pilot);
+  put_answers(pilot.questions(), chooser.run(), subject.session.registry(), subject.description);
+  return Chosen{chooser.choice(), pilot.scene()};
+}
+
+std::optional<Chosen> choose_for(Session& session, SceneDescription& description, uint64_t samples,
+                                 PictureRequest& request) {
+  const Log& log = session.log();
+  auto chosen = choose_models({session, description, samples}, standard_ladder(session.registry()), log);
+  if (!chosen) return {};
+  const Choice& choice = chosen->choice;
+  log.info(choice_text(choice));
+  if (const std::string warning = choice_warning(choice); !warning.empty()) log.warn({}, warning);
+  request.attributes = choice_attributes(choice);
+  const bool chose_wavelengths = !choice.answers.front().is_leaf;
+  if (chose_wavelengths && request.color_space.empty()) request.color_space = "linear sRGB";
+  return chosen;
 }
 
 }  // namespace frond::choose

@@ -77,16 +77,20 @@ struct Choice {
   Effort reference_effort() const;
 };
 
-/// What is chosen, and the scene with it.
+/// What was chosen.
 struct Chosen {
   Choice choice;
-  std::vector<MaterialDescription> materials;  ///< in place of the description's
-  std::string wavelengths;                     ///< in place of the command line's
-  std::shared_ptr<const Scene> scene;          ///< in which what stands in the scene stands already
+  std::shared_ptr<const Scene> scene;  ///< the pilots', in which what stands in the scene stands already
 };
 
-/// The cheapest answers to what the scene leaves open that meet its leaves' "maxrms", the smallest of them. Nothing
-/// where no leaf is open, or where wavelengths have no colours (with a warning). Throws InputError.
-std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool, const Log& log);
+/// Writes into the description the cheapest answers to what it leaves open that meet its leaves' "maxrms", the smallest
+/// of them. Nothing where no leaf is open, or where wavelengths have no colours (with a warning). Throws InputError.
+std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& ladder, const Log& log);
+
+/// The same by the standard ladder, for a picture of so many samples a pixel (0: the scene's). Tells the session's log,
+/// and writes into the request what the header is to say, and the colour space, which the choice of wavelengths shall
+/// not change.
+std::optional<Chosen> choose_for(Session& session, SceneDescription& description, uint64_t samples,
+                                 PictureRequest& request);
 
 }  // namespace frond::choose

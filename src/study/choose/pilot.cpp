@@ -48,24 +48,27 @@ struct Pilot::Render {
   std::vector<ConvergencePoint> noise = {};
 };
 
-Pilot::Pilot(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool)
+Pilot::Pilot(const ChoiceTask& subject, const Ladder& ladder)
     : subject_(subject),
-      pool_(pool),
+      film_(subject.session.film(subject.description)),
       start_cpu_seconds_(cpu_seconds()),
       variant_(static_cast<const SceneSettings&>(subject.description)) {
-  const bool named = !subject.overrides.wavelengths.empty() || names_wavelengths(subject.description);
-  SceneOverrides overrides = subject.overrides;
-  if (!named) overrides.wavelengths = ladder.wavelengths.back().name;
+  Session& session = subject.session;
+  const Registry& registry = session.registry();
+  SceneDescription& description = subject.description;
+  if (!names_wavelengths(description)) {
+    questions_.push_back({"wavelengths", {}, 0, ladder.wavelengths});
+    put_answers(questions_, reference(), registry, description);
+  }
   if (subject.other)
-    scene_ = std::make_shared<const Scene>(*subject.other, subject.description, subject.registry, overrides, pool,
-                                           quiet_, shared_);
+    scene_ = std::make_shared<const Scene>(*subject.other, description, registry, session.pool(), quiet_, shared_,
+                                           session.cache());
   else
-    scene_ = std::make_shared<const Scene>(subject.description, subject.registry, overrides, pool, quiet_);
+    scene_ = std::make_shared<const Scene>(description, registry, session.pool(), quiet_, session.cache());
   exponent_ = film_exponent(*scene_);
-  if (!named) questions_.push_back({"wavelengths", {}, 0, ladder.wavelengths});
-  const auto leaves = open_leaves(subject.description, subject.registry, scene_->wavelengths(), ladder);
+  const auto leaves = open_leaves(description, registry, scene_->wavelengths(), ladder);
   questions_.insert(questions_.end(), leaves.begin(), leaves.end());
-  pixels_ = pilot_pixels(subject.film.crop, kPixels, hash_key(scene_->seed(), uint64_t{kPixelSeed}));
+  pixels_ = pilot_pixels(film_.crop, kPixels, hash_key(scene_->seed(), uint64_t{kPixelSeed}));
 }
 
 Pilot::~Pilot() = default;
@@ -83,13 +86,14 @@ Configuration Pilot::reference() const {
 }
 
 Pilot::Render Pilot::make(const Configuration& answers) {
-  SceneOverrides overrides = subject_.overrides;
-  overrides.wavelengths = wavelengths_of(questions_, answers, overrides.wavelengths);
-  variant_.materials = answered(subject_.description, subject_.registry, questions_, answers);
-  auto scene = std::make_unique<Scene>(*scene_, variant_, subject_.registry, overrides, pool_, quiet_, shared_);
+  Session& session = subject_.session;
+  variant_.materials = subject_.description.materials;
+  put_answers(questions_, answers, session.registry(), variant_);
+  auto scene =
+      std::make_unique<Scene>(*scene_, variant_, session.registry(), session.pool(), quiet_, shared_, session.cache());
   const auto seed = [this](SeedUse use) { return hash_key(scene_->seed(), uint64_t{use}); };
-  PairedFilms films(row_of(subject_.film, pixels_.size()), exponent_, {seed(kFirstHalf), seed(kSecondHalf)}, variant_,
-                    subject_.registry, *scene, pixels_);
+  PairedFilms films(row_of(film_, pixels_.size()), exponent_, {seed(kFirstHalf), seed(kSecondHalf)}, variant_,
+                    session.registry(), *scene, pixels_);
   return {std::move(scene), std::move(films)};
 }
 
@@ -99,7 +103,7 @@ void Pilot::render(const Configuration& answers, uint64_t samples) {
   Render& r = found->second;
   while (r.films.samples() < samples) {
     const uint64_t next = std::min(samples, std::bit_floor(r.films.samples()) * 2 + (r.films.samples() == 0));
-    r.films.advance_to(next, *r.scene, pool_, nullptr);
+    r.films.advance_to(next, *r.scene, subject_.session.pool(), nullptr);
     r.noise.push_back({double(next), 0, noise_of(pictures(r))});
   }
 }

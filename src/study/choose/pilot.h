@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "instruments/convergence.h"
 #include "instruments/paired_difference.h"
+#include "render/session.h"
 #include "spectra/color_management.h"
 #include "study/choose/question.h"
 #include "study/paired_films.h"
@@ -13,12 +14,10 @@ namespace frond::choose {
 
 /// A scene as it is to be rendered, but for what it leaves open.
 struct ChoiceTask {
-  const SceneDescription& description;
-  const Registry& registry;
-  const SceneOverrides& overrides;  ///< without swaps: the description has them
-  FilmSettings film;
-  uint64_t samples;              ///< a pixel, of the render that the choice is for; 0: the scene's
-  const Scene* other = nullptr;  ///< a scene in which the same stands, where there is one: that is not made again
+  Session& session;
+  SceneDescription& description;  ///< the answers are written into it
+  uint64_t samples;               ///< a pixel, of the render that the choice is for; 0: the scene's
+  const Scene* other = nullptr;   ///< a scene in which the same stands, where there is one: that is not made again
 };
 
 /// What a pilot has cost.
@@ -33,12 +32,13 @@ struct PilotCost {
 class Pilot {
  public:
   /// Also finds the questions. Throws InputError.
-  Pilot(const ChoiceTask& subject, const Ladder& ladder, ThreadPool& pool);
+  Pilot(const ChoiceTask& subject, const Ladder& ladder);
   ~Pilot();
 
   const std::vector<OpenChoice>& questions() const { return questions_; }
   /// Wavelengths that have no colours cannot be compared.
   bool has_colors() const;
+  const FilmSettings& film() const { return film_; }
   /// As it is with what counts as right.
   const std::shared_ptr<const Scene>& scene() const { return scene_; }
   /// A pixel, of the render that the choice is for.
@@ -67,7 +67,7 @@ class Pilot {
   Halves pictures(const Render& render) const;
 
   ChoiceTask subject_;
-  ThreadPool& pool_;
+  FilmSettings film_;
   double start_cpu_seconds_;
   SceneSettings variant_;            ///< the subject's, as it was rendered last
   const Log& quiet_ = silent_log();  ///< what there is to say the final render says

@@ -5,6 +5,8 @@
 #include "core/log.h"
 #include "scene/normal_map.h"
 #include "scene/resolver.h"
+#include "scene/scene_options.h"
+#include "scene/swap.h"
 
 namespace frond::choose {
 namespace {
@@ -96,20 +98,14 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
   return leaves;
 }
 
-std::vector<MaterialDescription> answered(const SceneSettings& description, const Registry& registry,
-                                          const std::vector<OpenChoice>& questions, const Configuration& answers) {
-  std::vector<MaterialDescription> result = description.materials;
-  for (size_t q = 0; q < questions.size(); ++q)
+void put_answers(const std::vector<OpenChoice>& questions, const Configuration& answers, const Registry& registry,
+                 SceneSettings& description) {
+  for (size_t q = 0; q < questions.size(); ++q) {
+    const ModelOption& answer = questions[q].options[answers[q]];
+    if (!questions[q].is_leaf()) set_wavelengths(description, answer.name);
     for (const size_t place : questions[q].materials)
-      swap_material(result[place].plugin, questions[q].options[answers[q]].plugin, registry, silent_log());
-  return result;
-}
-
-std::string wavelengths_of(const std::vector<OpenChoice>& questions, const Configuration& answers,
-                           const std::string& otherwise) {
-  for (size_t q = 0; q < questions.size(); ++q)
-    if (!questions[q].is_leaf()) return questions[q].options[answers[q]].name;
-  return otherwise;
+      swap_material(description.materials[place].plugin, answer.plugin, registry, silent_log());
+  }
 }
 
 }  // namespace frond::choose

@@ -36,12 +36,9 @@ bool names_wavelengths(const SceneSettings& description);
 std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Registry& registry,
                                     const WavelengthStrategy& wavelengths, const Ladder& ladder);
 
-/// The description's materials with these answers written into the leaves.
-std::vector<MaterialDescription> answered(const SceneSettings& description, const Registry& registry,
-                                          const std::vector<OpenChoice>& questions, const Configuration& answers);
-
-/// What was answered to the question of wavelengths, as a PluginText; `otherwise` where that is no question.
-std::string wavelengths_of(const std::vector<OpenChoice>& questions, const Configuration& answers,
-                           const std::string& otherwise);
+/// Writes these answers into the description's leaves, as it had them when the questions were found, and into its
+/// option of wavelengths.
+void put_answers(const std::vector<OpenChoice>& questions, const Configuration& answers, const Registry& registry,
+                 SceneSettings& description);
 
 }  // namespace frond::choose

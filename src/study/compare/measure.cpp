@@ -222,15 +222,16 @@ void time_in_the_papers_manner(const Study& study, const Plan& plan, const Threa
 
 }  // namespace
 
-Comparison measure(const Study& study, const Plan& plan, const Request& request, const ThreadPool& pool,
-                   const Log& log) {
+Comparison measure(const Study& study, const Plan& plan, const Request& request) {
+  const ThreadPool& pool = study.session().pool();
+  const Log& log = study.session().log();
   Comparison result;
   result.request = request;
   result.leaves = study.leaves();
   PairedRender reference_render = pair_of(study, plan.reference, kReferenceSeed, plan.candidates.size() + 1);
   check_request(request, plan, reference_render.scene());
   auto renders = prepared(study, plan.candidates, reference_render);
-  const ReferenceStore store(plan.cache, study.identity(plan.reference), log);
+  const ReferenceStore store(study.session().cache(), study.identity(plan.reference), log);
   const uint64_t cached = render_reference(reference_render, store, plan, pool);
   warn_of_lost_samples(reference_render, plan.reference, log);
   const Bench bench(reference_render, request);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/log.h"
 #include "render/progress.h"
 #include "study/compare/comparison.h"
 #include "study/compare/study.h"
@@ -13,13 +12,11 @@ struct Plan {
   /// The ladder is 1, 2, 4 ... and this; of bands, from where a pixel has seen all of them.
   uint64_t top_samples = 256;
   uint64_t reference_samples = 2048;  ///< of each of its two renders
-  std::filesystem::path cache = {};
-  Progress* progress = nullptr;  ///< may be nullptr
+  Progress* progress = nullptr;       ///< may be nullptr
 };
 
 /// Renders the reference, then every candidate up the ladder, rung by rung so that whatever else the machine does falls
 /// on all alike. Throws InputError, before anything is rendered, for a candidate that the scene cannot take.
-Comparison measure(const Study& study, const Plan& plan, const Request& request, const ThreadPool& pool,
-                   const Log& log);
+Comparison measure(const Study& study, const Plan& plan, const Request& request);
 
 }  // namespace frond::compare

@@ -14,9 +14,9 @@ namespace {
 
 constexpr CacheKind kReferences{"reference-", 2'000'000'000};
 
-PartHeader header_of(const PairedRender& render, uint64_t identity) {
+PartHeader header_of(const PairedRender& render, const Identity& identity) {
   PartHeader header;
-  header.identity.add("reference", fmt::format("{:016x}", identity));
+  header.identity = identity;
   header.request = render.samples();
   header.statistics.wall_seconds = render.cost().wall_seconds;
   header.statistics.cpu_seconds = render.cost().cpu_seconds;
@@ -25,7 +25,7 @@ PartHeader header_of(const PairedRender& render, uint64_t identity) {
 }
 
 /// The size of the first film's part, that part, and the second one's.
-std::vector<unsigned char> encode(const PairedRender& render, uint64_t identity) {
+std::vector<unsigned char> encode(const PairedRender& render, const Identity& identity) {
   const PartHeader header = header_of(render, identity);
   const auto first = encode_part(header, render.film(0)), second = encode_part(header, render.film(1));
   const uint64_t size = first.size();
@@ -40,7 +40,8 @@ bool is_like(const FilmFormat& a, const FilmFormat& b) {
   return a.settings.crop == b.settings.crop && a.bands == b.bands && a.exponent == b.exponent;
 }
 
-bool decode(std::string_view bytes, const std::filesystem::path& path, uint64_t identity, PairedRender& render) try {
+bool decode(std::string_view bytes, const std::filesystem::path& path, const Identity& identity,
+            PairedRender& render) try {
   uint64_t size = 0;
   if (bytes.size() < sizeof size) return false;
   std::memcpy(&size, bytes.data(), sizeof size);
@@ -48,9 +49,7 @@ bool decode(std::string_view bytes, const std::filesystem::path& path, uint64_t 
   if (size > bytes.size()) return false;
   std::array<RenderPart, 2> parts{decode_part(bytes.substr(0, size), path), decode_part(bytes.substr(size), path)};
   for (const RenderPart& part : parts)
-    if (part.header.identity != header_of(render, identity).identity ||
-        !is_like(part.film.format(), render.film(0).format()))
-      return false;
+    if (part.header.identity != identity || !is_like(part.film.format(), render.film(0).format())) return false;
   const auto& [request, statistics] = std::tie(parts[0].header.request, parts[0].header.statistics);
   render.restore({std::move(parts[0].film), std::move(parts[1].film)}, request,
                  {statistics.wall_seconds, statistics.cpu_seconds, double(statistics.rays)});
@@ -61,9 +60,9 @@ bool decode(std::string_view bytes, const std::filesystem::path& path, uint64_t 
 
 }  // namespace
 
-ReferenceStore::ReferenceStore(const std::filesystem::path& folder, uint64_t identity, const Log& log)
-    : path_(folder.empty() ? folder : folder / fmt::format("{}{:016x}.bin", kReferences.name, identity)),
-      identity_(identity),
+ReferenceStore::ReferenceStore(const std::filesystem::path& folder, Identity identity, const Log& log)
+    : path_(folder.empty() ? folder : folder / fmt::format("{}{:016x}.bin", kReferences.name, identity.hash())),
+      identity_(std::move(identity)),
       log_(log) {}
 
 void ReferenceStore::load(PairedRender& render) const try {

@@ -9,8 +9,8 @@ namespace frond::compare {
 /// counts as none. Files that lie unused for longest make room for new ones (system/cache_limit.h).
 class ReferenceStore {
  public:
-  /// `folder` empty: nothing is kept. `identity` of all that decides the pixels.
-  ReferenceStore(const std::filesystem::path& folder, uint64_t identity, const Log& log);
+  /// `folder` empty: nothing is kept. `identity`: all that decides the pixels.
+  ReferenceStore(const std::filesystem::path& folder, Identity identity, const Log& log);
 
   /// A file that cannot be read, or is damaged, costs a warning.
   void load(PairedRender& render) const;
@@ -19,7 +19,7 @@ class ReferenceStore {
 
  private:
   std::filesystem::path path_;  ///< empty: nothing is kept
-  uint64_t identity_;
+  Identity identity_;
   const Log& log_;
 };
 

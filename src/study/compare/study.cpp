@@ -4,10 +4,6 @@
 #include <cmath>
 
 #include "core/log.h"
-#include "core/random.h"
-#include "render/inputs.h"
-#include "render/plugins.h"
-#include "scene/read_scene.h"
 #include "scene/resolver.h"
 #include "study/paired_films.h"
 
@@ -53,36 +49,35 @@ std::vector<std::string> leaf_names(const SceneSettings& description, const Regi
 
 }  // namespace
 
-Study::Study(const StudyOptions& options, ThreadPool& pool, const Log& log)
-    : options_(options),
-      pool_(pool),
-      log_(log),
-      registry_(load_registry(options.plugins)),
-      description_(read_scene(options.scene, registry_, log, options.unsupported)) {
-  resize(description_.film, Scene::film_settings(description_, registry_), options.size);
-  film_ = Scene::film_settings(description_, registry_);
+Study::Study(Session& session, const StudyOptions& options)
+    : session_(session), description_(session.read(options.scene, options.unsupported)) {
+  apply_overrides({.wavelengths = options.wavelengths, .seed = options.seed}, description_, registry(), session.log());
+  resize(description_.film, session.film(description_), options.size);
+  film_ = session.film(description_);
   drop_requests(description_);
-  leaves_ = options.leaves.empty() ? leaf_names(description_, registry_) : options.leaves;
+  leaves_ = options.leaves.empty() ? leaf_names(description_, registry()) : options.leaves;
   if (leaves_.empty()) fail({}, "{}: none of the materials is a leaf; --leaf names the one to replace", options.scene);
   if (options.leaves.empty()) swaps_.push_back({"*", {}});
   for (const std::string& leaf : options.leaves) swaps_.push_back({leaf, {}});
 }
 
-SceneOverrides Study::overrides_of(const Candidate& candidate) const {
-  SceneOverrides overrides;
-  overrides.wavelengths = candidate.wavelengths.empty() ? options_.wavelengths : candidate.wavelengths;
-  overrides.integrator = candidate.integrator;
-  overrides.seed = options_.seed;
-  overrides.swaps = swaps_to(candidate.material);
-  overrides.cache_dir = options_.cache;
-  return overrides;
+/// With the candidate in place of the leaves.
+SceneDescription Study::described(const Candidate& candidate, const Log& log) const {
+  SceneDescription description = description_;
+  apply_overrides(
+      {.swaps = swaps_to(candidate.material), .wavelengths = candidate.wavelengths, .integrator = candidate.integrator},
+      description, registry(), log);
+  return description;
 }
 
 std::shared_ptr<const Scene> Study::scene(const Candidate& candidate) const {
-  const SceneOverrides overrides = overrides_of(candidate);
-  if (!first_) return first_ = std::make_shared<const Scene>(description_, registry_, overrides, pool_, log_);
+  const SceneDescription description = described(candidate, session_.log());
+  ThreadPool& pool = session_.pool();
+  if (!first_)
+    return first_ = std::make_shared<const Scene>(description, registry(), pool, session_.log(), session_.cache());
   SharedWork shared;
-  return std::make_shared<const Scene>(*first_, description_, registry_, overrides, pool_, log_, shared);
+  return std::make_shared<const Scene>(*first_, description, registry(), pool, session_.log(), shared,
+                                       session_.cache());
 }
 
 std::vector<MaterialSwap> Study::swaps_to(const PluginText& material) const {
@@ -92,12 +87,12 @@ std::vector<MaterialSwap> Study::swaps_to(const PluginText& material) const {
 }
 
 std::unique_ptr<Sampler> Study::sampler(const Scene& scene, uint64_t seed) const {
-  return make_sampler(description_, registry_, scene.wavelengths(), seed);
+  return make_sampler(description_, registry(), scene.wavelengths(), seed);
 }
 
 std::unique_ptr<Integrator> Study::integrator(const Scene& scene, const PluginText& over) const {
-  SceneResolver resolver(description_, registry_, scene.wavelengths());
-  const IntegratorInfo& info = registry_.integrators.get(over.name, {});
+  SceneResolver resolver(description_, registry(), scene.wavelengths());
+  const IntegratorInfo& info = registry().integrators.get(over.name, {});
   ParsedPlugin plugin = description_.integrator;
   override_plugin(over, info, {}, plugin);
   auto integrator = info.make(Params(info, plugin, resolver));
@@ -105,26 +100,16 @@ std::unique_ptr<Integrator> Study::integrator(const Scene& scene, const PluginTe
   return integrator;
 }
 
-/// Those of the candidate's own material, integrator and wavelengths are among them.
-std::vector<std::filesystem::path> Study::input_files(const Candidate& candidate) const {
-  const SceneOverrides overrides = overrides_of(candidate);
-  SceneDescription description = description_;
-  apply_swaps(description, overrides.swaps, registry_, silent_log());
-  if (const auto& own = overrides.integrator)
-    override_plugin(*own, registry_.integrators.get(own->name, {}), {}, description.integrator);
-  const auto [text, where] = wavelength_choice(description, overrides);
-  return frond::input_files(description, wavelengths_plugin(text, where, registry_));
-}
-
-uint64_t Study::identity(const Candidate& candidate) const {
-  std::string choices =
-      fmt::format("{} {} {} {} {}", candidate.text, options_.wavelengths, film_.width, film_.height, seed());
-  for (const std::string& leaf : options_.leaves) choices += '\n' + leaf;
-  uint64_t hash = hash_bytes(choices, description_.content_hash);
-  for (const auto& file : input_files(candidate)) hash = hash_file(file, hash);
-  hash = hash_program(hash);
-  for (const auto& file : plugin_files(options_.plugins)) hash = hash_file(file, hash);
-  return hash;
+Identity Study::identity(const Candidate& candidate) const {
+  const SceneDescription description = described(candidate, silent_log());
+  return identity_of(description, {.plugins = session_.plugins(),
+                                   .seed = seed(),
+                                   .wavelengths = wavelengths_plugin(description, registry()),
+                                   .film = film_,
+                                   .splats = false,
+                                   .channels = {},
+                                   .color_space = {},
+                                   .command = "compare " + candidate.text});
 }
 
 }  // namespace frond::compare

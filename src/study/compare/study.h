@@ -2,8 +2,7 @@
 
 #include <memory>
 
-#include "core/log.h"
-#include "scene/scene.h"
+#include "render/session.h"
 #include "scene/unsupported.h"
 #include "study/compare/candidate.h"
 
@@ -13,18 +12,16 @@ namespace frond::compare {
 struct StudyOptions {
   std::string scene = {}, wavelengths = {};  ///< wavelengths: a PluginText; empty: the scene's
   std::vector<std::string> leaves = {};      ///< names of the materials that candidates replace; empty: every leaf
-  std::vector<std::string> plugins = {};
   Unsupported unsupported = {};
   std::optional<uint64_t> seed = {};  ///< 0 by default
   int size = 256;                     ///< pixels of the picture's longer side
-  std::filesystem::path cache = {};
 };
 
 /// One scene, in which one leaf model stands for another.
 class Study {
  public:
-  /// Throws InputError.
-  Study(const StudyOptions& options, ThreadPool& pool, const Log& log);
+  /// The session must outlive it. Throws InputError.
+  Study(Session& session, const StudyOptions& options);
 
   /// With the candidate in place of the leaves; all of them have one geometry. Throws InputError.
   std::shared_ptr<const Scene> scene(const Candidate& candidate) const;
@@ -36,7 +33,7 @@ class Study {
   std::unique_ptr<Integrator> integrator(const Scene& scene, const PluginText& over) const;
 
   /// From which those of all renders are made.
-  uint64_t seed() const { return options_.seed.value_or(0); }
+  uint64_t seed() const { return description_.seed.value_or(0); }
   const FilmSettings& film() const { return film_; }
   const SceneSettings& description() const { return description_; }
   /// Which put a material in the leaves' place.
@@ -45,19 +42,15 @@ class Study {
   const std::vector<std::string>& leaves() const { return leaves_; }
   /// The scene's integrator, by name.
   const std::string& integrator_name() const { return description_.integrator.name; }
-  const Registry& registry() const { return registry_; }
-  /// A hash of all that decides the pixels of this candidate: the program, its plug-ins, the scene, size, wavelengths,
-  /// seed, and the files that any of them names. Another hash may be the same pixels, the same hash is.
-  uint64_t identity(const Candidate& candidate) const;
+  Session& session() const { return session_; }
+  const Registry& registry() const { return session_.registry(); }
+  /// All that decides the pixels of a candidate's renders, but the seeds that each of them has of its own.
+  Identity identity(const Candidate& candidate) const;
 
  private:
-  SceneOverrides overrides_of(const Candidate& candidate) const;
-  std::vector<std::filesystem::path> input_files(const Candidate& candidate) const;
+  SceneDescription described(const Candidate& candidate, const Log& log) const;
 
-  StudyOptions options_;
-  ThreadPool& pool_;
-  const Log& log_;
-  Registry registry_;
+  Session& session_;
   SceneDescription description_;
   FilmSettings film_;
   std::vector<std::string> leaves_;
