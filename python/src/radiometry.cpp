@@ -56,7 +56,7 @@ nb::dict brf(const std::shared_ptr<SessionHandle>& owner, const SceneDescription
       },
       progress);
   std::vector<double> mean, error;
-  for (const BrfValue& v : reading.values) mean.push_back(v.mean), error.push_back(v.standard_error);
+  for (const MeanError& v : reading.values) mean.push_back(v.mean), error.push_back(v.standard_error);
   const std::vector<size_t> shape{reading.views.size(), reading.wavelengths_nm.size()};
   nb::dict d;
   d["wavelengths_nm"] = reading.wavelengths_nm;
@@ -82,7 +82,7 @@ nb::dict flux(const std::shared_ptr<SessionHandle>& owner, const SceneDescriptio
       },
       progress);
   nb::list rows;
-  const auto add = [&](const char* quantity, const std::string& material, const std::vector<FluxShare>& shares) {
+  const auto add = [&](const char* quantity, const std::string& material, const std::vector<MeanError>& shares) {
     for (size_t band = 0; band < shares.size(); ++band) {
       nb::dict row;
       row["quantity"] = quantity, row["material"] = material;
@@ -101,7 +101,7 @@ nb::dict flux(const std::shared_ptr<SessionHandle>& owner, const SceneDescriptio
   if (by_instance) {
     const size_t bands = reading.wavelengths_nm.size();
     std::vector<double> mean, error;
-    for (const FluxShare& s : reading.by_instance) mean.push_back(s.mean), error.push_back(s.standard_error);
+    for (const MeanError& s : reading.by_instance) mean.push_back(s.mean), error.push_back(s.standard_error);
     const std::vector<size_t> shape{mean.size() / bands, bands};
     d["wavelengths_nm"] = reading.wavelengths_nm;
     d["absorbed"] = to_array(std::move(mean), shape), d["absorbed_se"] = to_array(std::move(error), shape);

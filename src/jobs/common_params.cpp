@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "report/gnuplot.h"
+#include "scene/parser.h"
 
 namespace frond {
 namespace {
@@ -42,6 +43,17 @@ SceneOverrides overrides_of(const Arguments& args) {
 
 Unsupported unsupported_of(const Arguments& args) {
   return args.given("ignore-unsupported") ? Unsupported(args.text("ignore-unsupported")) : Unsupported();
+}
+
+std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files) {
+  std::vector<std::vector<std::filesystem::path>> scenes;
+  bool is_open = false;  // the last scene has no world yet
+  for (const std::string& file : files) {
+    if (!is_open) scenes.emplace_back();
+    scenes.back().emplace_back(file);
+    is_open = files.size() > 1 && !holds_world(file);
+  }
+  return scenes;
 }
 
 std::string wavelengths_text(const Arguments& args, std::string_view name) {

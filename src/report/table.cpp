@@ -22,7 +22,7 @@ double number(const Column& c, size_t row) { return std::get<0>(c.values)[row]; 
 Json json_value(const Column& c, size_t row) {
   if (!c.is_number()) return std::get<1>(c.values)[row];
   const double v = number(c, row);
-  if (!std::isfinite(v)) return nullptr;
+  if (!std::isfinite(v)) return c.missing.empty() ? Json(nullptr) : Json(c.missing);
   if (v == std::floor(v) && std::abs(v) < 1e15) return int64_t(v);
   return v;
 }
@@ -40,7 +40,7 @@ std::string cell(const Table& table, const Column& c, size_t row) {
   if (!c.is_number()) return std::get<1>(c.values)[row];
   const double v = number(c, row);
   if (const Column* error = error_of(table, c)) return with_error(v, number(*error, row));
-  return std::isfinite(v) ? fmt::format("{:.6g}", v) : "";
+  return std::isfinite(v) ? fmt::format("{:.6g}", v) : c.missing;
 }
 
 /// Characters of UTF-8.
@@ -54,11 +54,14 @@ size_t Column::size() const {
   return std::visit([](const auto& v) { return v.size(); }, values);
 }
 
-std::string Column::csv(size_t row) const {
-  if (!is_number()) return csv_field(std::get<1>(values)[row]);
-  const double v = number(*this, row);
-  if (!std::isfinite(v)) return "";
-  return is_error(name) ? fmt::format("{:.4g}", v) : fmt::format("{:.9g}", v);
+void Column::append_csv(size_t row, std::string& text) const {
+  if (!is_number()) {
+    text += csv_field(std::get<1>(values)[row]);
+  } else if (const double v = number(*this, row); std::isfinite(v)) {
+    fmt::format_to(std::back_inserter(text), "{:.{}g}", v, is_error(name) ? 4 : 9);
+  } else {
+    text += missing;
+  }
 }
 
 const Column* Table::find(const std::string& column) const {
@@ -94,8 +97,11 @@ std::string to_csv(const Table& table, const std::vector<std::string>& notes) {
   }
   text += names + '\n';
   for (size_t row = 0; row < table.rows(); ++row) {
-    for (size_t i = 0; i < table.columns.size(); ++i) text += (i > 0 ? "," : "") + table.columns[i].csv(row);
-    text += '\n';
+    for (const Column& c : table.columns) {
+      c.append_csv(row, text);
+      text += ',';
+    }
+    if (!text.empty()) text.back() = '\n';
   }
   return text;
 }

@@ -4,6 +4,8 @@
 #include <variant>
 #include <vector>
 
+#include "instruments/statistics.h"
+
 namespace frond {
 
 /// One column of a table: numbers, or words. NaN and "" stand for a value that is missing.
@@ -12,10 +14,12 @@ struct Column {
   std::variant<std::vector<double>, std::vector<std::string>> values;
   std::string doc = {};    ///< one line: meaning and unit; may be empty
   bool only_data = false;  ///< left out of the text for terminals
+  std::string missing = {};  ///< what stands in files and text for a number that is missing
 
   bool is_number() const { return values.index() == 0; }
   size_t size() const;
-  std::string csv(size_t row) const;  ///< a field of CSV (RFC 4180): 9 significant digits, 4 of a standard error
+  /// Appends a field of CSV (RFC 4180): 9 significant digits, 4 of a standard error.
+  void append_csv(size_t row, std::string& text) const;
 };
 
 /// A result as rows and columns. All columns have one length. This is what front ends print, write and convert.
@@ -32,6 +36,7 @@ struct Table {
   void add(const std::string& column, std::string value);
   /// `column` and `column`_se.
   void add(const std::string& column, double mean, double standard_error);
+  void add(const std::string& column, const MeanError& v) { add(column, v.mean, v.standard_error); }
   /// Sets the column's documentation; the column has to exist.
   void document(const std::string& column, std::string doc);
 };
