@@ -46,10 +46,18 @@ def spectrophotometer(material, wavelengths, angles=8, **options):
 
 
 def flux(scene, wavelengths=None, *, by_instance=False, **options):
+    """The job's table of shares of the light. by_instance: with it a dictionary of what each instance absorbs: arrays
+    "absorbed", "absorbed_se" `[instance][wavelength]`, "areas" and "wavelengths_nm"."""
     result = FUNCTIONS["flux"](scene, wavelengths, by="instance" if by_instance else None, **options)
     if not by_instance:
         return result.table
-    return result.tables["flux"], result.tables["instances"]
+    columns = result.columns["instances"]
+    bands = [name for name in columns if name.startswith("absorbed_") and not name.endswith("_se")]
+    import numpy
+    return result.tables["flux"], {
+        "absorbed": numpy.stack([columns[name] for name in bands], axis=1),
+        "absorbed_se": numpy.stack([columns[name + "_se"] for name in bands], axis=1),
+        "areas": columns["area"], "wavelengths_nm": [float(name.removeprefix("absorbed_")) for name in bands]}
 
 
 def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **options):

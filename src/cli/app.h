@@ -22,12 +22,7 @@ struct Command {
   Arguments arguments() const;
 };
 
-/// Adds a subcommand for each job, made from its record.
+/// Adds a subcommand for each job, made from its record. Help is wrapped at the width of the terminal.
 std::vector<Command> add_commands(CLI::App& app);
-
-/// Names of an option with their dashes: "-o", "--output", "--outfile"; none of a positional one.
-std::vector<std::string> option_names(const JobParam& param);
-/// What help calls an option's value: FILE, INT; "" for a flag.
-std::string value_name(const JobParam& param);
 
 }  // namespace frond

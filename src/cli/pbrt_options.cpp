@@ -7,42 +7,12 @@
 #include <cctype>
 
 #include "core/error.h"
+#include "jobs/command_line.h"
+#include "jobs/pbrt_options.h"
 #include "scene/unsupported.h"
 
 namespace frond {
 namespace {
-
-struct PbrtOption {
-  const char* name;
-  const char* value;  ///< what it takes; "": nothing
-  bool is_refused;
-  const char* doc;
-};
-
-constexpr PbrtOption kOptions[] = {
-    {"--gpu", "", false, "The CPU renders."},
-    {"--gpu-device", "INDEX", false, "The CPU renders."},
-    {"--wavefront", "", false, "There is one integrator loop."},
-    {"--write-partial-images", "", false, "--checkpoint keeps partial results."},
-    {"--pixelstats", "", false, "--channels writes data of each pixel."},
-    {"--force-diffuse", "", false, "--swap replaces materials."},
-    {"--log-utilization", "", false, ""},
-    {"--log-level", "LEVEL", false, ""},
-    {"--log-file", "FILE", false, ""},
-    {"--displacement-edge-scale", "SCALE", false, "There is no displacement."},
-    {"--stats", "", false, "Statistics are always printed."},
-    {"--render-coord-sys", "SYSTEM", false, "The image does not depend on it."},
-    {"--mse-reference-image", "FILE", true, "frond difference compares images"},
-    {"--mse-reference-out", "FILE", true, "frond difference compares images"},
-    {"--debugstart", "VALUES", true, "--pixels and --samples render one path again"},
-    {"--pixelmaterial", "X,Y", true, "--channels material writes the material of each pixel"},
-    {"--interactive", "", true, "frond has no window; --display-server shows the image in a viewer"},
-    {"--fullscreen", "", true, "frond has no window"},
-    {"--disable-image-textures", "", true, "frond has no such option"},
-    {"--format", "", true, "pbrt-v4 itself rewrites scene files"},
-    {"--toply", "", true, "pbrt-v4 itself rewrites scene files"},
-    {"--upgrade", "", true, "pbrt-v4 itself upgrades files of pbrt-v3"},
-};
 
 constexpr const char* kIgnore = "--ignore-unsupported";
 
@@ -78,26 +48,26 @@ std::string with_our_name(const std::string& word, const CLI::App& command) {
 }  // namespace
 
 void add_pbrt_options(CLI::App& render) {
-  for (const PbrtOption& o : kOptions) {
+  for (const PbrtOption& o : kPbrtOptions) {
     CLI::Option* option = o.value[0] == '\0' ? render.add_flag(o.name)
                                              : render.add_option(o.name, [](const CLI::results_t&) { return true; });
     option->group("");  // not in --help
   }
   render.get_option("--render-coord-sys")->check(CLI::IsMember({"camera", "cameraworld", "world"}));
-  const std::string doc = "Print the options of pbrt-v4 that have no effect, or are refused.";
-  render.add_flag("--help-pbrt", doc);
+  const std::string doc(kHelpPbrtParam.doc);  // CLI11 writes to what is no constant
+  render.add_flag(command_spelling(kHelpPbrtParam.name), doc);
 }
 
 std::string pbrt_options_text() {
   std::string text = "Options of pbrt-v4 that frond render ignores with a warning, or refuses:\n";
-  for (const PbrtOption& o : kOptions)
+  for (const PbrtOption& o : kPbrtOptions)
     text += fmt::format("  {:<32} {}{}\n", fmt::format("{} {}", o.name, o.value), o.is_refused ? "Refused: " : "", o.doc);
   return text;
 }
 
 std::vector<std::string> pbrt_warnings(const CLI::App& render) {
   std::vector<std::string> warnings;
-  for (const PbrtOption& o : kOptions) {
+  for (const PbrtOption& o : kPbrtOptions) {
     if (render.count(o.name) == 0) continue;
     if (o.is_refused) fail({}, "{}: {}", o.name, o.doc);
     const std::string_view name = o.name;

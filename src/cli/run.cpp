@@ -23,7 +23,8 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  frond render scenes/soybean-front/scene.pbrt --wavelengths smpte -o leaf.png\n"
     "  frond compare scenes/soybean-front/scene.pbrt --quick -o report\n"
-    "frond COMMAND --help prints the options of a command; frond SCENE.pbrt is short for frond render SCENE.pbrt.";
+    "frond COMMAND --help prints the options of a command.\n"
+    "frond SCENE.pbrt is short for frond render SCENE.pbrt.";
 
 /// Also prints help, which CLI11 takes for an error. An unknown word is reported first: CLI11 would report what that
 /// word was meant to be as missing.
@@ -59,6 +60,7 @@ int execute(const Command& command) {
   if (interrupt) control.stop = interrupt->token();
   const Result result = run_job(*command.job, {context, args, control});
   if (result.stopped) return 128 + (interrupt ? interrupt->signal() : 0);
+  for (const std::string& error : result.errors) fmt::print(stderr, "frond: {}\n", error);
   if (result.is_requested || !(quiet || writes_to_standard_output(args))) write_text("-", result.text);
   return result.code;
 }

@@ -7,6 +7,11 @@
 
 namespace frond {
 
+/// A measured number and its standard error.
+struct MeanError {
+  double mean = 0, standard_error = 0;
+};
+
 /// An estimated expectation, with the variance and the third cumulant of the estimate itself: those of independent
 /// estimates add.
 struct Estimate {

@@ -92,23 +92,34 @@ std::string python_spelling(std::string_view name) {
 Arguments::Arguments(std::vector<const JobParam*> params, Spelling how)
     : declared_(std::move(params)), spelling_(how) {}
 
+std::string accepted(const JobParam& p) {
+  if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, ", "));
+  const std::string range = range_text(p.range);
+  return !is_number_kind(p.kind) || range.empty() || p.range.max == kCounts.max ? "" : range.substr(1);
+}
+
+std::string relations(const JobParam& p) {
+  std::string text;
+  if (!p.needs.empty()) text += fmt::format(" Needs {}.", command_spelling(p.needs));
+  if (!p.excludes.empty()) {
+    std::string names;
+    for (const std::string& name : split(std::string(p.excludes), ','))
+      names += (names.empty() ? "" : ", ") + command_spelling(name);
+    text += fmt::format(" Excludes {}.", names);
+  }
+  if (p.kind == ArgumentKind::texts && !p.positional) text += " May be given again.";
+  return text;
+}
+
 std::string documented(const JobParam& p) {
   std::string text(p.doc);
   const auto add = [&text](const std::string& sentence) { text += ' ' + sentence + '.'; };
   if (!text.ends_with('.') && !text.ends_with('?')) text += '.';
-  if (!p.choices.empty()) add(fmt::format("One of {}", fmt::join(p.choices, ", ")));
+  if (!p.choices.empty()) add(fmt::format("One of {}", accepted(p)));
   if (!p.unit.empty()) add(fmt::format("Unit: {}", p.unit));
-  if (const std::string range = range_text(p.range); is_number_kind(p.kind) && !range.empty() && p.range.max != kCounts.max)
-    add("Range:" + range);
+  if (p.choices.empty() && !accepted(p).empty()) add("Range: " + accepted(p));
   if (!p.default_value.empty()) add(fmt::format("Default: {}", p.default_value));
-  if (!p.needs.empty()) add(fmt::format("Needs --{}", p.needs));
-  if (!p.excludes.empty()) {
-    std::string names;
-    for (const std::string& name : split(std::string(p.excludes), ',')) names += (names.empty() ? "--" : ", --") + name;
-    add("Excludes " + names);
-  }
-  if (p.kind == ArgumentKind::texts && !p.positional) add("May be given again");
-  return text;
+  return text + relations(p);
 }
 
 const JobParam* Arguments::find_param(std::string_view name) const {
@@ -123,8 +134,10 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
          word);
   };
   const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
-  if (!repeats && words.size() != 1)
-    fail({}, "{} takes one value, {} were given", spelling_(p.name), words.size());
+  const size_t takes = p.kind == ArgumentKind::texts ? p.values : repeats ? 0 : 1;
+  if (takes > 0 && words.size() != takes)
+    fail({}, "{} takes {} value{}, {} were given", p.positional ? std::string(p.name) : spelling_(p.name), takes,
+         takes == 1 ? "" : "s", words.size());
   for (std::string& word : value.words) {
     if (word == "true" && !p.implied.empty()) word = p.implied;
     if (!p.choices.empty() && std::ranges::find(p.choices, word) == p.choices.end()) refuse(word);

@@ -39,7 +39,7 @@ struct JobParam {
   Interval range = kAnyValue;              ///< of each number, ends included (kAboveZero)
   std::span<const std::string_view> choices = {};
   std::string_view aliases = "";           ///< further names with commas between: "o,outfile"; one letter is a short option
-  size_t values = 0;                       ///< numbers: exactly so many; 0: any number of them
+  size_t values = 0;                       ///< numbers and texts: exactly so many; 0: any number of them
   bool whole = false;                      ///< numbers: each is a whole number
   PathUse path = PathUse::none;
   bool decides = false;                    ///< the result depends on it: part of a measurement's identity
@@ -57,6 +57,10 @@ inline constexpr Interval kCounts{1, 9007199254740992};  ///< whole numbers that
 /// "a whole number from 1 to 1024", "a number above 0", "one of linear, log": what errors and documents say of values.
 std::string needed(const JobParam& param);
 
+/// "from 1 to 1024", "above 0", "horizontal, uniform"; "" where any value is accepted.
+std::string accepted(const JobParam& param);
+/// Sentences about the parameters that it needs or excludes, and whether it may be given again.
+std::string relations(const JobParam& param);
 /// The parameter's documentation with its choices, unit, range, default and what it needs: the text of help, man pages,
 /// docs/commands.md and docstrings.
 std::string documented(const JobParam& param);

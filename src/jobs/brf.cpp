@@ -141,7 +141,7 @@ void add_rows(Table& table, const BrfReading& reading, const std::string& model)
       table.add("zenith_deg", reading.views[view].zenith_deg);
       table.add("azimuth_deg", reading.views[view].azimuth_deg);
       table.add("wavelength_nm", reading.wavelengths_nm[band]);
-      table.add("brf", reading.at(view, band).mean, reading.at(view, band).standard_error);
+      table.add("brf", reading.at(view, band));
     }
 }
 
@@ -152,8 +152,7 @@ Table by_direction(const BrfReading& reading) {
     table.add("zenith", reading.views[view].zenith_deg);
     table.add("azimuth", reading.views[view].azimuth_deg);
     for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
-      table.add(fmt::format("{:g} nm", reading.wavelengths_nm[band]), reading.at(view, band).mean,
-                reading.at(view, band).standard_error);
+      table.add(fmt::format("{:g} nm", reading.wavelengths_nm[band]), reading.at(view, band));
   }
   return table;
 }
@@ -170,8 +169,7 @@ Result comparison_result(const ModelReading& reference, const std::vector<ModelR
   Table differences{"brf"}, verdicts{"models"};
   const auto add = [&](const ModelReading& m) {
     add_rows(differences, m.brf, m.model.label);
-    for (const auto& d : relative_to(reference.brf, m.brf))
-      differences.add("relative_difference", d.mean, d.standard_error);
+    for (const MeanError& d : relative_to(reference.brf, m.brf)) differences.add("relative_difference", d);
   };
   add(reference);
   const ModelReading* enough = nullptr;
@@ -180,7 +178,7 @@ Result comparison_result(const ModelReading& reference, const std::vector<ModelR
     const BrfVerdict v = judge(reference.brf, m.brf, within);
     verdicts.add("model", m.model.label);
     verdicts.add("us_per_path", m.cpu_us_per_path);
-    verdicts.add("worst_difference", v.worst.mean, v.worst.standard_error);
+    verdicts.add("worst_difference", v.worst);
     verdicts.add("zenith_deg", m.brf.views[v.view].zenith_deg);
     verdicts.add("wavelength_nm", m.brf.wavelengths_nm[v.band]);
     verdicts.add("upper_bound", v.upper);

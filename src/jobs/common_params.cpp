@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "report/gnuplot.h"
+#include "scene/parser.h"
 
 namespace frond {
 namespace {
@@ -48,6 +49,17 @@ SceneDescription described_scene(const JobRun& run) {
   SceneDescription description = run.session().read(run.args.text("scene"), unsupported_of(run.args));
   apply_overrides(overrides_of(run.args), description, run.session().registry(), run.log());
   return description;
+}
+
+std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files) {
+  std::vector<std::vector<std::filesystem::path>> scenes;
+  bool is_open = false;  // the last scene has no world yet
+  for (const std::string& file : files) {
+    if (!is_open) scenes.emplace_back();
+    scenes.back().emplace_back(file);
+    is_open = files.size() > 1 && !holds_world(file);
+  }
+  return scenes;
 }
 
 std::string wavelengths_text(const Arguments& args, std::string_view name) {

@@ -78,6 +78,8 @@ SceneOverrides overrides_of(const Arguments& args);
 Unsupported unsupported_of(const Arguments& args);
 /// The scene file with the overrides written into it.
 SceneDescription described_scene(const JobRun& run);
+/// Scenes from files: a scene may be in several files, of which the last one has its world.
+std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files);
 /// "smpte", "bands,wavelengths=450,550" or numbers alone, 450,550 or 400:700:10, which are bands.
 std::string wavelengths_text(const Arguments& args, std::string_view name = "wavelengths");
 /// Refuses a chart that cannot be written, if it is asked for.

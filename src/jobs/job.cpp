@@ -59,7 +59,7 @@ void check_outputs(const JobRun& run, std::span<const JobParam> params) {
 
 void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) {
   for (const JobParam& p : job.params) {
-    if (p.kind != text || !run.args.given(p.name)) continue;
+    if (p.path != PathUse::write || !run.args.given(p.name)) continue;
     if (p.name == "csv") write_text(run.args.text(p.name), to_csv(result.tables.at(0), result.notes));
     if (p.name != "json") continue;
     const bool is_own = !result.json.empty();

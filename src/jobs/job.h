@@ -24,6 +24,7 @@ struct Result {
   std::vector<std::string> notes = {};  ///< comments of CSV: who measured what
   std::string text = {};                ///< for a terminal
   std::string json = {};                ///< what --json writes, where that is not made of notes, facts and tables
+  std::vector<std::string> errors = {};  ///< what is wrong with the input, for standard error; the code is 1
   bool is_requested = false;            ///< the text is what was asked for, by --json for one: --quiet keeps it
   int code = 0;                         ///< of the program: 0 done, 1 something is wrong, 2 a law is broken
   bool stopped = false;                 ///< by the control's stop token; what was done is kept

@@ -3,31 +3,39 @@
 namespace frond {
 
 // One job, one file, one line here and one in the list below, which has the order of `frond --help`.
-extern const JobInfo kRenderJob;
-extern const JobInfo kCompareJob;
-extern const JobInfo kFitJob;
-extern const JobInfo kTableJob;
-extern const JobInfo kBrfJob;
-extern const JobInfo kSpectrophotometerJob;
-extern const JobInfo kGoniophotometerJob;
-extern const JobInfo kConformJob;
 extern const JobInfo kBenchJob;
+extern const JobInfo kBrfJob;
+extern const JobInfo kCanopyJob;
+extern const JobInfo kCheckJob;
+extern const JobInfo kCompareJob;
+extern const JobInfo kCompletionJob;
+extern const JobInfo kConformJob;
+extern const JobInfo kConvertJob;
+extern const JobInfo kDescribeJob;
+extern const JobInfo kDifferenceJob;
 extern const JobInfo kExportJob;
+extern const JobInfo kFitJob;
+extern const JobInfo kFluxJob;
+extern const JobInfo kGoniophotometerJob;
+extern const JobInfo kInstancesJob;
+extern const JobInfo kListJob;
+extern const JobInfo kManJob;
+extern const JobInfo kMergeJob;
+extern const JobInfo kRenderJob;
+extern const JobInfo kSpectrophotometerJob;
 extern const JobInfo kSubmitJob;
+extern const JobInfo kTableJob;
 
 std::span<const JobInfo* const> all_jobs() {
   static constexpr const JobInfo* kAll[] = {
-      &kRenderJob,
-      &kCompareJob,
-      &kFitJob,
-      &kTableJob,
-      &kBrfJob,
-      &kSpectrophotometerJob,
-      &kGoniophotometerJob,
-      &kConformJob,
-      &kBenchJob,
-      &kExportJob,
-      &kSubmitJob,
+      &kRenderJob,                                                               // Render
+      &kCompareJob, &kFitJob, &kTableJob,                                        // Leaf models
+      &kBrfJob, &kFluxJob, &kSpectrophotometerJob, &kGoniophotometerJob,         // Measure
+      &kListJob, &kDescribeJob, &kConformJob, &kBenchJob, &kExportJob,           // Materials
+      &kCheckJob, &kCanopyJob, &kInstancesJob,                                   // Scenes
+      &kConvertJob, &kDifferenceJob,                                             // Images
+      &kSubmitJob, &kMergeJob,                                                   // Cluster
+      &kManJob, &kCompletionJob,                                                 // Shell
   };
   return kAll;
 }

@@ -7,7 +7,6 @@
 #include "core/problems.h"
 #include "jobs/common_params.h"
 #include "render/adaptive.h"
-#include "scene/parser.h"
 #include "scene/words.h"
 
 namespace frond {
@@ -61,17 +60,6 @@ SampleRange range_of(const Arguments& args) {
 }
 
 }  // namespace
-
-std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files) {
-  std::vector<std::vector<std::filesystem::path>> scenes;
-  bool is_open = false;  // the last scene has no world yet
-  for (const std::string& file : files) {
-    if (!is_open) scenes.emplace_back();
-    scenes.back().emplace_back(file);
-    is_open = files.size() > 1 && !holds_world(file);
-  }
-  return scenes;
-}
 
 void RenderTask::read(const std::vector<std::filesystem::path>& files) {
   Problems problems;

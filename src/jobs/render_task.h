@@ -56,10 +56,6 @@ class RenderTask {
   SampleRange samples_;
 };
 
-/// Scenes, each with the files that are read one after the other: a file without WorldBegin and the next one are one
-/// scene.
-std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files);
-
 extern const JobInfo kRenderJob;
 
 }  // namespace frond

@@ -62,7 +62,7 @@ bool has_heavy_tails(const Scene& scene, size_t materials) {
 
 double BrfReading::relative_error() const {
   double sum = 0;
-  for (const BrfValue& v : values) sum += std::pow(v.mean > 0 ? v.standard_error / v.mean : 1.0, 2);
+  for (const MeanError& v : values) sum += std::pow(v.mean > 0 ? v.standard_error / v.mean : 1.0, 2);
   return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
 }
 

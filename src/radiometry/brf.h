@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "instruments/statistics.h"
 #include "render/session.h"
 
 namespace frond {
@@ -27,21 +28,17 @@ struct BrfRequest {
   bool keeps_depth = false;  ///< paths are as long as the description's integrator has them; else of any length
 };
 
-/// One direction and band: the radiance toward it over that of a white Lambertian plane in the same light.
-struct BrfValue {
-  double mean = 0, standard_error = 0;
-};
-
-/// A scene's BRF, as far as it is known.
+/// A scene's BRF, as far as it is known: the radiance toward a direction over that of a white Lambertian plane in the
+/// same light.
 struct BrfReading {
   std::vector<ViewDirection> views;
   std::vector<double> wavelengths_nm;
-  std::vector<BrfValue> values;  ///< view by view, band by band
+  std::vector<MeanError> values;  ///< view by view, band by band
   std::vector<double> rows;      ///< of each of the values: its BrfMeter::kRows independent ones
   uint64_t paths = 0;            ///< for each view
   /// Standard errors are not to be trusted: a few paths that are hardly ever drawn carry much of the mean.
   bool has_heavy_tails = false;
-  const BrfValue& at(size_t view, size_t band) const { return values[view * wavelengths_nm.size() + band]; }
+  const MeanError& at(size_t view, size_t band) const { return values[view * wavelengths_nm.size() + band]; }
   /// Root mean square of the standard errors over views and bands, each relative to its mean.
   double relative_error() const;
 };

@@ -16,9 +16,9 @@ double student_quantile(double z, double freedom) {
 
 }  // namespace
 
-std::vector<RelativeDifference> relative_to(const BrfReading& reference, const BrfReading& reading) {
+std::vector<MeanError> relative_to(const BrfReading& reference, const BrfReading& reading) {
   constexpr int kRows = BrfMeter::kRows;
-  std::vector<RelativeDifference> differences;
+  std::vector<MeanError> differences;
   for (size_t i = 0; i < reading.values.size(); ++i) {
     const double b = reference.values[i].mean, ratio = reading.values[i].mean / b;
     double squares = 0;
@@ -36,10 +36,10 @@ BrfVerdict judge(const BrfReading& reference, const BrfReading& reading, double 
   const auto differences = relative_to(reference, reading);
   const double z =
       student_quantile(normal_upper_quantile(sidak_level(kRate, differences.size()) / 2), BrfMeter::kRows - 1);
-  const auto upper = [z](const RelativeDifference& d) { return std::abs(d.mean) + z * d.standard_error; };
+  const auto upper = [z](const MeanError& d) { return std::abs(d.mean) + z * d.standard_error; };
   const auto worst = std::ranges::max_element(differences, {}, upper);
   const bool beyond = std::ranges::any_of(
-      differences, [&](const RelativeDifference& d) { return std::abs(d.mean) - z * d.standard_error > within; });
+      differences, [&](const MeanError& d) { return std::abs(d.mean) - z * d.standard_error > within; });
   const auto place = size_t(worst - differences.begin());
   const bool is_known = !reading.has_heavy_tails && !reference.has_heavy_tails;
   const auto answer = !is_known                 ? BrfVerdict::Answer::unknown

@@ -4,21 +4,16 @@
 
 namespace frond {
 
-/// By how much one BRF lies above another, relative to it.
-struct RelativeDifference {
-  double mean = 0, standard_error = 0;
-};
-
-/// View by view, band by band. Readings of one scene with one seed share their noise in part; row by row it is known
+/// By how much one BRF lies above another, relative to it: view by view, band by band. Readings of one scene with one seed share their noise in part; row by row it is known
 /// how much, and that does not count.
-std::vector<RelativeDifference> relative_to(const BrfReading& reference, const BrfReading& reading);
+std::vector<MeanError> relative_to(const BrfReading& reference, const BrfReading& reading);
 
 /// Whether a reading is near enough to another everywhere.
 struct BrfVerdict {
   enum class Answer : uint8_t { enough, not_enough, unknown };
   Answer answer;
   size_t view, band;  ///< where it may be furthest off
-  RelativeDifference worst;
+  MeanError worst;
   double upper;  ///< bound of the largest difference that there may be
 };
 

@@ -63,7 +63,7 @@ struct Moment {
     sum += other.sum, square += other.square;
     return *this;
   }
-  FluxShare share(uint64_t paths) const {
+  MeanError share(uint64_t paths) const {
     const auto n = double(paths);
     if (paths == 0) return {};
     const double mean = sum / n, variance = std::max(0.0, square / n - mean * mean);
@@ -348,7 +348,7 @@ void FluxMeter::resume(const std::filesystem::path& path) {
 FluxReading FluxMeter::read() const {
   const State& s = *state_;
   const auto shares = [&](size_t quantity) {
-    std::vector<FluxShare> result;
+    std::vector<MeanError> result;
     for (size_t band = 0; band < s.bands; ++band)
       result.push_back(s.moments[quantity * s.bands + band].share(s.seen[band]));
     return result;
@@ -368,21 +368,22 @@ FluxReading FluxMeter::read() const {
     FluxReading::OfMaterial one{
         material.name.empty() ? material.plugin.name : material.name, shares(PathRecord::of_material(m, kAbsorbed)),
         shares(PathRecord::of_material(m, kIncident)), shares(PathRecord::of_material(m, kUncollided))};
-    if (std::ranges::any_of(one.incident, [](const FluxShare& share) { return share.mean > 0; }))
+    if (std::ranges::any_of(one.incident, [](const MeanError& share) { return share.mean > 0; }))
       reading.materials.push_back(std::move(one));
   }
-  if (s.by_instance) reading.areas = s.scene().geometry().areas();
-  if (s.by_instance)
-    for (size_t cell = 0; cell < s.by_instance->size(); ++cell)
-      reading.by_instance.push_back(s.by_instance->at(cell).share(s.seen[cell % s.bands]));
+  if (!s.by_instance) return reading;
+  reading.areas = s.scene().geometry().areas();
+  reading.by_instance.reserve(s.by_instance->size());
+  for (size_t cell = 0; cell < s.by_instance->size(); ++cell)
+    reading.by_instance.push_back(s.by_instance->at(cell).share(s.seen[cell % s.bands]));
   return reading;
 }
 
 double FluxReading::error() const {
   double squares = 0;
   size_t count = 0;
-  const auto add = [&](const std::vector<FluxShare>& shares) {
-    for (const FluxShare& s : shares) squares += s.standard_error * s.standard_error, ++count;
+  const auto add = [&](const std::vector<MeanError>& shares) {
+    for (const MeanError& s : shares) squares += s.standard_error * s.standard_error, ++count;
   };
   add(reflected);
   for (const OfMaterial& m : materials) add(m.absorbed);

@@ -21,27 +21,22 @@ struct FluxRequest {
   bool keeps_depth = false;                          ///< as of a BrfRequest
 };
 
-/// A part of the light that falls through the target, and its standard error.
-struct FluxShare {
-  double mean = 0, standard_error = 0;
-};
-
-/// Where the light goes, band by band.
+/// Where the light goes, band by band: shares of the light that falls through the target.
 struct FluxReading {
   struct OfMaterial {
     std::string name;
-    std::vector<FluxShare> absorbed;    ///< by its surfaces
-    std::vector<FluxShare> incident;    ///< that falls on them, on either side, every time that it does
-    std::vector<FluxShare> uncollided;  ///< of this what has met nothing before
+    std::vector<MeanError> absorbed;    ///< by its surfaces
+    std::vector<MeanError> incident;    ///< that falls on them, on either side, every time that it does
+    std::vector<MeanError> uncollided;  ///< of this what has met nothing before
   };
   std::vector<double> wavelengths_nm;
-  std::vector<FluxShare> reflected;    ///< leaves upward
-  std::vector<FluxShare> transmitted;  ///< leaves downward, where no ground is in its way
+  std::vector<MeanError> reflected;    ///< leaves upward
+  std::vector<MeanError> transmitted;  ///< leaves downward, where no ground is in its way
   std::vector<OfMaterial> materials;   ///< those that light fell on
-  std::vector<FluxShare> sum;          ///< of all that is absorbed or leaves: 1 but for its noise
+  std::vector<MeanError> sum;          ///< of all that is absorbed or leaves: 1 but for its noise
   uint64_t paths = 0;
   double target_area = 0;              ///< in the scene's unit of length, squared
-  std::vector<FluxShare> by_instance;  ///< absorbed by each copy, band by band, where it was asked for
+  std::vector<MeanError> by_instance;  ///< absorbed by each copy, band by band, where it was asked for
   std::vector<float> areas;            ///< of each copy, of one of its sides, where that was asked for
   /// Root mean square of the standard errors of what is reflected and absorbed, relative to the light that falls in.
   double error() const;

@@ -20,7 +20,7 @@ constexpr double kLogarithmic = 8;
 
 /// The largest value over the smallest.
 double spread(const BrfReading& reading) {
-  const auto [least, most] = std::ranges::minmax(reading.values, {}, &BrfValue::mean);
+  const auto [least, most] = std::ranges::minmax(reading.values, {}, &MeanError::mean);
   return least.mean > 0 ? most.mean / least.mean : 1;
 }
 

@@ -24,7 +24,7 @@ bool is_whole(double v) { return v == std::floor(v) && std::abs(v) < 1e15; }
 Json json_value(const Column& c, size_t row) {
   if (!c.is_number()) return std::get<1>(c.values)[row];
   const double v = number(c, row);
-  if (!std::isfinite(v)) return nullptr;
+  if (!std::isfinite(v)) return c.missing.empty() ? Json(nullptr) : Json(c.missing);
   if (c.is_flag) return v != 0;
   if (is_whole(v)) return int64_t(v);
   return v;
@@ -42,9 +42,9 @@ std::string with_error(double mean, double error) {
 std::string cell(const Table& table, const Column& c, size_t row) {
   if (!c.is_number()) return std::get<1>(c.values)[row];
   const double v = number(c, row);
-  if (c.is_flag) return c.csv(row);
+  if (c.is_flag) return v != 0 ? "true" : "false";
   if (const Column* error = error_of(table, c)) return with_error(v, number(*error, row));
-  return std::isfinite(v) ? fmt::format("{:.6g}", v) : "";
+  return std::isfinite(v) ? fmt::format("{:.6g}", v) : c.missing;
 }
 
 /// Characters of UTF-8.
@@ -58,13 +58,20 @@ size_t Column::size() const {
   return std::visit([](const auto& v) { return v.size(); }, values);
 }
 
-std::string Column::csv(size_t row) const {
-  if (!is_number()) return csv_field(std::get<1>(values)[row]);
+void Column::append_csv(size_t row, std::string& text) const {
+  if (!is_number()) {
+    text += csv_field(std::get<1>(values)[row]);
+    return;
+  }
   const double v = number(*this, row);
-  if (!std::isfinite(v)) return "";
-  if (is_flag) return v != 0 ? "true" : "false";
-  if (is_whole(v)) return fmt::format("{}", int64_t(v));
-  return is_error(name) ? fmt::format("{:.4g}", v) : fmt::format("{:.9g}", v);
+  if (!std::isfinite(v))
+    text += missing;
+  else if (is_flag)
+    text += v != 0 ? "true" : "false";
+  else if (is_whole(v))
+    fmt::format_to(std::back_inserter(text), "{}", int64_t(v));
+  else
+    fmt::format_to(std::back_inserter(text), "{:.{}g}", v, is_error(name) ? 4 : 9);
 }
 
 template <class T>
@@ -108,8 +115,11 @@ std::string to_csv(const Table& table, const std::vector<std::string>& notes) {
   }
   text += names + '\n';
   for (size_t row = 0; row < table.rows(); ++row) {
-    for (size_t i = 0; i < table.columns.size(); ++i) text += (i > 0 ? "," : "") + table.columns[i].csv(row);
-    text += '\n';
+    for (const Column& c : table.columns) {
+      c.append_csv(row, text);
+      text += ',';
+    }
+    if (!text.empty()) text.back() = '\n';
   }
   return text;
 }

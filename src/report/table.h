@@ -4,6 +4,8 @@
 #include <variant>
 #include <vector>
 
+#include "instruments/statistics.h"
+
 namespace frond {
 
 /// One column of a table: numbers, or words. NaN and "" stand for a value that is missing.
@@ -13,11 +15,12 @@ struct Column {
   std::string doc = {};    ///< one line: meaning and unit; may be empty
   bool only_data = false;  ///< left out of the text for terminals
   bool is_flag = false;    ///< of numbers 0 and 1, which are written false and true
+  std::string missing = {};  ///< what stands in files and text for a number that is missing
 
   bool is_number() const { return values.index() == 0; }
   size_t size() const;
-  std::string csv(size_t row) const;  ///< a field of CSV (RFC 4180): 9 significant digits, 4 of a standard error, all of a
-                                      ///< whole number
+  /// Appends a field of CSV (RFC 4180): 9 significant digits, 4 of a standard error, all of a whole number.
+  void append_csv(size_t row, std::string& text) const;
 };
 
 /// A result as rows and columns. All columns have one length. This is what front ends print, write and convert.
@@ -34,6 +37,7 @@ struct Table {
   void add(const std::string& column, std::string value);
   /// `column` and `column`_se.
   void add(const std::string& column, double mean, double standard_error);
+  void add(const std::string& column, const MeanError& v) { add(column, v.mean, v.standard_error); }
   /// "true" or "false". Not an overload of add: a literal would convert to bool.
   void add_flag(const std::string& column, bool value);
   /// Sets the column's documentation; the column has to exist.

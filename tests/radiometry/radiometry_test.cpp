@@ -114,7 +114,7 @@ TEST_F(Radiometry, ALambertianPlaneHasItsReflectanceInEveryDirection) {
         64);
     for (size_t view = 0; view < 4; ++view)
       for (size_t band = 0; band < 2; ++band) {
-        const BrfValue& v = reading.at(view, band);
+        const MeanError& v = reading.at(view, band);
         EXPECT_NEAR(v.mean, 0.3, kZ * v.standard_error + 1e-4);  // the sky's irradiance is a sum
         EXPECT_LT(v.standard_error, 0.01);
       }
@@ -200,9 +200,9 @@ TEST_F(Radiometry, TheAlbedoIsTheSameFromTheSunAndFromTheSensor) {
           {std::asin(std::sqrt((i + 0.5) / kRings)) * 180 / std::numbers::pi, 360.0 * (k + 0.5) / kAzimuths});
   const BrfReading seen = brf(world, request, 16);
   double sum = 0, variance = 0;
-  for (const BrfValue& v : seen.values) sum += v.mean, variance += v.standard_error * v.standard_error;
+  for (const MeanError& v : seen.values) sum += v.mean, variance += v.standard_error * v.standard_error;
   const double albedo = sum / double(seen.values.size()), error = std::sqrt(variance) / double(seen.values.size());
-  const FluxShare sent = flux(world, {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 200000).reflected[0];
+  const MeanError sent = flux(world, {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 200000).reflected[0];
   // The rings' sum over angles is off by less than 1e-3 for so smooth a function.
   EXPECT_NEAR(albedo, sent.mean, kZ * std::hypot(error, sent.standard_error) + 1e-3);
   EXPECT_LT(std::hypot(error, sent.standard_error), 2e-3) << "the test has lost its power";

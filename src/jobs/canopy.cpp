@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include "jobs/common_params.h"
+#include "scene/homogeneous_canopy.h"
+#include "scene/instance_writer.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+const std::vector<std::string_view> kAngles = [] {
+  std::vector<std::string_view> names;
+  for (const LeafAngles& a : leaf_angle_distributions()) names.push_back(a.name);
+  return names;
+}();
+
+const JobParam kParams[] = {
+    {.name = "output",
+     .kind = text,
+     .doc = "Instance table to write, a NumPy file (.npy).",
+     .type = "FILE",
+     .aliases = "o",
+     .path = PathUse::write,
+     .required = true},
+    {.name = "lai",
+     .kind = real,
+     .doc = "Leaf area index: one-sided area of the leaves over that of the ground.",
+     .default_value = "3",
+     .range = kAboveZero},
+    {.name = "count", .kind = count, .doc = "Number of leaves.", .range = {1, 4e9}, .excludes = "lai"},
+    {.name = "ball",
+     .kind = real,
+     .doc = "Radius of a ball around the origin that the leaves fill, in place of a plot.",
+     .range = kAboveZero,
+     .needs = "count"},
+    {.name = "angles",
+     .kind = text,
+     .doc = "Distribution of leaf angles.",
+     .default_value = "spherical",
+     .choices = kAngles},
+    {.name = "scale",
+     .kind = real,
+     .doc = "Scale of each leaf: its radius, where the object is a disk of radius 1.",
+     .default_value = "0.05",
+     .range = kAboveZero},
+    {.name = "leaf-area",
+     .kind = real,
+     .doc = "One-sided area of the object at scale 1; the default is that of a disk of radius 1.",
+     .default_value = "3.141592653589793",
+     .range = kAboveZero},
+    {.name = "size",
+     .kind = numbers,
+     .doc = "Size of the plot along x and y, from 0: its period.",
+     .type = "X,Y",
+     .default_value = "10,10",
+     .range = kAboveZero,
+     .values = 2},
+    {.name = "heights",
+     .kind = numbers,
+     .doc = "Least and largest height of the leaves' centres.",
+     .type = "LEAST,MOST",
+     .default_value = "0,1",
+     .values = 2},
+    {.name = "apart",
+     .kind = real,
+     .doc = "Least distance between the leaves' centres; by default positions are independent.",
+     .range = kAboveZero},
+    {.name = "column",
+     .kind = texts,
+     .doc = "Number that each leaf has for Texture \"instance\", uniform between two bounds: chlorophylla=2:5.",
+     .type = "NAME=LEAST:MOST"},
+    kSeedParam,
+};
+
+HomogeneousCanopy::Column column_of(const std::string& text, const Arguments& args) {
+  const size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
+  std::optional<std::vector<double>> ends;
+  if (equals != std::string::npos && colon != std::string::npos)
+    ends = parse_numbers(text.substr(equals + 1, colon - equals - 1) + "," + text.substr(colon + 1));
+  if (!ends || ends->size() != 2 || !((*ends)[0] <= (*ends)[1]))
+    fail({}, "{} takes NAME=LEAST:MOST, as in chlorophylla=2:5; \"{}\" was given", args.spelled("column"), text);
+  return {text.substr(0, equals), {(*ends)[0], (*ends)[1]}};
+}
+
+HomogeneousCanopy canopy_of(const Arguments& args) {
+  const auto size = args.numbers("size"), heights = args.numbers("heights");
+  if (!(heights[0] <= heights[1])) fail({}, "{}: {} is above {}", args.spelled("heights"), heights[0], heights[1]);
+  HomogeneousCanopy canopy{.leaf_area_index = args.real("lai"),
+                           .count = uint64_t(args.count("count")),
+                           .leaf_area = args.real("leaf-area"),
+                           .scale = args.real("scale"),
+                           .size = {size[0], size[1]},
+                           .heights = {heights[0], heights[1]},
+                           .ball = args.real("ball"),
+                           .apart = args.real("apart"),
+                           .seed = args.seed("seed")};
+  canopy.angles = &*std::ranges::find(leaf_angle_distributions(), args.text("angles"), &LeafAngles::name);
+  for (const std::string& text : args.texts("column")) canopy.columns.push_back(column_of(text, args));
+  return canopy;
+}
+
+Result canopy(const JobRun& run) {
+  const HomogeneousCanopy canopy = canopy_of(run.args);
+  const uint64_t leaves = canopy.leaves();
+  constexpr uint64_t kMost = 0xfffffffe;  // of one table, in Embree
+  if (leaves == 0 || leaves > kMost) fail({}, "these are {} leaves: 1 to {} are possible", leaves, kMost);
+  std::vector<std::string> names;
+  for (const HomogeneousCanopy::Column& column : canopy.columns) names.push_back(column.name);
+  const std::string output = run.args.text("output");
+  InstanceWriter writer(output, leaves, names);
+  LeafPlacer placer(canopy);
+  std::vector<float> values(names.size());
+  for (uint64_t leaf = 0; leaf < leaves; ++leaf) writer.add(placer.place(values), values);
+  writer.finish();
+  const double area = double(leaves) * canopy.leaf_area * canopy.scale * canopy.scale;
+  Result result{.facts = {{"leaves", double(leaves)}, {"area", area}}};
+  std::string message = fmt::format("{}: {} leaves, {:.6g} of area", output, leaves, area);
+  if (canopy.ball == 0) {
+    const double index = area / (canopy.size[0] * canopy.size[1]);
+    result.facts.push_back({"leaf_area_index", index});
+    message += fmt::format(", leaf area index {:.5g}", index);
+  }
+  run.log().info(message);
+  return result;
+}
+
+}  // namespace
+
+extern const JobInfo kCanopyJob{.name = "canopy",
+                                .group = "Scenes",
+                                .doc = "Write an instance table of leaves at random, for Shape \"instances\".",
+                                .details = "",
+                                .params = kParams,
+                                .session = SessionUse::none,
+                                .run = canopy};
+
+}  // namespace frond

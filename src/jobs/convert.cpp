@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "image/rgb_file.h"
+#include "image/spectral_layout.h"
+#include "jobs/display_params.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr JobParam kParams[] = {
+    {.name = "images",
+     .kind = texts,
+     .doc = "EXR files of one size and colour space.",
+     .type = "FILE",
+     .path = PathUse::read,
+     .positional = true,
+     .required = true},
+    {.name = "output",
+     .kind = text,
+     .doc = "Image to write: .png, .jpg or .exr.",
+     .type = "FILE",
+     .aliases = "o",
+     .path = PathUse::write,
+     .required = true},
+    {.name = "bands",
+     .kind = numbers,
+     .doc = "Wavelengths of three bands to show as red, green and blue, such as 850,650,550; white in equal-energy "
+            "light is 1.",
+     .type = "R,G,B",
+     .unit = "nm",
+     .range = kAboveZero,
+     .values = 3},
+    {.name = "exposure", .kind = real, .doc = "Change of exposure.", .default_value = "0", .unit = "stops"},
+    kDisplayParam,
+    kViewParam,
+};
+
+LinearFile read(const std::string& path, const std::vector<double>& bands_nm) {
+  if (bands_nm.empty()) return read_linear(path);
+  return {.path = path,
+          .space = "linear sRGB",
+          .image = false_color_image(read_image(path, {}), path, bands_nm),
+          .leaf = {},
+          .seed = {}};
+}
+
+LinearFile mean_of(const std::vector<std::string>& paths, const std::vector<double>& bands_nm) {
+  LinearFile mean = read(paths[0], bands_nm);
+  for (size_t i = 1; i < paths.size(); ++i) {
+    const LinearFile next = read(paths[i], bands_nm);
+    check_same_size(mean, next);
+    if (next.space != mean.space)
+      fail({}, "{} is in {}, {} in {}: only images of one colour space are averaged", mean.path, mean.space, next.path,
+           next.space);
+    mean.correlated_pixels = std::max(mean.correlated_pixels, next.correlated_pixels);
+    for (size_t k = 0; k < mean.image.pixels.size(); ++k) mean.image.pixels[k] += next.image.pixels[k];
+  }
+  return mean;
+}
+
+Result convert(const JobRun& run) {
+  const std::string output = run.args.text("output");
+  const DisplayChoice display = display_choice(run.args);
+  check_writable(output);
+  const ColorManager colors;
+  check_display_choice(output, colors, display);
+  const auto paths = run.args.texts("images");
+  LinearFile mean = mean_of(paths, run.args.numbers("bands"));
+  const float scale = float(std::exp2(run.args.real("exposure")) / double(paths.size()));
+  for (float& v : mean.image.pixels) v *= scale;
+  std::map<std::string, std::string> attributes{{"frond:version", FROND_VERSION}};
+  if (mean.correlated_pixels > 1) attributes["frond:correlated_pixels"] = fmt::format("{:.3f}", mean.correlated_pixels);
+  if (is_exr(output))
+    write_image(output, mean.image, {mean.space, attributes});
+  else
+    write_display_image(output, mean.image, mean.space, colors, display, {});
+  return {};
+}
+
+}  // namespace
+
+extern const JobInfo kConvertJob{.name = "convert",
+                                 .group = "Images",
+                                 .doc = "Average linear images, and write the mean as EXR or through a display transform.",
+                                 .details = "",
+                                 .params = kParams,
+                                 .session = SessionUse::none,
+                                 .run = convert};
+
+}  // namespace frond

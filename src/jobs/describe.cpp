@@ -1,0 +1,212 @@
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "jobs/command_line.h"
+#include "render/plugins.h"
+#include "scene/normal_map.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr JobParam kParams[] = {
+    {.name = "name",
+     .kind = text,
+     .doc = "Name of a plug-in (see frond list), a kind of plug-in such as material, or a command.",
+     .type = "PLUGIN",
+     .positional = true},
+    {.name = "markdown", .kind = flag, .doc = "Print Markdown; without a name, of every plug-in."},
+    {.name = "commands", .kind = flag, .doc = "Print Markdown of every command.", .excludes = "markdown"},
+};
+
+constexpr std::string_view type_name(ParamKind kind) {
+  constexpr std::string_view kNames[] = {"bool",
+                                         "integer",
+                                         "float",
+                                         "string",
+                                         "point2",
+                                         "vector2",
+                                         "point3",
+                                         "vector3",
+                                         "normal",
+                                         "rgb | spectrum | blackbody",
+                                         "rgb | spectrum",
+                                         "float | rgb | spectrum",
+                                         "float | texture",
+                                         "rgb | spectrum | texture",
+                                         "string"};
+  static_assert(std::size(kNames) == size_t(ParamKind::material) + 1);
+  return kNames[size_t(kind)];
+}
+
+/// A parameter of a plug-in or a command.
+struct Row {
+  std::string name, type, default_value, unit, range, doc;
+  std::string head;  ///< as it is written in a scene, or on a command line
+};
+
+std::string default_text(const Param& p) {
+  if (p.required) return "required";
+  struct Print {
+    std::string operator()(std::monostate) const { return ""; }
+    std::string operator()(bool v) const { return v ? "true" : "false"; }
+    std::string operator()(std::string_view v) const { return fmt::format("\"{}\"", v); }
+    std::string operator()(const std::array<double, 3>& v) const { return fmt::format("{}", fmt::join(v, " ")); }
+    std::string operator()(int v) const { return fmt::format("{}", v); }
+    std::string operator()(double v) const { return fmt::format("{:g}", v); }
+  };
+  return std::visit(Print(), p.default_value);
+}
+
+std::string range_text(const Param& p) {
+  if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, " | "));
+  const bool below = std::isfinite(p.range.min), above = std::isfinite(p.range.max);
+  if (below && above) return fmt::format("{:g} to {:g}", p.range.min, p.range.max);
+  if (below) return fmt::format("from {:g}", p.range.min);
+  if (above) return fmt::format("up to {:g}", p.range.max);
+  return "";
+}
+
+/// With the parameters of every material.
+std::vector<Row> rows_of(const PluginInfo& info) {
+  std::vector<Row> rows;
+  const auto add = [&rows](std::span<const Param> params) {
+    for (const Param& p : params)
+      rows.push_back({std::string(p.name), std::string(type_name(p.kind)), default_text(p), std::string(p.unit),
+                      range_text(p), std::string(p.doc),
+                      fmt::format("\"{} {}\"{}", type_name(p.kind), p.name, p.list ? " [ ... ]" : "")});
+  };
+  add(info.params);
+  if (info.kind == normal_bend_params.kind) add(normal_bend_params.params);
+  return rows;
+}
+
+Row row_of(const JobParam& p) {
+  const std::string name = p.positional ? std::string(p.name) : fmt::format("{}", fmt::join(option_names(p), ", "));
+  const std::string value = value_name(p);
+  return {name,
+          value,
+          p.required ? "required" : std::string(p.default_value),
+          std::string(p.unit),
+          accepted(p),
+          std::string(p.doc) + relations(p),
+          name + (p.positional || value.empty() ? "" : p.implied.empty() ? " " + value : "[=" + value + "]")};
+}
+
+std::vector<Row> rows_of(std::span<const JobParam> params) {
+  std::vector<Row> rows;
+  for (const JobParam& p : params) rows.push_back(row_of(p));
+  return rows;
+}
+
+std::string text_of(const std::vector<Row>& rows) {
+  std::string text;
+  for (const Row& row : rows) {
+    text += fmt::format("\n  {}\n      {}\n", row.head, row.doc);
+    std::vector<std::string> facts;
+    if (!row.default_value.empty())
+      facts.push_back((row.default_value == "required" ? "" : "default ") + row.default_value);
+    if (!row.range.empty()) facts.push_back(row.range);
+    if (!row.unit.empty()) facts.push_back("in " + row.unit);
+    text += facts.empty() ? "\n" : fmt::format("      {}\n", fmt::join(facts, "; "));
+  }
+  return text;
+}
+
+std::string markdown_of(const std::vector<Row>& rows, std::string_view head) {
+  if (rows.empty()) return "";
+  const auto escape = [](std::string_view s) {
+    std::string out;
+    for (const char c : s) out += c == '|' ? "\\|" : std::string(1, c);
+    return out;
+  };
+  std::string text = fmt::format("{}\n|---|---|---|---|---|---|\n", head);
+  for (const Row& row : rows)
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", row.name, escape(row.type), row.default_value, row.unit,
+                        escape(row.range), escape(row.doc));
+  return text + '\n';
+}
+
+std::string text_of(const PluginInfo& info) {
+  const std::string source = info.source.empty() ? "" : fmt::format("  After: {}\n", info.source);
+  return fmt::format("{} \"{}\"\n  {}\n{}", info.kind, info.name, info.doc, source) + text_of(rows_of(info));
+}
+
+std::string markdown_of(const PluginInfo& info) {
+  const std::string source = info.source.empty() ? "" : fmt::format(" After: {}.", info.source);
+  return fmt::format("## {} `{}`\n\n{}{}\n\n", info.kind, info.name, info.doc, source) +
+         markdown_of(rows_of(info), "| parameter | type | default | unit | range | |");
+}
+
+std::string text_of(const JobInfo& job) {
+  std::vector<Row> rows;
+  for (const JobParam* p : params_of(job)) rows.push_back(row_of(*p));
+  const std::string details = job.details.empty() ? "" : fmt::format("  {}\n", job.details);
+  return fmt::format("command \"{}\"\n  {}\n{}  {}\n", job.name, job.doc, details, usage(job)) + text_of(rows);
+}
+
+constexpr std::string_view kCommandHead = "| parameter | value | default | unit | range or choices | description |";
+
+std::string markdown_of(const JobInfo& job) {
+  std::string text = fmt::format("### frond {}\n\n{} {}\n\n    {}\n\n", job.name, job.doc, job.details, usage(job));
+  if (job.details.empty()) text.erase(text.find(" \n\n"), 1);
+  text += markdown_of(rows_of(job.params), kCommandHead);
+  if (job.extends)
+    text += fmt::format("All parameters of [frond {0}](#frond-{0}) too.\n\n", job.extends->name);
+  std::vector<std::string> names;
+  for (const JobParam& p : session_params(job.session)) names.push_back(fmt::format("`--{}`", p.name));
+  return text + fmt::format("[Common parameters](#common-parameters): {}.\n\n", fmt::join(names, ", "));
+}
+
+/// docs/commands.md.
+std::string commands_page() {
+  std::string text =
+      "# Commands\n\nAll commands of frond and their parameters. Made by `frond describe --commands`; "
+      "`frond COMMAND --help` and `frond man COMMAND` print the same. Examples are in the [cookbook](cookbook.md).\n\n";
+  std::string_view group;
+  for (const JobInfo* job : all_jobs()) {
+    if (job->group != group) text += fmt::format("## {}\n\n", job->group);
+    group = job->group;
+    text += markdown_of(*job);
+  }
+  text += "## Common parameters\n\n" + markdown_of(rows_of(session_params(SessionUse::all)), kCommandHead);
+  text.pop_back();
+  return text;
+}
+
+Result describe(const JobRun& run) {
+  const std::string name = run.args.text("name");
+  const bool markdown = run.args.flag("markdown");
+  if (run.args.flag("commands")) return {.text = commands_page(), .is_requested = true};
+  if (name.empty() && !markdown) fail({}, "frond describe takes a name; frond list prints those of plug-ins");
+  const Registry registry = load_registry(run.context.options().plugins);
+  std::vector<std::string_view> names;
+  std::string found;
+  const auto add = [&](bool is_chosen, const auto& info) {
+    names.push_back(info.name);
+    if (!is_chosen) return;
+    if (!found.empty() && !markdown) found += '\n';
+    found += markdown ? markdown_of(info) : text_of(info);
+  };
+  for (const PluginInfo* info : all_plugins(registry))
+    add(name.empty() || info->name == name || info->kind == name, *info);
+  for (const JobInfo* job : all_jobs()) add(!name.empty() && job->name == name, *job);
+  if (found.empty()) fail({}, "nothing is called \"{}\"{}", name, suggestion(name, names));
+  if (name.empty()) found = "# Plugins\n\nMade by `frond describe --markdown`.\n\n" + found;
+  return {.text = found, .is_requested = true};
+}
+
+}  // namespace
+
+extern const JobInfo kDescribeJob{
+    .name = "describe",
+    .group = "Materials",
+    .doc = "Print the parameters of a plug-in or a command: types, defaults, units and ranges.",
+    .details = "",
+    .params = kParams,
+    .session = SessionUse::plugins,
+    .run = describe};
+
+}  // namespace frond

@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include "image/rgb_file.h"
+#include "instruments/image_error.h"
+#include "jobs/job.h"
+#include "spectra/color_management.h"
+#include "study/smpte_luminance.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr std::string_view kSpace = "linear SMPTE-C";
+constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
+constexpr JobParam kParams[] = {
+    {.name = "images",
+     .kind = texts,
+     .doc = "A1 A2 B1 B2: two halves of each render, each with its own seed.",
+     .type = "FILE",
+     .values = 4,
+     .path = PathUse::read,
+     .positional = true,
+     .required = true},
+    {.name = "output",
+     .kind = text,
+     .doc = "Image of the signed difference in luminance: red where A is brighter, blue where B is.",
+     .type = "FILE",
+     .aliases = "o",
+     .path = PathUse::write},
+    {.name = "scale", .kind = real, .doc = "Difference at full colour.", .default_value = "0.1", .range = kAboveZero},
+    {.name = "json", .kind = flag, .doc = "Print JSON."},
+};
+
+/// Blue where `b` is brighter, red where `a` is, white where they are equal: also told apart in colour blindness.
+std::array<float, 3> false_color(float t) {
+  t = std::clamp(t, -1.f, 1.f);
+  const std::array<float, 3> blue{0.13f, 0.40f, 0.67f}, white{0.97f, 0.97f, 0.97f}, red{0.70f, 0.09f, 0.17f};
+  const auto& end = t < 0 ? blue : red;
+  std::array<float, 3> c{};
+  for (size_t k = 0; k < 3; ++k) c[k] = white[k] + (end[k] - white[k]) * std::abs(t);
+  return c;
+}
+
+void write_difference(const std::string& path, const std::vector<LinearFile>& halves, double scale) {
+  const Image& size = halves[0].image;
+  Image shown(size.width, size.height, {"R", "G", "B"});
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const auto at = [&](size_t i) {
+        const Image& image = halves[i].image;
+        return smpte_luminance(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2));
+      };
+      const auto color = false_color((at(0) + at(1) - at(2) - at(3)) / 2 / float(scale));
+      for (size_t c = 0; c < 3; ++c) shown.at(x, y, c) = color[c];
+    }
+  write_image(path, shown, {"", {{"frond:difference_scale", fmt::format("{}", scale)}}});
+}
+
+std::vector<LinearFile> read_halves(const std::vector<std::string>& paths) {
+  const ColorManager colors;
+  std::vector<LinearFile> halves;
+  for (const std::string& path : paths) {
+    halves.push_back(read_linear(path));
+    check_same_size(halves[0], halves.back());
+    colors.convert(halves.back().image.pixels, halves.back().space, kSpace);
+  }
+  return halves;
+}
+
+/// The bias estimate is the mean of (A1 - B1)(A2 - B2): the factors have to be independent. The same seed within one
+/// factor, as in A1 and B1, does no harm.
+void warn_of_same_noise(const std::vector<LinearFile>& halves, const Log& log) {
+  for (const auto& [i, j] : {std::pair{0u, 1u}, {2u, 3u}, {0u, 3u}, {1u, 2u}}) {
+    const LinearFile &a = halves[i], &b = halves[j];
+    if (a.path != b.path && (a.seed.empty() || a.seed != b.seed)) continue;
+    log.warn({}, fmt::format("{} and {} have the same seed{}: noise cannot be told from bias; render one of them with "
+                             "another --seed",
+                             a.path, b.path, a.seed.empty() ? "" : fmt::format(" ({})", a.seed)));
+  }
+}
+
+/// The numbers of a channel, in the order of the table and the facts. Those with a title are in the text.
+constexpr struct {
+  const char *name, *title;
+  double (*of)(const ImageError&);
+} kNumbers[] = {
+    {"rms", "RMS", [](const ImageError& e) { return e.rms; }},
+    {"rms_clipped", "RMS, clipped", [](const ImageError& e) { return e.rms_clipped; }},
+    {"noise", "noise", [](const ImageError& e) { return e.noise; }},
+    {"bias", "bias", [](const ImageError& e) { return e.bias(); }},
+    {"bias_upper", "bias, upper 95 %", [](const ImageError& e) { return e.bias_upper(); }},
+    {"mean_difference", "mean difference", [](const ImageError& e) { return e.mean_difference; }},
+    {"bias_squared", "", [](const ImageError& e) { return e.bias_squared.value; }},
+    {"bias_squared_error", "", [](const ImageError& e) { return e.bias_squared.standard_error; }},
+    {"noise_a", "", [](const ImageError& e) { return e.noise_a; }},
+    {"noise_b", "", [](const ImageError& e) { return e.noise_b; }},
+};
+
+/// Adds facts "rms_red" and so on, with `prefix` before each name, and rows of the table. Returns the text.
+std::string add_errors(Result& result, const std::string& region, const std::string& prefix,
+                       const std::vector<LinearFile>& halves, std::span<const float> use) {
+  double correlated = 1;
+  for (const LinearFile& half : halves) correlated = std::max(correlated, half.correlated_pixels);
+  std::array<ImageError, 3> errors;
+  for (size_t c = 0; c < 3; ++c) {
+    std::array<std::vector<float>, 4> v;
+    for (size_t i = 0; i < 4; ++i) v[i] = halves[i].image.plane(c);
+    errors[c] = image_error(v[0], v[1], v[2], v[3], use, correlated);
+    result.tables[0].add("region", region);
+    result.tables[0].add("channel", std::string(kChannels[c]));
+    for (const auto& n : kNumbers) {
+      result.tables[0].add(n.name, n.of(errors[c]));
+      result.facts.push_back({fmt::format("{}{}_{}", prefix, n.name, kChannels[c]), n.of(errors[c])});
+    }
+  }
+  Table shown;
+  for (const auto& n : kNumbers) {
+    if (*n.title == '\0') continue;
+    shown.add(region + " pixels", std::string(n.title));
+    for (size_t c = 0; c < 3; ++c) shown.add(kChannels[c], n.of(errors[c]));
+  }
+  return to_text(shown);
+}
+
+Result difference(const JobRun& run) {
+  const std::string output = run.args.text("output");
+  if (!output.empty()) check_writable(output);
+  if (!output.empty() && is_exr(output))
+    fail({}, "{}: a difference is an image in false colour: name a .png or .jpg", output);
+  const auto halves = read_halves(run.args.texts("images"));
+  warn_of_same_noise(halves, run.log());
+  if (!output.empty()) write_difference(output, halves, run.args.real("scale"));
+  Result result{.tables = {{"difference"}}, .is_requested = run.args.flag("json")};
+  result.text = fmt::format("In {}\n{}", kSpace, add_errors(result, "all", "", halves, {}));
+  if (!halves[0].leaf.empty()) result.text += '\n' + add_errors(result, "leaf", "leaf_", halves, halves[0].leaf);
+  if (result.is_requested) result.text = to_json({}, result.facts, {});
+  return result;
+}
+
+}  // namespace
+
+extern const JobInfo kDifferenceJob{.name = "difference",
+                                    .group = "Images",
+                                    .doc = "Measure the RMS error between two renders, with noise and bias separated.",
+                                    .details = "",
+                                    .params = kParams,
+                                    .session = SessionUse::none,
+                                    .run = difference};
+
+}  // namespace frond

@@ -1,0 +1,233 @@
+#include "radiometry/flux.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "jobs/radiometry.h"
+#include "jobs/refine.h"
+#include "radiometry/photons.h"
+#include "spectra/named.h"
+#include "spectra/spd_file.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr std::string_view kBy[] = {"instance"};
+constexpr JobParam kParams[] = {
+    kSceneParam,
+    kRadiometryWavelengthsParam,
+    kTargetParam,
+    kPeriodParam,
+    {.name = "paths", .kind = count, .doc = "Number of light paths.", .default_value = "1e6", .range = kCounts},
+    kRmsParam,
+    kTimeLimitParam,
+    {.name = "by",
+     .kind = text,
+     .doc = "Measure what each instance of an object absorbs: a row for each.",
+     .choices = kBy,
+     .decides = true},
+    {.name = "irradiance",
+     .kind = text,
+     .doc = "Irradiance of the horizontal plane, for photon flux: name of a spectrum, or an .spd file.",
+     .type = "SPECTRUM",
+     .default_value = "solar-am1.5-global",
+     .unit = "W/(m2 nm)"},
+    kSwapParam,
+    kIntegratorParam,
+    kSeedParam,
+    kIgnoreUnsupportedParam,
+    kStrictParam,
+    kCsvParam,
+    kJsonParam,
+    kCheckpointParam,
+    kResumeParam,
+};
+
+/// What becomes of the light: one row, band by band.
+struct Row {
+  std::string quantity, material;
+  const std::vector<MeanError>& shares;
+};
+
+std::vector<Row> rows_of(const FluxReading& reading) {
+  std::vector<Row> rows{{"reflected", "", reading.reflected}, {"transmitted", "", reading.transmitted}};
+  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"absorbed", m.name, m.absorbed});
+  rows.push_back({"sum", "", reading.sum});
+  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"incident", m.name, m.incident});
+  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"uncollided", m.name, m.uncollided});
+  return rows;
+}
+
+/// Share of the photons. The standard error is an upper bound: bands share their paths.
+MeanError share_of_photons(std::span<const MeanError> shares, const PhotonWeights& photons) {
+  MeanError sum;
+  for (size_t band = 0; band < shares.size(); ++band) {
+    sum.mean += photons.weights[band] * shares[band].mean;
+    sum.standard_error += photons.weights[band] * shares[band].standard_error;
+  }
+  return sum;
+}
+
+/// A row for each quantity and wavelength; that of PAR photons has no wavelength.
+Table share_table(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+  Table table{"flux"};
+  const auto add = [&table](const Row& row, double nm, const MeanError& share) {
+    table.add("quantity", row.quantity);
+    table.add("material", row.material);
+    table.add("wavelength_nm", nm);
+    table.add("share", share);
+  };
+  for (const Row& row : rows_of(reading)) {
+    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
+      add(row, reading.wavelengths_nm[band], row.shares[band]);
+    if (photons) add(row, std::numeric_limits<double>::quiet_NaN(), share_of_photons(row.shares, *photons));
+  }
+  table.columns[2].missing = "PAR";
+  return table;
+}
+
+/// A row for each quantity, a column for each wavelength.
+std::string share_text(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+  Table table{"flux"};
+  for (const Row& row : rows_of(reading)) {
+    table.add("share", row.quantity);
+    table.add("material", row.material);
+    if (photons) table.add("PAR photons", share_of_photons(row.shares, *photons));
+    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
+      table.add(fmt::format("{:g} nm", reading.wavelengths_nm[band]), row.shares[band]);
+  }
+  return to_text(table);
+}
+
+/// A row for each instance: its area, the absorbed photon flux, and the absorbed shares of the incident light. There
+/// may be 1e8 of them: whole columns.
+Table instance_table(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+  const size_t bands = reading.wavelengths_nm.size(), count = reading.areas.size();
+  Table table{"instances"};
+  const auto add = [&](const std::string& name, const auto& value) {
+    std::vector<double> values(count);
+    for (size_t i = 0; i < count; ++i) values[i] = value(i);
+    table.columns.push_back({name, std::move(values)});
+  };
+  const auto add_measured = [&](const std::string& name, const auto& value) {
+    add(name, [&](size_t i) { return value(i).mean; });
+    add(name + "_se", [&](size_t i) { return value(i).standard_error; });
+  };
+  add("instance", [](size_t i) { return double(i + 1); });
+  add("area", [&](size_t i) { return double(reading.areas[i]); });
+  if (photons)
+    add_measured("par_umol_m2_s", [&](size_t i) {
+      const MeanError share = share_of_photons(std::span(reading.by_instance).subspan(i * bands, bands), *photons);
+      const double factor = photons->incident * reading.target_area / double(reading.areas[i]);
+      return MeanError{share.mean * factor, share.standard_error * factor};
+    });
+  for (size_t band = 0; band < bands; ++band)
+    add_measured(fmt::format("absorbed_{:g}", reading.wavelengths_nm[band]),
+                 [&](size_t i) { return reading.by_instance[i * bands + band]; });
+  return table;
+}
+
+/// Writes a checkpoint when the last one is older than the interval.
+std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& meter, const KeptFile& kept) {
+  using Clock = std::chrono::steady_clock;
+  const std::chrono::duration<double> interval(checkpoint_seconds(run.args));
+  return [&run, &meter, &kept, interval, last = Clock::now()]() mutable {
+    if (Clock::now() - last < interval) return;
+    try {
+      meter.save(kept.checkpoint());
+    } catch (const InputError& error) {
+      run.log().warn({}, fmt::format("no checkpoint was written, measuring goes on: {}", error.what()));
+    }
+    last = Clock::now();
+  };
+}
+
+/// Nothing where it was stopped; `kept` may be nullptr.
+std::optional<FluxReading> measure(const JobRun& run, FluxMeter& meter, const KeptFile* kept) {
+  const RenderControl control = run.control_until(run.args.real("time-limit"));
+  constexpr uint64_t kFirst = 1 << 16;
+  const double rms = run.args.real("rms");
+  const Effort effort{rms > 0 ? kFirst : uint64_t(run.args.count("paths")), uint64_t{1} << 40, rms};
+  std::function<void()> checkpoint;
+  if (kept) {
+    if (const auto path = kept->found(run.args.flag("resume"))) meter.resume(*path);
+    checkpoint = checkpoint_writer(run, meter, *kept);
+  }
+  std::optional<FluxReading> reading;
+  const RefineEnd end = refine(
+      effort, meter.paths(), control,
+      [&](uint64_t paths) {
+        reading.reset();
+        if (meter.paths() < paths) meter.trace(paths - meter.paths(), run.session().pool(), control, checkpoint);
+      },
+      [&] { return reading.emplace(meter.read()).error(); });
+  if (end != RefineEnd::stopped && meter.paths() == 0)
+    fail({}, "{}: the time was over before any light path was traced", run.args.spelled("time-limit"));
+  if (kept) kept->keep(end != RefineEnd::stopped, false, [&meter](const auto& path) { meter.save(path); });
+  if (end == RefineEnd::stopped) return {};
+  return reading ? std::move(reading) : meter.read();
+}
+
+std::optional<PhotonWeights> photon_weights(const Scene& scene, const Spectrum& irradiance) {
+  std::vector<double> nm;
+  for (const Band& band : scene.wavelengths().bands()) nm.push_back(band.nm);
+  return PhotonWeights::of(nm, irradiance);
+}
+
+Result by_instance(const JobRun& run, FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+  if (!photons)
+    run.log().info(fmt::format("no PAR: it takes bands from 400 to 700 nm, in steps of 50 nm at most ({} 400:700:20)",
+                               run.args.spelled("wavelengths")));
+  Result result;
+  result.tables.push_back(instance_table(reading, photons));
+  reading.by_instance = {};
+  if (run.args.given("csv") || run.args.given("json")) return result;
+  result.text = to_csv(result.tables[0], {});
+  result.is_requested = true;
+  return result;
+}
+
+Result flux(const JobRun& run) {
+  std::optional<KeptFile> kept;
+  if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
+  const std::string light = run.args.text("irradiance");
+  const SpectrumPtr irradiance = light.ends_with(".spd") ? read_spd(light, {}) : named_spectrum(light, {});
+  const bool is_by_instance = run.args.text("by") == "instance";
+  const FluxRequest request{.target = target_of(run.args),
+                            .period = period_of(run.args),
+                            .wavelengths = wavelengths_text(run.args),
+                            .by_instance = is_by_instance,
+                            .keeps_depth = run.args.given("integrator")};
+  FluxMeter meter(run.session(), described_scene(run), request);
+  run.context.log().check();
+  const auto photons = photon_weights(meter.scene(), *irradiance);
+  auto measured = measure(run, meter, kept ? &*kept : nullptr);
+  if (!measured) {
+    if (kept) kept->report_stop();
+    return {.stopped = true};
+  }
+  FluxReading& reading = *measured;
+  const double error = reading.error();
+  Result result = is_by_instance ? by_instance(run, reading, photons) : Result{.text = share_text(reading, photons)};
+  result.tables.push_back(share_table(reading, photons));
+  result.facts = {{"paths", double(reading.paths)}, {"error", error}, {"target_area", reading.target_area}};
+  run.log().info(fmt::format("{} paths; RMS standard error {:.2g}", reading.paths, error));
+  return result;
+}
+
+}  // namespace
+
+extern const JobInfo kFluxJob{.name = "flux",
+                              .group = "Measure",
+                              .doc = "Measure where the light that falls on a scene goes.",
+                              .details = "Shares of the incident light, by wavelength: reflected, transmitted, and "
+                                         "absorbed by each material. With wavelengths from 400 to 700 nm also shares "
+                                         "of the photons (PAR).",
+                              .params = kParams,
+                              .session = SessionUse::all,
+                              .run = flux};
+
+}  // namespace frond

@@ -1,0 +1,54 @@
+#include <fmt/format.h>
+
+#include "jobs/job.h"
+#include "leaf/tissue/specimens.h"
+#include "render/plugins.h"
+
+namespace frond {
+namespace {
+
+constexpr std::string_view kWhat[] = {"specimens"};
+constexpr JobParam kParams[] = {{.name = "what",
+                                 .kind = ArgumentKind::text,
+                                 .doc = "specimens: the leaves that \"string specimen\" can name, in place of plug-ins.",
+                                 .choices = kWhat,
+                                 .positional = true}};
+
+Result list_specimens() {
+  Result result{.tables = {{"specimens"}}, .is_requested = true};
+  for (const leaf::Specimen& s : leaf::kSpecimens) {
+    result.tables[0].add("name", std::string(s.name));
+    result.tables[0].add("doc", std::string(s.doc));
+    result.tables[0].add("source", std::string(s.source));
+    result.text += fmt::format("  {:<20} {} {}\n", s.name, s.doc, s.source);
+  }
+  return result;
+}
+
+Result list(const JobRun& run) {
+  if (run.args.given("what")) return list_specimens();
+  const Registry registry = load_registry(run.context.options().plugins);
+  Result result{.tables = {{"plugins"}}, .is_requested = true};
+  std::string_view kind;
+  for (const PluginInfo* info : all_plugins(registry)) {
+    if (info->kind != kind) result.text += fmt::format("{}{}\n", kind.empty() ? "" : "\n", info->kind);
+    kind = info->kind;
+    result.tables[0].add("kind", std::string(info->kind));
+    result.tables[0].add("name", std::string(info->name));
+    result.tables[0].add("doc", std::string(info->doc));
+    result.text += fmt::format("  {:<20} {}\n", info->name, info->doc);
+  }
+  return result;
+}
+
+}  // namespace
+
+extern const JobInfo kListJob{.name = "list",
+                              .group = "Materials",
+                              .doc = "List every plug-in that a scene can name.",
+                              .details = "",
+                              .params = kParams,
+                              .session = SessionUse::plugins,
+                              .run = list};
+
+}  // namespace frond

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include "jobs/display_params.h"
+#include "render/image_output.h"
+#include "render/part_file.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr JobParam kParams[] = {
+    {.name = "parts",
+     .kind = texts,
+     .doc = "Parts of one render, which have no sample in common.",
+     .type = "FILE",
+     .path = PathUse::read,
+     .positional = true,
+     .required = true},
+    {.name = "output",
+     .kind = text,
+     .doc = "Image to write: .exr (linear), .png or .jpg (through the display transform).",
+     .type = "FILE",
+     .aliases = "o",
+     .path = PathUse::write,
+     .excludes = "part"},
+    {.name = "part", .kind = text, .doc = "Part to write, in place of an image.", .type = "FILE", .path = PathUse::write},
+    {.name = "allow-holes", .kind = flag, .doc = "Write an image although samples or pixels are missing."},
+    kDisplayParam,
+    kViewParam,
+};
+
+void check_holes(const RenderPart& whole, const JobRun& run) {
+  const std::string missing = what_is_missing(whole);
+  if (missing.empty()) return;
+  if (!run.args.flag("allow-holes"))
+    fail({}, "{} are in none of the parts: {} makes an image without them", missing, run.args.spelled("allow-holes"));
+  run.log().warn({}, fmt::format("{} are in none of the parts", missing));
+}
+
+void write_merged(const RenderPart& whole, const ImageOutput& output, const JobRun& run) {
+  check_holes(whole, run);
+  if (lacks_neighbors(whole.film))
+    run.log().warn({}, "pixels at the edges lack samples of those beside them, which the filter reaches: other parts of "
+                       "the image have them");
+  output.write(whole.film, finished_picture(whole));
+}
+
+Result merge(const JobRun& run) {
+  const Arguments& args = run.args;
+  if (!args.given("output") && !args.given("part"))
+    fail({}, "merge: {} or {} is needed", args.spelled("output"), args.spelled("part"));
+  std::optional<ImageOutput> output;
+  if (args.given("output")) output.emplace(args.text("output"), display_choice(args));
+  const auto parts = args.texts("parts");
+  const RenderPart whole = merge_parts({parts.begin(), parts.end()});
+  if (output)
+    write_merged(whole, *output, run);
+  else  // other parts may still be merged with this one: holes are no problem
+    write_part(args.text("part"), whole.header, whole.film);
+  const uint64_t lost = whole.film.not_finite();
+  if (lost > 0) run.log().warn({}, fmt::format("{} samples were too bright for the film, or not finite", lost));
+  const SampleCount samples = sample_count(whole.film);
+  run.log().info(fmt::format("{}: {} part{}, {} samples per pixel, {:.2f} s of CPU",
+                             output ? output->path() : args.text("part"), parts.size(), parts.size() == 1 ? "" : "s",
+                             samples.least == samples.most ? fmt::format("{}", samples.most)
+                                                           : fmt::format("{} to {}", samples.least, samples.most),
+                             whole.header.statistics.cpu_seconds));
+  return {.facts = {{"least_samples", double(samples.least)},
+                    {"most_samples", double(samples.most)},
+                    {"cpu_seconds", whole.header.statistics.cpu_seconds}}};
+}
+
+}  // namespace
+
+extern const JobInfo kMergeJob{.name = "merge",
+                               .group = "Cluster",
+                               .doc = "Merge parts of a render, which frond render --part has written.",
+                               .details = "",
+                               .params = kParams,
+                               .session = SessionUse::none,
+                               .run = merge};
+
+}  // namespace frond
