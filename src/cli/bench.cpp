@@ -19,7 +19,7 @@
 #include "instruments/given_wavelengths.h"
 #include "render/measured_material.h"
 #include "render/plugins.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/text_output.h"
 #include "study/compare/machine.h"
 
@@ -162,7 +162,7 @@ void run_bench(const BenchOptions& o) {
     readings.push_back({hits[i].material, hits[i].hit.theta_deg, hits[i].hit.lambda.count, times.ns[i],
                         measure_worth(hits[i].hit, samples, pool)});
   if (!o.json.empty()) write_text(o.json, bench_json(times.json, o, hits, readings));
-  if (!o.plot.empty()) write_chart(o.plot, 1000, 560, bench_chart(readings));
+  if (!o.plot.empty()) write_chart(o.plot, bench_chart(readings));
   if (o.json != "-" && !o.quiet) write_text("-", bench_text(readings));
 }
 

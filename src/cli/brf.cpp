@@ -16,7 +16,7 @@
 #include "radiometry/brf_comparison.h"
 #include "render/part_file.h"
 #include "report/brf_chart.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/text_output.h"
 #include "study/compare/candidate.h"
 #include "system/cpu_clock.h"
@@ -223,10 +223,7 @@ int run_brf(const BrfOptions& o) {
   const BrfReading& reading = *measured;
   if (!o.csv.empty()) write_text(o.csv, csv_of(reading));
   if (o.csv.empty()) write_text("-", table_of(reading));
-  if (!o.plot.empty()) {
-    const BrfChart chart = o.hemisphere ? brf_hemisphere_chart(reading) : brf_plane_chart(reading);
-    write_chart(o.plot, chart.width, chart.height, chart.script);
-  }
+  if (!o.plot.empty()) write_chart(o.plot, o.hemisphere ? brf_hemisphere_chart(reading) : brf_plane_chart(reading));
   log.info(fmt::format("{} paths a direction; standard errors {:.2f} % of the BRF (RMS)", reading.paths,
                        100 * reading.relative_error()));
   if (o.rms > 0 && reading.relative_error() > o.rms) log.warn({}, fmt::format("--rms {:g} was not reached", o.rms));

@@ -11,7 +11,7 @@
 #include "render/plugins.h"
 #include "scene/words.h"
 #include "study/choose/choice_report.h"
-#include "study/compare/curve_style.h"
+#include "study/compare/charts.h"
 #include "study/compare/machine.h"
 #include "study/compare/measure.h"
 #include "study/compare/report.h"

@@ -12,8 +12,7 @@
 #include "render/plugins.h"
 #include "render/refusing_log.h"
 #include "report/conform_report.h"
-#include "report/gnuplot.h"
-#include "report/sphere_chart.h"
+#include "report/chart.h"
 #include "report/text_output.h"
 #include "scene/resolver.h"
 
@@ -102,7 +101,7 @@ void conform(const ConformOptions& o) {
   if (!o.picture.empty()) {
     const Finding* finding = finding_to_draw(report);
     if (!finding) fail({}, "{}: nothing that was found out has directions to draw", o.picture);
-    write_chart(o.picture, 1000, 640, sphere_chart(*finding));
+    write_chart(o.picture, sphere_chart(*finding));
   }
   if (!report.all_hold()) throw CLI::RuntimeError(kBroken);
 }

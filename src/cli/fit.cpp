@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "leaf/fit/measured_spectra.h"
 #include "report/fit_report.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/text_output.h"
 #include "system/cpu_clock.h"
 
@@ -101,7 +101,7 @@ void run_fit(const FitOptions& o) {
   if (!o.output.empty()) write_text(o.output, fit_scene(report));
   if (!o.json.empty()) write_text(o.json, fit_json(report));
   if (!o.csv.empty()) write_text(o.csv, fit_csv(report));
-  if (!o.plot.empty()) write_chart(o.plot, 900, 600, fit_chart(report));
+  if (!o.plot.empty()) write_chart(o.plot, fit_chart(report));
   if (!o.quiet && o.json != "-" && o.csv != "-" && o.output != "-") write_text("-", fit_text(report));
 }
 

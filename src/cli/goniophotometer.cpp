@@ -5,7 +5,7 @@
 #include "cli/commands.h"
 #include "cli/instrument.h"
 #include "cli/number_list.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/patch_charts.h"
 #include "report/text_output.h"
 
@@ -45,8 +45,6 @@ std::vector<LabelledPatches> measure(const GoniophotometerOptions& o, const Inst
   return readings;
 }
 
-void draw(const std::string& path, const Chart& chart) { write_chart(path, chart.width, chart.height, chart.script); }
-
 void run_goniophotometer(const GoniophotometerOptions& o) {
   const int64_t rays = parse_count("--rays", o.rays.empty() ? "1e6" : o.rays, 2);
   const DetectorSphere sphere = sphere_of(o);
@@ -56,8 +54,8 @@ void run_goniophotometer(const GoniophotometerOptions& o) {
   const auto notes = instrument_notes("goniophotometer", o, bench);
   if (!o.csv.empty()) write_text(o.csv, patches_csv(notes, readings));
   if (!o.json.empty()) write_text(o.json, patches_json(notes, readings));
-  if (!o.plot.empty()) draw(o.plot, plane_chart(readings));
-  if (!o.map.empty()) draw(o.map, map_chart(readings, o.map_scale == "log"));
+  if (!o.plot.empty()) write_chart(o.plot, plane_chart(readings));
+  if (!o.map.empty()) write_chart(o.map, map_chart(readings, o.map_scale == "log"));
   if (o.csv != "-" && o.json != "-" && !o.quiet) write_text("-", patches_text(readings));
 }
 

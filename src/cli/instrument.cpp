@@ -9,7 +9,7 @@
 #include "cli/number_list.h"
 #include "cli/progress.h"
 #include "render/plugins.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/text_output.h"
 
 namespace frond {

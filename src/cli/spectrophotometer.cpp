@@ -6,7 +6,7 @@
 #include "cli/common_options.h"
 #include "cli/instrument.h"
 #include "cli/number_list.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/share_tables.h"
 #include "report/text_output.h"
 
@@ -53,7 +53,7 @@ void run_spectrophotometer(const SpectrophotometerOptions& o) {
   const auto notes = instrument_notes("spectrophotometer", o, bench);
   if (!o.csv.empty()) write_text(o.csv, shares_csv(notes, readings));
   if (!o.json.empty()) write_text(o.json, shares_json(notes, readings));
-  if (!o.plot.empty()) write_chart(o.plot, 900, 600, shares_chart(readings));
+  if (!o.plot.empty()) write_chart(o.plot, shares_chart(readings));
   if (o.csv.empty() && o.json.empty() && !o.quiet) write_text("-", shares_text(readings));
 }
 

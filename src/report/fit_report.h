@@ -3,6 +3,7 @@
 #include <string>
 
 #include "leaf/fit/fit.h"
+#include "report/chart.h"
 
 namespace frond {
 
@@ -22,7 +23,7 @@ std::string fit_text(const FitReport& report);
 std::string fit_json(const FitReport& report);
 /// Measured and fitted, wavelength by wavelength.
 std::string fit_csv(const FitReport& report);
-/// A gnuplot script: R from below, T from above, measured as points, fitted as lines.
-std::string fit_chart(const FitReport& report);
+/// R from below, T from above, measured as points, fitted as lines.
+Chart fit_chart(const FitReport& report);
 
 }  // namespace frond
