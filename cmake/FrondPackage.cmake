@@ -15,7 +15,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME frond)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${CMAKE_CURRENT_BINARY_DIR}")  # libfrond itself
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS gnuplot-nox)  # --plot
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "librsvg2-2, fonts-dejavu-core")  # charts as .png
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "Renders scenes of pbrt-v4's format, and leaves in them by models of their
 tissue: a random walk of light, its solution, and simpler ones. Measures
 spectra, BRDF and BTDF of materials, BRF and absorbed light of canopies.")

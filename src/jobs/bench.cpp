@@ -14,7 +14,7 @@
 #include "jobs/common_params.h"
 #include "render/material_words.h"
 #include "render/measured_material.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "study/compare/machine.h"
 
 namespace frond {
@@ -234,7 +234,7 @@ Result bench(const JobRun& run) {
     readings.push_back({hits[i].material, hits[i].hit.theta_deg, hits[i].hit.lambda.count, times.ns[i],
                         measure_worth(hits[i].hit, run.args.count("samples"), run.session().pool())});
   }
-  if (run.args.given("plot")) write_chart(run.args.text("plot"), 1000, 560, bench_chart(readings));
+  if (run.args.given("plot")) write_chart(run.args.text("plot"), bench_chart(readings));
   const Table time = times_table(readings), worth = worths_table(readings);
   return {.tables = {time, worth},
           .text = fmt::format("CPU time of a call, ns\n{}\nExpectation and variance of one-sample estimates; us: CPU "

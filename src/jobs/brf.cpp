@@ -10,7 +10,7 @@
 #include "radiometry/brf_comparison.h"
 #include "render/part_file.h"
 #include "report/brf_chart.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "study/compare/candidate.h"
 #include "system/cpu_clock.h"
 
@@ -244,10 +244,9 @@ Result brf(const JobRun& run) {
     return {.stopped = true};
   }
   const BrfReading& reading = *measured;
-  if (run.args.given("plot")) {
-    const BrfChart chart = run.args.flag("hemisphere") ? brf_hemisphere_chart(reading) : brf_plane_chart(reading);
-    write_chart(run.args.text("plot"), chart.width, chart.height, chart.script);
-  }
+  if (run.args.given("plot"))
+    write_chart(run.args.text("plot"),
+                run.args.flag("hemisphere") ? brf_hemisphere_chart(reading) : brf_plane_chart(reading));
   const double error = reading.relative_error(), rms = run.args.real("rms");
   run.log().info(fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", reading.paths, 100 * error));
   if (rms > 0 && error > rms) run.log().warn({}, fmt::format("{} {:g} was not reached", run.args.spelled("rms"), rms));

@@ -24,8 +24,8 @@ Problems problems_of(const JobRun& run, const std::vector<std::filesystem::path>
   Session& session = run.session();
   Problems problems;
   const SceneDescription description = session.read(files, unsupported_of(run.args), problems);
-  if (!description.files.empty()) problems.attempt([&] { session.check(description, {}); });
-  problems.attempt([&] { check_picture_name(session.film(description, false).filename, description.film.where); });
+  if (!description.files.empty()) problems.attempt([&] { session.check(description); });
+  problems.attempt([&] { check_picture_name(session.film(description).filename, description.film.where); });
   problems.attempt([&] { log.check(); });
   log.begin(false);
   return problems;

@@ -2,7 +2,7 @@
 
 #include <fmt/ranges.h>
 
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "scene/parser.h"
 
 namespace frond {

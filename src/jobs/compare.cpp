@@ -5,7 +5,6 @@
 #include "jobs/common_params.h"
 #include "scene/words.h"
 #include "study/choose/choice_report.h"
-#include "study/compare/curve_style.h"
 #include "study/compare/machine.h"
 #include "study/compare/measure.h"
 #include "study/compare/report.h"

@@ -6,8 +6,7 @@
 #include "render/material_words.h"
 #include "render/refusing_log.h"
 #include "report/conform_report.h"
-#include "report/gnuplot.h"
-#include "report/sphere_chart.h"
+#include "report/chart.h"
 #include "scene/resolver.h"
 
 namespace frond {
@@ -129,7 +128,7 @@ Result conform(const JobRun& run) {
     const std::string path = run.args.text("picture");
     const Finding* finding = finding_to_draw(report);
     if (!finding) fail({}, "{}: no finding has directions to draw", path);
-    write_chart(path, 1000, 640, sphere_chart(*finding));
+    write_chart(path, sphere_chart(*finding));
   }
   return {.tables = conform_tables(report),
           .facts = conform_facts(report),

@@ -6,7 +6,7 @@
 #include "jobs/common_params.h"
 #include "leaf/fit/measured_spectra.h"
 #include "report/fit_report.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/text_output.h"
 #include "scene/tokenizer.h"
 #include "system/cpu_clock.h"
@@ -148,7 +148,7 @@ Result fit(const JobRun& run) {
   if (args.given("leaf")) source += ", " + args.text("leaf");
   const FitReport report{request, fitted, source, args.text("material")};
   if (args.given("output")) write_text(args.text("output"), fit_scene(report));
-  if (args.given("plot")) write_chart(args.text("plot"), 900, 600, fit_chart(report));
+  if (args.given("plot")) write_chart(args.text("plot"), fit_chart(report));
   auto facts = fit_facts(report);
   facts.push_back({"scene", fit_scene(report)});
   return {.tables = fit_tables(report),

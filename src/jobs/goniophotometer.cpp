@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "jobs/instrument.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/patch_charts.h"
 
 namespace frond {
@@ -132,7 +132,6 @@ GoniophotometerReading measure(const JobRun& run, const MaterialsUnderTest& test
   return measure_f(exposure, sphere, rays, run.session().pool(), tested.progress(i, rays));
 }
 
-void draw(const std::string& path, const Chart& chart) { write_chart(path, chart.width, chart.height, chart.script); }
 
 Result goniophotometer(const JobRun& run) {
   check_chart_param(run, "plot");
@@ -144,8 +143,8 @@ Result goniophotometer(const JobRun& run) {
   for (size_t i = 0; i < tested.size(); ++i)
     readings.push_back({tested.material(i).label(), measure(run, tested, i, sphere)});
   if (run.control.progress) run.control.progress->finish();
-  if (run.args.given("plot")) draw(run.args.text("plot"), plane_chart(readings));
-  if (run.args.given("map")) draw(run.args.text("map"), map_chart(readings, run.args.text("map-scale") == "log"));
+  if (run.args.given("plot")) write_chart(run.args.text("plot"), plane_chart(readings));
+  if (run.args.given("map")) write_chart(run.args.text("map"), map_chart(readings, run.args.text("map-scale") == "log"));
   const Table summary = summary_of(readings);
   return {.tables = {table_of(readings), summary},
           .notes = tested.notes("goniophotometer"),

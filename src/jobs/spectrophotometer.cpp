@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "jobs/instrument.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 #include "report/share_tables.h"
 
 namespace frond {
@@ -100,7 +100,7 @@ Result spectrophotometer(const JobRun& run) {
                                                                    tested.progress(i, dose.rays))});
   if (run.control.progress) run.control.progress->finish();
   warn_where_not_reached(run, dose, readings);
-  if (run.args.given("plot")) write_chart(run.args.text("plot"), 900, 600, shares_chart(readings));
+  if (run.args.given("plot")) write_chart(run.args.text("plot"), shares_chart(readings));
   return {.tables = {table_of(readings)},
           .notes = tested.notes("spectrophotometer"),
           .text = text_of(readings, tested.per_material())};

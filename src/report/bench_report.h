@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "instruments/sample_worth.h"
+#include "report/chart.h"
 
 namespace frond {
 
@@ -24,9 +25,9 @@ struct BenchReading {
   const Estimate& time(BsdfCall call) const { return time_ns[static_cast<size_t>(call)]; }
 };
 
-/// A gnuplot script: relative variance of the lit planes against the time of a hit, at the largest number of
+/// Relative variance of the lit planes against the time of a hit, at the largest number of
 /// wavelengths; a colour for each material, a mark for each angle, lines where time x variance is the same.
-std::string bench_chart(const std::vector<BenchReading>& readings);
+Chart bench_chart(const std::vector<BenchReading>& readings);
 /// Throws InputError for more materials or angles than that chart can tell apart.
 void check_bench_chart(size_t materials, size_t angles);
 

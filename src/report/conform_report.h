@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "instruments/conformance.h"
+#include "report/chart.h"
 #include "report/table.h"
 
 namespace frond {
@@ -30,5 +31,9 @@ std::vector<Table> conform_tables(const ConformReport& report);
 /// The finding to draw: of the broken ones, or where all hold of all, that with the smallest p which has a map. nullptr
 /// where none has.
 const Finding* finding_to_draw(const ConformReport& report);
+
+/// A finding's map: both hemispheres of wi in equal-area projection, each patch in the colour of found / expected, or
+/// of found where there is nothing to compare with. Needs `finding.map`.
+Chart sphere_chart(const Finding& finding);
 
 }  // namespace frond

@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 
 #include "core/error.h"
-#include "report/gnuplot.h"
+#include "report/share_tables.h"
 
 namespace frond {
 namespace {
@@ -16,14 +15,14 @@ namespace {
 using leaf::FittedNumber;
 using leaf::TissueParams;
 
-struct Band {
+struct NamedBand {
   std::string_view name;
   Interval nm;
 };
-constexpr Band kBands[] = {{"visible", {360, 700}},
-                           {"red edge", {700, 760}},
-                           {"near infrared", {760, 1300}},
-                           {"short-wave infrared", {1300, 2500}}};
+constexpr NamedBand kBands[] = {{"visible", {360, 700}},
+                                {"red edge", {700, 760}},
+                                {"near infrared", {760, 1300}},
+                                {"short-wave infrared", {1300, 2500}}};
 constexpr double kGoTogether = 0.9;
 
 /// All numbers of the leaf that a scene says, in its words.
@@ -73,14 +72,6 @@ std::vector<const FittedNumber*> free_numbers(const FitReport& report) {
   return free;
 }
 
-/// Angles of incidence, each once.
-std::vector<double> angles(const FitReport& report) {
-  std::vector<double> result;
-  for (const leaf::LeafReading& r : report.request.readings)
-    if (std::ranges::find(result, r.theta_deg) == result.end()) result.push_back(r.theta_deg);
-  return result;
-}
-
 }  // namespace
 
 std::string fit_scene(const FitReport& report) {
@@ -99,7 +90,7 @@ std::string fit_text(const FitReport& report) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("{}: {} measurements, RMSE {:.4f} (R {:.4f}, T {:.4f})\n", report.source,
                                  report.request.readings.size(), result.rmse, result.rmse_r, result.rmse_t);
-  for (const Band& band : kBands)
+  for (const NamedBand& band : kBands)
     if (const auto rmse = leaf::rmse_between(report.request, result, band.nm))
       text += fmt::format("  {:<20} {:4.0f} to {:4.0f} nm   RMSE {:.4f}\n", band.name, band.nm.min, band.nm.max, *rmse);
   if (const auto far = std::ranges::count(result.fitted, true, &leaf::FitResult::Fitted::is_outlier); far > 0)
@@ -159,7 +150,7 @@ std::vector<Table> fit_tables(const FitReport& report) {
     numbers.add_flag("at_bound", n.is_at_bound);
     numbers.add_flag("identified", n.is_identified());
   }
-  for (const Band& band : kBands) {
+  for (const NamedBand& band : kBands) {
     const auto rmse = leaf::rmse_between(report.request, result, band.nm);
     if (!rmse) continue;
     bands.add("name", std::string(band.name));
@@ -176,40 +167,27 @@ std::vector<Table> fit_tables(const FitReport& report) {
   return {spectra, leaf, numbers, bands, correlations};
 }
 
-std::string fit_chart(const FitReport& report) {
-  const std::vector<double> all = angles(report);
+Chart fit_chart(const FitReport& report) {
+  const auto all = distinct(report.request.readings, &leaf::LeafReading::theta_deg);
   if (all.size() > kSeriesColors.size())
     fail({}, "--plot: {} angles are more than the {} colours that can be told apart", all.size(), kSeriesColors.size());
-  std::string script, plots;
+  Panel panel = shares_panel("wavelength (nm)");
   for (size_t a = 0; a < all.size(); ++a) {
-    std::map<double, std::string> lines;  // ascending
-    for (size_t i = 0; i < report.result.fitted.size(); ++i) {
-      const leaf::LeafReading& r = report.request.readings[i];
-      if (r.theta_deg != all[a]) continue;
-      const auto share = [](const std::optional<double>& x, bool from_above) {
-        return x ? fmt::format("{:.6g}", from_above ? 1 - *x : *x) : std::string("NaN");
-      };
-      lines[r.lambda_nm] = fmt::format("{} {} {} {:.6f} {:.6f}\n", r.lambda_nm, share(r.r, false), share(r.t, true),
-                                       report.result.fitted[i].r, 1 - report.result.fitted[i].t);
-    }
-    script += fmt::format("$d{} << EOD\n", a);
-    for (const auto& [nm, line] : lines) script += line;
-    script += "EOD\n";
-    const std::string color = fmt::format("lc rgb '{}'", kSeriesColors[all.size() == 1 ? 1 : a]);
     const std::string of_angle = all.size() == 1 ? "" : fmt::format(" {:.6g}°", all[a]);
-    plots += fmt::format(
-        "$d{0} using 1:4 with lines lw 2 {1} title 'fitted{2}', $d{0} using 1:5 with lines lw 2 {1} notitle, "
-        "$d{0} using 1:2 with points pt 7 ps 0.35 lc rgb '#000000' title 'measured{2}', "
-        "$d{0} using 1:3 with points pt 7 ps 0.35 lc rgb '#000000' notitle, ",
-        a, color, of_angle);
+    Series r = line("fitted" + of_angle, kSeriesColors[all.size() == 1 ? 1 : a], 2), t = line("", r.color, 2),
+           measured = marks("measured" + of_angle, kSeriesColors[0], series_mark(a), 1.8);
+    for (size_t i = 0; i < report.result.fitted.size(); ++i) {
+      const leaf::LeafReading& m = report.request.readings[i];
+      if (m.theta_deg != all[a]) continue;
+      r.points.push_back({m.lambda_nm, report.result.fitted[i].r});
+      t.points.push_back({m.lambda_nm, 1 - report.result.fitted[i].t});
+      if (m.r) measured.points.push_back({m.lambda_nm, *m.r});
+      if (m.t) measured.points.push_back({m.lambda_nm, 1 - *m.t});
+    }
+    for (Series* curve : {&r, &t}) std::ranges::stable_sort(curve->points, {}, &ChartPoint::x);
+    panel.series.insert(panel.series.end(), {r, t, measured});
   }
-  return script +
-         "set yrange [0:1]\nset y2range [1:0]\nset ytics nomirror 0.1\nset y2tics 0.1\n"
-         "set ylabel 'reflectance R (from below)'\nset y2label 'transmittance T (from above)'\n"
-         "set xlabel 'wavelength (nm)'\nset autoscale xfix\nset grid lc rgb '#d0d0d0' lw 0.5\n" +
-         fmt::format("set title {}\nset key center right\n",
-                     gnuplot_text(fmt::format("{}: RMSE {:.4f}", report.source, report.result.rmse))) +
-         "plot " + plots + "NaN notitle\n";
+  return {1, {panel}, fmt::format("{}: RMSE {:.4f}", report.source, report.result.rmse)};
 }
 
 }  // namespace frond

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "leaf/fit/fit.h"
+#include "report/chart.h"
 #include "report/table.h"
 
 namespace frond {
@@ -23,7 +24,7 @@ std::string fit_text(const FitReport& report);
 std::vector<Fact> fit_facts(const FitReport& report);
 /// "spectra", "leaf", "numbers", "bands", "correlations".
 std::vector<Table> fit_tables(const FitReport& report);
-/// A gnuplot script: R from below, T from above, measured as points, fitted as lines.
-std::string fit_chart(const FitReport& report);
+/// R from below, T from above; measured spectra as points, fitted ones as lines.
+Chart fit_chart(const FitReport& report);
 
 }  // namespace frond

@@ -1,14 +1,9 @@
 #pragma once
 
+#include "report/chart.h"
 #include "report/patch_tables.h"
 
 namespace frond {
-
-/// A gnuplot script and the size it is made for.
-struct Chart {
-  int width, height;
-  std::string script;
-};
 
 /// What a set of readings spans, for the limits of charts.
 struct ReadingCounts {

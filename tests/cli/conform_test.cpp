@@ -6,6 +6,7 @@
 
 #include "image/image_file.h"
 #include "instruments/conformance.h"
+#include "report/chart.h"
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"
 
@@ -98,6 +99,7 @@ TEST(Conform, JsonHasEveryLawAndFinding) {
 TEST(Conform, PicturesShowTheWorstFinding) {
   const TestFolder folder("conform");
   for (const char* material : {"wrong_warp", "lost_energy", "good"}) {
+    if (!png_refusal().empty()) break;
     const std::string path = folder.name_of(std::string(material) + ".png");
     EXPECT_THAT(conform_planted({material, "--picture", path}).err, IsEmpty());
     EXPECT_EQ(read_image(path, {}).image.width, 1000);

@@ -1,8 +1,10 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "report/chart.h"
 #include "tests/cli/instrument_command.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"
@@ -10,10 +12,7 @@
 namespace frond {
 namespace {
 
-using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 class GoniophotometerCommand : public InstrumentCommand {
  protected:
@@ -78,11 +77,12 @@ TEST_F(GoniophotometerCommand, DrawsCurvesAndMaps) {
   EXPECT_THAT(o.out, HasSubstr("abm specimen=soybean, 30 degrees, 551 nm, 1000 rays, 20 x 40 patches\n"));
   for (const char* text : {"abm specimen=soybean", "diffusetransmission", "551 nm", "608 nm", "BTDF (sr⁻¹)"})
     EXPECT_THAT(bytes_of(path("a.svg")), HasSubstr(text));
-  // Only what points toward the light is dotted: no path with a dash goes on to the mirror direction.
-  const std::string dotted = "rgb\\(128, 128, 128\\)' stroke-dasharray='[^']*' +d='M[^'M]*";
-  EXPECT_THAT(bytes_of(path("a.svg")), ContainsRegex(dotted + "'"));
-  EXPECT_THAT(bytes_of(path("a.svg")), Not(ContainsRegex(dotted + "M")));
+  // The line that points toward the light is dotted, that of the mirror direction is not.
+  for (const char* dash : {"2,3", "none"})
+    EXPECT_THAT(bytes_of(path("a.svg")),
+                HasSubstr(fmt::format("#808080' stroke-width='1.5' stroke-dasharray='{}'", dash)));
   EXPECT_THAT(bytes_of(path("b.svg")), HasSubstr("BRDF: diffusetransmission"));
+  if (!png_refusal().empty()) return;
   ASSERT_EQ(measure({"--wavelengths", "551", "--rays", "100", "--map", path("b.png"), "-q"}).code, 0);
   EXPECT_THAT(bytes_of(path("b.png")), HasSubstr("PNG"));
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "report/chart.h"
 #include "tests/cli/instrument_command.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"
@@ -110,6 +111,7 @@ TEST_F(SpectrophotometerCommand, AtNinetyDegreesItSaysWhatTheFigureIs) {
 
 TEST_F(SpectrophotometerCommand, DrawsCharts) {
   for (const char* name : {"a.svg", "a.png"}) {
+    if (name[2] == 'p' && !png_refusal().empty()) continue;
     ASSERT_EQ(
         measure({"--wavelengths", "455,551", "--angles", "0:80:40", "--rays", "100", "--plot", path(name), "-q"}).code,
         0);
@@ -156,14 +158,6 @@ TEST_F(SpectrophotometerCommand, RefusesTheImpossibleBeforeItMeasures) {
   EXPECT_THAT(refusal({"--wavelengths", "551", "--csv", "-", "--json", "-"}), HasSubstr("standard output"));
   EXPECT_THAT(refusal({}), HasSubstr("--wavelengths"));
   EXPECT_THAT(measure({"--wavelengths", "551", "--rays", "0"}).err, HasSubstr("--rays"));
-}
-
-TEST_F(SpectrophotometerCommand, WithoutGnuplotItSaysWhatToInstall) {
-  const std::string before = std::getenv("PATH");
-  setenv("PATH", path(".").c_str(), 1);
-  const std::string message = refusal({"--wavelengths", "551,600", "--plot", path("a.svg")});
-  setenv("PATH", before.c_str(), 1);
-  EXPECT_THAT(message, HasSubstr("gnuplot-nox"));
 }
 
 }  // namespace

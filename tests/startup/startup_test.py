@@ -30,7 +30,7 @@ class StartupTest(FrondTest):
         return {os.path.basename(path) for path in re.findall(r"calling init: (\S+)", self.traced(*words))}
 
     def check_is_light(self, libraries):
-        self.assertEqual([name for name in libraries if re.search("OpenImageIO|frond_image|Qt|opencv|boost|avcodec", name)], [])
+        self.assertEqual([name for name in libraries if re.search("OpenImageIO|frond_image|Qt|opencv|boost|avcodec|rsvg", name)], [])
         # 20 to 22 in Debian 12 and 13; what one of them brings with it would be seen here.
         self.assertLess(len(libraries), 40, sorted(libraries))
 
@@ -54,6 +54,17 @@ class StartupTest(FrondTest):
                    'Material "diffuse" "texture reflectance" "t"\nShape "sphere"\n')
         words = ("render", self.folder / "textured.pbrt", "-o", self.folder / "a.exr", "--quick", "-q", "--no-cache")
         self.assertTrue(any(name.startswith("libOpenImageIO") for name in self.libraries(*words)))
+
+    def test_charts_load_librsvg_for_png_alone(self):
+        words = ("spectrophotometer", "leaf_solved", "--wavelengths", "455,551", "--rays", 100, "-q", "--plot")
+        self.check_is_light(self.libraries(*words, self.folder / "a.svg"))
+        process = self.start([FROND, *map(str, words), str(self.folder / "a.png")])
+        _, errors = process.communicate()
+        if process.returncode != 0:
+            self.assertIn("librsvg", errors)
+            self.skipTest(errors)
+        libraries = self.libraries(*words, self.folder / "a.png")
+        self.assertTrue(any(name.startswith("librsvg") for name in libraries), libraries)
 
     def test_the_library_for_avx2_makes_the_same_bits(self):
         if not list(pathlib.Path(FROND).parent.glob("glibc-hwcaps/x86-64-v3/libfrond.so*")):

@@ -1,9 +1,10 @@
 #include <gmock/gmock.h>
 
-#include "study/compare/curves_chart.h"
+#include "study/compare/charts.h"
 #include "study/compare/figures.h"
 #include "study/compare/speed_up.h"
 #include "study/compare/verdict.h"
+#include "tests/support/xml.h"
 
 namespace frond::compare {
 namespace {
@@ -121,9 +122,10 @@ TEST(Figures, AreWrittenWithoutExponents) {
 }
 
 TEST(CurvesChart, MarksTheBiasOfTheBiased) {
-  const std::string script = curves_chart(two(), Measure::rms_all);
-  EXPECT_THAT(script, HasSubstr("'fast: bias 0.01, noise below it from 200 s'"));
-  EXPECT_THAT(script, HasSubstr("title 'slow'"));
+  const std::string svg = chart_svg(curves_chart(two(), Measure::rms_all).value());
+  EXPECT_EQ(testing::xml_error(svg), "");
+  EXPECT_THAT(svg, HasSubstr(">fast: bias 0.01, noise below it from 200 s<"));
+  EXPECT_THAT(svg, HasSubstr(">slow<"));
 }
 
 }  // namespace

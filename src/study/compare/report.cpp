@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/gnuplot.h"
 #include "report/text_output.h"
 #include "spectra/color_space.h"
 #include "study/compare/assets.h"
@@ -20,15 +19,17 @@ namespace {
 
 std::string path_in(const std::filesystem::path& folder, const std::string& name) { return (folder / name).string(); }
 
-void write_charts(const std::filesystem::path& folder, const std::vector<Chart>& charts) {
-  for (const Chart& chart : charts)
-    if (!chart.script.empty())
-      for (const char* extension : {".svg", ".png"})
-        write_chart(path_in(folder, chart.name + extension), chart.width, chart.height, chart.script);
+void write_charts(const std::filesystem::path& folder, const std::vector<ReportChart>& charts) {
+  const bool with_png = png_refusal().empty();
+  for (const ReportChart& c : charts) {
+    if (!c.chart) continue;
+    write_chart(path_in(folder, c.name + ".svg"), *c.chart);
+    if (with_png) write_chart(path_in(folder, c.name + ".png"), *c.chart);
+  }
 }
 
-std::string figure(const std::filesystem::path& folder, const Chart& chart) {
-  if (chart.script.empty()) return "<p>There is nothing to draw: no error was seen.</p>\n";
+std::string figure(const std::filesystem::path& folder, const ReportChart& chart) {
+  if (!chart.chart) return "<p>There is nothing to draw: no error was seen.</p>\n";
   const std::string svg = read_file_bytes(path_in(folder, chart.name + ".svg"), {});
   return fmt::format(
       "<figure><img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"><figcaption>{}</figcaption></figure>\n",
@@ -36,9 +37,9 @@ std::string figure(const std::filesystem::path& folder, const Chart& chart) {
       html_text(chart.caption));
 }
 
-std::string figures(const std::filesystem::path& folder, const std::vector<Chart>& charts) {
+std::string figures(const std::filesystem::path& folder, const std::vector<ReportChart>& charts) {
   std::string html;
-  for (const Chart& chart : charts) html += figure(folder, chart);
+  for (const ReportChart& chart : charts) html += figure(folder, chart);
   return html;
 }
 
@@ -108,7 +109,7 @@ std::string provenance(const Comparison& c) {
   return list + "</dl>";
 }
 
-std::string page(const std::filesystem::path& folder, const Comparison& c, const std::vector<Chart>& charts) {
+std::string page(const std::filesystem::path& folder, const Comparison& c, const std::vector<ReportChart>& charts) {
   return filled(page_html, {{"title", html_text("Leaf models compared: " + c.scene)},
                             {"css", std::string(page_css)},
                             {"verdict", html_text(verdict(c))},
@@ -134,7 +135,7 @@ void write_report(const std::filesystem::path& folder, const Comparison& c) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) fail({}, "cannot make the folder {}: {}", folder.string(), error.message());
-  const std::vector<Chart> charts = charts_of(c);
+  const std::vector<ReportChart> charts = charts_of(c);
   write_charts(folder, charts);
   write_text(path_in(folder, "compare.csv"), comparison_csv(c));
   write_text(path_in(folder, "compare.json"), comparison_json(c));

@@ -6,12 +6,11 @@
 
 namespace frond::compare {
 
-/// Refuses, by InputError, a folder that cannot be made or written to, and a machine without gnuplot. Leaves
-/// nothing behind.
+/// Refuses, by InputError, a folder that cannot be made or written to. Leaves nothing behind.
 void check_report_folder(const std::filesystem::path& folder);
 
-/// Makes the folder and writes index.html, which needs nothing beside it, the charts as SVG and PNG, and the data as
-/// CSV and JSON.
+/// Makes the folder and writes index.html, which needs nothing beside it, the charts as SVG (and PNG where there
+/// is librsvg), and the data as CSV and JSON.
 void write_report(const std::filesystem::path& folder, const Comparison& comparison);
 
 }  // namespace frond::compare
