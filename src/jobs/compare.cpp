@@ -5,6 +5,7 @@
 #include "jobs/common_params.h"
 #include "scene/words.h"
 #include "study/choose/choice_report.h"
+#include "study/compare/charts.h"
 #include "study/compare/machine.h"
 #include "study/compare/measure.h"
 #include "study/compare/report.h"
