@@ -84,15 +84,12 @@ class RenderCommand {
                            .channels = options_.channels,
                            .adaptive = is_adaptive(),
                            .command = command_line_of(options_, files_.back())};
-    std::shared_ptr<const Scene> pilot;
     // The whole picture decides, whatever part of it is rendered: parts of one picture go together.
-    if (auto chosen = choose::choose_for(session_, description_, uint64_t(options_.samples), request)) {
-      choice_ = std::move(chosen->choice);
-      pilot = std::move(chosen->scene);
-    }
+    const auto chosen = choose::choose_for(session_, description_, uint64_t(options_.samples), request);
+    if (chosen) choice_ = chosen->choice;
     if (options_.pilot) return print_choice(choice_, options_.json);
     if (choice_) load_start_ = Clock::now();  // its time is told apart
-    scene_.emplace(session_.load(std::move(description_), request, pilot.get()));
+    scene_.emplace(session_.load(std::move(description_), request, chosen ? chosen->scene.get() : nullptr));
     load_seconds_ = std::chrono::duration<double>(Clock::now() - load_start_).count();
     range_ = {0, options_.samples > 0 ? uint64_t(options_.samples) : scene_->samples()};
     if (const auto range = range_of(options_)) range_ = *range;

@@ -89,9 +89,7 @@ void add_refused_options(CLI::App& command) {
 
 void set_scene_options(const RenderOptions& o, SceneDescription& description) {
   const auto set = [&description](bool is_asked_for, const char* name) {
-    if (!is_asked_for) return;
-    std::erase_if(description.options, [name](const ParsedParam& p) { return p.name == name; });
-    description.options.push_back({"bool", name, {}, {}, std::vector<bool>{true}});
+    if (is_asked_for) set_param(description.options, {"bool", name, {}, {}, std::vector<bool>{true}});
   };
   set(o.no_pixel_jitter, "disablepixeljitter");
   set(o.no_texture_filtering, "disabletexturefiltering");
