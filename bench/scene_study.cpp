@@ -93,7 +93,7 @@ std::vector<SceneStudy::Pictures> SceneStudy::render(const std::string& material
     const compare::ReferenceStore store(session_.cache(), identity, log_);
     store.load(render);
     if (render.samples() < samples) {
-      render.advance_to(samples, session_.pool(), nullptr);
+      render.advance_to(samples, study_.session().pool(), nullptr);
       store.save(render);
     }
     result.push_back(pictures_of(render, colors));

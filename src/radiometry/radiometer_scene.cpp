@@ -11,43 +11,25 @@
 namespace frond {
 namespace {
 
-bool declares(const PluginInfo& info, std::string_view name) {
-  return std::ranges::any_of(info.params, [name](const Param& p) { return p.name == name; });
-}
-
-bool gives(const std::vector<ParsedParam>& params, std::string_view name) {
-  return std::ranges::any_of(params, [name](const ParsedParam& p) { return p.name == name; });
-}
-
-const Param* incident_of(const PluginInfo& info) {
-  const auto found = std::ranges::find(info.params, std::string_view("incident"), &Param::name);
-  return found == info.params.end() ? nullptr : &*found;
-}
-
 bool can_be_reciprocal(const PluginInfo& info) {
-  const Param* incident = incident_of(info);
+  const Param* incident = find_param(info, "incident");
   return incident && std::ranges::count(incident->choices, std::string_view("reciprocal")) > 0;
 }
 
 /// Of a `leaf`, what stands for it.
 std::string_view model_of(const ParsedPlugin& plugin) {
-  for (const ParsedParam& p : plugin.params)
-    if (const auto* words = std::get_if<std::vector<std::string>>(&p.values);
-        p.name == "model" && words && words->size() == 1)
-      return words->front();
+  const ParsedParam* model = find_param(plugin.params, "model");
+  const auto* words = model ? std::get_if<std::vector<std::string>>(&model->values) : nullptr;
+  if (words && words->size() == 1) return words->front();
   return plugin.name;
 }
 
 }  // namespace
 
-ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values) {
-  return {type, name, {}, {}, std::move(values)};
-}
-
 void keep_energy(SceneDescription& description, const Registry& registry) {
   for (MaterialDescription& m : description.materials) {
     const MaterialInfo& info = registry.materials.get(m.plugin.name, m.plugin.where);
-    if (!incident_of(info) || gives(m.plugin.params, "incident")) continue;
+    if (!find_param(info, "incident") || find_param(m.plugin.params, "incident")) continue;
     const MaterialInfo* model = registry.materials.find(model_of(m.plugin));
     const std::string word = can_be_reciprocal(info) && (!model || can_be_reciprocal(*model)) ? "reciprocal" : "light";
     m.plugin.params.push_back({"string", "incident", {}, {}, std::vector<std::string>{word}});
@@ -62,7 +44,7 @@ void prepare_for_radiometry(const Registry& registry, const std::string& wavelen
   if (!wavelengths.empty()) set_wavelengths(description, wavelengths);
   if (period) set_param(description.options, parsed_numbers("float", "period", {(*period)[0], (*period)[1]}));
   ParsedPlugin& integrator = description.integrator;
-  if (!keeps_depth && declares(registry.integrators.get(integrator.name, integrator.where), "maxdepth"))
+  if (!keeps_depth && find_param(registry.integrators.get(integrator.name, integrator.where), "maxdepth"))
     set_param(integrator.params, parsed_numbers("integer", "maxdepth", {kDeepest}));
 }
 

@@ -7,9 +7,6 @@
 
 namespace frond {
 
-/// A parameter as a scene file has it.
-ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values);
-
 /// Leaves for which nothing is said of their incident direction are made to keep energy: reciprocal, or where they
 /// cannot be, with the light's direction for incident, which is noisier.
 void keep_energy(SceneDescription& description, const Registry& registry);

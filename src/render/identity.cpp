@@ -61,7 +61,7 @@ std::string Identity::difference(const Identity& other, const std::string& here,
 
 Identity identity_of(const SceneDescription& description, const PictureFacts& facts) {
   Identity id;
-  const FilmSettings& film = facts.film;
+  const FilmSettings& film = facts.format.settings;
   id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_program(0))));
   id.add("instruction set", instruction_set());
   for (const auto& plugin : facts.plugins)
@@ -69,11 +69,11 @@ Identity identity_of(const SceneDescription& description, const PictureFacts& fa
   id.add("seed", std::to_string(facts.seed));
   id.add("wavelengths", read_options(description).wavelengths);
   id.add("integrator", text_of(description.integrator));
-  id.add("filter",
-         fmt::format("{}, {}", text_of(description.filter), facts.splats ? "splatting" : "importance sampling"));
+  id.add("filter", fmt::format("{}, {}", text_of(description.filter),
+                               facts.format.splatting ? "splatting" : "importance sampling"));
   id.add("resolution", fmt::format("{} x {}", film.width, film.height));
   id.add("film", fmt::format("exposure {}, maxcomponentvalue {}", film.exposure, film.max_component));
-  id.add("channels", fmt::format("{}", fmt::join(facts.channels, ",")));
+  id.add("channels", fmt::format("{}", fmt::join(facts.format.channels.names(), ",")));
   id.add("color space", facts.color_space);
   id.add("command", facts.command);
   id.add("scene", hexadecimal(description.content_hash));

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "render/film_tile.h"
 #include "scene/description.h"
-#include "scene/film_settings.h"
 
 namespace frond {
 
@@ -37,9 +37,7 @@ struct PictureFacts {
   std::vector<std::filesystem::path> plugins;  ///< shared objects
   uint64_t seed;
   ParsedPlugin wavelengths;  ///< the description's, with its parameters
-  FilmSettings film;
-  bool splats;                        ///< samples are shared between pixels
-  std::vector<std::string> channels;  ///< beside the image's colours
+  FilmFormat format;
   std::string color_space;
   std::string command;  ///< what asks for the picture
 };

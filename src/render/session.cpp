@@ -116,7 +116,7 @@ class WholeProgress final : public Progress {
 }  // namespace
 
 void LoadedScene::check_samples(uint64_t samples) const {
-  const size_t bands = format_.bands, needed = (bands + kLanes - 1) / kLanes;
+  const size_t bands = facts_.format.bands, needed = (bands + kLanes - 1) / kLanes;
   if (samples < needed)
     fail({}, "{} bands need {} samples per pixel at least, each of which sees {}: {} were asked for", bands, needed,
          kLanes, samples);
@@ -135,23 +135,12 @@ RenderJob LoadedScene::job() const {
           scene_->has_wavelength_jitter()};
 }
 
-Identity LoadedScene::identity() const {
-  return identity_of(description_, {.plugins = plugins_,
-                                    .seed = scene_->seed(),
-                                    .wavelengths = wavelengths_,
-                                    .film = format_.settings,
-                                    .splats = format_.splatting.has_value(),
-                                    .channels = format_.channels.names(),
-                                    .color_space = picture_.space,
-                                    .command = command_});
-}
-
 RenderPart LoadedScene::empty_part() const {
-  Film film(format_, description_.film.where);
+  Film film(facts_.format, description_.film.where);
   PartHeader header;
   header.identity = identity();
   header.picture = picture_;
-  header.command = command_;
+  header.command = facts_.command;
   header.scene_crop = scene_crop_;
   header.pixel_scale = description_.is_quick ? 2 : 1;
   return {std::move(header), std::move(film)};
@@ -189,16 +178,17 @@ FilmSettings Session::film(const SceneSettings& description) const {
 
 LoadedScene Session::load(SceneDescription description, const PictureRequest& request, const Scene* other) {
   LoadedScene loaded;
-  loaded.command_ = request.command;
-  loaded.plugins_ = plugins();
-  loaded.wavelengths_ = wavelengths_plugin(description, registry_);
-  SharedWork shared;
-  loaded.scene_ = other ? std::make_unique<Scene>(*other, description, registry_, pool_, log_, shared, cache())
-                        : std::make_unique<Scene>(description, registry_, pool_, log_, cache());
+  loaded.scene_ = std::make_unique<Scene>(description, registry_, pool_, log_, cache(), other);
   FilmSettings film = loaded.scene_->film();
   loaded.scene_crop_ = film.crop;
   if (request.pixels) film.crop = *request.pixels;
-  FilmFormat& format = loaded.format_;
+  loaded.facts_ = {.plugins = plugins(),
+                   .seed = loaded.scene_->seed(),
+                   .wavelengths = wavelengths_plugin(description, registry_),
+                   .format = {},
+                   .color_space = {},
+                   .command = request.command};
+  FilmFormat& format = loaded.facts_.format;
   format.settings = film;
   format.splatting = splatting_of(*loaded.scene_, loaded.scene_crop_, film.crop, request.is_piece);
   std::vector<std::string> channels = film.channels;
@@ -206,6 +196,7 @@ LoadedScene Session::load(SceneDescription description, const PictureRequest& re
   channels.insert(channels.end(), request.channels.begin(), request.channels.end());
   format.channels = ChannelList(channels);
   loaded.picture_ = picture_of(description, request, *loaded.scene_, film, format.channels);
+  loaded.facts_.color_space = loaded.picture_.space;
   if (format.splatting)
     loaded.picture_.attributes["frond:correlated_pixels"] = fmt::format("{:.3f}", format.splatting->correlated_pixels);
   loaded.description_ = std::move(description);

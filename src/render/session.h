@@ -36,7 +36,7 @@ class LoadedScene {
   const Scene& scene() const { return *scene_; }
   const SceneDescription& description() const { return description_; }
   /// What a film of it holds.
-  const FilmFormat& film_format() const { return format_; }
+  const FilmFormat& film_format() const { return facts_.format; }
   const PictureFormat& picture() const { return picture_; }
   /// Of each pixel, that the scene asks for.
   uint64_t samples() const { return uint64_t(scene_->samples_per_pixel()); }
@@ -44,7 +44,7 @@ class LoadedScene {
   void check_samples(uint64_t samples) const;
   RenderJob job() const;
   /// All that decides its pixels. Reads every file that the scene names.
-  Identity identity() const;
+  Identity identity() const { return identity_of(description_, facts_); }
   /// A part that nothing has been rendered of.
   RenderPart empty_part() const;
 
@@ -52,12 +52,9 @@ class LoadedScene {
   friend class Session;
 
   SceneDescription description_;
-  ParsedPlugin wavelengths_;
-  std::string command_;
-  std::vector<std::filesystem::path> plugins_;
+  PictureFacts facts_;
   std::unique_ptr<Scene> scene_;
   Crop scene_crop_{};
-  FilmFormat format_;
   PictureFormat picture_;
 };
 

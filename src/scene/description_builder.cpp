@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "core/log.h"
+#include "scene/plugin_text.h"
 #include "spectra/color_space.h"
 
 namespace frond {
@@ -129,8 +130,7 @@ void DescriptionBuilder::option(ParsedParam param) {
   for (const char c : param.name)
     if (c != '-' && c != '_') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   param.name = std::move(name);
-  std::erase_if(scene_.options, [&](const ParsedParam& older) { return older.name == param.name; });
-  scene_.options.push_back(std::move(param));
+  set_param(scene_.options, std::move(param));
 }
 
 void DescriptionBuilder::camera(ParsedPlugin plugin) {
@@ -224,8 +224,7 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
   for (ParsedParam& param : params) {
     param.may_be_unused = true;
     scene_.attributes.emplace(std::pair(target, param.name), param.where);
-    std::erase_if(defaults, [&](const ParsedParam& older) { return older.name == param.name; });
-    defaults.push_back(std::move(param));
+    set_param(defaults, std::move(param));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "scene/plugin_text.h"
 #include "scene/registry.h"
 #include "scene/shape.h"
 
@@ -67,11 +68,6 @@ std::unique_ptr<FloatTexture> make_instance_texture(const Params& p, const Textu
   return std::make_unique<InstanceTexture>(p);
 }
 
-const ParsedParam* find(const ParsedPlugin& plugin, std::string_view name) {
-  const auto found = std::ranges::find(plugin.params, name, &ParsedParam::name);
-  return found == plugin.params.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 void check_instance_textures(const SceneSettings& description, const Geometry& geometry, const Log& log) {
@@ -80,13 +76,13 @@ void check_instance_textures(const SceneSettings& description, const Geometry& g
   for (const InstanceColumn& c : columns) names.push_back(c.name);
   for (const TextureDescription& texture : description.textures) {
     if (texture.plugin.name != instance_float_texture.name) continue;
-    const ParsedParam& name = *find(texture.plugin, "column");  // it is required, and a single one
+    const ParsedParam& name = *find_param(texture.plugin.params, "column");  // it is required, and a single one
     const std::string& wanted = std::get<std::vector<std::string>>(name.values).front();
     const auto column = std::ranges::find(columns, wanted, &InstanceColumn::name);
     if (column == columns.end())
       fail(name.value_where, "no table of copies has a column \"{}\"{}", wanted,
            names.empty() ? ": none has any numbers beside \"transform\"" : suggestion(wanted, names));
-    const auto& range = std::get<std::vector<double>>(find(texture.plugin, "range")->values);
+    const auto& range = std::get<std::vector<double>>(find_param(texture.plugin.params, "range")->values);
     if (column->range.min < range[0] || column->range.max > range[1])
       log.warn(name.value_where,
                fmt::format("column \"{}\" goes from {:g} to {:g}: what is beyond \"range\" is taken as its ends",

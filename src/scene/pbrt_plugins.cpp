@@ -8,6 +8,7 @@
 #include <span>
 
 #include "scene/normal_map.h"
+#include "scene/plugin_text.h"
 
 namespace frond {
 namespace {
@@ -63,13 +64,8 @@ constexpr std::string_view kOldFilms[] = {"image"};
 constexpr std::string_view kOldShapes[] = {"cone", "heightfield", "hyperboloid", "nurbs", "paraboloid"};
 constexpr std::string_view kOldTextures[] = {"uv"};
 
-const ParsedParam* find(const ParsedPlugin& plugin, std::string_view name) {
-  const auto found = std::ranges::find(plugin.params, name, &ParsedParam::name);
-  return found == plugin.params.end() ? nullptr : &*found;
-}
-
 std::optional<double> number(const ParsedPlugin& plugin, std::string_view name) {
-  const ParsedParam* p = find(plugin, name);
+  const ParsedParam* p = find_param(plugin.params, name);
   if (!p) return {};
   const auto* values = std::get_if<std::vector<double>>(&p->values);
   if (!values || values->size() != 1) fail(p->value_where, "\"{}\" takes 1 number", name);
@@ -103,7 +99,7 @@ class Answerer {
   /// pbrt moves a mesh's vertices by a texture.
   void leave_out_displacement(ParsedPlugin& shape) {
     if (shape.name != "plymesh") return;
-    if (const ParsedParam* p = find(shape, "displacement"))
+    if (const ParsedParam* p = find_param(shape.params, "displacement"))
       problems_.attempt([&] {
         unsupported_.handle("displacement", p->where, "\"displacement\" of shape \"plymesh\"", "is left out", log_);
       });
@@ -148,12 +144,13 @@ class Answerer {
 /// Samples of x times y strata.
 void count_strata(ParsedPlugin& sampler) {
   const double x = number(sampler, "xsamples").value_or(4), y = number(sampler, "ysamples").value_or(4);
-  const Location where = find(sampler, "xsamples") ? find(sampler, "xsamples")->value_where : sampler.where;
+  const Location where =
+      find_param(sampler.params, "xsamples") ? find_param(sampler.params, "xsamples")->value_where : sampler.where;
   sampler.params.push_back({"integer", "pixelsamples", where, where, std::vector<double>{x * y}});
 }
 
 void warn_of_regularize(const ParsedPlugin& integrator, const Log& log) {
-  const ParsedParam* p = find(integrator, "regularize");
+  const ParsedParam* p = find_param(integrator.params, "regularize");
   if (!p) return;
   const auto* value = std::get_if<std::vector<bool>>(&p->values);
   if (value && value->size() == 1 && (*value)[0])
@@ -185,7 +182,7 @@ void warn_of_attributes(const SceneSettings& description, const Registry& r, con
 
 /// Hair's colour goes by two names.
 void rename_color(ParsedPlugin& material) {
-  if (find(material, "reflectance")) return;
+  if (find_param(material.params, "reflectance")) return;
   const auto color = std::ranges::find(material.params, "color", &ParsedParam::name);
   if (color != material.params.end()) color->name = "reflectance";
 }

@@ -89,6 +89,26 @@ PluginText parse_plugin_text(const std::string& text, const Location& where) {
   return result;
 }
 
+const Param* find_param(const PluginInfo& info, std::string_view name) {
+  const auto found = std::ranges::find(info.params, name, &Param::name);
+  return found == info.params.end() ? nullptr : &*found;
+}
+
+const ParsedParam* find_param(const std::vector<ParsedParam>& params, std::string_view name) {
+  const auto found = std::ranges::find(params, name, &ParsedParam::name);
+  return found == params.end() ? nullptr : &*found;
+}
+
+bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
+  return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
+           return p.type == q.type && p.name == q.name && p.values == q.values && p.color_space == q.color_space;
+         });
+}
+
+ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values) {
+  return {type, name, {}, {}, std::move(values)};
+}
+
 void set_param(std::vector<ParsedParam>& params, ParsedParam param) {
   std::erase_if(params, [&param](const ParsedParam& p) { return p.name == param.name; });
   params.push_back(std::move(param));
@@ -97,9 +117,8 @@ void set_param(std::vector<ParsedParam>& params, ParsedParam param) {
 void set_params(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin) {
   for (const auto& param : text.params) {
     const std::string &name = param.first, &value = param.second;
-    const auto declared =
-        std::find_if(info.params.begin(), info.params.end(), [&](const Param& p) { return p.name == name; });
-    if (declared == info.params.end()) {
+    const Param* declared = find_param(info, name);
+    if (!declared) {
       std::vector<std::string_view> names;
       for (const Param& p : info.params) names.push_back(p.name);
       fail(where, "{} \"{}\" has no parameter \"{}\"{}", info.kind, info.name, name, suggestion(name, names));

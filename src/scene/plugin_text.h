@@ -18,6 +18,16 @@ struct PluginText {
 /// Throws InputError at `where` when the text has another form.
 PluginText parse_plugin_text(const std::string& text, const Location& where);
 
+/// Of this name; nullptr where there is none.
+const Param* find_param(const PluginInfo& info, std::string_view name);
+const ParsedParam* find_param(const std::vector<ParsedParam>& params, std::string_view name);
+
+/// Whether two say the same, wherever they stand.
+bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b);
+
+/// As a scene file has it. `type`: float or integer.
+ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values);
+
 /// In place of one of the same name.
 void set_param(std::vector<ParsedParam>& params, ParsedParam param);
 

@@ -14,16 +14,6 @@
 namespace frond {
 namespace {
 
-bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
-  return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
-           return p.type == q.type && p.name == q.name && p.values == q.values && p.color_space == q.color_space;
-         });
-}
-
-bool declares(const PluginInfo& info, std::string_view name) {
-  return std::ranges::find(info.params, name, &Param::name) != info.params.end();
-}
-
 /// What the film says of its responses, which wavelengths are weighed by, where that is not the eye as it is.
 std::vector<ParsedParam> sensor_params(const SceneSettings& description) {
   using Values = decltype(ParsedParam::values);
@@ -49,14 +39,13 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
   ParsedPlugin plugin = wavelengths_plugin(text, where, registry);
   const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
   for (const ParsedParam& p : sensor_params(description))
-    if (declares(info, p.name) && std::ranges::find(plugin.params, p.name, &ParsedParam::name) == plugin.params.end())
-      plugin.params.push_back(p);
+    if (find_param(info, p.name) && !find_param(plugin.params, p.name)) plugin.params.push_back(p);
   return info.make(Params(info, plugin, resolver));
 }
 
 /// Of a camera's shutter, in seconds; 1 of one that has none.
 double open_time(const Params& camera, const CameraInfo& info) {
-  if (!declares(info, "shutterclose")) return 1;
+  if (!find_param(info, "shutterclose")) return 1;
   return std::abs(camera.real("shutterclose") - camera.real("shutteropen"));
 }
 
@@ -75,8 +64,8 @@ class SceneBuilder {
                const std::filesystem::path& cache)
       : scene_(scene), description_(settings), registry_(registry), pool_(pool), log_(log), cache_(cache) {}
 
-  /// With these shapes.
-  void build(const SceneDescription& description, SharedWork& shared) {
+  void build(const SceneDescription& description, const Scene* other, SharedWork& shared) {
+    if (other) return build(*other, shared);
     const auto resolver = build_settings();
     build_world(description, *resolver);
     problems_.check();
@@ -92,6 +81,7 @@ class SceneBuilder {
     problems_.check();
   }
 
+ private:
   /// With what stands in the other, and as much of what that is made of as is the same.
   void build(const Scene& other, SharedWork& shared) {
     const auto resolver = build_settings();
@@ -116,7 +106,6 @@ class SceneBuilder {
     finish(*resolver, shared);
   }
 
- private:
   void build_world(const SceneDescription& description, SceneResolver& resolver) {
     check_declarations(resolver);
     build_lights(resolver);
@@ -213,7 +202,7 @@ class SceneBuilder {
     scene_.wavelengths_ = make_wavelengths(text, where, description_, registry_);
     const WavelengthsInfo& info = registry_.wavelengths.get(parse_plugin_text(text, where).name, where);
     for (const ParsedParam& of_film : sensor_params(description_))
-      if (!declares(info, of_film.name))
+      if (!find_param(info, of_film.name))
         log_.warn(of_film.where, fmt::format("\"{}\" has no effect on wavelengths \"{}\"", of_film.name, info.name));
   }
 
@@ -452,14 +441,9 @@ std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, cons
 }
 
 Scene::Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,
-             const std::filesystem::path& cache) {
-  SharedWork shared;
-  SceneBuilder(*this, description, registry, pool, log, cache).build(description, shared);
-}
-
-Scene::Scene(const Scene& other, const SceneSettings& settings, const Registry& registry, ThreadPool& pool,
-             const Log& log, SharedWork& shared, const std::filesystem::path& cache) {
-  SceneBuilder(*this, settings, registry, pool, log, cache).build(other, shared);
+             const std::filesystem::path& cache, const Scene* other, SharedWork* shared) {
+  SharedWork own;
+  SceneBuilder(*this, description, registry, pool, log, cache).build(description, other, shared ? *shared : own);
 }
 
 void Scene::check(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log) {

@@ -52,14 +52,12 @@ class Scene final : public World {
   /// parts stand for themselves. Throws InputError.
   static std::vector<size_t> leaf_materials(const SceneSettings& description, const Registry& registry);
 
-  /// `cache`: folder of tables that are computed here; empty: no files are kept. Throws InputError.
+  /// `cache`: folder of tables that are computed here; empty: no files are kept.
+  /// `other`: a scene in which the same stands: the geometry is then that one, whatever shapes are described, and so
+  /// are lights and materials as far as they do not differ. The description is the other's but for its materials,
+  /// wavelengths, integrator and view. `shared` holds what such scenes have in common. Throws InputError.
   Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,
-        const std::filesystem::path& cache = {});
-  /// What stands in `other`, with other materials, wavelengths, integrator or view: the geometry is the same one, and
-  /// so are lights and materials as far as they do not differ. `settings` is the other's but for what stands in the
-  /// place of its materials. `shared` holds what such scenes have in common. Throws InputError.
-  Scene(const Scene& other, const SceneSettings& settings, const Registry& registry, ThreadPool& pool, const Log& log,
-        SharedWork& shared, const std::filesystem::path& cache = {});
+        const std::filesystem::path& cache = {}, const Scene* other = nullptr, SharedWork* shared = nullptr);
   ~Scene() override;
 
   /// Loads all that the scene names, whether a shape needs it or not, and makes nothing of it. Throws InputError, with

@@ -11,11 +11,7 @@ namespace {
 
 void leave_out_unknown(const MaterialInfo& info, ParsedPlugin& plugin, const Log& log) {
   std::erase_if(plugin.params, [&](const ParsedParam& given) {
-    const auto same_name = [&given](const Param& p) { return p.name == given.name; };
-    const auto& bends = normal_bend_params.params;
-    if (std::any_of(info.params.begin(), info.params.end(), same_name) ||
-        std::any_of(bends.begin(), bends.end(), same_name))
-      return false;
+    if (find_param(info, given.name) || find_param(normal_bend_params, given.name)) return false;
     log.warn(given.where, fmt::format("\"{}\" has no parameter \"{}\": left out by the swap", info.name, given.name));
     return true;
   });

@@ -221,8 +221,7 @@ TEST_F(Choosing, AVariantRendersAsTheSceneItStandsFor) {
                     kSmpte + two_leaves("\"string model\" \"leaf_simplified\"", "\"string model\" \"leaf_lambert\"")),
       quiet);
   const Scene scene(open, registry, pool, quiet), direct(closed, registry, pool, quiet);
-  SharedWork shared;
-  const Scene variant(scene, closed, registry, pool, quiet, shared);
+  const Scene variant(closed, registry, pool, quiet, {}, &scene);
   EXPECT_EQ(&variant.geometry(), &scene.geometry());
   const FilmSettings film = Scene::film_settings(open, registry);
   PairedFilms a(film, 0, {1, 2}, open, registry, variant), b(film, 0, {1, 2}, open, registry, direct);

@@ -22,7 +22,7 @@ double price_of(std::string_view model) {
 
 /// After "auto".
 std::span<const std::string_view> models_of(const MaterialInfo& leaf) {
-  return std::ranges::find(leaf.params, std::string_view("model"), &Param::name)->choices.subspan(1);
+  return find_param(leaf, "model")->choices.subspan(1);
 }
 
 }  // namespace

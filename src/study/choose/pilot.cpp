@@ -52,7 +52,7 @@ Pilot::Pilot(const ChoiceTask& subject, const Ladder& ladder)
     : subject_(subject),
       film_(subject.session.film(subject.description)),
       start_cpu_seconds_(cpu_seconds()),
-      variant_(static_cast<const SceneSettings&>(subject.description)) {
+      variant_{subject.description, {}, {}, {}} {
   Session& session = subject.session;
   const Registry& registry = session.registry();
   SceneDescription& description = subject.description;
@@ -60,11 +60,8 @@ Pilot::Pilot(const ChoiceTask& subject, const Ladder& ladder)
     questions_.push_back({"wavelengths", {}, 0, ladder.wavelengths});
     put_answers(questions_, reference(), registry, description);
   }
-  if (subject.other)
-    scene_ = std::make_shared<const Scene>(*subject.other, description, registry, session.pool(), quiet_, shared_,
-                                           session.cache());
-  else
-    scene_ = std::make_shared<const Scene>(description, registry, session.pool(), quiet_, session.cache());
+  scene_ = std::make_shared<const Scene>(description, registry, session.pool(), quiet_, session.cache(), subject.other,
+                                         &shared_);
   exponent_ = film_exponent(*scene_);
   const auto leaves = open_leaves(description, registry, scene_->wavelengths(), ladder);
   questions_.insert(questions_.end(), leaves.begin(), leaves.end());
@@ -89,8 +86,8 @@ Pilot::Render Pilot::make(const Configuration& answers) {
   Session& session = subject_.session;
   variant_.materials = subject_.description.materials;
   put_answers(questions_, answers, session.registry(), variant_);
-  auto scene =
-      std::make_unique<Scene>(*scene_, variant_, session.registry(), session.pool(), quiet_, shared_, session.cache());
+  auto scene = std::make_unique<Scene>(variant_, session.registry(), session.pool(), quiet_, session.cache(),
+                                       scene_.get(), &shared_);
   const auto seed = [this](SeedUse use) { return hash_key(scene_->seed(), uint64_t{use}); };
   PairedFilms films(row_of(film_, pixels_.size()), exponent_, {seed(kFirstHalf), seed(kSecondHalf)}, variant_,
                     session.registry(), *scene, pixels_);

@@ -69,7 +69,7 @@ class Pilot {
   ChoiceTask subject_;
   FilmSettings film_;
   double start_cpu_seconds_;
-  SceneSettings variant_;            ///< the subject's, as it was rendered last
+  SceneDescription variant_;         ///< the subject's without its shapes, as it was rendered last
   const Log& quiet_ = silent_log();  ///< what there is to say the final render says
   SharedWork shared_;
   ColorManager colors_;

@@ -11,35 +11,23 @@
 namespace frond::choose {
 namespace {
 
-const ParsedParam* find(const std::vector<ParsedParam>& params, std::string_view name) {
-  const auto found = std::ranges::find(params, name, &ParsedParam::name);
-  return found == params.end() ? nullptr : &*found;
-}
-
 bool is_open(const MaterialDescription& m) {
   if (m.plugin.name != "leaf") return false;
-  const ParsedParam* model = find(m.plugin.params, "model");
+  const ParsedParam* model = find_param(m.plugin.params, "model");
   return !model || model->values == decltype(model->values){std::vector<std::string>{"auto"}};
-}
-
-bool same_leaf(const ParsedPlugin& a, const ParsedPlugin& b) {
-  return std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
-    return p.type == q.type && p.name == q.name && p.values == q.values;
-  });
 }
 
 /// Whether a model that has the choice of `name` has this one.
 bool takes(const Registry& registry, std::string_view model, std::string_view name, const std::string& word) {
   const MaterialInfo* info = registry.materials.find(model);
-  if (!info) return true;
-  const auto param = std::ranges::find(info->params, name, &Param::name);
-  return param == info->params.end() || std::ranges::count(param->choices, word) > 0;
+  const Param* param = info ? find_param(*info, name) : nullptr;
+  return !param || std::ranges::count(param->choices, word) > 0;
 }
 
 /// What counts as right: the last of the ladder, but walks cannot tell of a reciprocal leaf.
 const ModelOption* right_for(const ParsedPlugin& leaf, const Registry& registry,
                              const std::vector<ModelOption>& models) {
-  const ParsedParam* incident = find(leaf.params, "incident");
+  const ParsedParam* incident = find_param(leaf.params, "incident");
   const auto* words = incident ? std::get_if<std::vector<std::string>>(&incident->values) : nullptr;
   if (!words || words->size() != 1) return &models.back();
   const auto right = std::ranges::find_if(models.rbegin(), models.rend(), [&](const ModelOption& rung) {
@@ -72,7 +60,7 @@ void add_options(OpenChoice& question, SceneSettings& description, const Registr
 
 bool has_open_leaf(const SceneSettings& description) { return std::ranges::any_of(description.materials, is_open); }
 
-bool names_wavelengths(const SceneSettings& description) { return find(description.options, "wavelengths"); }
+bool names_wavelengths(const SceneSettings& description) { return find_param(description.options, "wavelengths"); }
 
 std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Registry& registry,
                                     const WavelengthStrategy& wavelengths, const Ladder& ladder) {
@@ -84,7 +72,7 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
     if (!is_open(m)) continue;
     const auto alike = std::ranges::find_if(leaves, [&](const OpenChoice& q) {
       const MaterialDescription& other = description.materials[q.materials.front()];
-      return m.name.empty() && other.name.empty() && same_leaf(m.plugin, other.plugin);
+      return m.name.empty() && other.name.empty() && same_plugin(m.plugin, other.plugin);
     });
     if (alike != leaves.end()) {
       alike->materials.push_back(i);

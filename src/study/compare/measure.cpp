@@ -208,15 +208,15 @@ void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& be
 /// A sample's CPU time hardly hangs on how many there are. The few rays that a cutoff leaves are counted over more.
 constexpr uint64_t kTimingSamples = 8, kPilotFactor = 4;
 
-void time_in_the_papers_manner(const Study& study, const Plan& plan, const ThreadPool& pool, Comparison& result) {
+void time_in_the_papers_manner(const Study& study, const Plan& plan, Comparison& result) {
   const uint64_t samples = std::min(kTimingSamples, plan.top_samples);
-  const PaperManner manner(study, plan.candidates.front(), kPilotFactor * samples, pool);
+  const PaperManner manner(study, plan.candidates.front(), kPilotFactor * samples);
   std::vector<std::pair<PaperTiming*, PairedRender>> renders;
   for (Subject& subject : result.subjects)
     if ((subject.paper = manner.of(subject.candidate)))
       renders.emplace_back(&*subject.paper, pair_of(study, subject.paper->candidate, kTimingSeed));
   for (uint64_t n = 1; n <= samples; ++n)
-    for (auto& [timing, render] : renders) render.advance_to(n, pool, {});
+    for (auto& [timing, render] : renders) render.advance_to(n, study.session().pool(), {});
   for (auto& [timing, render] : renders) timing->cpu_seconds_per_sample = render.cost().cpu_seconds / double(samples);
 }
 
@@ -249,7 +249,7 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request)
                                .wavelengths = renders[i].scene().wavelengths_name(),
                                .setup_cpu_seconds = renders[i].setup_cpu_seconds()});
   climb(renders, plan, bench, pool, log, result);
-  time_in_the_papers_manner(study, plan, pool, result);
+  time_in_the_papers_manner(study, plan, result);
   return result;
 }
 

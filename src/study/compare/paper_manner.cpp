@@ -6,10 +6,6 @@
 namespace frond::compare {
 namespace {
 
-bool declares(const PluginInfo& info, std::string_view name) {
-  return std::ranges::any_of(info.params, [name](const Param& p) { return p.name == name; });
-}
-
 void set(PluginText& text, const std::string& name, const std::string& value) {
   std::erase_if(text.params, [&name](const auto& p) { return p.first == name; });
   text.params.emplace_back(name, value);
@@ -31,9 +27,9 @@ std::optional<Candidate> ended_by_attenuation(Candidate c, const Study& study) {
   if (!c.integrator) c.integrator = PluginText{study.integrator_name(), {}};
   const IntegratorInfo& integrator = study.registry().integrators.get(c.integrator->name, {});
   for (const char* needed : {"termination", "cutoff", "maxdepth"})
-    if (!declares(integrator, needed)) return {};
+    if (!find_param(integrator, needed)) return {};
   set(*c.integrator, "termination", "attenuation");
-  if (declares(study.registry().materials.get(c.material.name, {}), "surfacedirect"))
+  if (find_param(study.registry().materials.get(c.material.name, {}), "surfacedirect"))
     set(c.material, "surfacedirect", "false");
   return c;
 }
@@ -47,9 +43,8 @@ PluginText with_end(PluginText integrator, double cutoff, double depth) {
 /// Renders a candidate with one cutoff after another.
 class CutoffRenders {
  public:
-  CutoffRenders(const Study& study, const Candidate& candidate, uint64_t samples, const ThreadPool& pool)
+  CutoffRenders(const Study& study, const Candidate& candidate, uint64_t samples)
       : study_(study),
-        pool_(pool),
         samples_(samples),
         integrator_(*candidate.integrator),
         scene_(study.scene(candidate)),
@@ -60,12 +55,11 @@ class CutoffRenders {
     Film film({.settings = study_.film(), .bands = scene_->wavelengths().bands().size()});
     const RenderJob job{*scene_,          scene_->camera(), *integrator,  scene_->wavelengths(),
                         scene_->filter(), *sampler_,        study_.seed()};
-    return render(job, plan_of(film, {0, samples_}), film, pool_).ends;
+    return render(job, plan_of(film, {0, samples_}), film, study_.session().pool()).ends;
   }
 
  private:
   const Study& study_;
-  const ThreadPool& pool_;
   uint64_t samples_;
   PluginText integrator_;
   std::shared_ptr<const Scene> scene_;
@@ -74,11 +68,11 @@ class CutoffRenders {
 
 }  // namespace
 
-PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples, const ThreadPool& pool)
-    : study_(study), pool_(pool), pilot_samples_(pilot_samples) {
+PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples)
+    : study_(study), pilot_samples_(pilot_samples) {
   const auto candidate = ended_by_attenuation(baseline, study);
   if (!candidate) return;
-  const PathEnds ends = CutoffRenders(study, *candidate, pilot_samples, pool).ends_with(kPaperCutoff);
+  const PathEnds ends = CutoffRenders(study, *candidate, pilot_samples).ends_with(kPaperCutoff);
   depth_ = depth_of_trees(ends);
   target_ = unshot_ratio(ends, depth_);
 }
@@ -86,7 +80,7 @@ PaperManner::PaperManner(const Study& study, const Candidate& baseline, uint64_t
 std::optional<PaperTiming> PaperManner::of(const Candidate& candidate) const {
   auto c = ended_by_attenuation(candidate, study_);
   if (!c || depth_ == 0) return {};
-  const CutoffRenders pilot(study_, *c, pilot_samples_, pool_);
+  const CutoffRenders pilot(study_, *c, pilot_samples_);
   const CutoffFit end =
       fit_cutoff(target_, [&](double cutoff) { return unshot_ratio(pilot.ends_with(cutoff), depth_); });
   c->integrator = with_end(*c->integrator, end.cutoff, depth_);

@@ -13,14 +13,13 @@ namespace frond::compare {
 class PaperManner {
  public:
   /// How paths end is told by pilots of so many samples a pixel.
-  PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples, const ThreadPool& pool);
+  PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples);
 
   /// What to time. Nothing where the scene's integrator, or the candidate's own, has no such end.
   std::optional<PaperTiming> of(const Candidate& candidate) const;
 
  private:
   const Study& study_;
-  const ThreadPool& pool_;
   uint64_t pilot_samples_;
   double depth_ = 0;
   UnshotRatio target_ = {};  ///< what the baseline leaves there

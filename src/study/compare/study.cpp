@@ -10,10 +10,6 @@
 namespace frond::compare {
 namespace {
 
-ParsedParam numbers(const char* type, const char* name, std::vector<double> values) {
-  return {type, name, {}, {}, std::move(values)};
-}
-
 /// The same picture, or the same part of it, with `size` pixels along the longer side.
 void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
   const double scale = double(size) / std::max(s.crop.width(), s.crop.height());
@@ -21,11 +17,11 @@ void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
   std::erase_if(film.params, [](const ParsedParam& p) {
     return p.name == "xresolution" || p.name == "yresolution" || p.name == "cropwindow" || p.name == "pixelbounds";
   });
-  film.params.push_back(numbers("integer", "xresolution", {scaled(s.width)}));
-  film.params.push_back(numbers("integer", "yresolution", {scaled(s.height)}));
+  film.params.push_back(parsed_numbers("integer", "xresolution", {scaled(s.width)}));
+  film.params.push_back(parsed_numbers("integer", "yresolution", {scaled(s.height)}));
   if (s.crop.width() == s.width && s.crop.height() == s.height) return;
   const auto at = [scale](int pixel) { return std::round(pixel * scale); };
-  film.params.push_back(numbers(
+  film.params.push_back(parsed_numbers(
       "integer", "pixelbounds",
       {at(s.crop.x0), at(s.crop.x0) + scaled(s.crop.width()), at(s.crop.y0), at(s.crop.y0) + scaled(s.crop.height())}));
 }
@@ -71,13 +67,10 @@ SceneDescription Study::described(const Candidate& candidate, const Log& log) co
 }
 
 std::shared_ptr<const Scene> Study::scene(const Candidate& candidate) const {
-  const SceneDescription description = described(candidate, session_.log());
-  ThreadPool& pool = session_.pool();
-  if (!first_)
-    return first_ = std::make_shared<const Scene>(description, registry(), pool, session_.log(), session_.cache());
-  SharedWork shared;
-  return std::make_shared<const Scene>(*first_, description, registry(), pool, session_.log(), shared,
-                                       session_.cache());
+  auto scene = std::make_shared<const Scene>(described(candidate, session_.log()), registry(), session_.pool(),
+                                             session_.log(), session_.cache(), first_.get());
+  if (!first_) first_ = scene;
+  return scene;
 }
 
 std::vector<MaterialSwap> Study::swaps_to(const PluginText& material) const {
@@ -105,9 +98,7 @@ Identity Study::identity(const Candidate& candidate) const {
   return identity_of(description, {.plugins = session_.plugins(),
                                    .seed = seed(),
                                    .wavelengths = wavelengths_plugin(description, registry()),
-                                   .film = film_,
-                                   .splats = false,
-                                   .channels = {},
+                                   .format = {.settings = film_},
                                    .color_space = {},
                                    .command = "compare " + candidate.text});
 }
