@@ -21,7 +21,7 @@ CLI::Option* add_option(CLI::App& app, const JobParam& p) {
   CLI::Option* option = app.add_option(names, [](const CLI::results_t&) { return true; }, doc);
   option->type_name(value_name(p));
   if (p.positional && p.kind != ArgumentKind::texts) return option->expected(1);
-  return option->expected(-1)->allow_extra_args(p.positional);
+  return option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(p.positional);
 }
 
 bool is_own(const JobInfo& job, const JobParam& p) {

@@ -174,10 +174,11 @@ Table worths_table(const std::vector<BenchReading>& readings) {
     add_row_head(table, r);
     for (const NamedWorth& w : kWorths) {
       const Worth& worth = r.worth.*w.worth;
-      const double variance = worth.variance.mean < kRounding ? 0 : worth.variance.mean;
+      const bool is_exact = worth.variance.mean < kRounding;
+      const double variance = is_exact ? 0 : worth.variance.mean;
       const std::string name = w.name;
       table.add(name, worth.mean.mean, worth.mean.standard_error());
-      table.add(name + "_variance", variance, worth.variance.standard_error());
+      table.add(name + "_variance", variance, is_exact ? 0 : worth.variance.standard_error());
       table.add(name + "_us", us_to_percent(worth, variance, r.time(w.call)));
     }
   }

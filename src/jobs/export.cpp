@@ -7,6 +7,7 @@
 #include "instruments/given_wavelengths.h"
 #include "jobs/common_params.h"
 #include "radiometry/radiometer_scene.h"
+#include "render/material_words.h"
 #include "render/measured_material.h"
 #include "report/text_output.h"
 
@@ -108,8 +109,8 @@ Result export_material(const JobRun& run) {
     return ready_material(material, session.registry(), GivenWavelengths({nm.begin(), nm.end()}), session.pool(),
                           run.log(), run.context.options().cache, keep_energy);
   };
-  write_text(args.text("output"),
-             format.write({material, prepare, args.seed("seed"), session.pool(), run.log()}, request));
+  const uint64_t seed = hash_key(args.seed("seed"), material_seed(material));
+  write_text(args.text("output"), format.write({material, prepare, seed, session.pool(), run.log()}, request));
   return {};
 }
 

@@ -211,8 +211,8 @@ Result make_leaf_file(const JobRun& run, const Params& params) {
   PortableLeafRequest request{
       .wavelengths_nm = wavelengths_of(run.args), .tolerance = params.real("tolerance"), .nodes = int(run.args.count("nodes"))};
   if (const auto depths = run.args.numbers("depths"); !depths.empty()) request.depths = {depths[0], depths[1]};
-  const leaf::PortableLeaf table = make_portable_leaf(LeafParams(params), std::move(request), run.session().pool(),
-                                                      run.log(), run.context.options().cache);
+  const leaf::PortableLeaf table =
+      make_portable_leaf(LeafParams(params), std::move(request), run.session().pool(), run.log(), {});
   const std::string bytes = leaf::portable_bytes(table);
   return write_table(run, bytes,
                      fmt::format("{}: {}{} wavelengths x {} cells, {}", run.args.text("output"),
@@ -253,7 +253,7 @@ extern const JobInfo kTableJob{
     .details = "leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the modes of its BSDF, or as "
                "FILE.leaf all of it for other programs.",
     .params = kParams,
-    .session = SessionUse::all,
+    .session = SessionUse::threads,
     .run = table};
 
 }  // namespace frond
