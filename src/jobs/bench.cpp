@@ -182,6 +182,7 @@ Table worths_table(const std::vector<BenchReading>& readings) {
       table.add(name + "_us", us_to_percent(worth, variance, r.time(w.call)));
     }
   }
+  for (Column& c : table.columns) c.only_data = c.name.ends_with("_variance_se");
   return table;
 }
 
@@ -246,13 +247,12 @@ Result bench(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kBenchJob{
-    .name = "bench",
-    .group = "Materials",
-    .doc = "Time the calls of a material's BSDF, and measure the variance of its samples.",
-    .details = "",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = bench};
+extern const JobInfo kBenchJob{.name = "bench",
+                               .group = "Materials",
+                               .doc = "Time the calls of a material's BSDF, and measure the variance of its samples.",
+                               .details = "",
+                               .params = kParams,
+                               .session = SessionUse::all,
+                               .run = bench};
 
 }  // namespace frond

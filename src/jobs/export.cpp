@@ -82,7 +82,9 @@ void check_arguments(const Arguments& args, const ExportFormat& format) {
                                                                     {"view-angles", ExportOption::views},
                                                                     {"view-azimuths", ExportOption::views},
                                                                     {"rays", ExportOption::rays}};
-  const auto uses = [](const ExportFormat& f, ExportOption option) { return std::ranges::count(f.options, option) > 0; };
+  const auto uses = [](const ExportFormat& f, ExportOption option) {
+    return std::ranges::count(f.options, option) > 0;
+  };
   for (const auto& [name, option] : kOptions) {
     if (!args.given(name) || uses(format, option)) continue;
     std::vector<std::string_view> others;
@@ -116,13 +118,12 @@ Result export_material(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kExportJob{
-    .name = "export",
-    .group = "Materials",
-    .doc = "Write a material's BSDF as a file for other programs.",
-    .details = "",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = export_material};
+extern const JobInfo kExportJob{.name = "export",
+                                .group = "Materials",
+                                .doc = "Write a material's BSDF as a file for other programs.",
+                                .details = "",
+                                .params = kParams,
+                                .session = SessionUse::all,
+                                .run = export_material};
 
 }  // namespace frond

@@ -16,8 +16,8 @@ struct Column {
 
   bool is_number() const { return values.index() == 0; }
   size_t size() const;
-  std::string csv(size_t row) const;  ///< a field of CSV (RFC 4180): 9 significant digits, 4 of a standard error, all of a
-                                      ///< whole number
+  std::string csv(size_t row) const;  ///< a field of CSV (RFC 4180): 9 significant digits, 4 of a standard error, all
+                                      ///< of a whole number
 };
 
 /// A result as rows and columns. All columns have one length. This is what front ends print, write and convert.

@@ -98,8 +98,7 @@ TEST(BenchCommand, ScriptsCompareItsFiles) {
 TEST(BenchCommand, TimesThePluginsMaterials) {
   const Outcome o = bench({"good_stochastic", "--plugin", FROND_TEST_PLUGINS "/planted.so", "--angles", "30"});
   EXPECT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.out,
-              AllOf(HasSubstr("hit_ns"), ContainsRegex("good_stochastic +30 +4 +[0-9]")));
+  EXPECT_THAT(o.out, AllOf(HasSubstr("hit_ns"), ContainsRegex("good_stochastic +30 +4 +[0-9]")));
 }
 
 TEST(BenchCommand, DrawsVarianceAgainstTime) {

@@ -98,8 +98,8 @@ TEST_F(ExportCommand, CsvSaysWhatTheInstrumentsMeasure) {
                                  "--wavelengths", "551", "--rays", "1e5", "--csv", "-", "--no-cache", "-q"})
                       .out);
     const CsvTable patches = parse_csv(
-        frond_command({"goniophotometer", "leaf_solved,incident=reciprocal", "--angle", angle, "--wavelengths",
-                       "551", "--integrate", "--patches", "180x72", "--csv", "-", "--no-cache", "-q"})
+        frond_command({"goniophotometer", "leaf_solved,incident=reciprocal", "--angle", angle, "--wavelengths", "551",
+                       "--integrate", "--patches", "180x72", "--csv", "-", "--no-cache", "-q"})
             .out);
     int compared = 0;
     for (size_t i = 0; i < csv.rows.size(); ++i) {
@@ -156,7 +156,8 @@ TEST_F(ExportCommand, RefusesTheImpossible) {
   EXPECT_THAT(refusal({"abm", "--format", "radiance", "-o", out}), HasSubstr("abm: its f is a random estimate"));
   EXPECT_THAT(refusal({"conductor", "--format", "csv", "--wavelengths", "551", "-o", out}), HasSubstr("delta lobe"));
   EXPECT_THAT(refusal({"dielectric,roughness=0.3", "--format", "radiance", "-o", out}), HasSubstr("refracts"));
-  EXPECT_THAT(refusal({"leaf_solved", "--format", "cvs", "-o", out}), HasSubstr("one of radiance, csv, npz, netcdf, osl is needed; \"cvs\""));
+  EXPECT_THAT(refusal({"leaf_solved", "--format", "cvs", "-o", out}),
+              HasSubstr("one of radiance, csv, npz, netcdf, osl is needed; \"cvs\""));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "-o", out}), HasSubstr("a table needs wavelengths"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "--wavelengths", "551,550", "-o", out}),
               HasSubstr("wavelengths ascend: 550 comes after 551"));
@@ -169,7 +170,8 @@ TEST_F(ExportCommand, RefusesTheImpossible) {
   EXPECT_THAT(refusal({"leaf_solved", "--format", "radiance", "--angles", "8", "-o", out}),
               HasSubstr("--angles is for --format csv, npz, netcdf"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "npz", "--wavelengths", "551", "-o", "-"}), HasSubstr("no text"));
-  EXPECT_THAT(refusal({"leaf_solved", "--format", "osl", "--wavelengths", "551", "-o", out}), HasSubstr("takes three wavelengths"));
+  EXPECT_THAT(refusal({"leaf_solved", "--format", "osl", "--wavelengths", "551", "-o", out}),
+              HasSubstr("takes three wavelengths"));
   EXPECT_THAT(refusal({"leaf_solved,incident=light", "--format", "osl", "-o", out}), HasSubstr("incident=light"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "--wavelengths", "551", "-o", "/nowhere/a"}),
               HasSubstr("/nowhere"));

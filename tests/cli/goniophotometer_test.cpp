@@ -76,7 +76,8 @@ TEST_F(GoniophotometerCommand, DrawsCurvesAndMaps) {
   const Outcome o = measure({"--with", "diffusetransmission", "--angle", "30,45", "--wavelengths", "551,608", "--rays",
                              "1e3", "--plot", path("a.svg"), "--map", path("b.svg"), "--map-scale", "log"});
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.out, AllOf(HasSubstr("20 x 40 patches"), ContainsRegex("abm,specimen=soybean +30 +551 +1000 rays +BRDF")));
+  EXPECT_THAT(o.out,
+              AllOf(HasSubstr("20 x 40 patches"), ContainsRegex("abm,specimen=soybean +30 +551 +1000 rays +BRDF")));
   for (const char* text : {"abm,specimen=soybean", "diffusetransmission", "551 nm", "608 nm", "BTDF (sr⁻¹)"})
     EXPECT_THAT(bytes_of(path("a.svg")), HasSubstr(text));
   // Only what points toward the light is dotted: no path with a dash goes on to the mirror direction.

@@ -61,14 +61,22 @@ TEST(OldFormFigures, AreThoseOfEarlierVersions) {
 TEST(MeasureJobs, RefuseWithTheSameWordsInBothFrontEnds) {
   struct {
     std::string job, name, value;
-  } const kCases[] = {{"spectrophotometer", "angles", "181"},        {"spectrophotometer", "wavelengths", "300"},
-                      {"spectrophotometer", "rays", "1"},            {"spectrophotometer", "se", "0"},
-                      {"goniophotometer", "map-scale", "square"},    {"goniophotometer", "rays", "0.5"},
-                      {"conform", "false-alarm-rate", "0.6"},        {"conform", "angles", "90"},
-                      {"bench", "lanes", "5"},                       {"bench", "min-time", "nan"},
-                      {"export", "view-azimuths", "360"},            {"export", "format", "cvs"},
-                      {"table", "nodes", "1"},                       {"table", "depths", "1"},
-                      {"fit", "angle", "-1"},                        {"fit", "like", "oak"}};
+  } const kCases[] = {{"spectrophotometer", "angles", "181"},
+                      {"spectrophotometer", "wavelengths", "300"},
+                      {"spectrophotometer", "rays", "1"},
+                      {"spectrophotometer", "se", "0"},
+                      {"goniophotometer", "map-scale", "square"},
+                      {"goniophotometer", "rays", "0.5"},
+                      {"conform", "false-alarm-rate", "0.6"},
+                      {"conform", "angles", "90"},
+                      {"bench", "lanes", "5"},
+                      {"bench", "min-time", "nan"},
+                      {"export", "view-azimuths", "360"},
+                      {"export", "format", "cvs"},
+                      {"table", "nodes", "1"},
+                      {"table", "depths", "1"},
+                      {"fit", "angle", "-1"},
+                      {"fit", "like", "oak"}};
   for (const auto& [job, name, value] : kCases) {
     const auto refusal = [&](Spelling spelling) {
       return error_of([&] { Arguments(params_of(find_job(job)), spelling).set(name, value); });

@@ -28,7 +28,8 @@ TEST(NumberList, TakesNumbersAndRanges) {
 }
 
 TEST(NumberList, RefusesOtherThings) {
-  for (const char* text : {"", "a", "1,,2", "1:2", "0:1:0", "0:1:-1", "nan", "inf", "1 2", "0:1e9:1e-3", "0x10", "1e999"})
+  for (const char* text :
+       {"", "a", "1,,2", "1:2", "0:1:0", "0:1:-1", "nan", "inf", "1 2", "0:1e9:1e-3", "0x10", "1e999"})
     EXPECT_THAT(refusal(kNumbers, text), HasSubstr("--angles: a list of numbers from 0 to 180, as in 0,8,30")) << text;
   EXPECT_THAT(refusal(kNumbers, "0,181", python_spelling), HasSubstr("angles: a list of numbers"));
 }

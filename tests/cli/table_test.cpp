@@ -64,8 +64,9 @@ TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
   EXPECT_THAT(o.err, HasSubstr("3 wavelengths x "));
   EXPECT_THAT(o.err, HasSubstr("kB in a render"));
   const auto measured = [&](const std::string& way) {
-    return frond_command({"goniophotometer", "leaf_solved,specimen=maize," + coarse + "," + way, "--integrate", "--no-cache",
-                          "--angles", "30,120", "--wavelengths", red, "--patches", "4x6", "-q", "--csv", "-"})
+    return frond_command({"goniophotometer", "leaf_solved,specimen=maize," + coarse + "," + way, "--integrate",
+                          "--no-cache", "--angles", "30,120", "--wavelengths", red, "--patches", "4x6", "-q", "--csv",
+                          "-"})
         .out;
   };
   const auto figures = [](const std::string& csv) { return csv.substr(csv.find("incidence_deg,")); };
