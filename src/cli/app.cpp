@@ -20,7 +20,7 @@ CLI::Option* add_option(CLI::App& app, const JobParam& p) {
     return app.add_flag(fmt::format("{}{{{}}}", names, p.implied), doc)->type_name(fmt::format("[={}]", p.type));
   CLI::Option* option = app.add_option(names, [](const CLI::results_t&) { return true; }, doc);
   option->type_name(value_name(p));
-  if (p.positional && p.kind != ArgumentKind::texts) return option->expected(1);
+  if (p.kind != ArgumentKind::texts) return option->expected(1);
   return option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(p.positional);
 }
 

@@ -1,5 +1,9 @@
+#include "tests/cli/table.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cstring>
 
 #include "leaf/table/table_file.h"
 #include "leaf/tissue/specimens.h"
@@ -78,6 +82,27 @@ TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
   EXPECT_EQ(without_name("tablefile=" + path), without_name("incident=traced"));
   const Outcome finer = table_command({"leaf_solved", "--nodes", "6", "--wavelengths", red, "-o", "-"});
   EXPECT_THAT(finer.out, HasSubstr("# nodes 6\n"));
+}
+
+TEST(TableCommand, WritesALeafFileOverDepths) {
+  const TestFolder folder("leaf");
+  const std::string path = folder.name_of("a.leaf");
+  const auto written = [&](const std::string& depths) {
+    return table_command({"leaf_solved,tolerance=1e-2", "--wavelengths", "608,551", "--depths", depths, "-o", path});
+  };
+  ASSERT_EQ(written("0.1,10").code, 0);
+  const std::string bytes = bytes_of(path);
+  const auto whole = [&](size_t at) {
+    uint32_t value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+  };
+  EXPECT_EQ(whole(16), 2u);   // wavelengths; docs/leaf_file.md
+  EXPECT_EQ(whole(20), 32u);  // depths: ln(10 / 0.1) in steps of at most 0.15, both ends
+  EXPECT_THAT(written("10,0.1").err, HasSubstr("depths from 10 to 0.1 are no range"));
+  EXPECT_THAT(written("-1,10").err, HasSubstr("--depths: 2 numbers from 0 on"));
+  EXPECT_THAT(table_command({"--wavelengths", "551", "--depths", "1,2", "-o", path}).err,
+              HasSubstr("--depths is for a .leaf file of leaf_solved"));
 }
 
 TEST(TableCommand, RefusesOptionsThatModesDoNotHave) {
