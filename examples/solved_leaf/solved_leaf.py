@@ -223,7 +223,7 @@ class Mode:
 
 def file_modes(frond, specimen):
     """Cells, index, depth and the modes of the table that the program writes."""
-    words = [frond, "table", "leaf_solved", f"specimen={specimen}", "tolerance=1e-2", "--nodes", str(NODES),
+    words = [frond, "table", f"leaf_solved,specimen={specimen},tolerance=1e-2", "--nodes", str(NODES),
              "--wavelengths", "551", "-q", "-o", "-"]
     text = subprocess.run(words, capture_output=True, text=True, check=True).stdout
     lines = [line.split() for line in text.splitlines() if not line.startswith("#")]

@@ -282,7 +282,7 @@ INTRODUCTION = """# Exports
 Written by `scripts/exports`. {machine}
 
 ```
-frond export MATERIAL [parameter=value ...] --format radiance|csv|npz|netcdf|osl -o FILE
+frond export NAME[,parameter=value...] --format radiance|csv|npz|netcdf|osl -o FILE
 ```
 
 writes a material's BSDF for other programs. The material is named as for the [instruments](instruments.md). What is exported is
@@ -322,7 +322,7 @@ is f averaged over both patches with respect to projected solid angle: by Gauss'
   as well. A warning tells where a lobe was too narrow to be integrated.
 
 ```
-frond export leaf_solved specimen=soybean --format radiance -o leaf.xml
+frond export leaf_solved,specimen=soybean --format radiance -o leaf.xml
 ```
 
 and in the scene

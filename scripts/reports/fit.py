@@ -137,7 +137,7 @@ def rmse_of(leaf, rows_):
 
 
 def numbers_of(fitted):
-    return [f"{name}={value}" for name, value in fitted["leaf"].items()] + [f"sieve={'true' if fitted['sieve'] else 'false'}"]
+    return [f"{row['name']}={row['value']}" for row in fitted["leaf"]] + [f"sieve={'true' if fitted['sieve'] else 'false'}"]
 
 
 def six_numbers(soybean):

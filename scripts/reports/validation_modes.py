@@ -12,7 +12,7 @@ class Modes:
     """What `frond table leaf_solved` writes: cells and, by wavelength, index and modes [side][way][m][sin i][sin o]."""
 
     def __init__(self, leaf, nm, *options):
-        words = [FROND, "table", "leaf_solved", f"specimen={leaf}", "--wavelengths", nm, "--threads", 1, "-o", "-", *options]
+        words = [FROND, "table", f"leaf_solved,specimen={leaf}", "--wavelengths", nm, "--threads", 1, "-o", "-", *options]
         done = subprocess.run([str(w) for w in words], capture_output=True, text=True, check=True)
         self.seconds = float(re.search(r"([0-9.e+-]+) s of CPU", done.stderr).group(1))
         self.kilobytes = int(re.search(r"([0-9]+) kB in a render", done.stderr).group(1))
@@ -60,7 +60,7 @@ def largest_between(a, b):
 
 def small_patches(leaf, tolerance, step):
     """f over patches of 2 by 10 degrees, light at every `step` degrees on both sides."""
-    text = frond("goniophotometer", "leaf_solved", f"specimen={leaf}", f"tolerance={tolerance}", "--integrate", "--angles",
+    text = frond("goniophotometer", f"leaf_solved,specimen={leaf},tolerance={tolerance}", "--integrate", "--angles",
                  f"0:88:{step},92:180:{step}", "--wavelengths", "608,551,455", "--patches", "90x36", "--csv", "-", "-q")
     return [p["f_per_sr"] for p in rows(text)]
 

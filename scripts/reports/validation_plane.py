@@ -15,7 +15,7 @@ the lines.
 """)
     for nm in RGB:
         name = f"bdf-{nm}"
-        frond("goniophotometer", "abm", "specimen=soybean", "--with", "leaf_simplified specimen=soybean", "--angles",
+        frond("goniophotometer", "abm,specimen=soybean", "--with", "leaf_simplified,specimen=soybean", "--angles",
               "30,45", "--wavelengths", nm, "--rays", rays, "-q", "--plot", report.images / f"{name}.svg")
         report.add(f"![BDF at {nm} nm](images/validation/{name}.svg)")
 
@@ -32,12 +32,12 @@ def in_plane(patches, reflected):
 
 
 def plane_chart(report, leaf, side, angles, rays):
-    text = frond("goniophotometer", "leaf_solved", f"specimen={leaf}", "--with", f"abm specimen={leaf}", "--integrate",
+    text = frond("goniophotometer", f"leaf_solved,specimen={leaf}", "--with", f"abm,specimen={leaf}", "--integrate",
                  "--angles", ",".join(map(str, angles)), "--wavelengths", ",".join(map(str, RGB)), "--rays", rays, "-q",
                  "--csv", "-")
     readings = {}
     for p in rows(text):
-        readings.setdefault((p["material"].split()[0], p["incidence_deg"], p["wavelength_nm"]), []).append(p)
+        readings.setdefault((p["material"].split(",")[0], p["incidence_deg"], p["wavelength_nm"]), []).append(p)
     data, panels = "", ""
     for row, reflected in enumerate((True, False)):
         for column, angle in enumerate(angles):

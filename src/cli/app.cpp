@@ -90,8 +90,9 @@ CLI::Option* add_option(CLI::App& app, const JobParam& p) {
     option->option_text(p.kind == ArgumentKind::texts ? " ..." : "");
   else
     option->option_text(fmt::format(" {}{}", value_name(p), p.required ? " (required)" : ""));
-  if (p.positional && p.kind != ArgumentKind::texts) return option->expected(1);
-  return option->expected(-1)->allow_extra_args(p.positional);
+  const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
+  if (!repeats) return option->expected(1);
+  return option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(p.positional);
 }
 
 bool is_own(const JobInfo& job, const JobParam& p) {

@@ -68,7 +68,7 @@ double phong_albedo(double exponent, double theta_deg) {
 bool measure(const ExportSubject& subject, const ExportedBsdf& bsdf, bool front, size_t channel, int64_t rays,
              SideTable& side) {
   const double nm = bsdf.wavelengths_nm()[0];
-  const uint64_t seed = hash_key(subject.seed, hash_bytes(subject.label));
+  const uint64_t seed = subject.seed;
   const auto exposure = [&](double theta_deg) {
     return Exposure{bsdf.material(), {front ? theta_deg : 180 - theta_deg, nm}, seed};
   };

@@ -16,7 +16,7 @@ struct ExportSubject {
   std::string label;  ///< the material's text
   /// The material, prepared for one to four wavelengths (nm). Throws InputError where its data do not reach them.
   std::function<std::shared_ptr<const Material>(const std::vector<double>&)> prepare;
-  uint64_t seed;  ///< of whatever is random
+  uint64_t seed;  ///< of all random numbers: another one for each material
   const ThreadPool& pool;
   const Log& log;
 };

@@ -174,13 +174,15 @@ Table worths_table(const std::vector<BenchReading>& readings) {
     add_row_head(table, r);
     for (const NamedWorth& w : kWorths) {
       const Worth& worth = r.worth.*w.worth;
-      const double variance = worth.variance.mean < kRounding ? 0 : worth.variance.mean;
+      const bool is_exact = worth.variance.mean < kRounding;
+      const double variance = is_exact ? 0 : worth.variance.mean;
       const std::string name = w.name;
       table.add(name, worth.mean.mean, worth.mean.standard_error());
-      table.add(name + "_variance", variance, worth.variance.standard_error());
+      table.add(name + "_variance", variance, is_exact ? 0 : worth.variance.standard_error());
       table.add(name + "_us", us_to_percent(worth, variance, r.time(w.call)));
     }
   }
+  for (Column& c : table.columns) c.only_data = c.name.ends_with("_variance_se");
   return table;
 }
 
@@ -245,13 +247,12 @@ Result bench(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kBenchJob{
-    .name = "bench",
-    .group = "Materials",
-    .doc = "Time the calls of a material's BSDF, and measure the variance of its samples.",
-    .details = "",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = bench};
+extern const JobInfo kBenchJob{.name = "bench",
+                               .group = "Materials",
+                               .doc = "Time the calls of a material's BSDF, and measure the variance of its samples.",
+                               .details = "",
+                               .params = kParams,
+                               .session = SessionUse::all,
+                               .run = bench};
 
 }  // namespace frond

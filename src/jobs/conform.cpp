@@ -138,13 +138,12 @@ Result conform(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kConformJob{
-    .name = "conform",
-    .group = "Materials",
-    .doc = "Test whether a material obeys the laws of scattering.",
-    .details = "Exit code 0: all laws hold; 2: a law is broken.",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = conform};
+extern const JobInfo kConformJob{.name = "conform",
+                                 .group = "Materials",
+                                 .doc = "Test whether a material obeys the laws of scattering.",
+                                 .details = "Exit code 0: all laws hold; 2: a law is broken.",
+                                 .params = kParams,
+                                 .session = SessionUse::all,
+                                 .run = conform};
 
 }  // namespace frond

@@ -7,6 +7,7 @@
 #include "instruments/given_wavelengths.h"
 #include "jobs/common_params.h"
 #include "radiometry/radiometer_scene.h"
+#include "render/material_words.h"
 #include "render/measured_material.h"
 #include "report/text_output.h"
 
@@ -81,7 +82,9 @@ void check_arguments(const Arguments& args, const ExportFormat& format) {
                                                                     {"view-angles", ExportOption::views},
                                                                     {"view-azimuths", ExportOption::views},
                                                                     {"rays", ExportOption::rays}};
-  const auto uses = [](const ExportFormat& f, ExportOption option) { return std::ranges::count(f.options, option) > 0; };
+  const auto uses = [](const ExportFormat& f, ExportOption option) {
+    return std::ranges::count(f.options, option) > 0;
+  };
   for (const auto& [name, option] : kOptions) {
     if (!args.given(name) || uses(format, option)) continue;
     std::vector<std::string_view> others;
@@ -108,20 +111,19 @@ Result export_material(const JobRun& run) {
     return ready_material(material, session.registry(), GivenWavelengths({nm.begin(), nm.end()}), session.pool(),
                           run.log(), run.context.options().cache, keep_energy);
   };
-  write_text(args.text("output"),
-             format.write({material, prepare, args.seed("seed"), session.pool(), run.log()}, request));
+  const uint64_t seed = hash_key(args.seed("seed"), material_seed(material));
+  write_text(args.text("output"), format.write({material, prepare, seed, session.pool(), run.log()}, request));
   return {};
 }
 
 }  // namespace
 
-extern const JobInfo kExportJob{
-    .name = "export",
-    .group = "Materials",
-    .doc = "Write a material's BSDF as a file for other programs.",
-    .details = "",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = export_material};
+extern const JobInfo kExportJob{.name = "export",
+                                .group = "Materials",
+                                .doc = "Write a material's BSDF as a file for other programs.",
+                                .details = "",
+                                .params = kParams,
+                                .session = SessionUse::all,
+                                .run = export_material};
 
 }  // namespace frond

@@ -159,13 +159,12 @@ Result fit(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kFitJob{
-    .name = "fit",
-    .group = "Leaf models",
-    .doc = "Fit a leaf to measured reflectance and transmittance.",
-    .details = "",
-    .params = kParams,
-    .session = SessionUse::threads,
-    .run = fit};
+extern const JobInfo kFitJob{.name = "fit",
+                             .group = "Leaf models",
+                             .doc = "Fit a leaf to measured reflectance and transmittance.",
+                             .details = "",
+                             .params = kParams,
+                             .session = SessionUse::threads,
+                             .run = fit};
 
 }  // namespace frond

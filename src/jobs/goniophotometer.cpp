@@ -40,7 +40,11 @@ constexpr JobParam kParams[] = {
     kJsonParam,
     chart_param("plot", "Chart of f in the plane of incidence: .svg or .png."),
     chart_param("map", "Polar maps of f over both hemispheres: .svg or .png."),
-    {.name = "map-scale", .kind = text, .doc = "Colour scale of the map.", .default_value = "linear", .choices = kScales},
+    {.name = "map-scale",
+     .kind = text,
+     .doc = "Colour scale of the map.",
+     .default_value = "linear",
+     .choices = kScales},
 };
 
 /// "20x40"; "20,40" as well, which is how a program writes two numbers.
@@ -82,7 +86,8 @@ Table table_of(const std::vector<LabelledPatches>& readings) {
   table.document("incidence_deg",
                  "from the front's normal to the light, degrees; above 90 the back (abaxial side) is lit");
   table.document("theta_deg", "of the detector, from the front's normal; patches are equal in theta and in phi");
-  table.document("phi_deg", "from the light's azimuth; the first patch is centred on 0, the mirror direction is at 180");
+  table.document("phi_deg",
+                 "from the light's azimuth; the first patch is centred on 0, the mirror direction is at 180");
   table.document("f_per_sr", "BRDF (on the lit side) or BTDF, 1/sr: weight sum / (rays * projected solid angle)");
   table.document("f_se", "standard error of f_per_sr");
   table.document("caught", "number of rays that reached the patch");
@@ -146,21 +151,20 @@ Result goniophotometer(const JobRun& run) {
   if (run.args.given("plot")) write_chart(run.args.text("plot"), plane_chart(readings));
   if (run.args.given("map")) write_chart(run.args.text("map"), map_chart(readings, run.args.text("map-scale") == "log"));
   const Table summary = summary_of(readings);
-  return {.tables = {table_of(readings), summary},
-          .notes = tested.notes("goniophotometer"),
-          .text = fmt::format("{} x {} patches; where f is largest\n{}", sphere.thetas(), sphere.phis(),
-                              to_text(summary))};
+  return {
+      .tables = {table_of(readings), summary},
+      .notes = tested.notes("goniophotometer"),
+      .text = fmt::format("{} x {} patches; where f is largest\n{}", sphere.thetas(), sphere.phis(), to_text(summary))};
 }
 
 }  // namespace
 
-extern const JobInfo kGoniophotometerJob{
-    .name = "goniophotometer",
-    .group = "Measure",
-    .doc = "Measure a material's BRDF and BTDF over the whole sphere.",
-    .details = "",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = goniophotometer};
+extern const JobInfo kGoniophotometerJob{.name = "goniophotometer",
+                                         .group = "Measure",
+                                         .doc = "Measure a material's BRDF and BTDF over the whole sphere.",
+                                         .details = "",
+                                         .params = kParams,
+                                         .session = SessionUse::all,
+                                         .run = goniophotometer};
 
 }  // namespace frond

@@ -3,31 +3,29 @@
 #include <chrono>
 #include <span>
 
-#include "jobs/common_params.h"
 #include "instruments/rays.h"
+#include "jobs/common_params.h"
 #include "render/measured_material.h"
 
 /// What the jobs of both instruments share: parameters, materials under test, progress.
 namespace frond {
 
-inline constexpr JobParam kAnglesParam{
-    .name = "angles",
-    .kind = ArgumentKind::numbers,
-    .doc = "Angles of incidence from the front's normal; above 90 the back is lit.",
-    .default_value = "8",
-    .unit = "degrees",
-    .range = {0, 180},
-    .aliases = "angle",
-    .decides = true};
-inline constexpr JobParam kInstrumentWavelengthsParam{
-    .name = "wavelengths",
-    .kind = ArgumentKind::numbers,
-    .doc = "Wavelengths.",
-    .unit = "nm",
-    .range = {360, 2500},
-    .aliases = "wavelength",
-    .decides = true,
-    .required = true};
+inline constexpr JobParam kAnglesParam{.name = "angles",
+                                       .kind = ArgumentKind::numbers,
+                                       .doc = "Angles of incidence from the front's normal; above 90 the back is lit.",
+                                       .default_value = "8",
+                                       .unit = "degrees",
+                                       .range = {0, 180},
+                                       .aliases = "angle",
+                                       .decides = true};
+inline constexpr JobParam kInstrumentWavelengthsParam{.name = "wavelengths",
+                                                      .kind = ArgumentKind::numbers,
+                                                      .doc = "Wavelengths.",
+                                                      .unit = "nm",
+                                                      .range = {360, 2500},
+                                                      .aliases = "wavelength",
+                                                      .decides = true,
+                                                      .required = true};
 inline constexpr JobParam kRenderedParam{
     .name = "rendered",
     .kind = ArgumentKind::flag,

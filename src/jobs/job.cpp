@@ -171,6 +171,9 @@ std::string material_text(const std::vector<std::string>& words, const Log& log)
   std::string text;
   bool is_old = words.size() > 1;
   for (const std::string& word : words) {
+    if (word.empty()) fail({}, "a material is needed, as in abm,specimen=maize");
+    if (&word != &words.front() && !is_parameter(word))
+      fail({}, "a parameter looks like name=value: \"{}\" in {}", word, fmt::join(words, " "));
     auto parts = split(word, ' ');
     std::erase(parts, "");
     // "abm specimen=maize" is a name and its parameters; a blank elsewhere is part of a value, such as a file's path.

@@ -58,8 +58,9 @@ Table table_of(std::span<const LabelledReading> readings) {
     table.add("material", material);
   }
   table.document("theta_deg", "from the front's normal to the light, degrees; above 90 the back (abaxial side) is lit");
-  table.document("Rs", "share of the light, 0 to 1, that the surface reflects at the first event; blank where the "
-                       "material does not tell Rs and Rd apart");
+  table.document("Rs",
+                 "share of the light, 0 to 1, that the surface reflects at the first event; blank where the "
+                 "material does not tell Rs and Rd apart");
   table.document("Rd", "share that leaves the body on the lit side");
   table.document("R", "Rs + Rd, the share that is reflected; R_se and the like: standard errors");
   table.document("T", "share that leaves by the other side");
@@ -96,8 +97,8 @@ Result spectrophotometer(const JobRun& run) {
     check_shares_chart(tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size());
   std::vector<LabelledReading> readings;
   for (size_t i = 0; i < tested.size(); ++i)
-    readings.push_back({tested.material(i).label(), measure_shares(tested.exposure(i), dose, run.session().pool(),
-                                                                   tested.progress(i, dose.rays))});
+    readings.push_back({tested.material(i).label(),
+                        measure_shares(tested.exposure(i), dose, run.session().pool(), tested.progress(i, dose.rays))});
   if (run.control.progress) run.control.progress->finish();
   warn_where_not_reached(run, dose, readings);
   if (run.args.given("plot")) write_chart(run.args.text("plot"), shares_chart(readings));
@@ -108,13 +109,12 @@ Result spectrophotometer(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kSpectrophotometerJob{
-    .name = "spectrophotometer",
-    .group = "Measure",
-    .doc = "Measure a material's reflectance, transmittance and absorptance.",
-    .details = "",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = spectrophotometer};
+extern const JobInfo kSpectrophotometerJob{.name = "spectrophotometer",
+                                           .group = "Measure",
+                                           .doc = "Measure a material's reflectance, transmittance and absorptance.",
+                                           .details = "",
+                                           .params = kParams,
+                                           .session = SessionUse::all,
+                                           .run = spectrophotometer};
 
 }  // namespace frond

@@ -108,10 +108,9 @@ Params params_of(const PluginInfo& info, const PluginText& leaf) {
 
 /// A render makes its own table by these; here the job's parameters say the same.
 void check_is_of_leaf(const std::string& name, const Arguments& args) {
-  const std::map<std::string, std::string> instead{
-      {"tablemethod", args.spelled("method") + " solve or montecarlo"},
-      {"tablerays", args.spelled("rays")},
-      {"tablestep", args.spelled("angles") + " first:last:step"}};
+  const std::map<std::string, std::string> instead{{"tablemethod", args.spelled("method") + " solve or montecarlo"},
+                                                   {"tablerays", args.spelled("rays")},
+                                                   {"tablestep", args.spelled("angles") + " first:last:step"}};
   if (name == "tablefile") fail({}, "a table is made of a leaf, not of a \"tablefile\"");
   if (const auto found = instead.find(name); found != instead.end())
     fail({}, "\"{}\" is for renders that make their table: use {}", name, found->second);
@@ -187,9 +186,8 @@ Result make_shares_file(const JobRun& run, const PluginText& leaf) {
     table = leaf::mean_of_sides(table);
     header += "# mean of both sides\n";
   }
-  return write_table(
-      run, leaf::to_csv(table, header),
-      leaf::summary(request, args.text("output"), table) + fmt::format(", {:.2g} s of CPU", seconds));
+  return write_table(run, leaf::to_csv(table, header),
+                     leaf::summary(request, args.text("output"), table) + fmt::format(", {:.2g} s of CPU", seconds));
 }
 
 Result make_modes_file(const JobRun& run, const Params& params) {
@@ -208,11 +206,12 @@ Result make_modes_file(const JobRun& run, const Params& params) {
 
 /// For programs other than frond: docs/leaf_file.md.
 Result make_leaf_file(const JobRun& run, const Params& params) {
-  PortableLeafRequest request{
-      .wavelengths_nm = wavelengths_of(run.args), .tolerance = params.real("tolerance"), .nodes = int(run.args.count("nodes"))};
+  PortableLeafRequest request{.wavelengths_nm = wavelengths_of(run.args),
+                              .tolerance = params.real("tolerance"),
+                              .nodes = int(run.args.count("nodes"))};
   if (const auto depths = run.args.numbers("depths"); !depths.empty()) request.depths = {depths[0], depths[1]};
-  const leaf::PortableLeaf table = make_portable_leaf(LeafParams(params), std::move(request), run.session().pool(),
-                                                      run.log(), run.context.options().cache);
+  const leaf::PortableLeaf table =
+      make_portable_leaf(LeafParams(params), std::move(request), run.session().pool(), run.log(), {});
   const std::string bytes = leaf::portable_bytes(table);
   return write_table(run, bytes,
                      fmt::format("{}: {}{} wavelengths x {} cells, {}", run.args.text("output"),
@@ -250,10 +249,11 @@ extern const JobInfo kTableJob{
     .name = "table",
     .group = "Leaf models",
     .doc = "Write the table that a leaf material looks up, as a file that it can read.",
-    .details = "leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the modes of its BSDF, or as "
-               "FILE.leaf all of it for other programs.",
+    .details =
+        "leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the modes of its BSDF, or as "
+        "FILE.leaf all of it for other programs.",
     .params = kParams,
-    .session = SessionUse::all,
+    .session = SessionUse::threads,
     .run = table};
 
 }  // namespace frond

@@ -9,14 +9,15 @@
 namespace frond {
 
 struct PortableLeafRequest {
-  std::vector<double> wavelengths_nm;  ///< in any order
-  double tolerance;                    ///< of leaf_solved
+  std::vector<double> wavelengths_nm;   ///< in any order
+  double tolerance;                     ///< of leaf_solved
   std::optional<Interval> depths = {};  ///< optical, of the mesophyll; none: those of the leaf at each wavelength
-  int nodes = 0;                       ///< per segment; 0: as many as the tolerance needs
+  int nodes = 0;                        ///< per segment; 0: as many as the tolerance needs
 };
 
-/// A leaf_solved as plain arrays for other programs (docs/leaf_file.md). Its modes are kept on disk in `cache_dir` (empty:
-/// not kept). Throws InputError for incident "light", wavelengths without optical constants, and depths that are no range.
+/// A leaf_solved as plain arrays for other programs (docs/leaf_file.md). Its modes are kept on disk in `cache_dir`
+/// (empty: not kept). Throws InputError for incident "light", wavelengths without optical constants, and depths that
+/// are no range.
 leaf::PortableLeaf make_portable_leaf(const LeafParams& leaf, PortableLeafRequest request, const ThreadPool& pool,
                                       const Log& log, const std::filesystem::path& cache_dir);
 

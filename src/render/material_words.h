@@ -17,8 +17,8 @@ struct MaterialWords {
 /// Throws InputError for text of another form, unknown names and values of the wrong type.
 MaterialWords parse_material(const std::string& text, const Registry& registry);
 
-/// "specimen=soybean thickness=1e-4": the parameters with blanks between, "" where there are none. Random numbers hang on
-/// this form.
+/// "specimen=soybean thickness=1e-4": the parameters with blanks between, "" where there are none. Random numbers hang
+/// on this form.
 std::string words_of(const PluginText& material);
 /// What a material's random numbers begin with: the hash of its name and its parameters.
 uint64_t material_seed(const std::string& text);

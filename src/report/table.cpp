@@ -43,7 +43,8 @@ std::string cell(const Table& table, const Column& c, size_t row) {
   if (!c.is_number()) return std::get<1>(c.values)[row];
   const double v = number(c, row);
   if (c.is_flag) return v != 0 ? "true" : "false";
-  if (const Column* error = error_of(table, c)) return with_error(v, number(*error, row));
+  if (const Column* error = error_of(table, c); error && !error->only_data) return with_error(v, number(*error, row));
+  if (is_whole(v)) return fmt::format("{}", int64_t(v));
   return std::isfinite(v) ? fmt::format("{:.6g}", v) : c.missing;
 }
 

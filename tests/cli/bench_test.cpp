@@ -42,13 +42,13 @@ std::vector<Json> runs_of(const Json& json, const std::string& name) {
 }
 
 TEST(BenchCommand, JsonHasEachBenchmarkOnceForEachRepetition) {
-  const Json json = json_of({"diffuse", "reflectance=0.25", "--with", "diffusetransmission", "--angles", "0,135"});
+  const Json json = json_of({"diffuse,reflectance=0.25", "--with", "diffusetransmission", "--angles", "0,135"});
   EXPECT_TRUE(json["context"].contains("machine"));
   EXPECT_EQ(json["context"]["executable"], "frond");
   size_t runs = 0;
   for (const Json& entry : json["benchmarks"]) runs += entry["run_type"] == "iteration" ? 1 : 0;
   EXPECT_EQ(runs, 2u * 4 * 2 * 4 * 2);
-  for (const char* material : {"diffuse reflectance=0.25", "diffusetransmission"})
+  for (const char* material : {"diffuse,reflectance=0.25", "diffusetransmission"})
     for (const char* call : {"sample", "f", "pdf", "hit"})
       for (const char* where : {"/theta:0", "/theta:135"})
         for (int lanes = 1; lanes <= 4; ++lanes) {
@@ -62,13 +62,13 @@ TEST(BenchCommand, JsonHasEachBenchmarkOnceForEachRepetition) {
 }
 
 TEST(BenchCommand, CountersTellWhatASampleIsWorth) {
-  const Json json = json_of({"diffuse", "reflectance=0.25", "--lanes", "3", "--angles", "45"});
-  for (const Json& sample : runs_of(json, "bsdf/diffuse reflectance=0.25/sample/theta:45/wavelengths:3")) {
+  const Json json = json_of({"diffuse,reflectance=0.25", "--lanes", "3", "--angles", "45"});
+  for (const Json& sample : runs_of(json, "bsdf/diffuse,reflectance=0.25/sample/theta:45/wavelengths:3")) {
     EXPECT_NEAR(sample["albedo"].get<double>(), 0.25, 1e-6);
     EXPECT_LT(sample["variance"].get<double>(), 1e-13);
     EXPECT_TRUE(sample.contains("variance_se"));
   }
-  const auto hit = runs_of(json, "bsdf/diffuse reflectance=0.25/hit/theta:45/wavelengths:3").at(0);
+  const auto hit = runs_of(json, "bsdf/diffuse,reflectance=0.25/hit/theta:45/wavelengths:3").at(0);
   // 6 standard errors, as batches are 64: false alarms in fewer than 1e-6 of all cases. The seed is fixed.
   EXPECT_NEAR(hit["sky"].get<double>(), 0.25, 6 * hit["sky_se"].get<double>());
   EXPECT_NEAR(hit["sun"].get<double>(), 0.25, 6 * hit["sun_se"].get<double>());
@@ -99,8 +99,7 @@ TEST(BenchCommand, ScriptsCompareItsFiles) {
 TEST(BenchCommand, TimesThePluginsMaterials) {
   const Outcome o = bench({"good_stochastic", "--plugin", FROND_TEST_PLUGINS "/planted.so", "--angles", "30"});
   EXPECT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.out,
-              AllOf(HasSubstr("good_stochastic\n"), HasSubstr("4 wavelengths"), ContainsRegex("hit +30 +[0-9]")));
+  EXPECT_THAT(o.out, AllOf(HasSubstr("hit_ns"), ContainsRegex("good_stochastic +30 +4 +[0-9]")));
 }
 
 TEST(BenchCommand, DrawsVarianceAgainstTime) {
@@ -117,7 +116,7 @@ TEST(BenchCommand, WhatIsBlackHasNoCostOfAnError) {
   const TestFolder folder("bench");
   const Outcome o = bench({"diffuse", "--angles", "135", "--lanes", "1", "--plot", folder.name_of("a.svg")});
   EXPECT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.out, ContainsRegex("135 +1 +0.5000 +0 +0 +0.0000 +0 +- +0.0000 +0 +-\n"));
+  EXPECT_THAT(o.out, ContainsRegex("diffuse +135 +1 +0.5 +0 +0 +0 +0 +0 +0 +\n"));
   EXPECT_THAT(bytes_of(folder.name_of("a.svg")), AllOf(HasSubstr("</svg>"), Not(HasSubstr("nan"))));
 }
 
@@ -129,9 +128,9 @@ TEST(BenchCommand, RefusesTheImpossibleBeforeItMeasures) {
     return o.err;
   };
   EXPECT_THAT(refusal({"difuse"}), HasSubstr("diffuse"));
-  EXPECT_THAT(refusal({"diffuse", "reflectanc=1"}), HasSubstr("reflectance"));
-  EXPECT_THAT(refusal({"diffuse", "reflectance"}), HasSubstr("NAME parameter=value"));
-  EXPECT_THAT(refusal({"diffuse", "--with", ""}), HasSubstr("--with"));
+  EXPECT_THAT(refusal({"diffuse,reflectanc=1"}), HasSubstr("reflectance"));
+  EXPECT_THAT(refusal({"diffuse,reflectance"}), HasSubstr("looks like name=value"));
+  EXPECT_THAT(refusal({"diffuse", "--with", ""}), HasSubstr("a material is needed"));
   EXPECT_THAT(refusal({"diffuse", "--with", "diffuse"}), HasSubstr("twice"));
   EXPECT_THAT(refusal({"not_there", "--plugin", FROND_TEST_PLUGINS "/planted.so"}), HasSubstr("no surface"));
   EXPECT_THAT(refusal({"diffuse", "--angles", "90"}), HasSubstr("--angles"));

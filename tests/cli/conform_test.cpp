@@ -32,9 +32,9 @@ Outcome conform_planted(std::vector<std::string> arguments) {
 TEST(Conform, LawfulMaterialsPass) {
   for (const std::vector<std::string>& material :
        std::vector<std::vector<std::string>>{{"diffuse"},
-                                             {"diffuse", "reflectance=1", "--lossless"},
-                                             {"abm", "specimen=maize"},
-                                             {"mix", "materials=abm,diffuse"},
+                                             {"diffuse,reflectance=1", "--lossless"},
+                                             {"abm,specimen=maize"},
+                                             {"mix,materials=abm,diffuse"},
                                              {"diffusetransmission", "--wavelengths", "400:700:50"}}) {
     const Outcome o = conform(material);
     EXPECT_EQ(o.code, 0) << o.out << o.err;
@@ -68,7 +68,7 @@ TEST(Conform, ABrokenLawIsNamedAndExitsWithTwo) {
 /// At the end of its range `picky` throws: an exception of the shared object, which the sweep knows as InputError.
 TEST(Conform, ASweepPassesOverWhatAPluginRefuses) {
   EXPECT_EQ(conform_planted({"picky", "--sweep"}).code, 0);
-  const Outcome bad_use = conform_planted({"picky", "level=0.95"});
+  const Outcome bad_use = conform_planted({"picky,level=0.95"});
   EXPECT_EQ(bad_use.code, 1);
   EXPECT_THAT(bad_use.err, HasSubstr("frond: \"level\" is 0.95, and picky wants less than 0.9"));
   const Outcome refused = conform_planted({"picky_with_itself"});
@@ -88,12 +88,14 @@ TEST(Conform, JsonHasEveryLawAndFinding) {
   const auto json = nlohmann::json::parse(o.out);
   EXPECT_EQ(json["all_hold"], false);
   EXPECT_EQ(json["laws"].size(), kLaws.size());
-  EXPECT_EQ(json["laws"]["sampling"]["verdict"], "broken");
-  EXPECT_EQ(json["laws"]["energy"]["verdict"], "holds");
-  EXPECT_EQ(json["laws"]["streams"]["verdict"], "not asked");
+  const auto law = [&json](Law l) { return json["laws"][size_t(l)]; };
+  EXPECT_EQ(law(Law::sampling)["law"], "sampling");
+  EXPECT_EQ(law(Law::sampling)["verdict"], "broken");
+  EXPECT_EQ(law(Law::energy)["verdict"], "holds");
+  EXPECT_EQ(law(Law::streams)["verdict"], "not asked");
   int failures = 0;
   for (const auto& finding : json["findings"]) failures += finding["holds"] ? 0 : 1;
-  EXPECT_EQ(failures, json["laws"]["sampling"]["failures"]);
+  EXPECT_EQ(failures, law(Law::sampling)["failures"]);
 }
 
 TEST(Conform, PicturesShowTheWorstFinding) {
@@ -114,10 +116,10 @@ TEST(Conform, PicturesShowTheWorstFinding) {
 TEST(Conform, BadUseExitsWithOne) {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"difuse"},
-                                             {"diffuse", "reflectanc=1"},
-                                             {"diffuse", "reflectance"},
-                                             {"diffuse", "reflectance=2"},
-                                             {"abm", "specimen=rice"},
+                                             {"diffuse,reflectanc=1"},
+                                             {"diffuse,reflectance"},
+                                             {"diffuse,reflectance=2"},
+                                             {"abm,specimen=rice"},
                                              {"abm", "--wavelengths", "3000"},
                                              {"mix"},
                                              {"diffuse", "--wavelengths", "0"},

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "jobs/job.h"
 #include "tests/cli/command.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"
@@ -36,8 +37,8 @@ TEST_F(Fitting, WritesALeafThatAScenesReaderTakes) {
   const auto j = nlohmann::json::parse(bytes_of(json));
   EXPECT_LT(j["rmse"], 0.03);
   EXPECT_EQ(j["spectra"].size(), 11u);
-  EXPECT_EQ(j["correlations"]["matrix"].size(), j["correlations"]["names"].size());
-  EXPECT_THAT(bytes_of(csv), HasSubstr("R_fitted"));
+  EXPECT_EQ(j["correlations"].size() + 1, j["correlations"][0].size());
+  EXPECT_EQ(parse_csv(bytes_of(csv)).rows.size(), 11u);
   const std::string scene =
       folder_
           .write(
@@ -57,7 +58,7 @@ TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
   };
   EXPECT_THAT(error({"--fix", "chlorophylla"}), HasSubstr("chlorophylla=NUMBER"));
   EXPECT_THAT(error({"--fix", "clorophylla=1"}), HasSubstr("did you mean \"chlorophylla\"?"));
-  EXPECT_THAT(error({"--like", "oak"}), HasSubstr("soybean, maize"));
+  EXPECT_THAT(error({"--like", "oak"}), HasSubstr("one of soybean, maize"));
   EXPECT_THAT(error({"--like", "maize", "--structure", "bifacial"}), HasSubstr("unifacial"));
   EXPECT_THAT(error({"--leaf", "oak"}), HasSubstr("names no leaves"));
   EXPECT_THAT(error({"-o", "/nowhere/leaf.pbrt"}), HasSubstr("/nowhere"));
@@ -65,6 +66,47 @@ TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
   const auto done = frond_command({"fit", short_one});
   EXPECT_NE(done.code, 0);
   EXPECT_THAT(done.err, HasSubstr("fewer"));
+}
+
+/// Arguments of the job as a program gives them: measurements in a text, names without dashes.
+class FittingData : public ::testing::Test {
+ protected:
+  static Result fit(const std::vector<std::pair<std::string, std::string>>& given) {
+    const JobInfo& job = find_job("fit");
+    Arguments args(params_of(job), python_spelling);
+    for (const auto& [name, value] : given) args.set(name, value);
+    JobContext context(silent_log(), session_options(args));
+    return run_job(job, {context, args});
+  }
+  static std::string refusal(const std::vector<std::pair<std::string, std::string>>& given) {
+    return error_of([&] { fit(given); });
+  }
+};
+
+TEST_F(FittingData, IsTheSameAsAFile) {
+  const TestFolder folder("fit");
+  const std::string file = folder.write("leaf.csv", kSpectrum).string();
+  const Result a = fit({{"data", kSpectrum}, {"structure", "bifacial"}, {"sieve", "off"}});
+  const Result b = fit({{"file", file}, {"structure", "bifacial"}, {"sieve", "off"}});
+  ASSERT_EQ(a.tables.size(), b.tables.size());
+  for (size_t i = 0; i < a.tables.size(); ++i) EXPECT_EQ(to_csv(a.tables[i], {}), to_csv(b.tables[i], {}));
+}
+
+TEST_F(FittingData, IsRefusedAsAFileIs) {
+  EXPECT_THAT(refusal({{"data", "nm,R\n550,-1\n"}}), HasSubstr("R is a share of the light, from 0 to 1"));
+  EXPECT_THAT(refusal({{"data", "nm,R,T\n550,0.7,0.6\n"}}), HasSubstr("R + T is 1.3"));
+  EXPECT_THAT(refusal({{"data", "nm,theta_deg,R\n550,200,0.1\n"}}), HasSubstr("theta_deg is from 0 to 180 degrees"));
+  EXPECT_THAT(refusal({{"data", kSpectrum}, {"angle", "200"}}), HasSubstr("angle: a number from 0 to 180 (degrees)"));
+  EXPECT_THAT(refusal({{"data", kSpectrum}, {"like", "maize"}, {"structure", "bifacial"}}),
+              HasSubstr("like maize is unifacial, structure says otherwise"));
+  for (const char* value : {"-1", "nan", "inf", "", "1x"})
+    EXPECT_THAT(refusal({{"data", kSpectrum}, {"fix", std::string("chlorophylla=") + value}}),
+                HasSubstr("chlorophylla=NUMBER is needed, 0 at least"))
+        << value;
+  EXPECT_THAT(refusal({{"data", kSpectrum}, {"fix", "thickness=0"}}), HasSubstr("thickness is above 0"));
+  EXPECT_THAT(refusal({{"data", kSpectrum}, {"leaf", "oak"}}), HasSubstr("names no leaves: leaf has no effect"));
+  EXPECT_THAT(refusal({{"data", kSpectrum}, {"file", "a.csv"}}), HasSubstr("file excludes data"));
+  EXPECT_THAT(refusal({}), HasSubstr("measured spectra are needed"));
 }
 
 }  // namespace

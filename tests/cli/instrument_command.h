@@ -13,11 +13,11 @@ class InstrumentCommand : public ::testing::Test {
   explicit InstrumentCommand(std::string name) : name_(std::move(name)), folder_(name_) {}
 
   Outcome measure(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{name_, "abm", "specimen=soybean", "--no-cache"};
+    std::vector<std::string> arguments{name_, "abm,specimen=soybean", "--no-cache"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return frond_command(arguments);
   }
-  /// What is wrong is told before rays are shot that would take days.
+  /// Errors are reported before any ray: so many would take days.
   std::string refusal(std::vector<std::string> more) const {
     more.insert(more.end(), {"--rays", "1e15"});
     const Outcome o = measure(more);

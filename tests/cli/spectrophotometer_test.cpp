@@ -32,26 +32,26 @@ TEST_F(SpectrophotometerCommand, WritesCsvWithUnitsAndErrors) {
   for (size_t i = 0; i < csv.rows.size(); ++i) {
     EXPECT_EQ(csv.number(i, "theta_deg"), i < 3 ? 0 : 8);
     EXPECT_EQ(csv.number(i, "rays"), 10000);
-    EXPECT_EQ(csv.text(i, "material"), "abm specimen=soybean");
+    EXPECT_EQ(csv.text(i, "material"), "abm,specimen=soybean");
     EXPECT_NEAR(csv.number(i, "R") + csv.number(i, "T") + csv.number(i, "A"), 1, 1e-8);
     EXPECT_NEAR(csv.number(i, "Rs") + csv.number(i, "Rd"), csv.number(i, "R"), 1e-8);
     EXPECT_GT(csv.number(i, "A_se"), 0);
   }
-  EXPECT_THAT(o.out, HasSubstr("# material: abm specimen=soybean\n"));
+  EXPECT_THAT(o.out, HasSubstr("# material: abm,specimen=soybean\n"));
   EXPECT_THAT(o.out, HasSubstr("# seed: 0\n"));
   EXPECT_THAT(o.out, HasSubstr("the direction that the material's model calls incident"));
 }
 
 TEST_F(SpectrophotometerCommand, RsAndRdAreBlankWhereTheMaterialDoesNotTell) {
   const Outcome o =
-      measure({"--with", "diffuse reflectance=0.5", "--wavelengths", "551", "--rays", "1000", "--csv", "-"});
+      measure({"--with", "diffuse,reflectance=0.5", "--wavelengths", "551", "--rays", "1000", "--csv", "-"});
   ASSERT_EQ(o.code, 0) << o.err;
   const CsvTable csv = parse_csv(o.out);
   ASSERT_EQ(csv.rows.size(), 2u);
   EXPECT_NE(csv.text(0, "Rs"), "");
   for (const char* column : {"Rs", "Rd", "Rs_se", "Rd_se"}) EXPECT_EQ(csv.text(1, column), "");
   EXPECT_NEAR(csv.number(1, "R"), 0.5, 1e-6);
-  EXPECT_EQ(csv.text(1, "material"), "diffuse reflectance=0.5");
+  EXPECT_EQ(csv.text(1, "material"), "diffuse,reflectance=0.5");
 }
 
 TEST_F(SpectrophotometerCommand, JsonSaysTheSameAsCsv) {
@@ -91,8 +91,8 @@ TEST_F(SpectrophotometerCommand, AReadingDoesNotDependOnTheOthers) {
 TEST_F(SpectrophotometerCommand, PrintsATableForPeople) {
   const Outcome o = measure({"--wavelengths", "551", "--rays", "1000"});
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.out, StartsWith("abm specimen=soybean\n"));
-  EXPECT_THAT(o.out, HasSubstr(" +- "));
+  EXPECT_THAT(o.out, StartsWith("abm,specimen=soybean\n"));
+  EXPECT_THAT(o.out, HasSubstr(" ± "));
 }
 
 TEST_F(SpectrophotometerCommand, StopsAtAStandardError) {
@@ -100,7 +100,7 @@ TEST_F(SpectrophotometerCommand, StopsAtAStandardError) {
   ASSERT_EQ(o.code, 0) << o.err;
   const CsvTable csv = parse_csv(o.out);
   for (const char* column : {"R_se", "T_se", "A_se"}) EXPECT_LE(csv.number(0, column), 1e-3);
-  EXPECT_THAT(measure({"--wavelengths", "455", "--se", "1e-6", "--rays", "1e4"}).err, HasSubstr("1 of 1 readings"));
+  EXPECT_THAT(measure({"--wavelengths", "455", "--se", "1e-6", "--rays", "1e4"}).err, HasSubstr("1 of 1 measurements"));
 }
 
 TEST_F(SpectrophotometerCommand, AtNinetyDegreesItSaysWhatTheFigureIs) {
@@ -117,7 +117,7 @@ TEST_F(SpectrophotometerCommand, DrawsCharts) {
         0);
     EXPECT_THAT(bytes_of(path(name)), HasSubstr(name[2] == 's' ? "</svg>" : "PNG"));
   }
-  EXPECT_THAT(bytes_of(path("a.svg")), HasSubstr("abm specimen=soybean, 551 nm"));
+  EXPECT_THAT(bytes_of(path("a.svg")), HasSubstr("abm,specimen=soybean, 551 nm"));
 }
 
 TEST_F(SpectrophotometerCommand, MaterialsTakeSpectraAndMaterials) {
@@ -129,10 +129,13 @@ TEST_F(SpectrophotometerCommand, MaterialsTakeSpectraAndMaterials) {
     return parse_csv(o.out).number(0, "R");
   };
   folder_.write("half.spd", "400 0.1\n900 0.5\n");
-  EXPECT_NEAR(reflectance({"diffuse", "reflectance=" + path("half.spd")}), 0.3, 1e-6);
-  EXPECT_NEAR(reflectance({"diffuse", "reflectance=600,0.2,700,0.4"}), 0.3, 1e-6);
-  EXPECT_NEAR(reflectance({"diffuse", "reflectance=0.7,0.7,0.7"}), 0.7, 1e-3);
-  EXPECT_NEAR(reflectance({"mix", "materials=diffuse,diffuse"}), 0.5, 1e-6);
+  folder_.write("one half.spd", "400 0.1\n900 0.5\n");
+  EXPECT_NEAR(reflectance({"diffuse,reflectance=" + path("half.spd")}), 0.3, 1e-6);
+  EXPECT_NEAR(reflectance({"diffuse,reflectance=" + path("one half.spd")}), 0.3, 1e-6);
+  EXPECT_NEAR(reflectance({"diffuse", "reflectance=" + path("one half.spd")}), 0.3, 1e-6);
+  EXPECT_NEAR(reflectance({"diffuse,reflectance=600,0.2,700,0.4"}), 0.3, 1e-6);
+  EXPECT_NEAR(reflectance({"diffuse,reflectance=0.7,0.7,0.7"}), 0.7, 1e-3);
+  EXPECT_NEAR(reflectance({"mix,materials=diffuse,diffuse"}), 0.5, 1e-6);
 }
 
 TEST_F(SpectrophotometerCommand, MeasuresPlugIns) {
@@ -144,13 +147,13 @@ TEST_F(SpectrophotometerCommand, MeasuresPlugIns) {
 }
 
 TEST_F(SpectrophotometerCommand, RefusesTheImpossibleBeforeItMeasures) {
-  EXPECT_THAT(refusal({"--wavelengths", "300"}), HasSubstr("360 to 2500 nm"));
-  EXPECT_THAT(refusal({"--with", "diffuse reflectance=.5,.5,.5", "--wavelengths", "551,900"}),
+  EXPECT_THAT(refusal({"--wavelengths", "300"}), HasSubstr("from 360 to 2500 (nm)"));
+  EXPECT_THAT(refusal({"--with", "diffuse,reflectance=.5,.5,.5", "--wavelengths", "551,900"}),
               HasSubstr("\"reflectance\" is known from 360 to 830 nm, 900 nm was asked for"));
-  EXPECT_THAT(refusal({"--wavelengths", "551", "--angles", "181"}), HasSubstr("0 to 180 degrees"));
+  EXPECT_THAT(refusal({"--wavelengths", "551", "--angles", "181"}), HasSubstr("from 0 to 180 (degrees)"));
   EXPECT_THAT(refusal({"--wavelengths", "551", "--angles", "0:180"}), HasSubstr("--angles"));
   EXPECT_THAT(refusal({"--wavelengths", "551", "thicknes=1e-4"}), HasSubstr("did you mean \"thickness\"?"));
-  EXPECT_THAT(refusal({"--wavelengths", "551", "thickness"}), HasSubstr("NAME parameter=value"));
+  EXPECT_THAT(refusal({"--wavelengths", "551", "thickness"}), HasSubstr("looks like name=value"));
   EXPECT_THAT(refusal({"--wavelengths", "551", "--with", "abn"}), HasSubstr("did you mean \"abm\"?"));
   EXPECT_THAT(refusal({"--wavelengths", "551", "--csv", path("no/such/folder.csv")}), HasSubstr("there is no folder"));
   EXPECT_THAT(refusal({"--wavelengths", "551,600", "--plot", path("a.jpg")}), HasSubstr(".svg or a .png"));

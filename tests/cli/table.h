@@ -7,11 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/words.h"
-
 namespace frond {
 
-/// The fields of a CSV file that has none in quotes; comment lines begin with #.
+/// The fields of a CSV file (RFC 4180, no line breaks in fields); comment lines begin with #.
 struct CsvTable {
   std::vector<std::string> names;
   std::vector<std::vector<std::string>> rows;
@@ -24,12 +22,28 @@ struct CsvTable {
   double number(size_t row, const std::string& name) const { return std::stod(text(row, name)); }
 };
 
+inline std::vector<std::string> csv_fields(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool is_quoted = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && is_quoted && i + 1 < line.size() && line[i + 1] == '"')
+      fields.back() += line[++i];
+    else if (line[i] == '"')
+      is_quoted = !is_quoted;
+    else if (line[i] == ',' && !is_quoted)
+      fields.emplace_back();
+    else
+      fields.back() += line[i];
+  }
+  return fields;
+}
+
 inline CsvTable parse_csv(const std::string& text) {
   CsvTable table;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with('#')) continue;
-    const auto fields = split(line, ',');
+    const auto fields = csv_fields(line);
     if (table.names.empty())
       table.names = fields;
     else

@@ -1,5 +1,9 @@
+#include "tests/cli/table.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cstring>
 
 #include "leaf/table/table_file.h"
 #include "leaf/tissue/specimens.h"
@@ -21,7 +25,7 @@ Outcome table_command(std::vector<std::string> arguments) {
 TEST(TableCommand, WritesTheTableOfALeaf) {
   const TestFolder folder("table");
   const std::string path = folder.name_of("t.csv");
-  const Outcome o = table_command({"specimen=maize", "thickness=0.0001", "--wavelengths", "608,551,455", "-o", path});
+  const Outcome o = table_command({"specimen=maize,thickness=0.0001", "--wavelengths", "608,551,455", "-o", path});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.err, HasSubstr("3 wavelengths x 181 angles, solve, error <= "));
   const leaf::Table table = leaf::read_table(path, {});
@@ -57,20 +61,22 @@ TEST(TableCommand, FoldsBothSidesIntoOne) {
 
 TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
   const TestFolder folder("modes");
-  const std::string path = folder.name_of("maize.modes"), red = "608,551,455", coarse = "tolerance=2e-3";
-  const Outcome o = table_command({"leaf_solved", "specimen=maize", coarse, "--wavelengths", red, "-o", path});
+  const std::string path = folder.name_of("maize.modes"), red = "608,551,455";
+  const std::string coarse = "tolerance=2e-3";
+  const Outcome o = table_command({"leaf_solved,specimen=maize," + coarse, "--wavelengths", red, "-o", path});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.err, HasSubstr("3 wavelengths x "));
   EXPECT_THAT(o.err, HasSubstr("kB in a render"));
   const auto measured = [&](const std::string& way) {
-    return frond_command({"goniophotometer", "leaf_solved", "specimen=maize", coarse, way, "--integrate", "--no-cache",
-                          "--angles", "30,120", "--wavelengths", red, "--patches", "4x6", "-q", "--csv", "-"})
+    return frond_command({"goniophotometer", "leaf_solved,specimen=maize," + coarse + "," + way, "--integrate",
+                          "--no-cache", "--angles", "30,120", "--wavelengths", red, "--patches", "4x6", "-q", "--csv",
+                          "-"})
         .out;
   };
   const auto figures = [](const std::string& csv) { return csv.substr(csv.find("incidence_deg,")); };
   const auto without_name = [&](const std::string& way) {
     std::string text = figures(measured(way));
-    for (size_t at; (at = text.find(" " + way)) != text.npos;) text.erase(at, way.size() + 1);
+    for (size_t at; (at = text.find("," + way)) != text.npos;) text.erase(at, way.size() + 1);
     return text;
   };
   EXPECT_EQ(without_name("tablefile=" + path), without_name("incident=traced"));
@@ -78,11 +84,32 @@ TEST(TableCommand, WritesModesThatALeafReadsBackToTheBit) {
   EXPECT_THAT(finer.out, HasSubstr("# nodes 6\n"));
 }
 
+TEST(TableCommand, WritesALeafFileOverDepths) {
+  const TestFolder folder("leaf");
+  const std::string path = folder.name_of("a.leaf");
+  const auto written = [&](const std::string& depths) {
+    return table_command({"leaf_solved,tolerance=1e-2", "--wavelengths", "608,551", "--depths", depths, "-o", path});
+  };
+  ASSERT_EQ(written("0.1,10").code, 0);
+  const std::string bytes = bytes_of(path);
+  const auto whole = [&](size_t at) {
+    uint32_t value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+  };
+  EXPECT_EQ(whole(16), 2u);   // wavelengths; docs/leaf_file.md
+  EXPECT_EQ(whole(20), 32u);  // depths: ln(10 / 0.1) in steps of at most 0.15, both ends
+  EXPECT_THAT(written("10,0.1").err, HasSubstr("depths from 10 to 0.1 are no range"));
+  EXPECT_THAT(written("-1,10").err, HasSubstr("--depths: 2 numbers from 0 on"));
+  EXPECT_THAT(table_command({"--wavelengths", "551", "--depths", "1,2", "-o", path}).err,
+              HasSubstr("--depths is for a .leaf file of leaf_solved"));
+}
+
 TEST(TableCommand, RefusesOptionsThatModesDoNotHave) {
   for (const char* option : {"--rays", "--seed"})
     EXPECT_THAT(table_command({"leaf_solved", "--wavelengths", "551", "-o", "-", option, "7"}).err,
                 HasSubstr(std::string(option) + " is for tables of leaf_simplified"));
-  EXPECT_THAT(table_command({"leaf_solved", "tablefile=a", "--wavelengths", "551", "-o", "-"}).err,
+  EXPECT_THAT(table_command({"leaf_solved,tablefile=a", "--wavelengths", "551", "-o", "-"}).err,
               HasSubstr("not of a \"tablefile\""));
 }
 
@@ -91,14 +118,14 @@ TEST(TableCommand, RefusesWhatItCannotDo) {
     std::vector<std::string> arguments;
     std::string message;
   } const kCases[] = {
-      {{"--wavelengths", "3000"}, "leaf optics are known from 360 to 2500 nm, --wavelengths has 3000"},
+      {{"--wavelengths", "3000"}, "--wavelengths: a list of numbers from 360 to 2500 (nm)"},
       {{"--wavelengths", "551,551"}, "--wavelengths has 551 twice"},
-      {{"--wavelengths", "green"}, "\"green\" is neither"},
-      {{"--wavelengths", "551", "--angles", "0,200"}, "--angles are from 0 to 180 degrees, 200 was given"},
+      {{"--wavelengths", "green"}, "\"green\" was given"},
+      {{"--wavelengths", "551", "--angles", "0,200"}, "--angles: a list of numbers from 0 to 180 (degrees)"},
       {{"--wavelengths", "551", "--angles", "20,10"}, "--angles ascend, 10 comes after 20"},
       {{"--wavelengths", "551", "--angles", "91:180:1", "--equalsides"}, "--equalsides needs angles up to 90"},
       {{"--wavelengths", "551", "--method", "montecarlo", "--rays", "0"},
-       "--rays takes a whole number from 1 to 1000000000"},
+       "--rays: a whole number from 1 to 1000000000"},
       {{"--wavelengths", "551", "thicknes=1"}, "has no parameter \"thicknes\"; did you mean \"thickness\"?"},
       {{"--wavelengths", "551", "thickness"}, "nor name=value of a leaf"},
       {{"abm", "--wavelengths", "551"},

@@ -12,8 +12,8 @@ namespace frond::leaf {
 
 /// How a file of measured spectra is read.
 struct SpectraReading {
-  std::string leaf = {};  ///< whose rows count, where the file has several leaves; empty: it has one
-  double theta_deg = 8;   ///< of incidence, where no column says it
+  std::string leaf = {};               ///< whose rows count, where the file has several leaves; empty: it has one
+  double theta_deg = 8;                ///< of incidence, where no column says it
   std::string leaf_option = "--leaf";  ///< how messages name the choice of a leaf
 };
 
