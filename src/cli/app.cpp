@@ -1,7 +1,6 @@
 #include "cli/app.h"
 
 #include <fmt/ranges.h>
-
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -19,7 +18,8 @@ namespace {
 size_t help_width() {
   constexpr size_t kPage = 100, kLeast = 50;
   winsize size{};
-  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? std::max(kLeast, size_t(size.ws_col)) : kPage;
+  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? std::max(kLeast, size_t(size.ws_col))
+                                                                           : kPage;
 }
 
 /// `head`, then the words of `text` from `column` on, in lines that end before the width.
@@ -85,13 +85,13 @@ CLI::Option* add_option(CLI::App& app, const JobParam& p) {
   if (!p.implied.empty())
     return app.add_flag(fmt::format("{}{{{}}}", names, p.implied), doc)
         ->option_text(fmt::format("[={}]", value_name(p)));
-  CLI::Option* option = app.add_option(names, [](const CLI::results_t&) { return true; }, doc);
+  CLI::Option* option = app.add_option(
+      names, [](const CLI::results_t&) { return true; }, doc);
   if (p.positional)
     option->option_text(p.kind == ArgumentKind::texts ? " ..." : "");
   else
     option->option_text(fmt::format(" {}{}", value_name(p), p.required ? " (required)" : ""));
-  const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
-  if (!repeats) return option->expected(1);
+  if (p.positional && p.kind != ArgumentKind::texts) return option->expected(1);
   return option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(p.positional);
 }
 

@@ -61,7 +61,8 @@ void add_pbrt_options(CLI::App& render) {
 std::string pbrt_options_text() {
   std::string text = "Options of pbrt-v4 that frond render ignores with a warning, or refuses:\n";
   for (const PbrtOption& o : kPbrtOptions)
-    text += fmt::format("  {:<32} {}{}\n", fmt::format("{} {}", o.name, o.value), o.is_refused ? "Refused: " : "", o.doc);
+    text +=
+        fmt::format("  {:<32} {}{}\n", fmt::format("{} {}", o.name, o.value), o.is_refused ? "Refused: " : "", o.doc);
   return text;
 }
 

@@ -136,8 +136,8 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
   const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
   const size_t takes = p.kind == ArgumentKind::texts ? p.values : repeats ? 0 : 1;
   if (takes > 0 && words.size() != takes)
-    fail({}, "{} takes {} value{}, {} were given", p.positional ? std::string(p.name) : spelling_(p.name), takes,
-         takes == 1 ? "" : "s", words.size());
+    fail({}, "{} takes {} value{}, {} {} given", p.positional ? std::string(p.name) : spelling_(p.name), takes,
+         takes == 1 ? "" : "s", words.size(), words.size() == 1 ? "was" : "were");
   for (std::string& word : value.words) {
     if (word == "true" && !p.implied.empty()) word = p.implied;
     if (!p.choices.empty() && std::ranges::find(p.choices, word) == p.choices.end()) refuse(word);

@@ -16,13 +16,7 @@ const std::vector<std::string_view> kAngles = [] {
 }();
 
 const JobParam kParams[] = {
-    {.name = "output",
-     .kind = text,
-     .doc = "Instance table to write, a NumPy file (.npy).",
-     .type = "FILE",
-     .aliases = "o",
-     .path = PathUse::write,
-     .required = true},
+    output_param("Instance table to write, a NumPy file (.npy).", true),
     {.name = "lai",
      .kind = real,
      .doc = "Leaf area index: one-sided area of the leaves over that of the ground.",
@@ -130,7 +124,6 @@ Result canopy(const JobRun& run) {
 extern const JobInfo kCanopyJob{.name = "canopy",
                                 .group = "Scenes",
                                 .doc = "Write an instance table of leaves at random, for Shape \"instances\".",
-                                .details = "",
                                 .params = kParams,
                                 .session = SessionUse::none,
                                 .run = canopy};

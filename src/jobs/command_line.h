@@ -16,7 +16,7 @@ inline constexpr JobParam kHelpPbrtParam{.name = "help-pbrt",
 
 /// The parameters of a command, or of frond itself.
 struct CommandParams {
-  std::string name;                       ///< "" for frond itself
+  std::string name;                        ///< "" for frond itself
   std::vector<const JobParam*> arguments;  ///< positional
   std::vector<const JobParam*> options;
 };

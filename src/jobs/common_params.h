@@ -15,10 +15,33 @@ inline constexpr JobParam kSceneParam{.name = "scene",
                                       .decides = true,
                                       .positional = true,
                                       .required = true};
+/// Positional: files to read; `count` of them, or any number.
+constexpr JobParam files_param(std::string_view name, std::string_view doc, size_t count = 0) {
+  return {.name = name,
+          .kind = ArgumentKind::texts,
+          .doc = doc,
+          .type = "FILE",
+          .values = count,
+          .path = PathUse::read,
+          .positional = true,
+          .required = true};
+}
+/// -o, --output: a file to write.
+constexpr JobParam output_param(std::string_view doc, bool required, std::string_view excludes = "") {
+  return {.name = "output",
+          .kind = ArgumentKind::text,
+          .doc = doc,
+          .type = "FILE",
+          .aliases = "o",
+          .path = PathUse::write,
+          .required = required,
+          .excludes = excludes};
+}
 inline constexpr JobParam kSwapParam{
     .name = "swap",
     .kind = ArgumentKind::texts,
-    .doc = "MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; \"*=PLUGIN\" replaces every leaf.",
+    .doc =
+        "MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; \"*=PLUGIN\" replaces every leaf.",
     .type = "SWAP",
     .decides = true};
 inline constexpr JobParam kIntegratorParam{
@@ -32,12 +55,14 @@ inline constexpr JobParam kSeedParam{
 inline constexpr JobParam kIgnoreUnsupportedParam{
     .name = "ignore-unsupported",
     .kind = ArgumentKind::text,
-    .doc = "Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a "
-           "list of media, materials, integrators, cameras, motion, textures, films, displacement.",
+    .doc =
+        "Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a "
+        "list of media, materials, integrators, cameras, motion, textures, films, displacement.",
     .type = "KINDS",
     .decides = true,
     .implied = "all"};
-inline constexpr JobParam kStrictParam{.name = "strict", .kind = ArgumentKind::flag, .doc = "Treat warnings as errors."};
+inline constexpr JobParam kStrictParam{
+    .name = "strict", .kind = ArgumentKind::flag, .doc = "Treat warnings as errors."};
 inline constexpr JobParam kTimeLimitParam{.name = "time-limit",
                                           .kind = ArgumentKind::real,
                                           .doc = "Time after which the job ends with the result it has by then.",

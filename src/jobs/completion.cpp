@@ -121,8 +121,8 @@ class Completion {
     for (const auto& [command, doc] : commands_) {
       const std::string start = fmt::format("complete -c frond -n '__frond_command_is \"{}\"'", command.name);
       if (!command.name.empty())
-        lines += fmt::format("complete -c frond -n '__frond_command_is \"\"' -a {} -d '{}'\n", command.name,
-                             fish_text(doc));
+        lines +=
+            fmt::format("complete -c frond -n '__frond_command_is \"\"' -a {} -d '{}'\n", command.name, fish_text(doc));
       for (const JobParam* argument : command.arguments) lines += start + fish_value(*argument) + '\n';
       for (const JobParam* option : command.options) {
         lines += start;
@@ -226,7 +226,6 @@ Result completion(const JobRun& run) {
 extern const JobInfo kCompletionJob{.name = "completion",
                                     .group = "Shell",
                                     .doc = "Print a script that completes frond's command line in a shell.",
-                                    .details = "",
                                     .params = kParams,
                                     .session = SessionUse::none,
                                     .run = completion};

@@ -12,20 +12,8 @@ namespace {
 using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
-    {.name = "images",
-     .kind = texts,
-     .doc = "EXR files of one size and colour space.",
-     .type = "FILE",
-     .path = PathUse::read,
-     .positional = true,
-     .required = true},
-    {.name = "output",
-     .kind = text,
-     .doc = "Image to write: .png, .jpg or .exr.",
-     .type = "FILE",
-     .aliases = "o",
-     .path = PathUse::write,
-     .required = true},
+    files_param("images", "EXR files of one size and colour space."),
+    output_param("Image to write: .png, .jpg or .exr.", true),
     {.name = "bands",
      .kind = numbers,
      .doc = "Wavelengths of three bands to show as red, green and blue, such as 850,650,550; white in equal-energy "
@@ -83,12 +71,12 @@ Result convert(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kConvertJob{.name = "convert",
-                                 .group = "Images",
-                                 .doc = "Average linear images, and write the mean as EXR or through a display transform.",
-                                 .details = "",
-                                 .params = kParams,
-                                 .session = SessionUse::none,
-                                 .run = convert};
+extern const JobInfo kConvertJob{
+    .name = "convert",
+    .group = "Images",
+    .doc = "Average linear images, and write the mean as EXR or through a display transform.",
+    .params = kParams,
+    .session = SessionUse::none,
+    .run = convert};
 
 }  // namespace frond

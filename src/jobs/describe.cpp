@@ -92,7 +92,9 @@ Row row_of(const JobParam& p) {
           std::string(p.unit),
           accepted(p),
           std::string(p.doc) + relations(p),
-          name + (p.positional || value.empty() ? "" : p.implied.empty() ? " " + value : "[=" + value + "]")};
+          name + (p.positional || value.empty() ? ""
+                  : p.implied.empty()           ? " " + value
+                                                : "[=" + value + "]")};
 }
 
 std::vector<Row> rows_of(std::span<const JobParam> params) {
@@ -153,8 +155,7 @@ std::string markdown_of(const JobInfo& job) {
   std::string text = fmt::format("### frond {}\n\n{} {}\n\n    {}\n\n", job.name, job.doc, job.details, usage(job));
   if (job.details.empty()) text.erase(text.find(" \n\n"), 1);
   text += markdown_of(rows_of(job.params), kCommandHead);
-  if (job.extends)
-    text += fmt::format("All parameters of [frond {0}](#frond-{0}) too.\n\n", job.extends->name);
+  if (job.extends) text += fmt::format("All parameters of [frond {0}](#frond-{0}) too.\n\n", job.extends->name);
   std::vector<std::string> names;
   for (const JobParam& p : session_params(job.session)) names.push_back(fmt::format("`--{}`", p.name));
   return text + fmt::format("[Common parameters](#common-parameters): {}.\n\n", fmt::join(names, ", "));
@@ -204,7 +205,6 @@ extern const JobInfo kDescribeJob{
     .name = "describe",
     .group = "Materials",
     .doc = "Print the parameters of a plug-in or a command: types, defaults, units and ranges.",
-    .details = "",
     .params = kParams,
     .session = SessionUse::plugins,
     .run = describe};

@@ -2,7 +2,7 @@
 
 #include "image/rgb_file.h"
 #include "instruments/image_error.h"
-#include "jobs/job.h"
+#include "jobs/common_params.h"
 #include "spectra/color_management.h"
 #include "study/smpte_luminance.h"
 
@@ -14,20 +14,8 @@ using enum ArgumentKind;
 constexpr std::string_view kSpace = "linear SMPTE-C";
 constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 constexpr JobParam kParams[] = {
-    {.name = "images",
-     .kind = texts,
-     .doc = "A1 A2 B1 B2: two halves of each render, each with its own seed.",
-     .type = "FILE",
-     .values = 4,
-     .path = PathUse::read,
-     .positional = true,
-     .required = true},
-    {.name = "output",
-     .kind = text,
-     .doc = "Image of the signed difference in luminance: red where A is brighter, blue where B is.",
-     .type = "FILE",
-     .aliases = "o",
-     .path = PathUse::write},
+    files_param("images", "A1 A2 B1 B2: two halves of each render, each with its own seed.", 4),
+    output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is.", false),
     {.name = "scale", .kind = real, .doc = "Difference at full colour.", .default_value = "0.1", .range = kAboveZero},
     {.name = "json", .kind = flag, .doc = "Print JSON."},
 };
@@ -143,7 +131,6 @@ Result difference(const JobRun& run) {
 extern const JobInfo kDifferenceJob{.name = "difference",
                                     .group = "Images",
                                     .doc = "Measure the RMS error between two renders, with noise and bias separated.",
-                                    .details = "",
                                     .params = kParams,
                                     .session = SessionUse::none,
                                     .run = difference};

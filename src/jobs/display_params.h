@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/display_image.h"
-#include "jobs/job.h"
+#include "jobs/common_params.h"
 
 namespace frond {
 

@@ -223,9 +223,10 @@ Result flux(const JobRun& run) {
 extern const JobInfo kFluxJob{.name = "flux",
                               .group = "Measure",
                               .doc = "Measure where the light that falls on a scene goes.",
-                              .details = "Shares of the incident light, by wavelength: reflected, transmitted, and "
-                                         "absorbed by each material. With wavelengths from 400 to 700 nm also shares "
-                                         "of the photons (PAR).",
+                              .details =
+                                  "Shares of the incident light, by wavelength: reflected, transmitted, and "
+                                  "absorbed by each material. With wavelengths from 400 to 700 nm also shares "
+                                  "of the photons (PAR).",
                               .params = kParams,
                               .session = SessionUse::all,
                               .run = flux};

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "jobs/job.h"
+#include "jobs/common_params.h"
 #include "scene/instance_writer.h"
 #include "scene/tokenizer.h"
 #include "scene/words.h"
@@ -25,13 +25,7 @@ constexpr JobParam kParams[] = {
      .path = PathUse::read,
      .positional = true,
      .required = true},
-    {.name = "output",
-     .kind = text,
-     .doc = "Instance table to write, a NumPy file (.npy).",
-     .type = "FILE",
-     .aliases = "o",
-     .path = PathUse::write,
-     .required = true},
+    output_param("Instance table to write, a NumPy file (.npy).", true),
 };
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -218,9 +212,10 @@ extern const JobInfo kInstancesJob{
     .name = "instances",
     .group = "Scenes",
     .doc = "Write an instance table, for Shape \"instances\", from CSV.",
-    .details = "The first line names the columns: x,y,z; scale; the orientation, as nx,ny,nz or zenith,azimuth (degrees) "
-               "of the z axis, which is a leaf's normal, and spin about it (degrees), or as qw,qx,qy,qz, or m00,m01 to "
-               "m22. All other columns are numbers for Texture \"instance\".",
+    .details =
+        "The first line names the columns: x,y,z; scale; the orientation, as nx,ny,nz or zenith,azimuth (degrees) "
+        "of the z axis, which is a leaf's normal, and spin about it (degrees), or as qw,qx,qy,qz, or m00,m01 to "
+        "m22. All other columns are numbers for Texture \"instance\".",
     .params = kParams,
     .session = SessionUse::none,
     .run = instances};

@@ -82,7 +82,7 @@ struct JobInfo {
   std::string_view name;
   std::string_view group;    ///< heading of `frond --help`: "render", "leaf models", "measure", ...
   std::string_view doc;      ///< one sentence
-  std::string_view details;  ///< further sentences, for --help, man pages and docstrings; may be empty
+  std::string_view details = "";  ///< further sentences, for --help, man pages and docstrings
   std::span<const JobParam> params;
   SessionUse session;
   Result (*run)(const JobRun&);

@@ -8,11 +8,12 @@ namespace frond {
 namespace {
 
 constexpr std::string_view kWhat[] = {"specimens"};
-constexpr JobParam kParams[] = {{.name = "what",
-                                 .kind = ArgumentKind::text,
-                                 .doc = "specimens: the leaves that \"string specimen\" can name, in place of plug-ins.",
-                                 .choices = kWhat,
-                                 .positional = true}};
+constexpr JobParam kParams[] = {
+    {.name = "what",
+     .kind = ArgumentKind::text,
+     .doc = "specimens: the leaves that \"string specimen\" can name, in place of plug-ins.",
+     .choices = kWhat,
+     .positional = true}};
 
 Result list_specimens() {
   Result result{.tables = {{"specimens"}}, .is_requested = true};
@@ -46,7 +47,6 @@ Result list(const JobRun& run) {
 extern const JobInfo kListJob{.name = "list",
                               .group = "Materials",
                               .doc = "List every plug-in that a scene can name.",
-                              .details = "",
                               .params = kParams,
                               .session = SessionUse::plugins,
                               .run = list};

@@ -30,7 +30,7 @@ constexpr JobParam kParams[] = {
 
 /// Text in roff, without a line break.
 std::string escaped(std::string_view text) {
-  constexpr std::pair<char, const char*> kEscapes[] = {{'\\', "\\e"},    {'-', "\\-"},     {'~', "\\(ti"}, {'^', "\\(ha"},
+  constexpr std::pair<char, const char*> kEscapes[] = {{'\\', "\\e"},  {'-', "\\-"},   {'~', "\\(ti"}, {'^', "\\(ha"},
                                                        {'`', "\\(ga"}, {'"', "\\(dq"}, {'\'', "\\(aq"}};
   std::string result;
   for (const char c : text) {
@@ -62,9 +62,7 @@ std::string paragraph(const std::string& text) {
   return result;
 }
 
-std::string page_name(std::string_view command) {
-  return command.empty() ? "frond" : "frond-" + std::string(command);
-}
+std::string page_name(std::string_view command) { return command.empty() ? "frond" : "frond-" + std::string(command); }
 
 std::string entry(const JobParam& p) {
   const std::string value = value_name(p);
@@ -141,7 +139,8 @@ std::string pbrt_section() {
   std::string text = ".SH OPTIONS OF PBRT-V4\n" + paragraph("They are ignored with a warning, or refused.");
   for (const PbrtOption& o : kPbrtOptions) {
     const std::string value = *o.value ? ' ' + italic(o.value) : "";
-    text += ".TP\n" + bold(o.name) + value + '\n' + paragraph(std::string(o.is_refused ? "Refused: " : "Ignored. ") + o.doc);
+    text += ".TP\n" + bold(o.name) + value + '\n' +
+            paragraph(std::string(o.is_refused ? "Refused: " : "Ignored. ") + o.doc);
   }
   return text;
 }

@@ -10,21 +10,13 @@ namespace {
 using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
-    {.name = "parts",
-     .kind = texts,
-     .doc = "Parts of one render, which have no sample in common.",
-     .type = "FILE",
-     .path = PathUse::read,
-     .positional = true,
-     .required = true},
-    {.name = "output",
+    files_param("parts", "Parts of one render, which have no sample in common."),
+    output_param("Image to write: .exr (linear), .png or .jpg (through the display transform).", false, "part"),
+    {.name = "part",
      .kind = text,
-     .doc = "Image to write: .exr (linear), .png or .jpg (through the display transform).",
+     .doc = "Part to write, in place of an image.",
      .type = "FILE",
-     .aliases = "o",
-     .path = PathUse::write,
-     .excludes = "part"},
-    {.name = "part", .kind = text, .doc = "Part to write, in place of an image.", .type = "FILE", .path = PathUse::write},
+     .path = PathUse::write},
     {.name = "allow-holes", .kind = flag, .doc = "Write an image although samples or pixels are missing."},
     kDisplayParam,
     kViewParam,
@@ -41,8 +33,9 @@ void check_holes(const RenderPart& whole, const JobRun& run) {
 void write_merged(const RenderPart& whole, const ImageOutput& output, const JobRun& run) {
   check_holes(whole, run);
   if (lacks_neighbors(whole.film))
-    run.log().warn({}, "pixels at the edges lack samples of those beside them, which the filter reaches: other parts of "
-                       "the image have them");
+    run.log().warn({},
+                   "pixels at the edges lack samples of those beside them, which the filter reaches: other parts of "
+                   "the image have them");
   output.write(whole.film, finished_picture(whole));
 }
 
@@ -76,7 +69,6 @@ Result merge(const JobRun& run) {
 extern const JobInfo kMergeJob{.name = "merge",
                                .group = "Cluster",
                                .doc = "Merge parts of a render, which frond render --part has written.",
-                               .details = "",
                                .params = kParams,
                                .session = SessionUse::none,
                                .run = merge};

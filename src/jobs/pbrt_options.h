@@ -2,7 +2,8 @@
 
 namespace frond {
 
-/// An option of pbrt-v4's command line that frond render accepts with a warning, or refuses with what frond has instead.
+/// An option of pbrt-v4's command line that frond render accepts with a warning, or refuses with what frond has
+/// instead.
 struct PbrtOption {
   const char* name;
   const char* value;  ///< what it takes; "": nothing

@@ -12,9 +12,9 @@ namespace frond {
 struct Column {
   std::string name;  ///< with its unit: "wavelength_nm"; NAME_se is the standard error of the column NAME
   std::variant<std::vector<double>, std::vector<std::string>> values;
-  std::string doc = {};    ///< one line: meaning and unit; may be empty
-  bool only_data = false;  ///< left out of the text for terminals
-  bool is_flag = false;    ///< of numbers 0 and 1, which are written false and true
+  std::string doc = {};      ///< one line: meaning and unit; may be empty
+  bool only_data = false;    ///< left out of the text for terminals
+  bool is_flag = false;      ///< of numbers 0 and 1, which are written false and true
   std::string missing = {};  ///< what stands in files and text for a number that is missing
 
   bool is_number() const { return values.index() == 0; }

@@ -29,9 +29,10 @@ const Layers kAllowed{
     {"radiometry", {"core", "system", "spectra", "scene", "instruments", "render"}},
     {"report", {"core", "system", "spectra", "leaf", "instruments", "radiometry"}},
     {"study", {"core", "system", "spectra", "image", "scene", "render", "instruments", "report"}},
-    {"cli",
+    {"jobs",
      {"core", "system", "spectra", "leaf", "materials", "image", "scene", "integrators", "render", "instruments",
       "exports", "radiometry", "report", "study"}},
+    {"cli", {"core", "system", "scene", "render", "report", "jobs"}},
 };
 
 /// "file: includes" lines of every include that `allowed` does not permit.

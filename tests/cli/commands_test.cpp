@@ -7,10 +7,13 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "image/image_file.h"
+#include "jobs/command_line.h"
 #include "render/plugins.h"
 #include "tests/cli/command.h"
+#include "tests/cli/table.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
@@ -19,11 +22,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 namespace fs = std::filesystem;
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class Commands : public ::testing::Test {
  protected:
@@ -81,7 +79,7 @@ TEST_F(Commands, MistypedWordsAreNamedWithWhatMayBeMeant) {
     return o.err;
   };
   EXPECT_EQ(complaint({"rendr", "x.pbrt"}), "frond: there is no command \"rendr\"; did you mean \"render\"?\n");
-  EXPECT_THAT(complaint({"paint"}), HasSubstr("there is no command \"paint\"; there are render, check, merge, submit"));
+  EXPECT_THAT(complaint({"paint"}), HasSubstr("there is no command \"paint\"; there are "));
   EXPECT_EQ(complaint({"--verson"}), "frond: frond has no option --verson; did you mean --version?\n");
   EXPECT_EQ(complaint({"render", "x.pbrt", "--sp", "1"}),
             "frond: frond render has no option --sp; did you mean --spp?\n");
@@ -113,6 +111,62 @@ TEST_F(Commands, ListNamesEveryPluginAndDescribeItsParameters) {
 TEST_F(Commands, TheDocumentedPluginsAreThoseOfThisBuild) {
   EXPECT_EQ(frond_command({"describe", "--markdown"}).out, bytes_of(FROND_SOURCE_DIR "/docs/plugins.md"))
       << "run: frond describe --markdown > docs/plugins.md";
+}
+
+TEST_F(Commands, TheDocumentedCommandsAreThoseOfThisBuild) {
+  EXPECT_EQ(frond_command({"describe", "--commands"}).out, bytes_of(FROND_SOURCE_DIR "/docs/commands.md"))
+      << "run: frond describe --commands > docs/commands.md";
+}
+
+TEST_F(Commands, HelpManPageAndDescriptionHaveEveryParameter) {
+  for (const JobInfo* job : all_jobs()) {
+    const std::string name(job->name);
+    const std::string texts[] = {frond_command({name, "--help"}).out, frond_command({"describe", name}).out};
+    for (const std::string& text : texts)
+      for (const JobParam* p : params_of(*job)) EXPECT_THAT(text, HasSubstr(std::string(p->name))) << name;
+    EXPECT_THAT(texts[0], HasSubstr("Usage: " + usage(*job).substr(0, 12))) << name;
+    EXPECT_THAT(frond_command({"--help"}).out, HasSubstr("\n  " + name + " ")) << name;
+  }
+}
+
+TEST_F(Commands, HelpFitsInAHundredColumns) {
+  for (const JobInfo* job : all_jobs()) {
+    std::istringstream help(frond_command({std::string(job->name), "--help"}).out);
+    for (std::string line; std::getline(help, line);) EXPECT_LE(line.size(), 100u) << line;
+  }
+  const std::string check = frond_command({"check", "--help"}).out;
+  EXPECT_THAT(check, HasSubstr("Usage: frond check [OPTIONS] scene...\n"));
+  EXPECT_THAT(check, HasSubstr("  --ignore-unsupported[=KINDS]\n                              Leave out"));
+}
+
+TEST_F(Commands, FluxWritesSharesAsTextCsvAndJson) {
+  folder_.write("plate.pbrt", R"(
+Option "float period" [ 1 1 ]
+WorldBegin
+LightSource "distant" "spectrum L" [300 1 2500 1] "point3 from" [ 0 0 2 ]
+Material "diffuse" "spectrum reflectance" [300 .25 2500 .25]
+Shape "bilinearmesh" "point3 P" [0 0 0  1 0 0  0 1 0  1 1 0]
+ObjectBegin "leaf" Shape "disk" "float radius" .1 ObjectEnd
+Translate .5 .5 .1
+ObjectInstance "leaf"
+)");
+  const auto flux = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"flux", path("plate.pbrt"), "--paths", "4096", "--wavelengths", "400:700:50", "-q"});
+    const Outcome o = frond_command(words);
+    EXPECT_EQ(o.code, 0) << o.err;
+    return o.out;
+  };
+  flux({"--csv", path("a.csv"), "--json", path("a.json")});
+  const CsvTable table = parse_csv(bytes_of(path("a.csv")));
+  EXPECT_EQ(table.names, (std::vector<std::string>{"quantity", "material", "wavelength_nm", "share", "share_se"}));
+  EXPECT_EQ(table.text(7, "wavelength_nm"), "PAR");
+  const auto json = nlohmann::json::parse(bytes_of(path("a.json")));
+  EXPECT_EQ(json["paths"], 4096);
+  EXPECT_NEAR(json["flux"][0]["share"].get<double>(), table.number(0, "share"), 1e-9);
+  const CsvTable leaf = parse_csv(flux({"--by", "instance"}));  // the table goes to standard output, even with -q
+  ASSERT_EQ(leaf.rows.size(), 1u);
+  EXPECT_EQ(leaf.names[2], "par_umol_m2_s");
+  EXPECT_NEAR(leaf.number(0, "absorbed_550"), 0.75 * 0.0314, 0.02);
 }
 
 TEST_F(Commands, RenderWritesWhatItSays) {
@@ -424,12 +478,14 @@ TEST_F(Commands, NumbersThatAreNoneAreRefused) {
 
 TEST_F(Commands, NumbersThatAreNoneAreToldInFewWords) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-      {{"difference", "a", "b", "c", "d", "--scale", "0"}, "--scale: a number above 0 is needed"},
+      {{"difference", "a", "b", "c", "d", "--scale", "0"}, "--scale: a number above 0 is needed; \"0\" was given"},
       {{"spectrophotometer", "abm", "--wavelengths", "551", "--se", "0"}, "--se: a number above 0 is needed"},
       {{"spectrophotometer", "abm", "--wavelengths", "551", "--se", "nan"}, "--se: a number above 0 is needed"},
       {{"conform", "abm", "--false-alarm-rate", "1"}, "--false-alarm-rate: a number from 1e-12 to 0.5 is needed"},
-      {{"convert", "a.exr", "-o", "b.png", "--exposure", "abc"}, "--exposure: a number is needed"},
-      {{"convert", "a.exr", "-o", "b.png", "--bands", "650,x,450"}, "--bands: a number above 0 is needed"},
+      {{"convert", "a.exr", "-o", "b.png", "--exposure", "abc"},
+       "--exposure: a number (stops) is needed; \"abc\" was given"},
+      {{"convert", "a.exr", "-o", "b.png", "--bands", "650,x,450"},
+       "--bands: 3 numbers above 0 (nm) with commas between is needed; \"650,x,450\" was given"},
       {{"compare", "s.pbrt", "-o", "r", "--exposure", "99"}, "--exposure: a number from -20 to 20 is needed"},
       {{"render", "s.pbrt", "--crop", "0,1,0,7"}, "--crop: a number from 0 to 1 is needed"},
       {{"render", "s.pbrt", "--pixels", "0,-4,0,1"}, "--pixels: whole numbers of pixels from 0 on are needed"},

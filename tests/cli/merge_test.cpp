@@ -125,7 +125,7 @@ TEST_F(Merge, NamesWhatDiffers) {
 TEST_F(Merge, RefusesWhatIsNoPart) {
   EXPECT_THAT(merge({path("scene.pbrt")}, {"-o", path("m.exr")}).err, HasSubstr("is no part of a render"));
   EXPECT_THAT(merge({path("none.part")}, {"-o", path("m.exr")}).err, HasSubstr("none.part"));
-  EXPECT_THAT(merge({part("0:1")}, {}).err, HasSubstr("-o IMAGE or --part FILE"));
+  EXPECT_THAT(merge({part("0:1")}, {}).err, HasSubstr("--output or --part is needed"));
 }
 
 }  // namespace

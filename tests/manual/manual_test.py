@@ -22,7 +22,7 @@ def options_of(*command):
 
 
 def commands():
-    return re.findall(r"^  (\w+) ", frond("--help").split("Subcommands:")[1], re.M)
+    return re.findall(r"^  (\w+) ", frond("--help").split("Examples:")[0], re.M)
 
 
 class Folder(unittest.TestCase):
@@ -57,15 +57,21 @@ class ManPages(Folder):
     def test_they_have_the_options_of_help_and_no_others(self):
         for command in [(), *((name,) for name in commands())]:
             text = (self.folder / ("-".join(["frond", *command]) + ".1")).read_text(encoding="ascii")
-            heads = re.findall(r"^\.TP\n(\\fB\\-.*)$", text, re.M)
+            heads = re.findall(r"^\.TP\n(\\fB\\-.*)$", text.split(".SH OPTIONS OF PBRT\\-V4")[0], re.M)
             found = {name.replace("\\-", "-") for head in heads for name in re.findall(r"\\fB(.*?)\\fR", head)}
             self.assertEqual(found, options_of(*command), command)
 
-    def test_choices_ranges_and_what_goes_together_are_told(self):
-        text = frond("man", "render").replace("\n", " ").replace("\\-", "-")
-        for sentence in ("From 1 to 1024.", "One of camera, cameraworld, world.", "Not with --part."):
+    def test_choices_units_ranges_defaults_and_relations_are_there_once(self):
+        text = frond("man", "brf").replace("\n", " ").replace("\\-", "-")
+        for sentence in ("Range: from 1 to 1024.", "Unit: degrees.", "Default: -75:75:5.", "Excludes --zenith, --azimuth.",
+                         "Needs --csv.", "May be given again."):
             self.assertIn(sentence, text)
-        self.assertIn("Needs --csv.", frond("man", "brf").replace("\\-", "-"))
+        self.assertIn("One of spherical, planophile,", frond("man", "canopy").replace("\n", " "))
+
+    def test_render_has_the_options_of_pbrt(self):
+        section = frond("man", "render").split(".SH OPTIONS OF PBRT\\-V4")[1]
+        self.assertIn("\\fB\\-\\-gpu\\fR\nIgnored.", section)
+        self.assertIn("Refused: ", section)
 
     def test_the_date_is_that_of_source_date_epoch(self):
         page = subprocess.run([FROND, "man"], capture_output=True, text=True, check=True,
@@ -141,7 +147,7 @@ if ((${#COMPREPLY[@]})); then printf '%s\\n' "${COMPREPLY[@]}"; fi""", self.scri
         self.assertEqual(self.offered("render", "--integrator", ""), {"path"})
         self.assertLess({"hero", "smpte", "bands"}, self.offered("render", "--wavelengths", ""))
         self.assertLess({"soybean", "maize"}, self.offered("table", "--specimen", ""))
-        self.assertLess({"abm", "path", "perspective"}, self.offered("describe", ""))
+        self.assertLess({"abm", "path", "perspective", "brf"}, self.offered("describe", ""))
         self.assertEqual(self.offered("man", "rend"), {"render"})
 
     def test_files(self):
