@@ -11,8 +11,8 @@
 #include "render/material_words.h"
 #include "render/plugins.h"
 #include "render/refusing_log.h"
-#include "report/conform_report.h"
 #include "report/chart.h"
+#include "report/conform_report.h"
 #include "report/text_output.h"
 #include "scene/resolver.h"
 

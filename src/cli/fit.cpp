@@ -10,8 +10,8 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "leaf/fit/measured_spectra.h"
-#include "report/fit_report.h"
 #include "report/chart.h"
+#include "report/fit_report.h"
 #include "report/text_output.h"
 #include "system/cpu_clock.h"
 
