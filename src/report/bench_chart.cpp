@@ -14,15 +14,6 @@ ChartPoint point_of(const BenchReading& r, const Worth& w) {
   return with_error(r.time(BsdfCall::hit).mean, variance > 0 ? variance : NAN, w.variance.standard_error() / square);
 }
 
-/// Time x variance = 10^k.
-void add_iso_lines(Panel& panel) {
-  const Range &x = panel.x.range, &y = panel.y.range;
-  for (double k = std::floor(std::log10(x.low * y.low)); k <= std::ceil(std::log10(x.high * y.high)); ++k) {
-    const std::vector<ChartPoint> ends{{x.low, std::pow(10, k) / x.low}, {x.high, std::pow(10, k) / x.high}};
-    panel.series.push_back(line("", "#a0a0a0", 1, Dash::dashed, ends));
-  }
-}
-
 }  // namespace
 
 void check_bench_chart(size_t materials, size_t angles) {
@@ -53,10 +44,15 @@ Chart bench_chart(const std::vector<BenchReading>& readings) {
       points.push_back(line("", color, 1.2, Dash::solid, {{p.x - error, p.y}, {p.x + error, p.y}}));
     }
     if (y.is_empty()) y = {1, 1};
+    x = x.widened(), y = y.widened();
     const std::string title = worth == &SampleWorth::sky ? "under an overcast sky" : "under the sun";
-    const Axis variance{"variance of one sample / mean²", y.widened(), true};
-    Panel& panel = chart.panels.emplace_back(Panel{500, 460, title, {time, x.widened(), true}, variance});
-    add_iso_lines(panel);
+    const Axis variance{"variance of one sample / mean²", y, true};
+    Panel& panel = chart.panels.emplace_back(Panel{500, 460, title, {time, x, true}, variance});
+    for (double k = std::floor(std::log10(x.low * y.low)); k <= std::ceil(std::log10(x.high * y.high)); ++k) {
+      const double product = std::pow(10, k);  // time x variance
+      panel.series.push_back(
+          line("", "#a0a0a0", 1, Dash::dashed, {{x.low, product / x.low}, {x.high, product / x.high}}));
+    }
     std::ranges::move(points, std::back_inserter(panel.series));
   }
   auto& legend = chart.panels[0].series;

@@ -7,7 +7,8 @@ namespace frond {
 
 /// Views of one plane: the BRF against the zenith angle, a curve for each wavelength, with its standard errors.
 Chart brf_plane_chart(const BrfReading& reading);
-/// Views of a whole hemisphere: a map for each wavelength, seen from above, the sun's side on the left.
+/// Views of a whole hemisphere, in rings of equal steps: a map for each wavelength with a patch for each view, seen
+/// from above, the sun's side on the left.
 Chart brf_hemisphere_chart(const BrfReading& reading);
 
 }  // namespace frond

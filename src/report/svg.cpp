@@ -112,7 +112,8 @@ class PanelDrawing {
     for (const Series& s : p_.series) {
       for (const ChartPoint& p : s.points)
         if (is_inside(x_.place(p.x)) && is_inside(y_.place(p.y))) out += mark_at(x_at(p.x), y_at(p.y), s);
-      if (!s.text.empty()) out += text_at(x_at(s.points[0].x), y_at(s.points[0].y) + 4, s.text, kHalo);
+      if (!s.text.empty() && !s.points.empty())
+        out += text_at(x_at(s.points[0].x), y_at(s.points[0].y) + 4, s.text, kHalo);
     }
     return out;
   }
