@@ -10,7 +10,7 @@ COLORS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56
 
 pyplot.rcParams.update({
     "svg.fonttype": "none", "svg.hashsalt": "frond", "font.family": "DejaVu Sans", "font.size": 10.5, "axes.titlesize": 10.5,
-    "legend.frameon": False, "axes.grid": True, "grid.color": "#dddddd", "axes.axisbelow": True, "axes.linewidth": 1.1,
+    "legend.frameon": False, "axes.grid": True, "grid.color": "#dddddd", "axes.axisbelow": True, "axes.formatter.min_exponent": 4, "axes.linewidth": 1.1,
     "lines.linewidth": 1.8, "lines.markersize": 5, "figure.constrained_layout.use": True,
     "axes.prop_cycle": matplotlib.cycler(color=COLORS[1:])})
 
