@@ -101,8 +101,9 @@ def chart(path, canopies):
                            markersize=2.5, linestyle="-" if model == "leaf_lambert" else "--", label=f"{canopy.angles}, {model}")
         panel.axhline(0, color="#000000", linewidth=1)
         panel.set(title=f"{band} nm", xticks=range(-60, 61, 30))
-    of.supxlabel("zenith angle of the view (degrees)", fontsize="medium")
-    of.supylabel("BRF over leaf_solved, %", fontsize="medium")
+    panels[1, 1].set_xlabel("zenith angle of the view (degrees)")
+    for row in panels:
+        row[0].set_ylabel("BRF over leaf_solved, %")
     charts.legend(of, panels[0, 0], 3)
     charts.save(of, path)
 

@@ -44,7 +44,7 @@ def arguments():
     parser.add_argument("--size", type=int, metavar="N", help="pixels along each side: 512")
     parser.add_argument("--threads", type=int, metavar="N", help="of every program: 1")
     parser.add_argument("--pbrt", metavar="PATH", help="pbrt-v4's program; the pbrt on the PATH by default")
-    parser.add_argument("--mitsuba", metavar="PYTHON", help="a Python that has mitsuba; that of build/race by default")
+    parser.add_argument("--mitsuba", metavar="PYTHON", help="a Python that has mitsuba; that of build/python-venv by default")
     parser.add_argument("--no-docs", action="store_true", help="print the page, write none")
     return parser.parse_args()
 

@@ -7,13 +7,13 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import time
 
-from tools import FROND, ROOT, run
+from tools import FROND, run
 
 from . import scenes
 
-VENV = ROOT / "build" / "race"
 MOST_TRACED = 10_000  # instances for Mitsuba's LLVM variants: with 100,000 the first picture is not there after five minutes
 
 
@@ -161,7 +161,7 @@ def libllvm():
 def present(pbrt, python):
     """The programs that are there, and a word on each that is not."""
     programs, missing = [Frond("frond, three wavelengths", "smpte"), Frond("frond, hero wavelengths", "hero")], []
-    python = python or VENV / "bin" / "python"
+    python = python or sys.executable
     code = "import mitsuba; print(*mitsuba.variants())"
     done = subprocess.run([str(python), "-c", code], capture_output=True, text=True, check=False) \
         if pathlib.Path(python).exists() else None
