@@ -1,10 +1,11 @@
 """Two runs side by side: which benchmarks take longer or shorter, and whether any picture is another one."""
 
 import dataclasses
-import math
 import statistics
 
-from . import student
+import numpy
+from scipy import special
+
 from .results import family
 
 # Chance that one or more of the benchmarks of two runs of the same program are marked; another such for the pictures.
@@ -64,7 +65,7 @@ class Comparison:
 
     def compare_times(self):
         tests = [self.test(self.a.times[name], self.b.times[name]) for name in self.names]
-        adjusted = student.holm([p for *_, p in tests])
+        adjusted = holm([p for *_, p in tests])
         return [TimeChange(name, geometric_mean(self.a.times[name]), geometric_mean(self.b.times[name]), *ratios, p)
                 for name, (*ratios, _), p in zip(self.names, tests, adjusted)]
 
@@ -78,22 +79,24 @@ class Comparison:
                 for f in order}
 
     def test(self, a, b):
-        """B over A with the ends of its interval, and p. Of a single round nothing can be told."""
-        gap, reach, p = self.test_logarithms(a, b)
-        return *(math.exp(x) for x in (gap, gap - reach, gap + reach)), p
-
-    def test_logarithms(self, a, b):
+        """B over A with the ends of its interval, and p: Student's t on logarithms, of pairs or as Welch has it. Of a single
+        round nothing can be told."""
         common = sorted(a.keys() & b.keys())
-        enough = len(common) > 1 if self.paired else min(len(a), len(b)) > 1
-        if not enough:
-            return math.log(geometric_mean(b) / geometric_mean(a)), math.inf, 1.0
+        if len(common) < 2 if self.paired else min(len(a), len(b)) < 2:
+            return geometric_mean(b) / geometric_mean(a), 0.0, numpy.inf, 1.0
+        first, second = (numpy.log([run[i] for i in common] if self.paired else list(run.values())) for run in (a, b))
+        gap, dof = second.mean() - first.mean(), len(common) - 1
         if self.paired:
-            gap, error, dof = student.paired(*([math.log(run[i]) for i in common] for run in (a, b)))
+            square = (second - first).var(ddof=1) / len(common)
         else:
-            gap, error, dof = student.unpaired(*([math.log(x) for x in run.values()] for run in (a, b)))
-        if error == 0:
-            return gap, 0.0, 1.0 if gap == 0 else 0.0
-        return gap, student.two_sided_quantile(0.05, dof) * error, student.two_sided_p(gap / error, dof)
+            of_a, of_b = first.var(ddof=1) / len(a), second.var(ddof=1) / len(b)
+            square = of_a + of_b
+            dof = square**2 / max(of_a**2 / (len(a) - 1) + of_b**2 / (len(b) - 1), 1e-300)
+        if square == 0:
+            return *numpy.exp([gap] * 3), 1.0 if gap == 0 else 0.0
+        error = square**0.5
+        reach = special.stdtrit(dof, 0.975) * error
+        return *numpy.exp([gap, gap - reach, gap + reach]), 2 * special.stdtr(dof, -abs(gap) / error)
 
     def compare_figures(self):
         found = []
@@ -103,7 +106,7 @@ class Comparison:
                 if counter in b and counter + "_se" in a and counter + "_se" in b:
                     found.append(FigureChange(name, counter, *(settled(run[c]) for c in (counter, counter + "_se")
                                                                for run in (a, b)), 1.0))
-        for change, p in zip(found, student.holm([difference_p(f) for f in found])):
+        for change, p in zip(found, holm([difference_p(f) for f in found])):
             change.p = p
         return found
 
@@ -122,6 +125,14 @@ def geometric_mean(rounds):
     return statistics.geometric_mean(rounds.values())
 
 
+def holm(ps):
+    """p-values adjusted so that a level holds for all of them together (Holm 1979)."""
+    order = numpy.argsort(ps)
+    adjusted = numpy.empty(len(ps))
+    adjusted[order] = numpy.minimum(1, numpy.maximum.accumulate(numpy.take(ps, order) * numpy.arange(len(ps), 0, -1)))
+    return adjusted.tolist()
+
+
 def settled(rounds):
     """Pictures are the same in every round: their figures are, too."""
     return next(iter(rounds.values()))
@@ -131,8 +142,8 @@ def difference_p(figure):
     """By a z-test. Renders from the same seeds hang together, and the errors are upper bounds: alarms are rarer yet."""
     if figure.a == figure.b:
         return 1.0
-    error = math.hypot(figure.a_se, figure.b_se)
-    return 2 * statistics.NormalDist().cdf(-abs(figure.b - figure.a) / error) if error > 0 else 0.0
+    error = numpy.hypot(figure.a_se, figure.b_se)
+    return 2 * special.ndtr(-abs(figure.b - figure.a) / error) if error > 0 else 0.0
 
 
 # What the figures depend on, by its name in the context.
