@@ -7,7 +7,7 @@ import numpy
 
 import charts
 import frond
-from tools import ROOT, arguments, machine, rms, sized, table, write
+from tools import ROOT, arguments, machine, plane_of_incidence, rms, sized, table, write
 
 LEAVES = ("soybean", "maize")
 CONVENTIONS = ("traced", "light", "reciprocal")
@@ -129,7 +129,8 @@ def changes(folder):
             for color, angle in zip(charts.COLORS[1:], (30, 60)):
                 for name, line in (("traced", "--"), ("reciprocal", "-")):
                     f = found[name]["f"][angles.index(180 - angle if lit_below else angle), 0]
-                    panel.plot(*in_plane(found[name], f, lit_below != crosses), line, color=color,
+                    angles_seen, place = plane_of_incidence(found[name], lit_below != crosses)
+                    panel.plot(angles_seen, numpy.pi * f[place], line, color=color,
                                label=f"{angle}°, {'model' if name == 'traced' else name}")
             panel.set(title=f"{leaf}, {title}", xlim=(-90, 90), ylim=(0, 0.8 if crosses else 2.5), xticks=range(-90, 91, 45))
         row[0].set_ylabel("π f, 800 nm")
@@ -137,16 +138,6 @@ def changes(folder):
     charts.legend(of, panels[0, 0], 4)
     charts.save(of, folder / "shape.svg")
     return table(["", "nm"] + [f"light at {a}°" for a in angles], body)
-
-
-def in_plane(found, f, below):
-    """Angle and pi f on one side of the leaf, from the light's azimuth to the other one."""
-    theta, phi = found["theta_o_deg"][:, 0], list(numpy.round(found["phi_o_deg"][0]))
-    side = (theta > 90) == below
-    angle = numpy.minimum(theta, 180 - theta)[side]
-    values = numpy.pi * numpy.concatenate([f[side, phi.index(0)], f[side, phi.index(180)]])
-    angle = numpy.concatenate([-angle, angle])
-    return angle[order := numpy.argsort(angle)], values[order]
 
 
 def noise(scene, incident, samples, first_seed):

@@ -57,6 +57,12 @@ def program_csv(*words):
     return pandas.read_csv(io.StringIO(program(*words)), comment="#")
 
 
+def frond_table(*words):
+    """What `frond table` writes, the CPU seconds that it says to have taken, and all that it says."""
+    done = subprocess.run([str(w) for w in (FROND, "table", *words, "-o", "-")], capture_output=True, text=True, check=True)
+    return done.stdout, float(re.search(r"([0-9.e+-]+) s of CPU", done.stderr)[1]), done.stderr
+
+
 def cpu_seconds(action):
     """What `action` returns, and the CPU time of the programs that it ran."""
     used = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
@@ -76,6 +82,17 @@ def sized(path, folder, width, height=None):
     copy = folder / f"{path.parent.name}-{path.stem}-{width}.pbrt"
     copy.write_text(text, encoding="utf-8")
     return copy
+
+
+def plane_of_incidence(found, below):
+    """Of a goniophotometer's patches on a side of the leaf: angles from the normal, those on the light's side negative, and
+    where they are in its arrays."""
+    theta, phi = found["theta_o_deg"], numpy.round(found["phi_o_deg"], 6)
+    angle = numpy.where(phi == 0, -1, 1) * numpy.minimum(theta, 180 - theta)
+    place = numpy.nonzero(numpy.isin(phi, (0, 180)) & ((theta > 90) == below))
+    order = numpy.argsort(angle[place])
+    place = tuple(index[order] for index in place)
+    return angle[place], place
 
 
 def rms(values):
