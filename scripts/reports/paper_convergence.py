@@ -89,7 +89,7 @@ def convergence_chart(path, measured):
             below.plot(range(1, deepest + 1), [ends.ended(d) for d in range(1, deepest + 1)], **style)
         above.axhline(PAPER_RATIO, color="#888888", linewidth=1)
         above.set(title=f"Figure {s.graph}: {s.title}", ylim=(2e-7, 2))
-        below.set(xlabel="tree depth", ylim=(0, 1), xlim=(0.7, deepest + 0.3), xticks=range(1, deepest + 1, 1 if deepest < 10 else 2))
+        below.set(xlabel="tree depth", ylim=(0, 1), xlim=(0.7, deepest + 0.3), xticks=range(1, deepest + 1, 1 + deepest // 10))
     panels[0, 0].set_ylabel("unshot rays / shot rays")
     panels[1, 0].set_ylabel("share of paths absorbed or cut off")
     charts.legend(of, panels[0, 0], 4)

@@ -114,7 +114,7 @@ class Modes:
         text, self.seconds, said = frond_table("leaf_solved", f"specimen={leaf}", "--wavelengths", nm, "--threads", 1, *options)
         self.kilobytes = int(said.split(" kB in a render")[0].split()[-1])
         lines = [line for line in text.splitlines() if not line.startswith("#")]
-        self.cells, at, self.columns = int(lines[1].split()[1]), 3, []
+        self.cells, at, self.columns = int(lines[0].split()[1]), 2, []
         while at < len(lines):
             index, series, at = float(lines[at].split()[3]), [], at + 1
             for _ in range(4):
