@@ -105,6 +105,6 @@ report() {
     echo "scripts/$(basename "$0") needs packages of PyPI, which cannot be had" >&2
     exit 1
   fi
-  build "${report_targets[@]}"
+  [ ${#report_targets[@]} -eq 0 ] || build "${report_targets[@]}"
   FROND_BUILD="$FROND_BUILD" PYTHONPATH="$FROND_BUILD/python:$root/scripts/reports" exec "$report_python" -B -m "$@"
 }

@@ -31,21 +31,18 @@ QUICK = Setting(size=256, samples=16, rounds=2)
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="scripts/race", description="Renders the same scenes with frond and others, in turn.")
-    parser.add_argument("--only", action="append", choices=list(scenes.SCENES), metavar="SCENE",
-                        help="this scene, may be given again: " + ", ".join(scenes.SCENES))
-    parser.add_argument("--quick", action="store_true", help="a first look: small pictures, two rounds, front and ambient")
-    parser.add_argument("--programs", metavar="WORD", action="append",
-                        help="frond and programs whose names hold this word; may be given again")
-    parser.add_argument("--leaves", choices=list(scenes.LEAVES), help="one of both kinds of leaves")
-    parser.add_argument("--filters", choices=["box", "gaussian"], help="one of both filters")
-    parser.add_argument("--rounds", type=int, metavar="N", help="renders of each kind, each with a seed of its own: 5")
-    parser.add_argument("--samples", type=int, metavar="N", help="per pixel, a power of four: 64")
-    parser.add_argument("--size", type=int, metavar="N", help="pixels along each side: 512")
-    parser.add_argument("--threads", type=int, metavar="N", help="of every program: 1")
-    parser.add_argument("--pbrt", metavar="PATH", help="pbrt-v4's program; the pbrt on the PATH by default")
-    parser.add_argument("--mitsuba", metavar="PYTHON", help="a Python that has mitsuba; that of build/python-venv by default")
-    parser.add_argument("--no-docs", action="store_true", help="print the page, write none")
+    """What they do: scripts/race."""
+    parser = argparse.ArgumentParser(prog="scripts/race")
+    parser.add_argument("--only", action="append", choices=list(scenes.SCENES), metavar="SCENE")
+    parser.add_argument("--programs", metavar="WORD", action="append")
+    parser.add_argument("--leaves", choices=list(scenes.LEAVES))
+    parser.add_argument("--filters", choices=["box", "gaussian"])
+    for number in ("--rounds", "--samples", "--size", "--threads"):
+        parser.add_argument(number, type=int, metavar="N")
+    parser.add_argument("--pbrt", metavar="PATH")
+    parser.add_argument("--mitsuba", metavar="PYTHON")
+    for switch in ("--quick", "--no-docs"):
+        parser.add_argument(switch, action="store_true")
     return parser.parse_args()
 
 
