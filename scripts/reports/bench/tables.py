@@ -15,7 +15,7 @@ BEGIN, END = "<!-- figures: scripts/bench --write-docs -->", "<!-- end of figure
 
 def mean_and_reach(rounds, further=0.0):
     """Geometric mean and half of its 95 % interval: from how the rounds differ, and from a further relative error."""
-    logs = numpy.log(list(rounds.values()))
+    logs = numpy.log(rounds.dropna())
     mean = numpy.exp(logs.mean())
     if len(logs) < 2:
         return mean, math.nan
