@@ -1,4 +1,6 @@
-# Sourced by the other scripts: installs what is missing, builds the release preset. Leaves FROND_BUILD and FROND set.
+# Sourced by the other scripts: ends them at the first error, installs what is missing, builds the release preset. Leaves
+# FROND_BUILD and FROND set.
+set -euo pipefail
 
 # -h and --help print the comment at the head of the script that sources this, and nothing is installed.
 for argument in "$@"; do
