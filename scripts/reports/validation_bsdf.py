@@ -35,9 +35,10 @@ the lines.
                 panel.axvline(-angle, color="#808080", linestyle=":", linewidth=1, label="toward the light")
                 panel.axvline(angle, color="#808080", linewidth=1, label="mirror direction")
                 panel.set(title="" if row else f"light at {angle}°, {nm} nm", ylabel="" if i else label, xticks=range(-90, 91, 30))
-                panel.set_ylim(bottom=0)
                 if row:
                     panel.set_xlabel("angle from the normal (°), light’s side negative")
+        for row in panels:
+            row[0].set_ylim(bottom=0)
         charts.legend(of, panels[0, 0], 4)
         report.chart(f"bdf-{nm}", f"BDF at {nm} nm", of)
 
