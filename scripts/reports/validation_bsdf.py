@@ -111,23 +111,31 @@ and come out too small where those are few: the largest differences are negative
             plane_chart(report, leaf, side, angles, chart_rays)
 
 
-class Rings:
-    """f for light at some angles, by patches of 5 by 10 degrees: means over azimuth and their standard errors."""
+class Patches:
+    """f for light at some angles, by patches of a sphere; by default of 5 by 10 degrees."""
 
-    def __init__(self, material, nm, angles, **options):
-        self.angles, self.found = angles, frond.goniophotometer(material, nm, angles, patches=(36, 36), **options)
+    def __init__(self, material, nm, angles, patches=(36, 36), **options):
+        self.angles, self.step = list(angles), (180 // patches[0], 360 // patches[1])
+        found = frond.goniophotometer(material, nm, self.angles, patches=patches, **options)
+        self.values, self.errors = found["f"][:, 0], found["f_se"][:, 0]
 
-    def f(self, theta_i, theta_o):
-        ring = self.angles.index(theta_i), 0, int(theta_o // 5)
-        error = self.found["f_se"][ring]
-        return self.found["f"][ring].mean(), numpy.linalg.norm(error) / len(error)
+    def at(self, theta_i, theta_o):
+        return self.angles.index(theta_i), int(theta_o // self.step[0])
+
+    def f(self, theta_i, theta_o, phi):
+        return self.values[self.at(theta_i, theta_o)][phi // self.step[1]]
+
+    def mean(self, theta_i, theta_o):
+        """Over azimuth, and its standard error."""
+        error = self.errors[self.at(theta_i, theta_o)]
+        return self.values[self.at(theta_i, theta_o)].mean(), numpy.linalg.norm(error) / len(error)
 
 
 def ratios(material, nm, a, b, **options):
     """f(a->b) / f(b->a) and its standard error, reflected and transmitted, as means over rings."""
-    rings, result = Rings(material, nm, (a, b, 180 - b), **options), []
+    rings, result = Patches(material, nm, (a, b, 180 - b), **options), []
     for far in (b, 180 - b):
-        (forth, forth_se), (back, back_se) = rings.f(a, far), rings.f(far, a)
+        (forth, forth_se), (back, back_se) = rings.mean(a, far), rings.mean(far, a)
         result.append((forth / back, forth / back * numpy.hypot(forth_se / forth, back_se / back)))
     return result
 
@@ -159,26 +167,13 @@ incidence f is that of patches 1° by 5°.
 def defect_rows(material, closed_form, a, b, rays):
     computed = ratios(closed_form, 800, a, b, integrate=True)
     sampled = ratios(material, 800, a, b, rays=int(float(rays)))
-    fine = PlaneOfPatches(closed_form, 800, (a, b, 180 - b))
+    fine = Patches(closed_form, 800, (a, b, 180 - b), (180, 72), integrate=True)
     body = []
     for i, (way, far) in enumerate((("reflection", b), ("transmission", 180 - b))):
         plane = [fine.f(a, far, phi) / fine.f(far, a, phi) for phi in (180, 0)]
         body.append([f"`{material}`", way, f"{computed[i][0]:.4f}", f"{sampled[i][0]:.3f} ± {sampled[i][1]:.3f}"] +
                     [f"{x:.4f}" for x in plane])
     return body
-
-
-class PlaneOfPatches:
-    """f of a closed form at some angles of incidence toward every degree, in and around the plane of incidence."""
-
-    def __init__(self, material, nm, angles):
-        self.angles = list(angles)
-        self.values = frond.goniophotometer(material, nm, self.angles, patches=(180, 72), integrate=True)["f"][:, 0]
-
-    def f(self, theta_i, theta_o, phi=None):
-        """At an azimuth, or the mean over all."""
-        around = self.values[self.angles.index(theta_i), int(theta_o)]
-        return around.mean() if phi is None else around[phi // 5]
 
 
 def defect_chart(report):
@@ -188,11 +183,11 @@ def defect_chart(report):
     sides = {"reflected, adaxial side": lambda x: (x, x), "reflected, abaxial side": lambda x: (180 - x, 180 - x),
              "transmitted, adaxial to abaxial": lambda x: (x, 180 - x)}
     for row, leaf in zip(panels, LEAVES):
-        found = PlaneOfPatches(f"leaf_solved specimen={leaf}", 800, angles + [180 - x for x in angles])
+        found = Patches(f"leaf_solved specimen={leaf}", 800, angles + [180 - x for x in angles], (180, 72), integrate=True)
         for panel, (title, side) in zip(row, sides.items()):
             for mark, color, a in zip("osDv", charts.COLORS, (2.5, 32.5, 57.5, 82.5)):
                 pairs = [(side(a)[0], side(b)[1]) for b in angles]
-                panel.semilogy(angles, [found.f(x, y) / found.f(y, x) for x, y in pairs], f"{mark}-", color=color, markersize=3,
+                panel.semilogy(angles, [found.mean(x, y)[0] / found.mean(y, x)[0] for x, y in pairs], f"{mark}-", color=color, markersize=3,
                                linewidth=1.3, label=f"a = {a}°")
             panel.set(title=f"{leaf}, {title}", xlim=(0, 90), ylim=(0.6, 1.8), xticks=range(0, 91, 30))
         row[0].set_ylabel("f(a to b) / f(b to a)")
