@@ -49,7 +49,7 @@ from Python, under Python's lock. That costs {ours:.1f} times what `bilambertian
 
 Written by `scripts/eradiate`: {machine}; Eradiate {version}, frond {frond_version}. {leaves} disks of {radius} m at random in {side} x {side} x {height} m, over nothing, sun
 at {sun}° from the zenith, views in its plane; what is seen is a square of {seen} m at the top. Soybean, reciprocal. BRF by both, {samples} paths a
-direction and wavelength in Eradiate, frond to 0.1 %:
+direction and wavelength in Eradiate, frond to {asked:g} %:
 
 {rows}
 Standard errors of Eradiate's figures are estimated from {batches} runs; the differences have a chi-square of {chi2:.1f} for {count}.
@@ -137,7 +137,7 @@ def main():
              f"{100 * (mean[v, w] / found[v, w] - 1):+.2f} %"] for v, w in numpy.ndindex(mean.shape)]
     write(options.docs / "eradiate.md", PAGE.format(
         machine=machine(), version=eradiate.__version__, frond_version=frond.__version__, leaves=LEAVES, radius=RADIUS,
-        side=SIDE, height=HEIGHT, sun=SUN, seen=2 * TARGET, samples=f"{samples:,}", batches=batches,
+        side=SIDE, height=HEIGHT, sun=SUN, seen=2 * TARGET, samples=f"{samples:,}", asked=100 * asked, batches=batches,
         rows=table(["zenith", "nm", "Eradiate", "frond", "difference"], rows), ours=numpy.median([r[2] for r in runs]) / plain,
         chi2=float((z**2).sum()), count=z.size))
 

@@ -163,8 +163,7 @@ def main():
                       (max(memory) - start["megabytes"]) / megapixels, (render_memory - start["megabytes"]) / megapixels)
 
 
-def print_calculation(load, path, sizes, part_bytes, each, image, part, least_memory, merge_memory,
-                      render_memory):
+def print_calculation(load, path, sizes, part_bytes, each, image, part, least_memory, merge_memory, render_memory):
     """From figures a megapixel to those of the large picture."""
     large = LARGE_WIDTH * LARGE_HEIGHT / 1e6
     seconds = large * 1e6 * LARGE_SAMPLES * path
@@ -193,8 +192,7 @@ def print_calculation(load, path, sizes, part_bytes, each, image, part, least_me
     columns = [by_samples(NODES), by_samples(64), by_pixels(NODES)]
     print(f"{LARGE_WIDTH} × {LARGE_HEIGHT}, {LARGE_SAMPLES:,} samples: {hours(seconds)} of CPU time for paths, "
           f"{memory(merge_memory, large)} of memory for the merge.\n")
-    print(table(["", f"{NODES:,} tasks, by samples", "64 tasks, by samples",
-                       f"{NODES:,} tasks, by pixels"], list(map(list, zip(names, *columns)))))
+    print(table(["", f"{NODES:,} tasks, by samples", "64 tasks, by samples", f"{NODES:,} tasks, by pixels"], zip(names, *columns)))
 
 
 if __name__ == "__main__":

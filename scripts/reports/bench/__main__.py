@@ -6,7 +6,7 @@ import json
 import pathlib
 import sys
 
-from tools import ROOT
+from tools import ROOT, write
 
 from . import page, results, session, tables, text
 from .comparison import Comparison
@@ -35,14 +35,6 @@ def setting_of(options):
         raise SystemExit("--repetitions: one at least")
     base = session.QUICK if options.quick else session.Setting()
     return dataclasses.replace(base, **{k: v for k, v in chosen.items() if v is not None})
-
-
-def write(path, content):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(path.name + ".part")
-    beside.write_text(content, encoding="utf-8")
-    beside.replace(path)
-    print(f"Written: {path}")
 
 
 def run_one(options):
