@@ -1,4 +1,6 @@
-# Sourced by the other scripts: installs what is missing, builds the release preset. Leaves FROND_BUILD and FROND set.
+# Sourced by the other scripts: ends them at the first error, installs what is missing, builds the release preset. Leaves
+# FROND_BUILD and FROND set.
+set -euo pipefail
 
 # -h and --help print the comment at the head of the script that sources this, and nothing is installed.
 for argument in "$@"; do
@@ -61,6 +63,7 @@ quietly() {
 python_venv() {
   local venv="$root/build/$1"
   shift
+  install_missing python3 python3-venv
   [ -x "$venv/bin/python" ] || /usr/bin/python3 -m venv "$venv" || return 1
   local wanted="$*"
   [ "$(cat "$venv/wanted" 2>/dev/null)" = "$wanted" ] && return
@@ -68,10 +71,11 @@ python_venv() {
   echo "$wanted" >"$venv/wanted"
 }
 
-# Builds will have the Python module; false where PyPI's packages cannot be had. Mitsuba's LLVM variants, which it is
-# tested with, load libllvm 19.
+# Builds will have the Python module, and an environment that the reports run in; false where PyPI's packages cannot be had.
+# Mitsuba's LLVM variants, which it is tested with, load libllvm 19.
 with_python_module() {
-  python_venv python-venv nanobind==3.1.0 numpy pandas pytest nbclient ipykernel mitsuba==3.9.1 || return 1
+  python_venv python-venv nanobind==3.1.0 numpy pandas scipy==1.17.1 matplotlib==3.11.2 pytest nbclient ipykernel mitsuba==3.9.1 ||
+    return 1
   if apt-cache show libllvm19 >/dev/null 2>&1; then install_missing libllvm19; fi
   configure_options+=(-DFROND_PYTHON=ON "-DPython_EXECUTABLE=$root/build/python-venv/bin/python")
 }
@@ -92,4 +96,18 @@ build_preset() {
 build() {
   echo "Building $*"
   build_preset release --target "$@"
+}
+
+# report NAME WORD...: installs and builds what the reports need, and runs scripts/reports/NAME. report_targets are built for
+# it, report_python runs it.
+report_targets=(frond frond_python frond_python_stub)
+report_python="$root/build/python-venv/bin/python"
+report() {
+  install_missing "${build_packages[@]}" python3-dev
+  if ! with_python_module; then
+    echo "scripts/$(basename "$0") needs packages of PyPI, which cannot be had" >&2
+    exit 1
+  fi
+  [ ${#report_targets[@]} -eq 0 ] || build "${report_targets[@]}"
+  FROND_BUILD="$FROND_BUILD" PYTHONPATH="$FROND_BUILD/python:$root/scripts/reports" exec "$report_python" -B -m "$@"
 }

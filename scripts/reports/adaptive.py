@@ -1,16 +1,17 @@
 """docs/adaptive.md: error against time of even and of adaptive samples."""
 
-import json
-import math
 import pathlib
 import tempfile
 
-from tools import COLORS, ROOT, block, frond, gnuplot, machine, table
+import numpy
+
+import charts
+import frond
+from tools import ROOT, arguments, machine, program_json, rms, table, write
 
 SCENES = ["soybean-front", "soybean-back", "soybean-ambient", "hundred-leaves"]
 EVEN = [32, 64, 128, 256]
 REFERENCE = 512
-COLORS_OF_PICTURE = ("red", "green", "blue")
 SEEDS = (1, 2)
 REFERENCE_SEEDS = (11, 12)
 
@@ -18,58 +19,53 @@ REFERENCE_SEEDS = (11, 12)
 class Pair:
     """Two renders with seeds of their own: their mean cost, and by how they differ their noise."""
 
-    def __init__(self, scene, folder, name, seeds, *options):
-        self.images, runs = [], []
+    def __init__(self, scene, folder, name, seeds, samples=None, max_rms=None):
+        self.images, costs = [], []
         for seed in seeds:
+            picture = frond.load(ROOT / "scenes" / scene / "scene.pbrt", seed=seed, quick=True, wavelengths="smpte",
+                                 swap="leaf_simplified", adaptive=max_rms is not None).render(samples, max_rms=max_rms)
             self.images.append(folder / f"{scene}-{name}-{seed}.exr")
-            runs.append(json.loads(frond(
-                "render", ROOT / "scenes" / scene / "scene.pbrt", "-o", self.images[-1], "--seed", seed, "--quick",
-                "--wavelengths", "smpte", "--swap", "*=leaf_simplified", "--json", "-q", *options)))
-        self.cpu, self.rays, self.paths = (sum(run[key] for run in runs) / 2 for key in ("cpu_seconds", "rays", "paths"))
+            picture.save(self.images[-1])
+            costs.append([picture.statistics[key] for key in ("cpu_seconds", "rays", "paths")])
+        self.cpu, rays, paths = numpy.mean(costs, axis=0)
+        self.work = rays + paths
 
     def against(self, reference):
         """RMS noise of one render, and the upper 95 % bound of the bias: over pixels and colours."""
-        found = json.loads(frond("difference", *self.images, *reference.images, "--json"))
-        mean = lambda key: math.sqrt(sum(found[f"{key}_{c}"] ** 2 for c in COLORS_OF_PICTURE) / 3)
-        return math.sqrt(2) * mean("noise_a"), mean("bias_upper")
+        found = program_json("difference", *self.images, *reference.images, "--json")
+        noise, bias = (rms([found[f"{key}_{c}"] for c in ("red", "green", "blue")]) for key in ("noise_a", "bias_upper"))
+        return numpy.sqrt(2) * noise, bias
 
 
-def cost_at(points, rms, key):
+def cost_at(noise, costs, asked):
     """What even samples take to this noise: a power law between two of them, or beyond the last two."""
-    for (rms_0, pair_0), (rms_1, pair_1) in zip(points, points[1:]):
-        if rms >= rms_1 or pair_1 is points[-1][1]:
-            cost_0, cost_1 = key(pair_0), key(pair_1)
-            return cost_0 * (rms / rms_0) ** (math.log(cost_1 / cost_0) / math.log(rms_1 / rms_0))
-    raise ValueError("two points at least")
+    i = min(numpy.count_nonzero(asked < numpy.array(noise[1:])), len(noise) - 2)
+    power = numpy.log(costs[i + 1] / costs[i]) / numpy.log(noise[i + 1] / noise[i])
+    return costs[i] * (asked / noise[i]) ** power
 
 
-def measure(scene, folder):
-    """Points of even samples, and a row for each request."""
-    reference = Pair(scene, folder, "reference", REFERENCE_SEEDS, "--spp", REFERENCE)
-    even = []
-    for samples in EVEN:
-        pair = Pair(scene, folder, f"even{samples}", SEEDS, "--spp", samples)
-        even.append((pair.against(reference)[0], pair))
-    adaptive = []
-    for asked in (even[1][0], even[2][0]):
+def measure(scene, folder, scale):
+    """Even samples as (noise, CPU time), and a row for each request."""
+    reference = Pair(scene, folder, "reference", REFERENCE_SEEDS, REFERENCE // scale)
+    pairs = [Pair(scene, folder, f"even{samples}", SEEDS, samples // scale) for samples in EVEN]
+    noise, adaptive = [pair.against(reference)[0] for pair in pairs], []
+    for asked in noise[1:3]:
         asked = float(f"{asked:.2g}")
-        pair = Pair(scene, folder, f"adaptive{asked}", SEEDS, "--max-rms", asked)
-        rms, bias = pair.against(reference)
-        work = lambda p: p.rays + p.paths
-        adaptive.append({"asked": asked, "rms": rms, "bias": bias, "pair": pair,
-                         "cpu": pair.cpu / cost_at(even, rms, lambda p: p.cpu),
-                         "work": work(pair) / cost_at(even, rms, work)})
-    return even, adaptive
+        pair = Pair(scene, folder, f"adaptive{asked}", SEEDS, max_rms=asked)
+        found, bias = pair.against(reference)
+        of_even = [getattr(pair, key) / cost_at(noise, [getattr(p, key) for p in pairs], found) for key in ("cpu", "work")]
+        adaptive.append((asked, found, bias, pair.cpu, *of_even))
+    return (noise, [pair.cpu for pair in pairs]), adaptive
 
 
-def draw(results):
-    script = "set multiplot layout 2,2\nset logscale xy\nset xlabel 'CPU time, s'\nset ylabel 'RMS noise'\nset format y '%g'\n"
-    for scene, (even, adaptive) in results.items():
-        script += block("even", [(p.cpu, rms) for rms, p in even])
-        script += block("adaptive", [(a["pair"].cpu, a["rms"]) for a in adaptive])
-        script += (f"set title '{scene}'\nplot $even with linespoints pt 7 lw 2 lc rgb '{COLORS[1]}' title 'even', "
-                   f"$adaptive with linespoints pt 5 lw 2 lc rgb '{COLORS[2]}' title 'adaptive'\n")
-    gnuplot(ROOT / "docs/images/adaptive.svg", script + "unset multiplot\n", (1000, 760))
+def draw(path, results):
+    of, panels = charts.figure(1000, 780, 2, 2)
+    for panel, (scene, ((noise, cpu), adaptive)) in zip(panels.flat, results.items()):
+        panel.loglog(cpu, noise, "o-", label="even")
+        panel.loglog([a[3] for a in adaptive], [a[1] for a in adaptive], "s-", label="adaptive")
+        panel.set(title=scene, xlabel="CPU time, s", ylabel="RMS noise")
+    charts.legend(of, panels[0, 0], 2)
+    charts.save(of, path)
 
 
 PAGE = """# Adaptive sampling
@@ -102,17 +98,17 @@ leaves the sky, which has none, costs next to nothing with even samples either.
 
 
 def main():
+    options = arguments("adaptive")
     results = {}
     with tempfile.TemporaryDirectory(prefix="frond_adaptive.") as folder:
         for scene in SCENES:
-            results[scene] = measure(scene, pathlib.Path(folder))
-            print(scene, [(a["asked"], a["rms"], a["cpu"], a["work"]) for a in results[scene][1]], flush=True)
-    draw(results)
-    body = [[scene, f"{a['asked']:g}", f"{a['rms']:.5f}", f"{a['bias']:.5f}", f"{a['pair'].cpu:.1f} s", f"{a['cpu']:.2f}",
-             f"{a['work']:.2f}"] for scene, (_, adaptive) in results.items() for a in adaptive]
+            results[scene] = measure(scene, pathlib.Path(folder), 16 if options.quick else 1)
+            print(scene, results[scene][1], flush=True)
+    draw(options.docs / "images" / "adaptive.svg", results)
+    body = [[scene, f"{asked:g}", f"{found:.5f}", f"{bias:.5f}", f"{cpu:.1f} s", f"{of_cpu:.2f}", f"{of_work:.2f}"]
+            for scene, (_, adaptive) in results.items() for asked, found, bias, cpu, of_cpu, of_work in adaptive]
     head = ["scene", "asked", "RMS", "bias at most", "CPU time", "of even samples'", "work"]
-    page = PAGE.format(machine=machine(), reference=REFERENCE, table=table(head, body))
-    (ROOT / "docs/adaptive.md").write_text(page)
+    write(options.docs / "adaptive.md", PAGE.format(machine=machine(), reference=REFERENCE, table=table(head, body)))
 
 
 if __name__ == "__main__":

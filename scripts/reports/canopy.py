@@ -1,24 +1,26 @@
 """docs/canopy.md: canopies against a reference, and which leaf model is enough in one."""
 
-import argparse
-import csv
-import io
 import itertools
-import math
-import os
 import pathlib
-import subprocess
+import shutil
 import tempfile
+import time
 
-from tools import COLORS, FROND, ROOT, block, cpu_seconds, frond, gnuplot, machine, table
+import numpy
+import pandas
+
+import charts
+import frond
+from tools import FROND, ROOT, arguments, machine, program, program_csv, rms, run, table, write
 
 MODELS = ["leaf_lambert", "leaf_simplified", "leaf_solved"]
 REFERENCE = "leaf_solved"
+SIMPLER = [model for model in MODELS if model != REFERENCE]
 ANGLES = ["spherical", "planophile", "erectophile"]
 INDICES = [1, 3, 5]
 SUNS = [20, 45, 70]
 BANDS = [450, 550, 670, 800, 1650, 2200]
-ZENITH = "-60:60:10"
+ZENITH = range(-60, 61, 10)
 RMS = 0.01
 PLOT = 4  # metres
 ENOUGH = 0.02  # of the BRF, in every band and direction
@@ -37,97 +39,73 @@ Shape "instances" "string object" "leaf" "string filename" "leaves.npy"
 """
 
 
-def records(text):
-    return list(csv.DictReader(io.StringIO(text)))
-
-
-def het01(folder, rms):
-    """Rows of the 76 angles, and the CPU time."""
-    subprocess.run([str(ROOT / "scenes/canopy/make"), str(folder)], check=True, env=os.environ | {"FROND": str(FROND)},
-                   capture_output=True)
-    for name in ("het01.pbrt",):
-        (folder / name).write_text((ROOT / "scenes/canopy" / name).read_text())
-    text, cpu = cpu_seconds(lambda: frond("brf", folder / "het01.pbrt", "--zenith=-75:75:2", "--wavelengths", 800,
-                                          "--rms", rms, "--csv", "-", "-q"))
-    reference = [line.split(",") for line in (ROOT / "tests/reference/het01_brfpp.csv").read_text().splitlines()
-                 if line and not line.startswith(("#", "vza"))]
-    rows = []
-    for ours, (zenith, _, brf, brf_se) in zip(records(text), reference):
-        assert float(ours["zenith_deg"]) == float(zenith)
-        mean, error = float(ours["brf"]), math.hypot(float(ours["brf_se"]), float(brf_se))
-        rows.append({"zenith": float(zenith), "ours": mean, "se": float(ours["brf_se"]), "reference": float(brf),
-                     "relative": mean / float(brf) - 1, "z": (mean - float(brf)) / error})
-    return rows, cpu
-
-
-def het01_text(rows, cpu):
-    off = [r for r in rows if abs(r["relative"]) > 0.005 and abs(r["z"]) > 3]
-    mean = sum(r["relative"] for r in rows) / len(rows)
-    mean_se = math.sqrt(sum((r["se"] / r["reference"]) ** 2 for r in rows)) / len(rows)
-    worst = max(rows, key=lambda r: abs(r["z"]))
-    return (f"{len(rows)} angles in {cpu:.0f} s of CPU time. Mean difference {100 * mean:+.2f} ± {100 * mean_se:.2f} %; RMS "
-            f"{100 * math.sqrt(sum(r['relative'] ** 2 for r in rows) / len(rows)):.2f} %, where standard errors are "
-            f"{100 * math.sqrt(sum((r['se'] / r['reference']) ** 2 for r in rows) / len(rows)):.2f} %; furthest "
-            f"{worst['z']:+.1f} standard errors, at {worst['zenith']:g}°. "
-            f"{'No angle is' if not off else str(len(off)) + ' angles are'} further off than 0.5 % and 3 standard errors.")
+def het01(folder, asked):
+    """Figures of the 76 angles against the reference, in words."""
+    run("env", f"FROND={FROND}", ROOT / "scenes/canopy/make", folder)
+    shutil.copy(ROOT / "scenes/canopy/het01.pbrt", folder)
+    start = time.process_time()
+    ours = frond.brf(folder / "het01.pbrt", [800], zenith=range(-75, 76, 2), rms=asked)
+    cpu = time.process_time() - start
+    both = ours.merge(pandas.read_csv(ROOT / "tests/reference/het01_brfpp.csv", comment="#"), left_on="zenith_deg", right_on="vza_deg",
+                      suffixes=("", "_reference"), validate="one_to_one")
+    assert len(both) == len(ours)
+    relative, error = both.brf / both.brf_reference - 1, both.brf_se / both.brf_reference
+    z = (both.brf - both.brf_reference) / numpy.hypot(both.brf_se, both.brf_se_reference)
+    off, worst = ((abs(relative) > 0.005) & (abs(z) > 3)).sum(), abs(z).idxmax()
+    return (f"{len(both)} angles in {cpu:.0f} s of CPU time. Mean difference {100 * relative.mean():+.2f} ± "
+            f"{100 * rms(error) / len(both)**0.5:.2f} %; RMS {100 * rms(relative):.2f} %, where standard errors are "
+            f"{100 * rms(error):.2f} %; furthest {z[worst]:+.1f} standard errors, at {both.zenith_deg[worst]:g}°. "
+            f"{'No angle is' if not off else str(off) + ' angles are'} further off than 0.5 % and 3 standard errors.")
 
 
 class Canopy:
-    """A homogeneous canopy: its files, and what models make of it."""
+    """A homogeneous canopy, and what models make of it: `brf` and `brf_se` by zenith angle and band, and `par`, the share of
+    photons that leaves absorb, with its standard error."""
 
-    def __init__(self, folder, angles, index, sun):
+    def __init__(self, folder, angles, index, sun, asked, paths):
         self.angles, self.index, self.sun = angles, index, sun
-        frond("canopy", "-q", "-o", folder / "leaves.npy", "--lai", index, "--angles", angles, "--scale", 0.05, "--size",
-              f"{PLOT},{PLOT}", "--heights", "0.05,1.5")
-        self.scene = folder / "scene.pbrt"
-        radians = math.radians(sun)
-        self.scene.write_text(SCENE.format(plot=PLOT, sun_x=-math.sin(radians), sun_z=math.cos(radians)))
-        self.brf, self.par = {}, {}
-
-    def measure(self, rms):
+        program("canopy", "-q", "-o", folder / "leaves.npy", "--lai", index, "--angles", angles, "--scale", 0.05, "--size",
+                f"{PLOT},{PLOT}", "--heights", "0.05,1.5")
+        scene, toward = folder / "scene.pbrt", numpy.radians(sun)
+        scene.write_text(SCENE.format(plot=PLOT, sun_x=-numpy.sin(toward), sun_z=numpy.cos(toward)))
+        self.brf, self.brf_se, self.par = {}, {}, {}
         for model in MODELS:
-            text = frond("brf", self.scene, f"--zenith={ZENITH}", "--wavelengths", ",".join(map(str, BANDS)), "--rms", rms,
-                         "--swap", f"leaf={model}", "--csv", "-", "-q")
-            self.brf[model] = {(float(r["zenith_deg"]), float(r["wavelength_nm"])): (float(r["brf"]), float(r["brf_se"]))
-                               for r in records(text)}
-            text = frond("flux", self.scene, "--wavelengths", "400:700:20", "--paths", "2e5", "--swap", f"leaf={model}",
-                         "--csv", "-", "-q")
-            self.par[model] = next((float(r["share"]), float(r["share_se"])) for r in records(text)
-                                   if r["quantity"] == "absorbed" and r["material"] == "leaf" and r["wavelength_nm"] == "PAR")
-        return self
+            found = frond.brf(scene, BANDS, zenith=ZENITH, rms=asked, swap={"leaf": model})
+            found = found.pivot(index="zenith_deg", columns="wavelength_nm", values=["brf", "brf_se"])
+            self.brf[model], self.brf_se[model] = found["brf"], found["brf_se"]
+            # The sum over photons of 400 to 700 nm is the program's.
+            flux = program_csv("flux", scene, "--wavelengths", "400:700:20", "--paths", paths, "--swap", f"leaf={model}", "--csv",
+                               "-", "-q").set_index(["quantity", "material", "wavelength_nm"])
+            self.par[model] = flux.loc[("absorbed", "leaf", "PAR"), ["share", "share_se"]].to_numpy(float)
 
-    def difference(self, model, key):
-        """Relative to the reference, and its standard error."""
-        (a, a_se), (b, b_se) = self.brf[model][key], self.brf[REFERENCE][key]
-        return a / b - 1, a / b * math.hypot(a_se / a, b_se / b)
+    def difference(self, model):
+        """Of the BRF, relative to the reference; and its standard error."""
+        ratio = self.brf[model] / self.brf[REFERENCE]
+        return ratio - 1, ratio * numpy.hypot(self.brf_se[model] / self.brf[model], self.brf_se[REFERENCE] / self.brf[REFERENCE])
 
-    def extremes(self, model, band):
-        differences = [self.difference(model, key) for key in self.brf[model] if key[1] == band]
-        return min(d for d, _ in differences), max(d for d, _ in differences)
+    def par_difference(self, model):
+        (mean, error), (reference, of_reference) = self.par[model], self.par[REFERENCE]
+        return mean / reference - 1, numpy.hypot(error / mean, of_reference / reference)
 
     def name(self):
         return f"{self.angles}, LAI {self.index}, sun {self.sun}°"
 
 
-def chart(canopies):
+def chart(path, canopies):
     """Differences against the zenith angle: a panel for each band, a curve for each model and leaf angle distribution."""
-    shown = [c for c in canopies if c.index == 3 and c.sun == 45]
-    script = ("set multiplot layout 2,3\nset xlabel 'zenith angle of the view (degrees)'\nset ylabel 'BRF over leaf\\_solved, %'\n"
-              "set xtics 30\nset key off\nset xzeroaxis lw 1.2 lc rgb '#000000'\n")
-    for panel, band in enumerate(BANDS):
-        plots = []
-        for i, (canopy, model) in enumerate(itertools.product(shown, [m for m in MODELS if m != REFERENCE])):
-            points = [(z, 100 * canopy.difference(model, (z, b))[0], 100 * canopy.difference(model, (z, b))[1])
-                      for z, b in canopy.brf[model] if b == band]
-            script += block(f"d{panel}_{i}", points)
-            color = COLORS[1 + ANGLES.index(canopy.angles)]
-            dash = 1 if model == "leaf_lambert" else 2
-            name = f"{canopy.angles}, {model}".replace("_", r"\\_")
-            plots.append(f"$d{panel}_{i} with lines lw 2 dt {dash} lc rgb '{color}' title \"{name}\", "
-                         f"$d{panel}_{i} with yerrorbars pt 7 ps 0.3 lw 1 lc rgb '{color}' notitle")
-        key = "set key top right font ',10' samplen 3" if panel == 0 else "set key off"
-        script += f"{key}\nset title '{band} nm'\nplot {', '.join(plots)}\n"
-    gnuplot(ROOT / "docs/images/canopy.svg", script + "unset multiplot\n", (1200, 760))
+    of, panels = charts.figure(1200, 800, 2, 3, sharex=True)
+    for panel, band in zip(panels.flat, BANDS):
+        for canopy, model in itertools.product([c for c in canopies if c.index == 3 and c.sun == 45], SIMPLER):
+            mean, error = (100 * x[band] for x in canopy.difference(model))
+            panel.errorbar(mean.index, mean, error, color=charts.COLORS[1 + ANGLES.index(canopy.angles)], elinewidth=1, marker="o",
+                           markersize=2.5, linestyle="-" if model == "leaf_lambert" else "--", label=f"{canopy.angles}, {model}")
+        panel.axhline(0, color="#000000", linewidth=1)
+        panel.set(title=f"{band} nm", xticks=range(-60, 61, 30))
+    panels[1, 1].set_xlabel("zenith angle of the view (degrees)")
+    for row in panels:
+        row[0].set_ylabel("BRF over leaf_solved, %")
+    charts.legend(of, panels[0, 0], 3)
+    charts.save(of, path)
 
 
 PAGE = """# Which leaf is enough in a canopy
@@ -169,69 +147,61 @@ Photons that leaves absorb, 400 to 700 nm, of those that fall in (fAPAR, direct 
 
 def extremes_table(canopies):
     body = []
-    for model in [m for m in MODELS if m != REFERENCE]:
-        for angles in ANGLES:
-            cells = []
-            for band in BANDS:
-                pairs = [c.extremes(model, band) for c in canopies if c.angles == angles]
-                cells.append(f"{100 * min(low for low, _ in pairs):+.0f} to {100 * max(high for _, high in pairs):+.0f}")
-            body.append([f"`{model}`", angles, *cells])
+    for model, angles in itertools.product(SIMPLER, ANGLES):
+        differences = pandas.concat([c.difference(model)[0] for c in canopies if c.angles == angles])
+        body.append([f"`{model}`", angles, *(f"{100 * low:+.0f} to {100 * high:+.0f}"
+                                             for low, high in zip(differences.min(), differences.max()))])
     return table(["", "leaf angles", *(f"{band} nm" for band in BANDS)], body)
 
 
 def par_table(canopies):
     body = []
     for c in canopies:
-        reference, _ = c.par[REFERENCE]
-        body.append([c.name(), f"{reference:.4f} ± {c.par[REFERENCE][1]:.4f}",
-                     *(f"{100 * (c.par[m][0] / reference - 1):+.2f} ± "
-                       f"{100 * math.hypot(c.par[m][1] / c.par[m][0], c.par[REFERENCE][1] / reference):.2f} %"
-                       for m in MODELS if m != REFERENCE)])
-    return table(["canopy", "`leaf_solved`", *(f"`{m}`" for m in MODELS if m != REFERENCE)], body)
+        found = [c.par_difference(model) for model in SIMPLER]
+        body.append([c.name(), "{:.4f} ± {:.4f}".format(*c.par[REFERENCE]),
+                     *(f"{100 * mean:+.2f} ± {100 * error:.2f} %" for mean, error in found)])
+    return table(["canopy", "`leaf_solved`", *(f"`{m}`" for m in SIMPLER)], body)
 
 
 def verdict(canopies):
     """For each model, in how many canopies it is enough in every band and direction, and in the infrared alone."""
     lines = []
-    for model in [m for m in MODELS if m != REFERENCE]:
-        counts = []
-        for bands in (BANDS, [800]):
-            # Not clearly beyond: less three standard errors.
-            counts.append(sum(all(abs(d) - 3 * e <= ENOUGH for d, e in (c.difference(model, key) for key in c.brf[model]
-                                                                       if key[1] in bands)) for c in canopies))
-        worst = max((abs(c.difference(model, key)[0]), c, key) for c in canopies for key in c.brf[model])
-        par = max(abs(c.par[model][0] / c.par[REFERENCE][0] - 1) for c in canopies)
-        lines.append(f"- `{model}`: BRF off by {100 * worst[0]:.0f} % at most ({worst[1].name()}, {worst[2][1]:g} nm, view "
-                     f"{worst[2][0]:g}°); nowhere clearly off by more than {100 * ENOUGH:.0f} % in {counts[0]} of {len(canopies)} "
-                     f"canopies over all bands, in {counts[1]} at 800 nm alone; absorbed photons off by {100 * par:.1f} % at most.")
+    for model in SIMPLER:
+        # Not clearly beyond: less three standard errors.
+        enough = [abs(mean) - 3 * error <= ENOUGH for mean, error in (c.difference(model) for c in canopies)]
+        worst, (zenith, band), canopy = max(((off := abs(c.difference(model)[0]).stack()).max(), off.idxmax(), c.name())
+                                            for c in canopies)
+        par = max(abs(c.par_difference(model)[0]) for c in canopies)
+        lines.append(f"- `{model}`: BRF off by {100 * worst:.0f} % at most ({canopy}, {band:g} nm, view "
+                     f"{zenith:g}°); nowhere clearly off by more than {100 * ENOUGH:.0f} % in "
+                     f"{sum(e.all(axis=None) for e in enough)} of {len(canopies)} canopies over all bands, in "
+                     f"{sum(e[800].all() for e in enough)} at 800 nm alone; absorbed photons off by {100 * par:.1f} % at most.")
     return "\n".join(lines)
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/canopy", description=__doc__)
-    parser.add_argument("--only", choices=["het01", "study"], help="one of both, printed; no page is written")
-    parser.add_argument("--rms", type=float, default=RMS, help="relative standard error of the BRFs")
-    options = parser.parse_args()
+    options = arguments("canopy", ("--only", dict(choices=["het01", "study"], help="one of both, printed; no page is written")),
+                        ("--rms", dict(type=float, help="relative standard error of the BRFs")))
+    asked, paths = options.rms or (0.1 if options.quick else RMS), "1e4" if options.quick else "2e5"
     with tempfile.TemporaryDirectory(prefix="frond_canopy.") as name:
         folder = pathlib.Path(name)
         if options.only != "study":
-            het = het01_text(*het01(folder, 0.003))
+            het = het01(folder, 0.03 if options.quick else 0.003)
             print(het, flush=True)
         if options.only == "het01":
             return
         canopies = []
         for angles, index, sun in itertools.product(ANGLES, INDICES, SUNS):
-            canopies.append(Canopy(folder, angles, index, sun).measure(options.rms))
-            print(canopies[-1].name(), {m: canopies[-1].extremes(m, 670) for m in MODELS}, flush=True)
-    noise = 100 * math.sqrt(sum(c.difference(MODELS[0], key)[1] ** 2 for c in canopies for key in c.brf[MODELS[0]]) /
-                            sum(len(c.brf[MODELS[0]]) for c in canopies))
+            if not options.quick or (index, sun) == (3, 45):
+                canopies.append(Canopy(folder, angles, index, sun, asked, paths))
+                print(canopies[-1].name(), flush=True)
+    noise = 100 * rms(numpy.stack([c.difference(MODELS[0])[1] for c in canopies]))
     print(extremes_table(canopies), par_table(canopies), verdict(canopies), sep="\n")
     if options.only:
         return
-    chart(canopies)
-    page = PAGE.format(machine=machine(), het01=het, noise=noise, extremes=extremes_table(canopies), par=par_table(canopies),
-                       verdict=verdict(canopies))
-    (ROOT / "docs/canopy.md").write_text(page, encoding="utf-8")
+    chart(options.docs / "images" / "canopy.svg", canopies)
+    write(options.docs / "canopy.md", PAGE.format(machine=machine(), het01=het, noise=noise, extremes=extremes_table(canopies),
+                                                  par=par_table(canopies), verdict=verdict(canopies)))
 
 
 if __name__ == "__main__":

@@ -4,10 +4,10 @@ import argparse
 import pathlib
 import tempfile
 
-from choosing_full_size import full_size, full_size_text
-from choosing_renders import (ABM, CANDIDATE_SEEDS, CHOICE_SEEDS, FULL_SEEDS, REFERENCE_SEEDS, Error, Render, choose, mean,
-                              name_of, root, sized, total_rms, words_of)
-from tools import ROOT, frond, machine, table
+import numpy
+
+import frond
+from tools import ROOT, arguments, machine, program_json, sized, table, write
 
 SCENES = {
     "near and far": "choosing/near-and-far.pbrt",
@@ -23,6 +23,66 @@ REQUESTS = [0.02, 0.01, 0.005, 0.002, 0.001]
 FULL_SIZE_REQUESTS = {"near and far": 0.005, "maize": 0.01, "dark": 0.002, "spotted": 0.005, "hundred leaves": 0.002, "shade": 0.005}
 RESOLUTION = 96
 RESOLUTIONS = [64, 128, 256, 512]
+MOST_ABM_SAMPLES = 4096
+CHANNELS = ("red", "green", "blue")
+# Nobody who is judged shares a seed with the judge.
+REFERENCE_SEEDS, CANDIDATE_SEEDS, CHOICE_SEEDS, FULL_SEEDS = (901, 902), (903, 904), range(1, 100), range(1001, 1100)
+ABM = {"swap": "leaf,model=abm", "wavelengths": "hero"}
+
+
+class Render:
+    """Two renders with seeds of their own."""
+
+    def __init__(self, scene, models, samples, seeds, folder, name):
+        self.images = [folder / f"{name}-{seed}.exr" for seed in seeds]
+        self.seconds = numpy.mean([render(scene, models, samples, *pair) for pair in zip(seeds, self.images)])  # of CPU time, each
+
+
+def render(scene, models, samples, seed, image):
+    """Its CPU seconds."""
+    picture = frond.load(scene, seed=seed, **models).render(samples)
+    picture.save(image)
+    return picture.statistics["cpu_seconds"]
+
+
+class Error:
+    """Mean squares over all pixels and channels of how one render differs from the reference."""
+
+    def __init__(self, render, reference):
+        j = program_json("difference", *render.images, *reference.images, "--json")
+        # The error of the bias is too large, as channels are alike.
+        self.bias, self.bias_error = (mean_of(j, key) for key in ("bias_squared", "bias_squared_error"))
+        self.noise, self.reference_noise = (mean_of(j, f"noise_{which}", 2) for which in "ab")
+
+    def bounds(self, noise=0):
+        """Of the RMS of the bias alone, 95 %; or with noise."""
+        return [root(noise + self.bias + z * self.bias_error) for z in (-1.96, 1.96)]
+
+
+def mean_of(difference, key, power=1):
+    return numpy.mean([difference[f"{key}_{c}"] ** power for c in CHANNELS])
+
+
+def root(square):
+    return max(0.0, square) ** 0.5
+
+
+def choose(scene, request, seed, samples=0):
+    """What the pilot says to a request, for a render of so many samples or of the scene's own."""
+    return frond.load(scene, swap=f"leaf,model=auto,maxrms={request}", seed=seed, samples=samples).choice
+
+
+def models_of(choice):
+    """What was chosen, as scenes are loaded with it."""
+    names = {leaf["name"]: leaf["chosen"] for leaf in choice["leaves"]}
+    return {"swap": {"leaf" if name.startswith("leaf in line") else name: f"leaf,model={model}" for name, model in names.items()},
+            "wavelengths": choice["wavelengths"][0]["chosen"]}
+
+
+def name_of(choice):
+    leaves = choice["leaves"]
+    models = leaves[0]["chosen"] if len(leaves) == 1 else ", ".join(f"{l['name']}: {l['chosen']}" for l in leaves)
+    return f"{models}; {choice['wavelengths'][0]['chosen']}"
 
 
 def samples_for(request):
@@ -34,27 +94,28 @@ class Bench:
     """One scene, its reference, and everything that was ever chosen for it."""
 
     def __init__(self, path, options, folder):
-        self.scene = sized(path, RESOLUTION, folder)
+        self.scene = sized(ROOT / "scenes" / path, folder, RESOLUTION)
         self.options, self.folder = options, folder
         self.reference = Render(self.scene, ABM, options.reference_samples, REFERENCE_SEEDS, folder, "reference")
         self.errors = {}
 
     def judged(self, choice):
         """The error of what was chosen, measured once."""
-        words = words_of(choice)
-        if str(words) not in self.errors:
-            render = Render(self.scene, words, self.options.candidate_samples, CANDIDATE_SEEDS, self.folder, "candidate")
-            self.errors[str(words)] = Error(render, self.reference)
-        return self.errors[str(words)]
+        models = models_of(choice)
+        if str(models) not in self.errors:
+            found = Render(self.scene, models, self.options.candidate_samples, CANDIDATE_SEEDS, self.folder, "candidate")
+            self.errors[str(models)] = Error(found, self.reference)
+        return self.errors[str(models)]
 
     def full_render(self, choice, seed):
-        """RMS of a render with the samples that were said to be needed; nothing where they are too many."""
-        samples = int(choice["samples_needed"])
+        """RMS of a render with the samples that were said to be needed, against what the reference converges to: its own noise
+        is taken out. Nothing where they are too many."""
+        samples, image = int(choice["samples_needed"]), self.folder / "full.exr"
         if samples > self.options.most_full_samples:
             return None
-        image = self.folder / "full.exr"
-        frond("render", self.scene, *words_of(choice), "--spp", samples, "--seed", seed, "-o", image, "-q")
-        return total_rms(image, self.reference)
+        render(self.scene, models_of(choice), samples, seed, image)
+        j = program_json("difference", image, image, *self.reference.images, "--json")
+        return root(mean_of(j, "rms", 2) - mean_of(j, "noise_b", 2))
 
 
 class Case:
@@ -67,7 +128,7 @@ class Case:
         self.names = sorted({name_of(c) for c in choices})
         choice = choices[0]
         self.choice, self.name, self.error = choice, name_of(choice), bench.judged(choice)
-        self.pilot = mean(c["pilot"]["cpu_seconds"] for c in choices)
+        self.pilot = numpy.mean([c["pilot"]["cpu_seconds"] for c in choices])
         full = [bench.full_render(c, seed) for c, seed in zip(choices, FULL_SEEDS)]
         self.full = [rms for rms in full if rms is not None]
         print(scene, request, self.name, self.verdicts, self.error.bounds(), self.full, flush=True)
@@ -90,11 +151,64 @@ def by_resolution(path, samples, folder):
     values = []
     for size in RESOLUTIONS:
         spp = max(4, samples * RESOLUTION**2 // size**2)
-        scene = sized(path, size, folder)
-        lambert, solved = (Render(scene, ["--swap", f"*=leaf,model={model}", "--wavelengths", "smpte"], spp, seeds, folder,
-                                  model) for model, seeds in (("leaf_lambert", (1, 2)), ("leaf_solved", (3, 4))))
+        scene = sized(ROOT / "scenes" / path, folder, size)
+        lambert, solved = (Render(scene, {"swap": f"leaf,model={model}", "wavelengths": "smpte"}, spp, seeds, folder, model)
+                           for model, seeds in (("leaf_lambert", (1, 2)), ("leaf_solved", (3, 4))))
         values.append(root(Error(lambert, solved).bias))
     return values
+
+
+class FullSize:
+    """One request on one scene, from the first pilot to the picture."""
+
+    def __init__(self, name, path, request, size, folder):
+        self.name, self.request = name, request
+        scene = sized(ROOT / "scenes" / path, folder, size)
+        seed = CHOICE_SEEDS[0]
+        # As somebody would go about it: ask, read how many samples it takes, ask again for a render of so many.
+        first = choose(scene, request, seed)
+        choice = choose(scene, request, seed, int(first["samples_needed"]))
+        self.chosen = name_of(choice)
+        self.pilots = sum(c["pilot"]["cpu_seconds"] for c in (first, choice))
+        self.samples, self.abm_samples = int(choice["samples_needed"]), int(choice["reference_samples_needed"])
+        if self.abm_samples > MOST_ABM_SAMPLES:
+            raise SystemExit(f"{path} at {request}: abm takes {self.abm_samples} samples, too many to render here")
+        chosen = Render(scene, models_of(choice), self.samples, FULL_SEEDS[:2], folder, "chosen")
+        abm = Render(scene, ABM, self.abm_samples, REFERENCE_SEEDS, folder, "abm")
+        error = Error(chosen, abm)
+        self.seconds, self.abm_seconds = chosen.seconds, abm.seconds
+        self.low, self.high = error.bounds(error.noise)
+        self.abm_rms = root(error.reference_noise)
+        print(self.row(), flush=True)
+
+    def faster(self):
+        return self.abm_seconds / (self.pilots + self.seconds)
+
+    def row(self):
+        return (self.name, f"{self.request:g}", self.chosen, self.samples, f"{self.low:.5f} to {self.high:.5f}",
+                f"{self.pilots:.1f}", f"{self.seconds:.1f}", self.abm_samples, f"{self.abm_rms:.5f}", f"{self.abm_seconds:.1f}",
+                f"{self.faster():.1f}")
+
+
+def full_size_text(cases, size):
+    faster = sorted(c.faster() for c in cases)
+    exceeded = [c for c in cases if c.high > c.request]
+    whole = sum(c.abm_seconds for c in cases) / sum(c.pilots + c.seconds for c in cases)
+    head = ("scene", "asked", "chosen", "samples", "RMS (95 %)", "pilots, CPU s", "render, CPU s", "`abm`: samples", "RMS",
+            "CPU s", "`abm` / chosen")
+    return f"""## Time, at full size
+
+One request on each scene at {size} x {size} pixels. The pilot was asked first for the scene's own 64 samples per pixel, then
+once more for as many as it had said to be needed; what that chose was rendered with the samples that it named, and so was
+`abm` by weighted walks (with hero wavelengths, which count as right) with those that the pilot named for it. Both were rendered
+twice, with seeds that the pilot had not: that is what RMS is measured by, bias and noise together, that of `abm` being noise.
+CPU times are of one render; the last column is that of `abm` over that of both pilots and the render together.
+
+{table(head, [c.row() for c in cases])}
+`abm` took {faster[0]:.1f} to {faster[-1]:.1f} times the CPU time, {whole:.1f} times in all scenes together. The upper end of the
+interval lies above what was asked for in {len(exceeded)} of {len(cases)} renders. Numbers of samples are powers of two, for both, so
+that a single ratio is good to a factor of two; an RMS far below the request is what that leaves.
+"""
 
 
 def page(cases, resolutions, large, options):
@@ -148,15 +262,11 @@ Machine: {machine()}.
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="few samples, into build/choosing")
-    quick = parser.parse_args().quick
+    quick = (asked := arguments("choosing")).quick
     options = argparse.Namespace(seeds=3, reference_samples=192, candidate_samples=128, most_full_samples=256, full_size=512)
     if quick:
         options = argparse.Namespace(seeds=1, reference_samples=64, candidate_samples=32, most_full_samples=16, full_size=64)
-    docs = ROOT / "build" / "choosing" if quick else ROOT / "docs"
-    docs.mkdir(parents=True, exist_ok=True)
-    cases, resolutions = [], {}
+    cases, resolutions, large = [], {}, []
     for name, path in SCENES.items():
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
@@ -164,9 +274,8 @@ def main():
                 resolutions[name] = by_resolution(path, 4 if quick else 16, folder)
             bench = Bench(path, options, folder)
             cases += [Case(name, bench, request, options) for request in REQUESTS]
-    large = full_size({name: (SCENES[name], request) for name, request in FULL_SIZE_REQUESTS.items()}, options.full_size)
-    (docs / "choosing_measured.md").write_text(page(cases, resolutions, large, options))
-    print(f"Written: {docs / 'choosing_measured.md'}")
+            large.append(FullSize(name, path, FULL_SIZE_REQUESTS[name], options.full_size, folder))
+    write(asked.docs / "choosing_measured.md", page(cases, resolutions, large, options))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 """One canopy in Eradiate, of frond's leaf, beside frond brf: docs/eradiate.md. Run by the Python of build/eradiate-venv."""
 
-import pathlib
 import time
 
 import eradiate
@@ -10,9 +9,10 @@ eradiate.set_mode("mono")
 eradiate.config.settings.progress = "NONE"
 from eradiate import unit_registry as ureg
 
+import charts
 import frond
 from frond.eradiate import FrondLeafCloud
-from tools import ROOT, machine, table
+from tools import ROOT, arguments, machine, table, write
 
 FOLDER = ROOT / "build" / "eradiate"
 RGB = [551.0, 800.0]
@@ -49,7 +49,7 @@ from Python, under Python's lock. That costs {ours:.1f} times what `bilambertian
 
 Written by `scripts/eradiate`: {machine}; Eradiate {version}, frond {frond_version}. {leaves} disks of {radius} m at random in {side} x {side} x {height} m, over nothing, sun
 at {sun}° from the zenith, views in its plane; what is seen is a square of {seen} m at the top. Soybean, reciprocal. BRF by both, {samples} paths a
-direction and wavelength in Eradiate, frond to 0.1 %:
+direction and wavelength in Eradiate, frond to {asked:g} %:
 
 {rows}
 Standard errors of Eradiate's figures are estimated from {batches} runs; the differences have a chi-square of {chi2:.1f} for {count}.
@@ -112,38 +112,34 @@ def by_eradiate(positions, normals, kind, seed, samples):
 
 
 def main():
+    options = arguments("eradiate")
+    samples, asked = (800, 0.02) if options.quick else (SAMPLES, 1e-3)
     FOLDER.mkdir(parents=True, exist_ok=True)
     positions, normals = canopy()
     batches = 8
-    runs = [by_eradiate(positions, normals, "frond", seed, SAMPLES // batches) for seed in range(1, batches + 1)]
-    _, _, plain = by_eradiate(positions, normals, "bilambertian", 1, SAMPLES // batches)
-    brf = numpy.array([r[1] for r in runs])
+    runs = [by_eradiate(positions, normals, "frond", seed, samples // batches) for seed in range(1, batches + 1)]
+    _, _, plain = by_eradiate(positions, normals, "bilambertian", 1, samples // batches)
+    zenith, brf = runs[0][0], numpy.array([r[1] for r in runs])
     mean, error = brf.mean(axis=0), brf.std(axis=0, ddof=1) / numpy.sqrt(batches)
-    ours = frond.brf(frond_scene(positions, normals), RGB, zenith=[-float(z) for z in runs[0][0]],  # negative: from the sun's side
-                     target=(-TARGET, TARGET, -TARGET, TARGET, HEIGHT), rms=1e-3)
-    found = numpy.array(list(ours["brf"])).reshape(len(runs[0][0]), len(RGB))
-    found_error = numpy.array(list(ours["brf_se"])).reshape(found.shape)
-    rows, z = [], (mean - found) / numpy.hypot(error, found_error)
-    for v, zenith in enumerate(runs[0][0]):
-        for w, nm in enumerate(RGB):
-            rows.append([f"{zenith:g}°", f"{nm:g}", f"{mean[v, w]:.5f} ± {error[v, w]:.5f}", f"{found[v, w]:.5f} ± {found_error[v, w]:.5f}",
-                         f"{100 * (mean[v, w] / found[v, w] - 1):+.2f} %"])
-            print(*rows[-1], f"{z[v, w]:+.1f}", flush=True)
-    text = PAGE.format(machine=machine(), version=eradiate.__version__, frond_version=frond.__version__, leaves=LEAVES, radius=RADIUS,
-                       side=SIDE, height=HEIGHT, sun=SUN, seen=2 * TARGET, samples=f"{SAMPLES:,}", batches=batches,
-                       rows=table(["zenith", "nm", "Eradiate", "frond", "difference"], rows),
-                       ours=numpy.median([r[2] for r in runs]) / plain, chi2=float((z**2).sum()), count=z.size)
-    from tools import COLORS, block, gnuplot
-    images = ROOT / "docs" / "images" / "eradiate"
-    images.mkdir(parents=True, exist_ok=True)
-    data = "".join(block(f"e{w}", [(x, mean[v, w], error[v, w]) for v, x in enumerate(runs[0][0])]) +
-                   block(f"f{w}", [(x, found[v, w]) for v, x in enumerate(runs[0][0])]) for w in range(len(RGB)))
-    plots = ", ".join(f"$f{w} with lines lw 2 lc rgb '{COLORS[1 + w]}' title 'frond brf, {nm:g} nm', $e{w} with yerrorbars pt 7 ps 0.6 lc rgb "
-                      f"'{COLORS[1 + w]}' title 'Eradiate, {nm:g} nm'" for w, nm in enumerate(RGB))
-    gnuplot(images / "brf.svg", data + "set xlabel 'view zenith angle (degrees)'\nset ylabel 'BRF'\nset yrange [0:*]\nset xrange [-65:65]\nset key top left\n"
-            f"plot {plots}\n", (900, 500))
-    (ROOT / "docs" / "eradiate.md").write_text(text, encoding="utf-8")
-    print("Written: docs/eradiate.md")
+    ours = frond.brf(frond_scene(positions, normals), RGB, zenith=-zenith,  # negative: from the sun's side
+                     target=(-TARGET, TARGET, -TARGET, TARGET, HEIGHT), rms=asked)
+    found, found_error = (numpy.reshape(ours[name], mean.shape) for name in ("brf", "brf_se"))
+    z = (mean - found) / numpy.hypot(error, found_error)
+    of, [[panel]] = charts.figure(900, 540)
+    for w, (nm, color) in enumerate(zip(RGB, charts.COLORS[1:])):
+        panel.plot(zenith, found[:, w], color=color, label=f"frond brf, {nm:g} nm")
+        panel.errorbar(zenith, mean[:, w], error[:, w], fmt="o", color=color, label=f"Eradiate, {nm:g} nm")
+    panel.set(xlabel="view zenith angle (degrees)", ylabel="BRF", xlim=(-65, 65))
+    panel.set_ylim(bottom=0)
+    charts.legend(of, panel, 4)
+    charts.save(of, options.docs / "images" / "eradiate" / "brf.svg")
+    rows = [[f"{zenith[v]:g}°", f"{RGB[w]:g}", f"{mean[v, w]:.5f} ± {error[v, w]:.5f}", f"{found[v, w]:.5f} ± {found_error[v, w]:.5f}",
+             f"{100 * (mean[v, w] / found[v, w] - 1):+.2f} %"] for v, w in numpy.ndindex(mean.shape)]
+    write(options.docs / "eradiate.md", PAGE.format(
+        machine=machine(), version=eradiate.__version__, frond_version=frond.__version__, leaves=LEAVES, radius=RADIUS,
+        side=SIDE, height=HEIGHT, sun=SUN, seen=2 * TARGET, samples=f"{samples:,}", asked=100 * asked, batches=batches,
+        rows=table(["zenith", "nm", "Eradiate", "frond", "difference"], rows), ours=numpy.median([r[2] for r in runs]) / plain,
+        chi2=float((z**2).sum()), count=z.size))
 
 
 if __name__ == "__main__":

@@ -1,13 +1,16 @@
 """docs/filters.md: error against time of samples that pixels share and of samples of their own, at equal blur."""
 
-import json
-import math
+import itertools
 import pathlib
-import statistics
+import re
 import tempfile
 
-import exr
-from tools import COLORS, ROOT, block, frond, gnuplot, machine, table
+import numpy
+import pandas
+
+import charts
+import frond
+from tools import ROOT, arguments, machine, table, write
 
 SCENES = ["hundred-leaves", "soybean-front", "soybean-back", "soybean-ambient"]
 SAMPLES = [4, 16, 64]
@@ -23,79 +26,46 @@ FILTERS = {
 }
 IMPORTANCE = {"box, splatting": "box, importance", "Gaussian, splatting": "Gaussian, importance"}
 LINES = {
-    "box of one pixel": (COLORS[0], 1, 4),
-    "box, importance": (COLORS[5], 2, 6),
-    "box, splatting": (COLORS[5], 1, 7),
-    "Gaussian, importance": (COLORS[1], 2, 8),
-    "Gaussian, splatting": (COLORS[1], 1, 9),
+    "box of one pixel": (charts.COLORS[0], "-", "x"),
+    "box, importance": (charts.COLORS[5], "--", "s"),
+    "box, splatting": (charts.COLORS[5], "-", "s"),
+    "Gaussian, importance": (charts.COLORS[1], "--", "o"),
+    "Gaussian, splatting": (charts.COLORS[1], "-", "o"),
 }
 
 
-def colors_of(path):
-    """R, G, B of all pixels."""
-    return [value for row in exr.read(path.read_bytes()) for name in "RGB" for value in row[name]]
-
-
-class Measured:
-    """Renders with seeds of their own: by how they differ their noise, and what one of them costs."""
-
-    def __init__(self):
-        self.images, self.cpu, self.paths = [], 0.0, 0
-
-    def add(self, run, image):
-        self.cpu += run["cpu_seconds"] / len(SEEDS)
-        self.paths = run["paths"]
-        self.images.append(colors_of(image))
-
-    def finish(self):
-        a, b = self.images
-        half_squares = [(x - y) ** 2 / 2 for x, y in zip(a, b)]
-        means = [(x + y) / 2 for x, y in zip(a, b)]
-        self.rms = math.sqrt(statistics.fmean(half_squares))
-        lit = 1e-3 * statistics.fmean(means)
-        relative = [s / m**2 for s, m in zip(half_squares, means) if m > lit]
-        self.relative = math.sqrt(statistics.fmean(relative))
-        # The median of one squared difference is 0.455 of its mean, were it normal.
-        self.median = math.sqrt(statistics.median(relative) / 0.455)
-        self.images = []
-        return self
-
-    def efficiency(self):
-        return 1 / (self.rms**2 * self.cpu)
-
-    def relative_efficiency(self):
-        return 1 / (self.relative**2 * self.cpu)
-
-
-def measure(scene, samples, folder):
-    """By name of the filter. Filters take turns, so that whatever else the machine does falls on all of them."""
-    found = {name: Measured() for name in FILTERS}
+def measure(scene, samples):
+    """A row for each filter. Filters take turns, so that whatever else the machine does falls on all of them."""
+    renders = {name: [] for name in FILTERS}
     for turn, seed in enumerate(SEEDS):
-        for name in list(FILTERS) if turn % 2 == 0 else reversed(list(FILTERS)):
-            image = folder / "picture.exr"
-            run = json.loads(frond("render", ROOT / "scenes" / scene / "scene.pbrt", "-o", image, "--seed", seed, "--quick",
-                                   "--spp", samples, "--wavelengths", "smpte", "--swap", "*=leaf_solved", "--filter",
-                                   FILTERS[name], "--json", "-q"))
-            found[name].add(run, image)
-    return {name: m.finish() for name, m in found.items()}
+        for name in list(FILTERS)[::1 if turn % 2 == 0 else -1]:
+            loaded = frond.load(ROOT / "scenes" / scene / "scene.pbrt", seed=seed, quick=True, wavelengths="smpte",
+                                swap="leaf_solved", filter=FILTERS[name])
+            renders[name].append(loaded.render(samples))
+    rows = []
+    for name, pictures in renders.items():
+        a, b = (picture.rgb.astype(float) for picture in pictures)
+        squares, means = (a - b) ** 2 / 2, (a + b) / 2
+        lit = means > 1e-3 * means.mean()
+        relative = squares[lit] / means[lit] ** 2
+        rows.append({"scene": scene, "samples": samples, "filter": name, "rms": squares.mean() ** 0.5,
+                     "relative": relative.mean() ** 0.5,
+                     # The median of one squared difference is 0.455 of its mean, were it normal.
+                     "median": (numpy.median(relative) / 0.455) ** 0.5,
+                     "cpu": numpy.mean([picture.statistics["cpu_seconds"] for picture in pictures]),
+                     "paths": pictures[0].statistics["paths"]})
+    return pandas.DataFrame(rows)
 
 
-def draw(results):
-    script = ("set multiplot layout 2,2\nset logscale xy\nset xlabel 'CPU time, s'\nset ylabel 'RMS noise'\n"
-              "set format xy '%g'\nset key top right font ',11'\n")
-    tics = ", ".join(f"{digit}e{power}" for power in range(-5, 3) for digit in (1, 2, 5))
-    script += f"set xtics ({tics})\nset ytics ({tics})\n"
-    for scene, by_samples in results.items():
-        plots = []
-        measured = [m for found in by_samples.values() for m in found.values()]
-        for axis, values in (("x", [m.cpu for m in measured]), ("y", [m.rms for m in measured])):
-            script += f"set {axis}range [{min(values) / 1.3}:{max(values) * 1.6}]\n"
-        for i, name in enumerate(FILTERS):
-            color, dash, point = LINES[name]
-            script += block(f"line{i}", [(found[name].cpu, found[name].rms) for found in by_samples.values()])
-            plots.append(f"$line{i} with linespoints pt {point} ps 0.8 lw 2 dt {dash} lc rgb '{color}' title '{name}'")
-        script += f"set title '{scene}'\nplot {', '.join(plots)}\nunset key\n"
-    gnuplot(ROOT / "docs/images/filters.svg", script + "unset multiplot\n", (1000, 860))
+def draw(path, results):
+    of, panels = charts.figure(1000, 880, 2, 2)
+    for panel, (scene, rows) in zip(panels.flat, results.groupby("scene", sort=False)):
+        for name, (color, line, mark) in LINES.items():
+            chosen = rows[rows["filter"] == name]
+            panel.loglog(chosen.cpu, chosen.rms, line, marker=mark, color=color, label=name)
+        panel.set(title=scene, xlabel="CPU time, s", ylabel="RMS noise")
+    charts.legend(of, panels[0, 0], 3)
+    charts.save(of, path)
 
 
 PAGE = """# Filters
@@ -149,36 +119,27 @@ filter, and over that of the box of one pixel, which blurs less; by relative err
 
 
 def main():
-    results, correlated = {}, 0
+    options = arguments("filters")
+    results = pandas.concat([measure(*key) for key in itertools.product(SCENES, SAMPLES[:2] if options.quick else SAMPLES)])
+    print(results.to_string(index=False))
     with tempfile.TemporaryDirectory(prefix="frond_filters.") as name:
-        folder = pathlib.Path(name)
-        for scene in SCENES:
-            results[scene] = {samples: measure(scene, samples, folder) for samples in SAMPLES}
-            print(scene, {s: {n: m.rms for n, m in found.items()} for s, found in results[scene].items()}, flush=True)
-        frond("render", ROOT / "scenes/furnace/scene.pbrt", "--filter", "gaussian", "--spp", 1, "--quick", "-q", "--part",
-              folder / "x.part")
-        head = (folder / "x.part").read_bytes().partition(b'"correlated_pixels":')[2]
-        correlated = float(head.split(b"\n")[0].strip(b" ,}"))
-    draw(results)
+        part = pathlib.Path(name) / "x.part"
+        frond.load(ROOT / "scenes/furnace/scene.pbrt", filter="gaussian", quick=True).render(1).save_part(part)
+        correlated = float(re.search(rb'"correlated_pixels":\s*([\d.e+-]+)', part.read_bytes())[1])
+    draw(options.docs / "images" / "filters.svg", results)
+    results["efficiency"], results["by_relative"] = (1 / (results[kind] ** 2 * results.cpu) for kind in ("rms", "relative"))
     body = []
-    for scene, by_samples in results.items():
-        for samples, found in by_samples.items():
-            if samples < 16:
-                continue
-            box = found["box of one pixel"]
-            for filter_name, m in found.items():
-                base = found.get(IMPORTANCE.get(filter_name))
-                over = lambda other: "" if other is None else f"{m.efficiency() / other.efficiency():.2f}"
-                relative = lambda other: ("" if other is None else
-                                          f"{m.relative_efficiency() / other.relative_efficiency():.2f}")
-                body.append([scene, samples, filter_name, f"{1e6 * m.cpu / m.paths:.2f}", f"{1e3 * m.rms:.3f}",
-                             f"{100 * m.relative:.1f} %", f"{100 * m.median:.2f} %", over(base), relative(base),
-                             over(box), relative(box)])
+    for (scene, samples), rows in results[results.samples >= 16].groupby(["scene", "samples"], sort=False):
+        found = rows.set_index("filter")
+        for m in rows.itertuples():
+            over = [f"{getattr(m, kind) / found[kind][other]:.2f}" if other else "" for other in
+                    (IMPORTANCE.get(m.filter), "box of one pixel") for kind in ("efficiency", "by_relative")]
+            body.append([scene, samples, m.filter, f"{1e6 * m.cpu / m.paths:.2f}", f"{1e3 * m.rms:.3f}",
+                         f"{100 * m.relative:.1f} %", f"{100 * m.median:.2f} %", *over])
     head = ["scene", "samples", "filter", "µs a path", "RMS · 10³", "relative", "median", "efficiency over importance",
             "by relative errors", "over the box", "by relative errors"]
-    page = PAGE.format(machine=machine(), size="`--quick`, 256 × 256 pixels",
-                       table=table(head, body), correlated=correlated)
-    (ROOT / "docs/filters.md").write_text(page)
+    write(options.docs / "filters.md", PAGE.format(machine=machine(), size="`--quick`, 256 × 256 pixels", table=table(head, body),
+                                                   correlated=correlated))
 
 
 if __name__ == "__main__":

@@ -1,21 +1,21 @@
 """Measured leaves by frond fit and by PROSPECT-D: docs/fit.md."""
 
-import csv
-import json
 import os
-import statistics
 import time
+from importlib.metadata import version
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # CPU time of one core
 
 import numpy
+import pandas
 import prosail
 import scipy.optimize
 
-from tools import ROOT, cpu_seconds, frond, machine, rows, table
+import charts
+import frond
+from tools import ROOT, arguments, cpu_seconds, machine, program_csv, program_json, rms, table, write
 
 REFERENCE = ROOT / "tests" / "reference"
-CHARTS = ROOT / "docs" / "images" / "fit"
 
 PAGE = """# A leaf of your own
 
@@ -84,23 +84,31 @@ to {like_rmse:.4f}; the leaf of all numbers to {all_rmse:.4f}.
 
 
 def leaves():
-    """Name and rows (wavelength, R, T) of each."""
-    spectra = {}
-    with open(REFERENCE / "leaf_spectra.csv", encoding="utf-8") as file:
-        for row in csv.DictReader(line for line in file if not line.startswith("#")):
-            spectra.setdefault(row["leaf"], []).append((float(row["wavelength_nm"]), float(row["R"]), float(row["T"])))
-    with open(REFERENCE / "lopex93_soybean.csv", encoding="utf-8") as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        spectra["soybean"] = [(float(r["wavelength_nm"]), float(r["R_mean"]), float(r["T_mean"])) for r in rows]
-    return dict(sorted(spectra.items()))
+    """By name: wavelength_nm, R and T."""
+    spectra = dict(iter(pandas.read_csv(REFERENCE / "leaf_spectra.csv", comment="#").groupby("leaf")))
+    soybean = pandas.read_csv(REFERENCE / "lopex93_soybean.csv", comment="#")
+    spectra["soybean"] = soybean.rename(columns={"R_mean": "R", "T_mean": "T"})
+    return {name: spectra[name][["wavelength_nm", "R", "T"]] for name in sorted(spectra)}
 
 
 def by_frond(name):
-    words = ["fit", REFERENCE / "lopex93_soybean.csv"] if name == "soybean" else ["fit", REFERENCE / "leaf_spectra.csv", "--leaf", name]
-    chart = CHARTS / f"{name.split('_')[0]}.svg"
-    text, seconds = cpu_seconds(lambda: frond(*words, "--json", "-", "-q", "--threads", 1))
-    frond(*words, "--plot", chart, "-q")
-    return json.loads(text), seconds
+    """What the program finds, and its CPU time."""
+    words = ["lopex93_soybean.csv"] if name == "soybean" else ["leaf_spectra.csv", "--leaf", name]
+    return cpu_seconds(lambda: program_json("fit", REFERENCE / words[0], *words[1:], "--json", "-", "-q", "--threads", 1))
+
+
+def draw(path, name, fitted):
+    spectra = pandas.DataFrame(fitted["spectra"])
+    of, [[panel]] = charts.figure(900, 600)
+    panel.plot(spectra.wavelength_nm, spectra.R_fitted, color=charts.COLORS[1], label="fitted")
+    panel.plot(spectra.wavelength_nm, 1 - spectra.T_fitted, color=charts.COLORS[1])
+    panel.plot(spectra.wavelength_nm, spectra.R, ".", color=charts.COLORS[0], markersize=3, label="measured")
+    panel.plot(spectra.wavelength_nm, 1 - spectra["T"], ".", color=charts.COLORS[0], markersize=3)
+    panel.set(title=f"{name}: RMSE {fitted['rmse']:.4f}", xlabel="wavelength (nm)", ylabel="reflectance R (from below)", ylim=(0, 1))
+    transmittance = panel.secondary_yaxis("right", functions=(lambda y: 1 - y, lambda y: 1 - y))
+    transmittance.set_ylabel("transmittance T (from above)")
+    charts.legend(of, panel, 2)
+    charts.save(of, path)
 
 
 # N, chlorophyll (ug/cm2), carotenoids, brown pigments, water (cm), dry matter (g/cm2), anthocyanins.
@@ -110,74 +118,70 @@ STARTS = ([1.5, 40, 8, 0.1, 0.012, 0.005, 1], [2.2, 20, 5, 0.5, 0.02, 0.01, 1], 
           [3, 30, 8, 0.1, 0.015, 0.015, 1])
 
 
-def by_prospect(rows):
-    nm, r, t = (numpy.array(column) for column in zip(*rows))
-
+def by_prospect(spectra):
+    """RMSE, and CPU time."""
     def residuals(x):
-        n, cab, car, brown, water, dry, ant = x
-        wavelengths, rho, tau = prosail.run_prospect(n, cab, car, brown, water, dry, ant=ant, prospect_version="D")
-        return numpy.concatenate([numpy.interp(nm, wavelengths, rho) - r, numpy.interp(nm, wavelengths, tau) - t])
+        *numbers, anthocyanins = x
+        nm, r, t = prosail.run_prospect(*numbers, ant=anthocyanins, prospect_version="D")
+        return numpy.concatenate([numpy.interp(spectra.wavelength_nm, nm, r) - spectra.R,
+                                  numpy.interp(spectra.wavelength_nm, nm, t) - spectra["T"]])
 
     start = time.process_time()
     best = min((scipy.optimize.least_squares(residuals, s, bounds=(LEAST, MOST), x_scale=(MOST - LEAST) / 10) for s in STARTS),
                key=lambda found: found.cost)
-    seconds = time.process_time() - start
-    return float(numpy.sqrt(numpy.mean(best.fun**2))), seconds
+    return rms(best.fun), time.process_time() - start
 
 
 SIX_NM = (450, 550, 660, 720, 840, 1650)
 
 
-def rmse_of(leaf, rows_):
-    """Of the leaf's R and T at 8 degrees against rows (wavelength, R, T)."""
-    nm = ",".join(f"{w:g}" for w, _, _ in rows_)
-    found = rows(frond("table", "--specimen", "soybean", *leaf, "--wavelengths", nm, "--angles", "8", "-q", "-o", "-"))
-    differences = [d for f, (_, r, t) in zip(found, rows_) for d in (f["Rs"] + f["Rd"] - r, f["T"] - t)]
-    return float(numpy.sqrt(numpy.mean(numpy.square(differences))))
-
-
-def numbers_of(fitted):
-    return [f"{row['name']}={row['value']}" for row in fitted["leaf"]] + [f"sieve={'true' if fitted['sieve'] else 'false'}"]
+def rmse_of(leaf, spectra):
+    """Of the leaf's R and T at 8 degrees."""
+    found = program_csv("table", *leaf, "--wavelengths", ",".join(f"{nm:g}" for nm in spectra.wavelength_nm), "--angles", "8",
+                        "-q", "-o", "-")
+    return rms([found.Rs + found.Rd - spectra.R.to_numpy(), found["T"] - spectra["T"].to_numpy()])
 
 
 def six_numbers(soybean):
     """What six bands of R tell, beside all of the spectrum: values for the page."""
-    folder = ROOT / "build" / "fit"
-    path = folder / "six_bands.csv"
-    path.write_text("wavelength_nm,R\n" + "".join(f"{w:g},{r}\n" for w, r, _ in soybean if w in SIX_NM))
-    six = json.loads(frond("fit", path, "--like", "soybean", "--json", "-", "-q"))
-    whole = json.loads(frond("fit", REFERENCE / "lopex93_soybean.csv", "--json", "-", "-q"))
+    bands = soybean[soybean.wavelength_nm.isin(SIX_NM)]
+    six = frond.fit(bands.wavelength_nm, R=bands.R.to_numpy(), like="soybean")
+    whole = frond.fit(path=REFERENCE / "lopex93_soybean.csv")
 
     def chlorophyll(fitted):
-        number = next(n for n in fitted["numbers"] if n["name"] == "chlorophylla")
-        return f"{number['value']:.2f} kg/m³ ± {100 * number['relative_standard_error']:.0f} %"
+        number = fitted.numbers.set_index("name").loc["chlorophylla"]
+        return f"{number.value:.2f} kg/m³ ± {100 * number.relative_standard_error:.0f} %"
 
     return {"six_chlorophyll": chlorophyll(six), "all_chlorophyll": chlorophyll(whole),
-            "six_rmse": rmse_of(numbers_of(six), soybean), "all_rmse": rmse_of(numbers_of(whole), soybean),
-            "like_rmse": rmse_of([], soybean)}
+            "six_rmse": rmse_of(six.material, soybean), "all_rmse": rmse_of(whole.material, soybean),
+            "like_rmse": rmse_of(["specimen=soybean"], soybean)}
 
 
 def main():
-    CHARTS.mkdir(parents=True, exist_ok=True)
-    by_prospect(next(iter(leaves().values())))  # compiles, which is nobody's fit
-    body, ours, theirs, times, their_times = [], [], [], [], []
-    for name, rows in leaves().items():
-        found, seconds = by_frond(name)
-        rmse, their_seconds = by_prospect(rows)
-        ours.append(found["rmse"]), theirs.append(rmse), times.append(seconds), their_times.append(their_seconds)
-        body.append([name.split("_")[0], f"{found['rmse']:.4f}", f"{found['rmse_R']:.4f}", f"{found['rmse_T']:.4f}",
-                     found["structure"] + (", sieve" if found["sieve"] else ""), f"{seconds:.1f} s", f"{rmse:.4f}",
-                     f"{their_seconds:.1f} s"])
-        print(*body[-1], flush=True)
-    summary = (f"Median {statistics.median(ours):.4f}, worst {max(ours):.4f}, {statistics.median(times):.1f} s; PROSPECT-D median "
-               f"{statistics.median(theirs):.4f}, worst {max(theirs):.4f}, {statistics.median(their_times):.1f} s. frond is nearer in "
-               f"{sum(a < b for a, b in zip(ours, theirs))} of {len(ours)}.")
-    charts = "".join(f"![{row[0]}, measured and fitted](images/fit/{row[0]}.svg)\n" for row in body)
-    version = __import__("importlib.metadata", fromlist=["version"]).version("prosail")
-    text = PAGE.format(machine=machine(), version=version, leaves=table(["leaf", "frond", "R", "T", "as", "CPU", "PROSPECT-D", "CPU"], body), summary=summary,
-                       charts=charts, **six_numbers(leaves()["soybean"]))
-    (ROOT / "docs" / "fit.md").write_text(text, encoding="utf-8")
-    print("Written: docs/fit.md")
+    options = arguments("fit")
+    measured, rows = leaves(), []
+    by_prospect(measured["soybean"])  # compiles, which is nobody's fit
+    for name, spectra in measured.items():
+        if options.quick and name != "soybean":
+            continue
+        (found, seconds), (rmse, their_seconds) = by_frond(name), by_prospect(spectra)
+        leaf = name.split("_")[0]
+        draw(options.docs / "images" / "fit" / f"{leaf}.svg", leaf, found)
+        rows.append({"leaf": leaf, "rmse": found["rmse"], "R": found["rmse_R"], "T": found["rmse_T"],
+                     "as": found["structure"] + (", sieve" if found["sieve"] else ""), "cpu": seconds, "theirs": rmse,
+                     "their_cpu": their_seconds})
+        print(rows[-1], flush=True)
+    found = pandas.DataFrame(rows)
+    middle, worst = found.median(numeric_only=True), found.max()
+    summary = (f"Median {middle.rmse:.4f}, worst {worst.rmse:.4f}, {middle.cpu:.1f} s; PROSPECT-D median {middle.theirs:.4f}, worst "
+               f"{worst.theirs:.4f}, {middle.their_cpu:.1f} s. frond is nearer in {(found.rmse < found.theirs).sum()} of {len(found)}.")
+    body = [[leaf, f"{rmse:.4f}", f"{r:.4f}", f"{t:.4f}", kind, f"{cpu:.1f} s", f"{theirs:.4f}", f"{their_cpu:.1f} s"]
+            for leaf, rmse, r, t, kind, cpu, theirs, their_cpu in found.itertuples(index=False)]
+    write(options.docs / "fit.md", PAGE.format(
+        machine=machine(), version=version("prosail"), summary=summary,
+        leaves=table(["leaf", "frond", "R", "T", "as", "CPU", "PROSPECT-D", "CPU"], body),
+        charts="".join(f"![{leaf}, measured and fitted](images/fit/{leaf}.svg)\n" for leaf in found.leaf),
+        **six_numbers(measured["soybean"])))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Draws ways through a program as a flame graph: SVG that needs no script and no other file."""
 
+import collections
 from html import escape
 
 WIDTH, MARGIN, ROW, LETTER = 1200, 12, 18, 7.23  # of DejaVu Sans Mono at 12 pixels
@@ -14,23 +15,6 @@ COLORS = {
 OTHER = "#ececec"
 
 
-class Node:
-    def __init__(self):
-        self.count = 0
-        self.children = {}
-
-
-def tree(ways):
-    root = Node()
-    for way, count in ways.items():
-        node = root
-        node.count += count
-        for frame in way:
-            node = node.children.setdefault(frame, Node())
-            node.count += count
-    return root
-
-
 def clipped(text, width):
     """As many letters as fit."""
     fitting = int((width - 4) / LETTER)
@@ -39,13 +23,17 @@ def clipped(text, width):
     return text[: fitting - 1] + "…" if fitting >= 3 else ""
 
 
-def boxes(node, scale, x=0.0, depth=0):
+def boxes(ways, scale, x=0.0, depth=0):
     """(x, width, depth, frame, count), the most frequent to the left."""
-    for frame, child in sorted(node.children.items(), key=lambda item: (-item[1].count, item[0])):
-        width = child.count * scale
+    below = collections.defaultdict(collections.Counter)
+    for way, count in ways.items():
+        if way:
+            below[way[0]][way[1:]] += count
+    for frame, on in sorted(below.items(), key=lambda item: (-item[1].total(), item[0])):
+        width = on.total() * scale
         if width >= LEAST:
-            yield x, width, depth, frame, child.count
-            yield from boxes(child, scale, x, depth + 1)
+            yield x, width, depth, frame, on.total()
+            yield from boxes(on, scale, x, depth + 1)
         x += width
 
 
@@ -64,13 +52,11 @@ def legend(rooms, top):
 
 def svg(ways, title, notes):
     """`ways`: counts by tuples of (name, room), outermost first. The program's begin is above."""
-    root = tree(ways)
-    drawn = list(boxes(root, (WIDTH - 2 * MARGIN) / max(root.count, 1)))
-    count = {}
+    total = sum(ways.values())
+    drawn = list(boxes(ways, (WIDTH - 2 * MARGIN) / max(total, 1)))
+    count = collections.Counter({room: 0 for *_, (_, room), _ in drawn})
     for way, samples in ways.items():
-        count[way[-1][1]] = count.get(way[-1][1], 0) + samples
-    for *_, (_, room), _ in drawn:
-        count.setdefault(room, 0)
+        count[way[-1][1]] += samples
     head = [f'<text x="{MARGIN}" y="26" class="title">{escape(clipped(title, (WIDTH - 2 * MARGIN) * 12 / 16))}</text>']
     top = 36
     for note in notes:
@@ -81,7 +67,7 @@ def svg(ways, title, notes):
     body = []
     for x, width, depth, (name, room), samples in drawn:
         y = top + depth * ROW
-        share = f"{100 * samples / root.count:.1f} %"
+        share = f"{100 * samples / total:.1f} %"
         label = clipped(name, width)
         text = f'<text x="{MARGIN + x + 2:.2f}" y="{y + 13}">{escape(label)}</text>' if label else ""
         body.append(f'<g><title>{escape(name)}: {share}, {samples} samples ({escape(room)})</title>'

@@ -1,14 +1,13 @@
 """docs/gallery.md: a picture for every plugin that a scene can name, and the lines that made it."""
 
-import argparse
 import pathlib
 import tempfile
 
-from tools import ROOT, frond
+import frond
+from tools import ROOT, arguments, write
 
 SIZE = 200
 SAMPLES = 256
-PICTURES = ROOT / "docs" / "images" / "gallery"
 
 # Made by this script beside a scene that reads it: a picture with an up and a left.
 LETTER = "letter.ppm"
@@ -132,15 +131,13 @@ CAMERAS = {
 }
 
 
-def lines_of(kind, name):
-    """The lines of a scene that show a plugin; None where it has no picture."""
-    tables = {"material": (MATERIALS, f'Material "{name}"'), "shape": (SHAPES, None), "light": (LIGHTS, None),
-              "spectrum texture": (SPECTRUM_TEXTURES, f'Texture "pattern" "spectrum" "{name}"'),
-              "float texture": (FLOAT_TEXTURES, f'Texture "heights" "float" "{name}"'), "camera": (CAMERAS, None),
-              "area light": ({}, None), "integrator": ({}, f'Integrator "{name}"'), "sampler": ({}, f'Sampler "{name}" "integer pixelsamples" 4'),
-              "pixel filter": ({}, f'PixelFilter "{name}"')}
-    table, default = tables.get(kind, ({}, None))
-    return table.get(name, default)
+# Kinds in the page's order: lines by name, and those of plugins that are not there.
+KINDS = {
+    "material": (MATERIALS, 'Material "{}"'), "integrator": ({}, 'Integrator "{}"'), "camera": (CAMERAS, None),
+    "sampler": ({}, 'Sampler "{}" "integer pixelsamples" 4'), "pixel filter": ({}, 'PixelFilter "{}"'), "shape": (SHAPES, None),
+    "light": (LIGHTS, None), "float texture": (FLOAT_TEXTURES, 'Texture "heights" "float" "{}"'),
+    "spectrum texture": (SPECTRUM_TEXTURES, 'Texture "pattern" "spectrum" "{}"'),
+}
 
 
 def scene_of(kind, name, lines):
@@ -174,54 +171,26 @@ def write_letter(path):
     path.write_bytes(b"P6 %d %d 255\n" % (len(rows[0]) * scale, len(rows) * scale) + body)
 
 
-def plugins():
-    """Kind, name and line of each."""
-    kind = ""
-    for line in frond("list").splitlines():
-        if not line.strip():
-            continue
-        if not line.startswith(" "):
-            kind = line.strip()
-        else:
-            name, doc = line.split(maxsplit=1)
-            yield kind, name, doc
-
-
-def render(kind, name, lines, folder):
-    scene, samples = scene_of(kind, name, lines)
-    path, exr = folder / "scene.pbrt", folder / "picture.exr"
-    path.write_text(scene)
-    picture = PICTURES / f"{kind.replace(' ', '-')}-{name}.jpg"
-    frond("render", path, "-q", "--spp", samples, "-o", exr)
-    frond("convert", exr, "-o", picture)
-    return picture
-
-
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--only", default="")
-    wanted = parser.parse_args().only
-    PICTURES.mkdir(parents=True, exist_ok=True)
-    page, last = [], ""
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = pathlib.Path(temporary)
-        write_letter(folder / LETTER)
-        for kind, name, doc in plugins():
-            lines = lines_of(kind, name)
-            if lines is None:
-                continue
-            if kind != last:
-                page += ["", f"## {kind[0].upper() + kind[1:]}", ""]
-                last = kind
-            if wanted in name:
-                picture = render(kind, name, lines, folder)
-            else:
-                picture = PICTURES / f"{kind.replace(' ', '-')}-{name}.jpg"
-            shown = lines.replace(f"{ROOT}/scenes/", "")
-            page += [f"### `{name}`", "", doc, "", f"![{name}](images/gallery/{picture.name})", "", "```", shown, "```", ""]
-    head = ["# Gallery", "", "Written by `scripts/gallery`: what the plugins that a scene can name look like, and the lines that made the picture.",
+    options = arguments("gallery", ("--only", dict(default="", metavar="WORD", help="plugins whose names hold it; others stay")))
+    page = ["# Gallery", "", "Written by `scripts/gallery`: what the plugins that a scene can name look like, and the lines that made the picture.",
             "[All their parameters](plugins.md)."]
-    (ROOT / "docs" / "gallery.md").write_text("\n".join(head + page).rstrip() + "\n")
+    with tempfile.TemporaryDirectory() as folder:
+        write_letter(pathlib.Path(folder) / LETTER)
+        for kind, (table, default) in KINDS.items():
+            page += ["", f"## {kind[0].upper() + kind[1:]}", ""]
+            for name, doc in frond.names(kind).items():
+                lines = table.get(name, default and default.format(name))
+                if lines is None:  # it has no picture
+                    continue
+                picture = options.docs / "images" / "gallery" / f"{kind.replace(' ', '-')}-{name}.jpg"
+                picture.parent.mkdir(parents=True, exist_ok=True)
+                if options.only in name:
+                    scene, samples = scene_of(kind, name, lines)
+                    frond.loads(scene, folder).render(min(samples, 4) if options.quick else samples).save(picture)
+                shown = lines.replace(f"{ROOT}/scenes/", "")
+                page += [f"### `{name}`", "", doc, "", f"![{name}](images/gallery/{picture.name})", "", "```", shown, "```", ""]
+    write(options.docs / "gallery.md", "\n".join(page).rstrip() + "\n")
 
 
 if __name__ == "__main__":

@@ -1,9 +1,6 @@
 """The leaf in Mitsuba 3 beside ours: docs/mitsuba.md. Run by the Python of build/python-venv."""
 
 import json
-import os
-import pathlib
-import sys
 import time
 
 import numpy
@@ -16,16 +13,13 @@ import drjit as dr
 import frond
 import frond.mitsuba
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent / "race"))
-import mitsuba_worker
-import scenes
-from tools import ROOT, machine, table
+from race import mitsuba_worker, scenes
+from tools import ROOT, arguments, machine, rms, table, write
 
 RGB_NM = [608, 551, 455]
 ANGLES = [8, 45, 70]
 SIZE, SAMPLES = 256, 256
 FOLDER = ROOT / "build" / "mitsuba"
-IMAGES = ROOT / "docs" / "images" / "mitsuba"
 
 PAGE = """# The leaf in Mitsuba 3
 
@@ -111,11 +105,11 @@ def differences_of_f(pairs):
             found = numpy.array(bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wi.T))).T / abs(wi[:, 2:])
             ours = frond.bsdf(f"leaf_solved specimen={specimen} incident={incident}", RGB_NM).f(wo, wi)
             difference = numpy.pi * (found - ours)
-            rows.append([specimen, f"`{incident}`", f"{numpy.sqrt((difference**2).mean()):.1e}", f"{abs(difference).max():.1e}"])
+            rows.append([specimen, f"`{incident}`", f"{rms(difference):.1e}", f"{abs(difference).max():.1e}"])
     return table(["leaf", "`incident`", "RMS", "largest"], rows)
 
 
-def differences_of_shares(count=1_000_000):
+def differences_of_shares(count):
     """R and T by samples less those integrated by frond, and their standard errors."""
     bsdf = mi.load_dict({"type": "frond_leaf"})
     found, errors = [], []
@@ -139,13 +133,7 @@ def differences_of_shares(count=1_000_000):
     return numpy.array(found), numpy.array(errors)
 
 
-def picture_of(mean_of_two):
-    """An image for people: sRGB of linear colours."""
-    clipped = numpy.clip(mean_of_two, 0, 1)
-    return numpy.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
-
-
-def pictures():
+def pictures(image, samples):
     rows, shown = [], []
     solved = {"type": "frond_leaf", "incident": "reciprocal"}, {"leaf": "leaf_solved,incident=reciprocal"}
     for name, (leaf, swap) in (("front", solved), ("ambient", solved), ("front", (None, None)), ("ambient", (None, None))):
@@ -153,11 +141,11 @@ def pictures():
         scenes.write_pbrt(scene, FOLDER / f"{name}.pbrt", "leaf", True, SIZE)
         scenes.write_json(scene, FOLDER / f"{name}.json", "leaf", SIZE)
         document = json.loads((FOLDER / f"{name}.json").read_text())
-        theirs = load_with_leaf(document, leaf) if leaf else mitsuba_worker.load(document)
+        theirs = mitsuba_worker.load(document, leaf)
         sensor = next(s for s in theirs.sensors() if s.id() == "box")
-        in_mitsuba = [numpy.array(mi.render(theirs, sensor=sensor, spp=SAMPLES, seed=seed))[:, :, :3] for seed in (1, 2)]
+        in_mitsuba = [numpy.array(mi.render(theirs, sensor=sensor, spp=samples, seed=seed))[:, :, :3] for seed in (1, 2)]
         loaded = [frond.load(FOLDER / f"{name}.pbrt", swap=swap, wavelengths="smpte", seed=seed) for seed in (1, 2)]
-        in_frond = [scene.render(SAMPLES).rgb for scene in loaded]
+        in_frond = [scene.render(samples).rgb for scene in loaded]
         for lane, color in enumerate(("red", "green", "blue")):
             means, errors = [], []
             for pair in (in_mitsuba, in_frond):
@@ -169,32 +157,14 @@ def pictures():
             if lane == 1 or leaf:  # the diffuse ones are grey
                 rows.append([name, color if leaf else "diffuse", f"{means[0]:.6f}", f"{means[1]:.6f}", f"{means[0] - means[1]:+.6f} ± {error:.6f}"])
         if leaf:
-            shown.append(numpy.concatenate([picture_of((a + b) / 2) for a, b in (in_mitsuba, in_frond)], axis=1))
-    image = (255 * numpy.concatenate(shown, axis=0) + 0.5).astype(numpy.uint8)
-    mi.Bitmap(image).write(str(IMAGES / "hundred-leaves.png"))
+            shown.append([sum(pair) / 2 for pair in (in_mitsuba, in_frond)])
+    image.parent.mkdir(parents=True, exist_ok=True)
+    sheet = numpy.concatenate([numpy.concatenate(row, axis=1) for row in shown], axis=0)
+    mi.Bitmap(sheet).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.UInt8, srgb_gamma=True).write(str(image))
     return table(["scene", "", "Mitsuba", "frond", "difference"], rows)
 
 
-def load_with_leaf(document, leaf):
-    """The race's scene with this leaf in place of its own."""
-    load_dict = mi.load_dict
-
-    def load(world):
-        def put(part):
-            for key, value in part.items():
-                if isinstance(value, dict):
-                    part[key] = leaf if value.get("type") == "diffuse_leaf" else put(value)
-            return part
-        return load_dict(put(world))
-
-    mi.load_dict = load
-    try:
-        return mitsuba_worker.load(document)
-    finally:
-        mi.load_dict = load_dict
-
-
-def costs(rounds=5, size=512, samples=64):
+def costs(rounds, size, samples):
     def scene(bsdf):
         to_world = mi.ScalarTransform4f()
         film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
@@ -231,28 +201,28 @@ Shape "bilinearmesh" "point3 P" [ -2 -2 1  2 -2 1  -2 2 1  2 2 1 ]
             seconds = [of_ours.render(samples).statistics["cpu_seconds"] for _ in range(rounds)]
             cells.append(f"{1e6 * numpy.median(seconds) / paths:.2f} µs")
         rows.append(cells + [""] * (3 - len(cells)))
-    return rounds, table(["", "Mitsuba", "frond"], rows)
+    return table(["", "Mitsuba", "frond"], rows)
 
 
 def main():
+    options = arguments("mitsuba")
+    pairs, count, samples = (2000, 10_000, 4) if options.quick else (200_000, 1_000_000, SAMPLES)
+    rounds, size, of_pixel = (2, 64, 4) if options.quick else (5, 512, 64)
     FOLDER.mkdir(parents=True, exist_ok=True)
-    IMAGES.mkdir(parents=True, exist_ok=True)
     mi.set_log_level(mi.LogLevel.Error)
-    pairs = 200_000
     f_table = differences_of_f(pairs)
     print(f_table)
-    found, errors = differences_of_shares()
-    print(f"shares: {numpy.sqrt((found**2).mean()):.1e} ± {numpy.sqrt((errors**2).mean()):.1e}, {abs(found / errors).max():.1f}")
-    picture_table = pictures()
+    found, errors = differences_of_shares(count)
+    figures = {"share_rms": rms(found), "share_error": rms(errors), "share_z": abs(found / errors).max(), "shares": len(found)}
+    print(figures)
+    picture_table = pictures(options.docs / "images" / "mitsuba" / "hundred-leaves.png", samples)
     print(picture_table)
-    rounds, cost_table = costs()
+    cost_table = costs(rounds, size, of_pixel)
     print(cost_table)
-    text = PAGE.format(machine=machine(), version=mi.__version__, frond_version=frond.__version__, pairs=pairs, f_table=f_table,
-                       rgb=", ".join(map(str, RGB_NM)), share_rms=numpy.sqrt((found**2).mean()),
-                       share_error=numpy.sqrt((errors**2).mean()), share_z=abs(found / errors).max(), shares=len(found), size=SIZE,
-                       samples=2 * SAMPLES, picture_table=picture_table, rounds=rounds, cost_table=cost_table)
-    (ROOT / "docs" / "mitsuba.md").write_text(text, encoding="utf-8")
-    print("Written: docs/mitsuba.md")
+    write(options.docs / "mitsuba.md", PAGE.format(
+        machine=machine(), version=mi.__version__, frond_version=frond.__version__, pairs=pairs, f_table=f_table,
+        rgb=", ".join(map(str, RGB_NM)), size=SIZE, samples=2 * samples, picture_table=picture_table, rounds=rounds,
+        cost_table=cost_table, **figures))
 
 
 if __name__ == "__main__":

@@ -1,45 +1,99 @@
-"""Figures 8 to 10 of the paper: how the trees of both models thin out with depth."""
+"""Figures 8 to 10 of the paper: how the trees of both models thin out with depth. By itself it checks the two ratios."""
 
 import math
 
-from convergence import PAPER_RATIO, Ends
-from paper_runs import SETS, candidate
-from tools import COLORS, block, gnuplot, table, thousands
+import numpy
 
-# Title, model, cutoff (None: solved for the set), and how gnuplot draws it.
+import charts
+from paper_runs import SETS, candidate
+from tools import table
+
+PAPER_RATIO = 1e-4  # of unshot to shot rays, at which the paper's trees end
+
+
+class Ends:
+    """Paths by the number of scattering events that they had come through when they ended."""
+
+    def __init__(self, escaped, absorbed):
+        ends = numpy.zeros((2, max(len(escaped), len(absorbed))))
+        ends[0, :len(escaped)], ends[1, :len(absorbed)] = escaped, absorbed
+        self.absorbed = ends[1]
+        self.going = [*ends.sum(axis=0)[::-1].cumsum()[::-1], 0]  # after so many events
+
+    @staticmethod
+    def of(report):
+        """From what `frond render --json` prints."""
+        return Ends(report["paths_escaped_by_depth"], report["paths_absorbed_by_depth"])
+
+    def paths(self):
+        return int(self.alive(0))
+
+    def alive(self, events):
+        """Rays that go on after so many events."""
+        return self.going[min(events, len(self.going) - 1)]
+
+    def shot(self, events):
+        """Rays shot before the last of so many events: one of each path that was alive after 0, 1 ... events - 1."""
+        return sum(self.alive(i) for i in range(events))
+
+    def unshot_ratio(self, events):
+        return self.alive(events) / self.shot(events)
+
+    def ended(self, events):
+        """Share of all paths that were absorbed, or cut off, at one of the first `events` events."""
+        return self.absorbed[:events].sum() / self.paths()
+
+    def ratio_between(self, depth):
+        """The first ratio at a depth between two whole ones, its logarithm taken as linear, and its standard error of
+        counting. Where no ray is left half a one is taken. As src/study/compare/cutoff.cpp does."""
+        whole = math.floor(depth)
+        t = depth - whole
+        a, b = (self.alive(d) + 0.5 for d in (whole, whole + 1))
+        ratio = math.exp((1 - t) * math.log(a / self.shot(whole)) + t * math.log(b / self.shot(whole + 1)))
+        return ratio, ratio * math.sqrt(((1 - t) ** 2 + 2 * t * (1 - t)) / a + t**2 / b)
+
+    def depth(self):
+        """Where the first ratio has fallen to PAPER_RATIO, between two whole depths as above."""
+        last = next(d for d in range(1, len(self.going))
+                    if self.alive(d) == 0 or (self.alive(d) + 0.5) / self.shot(d) < PAPER_RATIO)
+        if last == 1:
+            return 1
+        before, after = (math.log((self.alive(d) + 0.5) / self.shot(d)) for d in (last - 1, last))
+        return last - 1 + min(1, (before - math.log(PAPER_RATIO)) / (before - after))
+
+
+# Title, model, cutoff (None: solved for the set), and its colour, mark and line.
 CURVES = (
-    ("abm, cutoff 0.01", "abm", 0.01, f"lc rgb '{COLORS[0]}' pt 7"),
-    ("abm, no cutoff", "abm", 0, f"lc rgb '{COLORS[0]}' pt 6 dt 3"),
-    ("leaf\\_simplified, cutoff 0.01", "leaf_simplified", 0.01, f"lc rgb '{COLORS[1]}' pt 5"),
-    ("leaf\\_simplified, cutoff solved", "leaf_simplified", None, f"lc rgb '{COLORS[2]}' pt 9 dt 2"),
+    ("abm, cutoff 0.01", "abm", 0.01, (0, "o", "-")),
+    ("abm, no cutoff", "abm", 0, (0, "D", ":")),
+    ("leaf_simplified, cutoff 0.01", "leaf_simplified", 0.01, (1, "s", "-")),
+    ("leaf_simplified, cutoff solved", "leaf_simplified", None, (2, "^", "--")),
 )
 
 
 def curves_of(runs, s, manner):
     """[(title, how it is drawn, Ends)]; `manner`: the comparison that solved the cutoff."""
     solved = candidate(manner, "leaf_simplified")["paper_manner"]["cutoff"]
-    return [(title, how, runs.ends(s, model, solved if cutoff is None else cutoff)) for title, model, cutoff, how in CURVES]
+    return [(title, how, Ends.of(runs.ends(s, model, solved if cutoff is None else cutoff))) for title, model, cutoff, how in CURVES]
 
 
 def convergence_chart(path, measured):
     deepest = math.ceil(max(curve[2].depth() for m in measured.values() for curve in m["ends"]))
-    script = "set multiplot layout 2,3 margins 0.07,0.985,0.075,0.945 spacing 0.05,0.075\nunset mytics\nset tics font ',12'\n"
-    script += f"set key font ',12'\nset xrange [0.7:{deepest + 0.3}]\nset xtics 1,{1 if deepest < 10 else 2}\n"
-    for row, (label, value, scale) in enumerate((
-            ("unshot rays / shot rays", Ends.unshot_ratio, "set logscale y\nset yrange [2e-7:2]\nset format y '10^{%T}'"),
-            ("share of paths absorbed or cut off", Ends.ended, "unset logscale y\nset yrange [0:1]\nset format y '%.1f'"))):
-        script += f"{scale}\nset xlabel '{'tree depth' if row else ''}'\n"
-        for panel, s in enumerate(SETS):
-            plots = [f"{PAPER_RATIO} with lines lc rgb '#888888' lw 1 notitle"] if row == 0 else []
-            for i, (title, how, ends) in enumerate(measured[s.name]["ends"]):
-                points = [(d, value(ends, d)) for d in range(1, deepest + 1)]
-                script += block(f"d{row}{panel}{i}", [p for p in points if p[1] > 0])
-                plots.append(f"$d{row}{panel}{i} using 1:2 with linespoints lw 2 ps 0.8 {how} title '{title}'")
-            script += f"set title '{'' if row else f'Figure {s.graph}: {s.title}'}'\n"
-            script += f"set ylabel '{'' if panel else label}'\n"
-            # The back lit set leaves room: hardly a path ends there.
-            script += ("set key top right\n" if (row, panel) == (1, 1) else "unset key\n") + "plot " + ", ".join(plots) + "\n"
-    gnuplot(path, script + "unset multiplot\n", (1350, 820))
+    of, panels = charts.figure(1350, 860, 2, 3, sharex=True, sharey="row")
+    for column, s in enumerate(SETS):
+        above, below = panels[:, column]
+        for title, (color, mark, line), ends in measured[s.name]["ends"]:
+            style = {"color": charts.COLORS[color], "marker": mark, "linestyle": line, "label": title}
+            ratios = [(d, ends.unshot_ratio(d)) for d in range(1, deepest + 1) if ends.alive(d)]
+            above.semilogy(*(zip(*ratios) if ratios else ([], [])), **style)
+            below.plot(range(1, deepest + 1), [ends.ended(d) for d in range(1, deepest + 1)], **style)
+        above.axhline(PAPER_RATIO, color="#888888", linewidth=1)
+        above.set(title=f"Figure {s.graph}: {s.title}", ylim=(2e-7, 2))
+        below.set(xlabel="tree depth", ylim=(0, 1), xlim=(0.7, deepest + 0.3), xticks=range(1, deepest + 1, 1 + deepest // 10))
+    panels[0, 0].set_ylabel("unshot rays / shot rays")
+    panels[1, 0].set_ylabel("share of paths absorbed or cut off")
+    charts.legend(of, panels[0, 0], 4)
+    charts.save(of, path)
 
 
 def depth_rows(measured):
@@ -85,7 +139,7 @@ where the first ratio is 10⁻⁴ (the grey line) and chooses the cutoff of the 
 how is not said. Here the ABM's trees, with the paper's 0.01, end where 10⁻⁴ is left, at a depth interpolated between two
 whole ones, and the cutoff of the simplified model is solved so that the same is left at that depth
 ([compare.md](compare.md#speed-up)): a pilot's answer, whose ratio the table checks with more samples. The paper has 0.01 for
-it. {thousands(paths)} paths a curve; ± is the standard error of counting.
+it. {paths:,} paths a curve; ± is the standard error of counting.
 
 {table(("set", "model", "cutoff", "depth where 10⁻⁴ is left", "unshot / shot at the depth of (b)", "absorbed or cut off by then"),
        depth_rows(measured))}
@@ -106,3 +160,21 @@ first, and (b) would then gain by the wall, not by the leaf: of all paths {' wit
 solved cutoff end at their first event. The paper's scenes have not been published, and whether its ABM was cut off at other
 surfaces is not said.
 """
+
+
+def check():
+    """100 paths: 60 go on after one event, 30 after two, none after three."""
+    ends = Ends([25, 30], [15, 0, 30])
+    assert [ends.alive(d) for d in range(5)] == [100, 60, 30, 0, 0]
+    assert (ends.unshot_ratio(1), ends.unshot_ratio(2)) == (0.6, 30 / 160)
+    assert [ends.ended(d) for d in range(4)] == [0, 0.15, 0.15, 0.45]
+    assert all(map(math.isclose, ends.ratio_between(2), (30.5 / 160, math.sqrt(30.5) / 160)))
+    assert math.isclose(ends.ratio_between(1.5)[0], math.sqrt(60.5 / 100 * 30.5 / 160))
+    assert ends.depth() == 3
+    assert Ends([5], []).depth() == 1
+    many = Ends([10**6], [0, 0, 0, 0, 300, 40])
+    assert 4 < many.depth() < 5 and math.isclose(many.ratio_between(many.depth())[0], PAPER_RATIO)
+
+
+if __name__ == "__main__":
+    check()

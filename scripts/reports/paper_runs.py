@@ -1,15 +1,15 @@
 """The renders behind docs/paper.md, each kept as a file so that a run that was broken off can go on."""
 
 import dataclasses
+import io
 import json
 import pathlib
-import re
-import subprocess
 
-from convergence import Ends
-from tools import FROND, ROOT, frond, rows, run
+import pandas
+from matplotlib import font_manager
+from PIL import Image, ImageDraw, ImageFont
 
-FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"  # OpenImageIO 2.5 does not look for a font below its folder
+from tools import ROOT, frond_table, program, program_json
 
 
 @dataclasses.dataclass(frozen=True)
@@ -89,10 +89,8 @@ class Runs:
 
         def measure():
             rays = ["--rays", self.setting.table_rays] if method == "montecarlo" else []
-            words = [FROND, "table", "--method", method, *rays, "--wavelengths", "608,551,455", *self.threads, "-o", "-"]
-            done = subprocess.run(list(map(str, words)), capture_output=True, text=True, check=True)
-            shares = [r[share] for r in rows(done.stdout) for share in ("Rs", "Rd", "T")]
-            seconds = float(re.search(r"([\d.e+-]+) s of CPU", done.stderr)[1])
+            text, seconds, _ = frond_table("--method", method, *rays, "--wavelengths", "608,551,455", *self.threads)
+            shares = pandas.read_csv(io.StringIO(text), comment="#")[["Rs", "Rd", "T"]].to_numpy().ravel().tolist()
             return json.dumps({"cpu_seconds": seconds, "shares": shares})
 
         return self.kept(f"table-{method}", measure)
@@ -100,8 +98,8 @@ class Runs:
     def compared(self, name, s, candidates, arguments):
         def measure():
             report = self.folder / f"{name}-{s.name}-report"
-            frond("compare", s.scene(), "-o", report, "--materials", ";".join(candidates), "--wavelengths", "smpte", "--target",
-                  s.name, *arguments, *self.threads, "-q")
+            program("compare", s.scene(), "-o", report, "--materials", ";".join(candidates), "--wavelengths", "smpte", "--target",
+                    s.name, *arguments, *self.threads, "-q")
             return (report / "compare.json").read_text()
 
         return self.kept(f"{name}-{s.name}", measure)
@@ -118,10 +116,9 @@ class Runs:
         """How paths end that are cut off at that attenuation; 0: never."""
         integrator = f"path,termination=attenuation,cutoff={cutoff:.3g},maxdepth=63"
         name = f"ends-{s.name}-{model}-{cutoff:.3g}"
-        report = self.kept(name, lambda: frond(
+        return self.kept(name, lambda: program(
             "render", s.scene(), "--wavelengths", "smpte", "--swap", f"leaf={model}", "--integrator", integrator, "--spp",
             self.setting.ends_samples, *self.setting.ends, *self.threads, "-o", self.folder / "ends.exr", "--json", "-q"))
-        return Ends.of(report)
 
     def half(self, s, model, half):
         return self.folder / f"{s.name}-{model}-{half}.exr"
@@ -131,7 +128,7 @@ class Runs:
         reports = {model: [] for model in MODELS}
         for half in (1, 2):
             for model in MODELS:  # in turn: whatever else the machine does falls on both
-                reports[model].append(self.kept(f"{s.name}-{model}-{half}", lambda: frond(
+                reports[model].append(self.kept(f"{s.name}-{model}-{half}", lambda: program(
                     "render", s.scene(), "--wavelengths", "smpte", "--swap", f"leaf={model}", "--spp",
                     self.setting.picture_samples, "--seed", half, *self.setting.picture, *self.threads, "-o",
                     self.half(s, model, half), "--json", "-q")))
@@ -140,15 +137,20 @@ class Runs:
     def difference(self, s):
         """Of the two models' pictures, noise and bias told apart."""
         halves = [self.half(s, model, half) for model in MODELS for half in (1, 2)]
-        return json.loads(frond("difference", *halves, "--json"))
+        return program_json("difference", *halves, "--json")
 
     def sheet(self, path):
         """Figures 5 to 7: a row for each set, a column for each model."""
-        words = []
-        for s in SETS:
-            for letter, model in zip("ab", MODELS):
-                picture = self.folder / f"{s.name}-{model}.png"
-                frond("convert", self.half(s, model, 1), self.half(s, model, 2), "--exposure", s.stops, "-o", picture)
-                words += [picture, f"--text:x=8:y=20:size=15:shadow=2:font={FONT}", f"{s.figure}{letter}  {model}"]
+        font, size, gap = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 15), None, 8
+        for row, s in enumerate(SETS):
+            for column, (letter, model) in enumerate(zip("ab", MODELS)):
+                file = self.folder / f"{s.name}-{model}.png"
+                program("convert", self.half(s, model, 1), self.half(s, model, 2), "--exposure", s.stops, "-o", file)
+                picture = Image.open(file).convert("RGB")
+                if size is None:
+                    size = picture.size
+                    sheet = Image.new("RGB", (2 * size[0] + gap, 3 * size[1] + 2 * gap))
+                ImageDraw.Draw(picture).text((8, 6), f"{s.figure}{letter}  {model}", font=font, stroke_width=1, stroke_fill="black")
+                sheet.paste(picture, (column * (size[0] + gap), row * (size[1] + gap)))
         path.parent.mkdir(parents=True, exist_ok=True)
-        run("oiiotool", "--nosoftwareattrib", *words, "--mosaic:pad=8", "2x3", "--compression", "jpeg:90", "-o", path)
+        sheet.save(path, quality=90)

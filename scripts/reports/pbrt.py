@@ -9,15 +9,14 @@ P(|t| > 8) = 0.002. Seeds are fixed, so that this is decided once for each versi
 
 import argparse
 import fnmatch
-import math
-import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 
-import exr
-from tools import FROND, ROOT, machine, table
+import numpy
+from scipy.ndimage import uniform_filter
+
+import frond
+from tools import ROOT, machine, table
 
 FOLDER = ROOT / "tests" / "pbrt_reference"
 AGREES = FOLDER / "agrees.txt"
@@ -43,82 +42,54 @@ ON_PURPOSE = [
 
 
 class Reference:
-    """pbrt-v4's figures of one scene: by block, then channel."""
+    """pbrt-v4's figures of one scene: means of blocks and their standard errors `[row][column][channel]`."""
 
     def __init__(self, path):
-        self.head, self.mean, self.error = {}, {}, {}
-        across = set()
-        for line in path.read_text().splitlines():
-            if line.startswith("#"):
-                key, _, value = line[1:].partition(":")
-                self.head[key.strip()] = value.strip()
-            elif line and not line.startswith("block"):
-                v = [float(t) for t in line.split(",")]
-                place = len(self.mean)
-                self.mean[place], self.error[place] = v[2:5], v[5:8]
-                across.add(v[0])
-        self.columns = len(across)
-        self.block = int(self.head["block"].split()[0])
-        self.feature = next(iter(self.head.values()))
+        lines = path.read_text(encoding="utf-8").splitlines()
+        heads = (line[1:].partition(":") for line in lines if line.startswith("#"))
+        head = {key.strip(): value.strip() for key, _, value in heads}
+        self.feature, self.block = next(iter(head.values())), int(head["block"].split()[0])
+        values = numpy.array([line.split(",") for line in lines if line and not line.startswith(("#", "block"))], float)
+        across = len(numpy.unique(values[:, 0]))
+        self.mean, self.error = (values[:, part].reshape(-1, across, 3) for part in (slice(2, 5), slice(5, 8)))
 
 
-def block_means(rows, size):
-    """Of all whole blocks, row by row: R, G, B."""
-    means = []
-    for y in range(0, len(rows) - size + 1, size):
-        for x in range(0, len(rows[0]["R"]) - size + 1, size):
-            means.append([sum(sum(row[c][x:x + size]) for row in rows[y:y + size]) / size**2 for c in "RGB"])
-    return means
+def block_means(picture, size):
+    """Of all whole blocks, `[row][column][channel]`."""
+    down, across = (n // size for n in picture.shape[:2])
+    return picture[:down * size, :across * size].reshape(down, size, across, size, 3).mean(axis=(1, 3), dtype=float)
 
 
-def near(values, columns):
-    """Mean over the blocks around each, which steadies variances that come from few seeds."""
-    lines = len(values) // columns
-    inside = lambda at, count: min(max(at, 0), count - 1)
-    return [[sum(values[inside(i // columns + dy, lines) * columns + inside(i % columns + dx, columns)][c]
-                 for dx in (-1, 0, 1) for dy in (-1, 0, 1)) / 9 for c in range(3)] for i in range(len(values))]
+def steadied(variances):
+    """Variances that come from few seeds: half a block's own, half the mean over the blocks around it."""
+    return (variances + uniform_filter(variances, (3, 3, 1), mode="nearest")) / 2
 
 
 def compare(reference, renders, tolerance=0.002):
     """The largest z, and the mean difference of each channel over its mean."""
-    seeds, count = len(renders), len(reference.mean)
-    if any(len(r) != count for r in renders):
-        return math.inf, [math.inf] * 3
-    mean = [[sum(r[i][c] for r in renders) / seeds for c in range(3)] for i in range(count)]
-    own = [[sum((r[i][c] - mean[i][c])**2 for r in renders) / (seeds - 1) / seeds for c in range(3)] for i in range(count)]
-    theirs = [[e * e for e in reference.error[i]] for i in range(count)]
-    half = lambda a, b: [[(x + y) / 2 for x, y in zip(p, q)] for p, q in zip(a, b)]
-    theirs = half(theirs, near(theirs, reference.columns))
-    smooth = half(own, near(own, reference.columns))
-    total = lambda v, c: sum(row[c] for row in v)
-    ratio = [total(own, c) / max(total(theirs, c), 1e-30) for c in range(3)]
-    brightness = sum(max(map(abs, m)) for m in reference.mean.values()) / count
-    worst = 0.0
-    for i in range(count):
-        most = max(map(abs, reference.mean[i]))
-        for c in range(3):
-            variance = ((seeds - 1) * smooth[i][c] + 8 * ratio[c] * theirs[i][c]) / (seeds + 7)
-            allowed = tolerance * max(abs(reference.mean[i][c]), 0.1 * most) + 2e-5 * brightness
-            z = (mean[i][c] - reference.mean[i][c]) / math.sqrt(theirs[i][c] + variance + allowed**2)
-            worst = z if not abs(z) <= abs(worst) else worst
-    difference = [(total(mean, c) - sum(m[c] for m in reference.mean.values()))
-                  / max(sum(m[c] for m in reference.mean.values()), 1e-12) for c in range(3)]
-    return worst, difference
+    seeds, true = len(renders), reference.mean
+    if any(r.shape != true.shape for r in renders):
+        return numpy.inf, [numpy.inf] * 3
+    mean, own = numpy.mean(renders, axis=0), numpy.var(renders, axis=0, ddof=1) / seeds
+    theirs = steadied(reference.error**2)
+    ratio = own.sum(axis=(0, 1)) / numpy.maximum(theirs.sum(axis=(0, 1)), 1e-30)
+    variance = ((seeds - 1) * steadied(own) + 8 * ratio * theirs) / (seeds + 7)
+    most = abs(true).max(axis=2, keepdims=True)
+    allowed = tolerance * numpy.maximum(abs(true), 0.1 * most) + 2e-5 * most.mean()
+    z = (mean - true) / numpy.sqrt(theirs + variance + allowed**2)
+    worst = z.flat[numpy.argmax(numpy.nan_to_num(abs(z), nan=numpy.inf))]
+    return worst, (mean - true).sum(axis=(0, 1)) / numpy.maximum(true.sum(axis=(0, 1)), 1e-12)
 
 
-def examine(name, options):
-    """(status, z, mean differences or message)."""
+def examine(name, options, session):
+    """(reference, status, z, mean differences or message)."""
     reference, renders = Reference(FOLDER / f"{name}.csv"), []
-    with tempfile.TemporaryDirectory() as folder:
-        out = pathlib.Path(folder) / "out.exr"
+    try:
         for seed in range(9001, 9001 + options.seeds):
-            done = subprocess.run([FROND, "render", FOLDER / f"{name}.pbrt", "-o", out, "--spp", str(options.spp), "--seed",
-                                   str(seed), "--threads", str(options.threads), "--no-cache", "-q"],
-                                  capture_output=True, text=True, check=False)
-            if done.returncode != 0:
-                first = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[0]
-                return reference, "refused", 0, re.sub(r"^frond: \S*?([^/ ]+\.pbrt)", r"\1", first)
-            renders.append(block_means(exr.read(out.read_bytes()), reference.block))
+            picture = session.load(FOLDER / f"{name}.pbrt", seed=seed).render(options.spp)
+            renders.append(block_means(picture.rgb, reference.block))
+    except frond.InputError as error:
+        return reference, "refused", 0, re.sub(r"^\S*?([^/ ]+\.pbrt)", r"\1", str(error).strip().splitlines()[0])
     z, difference = compare(reference, renders)
     return reference, "agrees" if abs(z) <= options.z else "differs", z, difference
 
@@ -179,10 +150,11 @@ def main():
     if options.test:
         names = AGREES.read_text().split()
     results, others = {}, []
+    session = frond.Session(threads=options.threads, cache=False)
     for name in names:
         if not any(fnmatch.fnmatch(name, pattern) for pattern in options.only):
             continue
-        results[name] = reference, status, z, found = examine(name, options)
+        results[name] = reference, status, z, found = examine(name, options, session)
         if status != "agrees":
             others.append(name)
         print(f"{status:8} {name:36} {found if status == 'refused' else f'z {z:6.1f}   {percent(found)} %'}", flush=True)

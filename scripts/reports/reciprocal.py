@@ -1,15 +1,13 @@
 """The reciprocal leaf beside the model that it is made of: docs/reciprocal_leaf.md."""
 
-import argparse
-import json
-import math
 import pathlib
-import re
-import statistics
 import tempfile
 
-import exr
-from tools import COLORS, ROOT, block, frond, gnuplot, machine, rows, table
+import numpy
+
+import charts
+import frond
+from tools import ROOT, arguments, machine, plane_of_incidence, rms, sized, table, write
 
 LEAVES = ("soybean", "maize")
 CONVENTIONS = ("traced", "light", "reciprocal")
@@ -75,14 +73,11 @@ since 1 / I and (1 − F) h are.
 
 
 def exposure(material, angles, nm):
-    """Sums of f |cos| over patches for light from each angle: reflected and transmitted."""
-    sums = {}
-    for p in rows(frond("goniophotometer", *material.split(), "--angles", ",".join(map(str, angles)), "--wavelengths", nm,
-                        "--patches", "36x36", "--integrate", "--csv", "-", "-q")):
-        at = sums.setdefault(p["incidence_deg"], [0, 0])
-        other = (p["incidence_deg"] > 90) != (p["theta_deg"] > 90)
-        at[other] += p["f_per_sr"] * p["projected_solid_angle_sr"]
-    return sums
+    """Shares of light from each angle: a row of those reflected and one of those transmitted."""
+    found = frond.goniophotometer(material, nm, angles, patches=(36, 36), integrate=True)
+    shares = found["f"][:, 0] * found["projected_solid_angle_sr"]
+    reflected = (found["theta_o_deg"] < 90) == (numpy.array(angles) <= 90)[:, None, None]
+    return [(shares * side).sum(axis=(1, 2)) for side in (reflected, ~reflected)]
 
 
 def shares():
@@ -92,186 +87,108 @@ def shares():
         for leaf in LEAVES:
             for nm in (551, 800):
                 both = [exposure(f"{material} specimen={leaf} incident={i}", angles, nm) for i in ("traced", "reciprocal")]
-                for k, name in enumerate("RT"):
-                    body.append([f"`{material}`, {leaf}", nm, name] +
-                                [f"{both[0][a][k]:.3f}, {both[1][a][k]:.3f}" for a in angles])
+                for name, model, reciprocal in zip("RT", *both):
+                    body.append([f"`{material}`, {leaf}", nm, name, *(f"{x:.3f}, {y:.3f}" for x, y in zip(model, reciprocal))])
     return table(["", "nm", ""] + [f"{a}°" for a in angles], body)
 
 
 def diffuse_transmittance(leaf, nm, incident):
     """Mean under diffuse light, from above and from below: by Gauss's rule in the cosine."""
-    half = [(0.1834346424956498, 0.3626837833783620), (0.5255324099163290, 0.3137066458778873),
-            (0.7966664774136267, 0.2223810344533745), (0.9602898564975363, 0.1012285362903763)]
-    nodes = [((1 + s * x) / 2, w / 2) for x, w in half for s in (-1, 1)]
-    angles = {round(math.degrees(math.acos(mu)), 6): 2 * mu * w for mu, w in nodes}
-    result = []
-    for below in (False, True):
-        at = {round(180 - a, 6) if below else a: w for a, w in angles.items()}
-        sums = exposure(f"leaf_solved specimen={leaf} incident={incident}", sorted(at), nm)
-        result.append(sum(w * sums[a][1] for a, w in at.items()))
-    return result
+    nodes, weights = numpy.polynomial.legendre.leggauss(8)
+    cosines = (1 + nodes) / 2
+    angles = numpy.degrees(numpy.arccos(cosines))
+    material = f"leaf_solved specimen={leaf} incident={incident}"
+    return [weights * cosines @ exposure(material, list(side), nm)[1] for side in (angles, 180 - angles)]
 
 
 def energy():
     angles, body = (5, 30, 60, 75, 85, 89), []
     for material in ("leaf_solved", "leaf_simplified", "leaf_lambert"):
         for incident in CONVENTIONS:
-            sums = {}
-            for p in rows(frond("goniophotometer", material, "specimen=soybean", "mesophyllfraction=0",
-                                f"incident={incident}", "--angles", ",".join(map(str, angles)), "--wavelengths", 551,
-                                "--rendered", "--integrate", "--csv", "-", "-q")):
-                sums[p["incidence_deg"]] = sums.get(p["incidence_deg"], 0) + p["f_per_sr"] * p["projected_solid_angle_sr"]
-            body.append([f"`{material}`", incident] + [f"{x:.4f}" for x in sums.values()])
+            found = frond.goniophotometer(f"{material} specimen=soybean mesophyllfraction=0 incident={incident}", 551, angles,
+                                          rendered=True, integrate=True)
+            sums = (found["f"][:, 0] * found["projected_solid_angle_sr"]).sum(axis=(1, 2))
+            body.append([f"`{material}`", incident] + [f"{x:.4f}" for x in sums])
     return table(["", "`incident`"] + [f"{a}°" for a in angles], body)
 
 
-def patches(leaf, incident, angles, nm):
-    result = {}
-    for p in rows(frond("goniophotometer", "leaf_solved", f"specimen={leaf}", f"incident={incident}", "--angles",
-                        ",".join(map(str, angles)), "--wavelengths", nm, "--patches", "90x72", "--integrate", "--csv", "-",
-                        "-q")):
-        result[p["incidence_deg"], p["theta_deg"], p["phi_deg"]] = p
-    return result
-
-
-def changes(charts):
+def changes(folder):
     """How far f moves, in the mean, and where."""
-    angles, body, data, panels = (5, 30, 60, 75, 175, 150, 120, 105), [], "", ""
-    for row, leaf in enumerate(LEAVES):
+    angles, body = (5, 30, 60, 75, 175, 150, 120, 105), []
+    of, panels = charts.figure(1200, 760, 2, 3, sharex=True)
+    for row, leaf in zip(panels, LEAVES):
         for nm in (551, 800):
-            before, after = (patches(leaf, incident, angles, nm) for incident in ("traced", "reciprocal"))
-            cells = []
-            for a in angles:
-                square = change = 0
-                for key, p in before.items():
-                    if key[0] == a:
-                        weight = p["projected_solid_angle_sr"]
-                        square += weight * p["f_per_sr"]**2
-                        change += weight * (after[key]["f_per_sr"] - p["f_per_sr"])**2
-                cells.append(f"{100 * math.sqrt(change / square):.1f} %")
-            body.append([leaf, nm] + cells)
-        column_titles = (("reflected, lit from above", lambda a: (a, False)), ("transmitted from above", lambda a: (a, True)),
-                         ("reflected, lit from below", lambda a: (180 - a, False)))
-        for column, (title, lit) in enumerate(column_titles):
-            plots = []
-            for i, a in enumerate((30, 60)):
-                incidence, crosses = lit(a)
-                for line, (name, source) in enumerate((("model", before), ("reciprocal", after))):
-                    points = []
-                    for (theta_i, theta, phi), p in source.items():
-                        if theta_i != incidence or (theta > 90) != ((incidence > 90) != crosses) or phi not in (0, 180):
-                            continue
-                        out = min(theta, 180 - theta)
-                        points.append((-out if phi == 0 else out, math.pi * p["f_per_sr"]))
-                    block_name = f"f{row}{column}{i}{line}"
-                    data += block(block_name, sorted(points))
-                    plots.append(f"${block_name} with lines lw 2 dt {(2, 1)[line]} lc rgb '{COLORS[1 + i]}' title '{a}°, {name}'")
-            panels += f"""
-set title '{leaf}, {title}'
-{'set ylabel "π f, 800 nm"' if column == 0 else 'unset ylabel'}
-{'set xlabel "direction of leaving (°), straight on to the right"' if row == 1 else 'unset xlabel'}
-{'set key top left nobox samplen 1.5' if (row, column) == (0, 0) else 'unset key'}
-set yrange [0:{0.8 if column == 1 else 2.5}]
-plot {', '.join(plots)}
-"""
-    gnuplot(charts / "shape.svg", data + f"""
-set multiplot layout 2,3
-set xrange [-90:90]
-set xtics 45
-{panels}
-unset multiplot
-""", (1200, 760))
+            found = {incident: frond.goniophotometer(f"leaf_solved specimen={leaf} incident={incident}", nm, angles,
+                                                     patches=(90, 72), integrate=True) for incident in ("traced", "reciprocal")}
+            before, after = (g["f"][:, 0] for g in found.values())
+            weight = found["traced"]["projected_solid_angle_sr"]
+            moved = numpy.sqrt((weight * (after - before)**2).sum(axis=(1, 2)) / (weight * before**2).sum(axis=(1, 2)))
+            body.append([leaf, nm] + [f"{100 * x:.1f} %" for x in moved])
+        for panel, title, lit_below, crosses in zip(row, ("reflected, lit from above", "transmitted from above",
+                                                          "reflected, lit from below"), (0, 0, 1), (0, 1, 0)):
+            for color, angle in zip(charts.COLORS[1:], (30, 60)):
+                for name, line in (("traced", "--"), ("reciprocal", "-")):
+                    f = found[name]["f"][angles.index(180 - angle if lit_below else angle), 0]
+                    angles_seen, place = plane_of_incidence(found[name], lit_below != crosses)
+                    panel.plot(angles_seen, numpy.pi * f[place], line, color=color,
+                               label=f"{angle}°, {'model' if name == 'traced' else name}")
+            panel.set(title=f"{leaf}, {title}", xlim=(-90, 90), ylim=(0, 0.8 if crosses else 2.5), xticks=range(-90, 91, 45))
+        row[0].set_ylabel("π f, 800 nm")
+    panels[1, 1].set_xlabel("direction of leaving (°), straight on to the right")
+    charts.legend(of, panels[0, 0], 4)
+    charts.save(of, folder / "shape.svg")
     return table(["", "nm"] + [f"light at {a}°" for a in angles], body)
 
 
-def small_scene(name, size, folder):
-    """A copy of a scene at this resolution, which finds its parts where they are."""
-    home = ROOT / "scenes" / f"soybean-{name}"
-    text = (home / "scene.pbrt").read_text()
-    text = re.sub(r'("integer [xy]resolution") \d+', rf"\1 {size}", text)
-    text = re.sub(r'(Include|"string filename") "(?=[^/"]*\.(?:pbrt|ply)")', rf'\1 "{home}/', text)
-    path = folder / f"{name}.pbrt"
-    path.write_text(text)
-    return path
-
-
-def picture(scene, incident, samples, seed, folder):
-    """Row by row the colours, and whether the pixel shows leaves alone."""
-    path = folder / "render.exr"
-    frond("render", scene, "--wavelengths", "smpte", "--swap", f"leaf=leaf_solved,incident={incident}", "--spp", samples,
-          "--seed", seed, "-o", path, "-q")
-    return [[(row[c][x], row["leaf"][x] == 1) for c in "RGB" for x in range(len(row["leaf"]))]
-            for row in exr.read(path.read_bytes(), ["R", "G", "B", "leaf"])]
-
-
-def noise(scene, incident, samples, first_seed, folder):
-    """Of a render: RMS over its pixels, and their median by what it would be of a normal distribution."""
-    a, b = (picture(scene, incident, samples, first_seed + k, folder) for k in (0, 1))
-    differences = [abs(x - y) / math.sqrt(2) for i, j in zip(a, b) for (x, leaf), (y, too) in zip(i, j) if leaf and too]
-    return math.sqrt(statistics.fmean(d * d for d in differences)), statistics.median(differences) / 0.67449
+def noise(scene, incident, samples, first_seed):
+    """Of a render: RMS over its pixels of leaves alone, and their median by what it would be of a normal distribution."""
+    a, b = (frond.load(scene, wavelengths="smpte", swap={"leaf": f"leaf_solved,incident={incident}"}, seed=first_seed + k)
+            .render(samples) for k in (0, 1))
+    leaves = (a["leaf"] == 1) & (b["leaf"] == 1)
+    differences = abs(a.rgb - b.rgb)[leaves].astype(float) / numpy.sqrt(2)
+    return rms(differences), numpy.median(differences) / 0.67449
 
 
 def noise_table(quick, folder):
     size, samples = (64, 16) if quick else (192, 64)
     body, ratios = [], {}
     for name, title in SCENES.items():
-        scene = small_scene(name, size, folder)
+        scene = sized(ROOT / f"scenes/soybean-{name}/scene.pbrt", folder, size)
         for incident in CONVENTIONS:
-            rms, median = noise(scene, incident, samples, 1, folder)
-            ratios[name, incident] = rms / median
-            body.append([title, incident, f"{rms:.4f}", f"{median:.4f}", f"{rms / median:.2f}",
-                         f"{rms / median / ratios[name, 'traced']:.2f}"])
+            total, median = noise(scene, incident, samples, 1)
+            ratios[name, incident] = ratio = total / median
+            body.append([title, incident, f"{total:.4f}", f"{median:.4f}", f"{ratio:.2f}", f"{ratio / ratios[name, 'traced']:.2f}"])
     text = table(["scene", "`incident`", "RMS", "median", "RMS / median", "over that of traced"], body)
     return text, size, samples
 
 
-def settling(quick, folder, charts):
+def settling(quick, folder, images):
     """RMS noise times the root of the number of samples: level where the variance settles."""
     size, counts = (48, (4, 16, 64)) if quick else (96, (4, 16, 64, 256, 1024))
-    data, plots, body = "", [], []
-    for s, name in enumerate(("front", "ambient")):
-        scene = small_scene(name, size, folder)
-        for c, incident in enumerate(CONVENTIONS):
-            points = []
-            for n in counts:
-                rms, median = noise(scene, incident, n, 11, folder)
-                points.append((n, rms * math.sqrt(n), median * math.sqrt(n)))
-            body.append([SCENES[name], incident] + [f"{p[1]:.3f}, {p[2]:.3f}" for p in points])
-            block_name = f"s{s}{c}"
-            data += block(block_name, points)
-            plots.append((s, f"${block_name} using 1:2 with linespoints pt 7 ps 0.5 lw 2 lc rgb '{COLORS[1 + c]}' "
-                             f"title '{incident}', ${block_name} using 1:3 with lines dt 2 lw 1.5 lc rgb '{COLORS[1 + c]}' "
-                             f"notitle"))
-    panels = ""
-    for s, name in enumerate(("front", "ambient")):
-        panels += f"""
-set title '{SCENES[name]}'
-{'set ylabel "noise × √samples"' if s == 0 else 'unset ylabel'}
-{'set key top left nobox samplen 1.5' if s == 0 else 'unset key'}
-plot {', '.join(text for which, text in plots if which == s)}
-"""
-    gnuplot(charts / "settling.svg", data + f"""
-set multiplot layout 1,2
-set logscale xy
-set logscale x 4
-set xrange [{counts[0] / 1.5}:{counts[-1] * 1.5}]
-set xlabel 'samples a pixel'
-{panels}
-unset multiplot
-""", (1100, 480))
+    of, [row] = charts.figure(1100, 480, 1, 2, sharex=True)
+    body = []
+    for panel, name in zip(row, ("front", "ambient")):
+        scene = sized(ROOT / f"scenes/soybean-{name}/scene.pbrt", folder, size)
+        for color, incident in zip(charts.COLORS[1:], CONVENTIONS):
+            found = numpy.array([noise(scene, incident, n, 11) for n in counts]) * numpy.sqrt(counts)[:, None]
+            body.append([SCENES[name], incident] + ["{:.3f}, {:.3f}".format(*pair) for pair in found])
+            panel.loglog(counts, found[:, 0], "o-", color=color, label=incident)
+            panel.loglog(counts, found[:, 1], "--", color=color, label=f"{incident}, by the median")
+        panel.set(title=SCENES[name], xlabel="samples a pixel")
+        charts.plain_ticks(panel.xaxis, counts)
+    row[0].set_ylabel("noise × √samples")
+    charts.legend(of, row[0], 3)
+    charts.save(of, images / "settling.svg")
     return table(["scene", "`incident`"] + [f"{n} samples" for n in counts], body), size
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/reciprocal", description=__doc__)
-    parser.add_argument("--quick", action="store_true")
-    quick = parser.parse_args().quick
-    home = ROOT / "build" / "reciprocal" if quick else ROOT / "docs"
-    charts = home / "images" / "reciprocal_leaf"
+    options = arguments("reciprocal")
+    images = options.docs / "images" / "reciprocal_leaf"
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        noises, size, samples = noise_table(quick, folder)
-        settled, settled_size = settling(quick, folder, charts)
+        noises, size, samples = noise_table(options.quick, folder)
+        settled, settled_size = settling(options.quick, folder, images)
     model_t, leaf_t = (diffuse_transmittance("soybean", 551, incident) for incident in ("traced", "reciprocal"))
     text = INTRODUCTION.format(machine=machine(), least=0.07) + f"""
 ## What it changes
@@ -282,7 +199,7 @@ transmitted from one side and from the other has to be the same on the whole, an
 {shares()}
 **Shape**: the RMS of f_r − f over that of f, over all directions of leaving by projected solid angle, surface and body:
 
-{changes(charts)}
+{changes(images)}
 f in the plane of incidence at 800 nm, for light at 30° and 60° from the normal. Toward grazing the model's f goes beyond the
 chart, like 1 / cos θo; the reciprocal leaf's is bounded.
 
@@ -317,9 +234,7 @@ finite the RMS rises, by leaps.
   {model_t[0]:.3f} from above and {model_t[1]:.3f} from below, of the reciprocal leaf {leaf_t[0]:.3f} and {leaf_t[1]:.3f}.
 - `abm` refuses it: the walk would have to be weighed by the solved leaf's f_r / f, and would then be no check of it.
 """
-    home.mkdir(parents=True, exist_ok=True)
-    (home / "reciprocal_leaf.md").write_text(text, encoding="utf-8")
-    print(f"Written: {home / 'reciprocal_leaf.md'}")
+    write(options.docs / "reciprocal_leaf.md", text)
 
 
 if __name__ == "__main__":

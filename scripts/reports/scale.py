@@ -1,16 +1,17 @@
 """docs/scale.md: canopies of ever more leaves."""
 
-import argparse
 import json
 import math
 import os
 import pathlib
-import re
 import subprocess
 import tempfile
 import time
 
-from tools import COLORS, FROND, ROOT, block, frond, gnuplot, machine, table, thousands
+import pandas
+
+import charts
+from tools import FROND, arguments, machine, program, table, write
 
 LAI, RADIUS, HEIGHT = 3, 0.05, 2
 SIZES = [1e3, 1e4, 1e5, 1e6, 1e7, 1e8]
@@ -40,8 +41,8 @@ def side_of(leaves):
 
 def canopy(path, leaves, seed=0):
     side = side_of(leaves)
-    frond("canopy", "-q", "-o", path, "--count", int(leaves), "--scale", RADIUS, "--size", f"{side},{side}",
-          "--heights", f"0.05,{HEIGHT}", "--seed", seed)
+    program("canopy", "-q", "-o", path, "--count", int(leaves), "--scale", RADIUS, "--size", f"{side},{side}",
+            "--heights", f"0.05,{HEIGHT}", "--seed", seed)
 
 
 def one_level(folder, leaves):
@@ -58,11 +59,9 @@ def two_levels(folder, leaves):
         canopy(folder / f"plot-{kind}.npy", PLANT, kind + 1)
         world += (f'ObjectBegin "plot-{kind}" Shape "instances" "string object" "leaf" "string filename" "plot-{kind}.npy" '
                   "ObjectEnd\n")
-        with open(folder / f"plots-{kind}.csv", "w", encoding="utf-8") as out:
-            out.write("x,y,z\n")
-            for i in range(count):
-                out.writelines(f"{i * side!r},{j * side!r},0\n" for j in range(count) if (i + 2 * j) % 4 == kind)
-        frond("instances", "-q", folder / f"plots-{kind}.csv", "-o", folder / f"plots-{kind}.npy")
+        places = [f"{i * side!r},{j * side!r},0\n" for i in range(count) for j in range(count) if (i + 2 * j) % 4 == kind]
+        (folder / f"plots-{kind}.csv").write_text("x,y,z\n" + "".join(places), encoding="utf-8")
+        program("instances", "-q", folder / f"plots-{kind}.csv", "-o", folder / f"plots-{kind}.npy")
         world += f'Shape "instances" "string object" "plot-{kind}" "string filename" "plots-{kind}.npy"\n'
     return world
 
@@ -76,17 +75,17 @@ def measure(make, leaves):
         scene.write_text(SCENE.format(side=side_of(leaves), top=HEIGHT + RADIUS, pixels=PIXELS, samples=SAMPLES, world=world))
         words = [str(FROND), "render", str(scene), "-o", str(folder / "out.exr"), "--json", "-q", "--wavelengths",
                  "bands,wavelengths=800"]
-        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as program:
-            peak = {"anonymous": 0, "all": 0}
-            while program.poll() is None:
-                watch(program.pid, peak)
+        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as render:
+            peak = {"RssAnon": 0, "VmRSS": 0}
+            while render.poll() is None:
+                watch(render.pid, peak)
                 time.sleep(0.02)
-            text = program.stdout.read()
-        if program.returncode != 0:
-            raise SystemExit(f"{leaves:g} leaves: frond ended with {program.returncode}")
+            text = render.stdout.read()
+        if render.returncode != 0:
+            raise SystemExit(f"{leaves:g} leaves: frond ended with {render.returncode}")
         result = json.loads(text)
     return {"leaves": leaves, "load": result["load_seconds"], "us": result["cpu_us_per_path"],
-            "rays": result["rays_per_path"], "memory": peak["anonymous"] * 1024, "mapped": peak["all"] * 1024}
+            "rays": result["rays_per_path"], "memory": peak["RssAnon"] * 1024, "mapped": peak["VmRSS"] * 1024}
 
 
 def watch(pid, peak):
@@ -95,10 +94,10 @@ def watch(pid, peak):
         status = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
     except (FileNotFoundError, ProcessLookupError):
         return
-    for key, field in (("anonymous", "RssAnon"), ("all", "VmRSS")):
-        found = re.search(rf"{field}:\s+(\d+) kB", status)
-        if found:
-            peak[key] = max(peak[key], int(found[1]))
+    for line in status.splitlines():
+        field, _, value = line.partition(":")
+        if field in peak:
+            peak[field] = max(peak[field], int(value.split()[0]))
 
 
 PAGE = """# A hundred million leaves
@@ -122,51 +121,43 @@ in the world is tried against the object's own before it goes in.
 """
 
 
-def draw(results):
-    script = "set multiplot layout 1,3\nset logscale x\nset format x '10^{%L}'\nset xlabel 'leaves'\nset xrange [1e3:1e8]\n"
-    panels = [("load, s", "load", "top left"), ("bytes a leaf, for itself", "bytes", "center right"), ("µs of CPU a path", "us", "top left")]
-    for title, key, place in panels:
-        script += f"set key {place}\n"
-        script += "set logscale y\n" if key == "load" else "unset logscale y\nset yrange [0:*]\n"
-        script += f"set ylabel '{title}'\n"
-        plots = []
-        for i, (name, points) in enumerate(results.items()):
-            shown = [(p["leaves"], p[key]) for p in points if p[key] is not None]
-            script += block(f"d{i}", shown)
-            plots.append(f"$d{i} with linespoints pt {5 + 2 * i} lw 2 lc rgb '{COLORS[i + 1]}' title '{name}'")
-        script += "plot " + ", ".join(plots) + "\n"
-    gnuplot(ROOT / "docs/images/scale.svg", script + "unset multiplot\n", (1200, 420))
+def draw(path, points):
+    of, [row] = charts.figure(1200, 440, 1, 3)
+    for panel, (title, key) in zip(row, (("load, s", "load"), ("bytes a leaf, for itself", "bytes"), ("µs of CPU a path", "us"))):
+        for color, (name, of_kind) in zip(charts.COLORS[1:], points.groupby("kind", sort=False)):
+            panel.plot(of_kind.leaves, of_kind[key], "o-", color=color, label=name)
+        panel.set(xlabel="leaves", ylabel=title, xscale="log", yscale="log" if key == "load" else "linear", xlim=(7e2, 1.4e8))
+        if key != "load":
+            panel.set_ylim(bottom=0)
+    charts.legend(of, row[0], 2)
+    charts.save(of, path)
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/scale", description=__doc__)
-    parser.add_argument("--most", type=float, default=1e8, help="leaves of the largest canopy")
-    parser.add_argument("--no-docs", action="store_true", help="print the figures, write no page")
-    options = parser.parse_args()
-    base = measure(one_level, 1)
-    results = {}
+    options = arguments("scale", ("--most", dict(type=float, help="leaves of the largest canopy: 1e8")),
+                        ("--no-docs", dict(action="store_true", help="print the figures, write no page")))
+    most = options.most or (1e5 if options.quick else 1e8)
+    base, points = measure(one_level, 1), []
     for name, make, least in (("one level", one_level, 1e3), ("two levels", two_levels, 4e4)):
-        results[name] = []
         for leaves in SIZES:
-            if not least <= leaves <= options.most:
-                continue
-            point = measure(make, leaves)
-            # Of small canopies it is lost in what the program has anyway.
-            point["bytes"] = (point["memory"] - base["memory"]) / leaves if leaves >= 1e5 else None
-            point["with_file"] = (point["mapped"] - base["mapped"]) / leaves if leaves >= 1e5 else None
-            results[name].append(point)
-            print(name, point, flush=True)
+            if least <= leaves <= most:
+                points.append({"kind": name, **measure(make, leaves)})
+                print(points[-1], flush=True)
     if options.no_docs:
         return
-    draw(results)
-    shown = lambda value: "" if value is None else f"{value:.0f}"
-    body = [[name, thousands(int(p["leaves"])), f"{p['load']:.2f} s", f"{p['memory'] / 1e9:.2f} GB", shown(p["bytes"]),
-             shown(p["with_file"]), f"{p['us']:.1f} µs"] for name, points in results.items() for p in points]
+    points = pandas.DataFrame(points)
+    # Of small canopies it is lost in what the program has anyway.
+    large = points.leaves >= 1e5
+    points["bytes"] = ((points.memory - base["memory"]) / points.leaves).where(large)
+    points["with_file"] = ((points.mapped - base["mapped"]) / points.leaves).where(large)
+    draw(options.docs / "images" / "scale.svg", points)
+    shown = lambda value: "" if math.isnan(value) else f"{value:.0f}"
+    body = [[p.kind, f"{int(p.leaves):,}", f"{p.load:.2f} s", f"{p.memory / 1e9:.2f} GB", shown(p.bytes), shown(p.with_file),
+             f"{p.us:.1f} µs"] for p in points.itertuples()]
     head = ["", "leaves", "load", "memory", "bytes a leaf", "with the file", "path"]
-    rays = results["one level"][-1]["rays"]
-    page = PAGE.format(machine=machine(), lai=LAI, radius=RADIUS, height=HEIGHT, row=ROW_BYTES, plant=thousands(PLANT),
-                       rays=rays, table=table(head, body))
-    (ROOT / "docs/scale.md").write_text(page, encoding="utf-8")
+    rays = points[points.kind == "one level"].rays.iloc[-1]
+    write(options.docs / "scale.md", PAGE.format(machine=machine(), lai=LAI, radius=RADIUS, height=HEIGHT, row=ROW_BYTES,
+                                                 plant=f"{PLANT:,}", rays=rays, table=table(head, body)))
 
 
 if __name__ == "__main__":

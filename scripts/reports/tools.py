@@ -1,30 +1,68 @@
-"""What the reports share: running frond, reading its tables, drawing by gnuplot."""
+"""What the reports share: starting frond and reading what it writes, scenes at another size, tables, and where pages go."""
 
-import csv
+import argparse
 import io
+import json
 import os
 import pathlib
+import re
 import resource
 import subprocess
+
+import numpy
+import pandas
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("FROND_BUILD", ROOT / "build" / "release"))
 FROND = BUILD / "frond"
 
-# Eight colours that people of any colour vision tell apart (Okabe and Ito 2008).
-COLORS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+
+def arguments(name, *more):
+    """The command line of scripts/NAME: --quick and `more`, pairs of flag and settings of argparse. `docs` is where its page
+    goes."""
+    parser = argparse.ArgumentParser(prog=f"scripts/{name}")
+    folder = ROOT / "build" / f"{name}_report"
+    parser.add_argument("--quick", action="store_true", help=f"few samples, to see that it runs: into {folder.relative_to(ROOT)}")
+    for flag, settings in more:
+        parser.add_argument(flag, **settings)
+    options = parser.parse_args()
+    options.docs = folder if options.quick else ROOT / "docs"
+    return options
 
 
-def run(*words, stdin=None):
+def write(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f"{path.name}.part")
+    part.write_text(text, encoding="utf-8")
+    part.replace(path)
+    print(f"Written: {path}")
+
+
+def run(*words, **more):
     """Standard output of a command; its errors stop the report."""
-    done = subprocess.run([str(w) for w in words], input=stdin, capture_output=True, text=True, check=False)
+    done = subprocess.run([str(w) for w in words], capture_output=True, **{"text": True, **more}, check=False)
     if done.returncode != 0:
         raise SystemExit(f"{' '.join(map(str, words))}\n{done.stderr or done.stdout}")
     return done.stdout
 
 
-def frond(*words):
+def program(*words):
+    """Standard output of frond, for what its Python module does not have."""
     return run(FROND, *words)
+
+
+def program_json(*words):
+    return json.loads(program(*words))
+
+
+def program_csv(*words):
+    return pandas.read_csv(io.StringIO(program(*words)), comment="#")
+
+
+def frond_table(*words):
+    """What `frond table` writes, the CPU seconds that it says to have taken, and all that it says."""
+    done = subprocess.run([str(w) for w in (FROND, "table", *words, "-o", "-")], capture_output=True, text=True, check=True)
+    return done.stdout, float(re.search(r"([0-9.e+-]+) s of CPU", done.stderr)[1]), done.stderr
 
 
 def cpu_seconds(action):
@@ -35,35 +73,32 @@ def cpu_seconds(action):
     return result, used() - start
 
 
-def rows(text):
-    """The lines of a CSV with comments, as dictionaries of numbers where they are numbers."""
-    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
-    return [{key: number(value) for key, value in row.items()} for row in csv.DictReader(io.StringIO("\n".join(lines)))]
+def sized(path, folder, width, height=None):
+    """A copy of a scene file at another resolution, which finds its parts where they are."""
+    path = pathlib.Path(path)
+    text, count = re.subn(r'("integer ([xy])resolution") \d+', lambda m: f"{m[1]} {width if m[2] == 'x' else height or width}",
+                          path.read_text(encoding="utf-8"))
+    if count != 2:
+        raise SystemExit(f"{path} does not say one width and one height of its film")
+    text = re.sub(r'(Include|"string filename") "(?=[^/"][^"]*")', rf'\1 "{path.parent}/', text)
+    copy = folder / f"{path.parent.name}-{path.stem}-{width}.pbrt"
+    copy.write_text(text, encoding="utf-8")
+    return copy
 
 
-def number(text):
-    try:
-        return float(text)
-    except (TypeError, ValueError):
-        return text
+def plane_of_incidence(found, below):
+    """Of a goniophotometer's patches on a side of the leaf: angles from the normal, those on the light's side negative, and
+    where they are in its arrays."""
+    theta, phi = found["theta_o_deg"], numpy.round(found["phi_o_deg"], 6)
+    angle = numpy.where(phi == 0, -1, 1) * numpy.minimum(theta, 180 - theta)
+    place = numpy.nonzero(numpy.isin(phi, (0, 180)) & ((theta > 90) == below))
+    order = numpy.argsort(angle[place])
+    place = tuple(index[order] for index in place)
+    return angle[place], place
 
 
-def gnuplot(path, script, size=(900, 560)):
-    """Draws an SVG, to be read on a page and printed."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    head = f"""set terminal svg size {size[0]},{size[1]} font 'DejaVu Sans,14' background '#ffffff'
-set output '{path}'
-set border lw 1.2
-set grid lc rgb '#dddddd' lw 1
-set key opaque box lc rgb '#cccccc' samplen 2
-"""
-    run("gnuplot", stdin=head + script)
-
-
-def block(name, points):
-    """Inline data of a chart."""
-    lines = "\n".join(" ".join(f"{x:.8g}" for x in point) for point in points)
-    return f"${name} << EOD\n{lines}\nEOD\n"
+def rms(values):
+    return float(numpy.sqrt(numpy.mean(numpy.square(values))))
 
 
 def table(head, body):
@@ -72,15 +107,7 @@ def table(head, body):
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in body]) + "\n"
 
 
-def thousands(count):
-    return f"{count:,}"
-
-
 def machine():
     """What the figures were measured on."""
-    model = "unknown processor"
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            model = line.split(":", 1)[1].strip()
-            break
-    return f"{model}, {os.cpu_count()} cores; {frond('--version').strip()}"
+    model = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
+    return f"{model[1] if model else 'unknown processor'}, {os.cpu_count()} cores; {program('--version').strip()}"

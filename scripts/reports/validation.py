@@ -3,21 +3,15 @@
 import argparse
 
 from tools import machine
-from validation_modes import modes
-from validation_plane import figures
-from validation_reciprocity import reciprocity
+from validation_bsdf import figures, reciprocity, solution
+from validation_leaf import f_against_sample, modes, spectra, tables, walks, weaknesses
 from validation_report import Report
-from validation_solution import solution
-from validation_spectra import spectra
-from validation_tables import tables
-from validation_walks import f_against_sample, walks
-from validation_weaknesses import weaknesses
 
 PARTS = (spectra, tables, modes, figures, walks, solution, f_against_sample, reciprocity, weaknesses)
 
 
 def main():
-    parser = argparse.ArgumentParser()
+    parser = argparse.ArgumentParser(prog="scripts/validation")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", metavar="PART", nargs="+", choices=[part.__name__ for part in PARTS], default=[],
                         help="measure these parts anew and leave the others as they are")

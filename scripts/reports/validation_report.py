@@ -1,9 +1,10 @@
 """The page that docs/validation.md grows into, and what its pieces share."""
 
-import math
+import json
 import re
 
-from tools import BUILD, ROOT, gnuplot
+import charts
+from tools import BUILD, ROOT, run, write
 
 LEAVES = ["soybean", "maize"]
 RGB = [608, 551, 455]
@@ -12,7 +13,7 @@ RGB = [608, 551, 455]
 class Report:
     def __init__(self, quick):
         self.quick = quick
-        self.folder = BUILD.parent / "validation" if quick else ROOT / "docs"
+        self.folder = ROOT / "build" / "validation_report" if quick else ROOT / "docs"
         self.images = self.folder / "images" / "validation"
         self.folder.mkdir(parents=True, exist_ok=True)
         self.parts = []
@@ -23,26 +24,29 @@ class Report:
     def add(self, text):
         self.parts.append(text.strip() + "\n")
 
-    def chart(self, name, title, script, size=(900, 560)):
-        gnuplot(self.images / f"{name}.svg", script, size)
+    def chart(self, name, title, figure):
+        charts.save(figure, self.images / f"{name}.svg")
         self.add(f"![{title}](images/validation/{name}.svg)")
+
+    def cases_of(self, test, pattern, **environment):
+        """What a test of the project records."""
+        path = self.folder / f"{test}.json"
+        run("env", *(f"{key}={value}" for key, value in environment.items()), BUILD / "tests" / test, f"--gtest_filter={pattern}",
+            f"--gtest_output=json:{path}")
+        suites = json.loads(path.read_text())["testsuites"]
+        path.unlink()
+        return [case for suite in suites for case in suite["testsuite"]]
 
     def write(self, renewed):
         """`renewed`: what was measured takes the place of sections of the same title in the page that there is."""
         path = self.folder / "validation.md"
         text = "\n".join(self.parts)
         if renewed:
-            sections = dict((s.split("\n", 1)[0], s) for s in re.split(r"^(?=## )", path.read_text(), flags=re.M))
+            sections = dict((s.split("\n", 1)[0], s) for s in re.split(r"^(?=## )", path.read_text(encoding="utf-8"), flags=re.M))
             for section in filter(None, re.split(r"^(?=## )", text, flags=re.M)):
                 title = section.split("\n", 1)[0]
                 if title not in sections:
                     raise SystemExit(f"{path} has no section {title!r}: measure all of it")
                 sections[title] = section.rstrip("\n") + "\n\n"
             text = "".join(sections.values()).rstrip("\n") + "\n"
-        path.write_text(text)
-        print(path)
-
-
-def rms(differences):
-    differences = list(differences)
-    return math.sqrt(sum(d * d for d in differences) / len(differences))
+        write(path, text)

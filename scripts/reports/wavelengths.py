@@ -1,13 +1,14 @@
 """The colour error of wavelength strategies on the leaf scenes against time: docs/wavelengths.md."""
 
-import argparse
-import json
 import pathlib
-import re
 import tempfile
 
+import numpy
+
+import charts
 import color
-from tools import COLORS, ROOT, block, frond, gnuplot, machine, run, table
+import frond
+from tools import ROOT, arguments, machine, program, sized, table, write
 
 SCENES = {"front": "front lit", "back": "back lit", "ambient": "ambient light"}
 RESOLUTION = 128
@@ -21,55 +22,20 @@ STRATEGIES = {
 }
 
 
-def small_scene(name, folder):
-    """A copy of a scene at our resolution, which finds its parts where they are."""
-    home = ROOT / "scenes" / f"soybean-{name}"
-    text = (home / "scene.pbrt").read_text()
-    text = re.sub(r'("integer [xy]resolution") \d+', rf"\1 {RESOLUTION}", text)
-    text = re.sub(r'(Include|"string filename") "(?=[^/"]*\.(?:pbrt|ply)")', rf'\1 "{home}/', text)
-    path = folder / f"{name}.pbrt"
-    path.write_text(text)
-    return path
-
-
 class Render:
-    """Lab and XYZ of each pixel, which of them are leaves, and the CPU time."""
+    """XYZ of each pixel, which of them are leaves, and the CPU time."""
 
     def __init__(self, scene, wavelengths, space, samples, seed, folder):
-        image, flat = folder / "render.exr", folder / "rgb.exr"
-        report = json.loads(frond("render", scene, "--wavelengths", wavelengths, "--spp", samples, "--seed", seed,
-                                  "-o", image, "--json"))
-        self.seconds = report["cpu_seconds"]
-        frond("convert", image, "-o", flat)
-        rgb = dump(flat)
-        self.leaf = [share[0] > 0.5 for share in dump(leaf_of(image, folder))]
-        self.xyz = [color.xyz(p, space) for p in rgb]
-        self.lab = [color.lab(p) for p in self.xyz]
-
-    def mean_leaf(self):
-        """Lab of the mean of all leaf pixels, in which little noise is left."""
-        leaves = [c for c, is_leaf in zip(self.xyz, self.leaf) if is_leaf]
-        return color.lab([sum(c[k] for c in leaves) / len(leaves) for k in range(3)])
-
-
-def leaf_of(image, folder):
-    path = folder / "leaf.exr"
-    run("oiiotool", image, "--ch", "leaf", "-o", path)
-    return path
-
-
-def dump(path):
-    """The channels of each pixel."""
-    text = run("oiiotool", "--dumpdata", path)
-    return [tuple(map(float, line.split(":", 1)[1].split())) for line in text.splitlines() if "Pixel (" in line]
-
-
-def distances(render, reference_lab, leaf):
-    return sorted(color.delta_e(a, b) for a, b, is_leaf in zip(render.lab, reference_lab, leaf) if is_leaf)
-
-
-def mean(values):
-    return sum(values) / len(values)
+        picture = frond.load(scene, wavelengths=wavelengths, seed=seed).render(samples)
+        self.seconds, self.leaf = picture.statistics["cpu_seconds"], picture["leaf"] > 0.5
+        if picture.color_space:
+            rgb = picture.rgb
+        else:  # bands: colours are what frond convert makes of them
+            picture.save(folder / "render.exr")
+            program("convert", folder / "render.exr", "-o", folder / "rgb.exr")
+            names, pixels = frond.read_image(folder / "rgb.exr")
+            rgb = pixels[:, :, [names.index(name) for name in "RGB"]]
+        self.xyz = color.xyz(rgb, space)
 
 
 class Reference:
@@ -78,47 +44,38 @@ class Reference:
     def __init__(self, scene, samples, folder):
         halves = [Render(scene, REFERENCE, "linear sRGB", samples, seed, folder) for seed in (101, 102)]
         self.leaf = halves[0].leaf
-        self.xyz = [tuple((a + b) / 2 for a, b in zip(*pixel)) for pixel in zip(halves[0].xyz, halves[1].xyz)]
-        self.lab = [color.lab(p) for p in self.xyz]
-        self.noise = mean(distances(halves[0], halves[1].lab, self.leaf)) / 2
-        self.seconds = sum(h.seconds for h in halves)
-        leaves = [c for c, is_leaf in zip(self.xyz, self.leaf) if is_leaf]
-        self.mean_leaf = color.lab([mean([c[k] for c in leaves]) for k in range(3)])
+        self.xyz = sum(half.xyz for half in halves) / 2
+        self.noise = color.delta_e(*(color.lab(half.xyz[self.leaf]) for half in halves)).mean() / 2
+
+    def errors(self, render):
+        """Mean over the leaf pixels, what 95 % of them are below, and that of their mean colour, in which little noise is left."""
+        leaf = self.leaf
+        each = color.delta_e(color.lab(render.xyz[leaf]), color.lab(self.xyz[leaf]))
+        of_mean = color.delta_e(color.lab(render.xyz[render.leaf].mean(axis=0)), color.lab(self.xyz[leaf].mean(axis=0)))
+        return {"seconds": render.seconds, "mean": each.mean(), "p95": numpy.quantile(each, 0.95), "leaf": of_mean}
 
 
 def measure(name, ladder, reference_samples, folder):
-    scene = small_scene(name, folder)
-    reference = Reference(scene, reference_samples, folder)
-    curves = {}
+    scene = sized(ROOT / f"scenes/soybean-{name}/scene.pbrt", folder, RESOLUTION)
+    reference, curves = Reference(scene, reference_samples, folder), {}
     for strategy, (space, _) in STRATEGIES.items():
-        frond("render", scene, "--wavelengths", strategy, "--spp", 1, "-o", folder / "warm.exr", "-q")  # makes the tables
-        for samples in ladder:
-            render = Render(scene, strategy, space, samples, 1, folder)
-            errors = distances(render, reference.lab, reference.leaf)
-            curves.setdefault(strategy, []).append({
-                "samples": samples, "seconds": render.seconds, "mean": mean(errors),
-                "p95": errors[int(0.95 * len(errors))],
-                "leaf": color.delta_e(render.mean_leaf(), reference.mean_leaf)})
+        frond.load(scene, wavelengths=strategy).render(1)  # makes the tables
+        curves[strategy] = [reference.errors(Render(scene, strategy, space, samples, 1, folder)) for samples in ladder]
         print(name, strategy, curves[strategy][-1], flush=True)
     return reference, curves
 
 
 def chart(path, results):
-    script = "set multiplot layout 1,3\nset logscale xy\nset key top right font ',11'\nset format x '10^{%T}'\n"
-    seconds = [p["seconds"] for _, curves in results.values() for points in curves.values() for p in points]
-    script += f"set xrange [{min(seconds) / 1.3}:{1.3 * max(seconds)}]\n"
-    script += "set xlabel 'CPU time (s)'\nset yrange [0.2:30]\nset ytics (0.2,0.3,0.5,1,2,3,5,10,20,30)\n"
-    for panel, (scene, (reference, curves)) in enumerate(results.items()):
-        plots = []
-        for i, (strategy, points) in enumerate(curves.items()):
-            script += block(f"d{panel}_{i}", [(p["seconds"], p["mean"]) for p in points])
-            plots.append(f"$d{panel}_{i} using 1:2 with linespoints lw 2 pt {i + 4} ps 0.9 lc rgb '{COLORS[i]}' "
-                         f"title '{strategy}'")
-        plots.append(f"{reference.noise} with lines dt 2 lw 1 lc rgb '#888888' title 'noise of the reference'")
-        script += f"set title 'soybean, {SCENES[scene]}'\n"
-        script += f"set ylabel '{'mean colour error of leaf pixels, ΔE_{00}' if panel == 0 else ''}'\n"
-        script += ("set key\n" if panel == 0 else "unset key\n") + "plot " + ", ".join(plots) + "\n"
-    gnuplot(path, script + "unset multiplot\n", (1300, 480))
+    of, [row] = charts.figure(1300, 480, 1, 3, sharex=True, sharey=True)
+    for panel, (scene, (reference, curves)) in zip(row, results.items()):
+        for hue, mark, (strategy, points) in zip(charts.COLORS, "osD^v", curves.items()):
+            panel.loglog([p["seconds"] for p in points], [p["mean"] for p in points], f"{mark}-", color=hue, label=strategy)
+        panel.axhline(reference.noise, color="#888888", linestyle="--", linewidth=1, label="noise of the reference")
+        panel.set(title=f"soybean, {SCENES[scene]}", xlabel="CPU time (s)", ylim=(0.2, 30))
+    charts.plain_ticks(row[0].yaxis, [0.2, 0.3, 0.5, 1, 2, 3, 5, 10, 20, 30])
+    row[0].set_ylabel("mean colour error of leaf pixels, ΔE₀₀")
+    charts.legend(of, row[0], 6)
+    charts.save(of, path)
 
 
 def page(results, ladder, reference_samples):
@@ -155,17 +112,13 @@ Machine: {machine()}.
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="few samples, into build/wavelengths")
-    quick = parser.parse_args().quick
+    options = arguments("wavelengths")
     color.check()
-    ladder, reference_samples = ([4, 16], 128) if quick else ([4, 16, 64, 256], 512)
-    docs = ROOT / "build" / "wavelengths" if quick else ROOT / "docs"
+    ladder, reference_samples = ([4, 16], 128) if options.quick else ([4, 16, 64, 256], 512)
     with tempfile.TemporaryDirectory() as name:
         results = {s: measure(s, ladder, reference_samples, pathlib.Path(name)) for s in SCENES}
-    chart(docs / "images" / "wavelengths.svg", results)
-    (docs / "wavelengths.md").write_text(page(results, ladder, reference_samples))
-    print(f"Written: {docs / 'wavelengths.md'}")
+    chart(options.docs / "images" / "wavelengths.svg", results)
+    write(options.docs / "wavelengths.md", page(results, ladder, reference_samples))
 
 
 if __name__ == "__main__":

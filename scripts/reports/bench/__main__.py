@@ -6,7 +6,7 @@ import json
 import pathlib
 import sys
 
-from tools import ROOT
+from tools import ROOT, write
 
 from . import page, results, session, tables, text
 from .comparison import Comparison
@@ -15,19 +15,17 @@ DOCUMENT = ROOT / "docs" / "benchmarks.md"
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="scripts/bench", description="Runs the benchmarks, or compares two runs.")
+    """What they do: scripts/bench."""
+    parser = argparse.ArgumentParser(prog="scripts/bench")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--compare", nargs=2, metavar=("A.json", "B.json"), help="a page that compares two runs")
-    what.add_argument("--commits", nargs=2, metavar=("A", "B"),
-                      help="build two commits, run both in turn and compare; . is the sources as they are")
-    what.add_argument("--write-docs", metavar="RUN.json", help="put the run's figures into docs/benchmarks.md")
-    parser.add_argument("-o", "--output", type=pathlib.Path,
-                        help="JSON of a run, page of a comparison, folder of --commits (all in build/bench by default)")
-    parser.add_argument("--quick", action="store_true", help="fewer benchmarks and rounds: under two minutes")
-    parser.add_argument("--filter", metavar="RE", help="benchmarks whose names match")
-    parser.add_argument("--repetitions", type=int, metavar="N", help="rounds, each a process: 12, with --quick 5")
-    parser.add_argument("--fail-on-regression", type=float, metavar="PCT",
-                        help="end with 2 if a benchmark is slower by as many per cent, or a picture another one")
+    what.add_argument("--compare", nargs=2, metavar=("A.json", "B.json"))
+    what.add_argument("--commits", nargs=2, metavar=("A", "B"))
+    what.add_argument("--write-docs", metavar="RUN.json")
+    parser.add_argument("-o", "--output", type=pathlib.Path)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--filter", metavar="RE")
+    parser.add_argument("--repetitions", type=int, metavar="N")
+    parser.add_argument("--fail-on-regression", type=float, metavar="PCT")
     return parser.parse_args()
 
 
@@ -37,14 +35,6 @@ def setting_of(options):
         raise SystemExit("--repetitions: one at least")
     base = session.QUICK if options.quick else session.Setting()
     return dataclasses.replace(base, **{k: v for k, v in chosen.items() if v is not None})
-
-
-def write(path, content):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(path.name + ".part")
-    beside.write_text(content, encoding="utf-8")
-    beside.replace(path)
-    print(f"Written: {path}")
 
 
 def run_one(options):

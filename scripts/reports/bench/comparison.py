@@ -1,54 +1,19 @@
 """Two runs side by side: which benchmarks take longer or shorter, and whether any picture is another one."""
 
-import dataclasses
-import math
-import statistics
+import numpy
+import pandas
+from scipy import special
 
-from . import student
 from .results import family
 
 # Chance that one or more of the benchmarks of two runs of the same program are marked; another such for the pictures.
 FALSE_ALARMS = 0.05
 
 
-@dataclasses.dataclass
-class TimeChange:
-    """Of one benchmark: CPU time of B over that of A, with a 95 % interval of its own."""
-    name: str
-    a: float
-    b: float
-    ratio: float
-    low: float
-    high: float
-    p: float  # adjusted for all benchmarks
-
-    @property
-    def mark(self):
-        if self.p >= FALSE_ALARMS:
-            return ""
-        return "slower" if self.ratio > 1 else "faster"
-
-
-@dataclasses.dataclass
-class FigureChange:
-    """Of a counter that does not hang on time, with its standard error in either run."""
-    name: str
-    counter: str
-    a: float
-    b: float
-    a_se: float
-    b_se: float
-    p: float  # adjusted for all figures
-
-    @property
-    def mark(self):
-        if self.a == self.b:
-            return "same"
-        return "changed" if self.p < FALSE_ALARMS else "within errors"
-
-
 class Comparison:
-    """`times` sorted from the slowest on; `figures` in the benchmarks' order."""
+    """`times`: of each benchmark name, a, b (CPU time), ratio of B over A with a 95 % interval of its own from low to high, p,
+    adjusted for all benchmarks, and mark; sorted from the slowest on. `figures`: of counters that do not hang on time name,
+    counter, a, b, a_se, b_se (standard errors), p, adjusted for all figures, and mark, in the benchmarks' order."""
 
     def __init__(self, a, b):
         self.a, self.b = a, b
@@ -59,52 +24,52 @@ class Comparison:
         self.only_b = [name for name in b.times if name not in a.times]
         if not self.names:
             raise SystemExit("the two runs have no benchmark in common")
-        self.times = sorted(self.compare_times(), key=lambda change: -change.ratio)
-        self.figures = self.compare_figures()
+        times = self.changes(a.times[self.names], b.times[self.names])
+        times["p"] = holm(times.p)
+        times["mark"] = numpy.where(times.p >= FALSE_ALARMS, "", numpy.where(times.ratio > 1, "slower", "faster"))
+        times = times.rename_axis("name").reset_index().sort_values("ratio", ascending=False, kind="stable")
+        self.times = list(times.itertuples(index=False))
+        self.figures = list(self.compare_figures().itertuples(index=False))
 
-    def compare_times(self):
-        tests = [self.test(self.a.times[name], self.b.times[name]) for name in self.names]
-        adjusted = student.holm([p for *_, p in tests])
-        return [TimeChange(name, geometric_mean(self.a.times[name]), geometric_mean(self.b.times[name]), *ratios, p)
-                for name, (*ratios, _), p in zip(self.names, tests, adjusted)]
+    def changes(self, a, b):
+        """Of each column: geometric means, B over A with the ends of its interval, and p, by Student's t on logarithms, of pairs
+        or as Welch has it. Of a single round nothing can be told."""
+        a, b = numpy.log(a), numpy.log(b)
+        gap, gaps = b.mean() - a.mean(), b - a
+        if self.paired:
+            gap, square, dof = gaps.mean().fillna(gap), gaps.var() / gaps.count(), gaps.count() - 1
+        else:
+            of_a, of_b = a.var() / a.count(), b.var() / b.count()
+            square = of_a + of_b
+            dof = square**2 / (of_a**2 / (a.count() - 1) + of_b**2 / (b.count() - 1))
+        error = square**0.5
+        reach = (special.stdtrit(dof, 0.975) * error).mask(error == 0, 0).fillna(numpy.inf)
+        p = pandas.Series(2 * special.stdtr(dof, -abs(gap) / error), gap.index).mask(error == 0, 1.0 * (gap == 0)).fillna(1)
+        return pandas.DataFrame({"a": numpy.exp(a.mean()), "b": numpy.exp(b.mean()), "ratio": numpy.exp(gap),
+                                 "low": numpy.exp(gap - reach), "high": numpy.exp(gap + reach), "p": p})
 
     def families(self):
-        """The changes of each family, and that of its geometric mean: ratio, low, high."""
+        """The changes of each family, and that of its geometric mean in each round that has them all."""
         members = {}
         for change in self.times:
             members.setdefault(family(change.name), []).append(change)
-        order = dict.fromkeys(map(family, self.names))
-        return {f: (members[f], self.test(*(run.mean_of([c.name for c in members[f]]) for run in (self.a, self.b)))[:3])
-                for f in order}
-
-    def test(self, a, b):
-        """B over A with the ends of its interval, and p. Of a single round nothing can be told."""
-        gap, reach, p = self.test_logarithms(a, b)
-        return *(math.exp(x) for x in (gap, gap - reach, gap + reach)), p
-
-    def test_logarithms(self, a, b):
-        common = sorted(a.keys() & b.keys())
-        enough = len(common) > 1 if self.paired else min(len(a), len(b)) > 1
-        if not enough:
-            return math.log(geometric_mean(b) / geometric_mean(a)), math.inf, 1.0
-        if self.paired:
-            gap, error, dof = student.paired(*([math.log(run[i]) for i in common] for run in (a, b)))
-        else:
-            gap, error, dof = student.unpaired(*([math.log(x) for x in run.values()] for run in (a, b)))
-        if error == 0:
-            return gap, 0.0, 1.0 if gap == 0 else 0.0
-        return gap, student.two_sided_quantile(0.05, dof) * error, student.two_sided_p(gap / error, dof)
+        means = [pandas.DataFrame({f: numpy.exp(numpy.log(run.times[[c.name for c in of_family]]).mean(axis=1, skipna=False))
+                                   for f, of_family in members.items()}) for run in (self.a, self.b)]
+        found = self.changes(*means)
+        return {f: (members[f], found.loc[f]) for f in dict.fromkeys(map(family, self.names))}
 
     def compare_figures(self):
-        found = []
+        rows = []
         for name in self.names:
-            a, b = self.a.counters.get(name, {}), self.b.counters.get(name, {})
-            for counter in a:
-                if counter in b and counter + "_se" in a and counter + "_se" in b:
-                    found.append(FigureChange(name, counter, *(settled(run[c]) for c in (counter, counter + "_se")
-                                                               for run in (a, b)), 1.0))
-        for change, p in zip(found, student.holm([difference_p(f) for f in found])):
-            change.p = p
+            a, b = (run.counters[name] for run in (self.a, self.b))
+            rows += [(name, c, *(settled(run[of]) for of in (c, f"{c}_se") for run in (a, b)))
+                     for c in a if {c, f"{c}_se"} <= {*b} and f"{c}_se" in a]
+        found = pandas.DataFrame(rows, columns=["name", "counter", "a", "b", "a_se", "b_se"]).astype(dict.fromkeys(
+            ("a", "b", "a_se", "b_se"), float))
+        # By a z-test. Renders from the same seeds hang together, and the errors are upper bounds: alarms are rarer yet.
+        gap, error = abs(found.b - found.a), numpy.hypot(found.a_se, found.b_se)
+        found["p"] = holm((2 * special.ndtr(-gap / error)).mask(gap == 0, 1))
+        found["mark"] = numpy.where(gap == 0, "same", numpy.where(found.p < FALSE_ALARMS, "changed", "within errors"))
         return found
 
     def slower(self, least=0.0):
@@ -118,21 +83,17 @@ class Comparison:
         return [f for f in self.figures if f.mark == "changed"]
 
 
-def geometric_mean(rounds):
-    return statistics.geometric_mean(rounds.values())
-
-
 def settled(rounds):
     """Pictures are the same in every round: their figures are, too."""
-    return next(iter(rounds.values()))
+    return rounds.iloc[0]
 
 
-def difference_p(figure):
-    """By a z-test. Renders from the same seeds hang together, and the errors are upper bounds: alarms are rarer yet."""
-    if figure.a == figure.b:
-        return 1.0
-    error = math.hypot(figure.a_se, figure.b_se)
-    return 2 * statistics.NormalDist().cdf(-abs(figure.b - figure.a) / error) if error > 0 else 0.0
+def holm(ps):
+    """p-values adjusted so that a level holds for all of them together (Holm 1979)."""
+    ps = numpy.asarray(ps, float)
+    order, adjusted = numpy.argsort(ps), numpy.empty(len(ps))
+    adjusted[order] = numpy.minimum(1, numpy.maximum.accumulate(ps[order] * numpy.arange(len(ps), 0, -1)))
+    return adjusted
 
 
 # What the figures depend on, by its name in the context.
@@ -171,7 +132,7 @@ def busy(label, context):
 
 def unsettled(label, run):
     names = sorted({name for name, counters in run.counters.items() for counter in counters
-                    if counter + "_se" in counters and len(set(counters[counter].values())) > 1})
+                    if counter + "_se" in counters and counters[counter].nunique() > 1})
     if not names:
         return []
     return [f"Renders of {label} differ from round to round, which those of one seed must not: {', '.join(names)}."]

@@ -4,10 +4,13 @@ import html as html_library
 import pathlib
 import re
 
+import numpy
+import pandas
+
 from tools import ROOT
 
 from . import plot
-from .comparison import FALSE_ALARMS, geometric_mean, warnings
+from .comparison import FALSE_ALARMS, warnings
 from .text import change, interval, seconds, verdict
 
 HERE = pathlib.Path(__file__).parent
@@ -20,19 +23,14 @@ def escape(value):
     return html_library.escape(str(value))
 
 
-def cell(content, kind="", tag="td"):
-    return f'<{tag} class="{kind}">{content}</{tag}>' if kind else f"<{tag}>{content}</{tag}>"
+def span(content, kind):
+    return f'<span class="{kind}">{content}</span>' if kind else content
 
 
-def heading(content, kind=""):
-    return cell(content, kind, "th")
-
-
-def table(head, rows, attributes=""):
-    """Headings are texts, or what `heading` makes; each row comes with its own attributes."""
-    headings = [h if h.startswith("<th") else heading(h) for h in head]
-    lines = [f"<tr{of_row}>{''.join(cells)}</tr>" for of_row, cells in rows]
-    return f"<table{attributes}><thead><tr>{''.join(headings)}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
+def table(head, rows, **more):
+    frame = pandas.DataFrame([list(map(str, row)) for row in rows], columns=head)
+    with pandas.option_context("display.max_colwidth", None):
+        return f'<div class="scroll">{frame.to_html(escape=False, index=False, border=0, **more)}</div>'
 
 
 def warning_list(comparison):
@@ -44,45 +42,39 @@ def runs(comparison):
     keys = {"commit": "Commit", "date": "Date", "machine": "Machine", "compiler": "Compiler", "compiler_flags": "Flags",
             "frond_version": "frond"}
     both = (comparison.a, comparison.b)
-    rows = [("", [cell(what), *(cell(escape(r.context.get(key, "unknown"))) for r in both)])
-            for key, what in keys.items()]
-    rows.append(("", [cell("Rounds"), *(cell(r.rounds) for r in both)]))
-    classes = ' class="runs"'
-    return f'<div class="scroll">{table(["", "A", "B"], rows, classes)}</div>'
+    rows = [[what, *(escape(r.context.get(key, "unknown")) for r in both)] for key, what in keys.items()]
+    return table(["", "A", "B"], [*rows, ["Rounds", *(r.rounds for r in both)]], classes="runs")
 
 
 def family_table(comparison):
     rows = []
-    for name, (changes, (ratio, low, high)) in comparison.families().items():
+    for name, (changes, mean) in comparison.families().items():
         marks = [c.mark for c in changes]
-        rows.append(("", [cell(escape(name)), cell(len(changes)), cell(marks.count("slower") or "-"),
-                          cell(marks.count("faster") or "-"), cell(change(ratio)), cell(interval(low, high)),
-                          cell(change(changes[-1].ratio)), cell(change(changes[0].ratio))]))
+        rows.append([escape(name), len(changes), marks.count("slower") or "-", marks.count("faster") or "-", change(mean.ratio),
+                     interval(mean.low, mean.high), change(changes[-1].ratio), change(changes[0].ratio)])
     return table(["family", "benchmarks", "▲ slower", "▼ faster", "mean change", "95 % interval", "from", "to"], rows)
 
 
 def time_table(comparison):
     axis = plot.Axis([c.ratio for c in comparison.times])
-    rows = [(f' data-name="{escape(c.name)}" data-mark="{c.mark}"',
-             [cell(SIGNS[c.mark], c.mark), cell(f"<code>{escape(c.name)}</code>"), cell(seconds(c.a)), cell(seconds(c.b)),
-              cell(change(c.ratio), c.mark), cell(interval(c.low, c.high)),
-              cell(axis.bar(c.low, c.ratio, c.high, c.mark), "plot")]) for c in comparison.times]
-    head = ["", "benchmark", "A", "B", "change", "95 % interval", heading(axis.labels(), "plot")]
-    return table(head, rows, ' id="times"')
+    rows = [[span(SIGNS[c.mark], c.mark), f"<code>{escape(c.name)}</code>", seconds(c.a), seconds(c.b),
+             span(change(c.ratio), c.mark), interval(c.low, c.high), axis.bar(c.low, c.ratio, c.high, c.mark)]
+            for c in comparison.times]
+    return table(["", "benchmark", "A", "B", "change", "95 % interval", axis.labels()], rows, table_id="times")
 
 
 def figure(change_of_figure, unit):
     """A counter of the pictures' errors in one cell."""
     a, b = (f"{x / unit:.3g}".replace("-", "−") for x in (change_of_figure.a, change_of_figure.b))
     if change_of_figure.mark == "same":
-        return cell(a, "same")
-    return cell(f"{a} → {b}", "changed" if change_of_figure.mark == "changed" else "")
+        return span(a, "same")
+    return span(f"{a} → {b}", "changed" if change_of_figure.mark == "changed" else "")
 
 
 def derived(comparison, name, counter, unit):
     """A counter that hangs on time: its change is the times'."""
-    a, b = (run.counters[name].get(counter) for run in (comparison.a, comparison.b))
-    return cell(" → ".join(f"{geometric_mean(x) / unit:.3g}" for x in (a, b)) if a and b else "-")
+    found = [run.counters[name].get(counter) for run in (comparison.a, comparison.b)]
+    return "-" if any(x is None for x in found) else " → ".join(f"{numpy.exp(numpy.log(x).mean()) / unit:.3g}" for x in found)
 
 
 # Of the counters, what stands over their columns and the unit there.
@@ -97,11 +89,9 @@ def scene_table(names, columns, content):
     rows = []
     for name in names:
         _, scene, leaf = name.split("/")
-        rows.append(("", [cell(escape(scene)), cell(f"<code>{escape(leaf)}</code>"),
-                          *(content(name, counter, unit) for counter, (_, unit) in columns.items())]))
-    head = ["scene", "leaf", *(words for words, _ in columns.values())]
-    classes = ' class="names"'
-    return f'<div class="scroll">{table(head, rows, classes)}</div>'
+        rows.append([escape(scene), f"<code>{escape(leaf)}</code>",
+                     *(content(name, counter, unit) for counter, (_, unit) in columns.items())])
+    return table(["scene", "leaf", *(words for words, _ in columns.values())], rows, classes="names")
 
 
 def scene_sections(comparison):

@@ -1,52 +1,37 @@
 """One run of the benchmarks, as Google Benchmark writes it, in several rounds: a process each."""
 
 import json
-import statistics
+
+import pandas
 
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 # What Google Benchmark itself says of a benchmark; all other numbers are counters of ours.
 FIELDS = {"family_index", "per_family_instance_index", "repetitions", "repetition_index", "threads", "iterations",
-          "real_time", "cpu_time", "items_per_second", "bytes_per_second", "round"}
+          "real_time", "cpu_time", "items_per_second", "bytes_per_second", "round", "seconds"}
 
 
 class Run:
-    """times[benchmark][round]: CPU seconds of an iteration, of the fastest repetition of a round, which the machine
-    disturbed least. counters[benchmark][counter][round]: the mean of a round."""
+    """`times[benchmark][round]`: CPU seconds of an iteration, of the fastest repetition of a round, which the machine
+    disturbed least. `counters[benchmark][counter][round]`: the mean of a round."""
 
     def __init__(self, document):
         self.context = document["context"]
-        self.times, self.counters = {}, {}
-        values = {}
-        for entry in document["benchmarks"]:
-            if entry.get("run_type", "iteration") != "iteration" or entry.get("error_occurred"):
-                continue
-            name, index = entry["name"], entry.get("round", entry.get("repetition_index", 0))
-            seconds = entry["cpu_time"] * SECONDS[entry["time_unit"]]
-            rounds = self.times.setdefault(name, {})
-            rounds[index] = min(seconds, rounds.get(index, seconds))
-            for counter, value in counters_of(entry):
-                values.setdefault((name, counter, index), []).append(value)
-        for (name, counter, index), all_of_round in values.items():
-            rounds = self.counters.setdefault(name, {}).setdefault(counter, {})
-            rounds[index] = sum(all_of_round) / len(all_of_round)
+        entries = pandas.DataFrame([
+            e | {"round": e.get("round", e.get("repetition_index", 0)), "seconds": e["cpu_time"] * SECONDS[e["time_unit"]]}
+            for e in document["benchmarks"] if e.get("run_type", "iteration") == "iteration" and not e.get("error_occurred")])
+        self.times = entries.pivot_table("seconds", "round", "name", "min")[list(entries["name"].unique())]
+        ours = [name for name in entries.select_dtypes("number") if name not in FIELDS]
+        means = entries.groupby(["name", "round"])[ours].mean()
+        self.counters = {name: means.loc[name].dropna(axis=1, how="all") if ours else pandas.DataFrame() for name in self.times}
 
     @property
     def label(self):
         return self.context.get("commit", "a commit that nobody noted")
 
-    def mean_of(self, names):
-        """As a benchmark of its own: the geometric mean of these in each round that has them all."""
-        common = set.intersection(*(set(self.times[name]) for name in names))
-        return {index: statistics.geometric_mean(self.times[name][index] for name in names) for index in common}
-
     @property
     def rounds(self):
-        return len({index for rounds in self.times.values() for index in rounds})
-
-
-def counters_of(entry):
-    return [(k, v) for k, v in entry.items() if k not in FIELDS and isinstance(v, (int, float))]
+        return len(self.times)
 
 
 def read(path):

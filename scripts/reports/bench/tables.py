@@ -1,11 +1,12 @@
 """A run's figures as tables in Markdown."""
 
 import math
-import statistics
+
+import numpy
+from scipy import stats
 
 from tools import table
 
-from . import student
 from .comparison import settled
 
 Z95 = 1.96
@@ -14,11 +15,11 @@ BEGIN, END = "<!-- figures: scripts/bench --write-docs -->", "<!-- end of figure
 
 def mean_and_reach(rounds, further=0.0):
     """Geometric mean and half of its 95 % interval: from how the rounds differ, and from a further relative error."""
-    logs = [math.log(x) for x in rounds.values()]
-    mean = math.exp(statistics.mean(logs))
+    logs = numpy.log(rounds.dropna())
+    mean = numpy.exp(logs.mean())
     if len(logs) < 2:
         return mean, math.nan
-    own = statistics.stdev(logs) / math.sqrt(len(logs)) * student.two_sided_quantile(0.05, len(logs) - 1)
+    own = stats.sem(logs) * stats.t.ppf(0.975, len(logs) - 1)
     return mean, mean * math.hypot(own, Z95 * further)
 
 

@@ -54,10 +54,10 @@ def summary(comparison):
              (", in turn" if comparison.paired else "")]
     lines += [f"  {w}" for w in warnings(comparison)]
     lines += ["", f"{'':14}{'benchmarks':>10}{'slower':>8}{'faster':>8}   mean change"]
-    for name, (changes, (ratio, low, high)) in comparison.families().items():
+    for name, (changes, mean) in comparison.families().items():
         marks = [c.mark for c in changes]
         lines.append(f"{name:14}{len(changes):10}{marks.count('slower'):8}{marks.count('faster'):8}   "
-                     f"{change(ratio)} ({interval(low, high)})")
+                     f"{change(mean.ratio)} ({interval(mean.low, mean.high)})")
     for word, changes in (("Slower", comparison.slower()), ("Faster", comparison.faster())):
         if changes:
             lines += ["", f"{word}, with 95 % intervals:"]

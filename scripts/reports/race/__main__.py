@@ -1,13 +1,13 @@
 """scripts/race"""
 
 import argparse
-import dataclasses
 import json
 import os
 import pathlib
 import platform
-import statistics
 import tempfile
+
+import numpy
 
 from tools import ROOT, machine
 
@@ -17,45 +17,29 @@ DOCUMENT = ROOT / "docs" / "race.md"
 FIGURES = ROOT / "build" / "race" / "figures.json"
 
 
-@dataclasses.dataclass
-class Setting:
-    size: int = 512
-    samples: int = 64  # a power of four: Mitsuba's ldsampler takes no other number
-    rounds: int = 5
-    threads: int = 1
-    filters: tuple = ("box", "gaussian")
-    leaves: tuple = tuple(scenes.LEAVES)
-
-
-QUICK = Setting(size=256, samples=16, rounds=2)
+FULL = {"size": 512, "samples": 64, "rounds": 5, "threads": 1, "filters": ["box", "gaussian"], "leaves": list(scenes.LEAVES)}
+QUICK = {"size": 256, "samples": 16, "rounds": 2}
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="scripts/race", description="Renders the same scenes with frond and others, in turn.")
-    parser.add_argument("--only", action="append", choices=list(scenes.SCENES), metavar="SCENE",
-                        help="this scene, may be given again: " + ", ".join(scenes.SCENES))
-    parser.add_argument("--quick", action="store_true", help="a first look: small pictures, two rounds, front and ambient")
-    parser.add_argument("--programs", metavar="WORD", action="append",
-                        help="frond and programs whose names hold this word; may be given again")
-    parser.add_argument("--leaves", choices=list(scenes.LEAVES), help="one of both kinds of leaves")
-    parser.add_argument("--filters", choices=["box", "gaussian"], help="one of both filters")
-    parser.add_argument("--rounds", type=int, metavar="N", help="renders of each kind, each with a seed of its own: 5")
-    parser.add_argument("--samples", type=int, metavar="N", help="per pixel, a power of four: 64")
-    parser.add_argument("--size", type=int, metavar="N", help="pixels along each side: 512")
-    parser.add_argument("--threads", type=int, metavar="N", help="of every program: 1")
-    parser.add_argument("--pbrt", metavar="PATH", help="pbrt-v4's program; the pbrt on the PATH by default")
-    parser.add_argument("--mitsuba", metavar="PYTHON", help="a Python that has mitsuba; that of build/race by default")
-    parser.add_argument("--no-docs", action="store_true", help="print the page, write none")
-    return parser.parse_args()
-
-
-def setting_of(options):
-    chosen = {name: getattr(options, name) for name in ("rounds", "samples", "size", "threads")}
-    chosen |= {name: (value,) if value else None for name in ("leaves", "filters") for value in [getattr(options, name)]}
-    setting = dataclasses.replace(QUICK if options.quick else Setting(), **{k: v for k, v in chosen.items() if v})
-    if setting.rounds < 2 or setting.samples not in [4**n for n in range(1, 9)]:
+    """What they do: scripts/race."""
+    parser = argparse.ArgumentParser(prog="scripts/race")
+    parser.add_argument("--only", action="append", choices=list(scenes.SCENES), metavar="SCENE")
+    parser.add_argument("--programs", metavar="WORD", action="append")
+    for name in ("filters", "leaves"):
+        parser.add_argument(f"--{name}", nargs=1, choices=FULL[name])
+    for name in ("size", "samples", "rounds", "threads"):
+        parser.add_argument(f"--{name}", type=int, metavar="N")
+    parser.add_argument("--pbrt", metavar="PATH")
+    parser.add_argument("--mitsuba", metavar="PYTHON")
+    for name in ("--quick", "--no-docs"):
+        parser.add_argument(name, action="store_true")
+    options = parser.parse_args()
+    for name, value in (FULL | (QUICK if options.quick else {})).items():
+        setattr(options, name, getattr(options, name) or value)
+    if options.rounds < 2 or options.samples not in [4**n for n in range(1, 9)]:  # Mitsuba's ldsampler takes no other number
         raise SystemExit("two rounds at least, and samples that are a power of four: 4, 16, 64, 256")
-    return setting
+    return options
 
 
 def race(name, leaf, running, setting, folder):
@@ -82,22 +66,18 @@ def race(name, leaf, running, setting, folder):
 
 
 def figures(program, reconstruction, base, costs, own, reference, setting):
-    paths = setting.size**2 * (setting.samples - 1)
-    cpu = [(cost.cpu - base.cpu) / paths * 1e6 for cost in costs]
-    wall = [(cost.wall - base.wall) / paths * 1e6 for cost in costs]
-    before, path = program.before(reconstruction), setting.size**2 / 1e6
+    pixels = setting.size**2
+    us = (numpy.array(costs) - base) / (pixels * (setting.samples - 1)) * 1e6  # a path, by round: CPU, wall
+    cpu, wall = program.before(reconstruction) + base - numpy.median(us, axis=0) * pixels / 1e6
     beside = pictures.difference(own, reference)
-    return {"program": program.name, "cpu": cpu, "wall": wall,
-            "set_up_cpu": before.cpu + base.cpu - statistics.median(cpu) * path,
-            "set_up_wall": before.wall + base.wall - statistics.median(wall) * path,
+    return {"program": program.name, "cpu": us[:, 0].tolist(), "wall": us[:, 1].tolist(), "set_up_cpu": cpu, "set_up_wall": wall,
             "mean": own.mean, "mean_error": own.mean_error,
             "variance": own.relative_variance, "variance_error": own.variance_error / own.mean**2,
             "difference": beside.mean, "difference_error": beside.error, "blocks": beside.blocks}
 
 
 def main():
-    options = arguments()
-    setting = setting_of(options)
+    setting = options = arguments()
     running, missing = programs.present(options.pbrt, options.mitsuba)
     for text in missing:
         print(f"Left out: {text}", flush=True)
@@ -118,7 +98,7 @@ def main():
                 for program in able:
                     program.close()
                 load = max(load, os.getloadavg()[0])
-        raced[name] = {"what": scenes.SCENES[name].__doc__, "load": load, "setting": dataclasses.asdict(setting),
+        raced[name] = {"what": scenes.SCENES[name].__doc__, "load": load, "setting": {key: getattr(setting, key) for key in FULL},
                        "results": results}
         if not options.no_docs:
             keep(raced)

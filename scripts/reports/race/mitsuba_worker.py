@@ -87,15 +87,14 @@ def shape_of(shape, materials):
     return made | {"type": "ply", "filename": p["filename"], "to_world": transform, "face_normals": True}
 
 
-def load(scene):
+def load(scene, leaf=None):
+    """The scene with its own leaves or with these."""
     two_sided = lambda value: {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": spectrum(value)}}
     reflectance, transmittance = scene["leaf"]
-    if transmittance:
+    if leaf is None and transmittance:
         mi.register_bsdf("diffuse_leaf", diffuse_leaf())
         leaf = {"type": "diffuse_leaf", "reflectance": reflectance, "transmittance": transmittance}
-    else:
-        leaf = two_sided(reflectance)
-    materials = {name: two_sided(value) for name, value in scene["grey"].items()} | {"leaf": leaf}
+    materials = {name: two_sided(value) for name, value in scene["grey"].items()} | {"leaf": leaf or two_sided(reflectance)}
     world = {"type": "scene", "integrator": {"type": "path", "max_depth": scene["depth"] + 1}}
     groups = {}
     for i, shape in enumerate(scene["shapes"]):

@@ -2,7 +2,7 @@
 
 import statistics
 
-from tools import table, thousands
+from tools import table
 
 from . import scenes
 from .programs import MOST_TRACED
@@ -103,6 +103,6 @@ def page(about, raced):
     reflectance, transmittance = scenes.LEAVES["leaf"]
     return PAGE.format(machine=about["machine"], system=about["system"], missing=missing, tables=tables,
                        versions="; ".join(v for v in about["versions"] if not v.startswith("frond")), depth=scenes.DEPTH,
-                       most_traced=thousands(MOST_TRACED), opaque=scenes.LEAVES["opaque"][0],
+                       most_traced=f"{MOST_TRACED:,}", opaque=scenes.LEAVES["opaque"][0],
                        reflectance=reflectance, transmittance=transmittance,
                        **scenes.GAUSSIAN)

@@ -1,13 +1,10 @@
-"""Pictures as rows of luminance, and what can be said of several that differ in their seeds alone."""
+"""Pictures as arrays of luminance, and what can be said of several that differ in their seeds alone."""
 
-import array
 import dataclasses
-import math
-import pathlib
-import re
-import statistics
 
-import exr
+import numpy
+
+import frond
 
 WEIGHTS = {"R": 0.2126, "G": 0.7152, "B": 0.0722}
 BORDER = 2  # pixels left out on each side: a filter that splats has fewer samples there
@@ -15,45 +12,20 @@ BLOCK = 16
 
 
 def read(path):
-    """Luminance, row by row from the top, of a PFM or of an EXR as frond writes it."""
-    data = pathlib.Path(path).read_bytes()
-    return read_pfm(data) if data[:2] == b"PF" else [luminance(row) for row in exr.read(data)]
-
-
-def read_pfm(data):
-    head = re.match(rb"PF\s+(\d+)\s+(\d+)\s+(\S+)\s", data)
-    width, height = int(head[1]), int(head[2])
-    values = array.array("f", data[head.end():])
-    if float(head[3]) > 0:
-        values.byteswap()
-    r, g, b = (values[i::3] for i in range(3))
-    gray = luminance({"R": r, "G": g, "B": b})
-    return [gray[y * width:(y + 1) * width] for y in reversed(range(height))]
-
-
-def luminance(channels):
-    r, g, b = (channels[n] for n in "RGB")
-    wr, wg, wb = (WEIGHTS[n] for n in "RGB")
-    return array.array("f", [wr * x + wg * y + wb * z for x, y, z in zip(r, g, b)])
-
-
-@dataclasses.dataclass
-class Block:
-    """Some pixels: mean over them, and its variance over seeds; mean of the pixels' variances."""
-    mean: float
-    mean_variance: float
-    pixel_variance: float
+    """Luminance `[row][column]`, rows from the top."""
+    names, pixels = frond.read_image(path)
+    return sum(weight * pixels[:, :, names.index(name)] for name, weight in WEIGHTS.items())
 
 
 @dataclasses.dataclass
 class Statistics:
-    """Of the pictures of several seeds."""
+    """Of the pictures of several seeds; blocks are some pixels each."""
     mean: float
     mean_error: float  # standard error, from the spread of each block between seeds
     variance: float  # of one picture's pixel, mean over pixels
-    variance_error: float  # standard error, from the spread over blocks of pixels
-    blocks: list
-    seeds: int
+    variance_error: float  # standard error, from the spread over blocks
+    block_means: numpy.ndarray
+    block_variances: numpy.ndarray  # of these means, over seeds
 
     @property
     def relative_variance(self):
@@ -61,20 +33,14 @@ class Statistics:
 
 
 def measure(pictures):
-    count = len(pictures)
-    height, width = len(pictures[0]), len(pictures[0][0])
-    blocks = []
-    for y in range(BORDER, height - BORDER - BLOCK + 1, BLOCK):
-        for x in range(BORDER, width - BORDER - BLOCK + 1, BLOCK):
-            parts = [[v for row in p[y:y + BLOCK] for v in row[x:x + BLOCK]] for p in pictures]
-            sums = [statistics.fmean(part) for part in parts]
-            total = list(map(sum, zip(*parts)))
-            squares = sum(v * v for part in parts for v in part)
-            within = (squares - sum(t * t for t in total) / count) / (count - 1) / BLOCK**2
-            blocks.append(Block(statistics.fmean(sums), statistics.variance(sums) / count, max(0, within)))
-    variances = [b.pixel_variance for b in blocks]
-    return Statistics(statistics.fmean(b.mean for b in blocks), math.sqrt(sum(b.mean_variance for b in blocks)) / len(blocks),
-                      statistics.fmean(variances), statistics.stdev(variances) / math.sqrt(len(blocks)), blocks, count)
+    pictures = numpy.asarray(pictures, float)
+    seeds, *size = pictures.shape
+    down, across = ((pixels - 2 * BORDER) // BLOCK for pixels in size)
+    blocks = pictures[:, BORDER:BORDER + down * BLOCK, BORDER:BORDER + across * BLOCK].reshape(seeds, down, BLOCK, across, BLOCK)
+    means = blocks.mean(axis=(2, 4))
+    mean_variances, variances = means.var(axis=0, ddof=1) / seeds, blocks.var(axis=0, ddof=1).mean(axis=(1, 3))
+    return Statistics(means.mean(), numpy.sqrt(mean_variances.sum()) / mean_variances.size, variances.mean(),
+                      variances.std(ddof=1) / numpy.sqrt(variances.size), means.mean(axis=0), mean_variances)
 
 
 @dataclasses.dataclass
@@ -86,6 +52,5 @@ class Difference:
 
 
 def difference(a, b):
-    square = statistics.fmean((x.mean - y.mean)**2 - x.mean_variance - y.mean_variance for x, y in zip(a.blocks, b.blocks))
-    return Difference(a.mean / b.mean - 1, math.hypot(a.mean_error, b.mean_error) / b.mean,
-                      math.sqrt(max(0, square)) / b.mean)
+    square = ((a.block_means - b.block_means)**2 - a.block_variances - b.block_variances).mean()
+    return Difference(a.mean / b.mean - 1, numpy.hypot(a.mean_error, b.mean_error) / b.mean, max(0, square)**0.5 / b.mean)

@@ -1,30 +1,25 @@
 """The programs of the race: how each renders a scene, and what CPU time that took."""
 
-import dataclasses
 import glob
 import json
 import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import time
 
-from tools import FROND, ROOT, run
+import numpy
+
+from tools import FROND, run
 
 from . import scenes
 
-VENV = ROOT / "build" / "race"
 MOST_TRACED = 10_000  # instances for Mitsuba's LLVM variants: with 100,000 the first picture is not there after five minutes
 
 
-@dataclasses.dataclass
-class Cost:
-    cpu: float  # seconds
-    wall: float
-
-
 def timed(words):
-    """What a program took as a whole."""
+    """CPU and wall time of a program as a whole, seconds."""
     start = time.perf_counter()
     with subprocess.Popen(list(map(str, words)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as program:
         text = program.stdout.read()
@@ -32,7 +27,7 @@ def timed(words):
         program.returncode = os.waitstatus_to_exitcode(status)
     if program.returncode != 0:
         raise SystemExit(f"{' '.join(map(str, words))}\n{text}")
-    return Cost(used.ru_utime + used.ru_stime, time.perf_counter() - start)
+    return numpy.array([used.ru_utime + used.ru_stime, time.perf_counter() - start])
 
 
 class Command:
@@ -55,7 +50,7 @@ class Command:
 
     def before(self, reconstruction):
         """What was done before the first of the renders that are measured."""
-        return Cost(0, 0)
+        return numpy.zeros(2)
 
     def can(self, scene, leaf):
         return True
@@ -125,7 +120,7 @@ class Mitsuba:
         for line in self.process.stdout:
             if line.startswith("{"):
                 took = json.loads(line)
-                return Cost(took["cpu"], took["wall"])
+                return numpy.array([took["cpu"], took["wall"]])
         raise SystemExit(f"{self.name} ended with {self.process.wait()}")
 
     def ask(self, reconstruction, samples, seed, out):
@@ -139,13 +134,13 @@ class Mitsuba:
         if (reconstruction, samples) in self.compiling:
             return self.ask(reconstruction, samples, seed, out)
         first, second = (self.ask(reconstruction, samples, seed, out) for _ in range(2))
-        self.compiling[reconstruction, samples] = Cost(first.cpu - second.cpu, first.wall - second.wall)
+        self.compiling[reconstruction, samples] = first - second
         return second
 
     def before(self, reconstruction):
         """Loading, and compiling once."""
-        cost = max((cost for (name, _), cost in self.compiling.items() if name == reconstruction), key=lambda cost: cost.cpu)
-        return Cost(self.loaded.cpu + max(0, cost.cpu), self.loaded.wall + max(0, cost.wall))
+        costs = [cost for (name, _), cost in self.compiling.items() if name == reconstruction]
+        return self.loaded + numpy.maximum(0, max(costs, key=lambda cost: cost[0]))
 
     def close(self):
         self.process.stdin.close()
@@ -161,7 +156,7 @@ def libllvm():
 def present(pbrt, python):
     """The programs that are there, and a word on each that is not."""
     programs, missing = [Frond("frond, three wavelengths", "smpte"), Frond("frond, hero wavelengths", "hero")], []
-    python = python or VENV / "bin" / "python"
+    python = python or sys.executable
     code = "import mitsuba; print(*mitsuba.variants())"
     done = subprocess.run([str(python), "-c", code], capture_output=True, text=True, check=False) \
         if pathlib.Path(python).exists() else None

@@ -4,13 +4,15 @@ A scene file is read into plain data, what the programs do not share is replaced
 again: for pbrt-v4 and frond in their format, for Mitsuba as JSON that mitsuba_worker.py loads.
 """
 
-import array
 import dataclasses
 import json
 import math
 import re
 
-from tools import ROOT, frond
+import numpy
+from scipy.spatial.transform import Rotation
+
+from tools import ROOT, program
 
 # Reflectance of what is no leaf; leaves: reflectance and transmittance. Grey, so that three wavelengths, colours and spectra
 # have the same picture.
@@ -19,14 +21,13 @@ LEAVES = {"opaque": (0.5, 0), "leaf": (0.45, 0.4)}
 DEPTH = 16  # scattering events
 GAUSSIAN = {"sigma": 0.5, "radius": 2}  # Mitsuba's, which has no other radius; frond's and pbrt-v4's is 1.5 where nothing is said
 MITSUBA_UNITS = 100  # a metre in its: its rays start 0.1 mm off a surface and more where lengths are small
-IDENTITY = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)  # matrices: row after row
 
 
 @dataclasses.dataclass
 class Shape:
     kind: str  # plymesh, trianglemesh, disk
     parameters: dict
-    to_world: tuple
+    to_world: numpy.ndarray  # 4 x 4
     material: str
     object: str = None  # which it is a part of
     reversed: bool = False
@@ -43,22 +44,14 @@ class Scene:
     sky: float = 0
 
 
-def product(a, b):
-    return tuple(sum(a[4 * i + k] * b[4 * k + j] for k in range(4)) for i in range(4) for j in range(4))
-
-
-def translation(x, y, z):
-    return (1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1)
+def affine(linear=numpy.eye(3), place=(0, 0, 0)):
+    matrix = numpy.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = linear, place
+    return matrix
 
 
 def rotation(degrees, *axis):
-    length = math.hypot(*axis)
-    x, y, z = (v / length for v in axis)
-    s, c = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
-    t = 1 - c
-    return (t * x * x + c, t * x * y - s * z, t * x * z + s * y, 0,
-            t * x * y + s * z, t * y * y + c, t * y * z - s * x, 0,
-            t * x * z - s * y, t * y * z + s * x, t * z * z + c, 0, 0, 0, 0, 1)
+    return affine(Rotation.from_rotvec(math.radians(degrees) * numpy.array(axis) / numpy.linalg.norm(axis)).as_matrix())
 
 
 def directives(path):
@@ -86,7 +79,7 @@ def directives(path):
 def read(path, folder):
     """The narrow part of the format that our scenes are written in; whatever else is there is an error."""
     scene, stack = Scene(), []
-    here = {"ctm": IDENTITY, "material": None, "reversed": False, "radiance": 0}
+    here = {"ctm": numpy.eye(4), "material": None, "reversed": False, "radiance": 0}
     current = None
 
     def follow(path):
@@ -95,7 +88,7 @@ def read(path, folder):
             if name in ("Film", "Sampler", "Integrator", "PixelFilter", "MakeNamedMaterial"):
                 continue
             if name == "WorldBegin":
-                here["ctm"] = IDENTITY
+                here["ctm"] = numpy.eye(4)
             elif name == "Scale" and plain == [-1, 1, 1] and not scene.camera:
                 continue  # right-handed space, as all our scenes
             elif name == "LookAt":
@@ -109,11 +102,11 @@ def read(path, folder):
             elif name == "AttributeEnd":
                 here = stack.pop()
             elif name == "Translate":
-                here["ctm"] = product(here["ctm"], translation(*plain))
+                here["ctm"] = here["ctm"] @ affine(place=plain)
             elif name == "Rotate":
-                here["ctm"] = product(here["ctm"], rotation(*plain))
+                here["ctm"] = here["ctm"] @ rotation(*plain)
             elif name == "Transform":
-                here["ctm"] = tuple(plain[4 * j + i] for i in range(4) for j in range(4))
+                here["ctm"] = numpy.reshape(plain, (4, 4)).T
             elif name == "ReverseOrientation":
                 here["reversed"] = not here["reversed"]
             elif name == "NamedMaterial":
@@ -147,14 +140,9 @@ def read(path, folder):
 
 def lamp(toward, distance, radius):
     """A disk that faces the origin, as bright as makes a white surface there have the value 1."""
-    length = math.hypot(*toward)
-    z = [-v / length for v in toward]
-    x = [z[1], -z[0], 0]
-    norm = math.hypot(*x)
-    x = [v / norm for v in x]
-    y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]]
-    place = [-distance * v for v in z]
-    matrix = tuple(v for i in range(3) for v in (x[i], y[i], z[i], place[i])) + (0, 0, 0, 1)
+    z = -numpy.array(toward) / numpy.linalg.norm(toward)
+    x = numpy.array([z[1], -z[0], 0]) / math.hypot(z[0], z[1])
+    matrix = affine(numpy.stack([x, numpy.cross(z, x), z], axis=1), -distance * z)
     return Shape("disk", {"radius": [radius]}, matrix, "backdrop", radiance=(distance**2 + radius**2) / radius**2)
 
 
@@ -190,26 +178,18 @@ def canopy(folder):
     """100,000 leaves of 2,000 triangles over soil, leaf area index 3, under the sun and an even sky."""
     side = math.sqrt(CANOPY_LEAVES * LEAF_AREA / 3)
     table = folder / "canopy.npy"
-    frond("canopy", "-q", "-o", table, "--count", CANOPY_LEAVES, "--scale", 1, "--leaf-area", LEAF_AREA, "--size", f"{side},{side}",
-          "--heights", "0.05,2", "--seed", 1)
+    program("canopy", "-q", "-o", table, "--count", CANOPY_LEAVES, "--scale", 1, "--leaf-area", LEAF_AREA, "--size", f"{side},{side}",
+            "--heights", "0.05,2", "--seed", 1)
+    leaves = numpy.tile(numpy.eye(4), (CANOPY_LEAVES, 1, 1))
+    leaves[:, :3] = numpy.load(table)["transform"]
     middle, mesh = side / 2, without_normals(ROOT / "scenes/meshes/leaflet-speed.ply", folder)
     return Scene(
         camera={"look": [[middle, middle - 4, 5], [middle, middle, 1], [0, 0, 1]], "fov": 40},
-        shapes=[Shape("plymesh", {"filename": mesh}, IDENTITY, "leaf", "leaf"),
+        shapes=[Shape("plymesh", {"filename": mesh}, numpy.eye(4), "leaf", "leaf"),
                 Shape("trianglemesh", {"indices": [0, 1, 2, 0, 2, 3],
-                                       "P": [0, 0, 0, side, 0, 0, side, side, 0, 0, side, 0]}, IDENTITY, "soil")],
-        instances=[("leaf", matrix) for matrix in rows_of(table)], table=("leaf", str(table)),
+                                       "P": [0, 0, 0, side, 0, 0, side, side, 0, 0, side, 0]}, numpy.eye(4), "soil")],
+        instances=[("leaf", matrix) for matrix in leaves], table=("leaf", str(table)),
         distant=[((-0.5, 0, 0.8660254), 3)], sky=0.17)
-
-
-def rows_of(path):
-    """The matrices of a table without columns of its own."""
-    data = path.read_bytes()
-    start = 10 + int.from_bytes(data[8:10], "little")
-    if data[6] != 1 or not re.search(rb"\[\('transform', '<f4', \(3, 4,? *\)\),? *\]", data[10:start]):
-        raise SystemExit(f"{path}: the race cannot read this table: {data[10:start]}")
-    values = array.array("f", data[start:])
-    return [tuple(values[i:i + 12]) + (0, 0, 0, 1) for i in range(0, len(values), 12)]
 
 
 SCENES = {"front": hundred_front, "ambient": hundred_ambient, "soybean-front": soybean("front"),
@@ -217,7 +197,7 @@ SCENES = {"front": hundred_front, "ambient": hundred_ambient, "soybean-front": s
 
 
 def numbers(values):
-    return " ".join(f"{v:.9g}" for v in values)
+    return " ".join(f"{v:.9g}" for v in numpy.ravel(values))
 
 
 def without_normals(path, folder):
@@ -228,14 +208,11 @@ def without_normals(path, folder):
     first = next(i for i, line in enumerate(lines) if line.startswith("element vertex"))
     last = next(i for i, line in enumerate(lines) if line.startswith("element face"))
     names = [line.removeprefix("property float ") for line in lines[first + 1:last]]
-    values = array.array("f", body[:4 * len(names) * int(lines[first].split()[2])])
-    kept = [i for i, name in enumerate(names) if name not in ("nx", "ny", "nz")]
-    out = array.array("f", bytes(4 * len(kept) * (len(values) // len(names))))
-    for to, source in enumerate(kept):
-        out[to::len(kept)] = values[source::len(names)]
+    values = numpy.frombuffer(body, "<f4", len(names) * int(lines[first].split()[2])).reshape(-1, len(names))
+    out = values[:, [name not in ("nx", "ny", "nz") for name in names]]
     lines = [line for line in lines if line not in ("property float nx", "property float ny", "property float nz")]
     copy = folder / path.name
-    copy.write_bytes("\n".join(lines + ["end_header", ""]).encode("ascii") + out.tobytes() + body[4 * len(values):])
+    copy.write_bytes("\n".join(lines + ["end_header", ""]).encode("ascii") + out.tobytes() + body[values.nbytes:])
     return str(copy)
 
 
@@ -245,7 +222,6 @@ def grey(value):
 
 def write_pbrt(scene, path, leaf, box, size, tables=False):
     """For pbrt-v4 and frond; with `tables` instances are named as frond's table."""
-    transposed = lambda m: numbers(m[4 * j + i] for i in range(4) for j in range(4))
     white = '"spectrum L" "stdillum-D65"'
     lines = ["Scale -1 1 1", "LookAt " + " ".join(map(numbers, scene.camera["look"])),
              f'Camera "perspective" "float fov" {scene.camera["fov"]}',
@@ -266,7 +242,7 @@ def write_pbrt(scene, path, leaf, box, size, tables=False):
     lines.append(f'MakeNamedMaterial "leaf" "string type" {kind} "spectrum reflectance" {grey(reflectance)}')
     for shape in scene.shapes:
         lines.append(f'ObjectBegin "{shape.object}"' if shape.object else "AttributeBegin")
-        lines.append(f"Transform [ {transposed(shape.to_world)} ]")
+        lines.append(f"Transform [ {numbers(shape.to_world.T)} ]")
         lines.append(f'NamedMaterial "{shape.material}"')
         if shape.reversed:
             lines.append("ReverseOrientation")
@@ -282,7 +258,7 @@ def write_pbrt(scene, path, leaf, box, size, tables=False):
         lines.append('Shape "instances" "string object" "{}" "string filename" "{}"'.format(*scene.table))
     else:
         for name, matrix in scene.instances:
-            lines.append(f'AttributeBegin Transform [ {transposed(matrix)} ] ObjectInstance "{name}" AttributeEnd')
+            lines.append(f'AttributeBegin Transform [ {numbers(matrix.T)} ] ObjectInstance "{name}" AttributeEnd')
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -290,8 +266,8 @@ def write_ply(path, indices, points):
     """A mesh as text: Mitsuba loads meshes from files."""
     lines = ["ply", "format ascii 1.0", f"element vertex {len(points) // 3}", "property float x", "property float y",
              "property float z", f"element face {len(indices) // 3}", "property list uchar int vertex_indices", "end_header"]
-    lines += [numbers(points[i:i + 3]) for i in range(0, len(points), 3)]
-    lines += ["3 " + numbers(indices[i:i + 3]) for i in range(0, len(indices), 3)]
+    lines += map(numbers, numpy.reshape(points, (-1, 3)))
+    lines += ["3 " + numbers(triangle) for triangle in numpy.reshape(indices, (-1, 3))]
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
 
 
@@ -299,15 +275,15 @@ def write_json(scene, path, leaf, size):
     """For mitsuba_worker.py."""
     document = dataclasses.asdict(scene) | {"grey": GREY, "leaf": LEAVES[leaf], "depth": DEPTH, "size": size,
                                             "gaussian": GAUSSIAN}
-    larger = (MITSUBA_UNITS, 0, 0, 0, 0, MITSUBA_UNITS, 0, 0, 0, 0, MITSUBA_UNITS, 0, 0, 0, 0, 1)
+    larger = affine(MITSUBA_UNITS * numpy.eye(3))
     place, target, up = scene.camera["look"]
     document["camera"] = scene.camera | {"look": [[MITSUBA_UNITS * v for v in place], [MITSUBA_UNITS * v for v in target], up]}
-    document["instances"] = [(name, product(larger, matrix)) for name, matrix in scene.instances]
+    document["instances"] = [(name, larger @ matrix) for name, matrix in scene.instances]
     for i, shape in enumerate(document["shapes"]):
         if not shape["object"]:
-            shape["to_world"] = product(larger, shape["to_world"])
+            shape["to_world"] = larger @ shape["to_world"]
         if shape["kind"] == "trianglemesh":
             mesh = path.with_name(f"{path.stem}-{i}.ply")
             write_ply(mesh, shape["parameters"]["indices"], shape["parameters"]["P"])
             shape |= {"kind": "plymesh", "parameters": {"filename": str(mesh)}}
-    path.write_text(json.dumps(document), encoding="utf-8")
+    path.write_text(json.dumps(document, default=lambda matrix: matrix.ravel().tolist()), encoding="utf-8")

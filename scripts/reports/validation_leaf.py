@@ -1,0 +1,279 @@
+"""Spectra, tables and walks of the leaf models, and what they get wrong: parts of docs/validation.md."""
+
+import io
+
+import numpy
+import pandas
+
+import charts
+import frond
+from tools import ROOT, frond_table, program_csv, rms, table
+from validation_report import LEAVES, RGB
+
+
+def spectrum(leaf, sieve):
+    """R and T of both sides at 8 degrees, by angle and wavelength."""
+    found = program_csv("table", "--specimen", leaf, f"sieve={'true' if sieve else 'false'}", "--wavelengths", "400:2500:10",
+                        "--angles", "8,172", "-q", "-o", "-").set_index(["theta_deg", "wavelength_nm"]).sort_index()
+    return found.assign(R=found.Rs + found.Rd)[["R", "T"]]
+
+
+def measured_leaf():
+    """LOPEX93, mean and range of five soybean leaves, by wavelength."""
+    return pandas.read_csv(ROOT / "tests" / "reference" / "lopex93_soybean.csv", comment="#").set_index("wavelength_nm")
+
+
+def spectra(report):
+    report.add(f"""
+## Spectra, 400 to 2500 nm
+
+Reflectance R and transmittance T at 8° from the normal, solved at every 10 nm with the optical constants of Baranoski
+(2006). R is drawn from below, T from above: what lies between the curves is absorbed. Grey: the mean and the range of
+five soybean leaves (LOPEX93, Hosgood et al. 1994), which have their own thickness and chemistry; no parameter of the
+model was fitted to them. "Sieve" is the later form of Beer's law (Baranoski and Eng 2007).
+""")
+    lopex = measured_leaf()
+    figures = []
+    for leaf in LEAVES:
+        curves = {sieve: spectrum(leaf, sieve) for sieve in (False, True)}
+        draw_spectra(report, leaf, curves, lopex)
+        for sieve, curve in curves.items():
+            if leaf != "soybean":
+                continue
+            for theta, side in ((8, "adaxial"), (172, "abaxial")):
+                off = curve.loc[theta].join(lopex, how="right")
+                cells = [leaf, side, "on" if sieve else "off"]
+                for low, high in ((400, 700), (700, 1300), (1300, 2500)):
+                    cells += [f"{rms(off[name].loc[low:high] - off[f'{name}_mean'].loc[low:high]):.3f}" for name in "RT"]
+                figures.append(cells)
+    report.add("RMS difference from the measured soybean leaves, by band:\n")
+    report.add(table(["leaf", "side", "sieve", "R 400-700", "T 400-700", "R 700-1300", "T 700-1300", "R 1300-2500",
+                      "T 1300-2500"], figures))
+
+
+def draw_spectra(report, leaf, curves, lopex):
+    of, [[panel]] = charts.figure(900, 660)
+    if leaf == "soybean":
+        panel.fill_between(lopex.index, lopex.R_min, lopex.R_max, color="#d0d0d0", label="LOPEX93 soybean, range")
+        panel.fill_between(lopex.index, 1 - lopex.T_max, 1 - lopex.T_min, color="#d0d0d0")
+        panel.plot(lopex.index, lopex.R_mean, color="#808080", label="LOPEX93 soybean, mean")
+        panel.plot(lopex.index, 1 - lopex.T_mean, color="#808080")
+    for sieve, curve in curves.items():
+        for color, theta, side in zip(charts.COLORS[1:], (8, 172), ("adaxial", "abaxial")):
+            at = curve.loc[theta]
+            style = {"color": color, "linestyle": "--" if sieve else "-"}
+            panel.plot(at.index, at.R, label=side + (", sieve" if sieve else ""), **style)
+            panel.plot(at.index, 1 - at["T"], **style)
+    panel.set(title=f"{leaf}, light at 8°", xlabel="wavelength (nm)", ylabel="reflectance R", xlim=(400, 2500), ylim=(0, 1))
+    panel.secondary_yaxis("right", functions=(lambda y: 1 - y, lambda y: 1 - y)).set_ylabel("transmittance T")
+    charts.legend(of, panel, 3)
+    report.chart(f"spectra-{leaf}", f"R and 1 - T of {leaf}", of)
+
+
+TABLE_ANGLES = "0:90:15,105:180:15"
+
+
+def timed_table(leaf, *options):
+    """Rd and T of a table, and the CPU time that it took without starting the program."""
+    text, seconds, _ = frond_table("--specimen", leaf, "--wavelengths", "608,551,455", "--angles", TABLE_ANGLES, "--threads", "1",
+                                   *options)
+    return pandas.read_csv(io.StringIO(text), comment="#").set_index(["theta_deg", "wavelength_nm"])[["Rd", "T"]], seconds
+
+
+def tables(report):
+    report.add("""
+## The table: solved against sampled
+
+Rd and T by both methods, at 13 angles of incidence on both sides and 608, 551 and 455 nm. The reference is the
+solution with 40 nodes a segment. Monte Carlo is the paper's: analog walks, here by the batched kernel.
+""")
+    body, (of, [[panel]]) = [], charts.figure(900, 580)
+    for color, leaf in zip(charts.COLORS[1:], LEAVES):
+        exact, _ = timed_table(leaf, "--method", "solve", "--nodes", 40)
+        ways = {"Monte Carlo": [(f"Monte Carlo, {rays:.0e} rays", "--method", "montecarlo", "--rays", f"{rays:.0e}")
+                                for rays in ((1e3, 1e4, 1e5) if report.quick else (1e3, 1e4, 1e5, 1e6, 1e7))],
+                "solved": [(f"solve, {nodes} nodes", "--method", "solve", "--nodes", nodes) for nodes in (3, 4, 6, 8, 12, 16, 24)]}
+        for line, (way, methods) in zip(("o-", "s--"), ways.items()):
+            points = []
+            for name, *options in methods:
+                values, seconds = timed_table(leaf, *options)
+                off = values - exact
+                points.append((seconds, rms(off)))
+                body.append([leaf, name, f"{seconds:.3g}", f"{rms(off):.1e}", f"{abs(off).max(axis=None):.1e}"])
+            panel.loglog(*zip(*points), line, color=color, label=f"{leaf}, {way}")
+    panel.set(title="Table of 13 angles, three wavelengths", xlabel="CPU time (s)", ylabel="RMS error of Rd and T", ylim=(1e-11, 0.1))
+    charts.legend(of, panel, 4)
+    report.chart("table-error", "Error of the table against CPU time", of)
+    report.add(table(["leaf", "method", "CPU s", "RMS error", "largest"], body))
+
+
+class Modes:
+    """What `frond table leaf_solved` writes: cells and, by wavelength, index and modes `[side][way][m][sin i][sin o]`."""
+
+    def __init__(self, leaf, nm, *options):
+        text, self.seconds, said = frond_table("leaf_solved", f"specimen={leaf}", "--wavelengths", nm, "--threads", 1, *options)
+        self.kilobytes = int(said.split(" kB in a render")[0].split()[-1])
+        lines = [line for line in text.splitlines() if not line.startswith("#")]
+        self.cells, at, self.columns = int(lines[0].split()[1]), 2, []
+        while at < len(lines):
+            index, series, at = float(lines[at].split()[3]), [], at + 1
+            for _ in range(4):
+                count, first = int(lines[at].split()[3]), at + 1
+                at = first + count * (self.cells + 2)
+                series.append(numpy.loadtxt(lines[first:at], ndmin=2).reshape(count, self.cells + 2, self.cells + 2))
+            self.columns.append((index, series))
+
+    def counts(self):
+        """Most modes that light takes that comes back, and that crosses."""
+        return [max(len(series[k]) for _, series in self.columns for k in ways) for ways in ((0, 2), (1, 3))]
+
+
+def passage(sine, index):
+    """1 - F and the cosine inside, of directions outside."""
+    mu, inside = numpy.sqrt(1 - sine**2), numpy.sqrt(1 - (sine / index) ** 2)
+    s, p = (mu - index * inside) / (mu + index * inside), (index * mu - inside) / (index * mu + inside)
+    return 1 - (s * s + p * p) / 2, inside
+
+
+def largest_between(a, b):
+    """Largest difference of pi f at the grid's nodes, over azimuths."""
+    largest, nodes = 0, a.cells + 1
+    for (index, first), (_, second) in zip(a.columns, b.columns):
+        through, inside = passage(numpy.arange(nodes) / a.cells, index)
+        scale = numpy.pi * numpy.outer(through, through / inside)
+        for x, y in zip(first, second):
+            difference = numpy.zeros((max(len(x), len(y)), nodes, nodes))
+            difference[:len(x)] += x[:, :nodes, :nodes]
+            difference[:len(y)] -= y[:, :nodes, :nodes]
+            cosines = numpy.cos(numpy.outer(numpy.arange(9) * numpy.pi / 8, numpy.arange(len(difference))))
+            largest = max(largest, abs(numpy.tensordot(cosines, difference, 1) * scale).max())
+    return largest
+
+
+def small_patches(leaf, tolerance, step):
+    """f over patches of 2 by 10 degrees, light at every `step` degrees on both sides."""
+    angles = [*range(0, 89, step), *range(92, 181, step)]
+    return frond.goniophotometer(f"leaf_solved specimen={leaf} tolerance={tolerance}", RGB, angles, patches=(90, 36),
+                                 integrate=True)["f"]
+
+
+def modes(report):
+    nodes_body, tolerance_body = [], []
+    step = 44 if report.quick else 8
+    for leaf in LEAVES:
+        for nm in (455, 551, 800):
+            finest = Modes(leaf, nm, "tolerance=1e-5", "--nodes", 24)
+            cells = []
+            for nodes in (3, 4, 5, 6, 8, 12):
+                some = Modes(leaf, nm, "tolerance=1e-5", "--nodes", nodes)
+                cells.append(f"{largest_between(some, finest):.0e}, {1000 * some.seconds:.0f} ms")
+            nodes_body.append([f"{leaf}, {nm}"] + cells)
+        exact = small_patches(leaf, 1e-5, step)
+        for tolerance in (1e-1, 1e-2, 2e-3, 5e-4, 1e-4):
+            table_of = Modes(leaf, "608,551,455", f"tolerance={tolerance}")
+            off = numpy.pi * (small_patches(leaf, tolerance, step) - exact)
+            back, across = table_of.counts()
+            tolerance_body.append([leaf, f"{tolerance:g}", table_of.cells, f"{back}, {across}", f"{table_of.seconds:.2g}",
+                                   table_of.kilobytes, f"{abs(off).max():.1e}", f"{rms(off):.1e}"])
+    report.add("""
+## The table of modes: error against nodes, cells, modes and time
+
+Of `leaf_solved` (docs/solved_leaf.md); errors are of pi f, which is 1 for white paper; times are CPU times of one core. By
+the solver's nodes a segment (`frond table leaf_solved --nodes`), the largest difference from 24 nodes over all angles and
+azimuths, and the time for one wavelength at a tolerance of 1e-5; five nodes are the default here:
+""")
+    report.add(table(["leaf, nm", "3 nodes", "4", "5", "6", "8", "12"], nodes_body))
+    report.add(f"""
+By `"float tolerance"`, at 608, 551 and 455 nm, the difference from a tolerance of 1e-5 over patches of 2° by 10° all around,
+light at every {step}° on both sides; modes are those of light that comes back and of light that crosses:
+""")
+    report.add(table(["leaf", "tolerance", "cells", "modes", "CPU s", "kB in a render", "largest error", "RMS error"],
+                     tolerance_body))
+
+
+def readings(material, angles, wavelengths, rays, **options):
+    found = frond.spectrophotometer(material, wavelengths, angles, rays=int(float(rays)), **options)
+    return found.set_index(["theta_deg", "wavelength_nm"])
+
+
+def walks(report):
+    rays = report.rays(1e7)
+    body = []
+    for leaf in LEAVES:
+        measured = [readings(f"abm specimen={leaf} mode={mode}", (0, 30, 60, 85, 120, 180), (455, 551, 608, 800), rays)
+                    for mode in ("analog", "weighted")]
+        (a, a_se), (b, b_se) = ((found[["R", "T"]].to_numpy(), found[["R_se", "T_se"]].to_numpy()) for found in measured)
+        z = (a - b) / numpy.hypot(a_se, b_se)
+        body.append([f"{leaf}: weighted against analog absorption, R and T", f"{rays} rays each", z.size, f"{(z**2).sum():.0f}",
+                     f"{abs(z).max():.1f}"])
+    # The test's own figures, with more rays.
+    body += [[f"{case['leaf']}: hero walks, {case['absorption']}, light at {case['theta_deg']}°", f"{float(case['rays']):.0e} rays each",
+              case["comparisons"], f"{float(case['chi_square']):.0f}", f"{float(case['largest']):.1f}"]
+             for case in report.cases_of("test_leaf", "*SpectralWalk.Fills*", FROND_HERO_RAYS="1e5" if report.quick else "3e6")]
+    report.add("""
+## Walks against walks
+
+Each row compares two ways to the same figures: the sum of squared differences in standard errors should be near the
+number of comparisons (its own standard deviation is the root of twice that number).
+
+Hero wavelengths: four wavelengths whose indices differ far more than any leaf's (cuticle 1.3 to 1.7) on one walk, in
+detectors all over the sphere, against walks of one wavelength; "wide" is soybean with lobes of exponent 0.
+""")
+    report.add(table(["comparison", "effort", "comparisons", "chi-square", "largest, in standard errors"], body))
+
+
+def f_against_sample(report):
+    body = []
+    samples = report.rays(1e6).replace("e+0", "e")
+    for material in ("abm", "abm mode=weighted", "abm specimen=maize", "abm incident=light", "leaf_solved",
+                     "leaf_solved specimen=maize", "leaf_solved incident=light", "leaf_simplified",
+                     "leaf_simplified incident=light", "diffusetransmission"):
+        for name, law in frond.conform(material, samples=int(float(samples)))["laws"].items():
+            if name in ("sampling", "unbiasedness", "energy") and "worst_p" in law:
+                body.append([f"`{material}`", name, law["tests"], f"{law['worst_p']:.2g}", law["verdict"]])
+    report.add(f"""
+## `f` against `sample`
+
+The laws of `frond conform`, {samples} samples for each direction of incidence (0, 30, 60, 80, 89° on both sides), at
+608, 551 and 455 nm. *Unbiasedness*: in every bin of the sphere the mean weight of `sample` is the integral of `f` times
+the cosine. *Sampling*: directions are distributed as `pdf`. *Energy*: no more comes out than went in. The p-value is
+the smallest of so many tests: about one over their number is what chance gives.
+""")
+    report.add(table(["material", "law", "tests", "smallest p", ""], body))
+
+
+def black_leaf(*numbers):
+    """R of both sides of a soybean whose mesophyll takes all light, at 450 nm: (adaxial, abaxial)."""
+    found = program_csv("table", "--specimen", "soybean", "otherabsorption=1e5", *numbers, "--wavelengths", "450", "--angles",
+                        "8,172", "-q", "-o", "-").set_index("theta_deg")
+    return (found.Rs + found.Rd)[[8, 172]].to_numpy()
+
+
+def weaknesses(report):
+    lopex = measured_leaf()
+    plain, sieve = spectrum("soybean", False), spectrum("soybean", True)
+    black = black_leaf()
+    report.add(f"""
+## What the models get wrong
+
+- **Blue from below.** The abaxial side reflects {plain.R[172, 450]:.3f} at 450 nm; the measured adaxial sides
+  {lopex.R_mean[450]:.3f} (LOPEX93 has no abaxial ones). A ray that enters from below meets
+  the air space behind the epidermis, which reflects it before any pigment does, whatever the wavelength: a soybean
+  whose mesophyll takes all light still reflects {black[1]:.3f} from below, and {black[0]:.3f} from above. Of the
+  parameters only `epidermisaspect` moves that: {black_leaf('spongyaspect=20')[1]:.3f} with `spongyaspect` 20,
+  {black_leaf('epidermisaspect=20')[1]:.3f} with `epidermisaspect` 20, {black_leaf('epidermisaspect=1')[1]:.3f} with 1.
+  The model has no abaxial side that is dark in the blue as the measured adaxial one is; the order of its tissues, which
+  is the authors', is the reason. Maize has mesophyll on both sides of its air space, and is dark from below.
+- **No sieve effect, no detours in plain Beer's law.** Pigments stand in chloroplasts, not spread evenly, and light goes
+  round about between cells. The switch puts cos(cos θ) in place of cos θ: a formula that fits, not a path length. Steep
+  ways then absorb more and flat ones less. For soybean lit from above it comes nearer to the measured leaves at most
+  wavelengths: R at 800 nm is {plain.R[8, 800]:.3f} without and {sieve.R[8, 800]:.3f} with it (measured
+  {lopex.R_mean[800]:.3f}), T at 680 nm {plain['T'][8, 680]:.3f} and {sieve['T'][8, 680]:.3f}
+  ({lopex.T_mean[680]:.3f}). The green peak stays too low: R at 550 nm {plain.R[8, 550]:.3f} and
+  {sieve.R[8, 550]:.3f} ({lopex.R_mean[550]:.3f}).
+- **One tissue.** No veins, no hairs, no wax bloom; the leaf is the same from place to place unless textures say so.
+- **leaf_simplified** has the walk's R and T at every angle, but a cosine's shape for all that has been inside: the walk's
+  leans forward and falls off toward grazing, as Figures 1 and 4 show.
+- **Polarisation** is left out: Fresnel's formulas are for unpolarised light at every interface.
+- **Neither is reciprocal**, see above.
+""")
