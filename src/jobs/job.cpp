@@ -177,7 +177,8 @@ std::string material_text(const std::vector<std::string>& words, const Log& log)
     auto parts = split(word, ' ');
     std::erase(parts, "");
     // "abm specimen=maize" is a name and its parameters; a blank elsewhere is part of a value, such as a file's path.
-    const bool is_split = parts.size() > 1 && parts[0].find_first_of("=,") == std::string::npos && is_parameter(parts[1]);
+    const bool is_split =
+        parts.size() > 1 && parts[0].find_first_of("=,") == std::string::npos && is_parameter(parts[1]);
     if (!is_split) parts = {word};
     is_old = is_old || is_split;
     for (size_t i = 0; i < parts.size(); ++i)
