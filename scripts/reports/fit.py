@@ -1,5 +1,6 @@
 """Measured leaves by frond fit and by PROSPECT-D: docs/fit.md."""
 
+import json
 import os
 import time
 from importlib.metadata import version
@@ -13,7 +14,7 @@ import scipy.optimize
 
 import charts
 import frond
-from tools import ROOT, arguments, cpu_seconds, machine, program_csv, program_json, rms, table, write
+from tools import FROND, ROOT, Use, arguments, machine, program_csv, rms, table, write
 
 REFERENCE = ROOT / "tests" / "reference"
 
@@ -94,7 +95,8 @@ def leaves():
 def by_frond(name):
     """What the program finds, and its CPU time."""
     words = ["lopex93_soybean.csv"] if name == "soybean" else ["leaf_spectra.csv", "--leaf", name]
-    return cpu_seconds(lambda: program_json("fit", REFERENCE / words[0], *words[1:], "--json", "-", "-q", "--threads", 1))
+    use = Use(FROND, "fit", REFERENCE / words[0], *words[1:], "--json", "-", "-q", "--threads", 1)
+    return json.loads(use.output), use.cpu
 
 
 def draw(path, name, fitted):

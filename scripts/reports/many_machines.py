@@ -6,13 +6,12 @@ less than the clock."""
 import json
 import os
 import pathlib
-import subprocess
 import tempfile
 from statistics import mean, median
 
 import numpy
 
-from tools import FROND, ROOT, arguments, machine, run, sized, table
+from tools import FROND, ROOT, Use, arguments, machine, run, sized, table
 
 SCENE = ROOT / "scenes" / "hundred-leaves" / "scene.pbrt"
 WIDTH, HEIGHT = 1920, 1080
@@ -23,24 +22,12 @@ SAMPLES = 4  # of a part
 LARGE_WIDTH, LARGE_HEIGHT, LARGE_SAMPLES, NODES = 3840, 2160, 4096, 1000
 
 
-class Use:
-    """Output, CPU seconds and memory of frond run by itself, so that the kernel tells its own use."""
-
-    def __init__(self, *words):
-        with tempfile.TemporaryFile() as output:
-            process = subprocess.Popen([str(FROND), *map(str, words)], stdout=output,
-                                       env={**os.environ, "SOURCE_DATE_EPOCH": "0"})
-            _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-            if process.returncode != 0:
-                raise SystemExit(f"frond {' '.join(map(str, words))} ended with {process.returncode}")
-            output.seek(0)
-            self.output = output.read().decode()
-        self.cpu, self.megabytes = usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+def use(*words):
+    return Use(FROND, *words)
 
 
 def median_cpu(*words, runs=5):
-    return median(Use(*words).cpu for _ in range(runs))
+    return median(use(*words).cpu for _ in range(runs))
 
 
 def start_and_load(folder, scene):
@@ -50,13 +37,13 @@ def start_and_load(folder, scene):
     def load(*words):
         def once():
             part.unlink(missing_ok=True)
-            return Use(*one_pixel, *words).cpu
+            return use(*one_pixel, *words).cpu
         once()  # fills the cache
         return median(once() for _ in range(5))
 
     return {"list": median_cpu("list"), "describe": median_cpu("describe", "abm"),
             "load": load("--cache", folder / "cache"), "load without cache": load("--no-cache"),
-            "megabytes": Use(*one_pixel, "--resume", "--cache", folder / "cache").megabytes}
+            "megabytes": use(*one_pixel, "--resume", "--cache", folder / "cache").megabytes}
 
 
 def bytes_a_pixel(folder):
@@ -65,7 +52,7 @@ def bytes_a_pixel(folder):
     scene, sizes = sized(SCENE, folder, width, height), {}
     for samples in (4, 64, 1024, 4096):
         part = folder / f"small_{samples}.part"
-        Use("render", scene, "--spp", samples, "-q", "--part", part, "--cache", folder / "cache")
+        use("render", scene, "--spp", samples, "-q", "--part", part, "--cache", folder / "cache")
         sizes[samples] = part.stat().st_size / (width * height)
     return sizes
 
@@ -73,10 +60,10 @@ def bytes_a_pixel(folder):
 def render_parts(folder, scene, count):
     """Parts by samples, the CPU time of a path, and the memory of the largest render."""
     parts = [folder / f"samples_{i}.part" for i in range(count)]
-    uses = [Use("render", scene, "--samples", f"{SAMPLES * i}:{SAMPLES * (i + 1)}", "--part", part, "-q", "--json", "--cache",
+    uses = [use("render", scene, "--samples", f"{SAMPLES * i}:{SAMPLES * (i + 1)}", "--part", part, "-q", "--json", "--cache",
                 folder / "cache") for i, part in enumerate(parts)]
-    seconds, paths = numpy.sum([[(report := json.loads(use.output))["cpu_seconds"], report["paths"]] for use in uses], axis=0)
-    return parts, seconds / paths, max(use.megabytes for use in uses)
+    seconds, paths = numpy.sum([[(report := json.loads(of.output))["cpu_seconds"], report["paths"]] for of in uses], axis=0)
+    return parts, seconds / paths, max(of.megabytes for of in uses)
 
 
 def render_strips(folder, scene, width, height):
@@ -84,14 +71,14 @@ def render_strips(folder, scene, width, height):
     strips = []
     for top in range(0, height, 144):
         strips.append(folder / f"rows_{top}.part")
-        Use("render", scene, "--samples", f"0:{SAMPLES}", "--pixels", f"0,{width},{top},{min(height, top + 144)}", "--part",
+        use("render", scene, "--samples", f"0:{SAMPLES}", "--pixels", f"0,{width},{top},{min(height, top + 144)}", "--part",
             strips[-1], "-q", "--cache", folder / "cache")
     return strips
 
 
 def merged(folder, parts):
     """The file that they make."""
-    Use("merge", *parts, "-o", folder / "same.exr", "-q")
+    use("merge", *parts, "-o", folder / "same.exr", "-q")
     return (folder / "same.exr").read_bytes()
 
 
@@ -99,7 +86,7 @@ def merges(folder, parts, counts):
     """By number of parts: CPU time of a merge into an image, and into a part, and most memory."""
     result = {}
     for count in counts:
-        image, part = ([Use("merge", *parts[:count], *to, "-q") for _ in range(3)]
+        image, part = ([use("merge", *parts[:count], *to, "-q") for _ in range(3)]
                        for to in (("-o", folder / "merged.exr"), ("--part", folder / "merged.part")))
         result[count] = median(u.cpu for u in image), median(u.cpu for u in part), max(u.megabytes for u in image)
     return result
@@ -125,6 +112,7 @@ def size(count):
 
 def main():
     options = arguments("many_machines")
+    os.environ["SOURCE_DATE_EPOCH"] = "0"
     width, height, counts = (480, 432, (1, 2)) if options.quick else (WIDTH, HEIGHT, PARTS)
     with tempfile.TemporaryDirectory(prefix="frond_many_machines.") as name:
         folder = pathlib.Path(name)

@@ -6,8 +6,9 @@ import json
 import os
 import pathlib
 import re
-import resource
 import subprocess
+import tempfile
+import time
 
 import numpy
 import pandas
@@ -65,12 +66,21 @@ def frond_table(*words):
     return done.stdout, float(re.search(r"([0-9.e+-]+) s of CPU", done.stderr)[1]), done.stderr
 
 
-def cpu_seconds(action):
-    """What `action` returns, and the CPU time of the programs that it ran."""
-    used = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
-    start = used()
-    result = action()
-    return result, used() - start
+class Use:
+    """A program run by itself, so that the kernel tells its own use: output, CPU and wall seconds, memory."""
+
+    def __init__(self, *words):
+        words, start = list(map(str, words)), time.perf_counter()
+        with tempfile.TemporaryFile() as output:
+            process = subprocess.Popen(words, stdout=output)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            if process.returncode != 0:
+                raise SystemExit(f"{' '.join(words)} ended with {process.returncode}")
+            output.seek(0)
+            self.output = output.read().decode()
+        self.cpu, self.wall = usage.ru_utime + usage.ru_stime, time.perf_counter() - start
+        self.megabytes = usage.ru_maxrss / 1024
 
 
 def sized(path, folder, width, height=None):

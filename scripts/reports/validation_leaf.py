@@ -24,7 +24,7 @@ def measured_leaf():
 
 
 def spectra(report):
-    report.add(f"""
+    report.add("""
 ## Spectra, 400 to 2500 nm
 
 Reflectance R and transmittance T at 8° from the normal, solved at every 10 nm with the optical constants of Baranoski

@@ -7,27 +7,14 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import time
 
 import numpy
 
-from tools import FROND, run
+from tools import FROND, Use, run
 
 from . import scenes
 
 MOST_TRACED = 10_000  # instances for Mitsuba's LLVM variants: with 100,000 the first picture is not there after five minutes
-
-
-def timed(words):
-    """CPU and wall time of a program as a whole, seconds."""
-    start = time.perf_counter()
-    with subprocess.Popen(list(map(str, words)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as program:
-        text = program.stdout.read()
-        _, status, used = os.wait4(program.pid, 0)
-        program.returncode = os.waitstatus_to_exitcode(status)
-    if program.returncode != 0:
-        raise SystemExit(f"{' '.join(map(str, words))}\n{text}")
-    return numpy.array([used.ru_utime + used.ru_stime, time.perf_counter() - start])
 
 
 class Command:
@@ -46,7 +33,8 @@ class Command:
 
     def render(self, reconstruction, samples, seed, out):
         """CPU and wall time of the whole process."""
-        return timed(self.words(self.files[reconstruction], samples, seed, out))
+        use = Use(*self.words(self.files[reconstruction], samples, seed, out))
+        return numpy.array([use.cpu, use.wall])
 
     def before(self, reconstruction):
         """What was done before the first of the renders that are measured."""

@@ -226,7 +226,7 @@ def write_pbrt(scene, path, leaf, box, size, tables=False):
     lines = ["Scale -1 1 1", "LookAt " + " ".join(map(numbers, scene.camera["look"])),
              f'Camera "perspective" "float fov" {scene.camera["fov"]}',
              f'Film "rgb" "integer xresolution" {size} "integer yresolution" {size}',
-             f'Sampler "paddedsobol" "integer pixelsamples" 1', f'Integrator "path" "integer maxdepth" {DEPTH}',
+             'Sampler "paddedsobol" "integer pixelsamples" 1', f'Integrator "path" "integer maxdepth" {DEPTH}',
              'PixelFilter "box"' if box else
              'PixelFilter "gaussian" "float sigma" {sigma} "float xradius" {radius} "float yradius" {radius}'.format(**GAUSSIAN),
              "WorldBegin"]
