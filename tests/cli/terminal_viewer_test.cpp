@@ -1,4 +1,4 @@
-#include "cli/terminal_viewer.h"
+#include "jobs/terminal_viewer.h"
 
 #include <gmock/gmock.h>
 #include <pty.h>
