@@ -18,8 +18,8 @@ class FlatBsdf {
     const GivenWavelengths wavelengths(nm);
     lambda_ = wavelengths.sample(0);
     Session& session = owner_->session();
-    material_ = ready_material(material_text({material}, session.log()), session.registry(), wavelengths, session.pool(),
-                               session.log(), owner_->context.options().cache);
+    material_ = ready_material(material_text({material}, session.log()), session.registry(), wavelengths,
+                               session.pool(), session.log(), owner_->context.options().cache);
     if (!material_->evaluate(flat_hit(), lambda_, arena_)) fail({}, "{}: there is no surface", material);
   }
 
@@ -128,8 +128,8 @@ class FlatBsdf {
 
 void bind_bsdf(nb::module_& m) {
   nb::class_<FlatBsdf>(m, "FlatBsdf")
-      .def(nb::init<std::shared_ptr<SessionHandle>, const std::string&, const std::vector<float>&>(),
-           "session"_a, "material"_a, "wavelengths"_a)
+      .def(nb::init<std::shared_ptr<SessionHandle>, const std::string&, const std::vector<float>&>(), "session"_a,
+           "material"_a, "wavelengths"_a)
       .def("f", &FlatBsdf::f, "wo"_a, "wi"_a, "seed"_a)
       .def("f_and_pdf", &FlatBsdf::f_and_pdf, "wo"_a, "wi"_a, "seed"_a)
       .def("sample_one", &FlatBsdf::sample_one, "wo"_a, "uc"_a, "u"_a, "seed"_a)

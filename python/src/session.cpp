@@ -56,7 +56,8 @@ void render_more(PictureHandle& picture, uint64_t samples, double max_rms, doubl
   if (max_rms == 0) scene.check_samples(samples);
   run(
       [&](const RenderControl& control) {
-        const RenderControl until = JobRun{handle.owner->context, handle.args, control}.control_until(time_limit_seconds);
+        const RenderControl until =
+            JobRun{handle.owner->context, handle.args, control}.control_until(time_limit_seconds);
         if (max_rms > 0)
           session.render_to(scene, {.max_rms = max_rms}, picture.part, until);
         else
@@ -135,10 +136,9 @@ void bind_session(nb::module_& m) {
       .def_prop_ro("samples", [](const SceneHandle& s) { return s.task.samples().end; })
       .def_prop_ro("color_space", [](const SceneHandle& s) { return s.task.scene().picture().space; })
       .def_prop_ro("is_adaptive", [](const SceneHandle& s) { return s.task.is_adaptive(); })
-      .def_prop_ro("choice",
-                   [](const SceneHandle& s) {
-                     return s.task.choice() ? choose::choice_json(*s.task.choice()) : std::string();
-                   })
+      .def_prop_ro(
+          "choice",
+          [](const SceneHandle& s) { return s.task.choice() ? choose::choice_json(*s.task.choice()) : std::string(); })
       .def_prop_ro("materials",
                    [](const SceneHandle& s) {
                      std::vector<std::pair<std::string, std::string>> names;

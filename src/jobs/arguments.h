@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,27 +27,35 @@ enum class ArgumentKind : uint8_t {
 /// What a path is used for. submit makes paths absolute; outputs are checked before any work.
 enum class PathUse : uint8_t { none, read, write };
 
-/// One parameter of a job, declared once: from this record come parsing, checks, help, man page, completion,
-/// docs/commands.md, and the Python signature, docstring and stub.
-struct JobParam {
-  std::string_view name;  ///< "time-limit"; in Python time_limit
-  ArgumentKind kind;
-  std::string_view doc;                    ///< a noun phrase or an imperative
-  std::string_view type = "";              ///< what help calls a value and completion offers: FILE, SCENE, MATERIAL, ...
-  std::string_view default_value = "";     ///< in the grammar of the kind; "": none
+/// What most parameters do without.
+struct ParamTraits {
+  std::string_view type = "";           ///< what help calls a value and completion offers: FILE, SCENE, MATERIAL, ...
+  std::string_view default_value = "";  ///< in the grammar of the kind; "": none
   std::string_view unit = "";
-  Interval range = kAnyValue;              ///< of each number, ends included (kAboveZero)
+  Interval range = kAnyValue;  ///< of each number, ends included (kAboveZero)
   std::span<const std::string_view> choices = {};
-  std::string_view aliases = "";           ///< further names with commas between: "o,outfile"; one letter is a short option
-  size_t values = 0;                       ///< numbers and texts: exactly so many; 0: any number of them
-  bool whole = false;                      ///< numbers: each is a whole number
+  std::string_view aliases = "";  ///< further names with commas between: "o,outfile"; one letter is a short option
+  size_t values = 0;              ///< numbers and texts: exactly so many; 0: any number of them
+  bool whole = false;             ///< numbers: each is a whole number
   PathUse path = PathUse::none;
-  bool decides = false;                    ///< the result depends on it: part of a measurement's identity
+  bool decides = false;  ///< the result depends on it: part of a measurement's identity
   bool positional = false;
   bool required = false;
-  std::string_view needs = "";             ///< another parameter
-  std::string_view excludes = "";          ///< other parameters, with commas between
-  std::string_view implied = "";           ///< text: the value where the option stands alone
+  std::string_view needs = "";     ///< another parameter
+  std::string_view excludes = "";  ///< other parameters, with commas between
+  std::string_view implied = "";   ///< text: the value where the option stands alone
+};
+
+/// One parameter of a job, declared once: from this record come parsing, checks, help, man page, completion,
+/// docs/commands.md, and the Python signature, docstring and stub.
+struct JobParam : ParamTraits {
+  constexpr JobParam(std::string_view its_name, ArgumentKind its_kind, std::string_view its_doc,
+                     ParamTraits traits = {})
+      : ParamTraits(traits), name(its_name), kind(its_kind), doc(its_doc) {}
+
+  std::string_view name;  ///< "time-limit"; in Python time_limit
+  ArgumentKind kind;
+  std::string_view doc;  ///< a noun phrase or an imperative
 };
 
 inline constexpr Interval kAboveZero{std::numeric_limits<double>::denorm_min(),
@@ -87,9 +95,9 @@ class Arguments {
   bool given(std::string_view name) const { return values_.contains(name); }
   // Values, or the declared default. Asking for an undeclared name or another kind is a logic error.
   bool flag(std::string_view name) const;
-  int64_t count(std::string_view name) const;       ///< 0 without a default
-  uint64_t seed(std::string_view name) const;       ///< 0 without a default
-  double real(std::string_view name) const;         ///< 0 without a default
+  int64_t count(std::string_view name) const;  ///< 0 without a default
+  uint64_t seed(std::string_view name) const;  ///< 0 without a default
+  double real(std::string_view name) const;    ///< 0 without a default
   std::vector<double> numbers(std::string_view name) const;
   std::string text(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;

@@ -22,50 +22,28 @@ using enum ArgumentKind;
 constexpr JobParam kParams[] = {
     kSceneParam,
     kRadiometryWavelengthsParam,
-    {.name = "zenith",
-     .kind = numbers,
-     .doc = "Zenith angles of the views; under one sun a negative angle looks from the sun's side.",
-     .default_value = "-75:75:5",
-     .unit = "degrees",
-     .decides = true},
-    {.name = "azimuth",
-     .kind = numbers,
-     .doc = "Azimuths of the views from the plane of the sun, or from +x toward +y where there is not one sun.",
-     .default_value = "0",
-     .unit = "degrees",
-     .decides = true},
-    {.name = "hemisphere",
-     .kind = flag,
-     .doc = "Views of the whole hemisphere, every 5 degrees of zenith and 15 of azimuth.",
-     .decides = true,
-     .excludes = "zenith,azimuth"},
+    JobParam("zenith", numbers, "Zenith angles of the views; under one sun a negative angle looks from the sun's side.",
+             {.default_value = "-75:75:5", .unit = "degrees", .decides = true}),
+    JobParam("azimuth", numbers,
+             "Azimuths of the views from the plane of the sun, or from +x toward +y where there is not one sun.",
+             {.default_value = "0", .unit = "degrees", .decides = true}),
+    JobParam("hemisphere", flag, "Views of the whole hemisphere, every 5 degrees of zenith and 15 of azimuth.",
+             {.decides = true, .excludes = "zenith,azimuth"}),
     kTargetParam,
     kPeriodParam,
-    {.name = "paths",
-     .kind = count,
-     .doc = "Number of paths for each view.",
-     .default_value = "65536",
-     .range = {1, 4294967296}},
+    JobParam("paths", count, "Number of paths for each view.", {.default_value = "65536", .range = {1, 4294967296}}),
     kRmsParam,
     kTimeLimitParam,
     kSwapParam,
     kIntegratorParam,
     kSeedParam,
-    {.name = "compare",
-     .kind = texts,
-     .doc = "MODEL[,parameter=value...];...: leaf models that replace the scene's leaves: which is accurate enough?",
-     .type = "MATERIAL",
-     .excludes = "plot,checkpoint,resume"},
-    {.name = "reference",
-     .kind = text,
-     .doc = "Leaf model that the models of --compare are compared with.",
-     .type = "MATERIAL",
-     .default_value = "leaf_solved"},
-    {.name = "within",
-     .kind = real,
-     .doc = "Largest relative difference that is accurate enough for --compare.",
-     .default_value = "0.02",
-     .range = kAboveZero},
+    JobParam("compare", texts,
+             "MODEL[,parameter=value...];...: leaf models that replace the scene's leaves: which is accurate enough?",
+             {.type = "MATERIAL", .excludes = "plot,checkpoint,resume"}),
+    JobParam("reference", text, "Leaf model that the models of --compare are compared with.",
+             {.type = "MATERIAL", .default_value = "leaf_solved"}),
+    JobParam("within", real, "Largest relative difference that is accurate enough for --compare.",
+             {.default_value = "0.02", .range = kAboveZero}),
     kIgnoreUnsupportedParam,
     kStrictParam,
     kCsvParam,
@@ -101,8 +79,7 @@ RenderPart first_part(const JobRun& run, const BrfMeter& meter, const KeptFile* 
   RenderPart part = read_part(*path);
   const std::string difference =
       fresh.header.identity.difference(part.header.identity, "this command", "\"" + path->string() + "\"");
-  if (!difference.empty())
-    fail({}, "{}: this is another measurement. {}", run.args.spelled("resume"), difference);
+  if (!difference.empty()) fail({}, "{}: this is another measurement. {}", run.args.spelled("resume"), difference);
   return part;
 }
 
@@ -125,7 +102,9 @@ std::optional<BrfReading> measure(const JobRun& run, const BrfMeter& meter, cons
   std::optional<BrfReading> reading;
   const RefineEnd end = refine(
       effort, sample_count(part.film).most, control,
-      [&](uint64_t samples) { run.session().render(meter.scene(), {0, samples}, part, control); },
+      [&](uint64_t samples) {
+        run.session().render(meter.scene(), {0, samples}, part, control);
+      },
       [&] { return reading.emplace(meter.read(part.film)).relative_error(); });
   if (kept) kept->keep(end != RefineEnd::stopped, false, write);
   if (end == RefineEnd::stopped) return {};
@@ -189,12 +168,12 @@ Result comparison_result(const ModelReading& reference, const std::vector<ModelR
     if (v.answer == Answer::enough && !enough) enough = &m;
   }
   const std::string& cheapest = (enough ? *enough : reference).model.label;
-  return {.tables = {differences, verdicts},
-          .facts = {{"reference", reference.model.label}, {"within", within}, {"cheapest_enough", cheapest}},
-          .text = fmt::format("BRF relative to {} ({:.2f} µs of CPU per path); accurate enough: within {:g} % everywhere\n"
-                              "{}Cheapest model that is accurate enough: {}\n",
-                              reference.model.label, reference.cpu_us_per_path, 100 * within, to_text(verdicts),
-                              cheapest)};
+  return {
+      .tables = {differences, verdicts},
+      .facts = {{"reference", reference.model.label}, {"within", within}, {"cheapest_enough", cheapest}},
+      .text = fmt::format("BRF relative to {} ({:.2f} µs of CPU per path); accurate enough: within {:g} % everywhere\n"
+                          "{}Cheapest model that is accurate enough: {}\n",
+                          reference.model.label, reference.cpu_us_per_path, 100 * within, to_text(verdicts), cheapest)};
 }
 
 /// The scene with one leaf model after another in place of its leaves.
@@ -248,7 +227,8 @@ Result brf(const JobRun& run) {
     write_chart(run.args.text("plot"),
                 run.args.flag("hemisphere") ? brf_hemisphere_chart(reading) : brf_plane_chart(reading));
   const double error = reading.relative_error(), rms = run.args.real("rms");
-  run.log().info(fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", reading.paths, 100 * error));
+  run.log().info(
+      fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", reading.paths, 100 * error));
   if (rms > 0 && error > rms) run.log().warn({}, fmt::format("{} {:g} was not reached", run.args.spelled("rms"), rms));
   Result result{.tables = {{"brf"}}, .facts = {{"paths", double(reading.paths)}, {"relative_error", error}}};
   add_rows(result.tables[0], reading, "");
@@ -258,14 +238,10 @@ Result brf(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kBrfJob{
-    .name = "brf",
-    .group = "Measure",
-    .doc = "Measure the bidirectional reflectance factor of a scene from far away.",
-    .details = "Where the scene says nothing about the incident direction, leaves are reciprocal, or conserve energy "
-               "where they cannot be reciprocal.",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = brf};
+extern const JobInfo kBrfJob(
+    "brf", "Measure", "Measure the bidirectional reflectance factor of a scene from far away.",
+    "Where the scene says nothing about the incident direction, leaves are reciprocal, or conserve energy "
+    "where they cannot be reciprocal.",
+    kParams, SessionUse::all, brf);
 
 }  // namespace frond

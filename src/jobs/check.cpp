@@ -7,13 +7,8 @@ namespace frond {
 namespace {
 
 constexpr JobParam kParams[] = {
-    {.name = "scene",
-     .kind = ArgumentKind::texts,
-     .doc = "Scene files (pbrt-v4 format).",
-     .type = "SCENE",
-     .path = PathUse::read,
-     .positional = true,
-     .required = true},
+    JobParam("scene", ArgumentKind::texts, "Scene files (pbrt-v4 format).",
+             {.type = "SCENE", .path = PathUse::read, .positional = true, .required = true}),
     kIgnoreUnsupportedParam,
     kStrictParam,
 };
@@ -51,12 +46,8 @@ Result check(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kCheckJob{.name = "check",
-                               .group = "Scenes",
-                               .doc = "Read scenes and all files that they name, and report all errors.",
-                               .details = "Nothing is rendered. The exit status is 1 if there is an error.",
-                               .params = kParams,
-                               .session = SessionUse::plugins,
-                               .run = check};
+extern const JobInfo kCheckJob("check", "Scenes", "Read scenes and all files that they name, and report all errors.",
+                               "Nothing is rendered. The exit status is 1 if there is an error.", kParams,
+                               SessionUse::plugins, check);
 
 }  // namespace frond

@@ -5,14 +5,11 @@
 /// What help, man pages, completion and docs/commands.md call commands and their parameters.
 namespace frond {
 
-inline constexpr JobParam kHelpParam{
-    .name = "help", .kind = ArgumentKind::flag, .doc = "Print this help message and exit.", .aliases = "h"};
-inline constexpr JobParam kVersionParam{
-    .name = "version", .kind = ArgumentKind::flag, .doc = "Display program version information and exit."};
+inline constexpr JobParam kHelpParam("help", ArgumentKind::flag, "Print this help message and exit.", {.aliases = "h"});
+inline constexpr JobParam kVersionParam("version", ArgumentKind::flag, "Display program version information and exit.");
 /// Of frond render.
-inline constexpr JobParam kHelpPbrtParam{.name = "help-pbrt",
-                                         .kind = ArgumentKind::flag,
-                                         .doc = "Print the options of pbrt-v4 that have no effect, or are refused."};
+inline constexpr JobParam kHelpPbrtParam("help-pbrt", ArgumentKind::flag,
+                                         "Print the options of pbrt-v4 that have no effect, or are refused.");
 
 /// The parameters of a command, or of frond itself.
 struct CommandParams {

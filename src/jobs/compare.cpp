@@ -26,83 +26,48 @@ using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
     kSceneParam,
-    {.name = "materials",
-     .kind = texts,
-     .doc = "Candidates, separated by ; or given again: [LABEL:]MATERIAL[,parameter=value...][@wavelengths=PLUGIN]"
-            "[@integrator=PLUGIN]. The first is the baseline of speed-ups.",
-     .type = "MATERIAL",
-     .default_value = "abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert",
-     .aliases = "models",
-     .decides = true},
-    {.name = "output",
-     .kind = text,
-     .doc = "Folder of the report: charts, tables, index.html. Without it results are printed alone.",
-     .type = "FOLDER",
-     .aliases = "o",
-     .path = PathUse::write},
-    {.name = "reference",
-     .kind = text,
-     .doc = "Candidate that errors are measured against, once converged. The default is the expectation of the analog "
-            "walk, with less noise.",
-     .type = "MATERIAL",
-     .default_value = "abm,mode=weighted",
-     .decides = true},
-    {.name = "rms",
-     .kind = numbers,
-     .doc = "Report the cheapest candidate with this RMS error.",
-     .type = "NUMBER",
-     .range = kAboveZero,
-     .decides = true},
-    {.name = "target",
-     .kind = text,
-     .doc = "RMS errors of red, green and blue for speed-up (c): three numbers, or front, back, ambient for the paper's.",
-     .type = "R,G,B",
-     .decides = true,
-     .excludes = "relative"},
-    {.name = "relative",
-     .kind = flag,
-     .doc = "Errors relative to the reference: of each channel the RMS over pixels divided by the reference's mean over "
-            "these pixels; --rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.",
-     .decides = true},
-    {.name = "leaf",
-     .kind = texts,
-     .doc = "Name of a material to replace; by default every leaf.",
-     .type = "NAME",
-     .decides = true},
-    {.name = "wavelengths",
-     .kind = text,
-     .doc = "Wavelengths in place of the scene's; smpte for the paper's three.",
-     .type = "WAVELENGTHS",
-     .decides = true},
-    {.name = "size",
-     .kind = count,
-     .doc = "Pixels of the longer side; 256 by default, 128 with --quick.",
-     .range = {1, 65536},
-     .decides = true},
-    {.name = "spp",
-     .kind = count,
-     .doc = "Samples per pixel of the last measurement of a candidate; 256 by default, 32 with --quick.",
-     .range = {1, 1 << 24},
-     .aliases = "samples",
-     .decides = true},
-    {.name = "reference-spp",
-     .kind = count,
-     .doc = "Samples per pixel of each of the reference's two renders; 1024 by default, 128 with --quick, or the number "
-            "that is cached.",
-     .range = {1, 1 << 30},
-     .aliases = "reference-samples",
-     .decides = true},
-    {.name = "exposure",
-     .kind = real,
-     .doc = "Exposure of images and FLIP; by default such that the image is neither dark nor overexposed.",
-     .unit = "stops",
-     .range = {-20, 20},
-     .decides = true},
+    JobParam("materials", texts,
+             "Candidates, separated by ; or given again: [LABEL:]MATERIAL[,parameter=value...][@wavelengths=PLUGIN]"
+             "[@integrator=PLUGIN]. The first is the baseline of speed-ups.",
+             {.type = "MATERIAL",
+              .default_value = "abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert",
+              .aliases = "models",
+              .decides = true}),
+    JobParam("output", text, "Folder of the report: charts, tables, index.html. Without it results are printed alone.",
+             {.type = "FOLDER", .aliases = "o", .path = PathUse::write}),
+    JobParam("reference", text,
+             "Candidate that errors are measured against, once converged. The default is the expectation of the analog "
+             "walk, with less noise.",
+             {.type = "MATERIAL", .default_value = "abm,mode=weighted", .decides = true}),
+    JobParam("rms", numbers, "Report the cheapest candidate with this RMS error.",
+             {.type = "NUMBER", .range = kAboveZero, .decides = true}),
+    JobParam(
+        "target", text,
+        "RMS errors of red, green and blue for speed-up (c): three numbers, or front, back, ambient for the paper's.",
+        {.type = "R,G,B", .decides = true, .excludes = "relative"}),
+    JobParam(
+        "relative", flag,
+        "Errors relative to the reference: of each channel the RMS over pixels divided by the reference's mean over "
+        "these pixels; --rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.",
+        {.decides = true}),
+    JobParam("leaf", texts, "Name of a material to replace; by default every leaf.", {.type = "NAME", .decides = true}),
+    JobParam("wavelengths", text, "Wavelengths in place of the scene's; smpte for the paper's three.",
+             {.type = "WAVELENGTHS", .decides = true}),
+    JobParam("size", count, "Pixels of the longer side; 256 by default, 128 with --quick.",
+             {.range = {1, 65536}, .decides = true}),
+    JobParam("spp", count, "Samples per pixel of the last measurement of a candidate; 256 by default, 32 with --quick.",
+             {.range = {1, 1 << 24}, .aliases = "samples", .decides = true}),
+    JobParam(
+        "reference-spp", count,
+        "Samples per pixel of each of the reference's two renders; 1024 by default, 128 with --quick, or the number "
+        "that is cached.",
+        {.range = {1, 1 << 30}, .aliases = "reference-samples", .decides = true}),
+    JobParam("exposure", real,
+             "Exposure of images and FLIP; by default such that the image is neither dark nor overexposed.",
+             {.unit = "stops", .range = {-20, 20}, .decides = true}),
     kSeedParam,
-    {.name = "quick",
-     .kind = flag,
-     .doc = "Preview: 128 pixels, up to 32 samples, a reference of 2 x 128 samples.",
-     .decides = true},
+    JobParam("quick", flag, "Preview: 128 pixels, up to 32 samples, a reference of 2 x 128 samples.",
+             {.decides = true}),
     kIgnoreUnsupportedParam,
     kStrictParam,
     kCsvParam,
@@ -163,8 +128,8 @@ Table rows_of(const Comparison& c) {
           table.add("flip", rung.flip.value_or(NAN));
           table.add("region", std::string(compare::kRegionNames[region]));
           table.add("channel", c.channels.names[k]);
-          for (const auto& [name, m] : {std::pair{"rms", e.total}, {"rms_clipped", e.clipped}, {"noise", e.noise},
-                                        {"bias", e.bias}}) {
+          for (const auto& [name, m] :
+               {std::pair{"rms", e.total}, {"rms_clipped", e.clipped}, {"noise", e.noise}, {"bias", e.bias}}) {
             table.add(name, m.root());
             table.add(std::string(name) + "_low", m.root_at(-kZ95));
             table.add(std::string(name) + "_high", m.root_at(kZ95));
@@ -241,13 +206,8 @@ Result compare_models(const JobRun& run) {
 
 }  // namespace
 
-const JobInfo kCompareJob{
-    .name = "compare",
-    .group = "Leaf models",
-    .doc = "Measure what each leaf model costs in a scene, and what error it makes.",
-    .details = "",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = compare_models};
+const JobInfo kCompareJob("compare", "Leaf models",
+                          "Measure what each leaf model costs in a scene, and what error it makes.", "", kParams,
+                          SessionUse::all, compare_models);
 
 }  // namespace frond

@@ -18,19 +18,10 @@ using Words = std::vector<std::string>;
 
 constexpr std::string_view kShells[] = {"bash", "zsh", "fish"};
 constexpr JobParam kParams[] = {
-    {.name = "shell",
-     .kind = text,
-     .doc = "Shell that the script is for.",
-     .choices = kShells,
-     .positional = true,
-     .required = true},
-    {.name = "output",
-     .kind = text,
-     .doc = "File to write; - is standard output.",
-     .type = "FILE",
-     .default_value = "-",
-     .aliases = "o",
-     .path = PathUse::write},
+    JobParam("shell", text, "Shell that the script is for.",
+             {.choices = kShells, .positional = true, .required = true}),
+    JobParam("output", text, "File to write; - is standard output.",
+             {.type = "FILE", .default_value = "-", .aliases = "o", .path = PathUse::write}),
 };
 
 /// Words that values of a type begin with, as far as they are known when the script is made.
@@ -223,11 +214,8 @@ Result completion(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kCompletionJob{.name = "completion",
-                                    .group = "Shell",
-                                    .doc = "Print a script that completes frond's command line in a shell.",
-                                    .params = kParams,
-                                    .session = SessionUse::none,
-                                    .run = completion};
+extern const JobInfo kCompletionJob("completion", "Shell",
+                                    "Print a script that completes frond's command line in a shell.", "", kParams,
+                                    SessionUse::none, completion);
 
 }  // namespace frond

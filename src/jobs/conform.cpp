@@ -5,8 +5,8 @@
 #include "jobs/common_params.h"
 #include "render/material_words.h"
 #include "render/refusing_log.h"
-#include "report/conform_report.h"
 #include "report/chart.h"
+#include "report/conform_report.h"
 #include "scene/resolver.h"
 
 namespace frond {
@@ -20,47 +20,27 @@ constexpr double kGrazing_deg = 89.9999;
 
 constexpr JobParam kParams[] = {
     kMaterialParam,
-    {.name = "sweep",
-     .kind = flag,
-     .doc = "Test over the declared ranges of the parameters that are not given, too.",
-     .decides = true},
-    {.name = "samples",
-     .kind = count,
-     .doc = "Number of samples for each direction.",
-     .default_value = "20000",
-     .range = {kFewestSamples, kMostSamples},
-     .decides = true},
-    {.name = "angles",
-     .kind = numbers,
-     .doc = "Angles of wo from the normal, on both sides.",
-     .default_value = "0,30,60,80,89",
-     .unit = "degrees",
-     .range = {0, kGrazing_deg},
-     .aliases = "angle",
-     .decides = true},
-    {.name = "wavelengths",
-     .kind = numbers,
-     .doc = "Wavelengths, tested in groups of four.",
-     .default_value = "608,551,455",
-     .unit = "nm",
-     .range = kAboveZero,
-     .aliases = "wavelength",
-     .decides = true},
-    {.name = "seed", .kind = seed, .doc = "Seed of all random numbers.", .default_value = "1", .decides = true},
-    {.name = "lossless",
-     .kind = flag,
-     .doc = "Claim that the material absorbs nothing with these parameters: all light that comes in leaves.",
-     .decides = true},
-    {.name = "reciprocal",
-     .kind = flag,
-     .doc = "Claim f(a, b) = f(b, a), in addition to the material's own claims.",
-     .decides = true},
-    {.name = "false-alarm-rate",
-     .kind = real,
-     .doc = "Probability that any law is called broken although all hold.",
-     .default_value = "1e-6",
-     .range = {1e-12, 0.5},
-     .decides = true},
+    JobParam("sweep", flag, "Test over the declared ranges of the parameters that are not given, too.",
+             {.decides = true}),
+    JobParam("samples", count, "Number of samples for each direction.",
+             {.default_value = "20000", .range = {kFewestSamples, kMostSamples}, .decides = true}),
+    JobParam("angles", numbers, "Angles of wo from the normal, on both sides.",
+             {.default_value = "0,30,60,80,89",
+              .unit = "degrees",
+              .range = {0, kGrazing_deg},
+              .aliases = "angle",
+              .decides = true}),
+    JobParam(
+        "wavelengths", numbers, "Wavelengths, tested in groups of four.",
+        {.default_value = "608,551,455", .unit = "nm", .range = kAboveZero, .aliases = "wavelength", .decides = true}),
+    JobParam("seed", seed, "Seed of all random numbers.", {.default_value = "1", .decides = true}),
+    JobParam("lossless", flag,
+             "Claim that the material absorbs nothing with these parameters: all light that comes in leaves.",
+             {.decides = true}),
+    JobParam("reciprocal", flag, "Claim f(a, b) = f(b, a), in addition to the material's own claims.",
+             {.decides = true}),
+    JobParam("false-alarm-rate", real, "Probability that any law is called broken although all hold.",
+             {.default_value = "1e-6", .range = {1e-12, 0.5}, .decides = true}),
     kCsvParam,
     kJsonParam,
     chart_param("picture", "Map of the directions of the worst finding, where a law is broken: .svg or .png."),
@@ -138,12 +118,7 @@ Result conform(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kConformJob{.name = "conform",
-                                 .group = "Materials",
-                                 .doc = "Test whether a material obeys the laws of scattering.",
-                                 .details = "Exit code 0: all laws hold; 2: a law is broken.",
-                                 .params = kParams,
-                                 .session = SessionUse::all,
-                                 .run = conform};
+extern const JobInfo kConformJob("conform", "Materials", "Test whether a material obeys the laws of scattering.",
+                                 "Exit code 0: all laws hold; 2: a law is broken.", kParams, SessionUse::all, conform);
 
 }  // namespace frond

@@ -14,15 +14,11 @@ using enum ArgumentKind;
 constexpr JobParam kParams[] = {
     files_param("images", "EXR files of one size and colour space."),
     output_param("Image to write: .png, .jpg or .exr.", true),
-    {.name = "bands",
-     .kind = numbers,
-     .doc = "Wavelengths of three bands to show as red, green and blue, such as 850,650,550; white in equal-energy "
-            "light is 1.",
-     .type = "R,G,B",
-     .unit = "nm",
-     .range = kAboveZero,
-     .values = 3},
-    {.name = "exposure", .kind = real, .doc = "Change of exposure.", .default_value = "0", .unit = "stops"},
+    JobParam("bands", numbers,
+             "Wavelengths of three bands to show as red, green and blue, such as 850,650,550; white in equal-energy "
+             "light is 1.",
+             {.type = "R,G,B", .unit = "nm", .range = kAboveZero, .values = 3}),
+    JobParam("exposure", real, "Change of exposure.", {.default_value = "0", .unit = "stops"}),
     kDisplayParam,
     kViewParam,
 };
@@ -71,12 +67,8 @@ Result convert(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kConvertJob{
-    .name = "convert",
-    .group = "Images",
-    .doc = "Average linear images, and write the mean as EXR or through a display transform.",
-    .params = kParams,
-    .session = SessionUse::none,
-    .run = convert};
+extern const JobInfo kConvertJob("convert", "Images",
+                                 "Average linear images, and write the mean as EXR or through a display transform.", "",
+                                 kParams, SessionUse::none, convert);
 
 }  // namespace frond

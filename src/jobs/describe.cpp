@@ -12,13 +12,10 @@ namespace {
 using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
-    {.name = "name",
-     .kind = text,
-     .doc = "Name of a plug-in (see frond list), a kind of plug-in such as material, or a command.",
-     .type = "PLUGIN",
-     .positional = true},
-    {.name = "markdown", .kind = flag, .doc = "Print Markdown; without a name, of every plug-in."},
-    {.name = "commands", .kind = flag, .doc = "Print Markdown of every command.", .excludes = "markdown"},
+    JobParam("name", text, "Name of a plug-in (see frond list), a kind of plug-in such as material, or a command.",
+             {.type = "PLUGIN", .positional = true}),
+    JobParam("markdown", flag, "Print Markdown; without a name, of every plug-in."),
+    JobParam("commands", flag, "Print Markdown of every command.", {.excludes = "markdown"}),
 };
 
 constexpr std::string_view type_name(ParamKind kind) {
@@ -201,12 +198,8 @@ Result describe(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kDescribeJob{
-    .name = "describe",
-    .group = "Materials",
-    .doc = "Print the parameters of a plug-in or a command: types, defaults, units and ranges.",
-    .params = kParams,
-    .session = SessionUse::plugins,
-    .run = describe};
+extern const JobInfo kDescribeJob("describe", "Materials",
+                                  "Print the parameters of a plug-in or a command: types, defaults, units and ranges.",
+                                  "", kParams, SessionUse::plugins, describe);
 
 }  // namespace frond

@@ -16,8 +16,8 @@ constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 constexpr JobParam kParams[] = {
     files_param("images", "A1 A2 B1 B2: two halves of each render, each with its own seed.", 4),
     output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is.", false),
-    {.name = "scale", .kind = real, .doc = "Difference at full colour.", .default_value = "0.1", .range = kAboveZero},
-    {.name = "json", .kind = flag, .doc = "Print JSON."},
+    JobParam("scale", real, "Difference at full colour.", {.default_value = "0.1", .range = kAboveZero}),
+    JobParam("json", flag, "Print JSON."),
 };
 
 /// Blue where `b` is brighter, red where `a` is, white where they are equal: also told apart in colour blindness.
@@ -128,11 +128,8 @@ Result difference(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kDifferenceJob{.name = "difference",
-                                    .group = "Images",
-                                    .doc = "Measure the RMS error between two renders, with noise and bias separated.",
-                                    .params = kParams,
-                                    .session = SessionUse::none,
-                                    .run = difference};
+extern const JobInfo kDifferenceJob("difference", "Images",
+                                    "Measure the RMS error between two renders, with noise and bias separated.", "",
+                                    kParams, SessionUse::none, difference);
 
 }  // namespace frond

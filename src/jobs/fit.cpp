@@ -5,8 +5,8 @@
 
 #include "jobs/common_params.h"
 #include "leaf/fit/measured_spectra.h"
-#include "report/fit_report.h"
 #include "report/chart.h"
+#include "report/fit_report.h"
 #include "report/text_output.h"
 #include "scene/tokenizer.h"
 #include "system/cpu_clock.h"
@@ -20,62 +20,28 @@ constexpr std::string_view kStructures[] = {"bifacial", "unifacial"}, kSieve[] =
                            kMaterials[] = {"leaf", "leaf_solved", "leaf_simplified", "leaf_lambert", "abm"};
 
 constexpr JobParam kParams[] = {
-    {.name = "file",
-     .kind = text,
-     .doc = "Measured spectra: CSV as frond spectrophotometer and spectroradiometers write.",
-     .type = "FILE",
-     .path = PathUse::read,
-     .decides = true,
-     .positional = true,
-     .excludes = "data"},
-    {.name = "data", .kind = text, .doc = "The content of such a file, in its place.", .type = "CSV", .decides = true},
-    {.name = "output",
-     .kind = text,
-     .doc = "Scene file to write, with the leaf's Material line; - is standard output.",
-     .type = "FILE",
-     .aliases = "o",
-     .path = PathUse::write},
+    JobParam("file", text, "Measured spectra: CSV as frond spectrophotometer and spectroradiometers write.",
+             {.type = "FILE", .path = PathUse::read, .decides = true, .positional = true, .excludes = "data"}),
+    JobParam("data", text, "The content of such a file, in its place.", {.type = "CSV", .decides = true}),
+    JobParam("output", text, "Scene file to write, with the leaf's Material line; - is standard output.",
+             {.type = "FILE", .aliases = "o", .path = PathUse::write}),
     kJsonParam,
     kCsvParam,
     chart_param("plot", "Chart of measured and fitted spectra: .svg or .png."),
-    {.name = "leaf",
-     .kind = text,
-     .doc = "Name of the leaf to fit, in a file with several leaves.",
-     .type = "LEAF",
-     .decides = true},
-    {.name = "angle",
-     .kind = real,
-     .doc = "Angle of incidence, where the file does not have it.",
-     .default_value = "8",
-     .unit = "degrees",
-     .range = {0, 180},
-     .decides = true},
-    {.name = "structure",
-     .kind = text,
-     .doc = "Structure of the leaf; by default the one that fits better.",
-     .choices = kStructures,
-     .decides = true},
-    {.name = "sieve",
-     .kind = text,
-     .doc = "Absorption with sieve and detour effects; by default what fits better.",
-     .choices = kSieve,
-     .decides = true},
-    {.name = "fix",
-     .kind = texts,
-     .doc = "NAME=NUMBER: a known number, in the scene's units.",
-     .type = "NAME=NUMBER",
-     .decides = true},
-    {.name = "like",
-     .kind = text,
-     .doc = "Specimen used as a prior (standard deviation about one third).",
-     .choices = leaf::kSpecimenNames,
-     .decides = true},
-    {.name = "material",
-     .kind = text,
-     .doc = "Material type to write.",
-     .default_value = "leaf",
-     .choices = kMaterials,
-     .decides = true},
+    JobParam("leaf", text, "Name of the leaf to fit, in a file with several leaves.",
+             {.type = "LEAF", .decides = true}),
+    JobParam("angle", real, "Angle of incidence, where the file does not have it.",
+             {.default_value = "8", .unit = "degrees", .range = {0, 180}, .decides = true}),
+    JobParam("structure", text, "Structure of the leaf; by default the one that fits better.",
+             {.choices = kStructures, .decides = true}),
+    JobParam("sieve", text, "Absorption with sieve and detour effects; by default what fits better.",
+             {.choices = kSieve, .decides = true}),
+    JobParam("fix", texts, "NAME=NUMBER: a known number, in the scene's units.",
+             {.type = "NAME=NUMBER", .decides = true}),
+    JobParam("like", text, "Specimen used as a prior (standard deviation about one third).",
+             {.choices = leaf::kSpecimenNames, .decides = true}),
+    JobParam("material", text, "Material type to write.",
+             {.default_value = "leaf", .choices = kMaterials, .decides = true}),
 };
 
 /// A number that is fitted, or that follows one.
@@ -159,12 +125,7 @@ Result fit(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kFitJob{.name = "fit",
-                             .group = "Leaf models",
-                             .doc = "Fit a leaf to measured reflectance and transmittance.",
-                             .details = "",
-                             .params = kParams,
-                             .session = SessionUse::threads,
-                             .run = fit};
+extern const JobInfo kFitJob("fit", "Leaf models", "Fit a leaf to measured reflectance and transmittance.", "", kParams,
+                             SessionUse::threads, fit);
 
 }  // namespace frond

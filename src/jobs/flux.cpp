@@ -21,20 +21,14 @@ constexpr JobParam kParams[] = {
     kRadiometryWavelengthsParam,
     kTargetParam,
     kPeriodParam,
-    {.name = "paths", .kind = count, .doc = "Number of light paths.", .default_value = "1e6", .range = kCounts},
+    JobParam("paths", count, "Number of light paths.", {.default_value = "1e6", .range = kCounts}),
     kRmsParam,
     kTimeLimitParam,
-    {.name = "by",
-     .kind = text,
-     .doc = "Measure what each instance of an object absorbs: a row for each.",
-     .choices = kBy,
-     .decides = true},
-    {.name = "irradiance",
-     .kind = text,
-     .doc = "Irradiance of the horizontal plane, for photon flux: name of a spectrum, or an .spd file.",
-     .type = "SPECTRUM",
-     .default_value = "solar-am1.5-global",
-     .unit = "W/(m2 nm)"},
+    JobParam("by", text, "Measure what each instance of an object absorbs: a row for each.",
+             {.choices = kBy, .decides = true}),
+    JobParam("irradiance", text,
+             "Irradiance of the horizontal plane, for photon flux: name of a spectrum, or an .spd file.",
+             {.type = "SPECTRUM", .default_value = "solar-am1.5-global", .unit = "W/(m2 nm)"}),
     kSwapParam,
     kIntegratorParam,
     kSeedParam,
@@ -220,15 +214,10 @@ Result flux(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kFluxJob{.name = "flux",
-                              .group = "Measure",
-                              .doc = "Measure where the light that falls on a scene goes.",
-                              .details =
-                                  "Shares of the incident light, by wavelength: reflected, transmitted, and "
-                                  "absorbed by each material. With wavelengths from 400 to 700 nm also shares "
-                                  "of the photons (PAR).",
-                              .params = kParams,
-                              .session = SessionUse::all,
-                              .run = flux};
+extern const JobInfo kFluxJob("flux", "Measure", "Measure where the light that falls on a scene goes.",
+                              "Shares of the incident light, by wavelength: reflected, transmitted, and "
+                              "absorbed by each material. With wavelengths from 400 to 700 nm also shares "
+                              "of the photons (PAR).",
+                              kParams, SessionUse::all, flux);
 
 }  // namespace frond

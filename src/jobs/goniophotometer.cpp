@@ -18,33 +18,20 @@ constexpr JobParam kParams[] = {
     kWithParam,
     kAnglesParam,
     kInstrumentWavelengthsParam,
-    {.name = "rays",
-     .kind = count,
-     .doc = "Number of rays for each measurement.",
-     .default_value = "1e6",
-     .range = kRayCounts,
-     .decides = true},
-    {.name = "patches",
-     .kind = text,
-     .doc = "THETAxPHI: numbers of detectors, patches of equal angles over the whole sphere.",
-     .type = "THETAxPHI",
-     .default_value = "20x40",
-     .decides = true},
-    {.name = "integrate",
-     .kind = flag,
-     .doc = "Integrate f over each patch, without noise, where it is not a random estimate; use rays elsewhere.",
-     .decides = true},
+    JobParam("rays", count, "Number of rays for each measurement.",
+             {.default_value = "1e6", .range = kRayCounts, .decides = true}),
+    JobParam("patches", text, "THETAxPHI: numbers of detectors, patches of equal angles over the whole sphere.",
+             {.type = "THETAxPHI", .default_value = "20x40", .decides = true}),
+    JobParam("integrate", flag,
+             "Integrate f over each patch, without noise, where it is not a random estimate; use rays elsewhere.",
+             {.decides = true}),
     kRenderedParam,
     kSeedParam,
     kCsvParam,
     kJsonParam,
     chart_param("plot", "Chart of f in the plane of incidence: .svg or .png."),
     chart_param("map", "Polar maps of f over both hemispheres: .svg or .png."),
-    {.name = "map-scale",
-     .kind = text,
-     .doc = "Colour scale of the map.",
-     .default_value = "linear",
-     .choices = kScales},
+    JobParam("map-scale", text, "Colour scale of the map.", {.default_value = "linear", .choices = kScales}),
 };
 
 /// "20x40"; "20,40" as well, which is how a program writes two numbers.
@@ -137,7 +124,6 @@ GoniophotometerReading measure(const JobRun& run, const MaterialsUnderTest& test
   return measure_f(exposure, sphere, rays, run.session().pool(), tested.progress(i, rays));
 }
 
-
 Result goniophotometer(const JobRun& run) {
   check_chart_param(run, "plot");
   check_chart_param(run, "map");
@@ -149,7 +135,8 @@ Result goniophotometer(const JobRun& run) {
     readings.push_back({tested.material(i).label(), measure(run, tested, i, sphere)});
   if (run.control.progress) run.control.progress->finish();
   if (run.args.given("plot")) write_chart(run.args.text("plot"), plane_chart(readings));
-  if (run.args.given("map")) write_chart(run.args.text("map"), map_chart(readings, run.args.text("map-scale") == "log"));
+  if (run.args.given("map"))
+    write_chart(run.args.text("map"), map_chart(readings, run.args.text("map-scale") == "log"));
   const Table summary = summary_of(readings);
   return {
       .tables = {table_of(readings), summary},
@@ -159,12 +146,8 @@ Result goniophotometer(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kGoniophotometerJob{.name = "goniophotometer",
-                                         .group = "Measure",
-                                         .doc = "Measure a material's BRDF and BTDF over the whole sphere.",
-                                         .details = "",
-                                         .params = kParams,
-                                         .session = SessionUse::all,
-                                         .run = goniophotometer};
+extern const JobInfo kGoniophotometerJob("goniophotometer", "Measure",
+                                         "Measure a material's BRDF and BTDF over the whole sphere.", "", kParams,
+                                         SessionUse::all, goniophotometer);
 
 }  // namespace frond

@@ -18,13 +18,8 @@ namespace {
 using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
-    {.name = "csv",
-     .kind = text,
-     .doc = "CSV file to read.",
-     .type = "FILE",
-     .path = PathUse::read,
-     .positional = true,
-     .required = true},
+    JobParam("csv", text, "CSV file to read.",
+             {.type = "FILE", .path = PathUse::read, .positional = true, .required = true}),
     output_param("Instance table to write, a NumPy file (.npy).", true),
 };
 
@@ -208,16 +203,11 @@ Result instances(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kInstancesJob{
-    .name = "instances",
-    .group = "Scenes",
-    .doc = "Write an instance table, for Shape \"instances\", from CSV.",
-    .details =
-        "The first line names the columns: x,y,z; scale; the orientation, as nx,ny,nz or zenith,azimuth (degrees) "
-        "of the z axis, which is a leaf's normal, and spin about it (degrees), or as qw,qx,qy,qz, or m00,m01 to "
-        "m22. All other columns are numbers for Texture \"instance\".",
-    .params = kParams,
-    .session = SessionUse::none,
-    .run = instances};
+extern const JobInfo kInstancesJob(
+    "instances", "Scenes", "Write an instance table, for Shape \"instances\", from CSV.",
+    "The first line names the columns: x,y,z; scale; the orientation, as nx,ny,nz or zenith,azimuth (degrees) "
+    "of the z axis, which is a leaf's normal, and spin about it (degrees), or as qw,qx,qy,qz, or m00,m01 to "
+    "m22. All other columns are numbers for Texture \"instance\".",
+    kParams, SessionUse::none, instances);
 
 }  // namespace frond

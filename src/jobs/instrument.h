@@ -10,27 +10,16 @@
 /// What the jobs of both instruments share: parameters, materials under test, progress.
 namespace frond {
 
-inline constexpr JobParam kAnglesParam{.name = "angles",
-                                       .kind = ArgumentKind::numbers,
-                                       .doc = "Angles of incidence from the front's normal; above 90 the back is lit.",
-                                       .default_value = "8",
-                                       .unit = "degrees",
-                                       .range = {0, 180},
-                                       .aliases = "angle",
-                                       .decides = true};
-inline constexpr JobParam kInstrumentWavelengthsParam{.name = "wavelengths",
-                                                      .kind = ArgumentKind::numbers,
-                                                      .doc = "Wavelengths.",
-                                                      .unit = "nm",
-                                                      .range = {360, 2500},
-                                                      .aliases = "wavelength",
-                                                      .decides = true,
-                                                      .required = true};
-inline constexpr JobParam kRenderedParam{
-    .name = "rendered",
-    .kind = ArgumentKind::flag,
-    .doc = "Measure what a renderer shows: light along wi, seen along wo, though the model calls wo incident.",
-    .decides = true};
+inline constexpr JobParam kAnglesParam(
+    "angles", ArgumentKind::numbers, "Angles of incidence from the front's normal; above 90 the back is lit.",
+    {.default_value = "8", .unit = "degrees", .range = {0, 180}, .aliases = "angle", .decides = true});
+inline constexpr JobParam kInstrumentWavelengthsParam(
+    "wavelengths", ArgumentKind::numbers, "Wavelengths.",
+    {.unit = "nm", .range = {360, 2500}, .aliases = "wavelength", .decides = true, .required = true});
+inline constexpr JobParam kRenderedParam(
+    "rendered", ArgumentKind::flag,
+    "Measure what a renderer shows: light along wi, seen along wo, though the model calls wo incident.",
+    {.decides = true});
 inline constexpr Interval kRayCounts{2, kCounts.max};
 
 /// The materials under test and the beams on them, made and checked before the first ray.

@@ -15,24 +15,15 @@ namespace {
 using enum ArgumentKind;
 
 constexpr JobParam kSession[] = {
-    {.name = "quiet", .kind = flag, .doc = "Print errors and requested data only.", .aliases = "q"},
-    {.name = "plugin",
-     .kind = texts,
-     .doc = "Shared object with further plug-ins. Those in the folders of FROND_PLUGIN_PATH are always loaded.",
-     .type = "FILE",
-     .path = PathUse::read,
-     .decides = true},
-    {.name = "threads",
-     .kind = count,
-     .doc = "Number of threads; by default one for each processor. Results do not depend on it.",
-     .range = {1, 1024},
-     .aliases = "nthreads"},
-    {.name = "cache",
-     .kind = text,
-     .doc = "Folder for computed tables; by default $XDG_CACHE_HOME/frond, or ~/.cache/frond.",
-     .type = "FOLDER",
-     .path = PathUse::write},
-    {.name = "no-cache", .kind = flag, .doc = "Keep no computed tables on disk."},
+    JobParam("quiet", flag, "Print errors and requested data only.", {.aliases = "q"}),
+    JobParam("plugin", texts,
+             "Shared object with further plug-ins. Those in the folders of FROND_PLUGIN_PATH are always loaded.",
+             {.type = "FILE", .path = PathUse::read, .decides = true}),
+    JobParam("threads", count, "Number of threads; by default one for each processor. Results do not depend on it.",
+             {.range = {1, 1024}, .aliases = "nthreads"}),
+    JobParam("cache", text, "Folder for computed tables; by default $XDG_CACHE_HOME/frond, or ~/.cache/frond.",
+             {.type = "FOLDER", .path = PathUse::write}),
+    JobParam("no-cache", flag, "Keep no computed tables on disk."),
 };
 
 std::string file_name(const JobParam& p, const std::string& word) {
@@ -109,7 +100,8 @@ SessionOptions session_options(const Arguments& args) {
   if (!args.declares("threads")) return options;
   options.threads = int(args.count("threads"));
   if (!args.declares("cache")) return options;
-  if (!args.flag("no-cache")) options.cache = args.given("cache") ? std::filesystem::path(args.text("cache")) : default_cache();
+  if (!args.flag("no-cache"))
+    options.cache = args.given("cache") ? std::filesystem::path(args.text("cache")) : default_cache();
   return options;
 }
 

@@ -19,15 +19,15 @@ namespace frond {
 
 /// What a job leaves behind, beside the files that it has written.
 struct Result {
-  std::vector<Table> tables = {};       ///< the first one is what --csv writes
-  std::vector<Fact> facts = {};         ///< single values
-  std::vector<std::string> notes = {};  ///< comments of CSV: who measured what
-  std::string text = {};                ///< for a terminal
-  std::string json = {};                ///< what --json writes, where that is not made of notes, facts and tables
+  std::vector<Table> tables = {};        ///< the first one is what --csv writes
+  std::vector<Fact> facts = {};          ///< single values
+  std::vector<std::string> notes = {};   ///< comments of CSV: who measured what
+  std::string text = {};                 ///< for a terminal
+  std::string json = {};                 ///< what --json writes, where that is not made of notes, facts and tables
   std::vector<std::string> errors = {};  ///< what is wrong with the input, for standard error; the code is 1
-  bool is_requested = false;            ///< the text is what was asked for, by --json for one: --quiet keeps it
-  int code = 0;                         ///< of the program: 0 done, 1 something is wrong, 2 a law is broken
-  bool stopped = false;                 ///< by the control's stop token; what was done is kept
+  bool is_requested = false;             ///< the text is what was asked for, by --json for one: --quiet keeps it
+  int code = 0;                          ///< of the program: 0 done, 1 something is wrong, 2 a law is broken
+  bool stopped = false;                  ///< by the control's stop token; what was done is kept
 };
 
 /// What a job works with. The session is made when it is first asked for: some jobs do without.
@@ -79,14 +79,26 @@ enum class SessionUse : uint8_t {
 
 /// One job: its record and its function.
 struct JobInfo {
+  constexpr JobInfo(std::string_view its_name, std::string_view its_group, std::string_view its_doc,
+                    std::string_view its_details, std::span<const JobParam> its_params, SessionUse its_session,
+                    Result (*its_run)(const JobRun&), const JobInfo* extended = nullptr)
+      : name(its_name),
+        group(its_group),
+        doc(its_doc),
+        details(its_details),
+        params(its_params),
+        session(its_session),
+        run(its_run),
+        extends(extended) {}
+
   std::string_view name;
-  std::string_view group;    ///< heading of `frond --help`: "render", "leaf models", "measure", ...
+  std::string_view group;    ///< heading of `frond --help`: "Render", "Leaf models", "Measure", ...
   std::string_view doc;      ///< one sentence
-  std::string_view details = "";  ///< further sentences, for --help, man pages and docstrings
+  std::string_view details;  ///< further sentences, for --help, man pages and docstrings; may be empty
   std::span<const JobParam> params;
   SessionUse session;
   Result (*run)(const JobRun&);
-  const JobInfo* extends = nullptr;  ///< another job whose parameters this one takes too, and passes on
+  const JobInfo* extends;  ///< another job whose parameters this one takes too, and passes on; nullptr: none
 };
 
 /// All parameters of a job: its own, those of the job that it extends, and those of its session.

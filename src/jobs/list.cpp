@@ -8,12 +8,9 @@ namespace frond {
 namespace {
 
 constexpr std::string_view kWhat[] = {"specimens"};
-constexpr JobParam kParams[] = {
-    {.name = "what",
-     .kind = ArgumentKind::text,
-     .doc = "specimens: the leaves that \"string specimen\" can name, in place of plug-ins.",
-     .choices = kWhat,
-     .positional = true}};
+constexpr JobParam kParams[] = {JobParam(
+    "what", ArgumentKind::text, "specimens: the leaves that \"string specimen\" can name, in place of plug-ins.",
+    {.choices = kWhat, .positional = true})};
 
 Result list_specimens() {
   Result result{.tables = {{"specimens"}}, .is_requested = true};
@@ -44,11 +41,7 @@ Result list(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kListJob{.name = "list",
-                              .group = "Materials",
-                              .doc = "List every plug-in that a scene can name.",
-                              .params = kParams,
-                              .session = SessionUse::plugins,
-                              .run = list};
+extern const JobInfo kListJob("list", "Materials", "List every plug-in that a scene can name.", "", kParams,
+                              SessionUse::plugins, list);
 
 }  // namespace frond

@@ -16,16 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr JobParam kParams[] = {
-    {.name = "command",
-     .kind = ArgumentKind::text,
-     .doc = "Command that the page describes; frond itself by default.",
-     .type = "COMMAND",
-     .positional = true},
-    {.name = "folder",
-     .kind = ArgumentKind::text,
-     .doc = "Folder to write the pages of all commands to.",
-     .type = "FOLDER",
-     .path = PathUse::write},
+    JobParam("command", ArgumentKind::text, "Command that the page describes; frond itself by default.",
+             {.type = "COMMAND", .positional = true}),
+    JobParam("folder", ArgumentKind::text, "Folder to write the pages of all commands to.",
+             {.type = "FOLDER", .path = PathUse::write}),
 };
 
 /// Text in roff, without a line break.
@@ -170,12 +164,7 @@ Result man(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kManJob{.name = "man",
-                             .group = "Shell",
-                             .doc = "Print a man page.",
-                             .details = "To read it: frond man render | man -l -",
-                             .params = kParams,
-                             .session = SessionUse::none,
-                             .run = man};
+extern const JobInfo kManJob("man", "Shell", "Print a man page.", "To read it: frond man render | man -l -", kParams,
+                             SessionUse::none, man);
 
 }  // namespace frond

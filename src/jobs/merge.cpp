@@ -12,12 +12,8 @@ using enum ArgumentKind;
 constexpr JobParam kParams[] = {
     files_param("parts", "Parts of one render, which have no sample in common."),
     output_param("Image to write: .exr (linear), .png or .jpg (through the display transform).", false, "part"),
-    {.name = "part",
-     .kind = text,
-     .doc = "Part to write, in place of an image.",
-     .type = "FILE",
-     .path = PathUse::write},
-    {.name = "allow-holes", .kind = flag, .doc = "Write an image although samples or pixels are missing."},
+    JobParam("part", text, "Part to write, in place of an image.", {.type = "FILE", .path = PathUse::write}),
+    JobParam("allow-holes", flag, "Write an image although samples or pixels are missing."),
     kDisplayParam,
     kViewParam,
 };
@@ -66,11 +62,7 @@ Result merge(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kMergeJob{.name = "merge",
-                               .group = "Cluster",
-                               .doc = "Merge parts of a render, which frond render --part has written.",
-                               .params = kParams,
-                               .session = SessionUse::none,
-                               .run = merge};
+extern const JobInfo kMergeJob("merge", "Cluster", "Merge parts of a render, which frond render --part has written.",
+                               "", kParams, SessionUse::none, merge);
 
 }  // namespace frond

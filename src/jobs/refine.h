@@ -10,9 +10,9 @@ namespace frond {
 
 /// How much is measured: a fixed amount, or amounts that double until an error is small enough.
 struct Effort {
-  uint64_t amount = 0;          ///< of paths, samples or rays; the first one of a refinement
-  uint64_t most = 0;            ///< the last one of a refinement
-  double target_error = 0;      ///< 0: the fixed amount
+  uint64_t amount = 0;      ///< of paths, samples or rays; the first one of a refinement
+  uint64_t most = 0;        ///< the last one of a refinement
+  double target_error = 0;  ///< 0: the fixed amount
 };
 
 enum class RefineEnd : uint8_t { done, stopped, time_over };

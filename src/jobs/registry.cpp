@@ -28,14 +28,28 @@ extern const JobInfo kTableJob;
 
 std::span<const JobInfo* const> all_jobs() {
   static constexpr const JobInfo* kAll[] = {
-      &kRenderJob,                                                               // Render
-      &kCompareJob, &kFitJob, &kTableJob,                                        // Leaf models
-      &kBrfJob, &kFluxJob, &kSpectrophotometerJob, &kGoniophotometerJob,         // Measure
-      &kListJob, &kDescribeJob, &kConformJob, &kBenchJob, &kExportJob,           // Materials
-      &kCheckJob, &kCanopyJob, &kInstancesJob,                                   // Scenes
-      &kConvertJob, &kDifferenceJob,                                             // Images
-      &kSubmitJob, &kMergeJob,                                                   // Cluster
-      &kManJob, &kCompletionJob,                                                 // Shell
+      &kRenderJob,  // Render
+      &kCompareJob,
+      &kFitJob,
+      &kTableJob,  // Leaf models
+      &kBrfJob,
+      &kFluxJob,
+      &kSpectrophotometerJob,
+      &kGoniophotometerJob,  // Measure
+      &kListJob,
+      &kDescribeJob,
+      &kConformJob,
+      &kBenchJob,
+      &kExportJob,  // Materials
+      &kCheckJob,
+      &kCanopyJob,
+      &kInstancesJob,  // Scenes
+      &kConvertJob,
+      &kDifferenceJob,  // Images
+      &kSubmitJob,
+      &kMergeJob,  // Cluster
+      &kManJob,
+      &kCompletionJob,  // Shell
   };
   return kAll;
 }

@@ -22,121 +22,71 @@ using enum ArgumentKind;
 using Clock = std::chrono::steady_clock;
 
 constexpr JobParam kParams[] = {
-    {.name = "scene",
-     .kind = texts,
-     .doc = "Scene file (pbrt-v4 format). Of several files, each that has WorldBegin ends a scene.",
-     .type = "SCENE",
-     .path = PathUse::read,
-     .decides = true,
-     .positional = true,
-     .required = true},
-    {.name = "output",
-     .kind = text,
-     .doc = "Image: .exr (linear), .png or .jpg (through the display transform). By default the file that the scene's "
-            "film names.",
-     .type = "FILE",
-     .aliases = "o,outfile",
-     .path = PathUse::write,
-     .excludes = "part"},
-    {.name = "spp",
-     .kind = count,
-     .doc = "Number of samples per pixel; by default the scene's.",
-     .range = {1, 1 << 30}},
-    {.name = "wavelengths",
-     .kind = text,
-     .doc = "Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in "
-            "nm: 450,550,850 or 400:1000:10.",
-     .type = "WAVELENGTHS",
-     .decides = true},
+    JobParam("scene", texts, "Scene file (pbrt-v4 format). Of several files, each that has WorldBegin ends a scene.",
+             {.type = "SCENE", .path = PathUse::read, .decides = true, .positional = true, .required = true}),
+    JobParam("output", text,
+             "Image: .exr (linear), .png or .jpg (through the display transform). By default the file that the scene's "
+             "film names.",
+             {.type = "FILE", .aliases = "o,outfile", .path = PathUse::write, .excludes = "part"}),
+    JobParam("spp", count, "Number of samples per pixel; by default the scene's.", {.range = {1, 1 << 30}}),
+    JobParam(
+        "wavelengths", text,
+        "Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in "
+        "nm: 450,550,850 or 400:1000:10.",
+        {.type = "WAVELENGTHS", .decides = true}),
     kSwapParam,
     kSeedParam,
-    {.name = "crop",
-     .kind = numbers,
-     .doc = "Crop as fractions of the film; ends are rounded up.",
-     .type = "X0,X1,Y0,Y1",
-     .range = {0, 1},
-     .aliases = "cropwindow",
-     .values = 4,
-     .excludes = "pixels,pixel"},
-    {.name = "pixels",
-     .kind = numbers,
-     .doc = "Crop in pixels; x1 and y1 are not part of it.",
-     .type = "X0,X1,Y0,Y1",
-     .range = {0, 1 << 30},
-     .aliases = "pixelbounds",
-     .values = 4,
-     .whole = true,
-     .excludes = "pixel"},
-    {.name = "pixel",
-     .kind = numbers,
-     .doc = "The one pixel to render.",
-     .type = "X,Y",
-     .range = {0, 1 << 30},
-     .values = 2,
-     .whole = true},
+    JobParam(
+        "crop", numbers, "Crop as fractions of the film; ends are rounded up.",
+        {.type = "X0,X1,Y0,Y1", .range = {0, 1}, .aliases = "cropwindow", .values = 4, .excludes = "pixels,pixel"}),
+    JobParam("pixels", numbers, "Crop in pixels; x1 and y1 are not part of it.",
+             {.type = "X0,X1,Y0,Y1",
+              .range = {0, 1 << 30},
+              .aliases = "pixelbounds",
+              .values = 4,
+              .whole = true,
+              .excludes = "pixel"}),
+    JobParam("pixel", numbers, "The one pixel to render.",
+             {.type = "X,Y", .range = {0, 1 << 30}, .values = 2, .whole = true}),
     kIntegratorParam,
-    {.name = "filter",
-     .kind = text,
-     .doc = "PLUGIN[,parameter=value...]: pixel filter; one of the scene's kind keeps the scene's other parameters. "
-            "gaussian,reconstruction=importance: pixels share no samples.",
-     .type = "FILTER",
-     .decides = true},
-    {.name = "channels",
-     .kind = text,
-     .doc = "Data of the first surface that camera rays meet, beside the image's colours; names with commas between "
-            "(docs/scene_format.md).",
-     .type = "CHANNELS",
-     .decides = true},
-    {.name = "max-rms",
-     .kind = real,
-     .doc = "Stop when the RMS noise of the image's linear colours is below this; pixels with more noise get more "
-            "samples, up to --spp.",
-     .range = kAboveZero,
-     .excludes = "samples"},
+    JobParam("filter", text,
+             "PLUGIN[,parameter=value...]: pixel filter; one of the scene's kind keeps the scene's other parameters. "
+             "gaussian,reconstruction=importance: pixels share no samples.",
+             {.type = "FILTER", .decides = true}),
+    JobParam("channels", text,
+             "Data of the first surface that camera rays meet, beside the image's colours; names with commas between "
+             "(docs/scene_format.md).",
+             {.type = "CHANNELS", .decides = true}),
+    JobParam("max-rms", real,
+             "Stop when the RMS noise of the image's linear colours is below this; pixels with more noise get more "
+             "samples, up to --spp.",
+             {.range = kAboveZero, .excludes = "samples"}),
     kTimeLimitParam,
-    {.name = "quick", .kind = flag, .doc = "Preview: half the resolution, a sixteenth of the samples.", .decides = true},
-    {.name = "pilot", .kind = flag, .doc = "Choose the models of open leaves and report the choice; render nothing."},
-    {.name = "display", .kind = text, .doc = "Display of PNG and JPEG output; sRGB by default. tev: the same as --display-server 127.0.0.1:14158."},
-    {.name = "view", .kind = text, .doc = "View of that display."},
-    {.name = "color-space",
-     .kind = text,
-     .doc = "Colour space of an EXR file's R, G and B where the scene names none, such as linear sRGB.",
-     .decides = true},
-    {.name = "display-server",
-     .kind = text,
-     .doc = "Show the image in the viewer tev while it is rendered.",
-     .type = "HOST:PORT"},
-    {.name = "preview", .kind = flag, .doc = "Show the image in the terminal while it is rendered, and at the end."},
-    {.name = "part",
-     .kind = text,
-     .doc = "Write a part, to be combined with frond merge, instead of an image.",
-     .type = "FILE",
-     .path = PathUse::write},
-    {.name = "samples",
-     .kind = text,
-     .doc = "Range of samples to render, FIRST:END, as in 64:128; by default from 0 to --spp.",
-     .type = "FIRST:END"},
-    {.name = "checkpoint",
-     .kind = real,
-     .doc = "Keep the partial result at this interval, and when stopped by SIGINT or SIGTERM: in OUTPUT.part, or in "
-            "FILE.checkpoint where --part writes FILE.",
-     .unit = "s",
-     .range = kAboveZero},
-    {.name = "resume",
-     .kind = flag,
-     .doc = "Resume from OUTPUT.part, or --part's file, if it is there; keep one too."},
-    {.name = "disable-pixel-jitter",
-     .kind = flag,
-     .doc = "Sample at the centres of pixels and lens.",
-     .decides = true},
-    {.name = "disable-texture-filtering", .kind = flag, .doc = "Look textures up at points.", .decides = true},
-    {.name = "disable-wavelength-jitter",
-     .kind = flag,
-     .doc = "Use the same wavelengths for all samples.",
-     .decides = true},
+    JobParam("quick", flag, "Preview: half the resolution, a sixteenth of the samples.", {.decides = true}),
+    JobParam("pilot", flag, "Choose the models of open leaves and report the choice; render nothing."),
+    JobParam("display", text,
+             "Display of PNG and JPEG output; sRGB by default. tev: the same as --display-server 127.0.0.1:14158."),
+    JobParam("view", text, "View of that display."),
+    JobParam("color-space", text,
+             "Colour space of an EXR file's R, G and B where the scene names none, such as linear sRGB.",
+             {.decides = true}),
+    JobParam("display-server", text, "Show the image in the viewer tev while it is rendered.", {.type = "HOST:PORT"}),
+    JobParam("preview", flag, "Show the image in the terminal while it is rendered, and at the end."),
+    JobParam("part", text, "Write a part, to be combined with frond merge, instead of an image.",
+             {.type = "FILE", .path = PathUse::write}),
+    JobParam("samples", text, "Range of samples to render, FIRST:END, as in 64:128; by default from 0 to --spp.",
+             {.type = "FIRST:END"}),
+    JobParam("checkpoint", real,
+             "Keep the partial result at this interval, and when stopped by SIGINT or SIGTERM: in OUTPUT.part, or in "
+             "FILE.checkpoint where --part writes FILE.",
+             {.unit = "s", .range = kAboveZero}),
+    JobParam("resume", flag, "Resume from OUTPUT.part, or --part's file, if it is there; keep one too."),
+    JobParam("disable-pixel-jitter", flag, "Sample at the centres of pixels and lens.", {.decides = true}),
+    JobParam("disable-texture-filtering", flag, "Look textures up at points.", {.decides = true}),
+    JobParam("disable-wavelength-jitter", flag, "Use the same wavelengths for all samples.", {.decides = true}),
     kIgnoreUnsupportedParam,
     kStrictParam,
-    {.name = "json", .kind = flag, .doc = "Print the statistics as JSON on standard output."},
+    JobParam("json", flag, "Print the statistics as JSON on standard output."),
 };
 
 /// Counts by depth, up to the last that is not 0.
@@ -198,8 +148,7 @@ class SceneRender {
       names_ = {part, part + ".checkpoint"};  // a part of this name is finished
       return;
     }
-    output_.emplace(args.given("output") ? args.text("output") : task_.film_file(),
-                    display_of(args));
+    output_.emplace(args.given("output") ? args.text("output") : task_.film_file(), display_of(args));
     if (!args.given("checkpoint") && !args.flag("resume")) return;
     names_ = {output_->path() + ".part", output_->path() + ".part"};
     check_replaceable(names_->finished);
@@ -263,9 +212,10 @@ class SceneRender {
       fail({}, "{}: the time was over before anything was rendered", run_.args.spelled("time-limit"));
     const Log& log = run_.log();
     if (const uint64_t count = part.film.not_finite(); count > 0)
-      log.warn({}, fmt::format("{} samples were too bright for the film, or no numbers at all, and count as its brightest "
-                               "or as black",
-                               count));
+      log.warn({},
+               fmt::format("{} samples were too bright for the film, or no numbers at all, and count as its brightest "
+                           "or as black",
+                           count));
     if (task_.is_adaptive())
       report_noise(part.film);
     else if (samples.least < task_.samples().count())
@@ -299,19 +249,25 @@ class SceneRender {
     const double us_per_path = per_path(s.cpu_seconds, s) * 1e6, rays_per_path = per_path(double(s.rays), s);
     Table& table = result.tables[0];
     table.add("output", output);
-    for (const auto& [name, value] :
-         {std::pair{"samples_per_pixel", double(samples.most)}, {"least_samples_per_pixel", double(samples.least)},
-          {"load_seconds", load_seconds_}, {"wall_seconds", s.wall_seconds}, {"cpu_seconds", s.cpu_seconds},
-          {"paths", double(s.paths)}, {"rays", double(s.rays)}, {"cpu_us_per_path", us_per_path},
-          {"rays_per_path", rays_per_path}, {"foliar_ratio", film.foliar_ratio()},
-          {"variance_in_worst_thousandth", error_tail}})
+    for (const auto& [name, value] : {std::pair{"samples_per_pixel", double(samples.most)},
+                                      {"least_samples_per_pixel", double(samples.least)},
+                                      {"load_seconds", load_seconds_},
+                                      {"wall_seconds", s.wall_seconds},
+                                      {"cpu_seconds", s.cpu_seconds},
+                                      {"paths", double(s.paths)},
+                                      {"rays", double(s.rays)},
+                                      {"cpu_us_per_path", us_per_path},
+                                      {"rays_per_path", rays_per_path},
+                                      {"foliar_ratio", film.foliar_ratio()},
+                                      {"variance_in_worst_thousandth", error_tail}})
       table.add(name, value);
     if (run_.args.flag("json")) return add_json(result);
     const std::string count = samples.least == samples.most ? fmt::format("{}", samples.most)
                                                             : fmt::format("{} to {}", samples.least, samples.most);
-    run_.log().info(fmt::format(
-        "{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), loaded in {:.2f} s",
-        output, count, s.wall_seconds, s.cpu_seconds, us_per_path, rays_per_path, load_seconds_));
+    run_.log().info(
+        fmt::format("{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), "
+                    "loaded in {:.2f} s",
+                    output, count, s.wall_seconds, s.cpu_seconds, us_per_path, rays_per_path, load_seconds_));
     run_.log().info(fmt::format("foliar ratio {:.2f} %", 100 * film.foliar_ratio()));
   }
 
@@ -362,12 +318,6 @@ Result render(const JobRun& run) {
 
 }  // namespace
 
-const JobInfo kRenderJob{.name = "render",
-                         .group = "Render",
-                         .doc = "Render a pbrt-v4 scene file.",
-                         .details = "",
-                         .params = kParams,
-                         .session = SessionUse::all,
-                         .run = render};
+const JobInfo kRenderJob("render", "Render", "Render a pbrt-v4 scene file.", "", kParams, SessionUse::all, render);
 
 }  // namespace frond

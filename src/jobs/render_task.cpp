@@ -111,8 +111,8 @@ void RenderTask::load(const ImageOutput* output) {
   if (args.given("samples")) samples_ = range_of(args);
   scene_->check_samples(samples_.count());
   if (args.given("max-rms") && args.given("spp") && samples_.count() < kLeastAdaptive)
-    fail({}, "{}: at least {} samples per pixel are needed to estimate the noise, {} allows {}", args.spelled("max-rms"),
-         kLeastAdaptive, args.spelled("spp"), samples_.count());
+    fail({}, "{}: at least {} samples per pixel are needed to estimate the noise, {} allows {}",
+         args.spelled("max-rms"), kLeastAdaptive, args.spelled("spp"), samples_.count());
   if (output) output->check(scene_->picture());
 }
 

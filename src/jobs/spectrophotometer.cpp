@@ -16,16 +16,11 @@ constexpr JobParam kParams[] = {
     kWithParam,
     kAnglesParam,
     kInstrumentWavelengthsParam,
-    {.name = "rays",
-     .kind = count,
-     .doc = "Number of rays for each measurement: 1e6 by default; with --se the largest number, 1e9 by default.",
-     .range = kRayCounts,
-     .decides = true},
-    {.name = "se",
-     .kind = real,
-     .doc = "Stop when the standard errors of R, T and A are no larger than this.",
-     .range = kAboveZero,
-     .decides = true},
+    JobParam("rays", count,
+             "Number of rays for each measurement: 1e6 by default; with --se the largest number, 1e9 by default.",
+             {.range = kRayCounts, .decides = true}),
+    JobParam("se", real, "Stop when the standard errors of R, T and A are no larger than this.",
+             {.range = kAboveZero, .decides = true}),
     kRenderedParam,
     kSeedParam,
     kCsvParam,
@@ -109,12 +104,8 @@ Result spectrophotometer(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kSpectrophotometerJob{.name = "spectrophotometer",
-                                           .group = "Measure",
-                                           .doc = "Measure a material's reflectance, transmittance and absorptance.",
-                                           .details = "",
-                                           .params = kParams,
-                                           .session = SessionUse::all,
-                                           .run = spectrophotometer};
+extern const JobInfo kSpectrophotometerJob("spectrophotometer", "Measure",
+                                           "Measure a material's reflectance, transmittance and absorptance.", "",
+                                           kParams, SessionUse::all, spectrophotometer);
 
 }  // namespace frond

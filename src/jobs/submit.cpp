@@ -16,37 +16,21 @@ namespace fs = std::filesystem;
 using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
-    {.name = "scene",
-     .kind = text,
-     .doc = "Scene file.",
-     .type = "SCENE",
-     .path = PathUse::read,
-     .positional = true,
-     .required = true},
-    {.name = "output",
-     .kind = text,
-     .doc = "Image that the merge job writes.",
-     .type = "FILE",
-     .aliases = "o,outfile",
-     .path = PathUse::write,
-     .required = true},
-    {.name = "spp", .kind = count, .doc = "Number of samples per pixel.", .range = {1, 1 << 30}, .required = true},
-    {.name = "tasks",
-     .kind = count,
-     .doc = "Number of tasks that share the samples.",
-     .range = {1, 1e6},
-     .required = true},
-    {.name = "slurm", .kind = flag, .doc = "Write a job for Slurm.", .required = true},
-    {.name = "run", .kind = flag, .doc = "Submit it too, by sbatch."},
-    {.name = "folder",
-     .kind = text,
-     .doc = "Folder of the job's scripts, parts and logs; OUTPUT.slurm by default.",
-     .type = "FOLDER",
-     .path = PathUse::write},
+    JobParam("scene", text, "Scene file.",
+             {.type = "SCENE", .path = PathUse::read, .positional = true, .required = true}),
+    JobParam("output", text, "Image that the merge job writes.",
+             {.type = "FILE", .aliases = "o,outfile", .path = PathUse::write, .required = true}),
+    JobParam("spp", count, "Number of samples per pixel.", {.range = {1, 1 << 30}, .required = true}),
+    JobParam("tasks", count, "Number of tasks that share the samples.", {.range = {1, 1e6}, .required = true}),
+    JobParam("slurm", flag, "Write a job for Slurm.", {.required = true}),
+    JobParam("run", flag, "Submit it too, by sbatch."),
+    JobParam("folder", text, "Folder of the job's scripts, parts and logs; OUTPUT.slurm by default.",
+             {.type = "FOLDER", .path = PathUse::write}),
 };
 
 /// Parameters of render that each task sets itself.
-constexpr std::string_view kSetByTasks[] = {"part", "samples", "checkpoint", "resume", "time-limit", "threads", "pilot"};
+constexpr std::string_view kSetByTasks[] = {"part",       "samples", "checkpoint", "resume",
+                                            "time-limit", "threads", "pilot"};
 
 /// As a shell reads it.
 std::string quoted(const std::string& word) {
@@ -147,14 +131,9 @@ Result submit(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kSubmitJob{
-    .name = "submit",
-    .group = "Cluster",
-    .doc = "Render on a cluster: an array job of sample ranges, and the job that merges them.",
-    .details = "The options of frond render are handed on to the tasks.",
-    .params = kParams,
-    .session = SessionUse::all,
-    .run = submit,
-    .extends = &kRenderJob};
+extern const JobInfo kSubmitJob("submit", "Cluster",
+                                "Render on a cluster: an array job of sample ranges, and the job that merges them.",
+                                "The options of frond render are handed on to the tasks.", kParams, SessionUse::all,
+                                submit, &kRenderJob);
 
 }  // namespace frond

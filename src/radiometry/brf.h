@@ -34,8 +34,8 @@ struct BrfReading {
   std::vector<ViewDirection> views;
   std::vector<double> wavelengths_nm;
   std::vector<MeanError> values;  ///< view by view, band by band
-  std::vector<double> rows;      ///< of each of the values: its BrfMeter::kRows independent ones
-  uint64_t paths = 0;            ///< for each view
+  std::vector<double> rows;       ///< of each of the values: its BrfMeter::kRows independent ones
+  uint64_t paths = 0;             ///< for each view
   /// Standard errors are not to be trusted: a few paths that are hardly ever drawn carry much of the mean.
   bool has_heavy_tails = false;
   const MeanError& at(size_t view, size_t band) const { return values[view * wavelengths_nm.size() + band]; }

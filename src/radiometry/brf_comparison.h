@@ -4,8 +4,8 @@
 
 namespace frond {
 
-/// By how much one BRF lies above another, relative to it: view by view, band by band. Readings of one scene with one seed share their noise in part; row by row it is known
-/// how much, and that does not count.
+/// By how much one BRF lies above another, relative to it: view by view, band by band. Readings of one scene with one
+/// seed share their noise in part; row by row it is known how much, and that does not count.
 std::vector<MeanError> relative_to(const BrfReading& reference, const BrfReading& reading);
 
 /// Whether a reading is near enough to another everywhere.
