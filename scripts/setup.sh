@@ -103,6 +103,14 @@ build() {
 report_targets=(frond frond_python frond_python_stub)
 report_python="$root/build/python-venv/bin/python"
 report() {
+  local argument help
+  help=$(sed -n '2,/^[^#]/p' "${BASH_SOURCE[1]}")
+  for argument in "${@:2}"; do  # what the comment at the head of the script does not name is refused before anything else
+    if [[ $argument == --* && $help != *"${argument%%=*}"* ]]; then
+      echo "usage: scripts/$(basename "${BASH_SOURCE[1]}") --help" >&2
+      exit 1
+    fi
+  done
   install_missing "${build_packages[@]}" python3-dev
   if ! with_python_module; then
     echo "scripts/$(basename "$0") needs packages of PyPI, which cannot be had" >&2

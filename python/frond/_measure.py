@@ -1,5 +1,6 @@
 """Jobs whose results have a form of their own in Python: fits, distributions of f, verdicts of laws; and measured spectra."""
 
+import inspect
 import os
 
 from . import _frond
@@ -25,6 +26,19 @@ def names(kind="material", *, session=None):
     return (session or default_session()).names(kind)
 
 
+def _with_keywords_of(name):
+    """Adds the job's keywords to the signature of a function that passes them on, and its documentation."""
+    def decorate(function):
+        job, kinds = FUNCTIONS[name], inspect.Parameter
+        own = [p for p in inspect.signature(function).parameters.values() if p.kind is not kinds.VAR_KEYWORD]
+        names = {p.name for p in own}
+        more = [p.replace(kind=kinds.KEYWORD_ONLY) for p in job.__signature__.parameters.values() if p.name not in names]
+        function.__signature__ = inspect.Signature(sorted(own + more, key=lambda p: p.kind))
+        function.__doc__ = "\n\n".join(filter(None, (inspect.getdoc(function), job.__doc__)))
+        return function
+    return decorate
+
+
 def _of_table(name):
     """The job `name` with its first table as result."""
     job = FUNCTIONS[name]
@@ -41,10 +55,12 @@ def _of_table(name):
 brf, compare = _of_table("brf"), _of_table("compare")
 
 
+@_with_keywords_of("spectrophotometer")
 def spectrophotometer(material, wavelengths, angles=8, **options):
     return FUNCTIONS["spectrophotometer"](material_text(material), wavelengths, angles, **options).table
 
 
+@_with_keywords_of("flux")
 def flux(scene, wavelengths=None, *, by_instance=False, **options):
     """The job's table of shares of the light. by_instance: with it a dictionary of what each instance absorbs: arrays
     "absorbed", "absorbed_se" `[instance][wavelength]`, "areas" and "wavelengths_nm"."""
@@ -60,10 +76,11 @@ def flux(scene, wavelengths=None, *, by_instance=False, **options):
         "areas": columns["area"], "wavelengths_nm": [float(name.removeprefix("absorbed_")) for name in bands]}
 
 
+@_with_keywords_of("goniophotometer")
 def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **options):
     """f in 1/sr over the whole sphere: a dictionary with arrays "f" and "f_se" `[angle][wavelength][theta][phi]`, the
     patches' centres "theta_o_deg" and "phi_o_deg" and "projected_solid_angle_sr" `[theta][phi]`, "theta_i_deg" and
-    "wavelength_nm". Further keywords are those of the job: `help(frond.run)`, docs/commands.md."""
+    "wavelength_nm"."""
     import numpy
     nm, theta = _numbers(wavelengths), _numbers(angles)
     counts = tuple(patches)
@@ -76,10 +93,10 @@ def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **opti
     return {"theta_i_deg": numpy.array(theta), "wavelength_nm": numpy.array(nm), **result}
 
 
+@_with_keywords_of("conform")
 def conform(material, *, session=None, **options):
     """Whether a BSDF obeys the laws of scattering: a material as text, or an object of `frond.Bsdf`. A dictionary:
-    `["laws"]` has the verdicts by law, `["findings"]` a table, `all_hold` whether none is broken. Keywords are those of the
-    job."""
+    `["laws"]` has the verdicts by law, `["findings"]` a table, `all_hold` whether none is broken."""
     if not isinstance(material, (str, list, tuple)):
         name = f"{type(material).__name__}-{id(material):x}"
         if name not in names(session=session):
@@ -144,11 +161,10 @@ def _csv(wavelengths, R, T):
     return "\n".join(lines) + "\n"
 
 
+@_with_keywords_of("fit")
 def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
     """The leaf whose solved BSDF comes nearest to measured reflectance and transmittance: arrays of `wavelengths` (nm) and
-    `R`, `T` (shares of the light; either may be missing), or a file by `path`. Further keywords are those of the job: leaf,
-    angle, structure, sieve (True, False), like, fix ({"chlorophylla": 3.9}), output, plot, ...
-    """
+    `R`, `T` (shares of the light; either may be missing), or a file by `path`. sieve: also True or False. fix: {"chlorophylla": 3.9}."""
     if (path is None) == (wavelengths is None):
         raise ValueError("fit takes measurements, or the path of a file with them")
     source = {"file": os.fspath(path)} if path is not None else {"data": _csv(wavelengths, R, T)}

@@ -52,14 +52,14 @@ def test_f_is_that_of_leaf_solved(program, tmp_path, specimen, incident):
 
 def test_depths_and_wavelengths_between(program, tmp_path):
     """Another chlorophyll by its optical depth, at a wavelength between two of the table."""
-    frond.leaf_table("leaf_solved incident=reciprocal", numpy.arange(500, 601, 20), depths=(0.01, 5)).save(tmp_path / "b.leaf")
+    frond.leaf_table("leaf_solved,incident=reciprocal", numpy.arange(500, 601, 20), depths=(0.01, 5)).save(tmp_path / "b.leaf")
     chlorophyll = 2.0
     from frond import _frond
-    chemistry = _frond.leaf_chemistry(frond.default_session()._session, ["leaf_solved", f"chlorophylla={chlorophyll}"], [553.0])
+    chemistry = _frond.leaf_chemistry(frond.default_session()._session, f"leaf_solved,chlorophylla={chlorophyll}", [553.0])
     depth = chemistry["thickness"] * chemistry["mesophyllfraction"] * sum(
         chemistry["amount"][n] * a[0] for n, a in chemistry["specific_absorption"].items())
     first, second = pairs(1000)
-    expected = frond.bsdf(f"leaf_solved incident=reciprocal chlorophylla={chlorophyll}", [553]).f(first, second)[:, 0]
+    expected = frond.bsdf(f"leaf_solved,incident=reciprocal,chlorophylla={chlorophyll}", [553]).f(first, second)[:, 0]
     found = by_header(program, tmp_path / "b.leaf", 553, first, second, depth)[:, 0]
     assert numpy.sqrt(((numpy.pi * (found - expected)) ** 2).mean()) < 5e-4
 

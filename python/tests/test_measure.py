@@ -127,7 +127,7 @@ def test_compare(scene_text, tmp_path):
     (tmp_path / "scene.pbrt").write_text(scene_text)
     found = frond.compare(tmp_path / "scene.pbrt", ["leaf_solved", "leaf_lambert"], wavelengths="smpte", size=16, samples=4,
                           reference_samples=16, session=frond.Session(cache=False))
-    assert set(found["model"]) == {"leaf_solved", "leaf_lambert"}
+    assert set(found["candidate"]) == {"leaf_solved", "leaf_lambert"}
     assert set(found["samples"]) == {1, 2, 4}
 
 

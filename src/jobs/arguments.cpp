@@ -130,8 +130,8 @@ const JobParam* Arguments::find_param(std::string_view name) const {
 Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::string>& words) const {
   Value value{words, {}, 0};
   const auto refuse = [&](const std::string& word) {
-    fail({}, "{}: {} is needed; \"{}\" was given", p.positional ? std::string(p.name) : spelling_(p.name), needed(p),
-         word);
+    fail({}, "{}: {} {} needed; \"{}\" was given", p.positional ? std::string(p.name) : spelling_(p.name), needed(p),
+         p.kind == ArgumentKind::numbers && p.values > 0 ? "are" : "is", word);
   };
   const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
   const size_t takes = p.kind == ArgumentKind::texts ? p.values : repeats ? 0 : 1;

@@ -26,13 +26,14 @@ using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
     kSceneParam,
-    JobParam("materials", texts,
-             "Candidates, separated by ; or given again: [LABEL:]MATERIAL[,parameter=value...][@wavelengths=PLUGIN]"
-             "[@integrator=PLUGIN]. The first is the baseline of speed-ups.",
-             {.type = "MATERIAL",
-              .default_value = "abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert",
-              .aliases = "models",
-              .decides = true}),
+    JobParam(
+        "materials", texts,
+        "Candidates, separated by ; or given again: [LABEL:]MATERIAL[,parameter=value...], with @wavelengths=PLUGIN or "
+        "@integrator=PLUGIN behind it. The first is the baseline of speed-ups.",
+        {.type = "MATERIAL",
+         .default_value = "abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert",
+         .aliases = "models",
+         .decides = true}),
     JobParam("output", text, "Folder of the report: charts, tables, index.html. Without it results are printed alone.",
              {.type = "FOLDER", .aliases = "o", .path = PathUse::write}),
     JobParam("reference", text,

@@ -15,9 +15,9 @@ constexpr std::string_view kScales[] = {"linear", "log"};
 
 constexpr JobParam kParams[] = {
     kMaterialParam,
-    kWithParam,
-    kAnglesParam,
     kInstrumentWavelengthsParam,
+    kAnglesParam,
+    kWithParam,
     JobParam("rays", count, "Number of rays for each measurement.",
              {.default_value = "1e6", .range = kRayCounts, .decides = true}),
     JobParam("patches", text, "THETAxPHI: numbers of detectors, patches of equal angles over the whole sphere.",

@@ -86,6 +86,7 @@ void RenderTask::apply_arguments() {
   film.crop = crop_of(args, film, run_.log());
   if (args.flag("quick")) film = halved(film);
   film_file_ = film.filename;
+  if (args.given("samples")) samples_ = range_of(args);
   const std::string channels = args.text("channels");
   request_ = {.pixels = film.crop,
               .is_piece = args.given("part"),
@@ -107,8 +108,7 @@ void RenderTask::choose(const ImageOutput* output) {
 void RenderTask::load(const ImageOutput* output) {
   const Arguments& args = run_.args;
   scene_.emplace(run_.session().load(std::move(description_), request_, pilot_.get()));
-  samples_ = {0, args.given("spp") ? uint64_t(args.count("spp")) : scene_->samples()};
-  if (args.given("samples")) samples_ = range_of(args);
+  if (!args.given("samples")) samples_ = {0, args.given("spp") ? uint64_t(args.count("spp")) : scene_->samples()};
   scene_->check_samples(samples_.count());
   if (args.given("max-rms") && args.given("spp") && samples_.count() < kLeastAdaptive)
     fail({}, "{}: at least {} samples per pixel are needed to estimate the noise, {} allows {}",

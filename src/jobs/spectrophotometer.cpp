@@ -13,14 +13,14 @@ using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
     kMaterialParam,
-    kWithParam,
-    kAnglesParam,
     kInstrumentWavelengthsParam,
+    kAnglesParam,
+    kWithParam,
     JobParam("rays", count,
              "Number of rays for each measurement: 1e6 by default; with --se the largest number, 1e9 by default.",
              {.range = kRayCounts, .decides = true}),
     JobParam("se", real, "Stop when the standard errors of R, T and A are no larger than this.",
-             {.range = kAboveZero, .decides = true}),
+             {.range = kAboveZero, .aliases = "standard-error", .decides = true}),
     kRenderedParam,
     kSeedParam,
     kCsvParam,

@@ -183,7 +183,7 @@ TEST_F(Commands, RenderWritesWhatItSays) {
   EXPECT_EQ(file.header.color_space, "linear SMPTE-C");
   EXPECT_EQ(file.header.text.at("frond:seed"), "9");
   EXPECT_EQ(file.header.text.at("frond:samples"), "3");
-  EXPECT_EQ(file.header.text.at("frond:command"), "frond render scene.pbrt --seed 9 --wavelengths smpte --spp 3");
+  EXPECT_EQ(file.header.text.at("frond:command"), "frond render scene.pbrt --wavelengths smpte --seed 9 --spp 3");
   EXPECT_EQ(file.header.text.at("frond:scene_hash").size(), 16u);
   ASSERT_TRUE(file.chromaticities);
   EXPECT_NEAR(file.chromaticities->red.x, 0.630, 1e-6);
@@ -485,12 +485,13 @@ TEST_F(Commands, NumbersThatAreNoneAreToldInFewWords) {
       {{"convert", "a.exr", "-o", "b.png", "--exposure", "abc"},
        "--exposure: a number (stops) is needed; \"abc\" was given"},
       {{"convert", "a.exr", "-o", "b.png", "--bands", "650,x,450"},
-       "--bands: 3 numbers above 0 (nm) with commas between is needed; \"650,x,450\" was given"},
-      {{"compare", "s.pbrt", "-o", "r", "--exposure", "99"}, "--exposure: a number from -20 to 20 is needed"},
-      {{"render", "s.pbrt", "--crop", "0,1,0,7"}, "--crop: a number from 0 to 1 is needed"},
-      {{"render", "s.pbrt", "--pixels", "0,-4,0,1"}, "--pixels: whole numbers of pixels from 0 on are needed"},
-      {{"render", "s.pbrt", "--spp", "0"}, "--spp takes a whole number from 1 to"},
-      {{"compare", "s.pbrt", "-o", "r", "--spp", "1.5"}, "--spp takes a whole number from 1 to"}};
+       "--bands: 3 numbers above 0 (nm) with commas between are needed; \"650,x,450\" was given"},
+      {{"compare", "s.pbrt", "-o", "r", "--exposure", "99"},
+       "--exposure: a number from -20 to 20 (stops) is needed; \"99\" was given"},
+      {{"render", "s.pbrt", "--crop", "0,1,0,7"}, "--crop: 4 numbers from 0 to 1 with commas between are needed"},
+      {{"render", "s.pbrt", "--pixels", "0,-4,0,1"}, "--pixels: 4 whole numbers from 0 to"},
+      {{"render", "s.pbrt", "--spp", "0"}, "--spp: a whole number from 1 to"},
+      {{"compare", "s.pbrt", "-o", "r", "--spp", "1.5"}, "--spp: a whole number from 1 to"}};
   for (const auto& [words, message] : cases) {
     const Outcome o = frond_command(words);
     EXPECT_EQ(o.code, 1) << message;

@@ -9,9 +9,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr JobParam kNumbers{.name = "angles", .kind = ArgumentKind::numbers, .doc = "", .range = {0, 180}};
-constexpr JobParam kCount{.name = "rays", .kind = ArgumentKind::count, .doc = "", .range = {1, kCounts.max}};
-constexpr JobParam kFew{.name = "few", .kind = ArgumentKind::count, .doc = "", .range = {1, 12}};
+constexpr JobParam kNumbers("angles", ArgumentKind::numbers, "", {.range = {0, 180}});
+constexpr JobParam kCount("rays", ArgumentKind::count, "", {.range = {1, kCounts.max}});
+constexpr JobParam kFew("few", ArgumentKind::count, "", {.range = {1, 12}});
 
 std::string refusal(const JobParam& param, const std::string& word, Spelling spelling = command_spelling) {
   return error_of([&] { Arguments({&param}, spelling).set(param.name, word); });

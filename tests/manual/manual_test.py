@@ -57,7 +57,7 @@ class ManPages(Folder):
     def test_they_have_the_options_of_help_and_no_others(self):
         for command in [(), *((name,) for name in commands())]:
             text = (self.folder / ("-".join(["frond", *command]) + ".1")).read_text(encoding="ascii")
-            heads = re.findall(r"^\.TP\n(\\fB\\-.*)$", text.split(".SH OPTIONS OF PBRT\\-V4")[0], re.M)
+            heads = re.findall(r"^\.TP\n(\\fB\\-.*)$", text.split(".SH OPTIONS OF PBRT-V4")[0], re.M)
             found = {name.replace("\\-", "-") for head in heads for name in re.findall(r"\\fB(.*?)\\fR", head)}
             self.assertEqual(found, options_of(*command), command)
 
@@ -69,7 +69,7 @@ class ManPages(Folder):
         self.assertIn("One of spherical, planophile,", frond("man", "canopy").replace("\n", " "))
 
     def test_render_has_the_options_of_pbrt(self):
-        section = frond("man", "render").split(".SH OPTIONS OF PBRT\\-V4")[1]
+        section = frond("man", "render").split(".SH OPTIONS OF PBRT-V4")[1]
         self.assertIn("\\fB\\-\\-gpu\\fR\nIgnored.", section)
         self.assertIn("Refused: ", section)
 

@@ -8,7 +8,7 @@ set -euo pipefail
 [[ ${FROND_SLOW_TESTS:-1} != 0 ]] || { echo "skipped: takes a minute, scripts/test --slow runs it" && exit 77; }
 
 here=$(cd "$(dirname "$0")" && pwd)
-templates=$here/../../src/cli/slurm
+templates=$here/../../src/jobs/slurm
 # A cluster that this test itself runs on has no say in the test's jobs.
 unset "${!SLURM@}" "${!SBATCH@}"
 export SOURCE_DATE_EPOCH=0 # pictures are compared byte for byte

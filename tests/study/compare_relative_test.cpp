@@ -107,7 +107,7 @@ TEST_F(CompareRelative, EveryOutputSaysSo) {
 
 TEST_F(CompareRelative, DoesNotGoWithATargetThatIsAbsolute) {
   EXPECT_THAT(compare({"--wavelengths", "smpte", "--target", "front", "--relative"}, kLeafScene).err,
-              HasSubstr("--target is an absolute RMS, as the paper's: it does not go with --relative"));
+              HasSubstr("--target excludes --relative"));
   EXPECT_FALSE(std::filesystem::exists(folder_.name_of("report")));
 }
 
