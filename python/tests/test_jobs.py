@@ -241,6 +241,19 @@ def test_an_open_leaf_is_the_same_image_from_both(scene_text, tmp_path):
     assert picture.color_space == "linear sRGB"
 
 
+def test_parts_of_both_are_of_one_render(scene_text, tmp_path):
+    (tmp_path / "scene.pbrt").write_text(scene_text)
+    half = frond.load(tmp_path / "scene.pbrt", swap="leaf_lambert", seed=5).render(4)
+    half.save_part(tmp_path / "python.part")
+    common = ("--swap", "*=leaf_lambert", "--seed", "5", "-q")
+    for words in (("--samples", "4:8", "--part", "command.part"), ("--spp", "8", "-o", "whole.exr")):
+        assert frond_command("render", "scene.pbrt", *common, *words, cwd=tmp_path).returncode == 0
+    merged = frond_command("merge", "python.part", "command.part", "-o", "merged.exr", "-q", cwd=tmp_path)
+    assert merged.returncode == 0, merged.stderr
+    (_, ours), (_, theirs) = (frond.read_image(tmp_path / f"{name}.exr") for name in ("merged", "whole"))
+    assert numpy.array_equal(ours, theirs)
+
+
 @pytest.mark.parametrize("name, given", [
     ("brf", {"scene": "scene.pbrt", "zenith": [0, 30], "wavelengths": [551, 800], "paths": 2048, "seed": 3, "period": (2, 2)}),
     ("flux", {"scene": "scene.pbrt", "wavelengths": [551], "paths": 65536, "seed": 3, "period": (2, 2)}),

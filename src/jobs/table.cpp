@@ -30,7 +30,7 @@ constexpr JobParam kParams[] = {
              {.type = "MATERIAL", .decides = true, .positional = true}),
     JobParam("specimen", text, "Specimen of the leaf; soybean by default.",
              {.choices = leaf::kSpecimenNames, .decides = true}),
-    JobParam("method", text, "solve: without noise. montecarlo: random walks, as published.",
+    JobParam("method", text, "Method: solve, without noise, or montecarlo, random walks as published.",
              {.default_value = "solve", .choices = kMethods, .decides = true}),
     JobParam(
         "wavelengths", numbers, "Wavelengths.",
