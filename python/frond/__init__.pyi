@@ -100,7 +100,7 @@ def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen:
 
     leaf: [MATERIAL][,parameter=value...]: leaf_simplified (default) or leaf_solved, with the leaf's parameters.
     specimen: Specimen of the leaf; soybean by default. One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex.
-    method: solve: without noise. montecarlo: random walks, as published. One of solve, montecarlo. Default: solve.
+    method: Method: solve, without noise, or montecarlo, random walks as published. One of solve, montecarlo. Default: solve.
     wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence, ascending; above 90 on the abaxial side. Unit: degrees. Range: from 0 to 180. Default: 0:180:1.
     rays: Number of random walks of montecarlo for each angle and wavelength. Range: from 1 to 1000000000. Default: 1e6.
