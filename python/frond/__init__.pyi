@@ -208,7 +208,7 @@ def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), wi
 def list(what: str | os.PathLike | None = None, *, progress = None, session: Session | None | None = None) -> Result:
     """List every plug-in that a scene can name.
 
-    what: specimens: the leaves that "string specimen" can name, in place of plug-ins. One of specimens."""
+    what: What to list in place of plug-ins; specimens are the leaves that "string specimen" can name. One of specimens."""
 
 def describe(name: str | os.PathLike | None = None, markdown: bool = False, commands: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
     """Print the parameters of a plug-in or a command: types, defaults, units and ranges.

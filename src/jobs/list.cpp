@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kWhat[] = {"specimens"};
 constexpr JobParam kParams[] = {JobParam(
-    "what", ArgumentKind::text, "specimens: the leaves that \"string specimen\" can name, in place of plug-ins.",
+    "what", ArgumentKind::text, "What to list in place of plug-ins; specimens are the leaves that \"string specimen\" can name.",
     {.choices = kWhat, .positional = true})};
 
 Result list_specimens() {
