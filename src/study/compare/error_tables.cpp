@@ -1,9 +1,9 @@
 #include "study/compare/error_tables.h"
 
 #include <algorithm>
+#include <span>
 
 #include "study/compare/html.h"
-#include "study/compare/html_table.h"
 
 namespace frond::compare {
 namespace {
@@ -15,67 +15,10 @@ std::string bounded(const ErrorUnit& unit, const MeanSquare& m) {
   return fmt::format("{} (≤ {})", unit.fixed(m.root(), kDecimals), unit.fixed(m.root_at(kZ95), kDecimals));
 }
 
-/// A row of the table of errors: what is told of one candidate in one region.
-using Errors = std::vector<RenderError>;
-struct ErrorColumn {
-  const char* title;
-  std::string (*text)(const Comparison&, const Errors&);
-};
-
-/// Red, green and blue.
-template <MeanSquare RenderError::*value>
-std::string triple_at(const Comparison& c, const Errors& e, double z) {
-  const ErrorUnit unit = c.request.error_unit();
-  const auto text = [&](size_t channel) { return unit.fixed((e[kFirst + channel].*value).root_at(z), kDecimals); };
-  return fmt::format("{} {} {}", text(0), text(1), text(2));
-}
-template <MeanSquare RenderError::*value>
-std::string triple(const Comparison& c, const Errors& e) {
-  return triple_at<value>(c, e, 0);
-}
-std::string bias_bounds(const Comparison& c, const Errors& e) { return triple_at<&RenderError::bias>(c, e, kZ95); }
-template <MeanSquare RenderError::*value>
-std::string together(const Comparison& c, const Errors& e) {
-  return c.request.error_unit().fixed((e[kTogether].*value).root(), kDecimals);
-}
-std::string bias_together(const Comparison& c, const Errors& e) {
-  return bounded(c.request.error_unit(), e[kTogether].bias);
-}
-std::string luminance_bias(const Comparison& c, const Errors& e) {
-  return bounded(c.request.error_unit(), e[c.channels.luminance()].bias);
-}
-std::string luminance_rms(const Comparison& c, const Errors& e) {
-  return c.request.error_unit().fixed(e[c.channels.luminance()].total.root(), kDecimals);
-}
-std::string worst_band(const Comparison& c, const Errors& e) {
+std::string worst_band(const Comparison& c, const std::vector<RenderError>& e) {
   const auto films = std::span(e).subspan(kFirst, c.channels.film_channels());
   const auto worst = std::ranges::max_element(films, {}, [](const RenderError& r) { return r.bias.value; });
   return c.channels.names[kFirst + size_t(worst - films.begin())] + ": " + bounded(c.request.error_unit(), worst->bias);
-}
-
-constexpr std::array<ErrorColumn, 7> kColorColumns{{{"RMS, clipped<br>R G B", triple<&RenderError::clipped>},
-                                                    {"RMS<br>R G B", triple<&RenderError::total>},
-                                                    {"noise<br>R G B", triple<&RenderError::noise>},
-                                                    {"bias<br>R G B", triple<&RenderError::bias>},
-                                                    {"bias ≤ (95 %)<br>R G B", bias_bounds},
-                                                    {"bias<br>luminance", luminance_bias},
-                                                    {"RMS<br>luminance", luminance_rms}}};
-constexpr std::array<ErrorColumn, 4> kBandColumns{{{"RMS<br>all bands", together<&RenderError::total>},
-                                                   {"noise<br>all bands", together<&RenderError::noise>},
-                                                   {"bias<br>all bands", bias_together},
-                                                   {"largest bias<br>of a band", worst_band}}};
-
-/// What is clipped is compared with the paper, whose errors are absolute.
-std::span<const ErrorColumn> columns_of(const Comparison& c) {
-  if (c.channels.are_bands()) return kBandColumns;
-  return std::span(kColorColumns).subspan(c.request.relative ? 1 : 0);
-}
-
-std::string error_row(const Comparison& c, const Subject& s, Region region) {
-  const Rung& r = s.rungs.back();
-  std::string row = "<tr>" + cell(html_text(s.candidate.label));
-  for (const ErrorColumn& column : columns_of(c)) row += cell(column.text(c, r.errors[region]));
-  return row + (region == kAll && r.flip ? cell(fmt::format("{:.4f}", *r.flip)) : "") + "</tr>\n";
 }
 
 std::string error_note(const Comparison& c) {
@@ -91,31 +34,50 @@ std::string error_note(const Comparison& c) {
 }
 
 std::string error_table(const Comparison& c, Region region) {
-  std::string rows;
-  for (const Subject& s : c.subjects) rows += error_row(c, s, region);
-  std::vector<std::string> titles{"candidate"};
-  for (const ErrorColumn& column : columns_of(c)) titles.emplace_back(column.title);
-  if (region == kAll && !c.channels.are_bands()) titles.emplace_back("FLIP");
-  return table(fmt::format("Error of one render of {} samples per pixel, {} pixels",
-                           c.subjects.front().rungs.back().samples, region == kAll ? "all" : "leaf"),
-               head(titles), rows, error_note(c));
+  const ErrorUnit unit = c.request.error_unit();
+  Table table{fmt::format("Error of one render of {} samples per pixel, {} pixels",
+                          c.subjects.front().rungs.back().samples, region == kAll ? "all" : "leaf")};
+  for (const Subject& s : c.subjects) {
+    const auto& e = s.rungs.back().errors[region];
+    const auto fixed = [&](const MeanSquare& m, double z = 0) { return unit.fixed(m.root_at(z), kDecimals); };
+    const auto triple = [&](MeanSquare RenderError::*value, double z = 0) {  // red, green and blue
+      return fmt::format("{} {} {}", fixed(e[kFirst].*value, z), fixed(e[kFirst + 1].*value, z),
+                         fixed(e[kFirst + 2].*value, z));
+    };
+    table.add("candidate", s.candidate.label);
+    if (c.channels.are_bands()) {
+      table.add("RMS\nall bands", fixed(e[kTogether].total));
+      table.add("noise\nall bands", fixed(e[kTogether].noise));
+      table.add("bias\nall bands", bounded(unit, e[kTogether].bias));
+      table.add("largest bias\nof a band", worst_band(c, e));
+      continue;
+    }
+    // What is clipped is compared with the paper, whose errors are absolute.
+    if (!c.request.relative) table.add("RMS, clipped\nR G B", triple(&RenderError::clipped));
+    table.add("RMS\nR G B", triple(&RenderError::total));
+    table.add("noise\nR G B", triple(&RenderError::noise));
+    table.add("bias\nR G B", triple(&RenderError::bias));
+    table.add("bias ≤ (95 %)\nR G B", triple(&RenderError::bias, kZ95));
+    table.add("bias\nluminance", bounded(unit, e[c.channels.luminance()].bias));
+    table.add("RMS\nluminance", fixed(e[c.channels.luminance()].total));
+    if (region == kAll) table.add("FLIP", fmt::format("{:.4f}", s.rungs.back().flip.value_or(0)));
+  }
+  return to_html(table, error_note(c));
 }
 
 /// Band by band; folded away, as there may be many.
 std::string band_table(const Comparison& c) {
   if (!c.channels.are_bands()) return "";
-  std::vector<std::string> titles{"band"};
-  for (const Subject& s : c.subjects) titles.push_back(html_text(s.candidate.label));
-  std::string rows;
-  for (size_t b = 0; b < c.channels.bands.size(); ++b) {
-    rows += "<tr>" + cell(c.channels.names[kFirst + b]);
-    for (const Subject& s : c.subjects)
-      rows += cell(bounded(c.request.error_unit(), s.rungs.back().errors[kAll][kFirst + b].bias));
-    rows += "</tr>\n";
+  Table table{"Bias over all pixels",
+              {{"band", std::vector(c.channels.names.begin() + kFirst, c.channels.names.end())}}};
+  for (const Subject& s : c.subjects) {
+    std::vector<std::string> texts;
+    for (const RenderError& e : std::span(s.rungs.back().errors[kAll]).subspan(kFirst, c.channels.bands.size()))
+      texts.push_back(bounded(c.request.error_unit(), e.bias));
+    table.columns.push_back({s.candidate.label, texts});
   }
   return "<details><summary>Bias band by band</summary>" +
-         table("Bias over all pixels", head(titles), rows, "In brackets the upper end of the 95 % interval.") +
-         "</details>\n";
+         to_html(table, "In brackets the upper end of the 95 % interval.") + "</details>\n";
 }
 
 }  // namespace

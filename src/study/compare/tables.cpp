@@ -1,11 +1,10 @@
 #include "study/compare/tables.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "study/compare/error_tables.h"
 #include "study/compare/figures.h"
 #include "study/compare/html.h"
-#include "study/compare/html_table.h"
 #include "study/compare/speed_up.h"
 #include "study/compare/verdict.h"
 
@@ -33,20 +32,9 @@ std::string plateau_text(const Subject& s) {
   return plateau ? fmt::format("{} s, {:.0f} samples", figures(plateau->seconds, 3), plateau->samples) : "none found";
 }
 
-std::string speed_row(const Comparison& c, size_t i) {
-  const Subject& s = c.subjects[i];
-  const SpeedUps v = speed_ups(c, i);
-  const Rung& r = s.rungs.back();
-  return "<tr>" + cell(html_text(s.candidate.label)) +
-         cell(fmt::format("{:.3g}", r.cost.cpu_seconds / double(r.samples))) +
-         cell(fmt::format("{:.2g}", s.setup_cpu_seconds)) + cell(plateau_text(s)) + cell(ratio_text(v.equal_samples)) +
-         cell(v.paper ? ratio_text(*v.paper) : "–") + cell(ratio_text(v.equal_error)) +
-         cell(ratio_text(v.equal_error_at_bias)) + cell(ratio_text(v.equal_noise)) + "</tr>\n";
-}
-
 std::string cutoff_text(const Subject& s) {
   const CutoffFit& end = s.paper->end;
-  const std::string text = fmt::format("{:.2g} for {}", end.cutoff, html_text(s.candidate.label));
+  const std::string text = fmt::format("{:.2g} for {}", end.cutoff, s.candidate.label);
   return end.equal ? text : fmt::format("{} (which leaves {:.1e}: none leaves the same)", text, end.left.value);
 }
 
@@ -64,22 +52,31 @@ std::string paper_note(const Comparison& c) {
 }
 
 std::string speed_table(const Comparison& c) {
-  std::string rows;
-  for (size_t i = 0; i < c.subjects.size(); ++i) rows += speed_row(c, i);
+  Table table{"Speed"};
+  for (size_t i = 0; i < c.subjects.size(); ++i) {
+    const Subject& s = c.subjects[i];
+    const SpeedUps v = speed_ups(c, i);
+    const Rung& r = s.rungs.back();
+    table.add("candidate", s.candidate.label);
+    table.add("CPU s\nper sample", fmt::format("{:.3g}", r.cost.cpu_seconds / double(r.samples)));
+    table.add("CPU s to\nmake ready", fmt::format("{:.2g}", s.setup_cpu_seconds));
+    table.add("noise below\nbias from", plateau_text(s));
+    table.add("(a) equal\nsamples", ratio_text(v.equal_samples));
+    table.add("(b) paper’s\nmanner", v.paper ? ratio_text(*v.paper) : "–");
+    table.add("(c) equal\nerror", ratio_text(v.equal_error));
+    table.add("(c) at 1.5\n× bias", ratio_text(v.equal_error_at_bias));
+    table.add("(d) equal\nnoise", ratio_text(v.equal_noise));
+  }
   const std::string target = c.request.target     ? fmt::format("an RMS of {:g} / {:g} / {:g}", (*c.request.target)[0],
                                                                 (*c.request.target)[1], (*c.request.target)[2])
                              : c.request.relative ? "an RMS that --target gives without --relative"
                                                   : "an RMS that --target gives";
-  return table(
-      "Speed",
-      head({"candidate", "CPU s<br>per sample", "CPU s to<br>make ready", "noise below<br>bias from",
-            "(a) equal<br>samples", "(b) paper’s<br>manner", "(c) equal<br>error", "(c) at 1.5<br>× bias",
-            "(d) equal<br>noise"}),
-      rows,
+  return to_html(
+      table,
       fmt::format("Speed-up: CPU time of {} over the candidate’s. {}(c): until all three channels are down to {}; and "
                   "until the RMS of all is 1.5 times the candidate’s bias. (d): at the same variance. Tables from the "
                   "cache cost little to make ready.",
-                  html_text(c.subjects.front().candidate.label), paper_note(c), target));
+                  c.subjects.front().candidate.label, paper_note(c), target));
 }
 
 constexpr const char* kTable2Note =
@@ -88,41 +85,36 @@ constexpr const char* kTable2Note =
     "0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS of clipped pictures, linear "
     "SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are told below.";
 
-std::string table_2_row(const Comparison& c, size_t i) {
-  const auto& e = c.subjects[i].rungs.back().errors[kAll];
-  const SpeedUps v = speed_ups(c, i);
-  std::string row = "<tr>" + cell(html_text(c.subjects[i].candidate.label));
-  for (size_t k = 0; k < 3; ++k) row += cell(fmt::format("{:.4f}", e[kFirst + k].clipped.root()));
-  return row + cell(ratio_text(v.equal_samples)) + cell(v.paper ? ratio_text(*v.paper) : "–") +
-         cell(ratio_text(v.equal_error)) + cell(ratio_text(v.equal_noise)) + "</tr>\n";
-}
-
 /// Of absolute errors of colours, as the paper's are.
 std::string table_2(const Comparison& c) {
   if (c.channels.are_bands() || c.request.relative) return "";
-  std::string rows;
-  for (size_t i = 0; i < c.subjects.size(); ++i) rows += table_2_row(c, i);
-  return table(
-      fmt::format("Table 2: RMS error of {} samples per pixel, and speed-up", c.subjects.front().rungs.back().samples),
-      head({"candidate", "RMS<br>red", "RMS<br>green", "RMS<br>blue", "(a) equal<br>samples", "(b) paper’s<br>manner",
-            "(c) equal<br>error", "(d) equal<br>noise"}),
-      rows, kTable2Note);
+  Table table{
+      fmt::format("Table 2: RMS error of {} samples per pixel, and speed-up", c.subjects.front().rungs.back().samples)};
+  for (size_t i = 0; i < c.subjects.size(); ++i) {
+    const auto& e = c.subjects[i].rungs.back().errors[kAll];
+    const SpeedUps v = speed_ups(c, i);
+    table.add("candidate", c.subjects[i].candidate.label);
+    for (size_t k = kFirst; k < c.channels.luminance(); ++k)
+      table.add("RMS\n" + c.channels.names[k], fmt::format("{:.4f}", e[k].clipped.root()));
+    table.add("(a) equal\nsamples", ratio_text(v.equal_samples));
+    table.add("(b) paper’s\nmanner", v.paper ? ratio_text(*v.paper) : "–");
+    table.add("(c) equal\nerror", ratio_text(v.equal_error));
+    table.add("(d) equal\nnoise", ratio_text(v.equal_noise));
+  }
+  return to_html(table, kTable2Note);
 }
 
 std::string offer_table(const Comparison& c, double rms, const char* note) {
-  std::string rows;
-  for (const CandidateCost& o : candidate_costs(c, rms, simultaneous_z(c)))
-    rows +=
-        "<tr>" + cell(html_text(c.subjects[o.subject].candidate.label)) +
-        (o.effort
-             ? cell(fmt::format("{:.0f}", std::ceil(o.effort->samples))) +
-                   cell(fmt::format("{}{}", figures(o.effort->seconds, 3), o.effort->measured ? "" : " (extrapolated)"))
-             : cell(o.never ? "never" : "not known") + cell("–")) +
-        "</tr>\n";
   const ErrorUnit unit = c.request.error_unit();
-  const char* kind = unit.is_relative() ? "A relative RMS" : "An RMS";
-  return table(fmt::format("{} of {}", kind, unit.as_asked(rms)), head({"candidate", "samples per pixel", "CPU s"}),
-               rows, note);
+  Table table{fmt::format("{} of {}", unit.is_relative() ? "A relative RMS" : "An RMS", unit.as_asked(rms))};
+  for (const CandidateCost& o : candidate_costs(c, rms, simultaneous_z(c))) {
+    table.add("candidate", c.subjects[o.subject].candidate.label);
+    table.add("samples per pixel", o.effort  ? fmt::format("{:.0f}", std::ceil(o.effort->samples))
+                                   : o.never ? "never"
+                                             : "not known");
+    table.add("CPU s", o.effort ? figures(o.effort->seconds, 3) + (o.effort->measured ? "" : " (extrapolated)") : "–");
+  }
+  return to_html(table, note);
 }
 
 constexpr const char* kOffersNote =
