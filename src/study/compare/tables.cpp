@@ -14,16 +14,9 @@ std::string ratio_text(double r) { return fmt::format("{:.2f}×", r); }
 
 std::string ratio_text(const std::optional<Ratio>& r) {
   if (!r) return "–";
-  switch (r->kind) {
-    case Ratio::Kind::not_reached:
-      return "not reached";
-    case Ratio::Kind::baseline_not_there:
-      return "the baseline does not reach it";
-    case Ratio::Kind::extrapolated:
-      return ratio_text(r->value) + " (extrapolated)";
-    default:
-      return ratio_text(r->value);
-  }
+  if (r->kind == Ratio::Kind::not_reached) return "not reached";
+  if (r->kind == Ratio::Kind::baseline_not_there) return "the baseline does not reach it";
+  return ratio_text(r->value) + (r->kind == Ratio::Kind::extrapolated ? " (extrapolated)" : "");
 }
 
 std::string plateau_text(const Subject& s) {
@@ -80,9 +73,9 @@ std::string speed_table(const Comparison& c) {
 
 constexpr const char* kTable2Note =
     "As Table 2 of Baranoski and Rokne, who give for their simplified model 0.009 0.009 0.012 and 5.14× (front lit), "
-    "0.011 "
-    "0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS of clipped pictures, linear "
-    "SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are told below.";
+    "0.011 0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS of clipped pictures, "
+    "linear SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are told "
+    "below.";
 
 /// Of absolute errors of colours, as the paper's are.
 std::string table_2(const Comparison& c) {
@@ -118,14 +111,7 @@ std::string offer_table(const Comparison& c, double rms, const char* note) {
 
 constexpr const char* kOffersNote =
     "With bias and noise taken at the upper ends of intervals that hold all together with 95 % confidence. Not known: "
-    "the "
-    "error lies within the interval of the bias.";
-
-std::string offer_tables(const Comparison& c) {
-  std::string html;
-  for (const double rms : c.request.rms) html += offer_table(c, rms, rms == c.request.rms.back() ? kOffersNote : "");
-  return html;
-}
+    "the error lies within the interval of the bias.";
 
 constexpr int kDecimals = 4;
 
@@ -202,7 +188,9 @@ std::string band_table(const Comparison& c) {
 }  // namespace
 
 std::string tables_html(const Comparison& c) {
-  return offer_tables(c) + table_2(c) + error_table(c, kAll) + error_table(c, kLeaf) + band_table(c) + speed_table(c);
+  std::string html;
+  for (const double rms : c.request.rms) html += offer_table(c, rms, rms == c.request.rms.back() ? kOffersNote : "");
+  return html + table_2(c) + error_table(c, kAll) + error_table(c, kLeaf) + band_table(c) + speed_table(c);
 }
 
 }  // namespace frond::compare
