@@ -65,7 +65,7 @@ ELSEWHERE = """
 
 
 def page(runs, images, measured, tables, command):
-    commands = "\n".join(measured["front"][part]["command"].replace(f"{ROOT}/", "") for part in ("comparison", "manner"))
+    commands = "\n".join(measured["front"][part]["notes"][0].replace(f"{ROOT}/", "") for part in ("comparison", "manner"))
     used = sum(m["comparison"]["cpu_seconds"] + m["manner"]["cpu_seconds"] +
                sum(r["cpu_seconds"] for halves in m["pictures"].values() for r in halves) for m in measured.values())
     return f"""# The paper's experiments

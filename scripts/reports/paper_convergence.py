@@ -73,7 +73,7 @@ CURVES = (
 
 def curves_of(runs, s, manner):
     """[(title, how it is drawn, Ends)]; `manner`: the comparison that solved the cutoff."""
-    solved = candidate(manner, "leaf_simplified")["paper_manner"]["cutoff"]
+    solved = candidate(manner, "leaf_simplified")["paper_cutoff"]
     return [(title, how, Ends.of(runs.ends(s, model, solved if cutoff is None else cutoff))) for title, model, cutoff, how in CURVES]
 
 
@@ -98,10 +98,10 @@ def convergence_chart(path, measured):
 
 def depth_rows(measured):
     for s in SETS:
-        manner = {label: candidate(measured[s.name]["manner"], label)["paper_manner"]
+        manner = {label: candidate(measured[s.name]["manner"], label)
                   for label in ("abm", "leaf_simplified")}
-        end = manner["abm"]["tree_depth"]
-        solved = f"{manner['leaf_simplified']['cutoff']:.2g}, solved"
+        end = manner["abm"]["paper_tree_depth"]
+        solved = f"{manner['leaf_simplified']['paper_cutoff']:.2g}, solved"
         for (_, model, cutoff, _), (_, _, ends) in zip(CURVES, measured[s.name]["ends"]):
             ratio, error = ends.ratio_between(end)
             yield (s.title, f"`{model}`", solved if cutoff is None else cutoff or "none", f"{ends.depth():.1f}",

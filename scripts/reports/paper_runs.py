@@ -46,8 +46,8 @@ def candidate(comparison, label):
 
 
 def last_errors(comparison, label):
-    """By channel, of all pixels, on the last rung."""
-    return candidate(comparison, label)["rungs"][-1]["all"]
+    """By channel, of all pixels, on the last rung, whose rows come last."""
+    return {r["channel"]: r for r in comparison["comparison"] if r["candidate"] == label and r["region"] == "all"}
 
 
 @dataclasses.dataclass(frozen=True)

@@ -17,8 +17,8 @@ def picture_rows(measured):
                " ".join(triple(d[f"noise_{c}"] for c in CHANNELS)), " ".join(triple(d[f"bias_{c}"] for c in CHANNELS)))
 
 
-def bounded(error):
-    return f"{error['value']:.4f} (≤ {error['high']:.4f})"
+def bounded(errors):
+    return f"{errors['bias']:.4f} (≤ {errors['bias_high']:.4f})"
 
 
 def bias_rows(measured):
@@ -26,15 +26,14 @@ def bias_rows(measured):
         yield (s.title, "RMS of the paper", *triple(s.rms, 3))
         for label in ("leaf_simplified", "leaf_solved", "leaf_lambert"):
             errors = last_errors(measured[s.name]["comparison"], label)
-            yield (s.title, f"`{label}`", *(bounded(errors[c]["bias"]) for c in CHANNELS))
+            yield (s.title, f"`{label}`", *(bounded(errors[c]) for c in CHANNELS))
 
 
-def ratio_text(ratio):
+def ratio_text(c, name="c_equal_error"):
+    ratio, kind = c[name], c[f"{name}_kind"]
     if ratio is None:
-        return "–"
-    if "value" not in ratio:
-        return ratio["kind"]
-    return f"{ratio['value']:.1f}" + (" (extrapolated)" if ratio["kind"] == "extrapolated" else "")
+        return kind or "–"
+    return f"{ratio:.1f}" + (" (extrapolated)" if kind == "extrapolated" else "")
 
 
 def speed_rows(measured):
@@ -42,17 +41,17 @@ def speed_rows(measured):
         yield (s.title, "the paper", "", "", f"{s.speed_up:.2f}", "", "", "")
         comparison, manner = measured[s.name]["comparison"], measured[s.name]["manner"]
         for label in CANDIDATES + [PUBLISHED]:
-            c = candidate(manner if label == PUBLISHED else comparison, label)
-            speed, rung = c["speed_up"], c["rungs"][-1]
-            at_error = (ratio_text(speed[f"c_equal_error{way}"]) for way in ("", "_at_1.5_bias"))
+            measured_by = manner if label == PUBLISHED else comparison
+            c, rung = candidate(measured_by, label), last_errors(measured_by, label)["rgb"]
+            at_error = (ratio_text(c), ratio_text(c, "c_equal_error_at_1.5_bias"))
             yield (s.title, f"`{label}`", f"{1000 * rung['cpu_seconds'] / rung['samples']:.0f}",
-                   f"{speed['a_equal_samples']:.2f}", f"{candidate(manner, label)['speed_up']['b_paper']:.2f}",
-                   *(("", "") if label == PUBLISHED else at_error), f"{speed['d_equal_noise']:.3g}")
+                   f"{c['a_equal_samples']:.2f}", f"{candidate(manner, label)['b_paper']:.2f}",
+                   *(("", "") if label == PUBLISHED else at_error), f"{c['d_equal_noise']:.3g}")
 
 
 def table_2(runs, measured):
     front = measured["front"]["comparison"]
-    samples, reference = front["candidates"][0]["rungs"][-1]["samples"], front["reference"]
+    samples = front["comparison"][-1]["samples"]
     return f"""
 ## Table 2: error
 
@@ -62,8 +61,8 @@ noise, of both pictures, and what is bias, which no number of samples takes away
 
 {table(("set", "whose", "foliar ratio", "RMS, red", "green", "blue", "of it noise", "of it bias"), picture_rows(measured))}
 Bias against what `abm` converges to, of all pixels, with the upper end of its 95 % interval (`frond compare`,
-{front['width']} x {front['height']} pixels, {samples} samples per pixel; the reference is `{reference['candidate']}`,
-twice {reference['samples']}, its noise taken out):
+{front['width']} x {front['height']} pixels, {samples} samples per pixel; the reference is `{front['reference_candidate']}`,
+twice {front['reference_samples']}, its noise taken out):
 
 {table(("set", "model", "red", "green", "blue"), bias_rows(measured))}
 ## Table 2: speed-up
@@ -73,7 +72,7 @@ manner, light sampling blind to the surface lobe and paths cut off, with the cut
 channels are down to the paper's RMS of that set, and until the RMS is 1.5 times the model's own bias; (d) at equal variance.
 The first column is milliseconds of CPU for one sample of each pixel. The paper gives one number, and it stands beside (b).
 `surfacedirect` false is the paper's rule for shadow rays in a render without cutoffs; (b), and that row, are from a run of
-{measured['front']['manner']['candidates'][0]['rungs'][-1]['samples']} samples per pixel. In (b) both rows of `leaf_simplified`
+{measured['front']['manner']['comparison'][-1]['samples']} samples per pixel. In (b) both rows of `leaf_simplified`
 are the same render: what they differ by is the error of a time.
 
 {table(("set", "model", "ms", "(a)", "(b)", "(c) at the paper's RMS", "(c) at 1.5 × bias", "(d)"), speed_rows(measured))}"""
@@ -97,7 +96,7 @@ def at_shown_exposure(measured):
     share = 0
     for s in SETS:
         errors = last_errors(measured[s.name]["comparison"], "leaf_simplified")
-        share = max(share, *(2**s.stops * errors[c]["bias"]["high"] / rms for c, rms in zip(CHANNELS, s.rms)))
+        share = max(share, *(2**s.stops * errors[c]["bias_high"] / rms for c, rms in zip(CHANNELS, s.rms)))
     return share
 
 
@@ -105,7 +104,7 @@ def over_weighted(measured):
     """Speed-up (c) of leaf_simplified against the weighted walk, set by set."""
     words = []
     for s in SETS:
-        simple, walk = (candidate(measured[s.name]["comparison"], label)["speed_up"]["c_equal_error"].get("value")
+        simple, walk = (candidate(measured[s.name]["comparison"], label)["c_equal_error"]
                         for label in ("leaf_simplified", "abm,mode=weighted"))
         words.append(f"{s.title} {simple / walk:.1f}" if simple and walk else f"{s.title} unknown")
     return ", ".join(words)
@@ -114,7 +113,7 @@ def over_weighted(measured):
 def differences(measured):
     apart = [measured[s.name]["difference"] for s in SETS]
     noisy = sum(d[f"noise_{c}"] > d[f"bias_{c}"] for d in apart for c in CHANNELS)
-    gains = [candidate(m["comparison"], "leaf_lambert")["speed_up"]["a_equal_samples"] for m in measured.values()]
+    gains = [candidate(m["comparison"], "leaf_lambert")["a_equal_samples"] for m in measured.values()]
     lowest, highest = min(gains), max(gains)
     return f"""
 ## Where ours and the paper's differ, and why
@@ -153,16 +152,16 @@ def goal_rows(measured):
     for s in SETS:
         comparison = measured[s.name]["comparison"]
         errors = last_errors(comparison, "leaf_simplified")
-        biases = [errors[c]["bias"] for c in CHANNELS]
+        biases = [errors[c]["bias_high"] for c in CHANNELS]
         yield (s.title, "bias of `leaf_simplified`, upper 95 %", "at most " + " / ".join(triple(s.rms, 3)),
-               " / ".join(triple(b["high"] for b in biases)), verdict(all(b["high"] <= r for b, r in zip(biases, s.rms))))
-        speed = candidate(comparison, "leaf_simplified")["speed_up"]["c_equal_error"]
-        yield (s.title, "speed-up (c) of `leaf_simplified`, at equal error", f"at least {s.speed_up:.2f}", ratio_text(speed),
-               verdict(speed.get("value", 0) >= s.speed_up))
-        published = candidate(measured[s.name]["manner"], "leaf_simplified")["speed_up"]["b_paper"]
+               " / ".join(triple(biases)), verdict(all(b <= r for b, r in zip(biases, s.rms))))
+        simple = candidate(comparison, "leaf_simplified")
+        yield (s.title, "speed-up (c) of `leaf_simplified`, at equal error", f"at least {s.speed_up:.2f}", ratio_text(simple),
+               verdict((simple["c_equal_error"] or 0) >= s.speed_up))
+        published = candidate(measured[s.name]["manner"], "leaf_simplified")["b_paper"]
         yield (s.title, "speed-up (b) of `leaf_simplified`, in the paper's manner", f"at least {s.speed_up:.2f}",
                f"{published:.2f}", verdict(published >= s.speed_up))
-        solved = max(last_errors(comparison, "leaf_solved")[c]["bias"]["high"] for c in CHANNELS)
+        solved = max(last_errors(comparison, "leaf_solved")[c]["bias_high"] for c in CHANNELS)
         yield (s.title, "bias of `leaf_solved`, upper 95 %, worst channel", "at most 0.001", f"{solved:.4f}",
                verdict(solved <= 0.001))
 

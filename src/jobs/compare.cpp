@@ -112,33 +112,6 @@ std::string scene_name(const std::filesystem::path& scene) {
   return (folder.empty() ? scene.filename() : folder / scene.filename()).string();
 }
 
-/// One row for each candidate, number of samples, region and channel.
-Table rows_of(const Comparison& c) {
-  Table table{"comparison"};
-  for (const compare::Subject& s : c.subjects)
-    for (const compare::Rung& rung : s.rungs)
-      for (size_t region = 0; region < compare::kRegions; ++region)
-        for (size_t k = 0; k < c.channels.names.size(); ++k) {
-          if (rung.errors[region].empty()) continue;
-          const RenderError& e = rung.errors[region][k];
-          table.add("candidate", s.candidate.label);
-          table.add("samples", double(rung.samples));
-          table.add("cpu_seconds", rung.cost.cpu_seconds);
-          table.add("wall_seconds", rung.cost.wall_seconds);
-          table.add("setup_cpu_seconds", s.setup_cpu_seconds);
-          table.add("flip", rung.flip.value_or(NAN));
-          table.add("region", std::string(compare::kRegionNames[region]));
-          table.add("channel", c.channels.names[k]);
-          for (const auto& [name, m] :
-               {std::pair{"rms", e.total}, {"rms_clipped", e.clipped}, {"noise", e.noise}, {"bias", e.bias}}) {
-            table.add(name, m.root());
-            table.add(std::string(name) + "_low", m.root_at(-kZ95));
-            table.add(std::string(name) + "_high", m.root_at(kZ95));
-          }
-        }
-  return table;
-}
-
 /// Ends a study, which takes no stop token, by an exception.
 class StoppingProgress final : public Progress {
  public:
@@ -197,12 +170,14 @@ Result compare_models(const JobRun& run) {
   result.machine = compare::machine_description();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.cpu_seconds = cpu_seconds();
-  Result all{.tables = {rows_of(result)}, .facts = {{"verdict", compare::verdict(result)}}};
-  all.text = fmt::format("{}\n{}\n", compare::summary_text(result), compare::verdict(result));
-  if (output.empty()) return all;
-  compare::write_report(output, result);
-  all.text += fmt::format("\nThe report is {}\n", (std::filesystem::path(output) / "index.html").string());
-  return all;
+  compare::ComparisonData data = compare::data_of(result);
+  std::string text = fmt::format("{}\n{}\n", compare::summary_text(result), compare::verdict(result));
+  if (!output.empty()) {
+    compare::write_report(output, result, data);
+    text += fmt::format("\nThe report is {}\n", (std::filesystem::path(output) / "index.html").string());
+  }
+  return {
+      .tables = std::move(data.tables), .facts = std::move(data.facts), .notes = std::move(data.notes), .text = text};
 }
 
 }  // namespace

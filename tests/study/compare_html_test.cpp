@@ -40,6 +40,14 @@ TEST(Html, HalfFloats) {
 
 TEST(Html, TextIsMadeSafe) { EXPECT_EQ(html_text("a<b & \"c\">"), "a&lt;b &amp; &quot;c&quot;&gt;"); }
 
+TEST(Html, ATableHasANameAndANote) {
+  Table table{"A > B"};
+  table.add("candidate", "a<b");
+  EXPECT_EQ(to_html(table, "x & y"),
+            "<h3>A &gt; B</h3>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">candidate</th></tr></thead>"
+            "<tbody>\n<tr><td>a&lt;b</td></tr>\n</tbody></table></div>\n<p class=\"note\">x &amp; y</p>\n");
+}
+
 TEST(Html, PagesAreFilled) {
   EXPECT_EQ(filled("<{{a}}|{{b}}>", {{"a", "1"}, {"b", "{{a}}"}}), "<1|{{a}}>");
   EXPECT_THROW(filled("{{c}}", {}), std::logic_error);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 namespace frond {
@@ -18,5 +19,15 @@ Shape "trianglemesh" "integer indices" [0 1 2  0 2 3] "point3 P" [-.3 -.3 .1  .3
 Material "diffuse"
 Shape "trianglemesh" "integer indices" [0 1 2  0 2 3] "point3 P" [-3 -3 0  3 -3 0  3 3 0  -3 3 0]
 )";
+
+/// The first row of a table of compare.json in which these columns have these values.
+inline nlohmann::json row_of(const nlohmann::json& table, const nlohmann::json& values) {
+  for (const auto& row : table) {
+    nlohmann::json merged = row;
+    merged.update(values);
+    if (merged == row) return row;
+  }
+  return {};
+}
 
 }  // namespace frond

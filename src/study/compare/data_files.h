@@ -1,13 +1,19 @@
 #pragma once
 
+#include "report/table.h"
 #include "study/compare/comparison.h"
 
 namespace frond::compare {
 
-/// A row for each candidate, rung, region and channel; what columns mean stands in comments at the head.
-std::string comparison_csv(const Comparison& comparison);
+/// The numbers of a comparison: what compare.csv and compare.json hold, and the job's result.
+struct ComparisonData {
+  /// "comparison", a row for each candidate, number of samples, region and channel; "candidates", a row for each;
+  /// "meets_rms", a row for each of `Request::rms` and candidate; "reference", a row for each region and channel.
+  std::vector<Table> tables;
+  std::vector<Fact> facts;
+  std::vector<std::string> notes;
+};
 
-/// The same with everything else that was measured and chosen.
-std::string comparison_json(const Comparison& comparison);
+ComparisonData data_of(const Comparison& comparison);
 
 }  // namespace frond::compare

@@ -1,5 +1,7 @@
 #include "study/compare/html.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -25,23 +27,23 @@ uint16_t half_of(float value) {
 
 std::string html_text(std::string_view text) {
   std::string html;
-  for (const char c : text) switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
+  for (const char c : text)
+    html += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
   return html;
+}
+
+std::string to_html(const Table& table, const std::string& note) {
+  std::string head, body;
+  for (const Column& c : table.columns) head += fmt::format("<th scope=\"col\">{}</th>", html_text(c.name));
+  for (size_t row = 0; row < table.rows(); ++row) {
+    body += "<tr>";
+    for (const Column& c : table.columns) body += fmt::format("<td>{}</td>", html_text(std::get<1>(c.values)[row]));
+    body += "</tr>\n";
+  }
+  return fmt::format(
+      "<h3>{}</h3>\n<div class=\"scroll\"><table><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n"
+      "<p class=\"note\">{}</p>\n",
+      html_text(table.name), head, body, html_text(note));
 }
 
 std::string base64(std::span<const unsigned char> bytes) {

@@ -5,10 +5,15 @@
 #include <string>
 #include <string_view>
 
+#include "report/table.h"
+
 namespace frond::compare {
 
 /// A text as HTML has it, in content and in attributes.
 std::string html_text(std::string_view text);
+
+/// A table of texts with its name above it and a note below.
+std::string to_html(const Table& table, const std::string& note);
 
 std::string base64(std::span<const unsigned char> bytes);
 

@@ -8,7 +8,6 @@
 #include "spectra/color_space.h"
 #include "study/compare/assets.h"
 #include "study/compare/charts.h"
-#include "study/compare/data_files.h"
 #include "study/compare/html.h"
 #include "study/compare/tables.h"
 #include "study/compare/verdict.h"
@@ -131,14 +130,14 @@ void check_report_folder(const std::filesystem::path& folder) {
   check_chart(path_in(existing, "rms.svg"));
 }
 
-void write_report(const std::filesystem::path& folder, const Comparison& c) {
+void write_report(const std::filesystem::path& folder, const Comparison& c, const ComparisonData& data) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) fail({}, "cannot make the folder {}: {}", folder.string(), error.message());
   const std::vector<ReportChart> charts = charts_of(c);
   write_charts(folder, charts);
-  write_text(path_in(folder, "compare.csv"), comparison_csv(c));
-  write_text(path_in(folder, "compare.json"), comparison_json(c));
+  write_text(path_in(folder, "compare.csv"), to_csv(data.tables[0], data.notes));
+  write_text(path_in(folder, "compare.json"), to_json(data.notes, data.facts, data.tables));
   write_text(path_in(folder, "index.html"), page(folder, c, charts));
 }
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "study/compare/comparison.h"
+#include "study/compare/data_files.h"
 
 namespace frond::compare {
 
@@ -11,6 +11,6 @@ void check_report_folder(const std::filesystem::path& folder);
 
 /// Makes the folder and writes index.html, which needs nothing beside it, the charts as SVG (and PNG where there
 /// is librsvg), and the data as CSV and JSON.
-void write_report(const std::filesystem::path& folder, const Comparison& comparison);
+void write_report(const std::filesystem::path& folder, const Comparison& comparison, const ComparisonData& data);
 
 }  // namespace frond::compare
