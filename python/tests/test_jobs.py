@@ -27,6 +27,11 @@ def one_line(text):
     return re.sub(r"\s+", " ", text)
 
 
+def completed(*words):
+    """What a shell offers for the last word."""
+    return frond_command("completion", "bash", "--", "frond", *words).stdout.splitlines()
+
+
 @pytest.fixture(scope="module")
 def documents():
     def man(name):
@@ -35,7 +40,6 @@ def documents():
     return {
         "help": {name: one_line(frond_command(name, "--help").stdout) for name in JOBS},
         "man": {name: one_line(man(name)) for name in JOBS},
-        "completion": frond_command("completion", "bash").stdout,
         "page": (ROOT / "docs/commands.md").read_text(encoding="utf-8"),
         "stub": (ROOT / "python/frond/__init__.pyi").read_text(encoding="utf-8"),
     }
@@ -58,10 +62,11 @@ def test_every_front_end_documents_every_parameter(name, param, documents):
     assert option in documents["help"][name] and text in documents["help"][name]
     assert option in documents["man"][name] and text in documents["man"][name]
     if not param["positional"]:
-        case = re.search(rf"^ +'{name}'\) options='([^']*)'", documents["completion"], re.M)
-        assert option in case[1].split()
-    for choice in param["choices"]:
-        assert choice in documents["completion"]
+        assert option in completed(name, "--")
+    if param["choices"]:
+        before = itertools.takewhile(lambda p: p != param, (p for p in JOBS[name]["params"] if p["positional"]))
+        words = ["x" for _ in before] if param["positional"] else [option]
+        assert set(param["choices"]) <= set(completed(name, *words, ""))
     if own(name, param):
         page = section(documents["page"], name).replace("\\|", "|")
         row = next(line for line in page.splitlines() if line.startswith("| `") and

@@ -4,7 +4,7 @@
 
 namespace frond {
 
-// The files in src/jobs/completion, made part of the program by CMake. frond completion fills in their @NAMES@.
+// The files in src/jobs/completion, made part of the program by CMake.
 extern const std::string_view bash_completion, zsh_completion, fish_completion;
 
 }  // namespace frond

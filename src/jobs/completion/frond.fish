@@ -1,15 +1,16 @@
-# Completes frond @VERSION@'s command line in fish; made by `frond completion fish`.
+# Completes frond's command line in fish; made by `frond completion fish`.
 
-# The first word that is no option; "" where there is none yet.
-function __frond_command_is
-    for word in (commandline -opc)[2..-1]
-        if not string match -q -- '-*' $word
-            test "$word" = "$argv[1]"
-            return
-        end
+function __frond_offers
+    set -l words (commandline -opc) "$(commandline -ct)"
+    set -l found (command $words[1] completion fish -- $words 2>/dev/null)
+    set -l FILE .
+    set -l FOLDER '/$'
+    set -l SCENE '(?:/|\.pbrt|\.pbrt\.gz)$'
+    if contains -- "$found" FILE FOLDER SCENE
+        set -l option (string match -r -- '^(?:--[^=]*=|-[^-])' $words[-1])
+        set found "$option"(complete -C "'' "(string replace -- "$option" '' $words[-1]) | string match -er -- $$found)
     end
-    test -z "$argv[1]"
+    printf '%s\n' $found
 end
 
-complete -c frond -f
-@LINES@
+complete -c frond -f -a '(__frond_offers)'
