@@ -8,9 +8,10 @@ namespace frond {
 namespace {
 
 constexpr std::string_view kWhat[] = {"specimens"};
-constexpr JobParam kParams[] = {JobParam(
-    "what", ArgumentKind::text, "What to list in place of plug-ins; specimens are the leaves that \"string specimen\" can name.",
-    {.choices = kWhat, .positional = true})};
+constexpr JobParam kParams[] = {
+    JobParam("what", ArgumentKind::text,
+             "What to list in place of plug-ins; specimens are the leaves that \"string specimen\" can name.",
+             {.choices = kWhat, .positional = true})};
 
 Result list_specimens() {
   Result result{.tables = {{"specimens"}}, .is_requested = true};
