@@ -98,7 +98,7 @@ def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen:
 
     leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the modes of its BSDF, or as FILE.leaf all of it for other programs.
 
-    leaf: [MATERIAL][,parameter=value...]: leaf_simplified (default) or leaf_solved, with the leaf's parameters.
+    leaf: MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a material leaf_simplified.
     specimen: Specimen of the leaf; soybean by default. One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex.
     method: Method: solve, without noise, or montecarlo, random walks as published. One of solve, montecarlo. Default: solve.
     wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.

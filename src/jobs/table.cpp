@@ -25,9 +25,11 @@ constexpr std::string_view kSimplified = "leaf_simplified", kSolved = "leaf_solv
 constexpr std::string_view kMethods[] = {"solve", "montecarlo"};
 
 constexpr JobParam kParams[] = {
-    JobParam("leaf", texts,
-             "[MATERIAL][,parameter=value...]: leaf_simplified (default) or leaf_solved, with the leaf's parameters.",
-             {.type = "MATERIAL", .decides = true, .positional = true}),
+    JobParam(
+        "leaf", texts,
+        "MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a material "
+        "leaf_simplified.",
+        {.type = "MATERIAL", .decides = true, .positional = true}),
     JobParam("specimen", text, "Specimen of the leaf; soybean by default.",
              {.choices = leaf::kSpecimenNames, .decides = true}),
     JobParam("method", text, "Method: solve, without noise, or montecarlo, random walks as published.",
