@@ -129,7 +129,7 @@ def _table(columns):
     return pandas.DataFrame(columns)
 
 
-def run(name, *, progress=None, session=None, **given):
+def run(name, /, *, progress=None, session=None, **given):
     """Runs a job by its name, with the keywords of its function; returns a `Result`."""
     job = JOBS[name]
     given = by_alias(job["params"], given)

@@ -288,3 +288,21 @@ def test_records_are_whole():
     for name, param in itertools.chain(PARAMS, (("session", p) for p in _frond.session_params())):
         assert param["doc"][0].isupper() or param["doc"][0] in "x\"$" or "[" in param["doc"], (name, param["name"])
         assert param["name"] == param["name"].lower() and "_" not in param["name"]
+
+
+def test_commands_are_functions(scene_text, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("scene.pbrt").write_text(scene_text)
+    assert frond.check("scene.pbrt").text == "scene.pbrt: nothing is wrong\n"
+    assert "thickness" in frond.describe(name="abm").text and "leaf_solved" in frond.list().text
+    for part, samples in (("a.part", "0:2"), ("b.part", "2:4")):
+        frond.render("scene.pbrt", part=part, samples=samples, seed=1)
+    frond.merge(["a.part", "b.part"], output="merged.exr")
+    found = frond.render(["scene.pbrt"], output="whole.exr", spp=4, seed=1)
+    assert list(found.table["samples_per_pixel"]) == [4]
+    (_, ours), (_, theirs) = (frond.read_image(f"{name}.exr") for name in ("merged", "whole"))
+    assert numpy.array_equal(ours, theirs)
+    frond.canopy(output="leaves.npy", count=10, size=(1, 1), scale=0.1)
+    assert Path("leaves.npy").exists()
+    frond.submit("scene.pbrt", output="out.exr", spp=4, tasks=2, slurm=True, wavelengths="smpte", session=frond.Session(cache="tables"))
+    assert f"'--wavelengths' 'smpte' '--cache' '{tmp_path}/tables'" in Path("out.exr.slurm/render.sbatch").read_text()

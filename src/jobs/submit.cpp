@@ -86,6 +86,20 @@ void try_out(const JobRun& run, const fs::path& folder, std::span<const JobParam
   }
 }
 
+/// Options of frond render for the tasks: the arguments, and what the session has without one, as in Python.
+std::vector<std::string> task_options(const JobRun& run, std::span<const JobParam* const> params) {
+  std::vector<std::string> words = absolute_words(run.args, params);
+  const auto& [threads, cache, plugins] = run.context.options();
+  if (!run.args.given("plugin"))
+    for (const std::string& plugin : plugins) words.insert(words.end(), {"--plugin", fs::absolute(plugin).string()});
+  if (run.args.given("cache") || run.args.flag("no-cache") || cache == default_cache()) return words;
+  if (cache.empty())
+    words.emplace_back("--no-cache");
+  else
+    words.insert(words.end(), {"--cache", fs::absolute(cache).string()});
+  return words;
+}
+
 Result submit(const JobRun& run) {
   const Arguments& args = run.args;
   const int64_t tasks = args.count("tasks"), samples = args.count("spp");
@@ -101,7 +115,7 @@ Result submit(const JobRun& run) {
   fs::create_directories(folder / "parts");
   try_out(run, folder, params);
   std::string options;
-  for (const std::string& word : absolute_words(args, params)) options += (options.empty() ? "" : " ") + quoted(word);
+  for (const std::string& word : task_options(run, params)) options += (options.empty() ? "" : " ") + quoted(word);
   const std::vector<std::pair<std::string, std::string>> values{
       {"@FROND@", quoted(program())},
       {"@SCENE@", quoted(fs::absolute(args.text("scene")).string())},
