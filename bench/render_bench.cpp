@@ -1,5 +1,7 @@
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <ctime>
 
@@ -21,8 +23,17 @@ class RecordingWorld final : public World {
     Ray ray;
     bool shadow;
   };
+  /// With the packet's rays, which it only points to.
   struct PacketRecord {
-    RayPacket packet;
+    PacketRecord(const RayPacket& packet, bool is_shadow) : lanes(packet.lanes), shadow(is_shadow) {
+      std::copy_n(packet.rays, RayPacket::kWidth, rays.begin());
+      std::copy_n(packet.keys, RayPacket::kWidth, keys.begin());
+    }
+    RayPacket packet() const { return {rays.data(), keys.data(), lanes}; }
+
+    std::array<Ray, RayPacket::kWidth> rays;
+    std::array<uint64_t, RayPacket::kWidth> keys;
+    uint32_t lanes;
     bool shadow;
   };
   explicit RecordingWorld(const World& world) : world_(world) {}
@@ -35,11 +46,11 @@ class RecordingWorld final : public World {
     return world_.occluded(ray, key);
   }
   uint32_t intersect(const RayPacket& packet, SurfacePoint* points) const override {
-    packets_.push_back({packet, false});
+    packets_.emplace_back(packet, false);
     return world_.intersect(packet, points);
   }
   uint32_t occluded(const RayPacket& packet) const override {
-    packets_.push_back({packet, true});
+    packets_.emplace_back(packet, true);
     return world_.occluded(packet);
   }
   std::span<const Light* const> lights() const override { return world_.lights(); }
@@ -50,7 +61,7 @@ class RecordingWorld final : public World {
   const std::vector<PacketRecord>& packets() const { return packets_; }
   size_t rays() const {
     size_t rays = records_.size();
-    for (const PacketRecord& p : packets_) rays += size_t(std::popcount(p.packet.lanes));
+    for (const PacketRecord& p : packets_) rays += size_t(std::popcount(p.lanes));
     return rays;
   }
 
@@ -124,8 +135,8 @@ void replay_rays(benchmark::State& state, const std::string& file) {
     for (const auto& [ray, shadow] : recorder.records())
       benchmark::DoNotOptimize(shadow ? geometry.occluded(ray, 0) : geometry.closest(ray, 0, query));
     RTCRayHit8 queries;
-    for (const auto& [packet, shadow] : recorder.packets())
-      benchmark::DoNotOptimize(shadow ? geometry.occluded(packet) : geometry.closest(packet, queries));
+    for (const RecordingWorld::PacketRecord& p : recorder.packets())
+      benchmark::DoNotOptimize(p.shadow ? geometry.occluded(p.packet()) : geometry.closest(p.packet(), queries));
     embree_seconds += double(std::clock() - start) / CLOCKS_PER_SEC;
   }
   const double rays = double(recorder.rays()) * double(state.iterations());
