@@ -66,11 +66,7 @@ int execute(const Command& command) {
 }
 
 int parse_and_execute(CLI::App& app, const std::vector<Command>& commands, int argc, const char* const* argv) {
-  std::vector<std::string> words(argv + 1, argv + argc);
-  if (const CLI::App* render = app.get_subcommands([](const CLI::App* a) { return a->get_name() == "render"; }).empty()
-                                   ? nullptr
-                                   : app.get_subcommand("render"))
-    words = with_pbrt_spelling(std::move(words), *render);
+  std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc}, *app.get_subcommand("render"));
   std::ranges::reverse(words);  // CLI11 takes them from the end
   try {
     app.parse(std::move(words));

@@ -62,13 +62,13 @@ std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std:
   return scenes;
 }
 
-std::string wavelengths_text(const Arguments& args, std::string_view name) {
-  const std::string text = args.text(name);
+std::string wavelengths_text(const Arguments& args) {
+  const std::string text = args.text("wavelengths");
   if (text.empty() || std::string_view("0123456789.").find(text[0]) == std::string_view::npos) return text;
   const auto numbers = parse_numbers(text);
   if (!numbers)
-    fail({}, "{}: {} is neither a list of wavelengths, as in 450,550 or 400:700:10, nor a plug-in", args.spelled(name),
-         text);
+    fail({}, "{}: {} is neither a list of wavelengths, as in 450,550 or 400:700:10, nor a plug-in",
+         args.spelled("wavelengths"), text);
   return fmt::format("bands,wavelengths={}", fmt::join(*numbers, ","));
 }
 

@@ -63,7 +63,7 @@ SceneDescription described_scene(const JobRun& run);
 /// Scenes from files: a scene may be in several files, of which the last one has its world.
 std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files);
 /// "smpte", "bands,wavelengths=450,550" or numbers alone, 450,550 or 400:700:10, which are bands.
-std::string wavelengths_text(const Arguments& args, std::string_view name = "wavelengths");
+std::string wavelengths_text(const Arguments& args);
 /// Refuses a chart that cannot be written, if it is asked for.
 void check_chart_param(const JobRun& run, std::string_view name);
 

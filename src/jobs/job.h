@@ -69,7 +69,7 @@ struct Stopped : std::runtime_error {
   Stopped() : std::runtime_error("stopped") {}
 };
 
-/// Which parameters of the session a job has beside its own: of kSessionParams.
+/// Which parameters of the session a job has beside its own.
 enum class SessionUse : uint8_t {
   none,     ///< quiet
   plugins,  ///< quiet, plugin
@@ -104,7 +104,7 @@ struct JobInfo {
 /// All parameters of a job: its own, those of the job that it extends, and those of its session.
 std::vector<const JobParam*> params_of(const JobInfo& job);
 
-/// threads, cache, no-cache, plugin, quiet.
+/// Those of quiet, plugin, threads, cache and no-cache that SessionUse names.
 std::span<const JobParam> session_params(SessionUse use);
 /// The session that such arguments ask for. The cache's folder is that given, else the user's, or none with no-cache.
 SessionOptions session_options(const Arguments& args);

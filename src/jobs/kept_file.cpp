@@ -28,4 +28,9 @@ void KeptFile::report_stop() const {
                         names_.checkpoint.string()));
 }
 
+double checkpoint_seconds(const Arguments& args) {
+  constexpr double kDefault = 60;
+  return args.given("checkpoint") ? args.real("checkpoint") : kDefault;
+}
+
 }  // namespace frond

@@ -6,6 +6,7 @@
 #include <stop_token>
 
 #include "core/log.h"
+#include "jobs/arguments.h"
 #include "render/checkpoint.h"
 
 namespace frond {
@@ -17,7 +18,6 @@ class KeptFile {
     std::filesystem::path finished;    ///< what is complete
     std::filesystem::path checkpoint;  ///< what is not; may be the same
   };
-  static constexpr double kSeconds = 60;  ///< from one checkpoint to the next, where nothing is said
 
   /// Throws Busy.
   KeptFile(Names names, std::stop_token stop, const Log& log)
@@ -39,5 +39,8 @@ class KeptFile {
   const Log& log_;
   PartLock lock_;
 };
+
+/// From one checkpoint to the next: "checkpoint", or 60.
+double checkpoint_seconds(const Arguments& args);
 
 }  // namespace frond

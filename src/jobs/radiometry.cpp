@@ -30,8 +30,4 @@ std::optional<KeptFile::Names> kept_names_of(const Arguments& args) {
   return KeptFile::Names{part, part};
 }
 
-double checkpoint_seconds(const Arguments& args) {
-  return args.given("checkpoint") ? args.real("checkpoint") : KeptFile::kSeconds;
-}
-
 }  // namespace frond

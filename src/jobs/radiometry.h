@@ -34,7 +34,5 @@ std::optional<Target> target_of(const Arguments& args);
 std::optional<std::array<double, 2>> period_of(const Arguments& args);
 /// The file beside that of csv; nothing where neither checkpoint nor resume is given.
 std::optional<KeptFile::Names> kept_names_of(const Arguments& args);
-/// From one checkpoint to the next.
-double checkpoint_seconds(const Arguments& args);
 
 }  // namespace frond

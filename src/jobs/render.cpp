@@ -3,7 +3,6 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "image/tev_packets.h"
 #include "jobs/common_params.h"
 #include "jobs/kept_file.h"
 #include "jobs/render_task.h"
@@ -196,8 +195,7 @@ class SceneRender {
                                       std::chrono::duration<double>(run_.args.real("time-limit")));
     std::optional<Checkpointer> checkpointer;
     if (kept_) {
-      const double seconds = run_.args.given("checkpoint") ? run_.args.real("checkpoint") : KeptFile::kSeconds;
-      checkpointer.emplace(kept_->checkpoint(), seconds, part, control.progress, run_.log());
+      checkpointer.emplace(kept_->checkpoint(), checkpoint_seconds(run_.args), part, control.progress, run_.log());
       control.progress = &*checkpointer;
     }
     statistics_ = task_.render(part, control, [&checkpointer](const PartHeader& header) {

@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-// Ends and middle are told apart whatever colours one sees: after ColorBrewer's RdBu.
+// A diverging palette that is readable with any colour vision: ColorBrewer's RdBu.
 constexpr std::array kRatioColors{0x2166ac, 0x67a9cf, 0xf7f7f7, 0xef8a62, 0xb2182b};
 
 /// What stands for a patch: found / expected, or what was found where there is nothing to compare with.

@@ -80,7 +80,7 @@ struct Choice {
 /// What was chosen.
 struct Chosen {
   Choice choice;
-  std::shared_ptr<const Scene> scene;  ///< the pilots', in which what stands in the scene stands already
+  std::shared_ptr<const Scene> scene;  ///< of the pilots; the render shares its geometry
 };
 
 /// Writes into the description the cheapest answers to what it leaves open that meet its leaves' "maxrms", the smallest

@@ -74,8 +74,8 @@ std::string speed_table(const Comparison& c) {
 constexpr const char* kTable2Note =
     "As Table 2 of Baranoski and Rokne, who give for their simplified model 0.009 0.009 0.012 and 5.14× (front lit), "
     "0.011 0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS of clipped pictures, "
-    "linear SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are told "
-    "below.";
+    "linear SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are "
+    "defined under the table of speed-ups.";
 
 /// Of absolute errors of colours, as the paper's are.
 std::string table_2(const Comparison& c) {
