@@ -59,7 +59,13 @@ def arguments(params, given):
 def by_alias(params, given):
     """The same keywords with the records' own names in place of their aliases."""
     names = {python_name(alias): python_name(p["name"]) for p in params for alias in p["aliases"].split(",") if len(alias) > 1}
-    return {names.get(name, name): value for name, value in given.items()}
+    found = {}
+    for name, value in given.items():
+        own = names.get(name, name)
+        if own in found:
+            raise TypeError(f"{own} is given twice, also by its other name")
+        found[own] = value
+    return found
 
 
 def _default(param):

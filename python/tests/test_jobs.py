@@ -290,6 +290,11 @@ def test_records_are_whole():
         assert param["name"] == param["name"].lower() and "_" not in param["name"]
 
 
+def test_a_keyword_and_its_alias_are_not_both_given():
+    with pytest.raises(TypeError, match="angles is given twice"):
+        frond.bench("lambert", angle=0, angles=[0, 45])
+
+
 def test_commands_are_functions(scene_text, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("scene.pbrt").write_text(scene_text)

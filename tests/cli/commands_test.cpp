@@ -11,7 +11,9 @@
 
 #include "image/image_file.h"
 #include "jobs/command_line.h"
+#include "jobs/common_params.h"
 #include "render/plugins.h"
+#include "scene/unsupported.h"
 #include "tests/cli/command.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"
@@ -54,6 +56,11 @@ Shape "sphere" "float radius" .5
 
   TestFolder folder_{"cli"};
 };
+
+TEST(IgnoreUnsupported, ItsDocNamesEveryKind) {
+  for (const std::string_view kind : Unsupported::kinds())
+    EXPECT_THAT(std::string(kIgnoreUnsupportedParam.doc), HasSubstr(std::string(kind)));
+}
 
 TEST_F(Commands, BadUseExitsWithOneAndAMessage) {
   for (const std::vector<std::string>& arguments :
