@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "study/compare/machine.h"
+#include "study/compare/report/machine.h"
 
 namespace {
 

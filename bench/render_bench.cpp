@@ -8,9 +8,9 @@
 #include "core/log.h"
 #include "render/plugins.h"
 #include "render/render_loop.h"
-#include "scene/embree.h"
+#include "scene/format/parser.h"
+#include "scene/geometry/embree.h"
 #include "scene/overrides.h"
-#include "scene/parser.h"
 #include "scene/scene.h"
 
 namespace frond {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/log.h"
-#include "instruments/render_error.h"
-#include "instruments/statistics.h"
+#include "instruments/errors/render_error.h"
+#include "instruments/errors/statistics.h"
 #include "study/compare/picture.h"
 #include "study/compare/study.h"
 

@@ -15,7 +15,7 @@
 
 #include <memory>
 
-#include "jobs/job.h"
+#include "jobs/record/job.h"
 
 namespace frond::python {
 

@@ -1,8 +1,8 @@
 #include "common.h"
 #include "image/image_file.h"
-#include "jobs/render_task.h"
+#include "jobs/support/render_task.h"
 #include "render/image_output.h"
-#include "render/part_file.h"
+#include "render/parts/part_file.h"
 #include "render/plugins.h"
 #include "study/choose/choice_report.h"
 

@@ -8,8 +8,8 @@
 #include <algorithm>
 
 #include "cli/pbrt_options.h"
-#include "jobs/command_line.h"
-#include "scene/words.h"
+#include "jobs/record/command_line.h"
+#include "scene/format/words.h"
 
 namespace frond {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/job.h"
+#include "jobs/record/job.h"
 
 namespace CLI {
 class App;

@@ -7,9 +7,9 @@
 #include <cctype>
 
 #include "core/error.h"
-#include "jobs/command_line.h"
-#include "jobs/pbrt_options.h"
-#include "scene/unsupported.h"
+#include "jobs/record/command_line.h"
+#include "jobs/record/pbrt_options.h"
+#include "scene/format/unsupported.h"
 
 namespace frond {
 namespace {

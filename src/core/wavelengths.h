@@ -59,8 +59,8 @@ class WavelengthStrategy {
   /// What one path of this radiance says of film channels: an unbiased estimate of the sensor's response in each that
   /// it names.
   virtual SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const = 0;
-  /// Colour space of the film's three channels, a name of spectra/color_space.h: "XYZ" or "linear SMPTE-C"; empty where
-  /// the channels are bands.
+  /// Colour space of the film's three channels, a name of spectra/color/color_space.h: "XYZ" or "linear SMPTE-C"; empty
+  /// where the channels are bands.
   virtual std::string_view film_space() const = 0;
   /// Shares of the lanes in luminance where they are red, green and blue, as many as lanes; empty elsewhere.
   virtual std::span<const float> luminance_shares() const { return {}; }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/image.h"
-#include "spectra/color_management.h"
+#include "spectra/color/color_management.h"
 
 namespace frond {
 

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/image.h"
-#include "spectra/color_space.h"
+#include "spectra/color/color_space.h"
 
 namespace frond {
 
@@ -18,7 +18,7 @@ inline constexpr const char* kColorSpaceKey = "frond:colorspace";
 
 /// What an image file says beside its pixels.
 struct ImageHeader {
-  std::string color_space;                  ///< linear name of spectra/color_space.h; empty: unknown
+  std::string color_space;                  ///< linear name of spectra/color/color_space.h; empty: unknown
   std::map<std::string, std::string> text;  ///< attributes by name, such as "frond:seed"
   /// Where the image lies in a larger one of which it is a part (EXR's data and display windows); 0: it is the whole.
   int x = 0, y = 0, full_width = 0, full_height = 0;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "instruments/detector_sphere.h"
+#include "instruments/errors/statistics.h"
 #include "instruments/rays.h"
-#include "instruments/statistics.h"
 
 namespace frond {
 

@@ -2,7 +2,7 @@
 
 #include "core/material.h"
 #include "core/parallel.h"
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 
 namespace frond {
 

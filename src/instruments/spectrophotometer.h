@@ -1,7 +1,7 @@
 #pragma once
 
+#include "instruments/errors/statistics.h"
 #include "instruments/rays.h"
-#include "instruments/statistics.h"
 
 namespace frond {
 

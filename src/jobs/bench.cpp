@@ -10,12 +10,12 @@
 #include "instruments/beam.h"
 #include "instruments/bsdf_calls.h"
 #include "instruments/given_wavelengths.h"
-#include "jobs/call_benchmarks.h"
-#include "jobs/common_params.h"
+#include "jobs/record/common_params.h"
+#include "jobs/support/call_benchmarks.h"
 #include "render/material_words.h"
 #include "render/measured_material.h"
 #include "report/chart.h"
-#include "study/compare/machine.h"
+#include "study/compare/report/machine.h"
 
 namespace frond {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <memory>
 
-#include "jobs/radiometry.h"
-#include "jobs/refine.h"
+#include "jobs/support/radiometry.h"
+#include "jobs/support/refine.h"
 #include "radiometry/brf_comparison.h"
-#include "render/part_file.h"
+#include "render/parts/part_file.h"
 #include "report/brf_chart.h"
 #include "report/chart.h"
 #include "study/compare/candidate.h"

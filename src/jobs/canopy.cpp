@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "jobs/common_params.h"
-#include "scene/homogeneous_canopy.h"
-#include "scene/instance_writer.h"
+#include "jobs/record/common_params.h"
+#include "scene/geometry/homogeneous_canopy.h"
+#include "scene/geometry/instance_writer.h"
 
 namespace frond {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "image/image_file.h"
-#include "jobs/common_params.h"
+#include "jobs/record/common_params.h"
 
 namespace frond {
 namespace {

@@ -2,15 +2,15 @@
 
 #include <chrono>
 
-#include "jobs/common_params.h"
-#include "scene/words.h"
+#include "jobs/record/common_params.h"
+#include "scene/format/words.h"
 #include "study/choose/choice_report.h"
-#include "study/compare/charts.h"
-#include "study/compare/machine.h"
 #include "study/compare/measure.h"
-#include "study/compare/report.h"
-#include "study/compare/summary.h"
-#include "study/compare/verdict.h"
+#include "study/compare/report/charts.h"
+#include "study/compare/report/machine.h"
+#include "study/compare/report/report.h"
+#include "study/compare/report/summary.h"
+#include "study/compare/report/verdict.h"
 #include "system/cpu_clock.h"
 
 namespace frond {

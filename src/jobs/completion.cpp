@@ -4,13 +4,13 @@
 #include <map>
 #include <regex>
 
-#include "jobs/command_line.h"
-#include "jobs/completion_templates.h"
+#include "jobs/record/command_line.h"
+#include "jobs/support/completion_templates.h"
 #include "leaf/tissue/specimens.h"
-#include "render/channels.h"
+#include "render/film/channels.h"
 #include "render/plugins.h"
 #include "report/text_output.h"
-#include "scene/words.h"
+#include "scene/format/words.h"
 
 namespace frond {
 namespace {

@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "instruments/conformance/material_conformance.h"
 #include "instruments/given_wavelengths.h"
-#include "instruments/material_conformance.h"
-#include "jobs/common_params.h"
+#include "jobs/record/common_params.h"
 #include "render/material_words.h"
 #include "render/refusing_log.h"
 #include "report/chart.h"

@@ -4,7 +4,7 @@
 
 #include "image/rgb_file.h"
 #include "image/spectral_layout.h"
-#include "jobs/display_params.h"
+#include "jobs/support/display_params.h"
 
 namespace frond {
 namespace {

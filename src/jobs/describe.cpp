@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "jobs/command_line.h"
+#include "jobs/record/command_line.h"
 #include "render/plugins.h"
-#include "scene/normal_map.h"
+#include "scene/textures/normal_map.h"
 
 namespace frond {
 namespace {

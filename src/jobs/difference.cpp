@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "image/rgb_file.h"
-#include "instruments/image_error.h"
-#include "jobs/common_params.h"
-#include "spectra/color_management.h"
+#include "instruments/errors/image_error.h"
+#include "jobs/record/common_params.h"
+#include "spectra/color/color_management.h"
 #include "study/smpte_luminance.h"
 
 namespace frond {

@@ -5,7 +5,7 @@
 
 #include "exports/format.h"
 #include "instruments/given_wavelengths.h"
-#include "jobs/common_params.h"
+#include "jobs/record/common_params.h"
 #include "radiometry/radiometer_scene.h"
 #include "render/material_words.h"
 #include "render/measured_material.h"

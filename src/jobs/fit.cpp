@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "jobs/common_params.h"
+#include "jobs/record/common_params.h"
 #include "leaf/fit/measured_spectra.h"
 #include "report/chart.h"
 #include "report/fit_report.h"
 #include "report/text_output.h"
-#include "scene/tokenizer.h"
+#include "scene/format/tokenizer.h"
 #include "system/cpu_clock.h"
 
 namespace frond {

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "jobs/radiometry.h"
-#include "jobs/refine.h"
+#include "jobs/support/radiometry.h"
+#include "jobs/support/refine.h"
 #include "radiometry/photons.h"
 #include "spectra/named.h"
 #include "spectra/spd_file.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "jobs/instrument.h"
+#include "jobs/support/instrument.h"
 #include "report/chart.h"
 #include "report/patch_charts.h"
 

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <optional>
 
-#include "jobs/common_params.h"
-#include "scene/instance_writer.h"
-#include "scene/tokenizer.h"
-#include "scene/words.h"
+#include "jobs/record/common_params.h"
+#include "scene/format/tokenizer.h"
+#include "scene/format/words.h"
+#include "scene/geometry/instance_writer.h"
 #include "system/file_bytes.h"
 
 namespace frond {

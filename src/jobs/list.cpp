@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "jobs/job.h"
+#include "jobs/record/job.h"
 #include "leaf/tissue/specimens.h"
 #include "render/plugins.h"
 

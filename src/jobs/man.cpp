@@ -4,10 +4,10 @@
 #include <cctype>
 #include <filesystem>
 
-#include "jobs/command_line.h"
-#include "jobs/pbrt_options.h"
+#include "jobs/record/command_line.h"
+#include "jobs/record/pbrt_options.h"
 #include "report/text_output.h"
-#include "scene/words.h"
+#include "scene/format/words.h"
 #include "system/file_time.h"
 
 namespace frond {

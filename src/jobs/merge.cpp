@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "jobs/display_params.h"
+#include "jobs/support/display_params.h"
 #include "render/image_output.h"
-#include "render/part_file.h"
+#include "render/parts/part_file.h"
 
 namespace frond {
 namespace {

@@ -1,4 +1,4 @@
-#include "jobs/job.h"
+#include "jobs/record/job.h"
 
 namespace frond {
 

@@ -3,14 +3,14 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "jobs/common_params.h"
-#include "jobs/kept_file.h"
-#include "jobs/render_task.h"
-#include "jobs/render_views.h"
-#include "render/adaptive.h"
+#include "jobs/record/common_params.h"
+#include "jobs/support/kept_file.h"
+#include "jobs/support/render_task.h"
+#include "jobs/support/render_views.h"
 #include "render/checkpoint.h"
-#include "render/error_tail.h"
-#include "render/part_file.h"
+#include "render/film/adaptive.h"
+#include "render/film/error_tail.h"
+#include "render/parts/part_file.h"
 #include "study/choose/choice_report.h"
 #include "system/atomic_file.h"
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "jobs/instrument.h"
+#include "jobs/support/instrument.h"
 #include "report/chart.h"
 #include "report/share_tables.h"
 

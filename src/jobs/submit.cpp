@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "core/error.h"
-#include "jobs/render_task.h"
-#include "jobs/slurm_templates.h"
+#include "jobs/support/render_task.h"
+#include "jobs/support/slurm_templates.h"
 #include "report/text_output.h"
 #include "system/child_process.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "jobs/common_params.h"
+#include "jobs/record/common_params.h"
 #include "leaf/table/body_cache.h"
 #include "leaf/table/body_file.h"
 #include "leaf/table/body_table.h"
@@ -13,7 +13,7 @@
 #include "materials/portable_leaf.h"
 #include "materials/registry.h"
 #include "report/text_output.h"
-#include "scene/plugin_text.h"
+#include "scene/format/plugin_text.h"
 #include "system/cpu_clock.h"
 
 namespace frond {

@@ -3,8 +3,8 @@
 #include "core/material.h"
 #include "materials/lobes/conductor.h"
 #include "spectra/check_range.h"
-#include "spectra/fixed_wavelengths.h"
 #include "spectra/named.h"
+#include "spectra/wavelengths/fixed_wavelengths.h"
 
 namespace frond {
 

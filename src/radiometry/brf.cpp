@@ -8,7 +8,7 @@
 
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"
-#include "scene/plugin_text.h"
+#include "scene/format/plugin_text.h"
 
 namespace frond {
 namespace {

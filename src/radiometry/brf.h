@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 #include "render/session.h"
 
 namespace frond {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 
 namespace frond {
 namespace {

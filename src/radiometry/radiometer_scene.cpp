@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/log.h"
-#include "scene/plugin_text.h"
+#include "scene/format/plugin_text.h"
 #include "scene/scene_options.h"
 
 namespace frond {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "render/identity.h"
+#include "render/parts/identity.h"
 
 namespace frond {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "render/part_file.h"
+#include "render/parts/part_file.h"
 
 namespace frond {
 namespace {

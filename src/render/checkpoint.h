@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "core/log.h"
-#include "render/part.h"
+#include "render/parts/part.h"
 #include "render/progress.h"
 
 namespace frond {

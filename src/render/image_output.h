@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/display_image.h"
-#include "render/picture_format.h"
+#include "render/film/picture_format.h"
 
 namespace frond {
 

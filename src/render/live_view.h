@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "core/log.h"
-#include "render/picture_format.h"
+#include "render/film/picture_format.h"
 
 namespace frond {
 

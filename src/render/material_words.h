@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "scene/description.h"
-#include "scene/plugin_text.h"
+#include "scene/format/description.h"
+#include "scene/format/plugin_text.h"
 #include "scene/registry.h"
 
 namespace frond {

@@ -8,7 +8,7 @@
 
 #include "core/log.h"
 #include "core/material.h"
-#include "scene/description.h"
+#include "scene/format/description.h"
 #include "scene/registry.h"
 
 namespace frond {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/statistics.h"
+#include "render/film/statistics.h"
 
 namespace frond {
 

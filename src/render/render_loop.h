@@ -11,7 +11,7 @@
 #include "core/integrator.h"
 #include "core/parallel.h"
 #include "core/wavelengths.h"
-#include "render/film.h"
+#include "render/film/film.h"
 #include "render/progress.h"
 
 namespace frond {

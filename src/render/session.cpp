@@ -2,11 +2,11 @@
 
 #include <fmt/ranges.h>
 
-#include "render/adaptive.h"
-#include "render/inputs.h"
+#include "render/film/adaptive.h"
+#include "render/parts/inputs.h"
 #include "render/plugins.h"
-#include "spectra/color_management.h"
-#include "spectra/color_space.h"
+#include "spectra/color/color_management.h"
+#include "spectra/color/color_space.h"
 
 namespace frond {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/log.h"
 #include "core/parallel.h"
-#include "render/part.h"
+#include "render/parts/part.h"
 #include "render/render_loop.h"
 #include "scene/overrides.h"
 #include "scene/read_scene.h"
@@ -23,7 +23,7 @@ struct PictureRequest {
   /// taken of these pixels alone, and of those around the whole. Else of all that reach these pixels, which are then
   /// the whole picture's.
   bool is_piece = false;
-  std::vector<std::string> channels = {};  ///< beside those of the scene's film: names of render/channels.h
+  std::vector<std::string> channels = {};  ///< beside those of the scene's film: names of render/film/channels.h
   std::string color_space = {};  ///< by linear name, where the scene names none; empty: as the wavelengths have it
   std::map<std::string, std::string> attributes = {};  ///< for the image's header
   bool adaptive = false;                               ///< the film is to know its noise, for Session::render_to
@@ -121,9 +121,9 @@ class Session {
   /// The same for some of the pixels, or other samples of each tile.
   RenderStatistics render_plan(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
                                const RenderControl& control = {});
-  /// Adds samples where they do most against noise, until it is small enough with kNoiseConfidence (render/adaptive.h),
-  /// or no tile may have more, or the control ends it. The scene was loaded for that. A part that was ended early goes
-  /// on as if it had not been.
+  /// Adds samples where they do most against noise, until it is small enough with kNoiseConfidence
+  /// (render/film/adaptive.h), or no tile may have more, or the control ends it. The scene was loaded for that. A part
+  /// that was ended early goes on as if it had not been.
   RenderStatistics render_to(const LoadedScene& scene, const NoiseRequest& request, RenderPart& part,
                              const RenderControl& control = {});
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "instruments/conformance.h"
+#include "instruments/conformance/conformance.h"
 #include "report/chart.h"
 #include "report/table.h"
 

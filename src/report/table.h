@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 
 namespace frond {
 

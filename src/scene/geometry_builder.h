@@ -3,7 +3,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/problems.h"
-#include "scene/geometry.h"
+#include "scene/geometry/geometry.h"
 #include "scene/resolver.h"
 
 namespace frond {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "scene/plugin_text.h"
+#include "scene/format/plugin_text.h"
 #include "scene/registry.h"
 #include "scene/shape.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/log.h"
-#include "scene/description.h"
-#include "scene/geometry.h"
+#include "scene/format/description.h"
+#include "scene/geometry/geometry.h"
 
 namespace frond {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/log.h"
-#include "scene/description.h"
-#include "scene/plugin_text.h"
+#include "scene/format/description.h"
+#include "scene/format/plugin_text.h"
 #include "scene/registry.h"
 #include "scene/swap.h"
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "scene/normal_map.h"
-#include "scene/plugin_text.h"
+#include "scene/format/plugin_text.h"
+#include "scene/textures/normal_map.h"
 
 namespace frond {
 namespace {

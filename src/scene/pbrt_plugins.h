@@ -2,15 +2,15 @@
 
 #include "core/log.h"
 #include "core/problems.h"
-#include "scene/description.h"
+#include "scene/format/description.h"
+#include "scene/format/unsupported.h"
 #include "scene/registry.h"
-#include "scene/unsupported.h"
 
 namespace frond {
 
 /// Names of pbrt-v4 that frond answers by plugins of another name. What gives the same picture, but for noise, is told
-/// in the log (samplers; volpath, where there are no media); what does not has to be let pass (scene/unsupported.h).
-/// Names of older versions of pbrt are errors that say how a file is upgraded.
+/// in the log (samplers; volpath, where there are no media); what does not has to be let pass
+/// (scene/format/unsupported.h). Names of older versions of pbrt are errors that say how a file is upgraded.
 void answer_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,
                          const Log& log, Problems& problems);
 

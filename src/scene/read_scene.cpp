@@ -1,6 +1,6 @@
 #include "scene/read_scene.h"
 
-#include "scene/parser.h"
+#include "scene/format/parser.h"
 #include "scene/pbrt_plugins.h"
 
 namespace frond {

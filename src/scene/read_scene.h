@@ -5,9 +5,9 @@
 
 #include "core/log.h"
 #include "core/problems.h"
-#include "scene/description.h"
+#include "scene/format/description.h"
+#include "scene/format/unsupported.h"
 #include "scene/registry.h"
-#include "scene/unsupported.h"
 
 namespace frond {
 

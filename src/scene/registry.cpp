@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "spectra/registry.h"
+#include "spectra/wavelengths/registry.h"
 
 namespace frond {
 

@@ -6,8 +6,8 @@
 #include "core/material.h"
 #include "core/sampler.h"
 #include "core/texture.h"
-#include "scene/film_settings.h"
-#include "scene/lights.h"
+#include "scene/cameras/film_settings.h"
+#include "scene/lights/lights.h"
 #include "scene/shape.h"
 
 namespace frond {

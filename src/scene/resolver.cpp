@@ -1,17 +1,17 @@
 #include "scene/resolver.h"
 
 #include "core/problems.h"
-#include "scene/normal_map.h"
+#include "scene/textures/normal_map.h"
 #include "spectra/analytic.h"
 #include "spectra/beyond_data.h"
 #include "spectra/check_range.h"
 #include "spectra/cie.h"
-#include "spectra/color_space.h"
-#include "spectra/fixed_wavelengths.h"
+#include "spectra/color/color_space.h"
+#include "spectra/color/rgb_upsampling.h"
 #include "spectra/named.h"
-#include "spectra/rgb_upsampling.h"
 #include "spectra/spd_file.h"
 #include "spectra/tabulated.h"
+#include "spectra/wavelengths/fixed_wavelengths.h"
 
 namespace frond {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/params.h"
 #include "core/shared_work.h"
 #include "core/wavelengths.h"
-#include "scene/description.h"
+#include "scene/format/description.h"
 #include "scene/registry.h"
 
 namespace frond {

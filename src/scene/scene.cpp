@@ -5,11 +5,11 @@
 
 #include "core/log.h"
 #include "core/problems.h"
+#include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
 #include "scene/instances.h"
-#include "scene/normal_map.h"
-#include "scene/plugin_text.h"
 #include "scene/scene_options.h"
+#include "scene/textures/normal_map.h"
 
 namespace frond {
 namespace {

@@ -7,12 +7,12 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/world.h"
-#include "scene/description.h"
-#include "scene/footprint.h"
-#include "scene/geometry.h"
+#include "scene/format/description.h"
+#include "scene/geometry/geometry.h"
+#include "scene/geometry/tiling.h"
 #include "scene/registry.h"
 #include "scene/resolver.h"
-#include "scene/tiling.h"
+#include "scene/textures/footprint.h"
 
 namespace frond {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/plugin.h"
-#include "scene/plugin_text.h"
+#include "scene/format/plugin_text.h"
 
 namespace frond {
 namespace {

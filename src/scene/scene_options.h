@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/log.h"
-#include "scene/description.h"
+#include "scene/format/description.h"
 
 namespace frond {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/log.h"
-#include "scene/normal_map.h"
 #include "scene/scene.h"
+#include "scene/textures/normal_map.h"
 
 namespace frond {
 namespace {

@@ -10,10 +10,10 @@
 #include <sstream>
 
 #include "image/image_file.h"
-#include "jobs/command_line.h"
-#include "jobs/common_params.h"
+#include "jobs/record/command_line.h"
+#include "jobs/record/common_params.h"
 #include "render/plugins.h"
-#include "scene/unsupported.h"
+#include "scene/format/unsupported.h"
 #include "tests/cli/command.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"

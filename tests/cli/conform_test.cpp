@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "image/image_file.h"
-#include "instruments/conformance.h"
+#include "instruments/conformance/conformance.h"
 #include "report/chart.h"
 #include "tests/cli/command.h"
 #include "tests/support/input_error.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "jobs/job.h"
+#include "jobs/record/job.h"
 #include "tests/cli/command.h"
 #include "tests/cli/table.h"
 #include "tests/support/input_error.h"

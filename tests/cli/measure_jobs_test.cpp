@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "jobs/job.h"
+#include "jobs/record/job.h"
 #include "render/material_words.h"
 #include "tests/cli/command.h"
 #include "tests/cli/table.h"

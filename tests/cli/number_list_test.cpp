@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "jobs/arguments.h"
+#include "jobs/record/arguments.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

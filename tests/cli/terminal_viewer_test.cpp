@@ -1,4 +1,4 @@
-#include "jobs/terminal_viewer.h"
+#include "jobs/support/terminal_viewer.h"
 
 #include <gmock/gmock.h>
 #include <pty.h>

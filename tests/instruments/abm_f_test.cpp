@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 #include "tests/materials/support.h"
 #include "tests/support/slow.h"
 

@@ -1,4 +1,4 @@
-#include "instruments/convergence.h"
+#include "instruments/errors/convergence.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 
 namespace frond {
 namespace {

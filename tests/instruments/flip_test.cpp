@@ -1,4 +1,4 @@
-#include "instruments/flip.h"
+#include "instruments/errors/flip.h"
 
 #include <gtest/gtest.h>
 

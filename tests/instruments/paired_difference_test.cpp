@@ -1,4 +1,4 @@
-#include "instruments/paired_difference.h"
+#include "instruments/errors/paired_difference.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "instruments/render_error.h"
+#include "instruments/errors/render_error.h"
 
 #include <gtest/gtest.h>
 

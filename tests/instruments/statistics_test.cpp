@@ -1,4 +1,4 @@
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 
 #include <gtest/gtest.h>
 

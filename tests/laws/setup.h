@@ -3,8 +3,8 @@
 #include <ostream>
 
 #include "core/log.h"
+#include "instruments/conformance/material_conformance.h"
 #include "instruments/given_wavelengths.h"
-#include "instruments/material_conformance.h"
 
 namespace frond {
 

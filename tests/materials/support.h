@@ -5,8 +5,8 @@
 #include "core/log.h"
 #include "core/material.h"
 #include "materials/registry.h"
-#include "spectra/registry.h"
 #include "spectra/tabulated.h"
+#include "spectra/wavelengths/registry.h"
 #include "tests/support/bind.h"
 #include "tests/support/ramp.h"
 

@@ -9,9 +9,9 @@
 #include "radiometry/brf_comparison.h"
 #include "radiometry/flux.h"
 #include "radiometry/horizontal_irradiance.h"
-#include "scene/homogeneous_canopy.h"
-#include "scene/instance_writer.h"
-#include "scene/parser.h"
+#include "scene/format/parser.h"
+#include "scene/geometry/homogeneous_canopy.h"
+#include "scene/geometry/instance_writer.h"
 #include "system/file_bytes.h"
 #include "tests/support/input_error.h"
 

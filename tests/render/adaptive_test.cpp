@@ -1,10 +1,10 @@
-#include "render/adaptive.h"
+#include "render/film/adaptive.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "render/part_file.h"
+#include "render/parts/part_file.h"
 #include "tests/render/render_scene.h"
 #include "tests/support/input_error.h"
 

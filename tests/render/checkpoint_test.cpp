@@ -5,8 +5,8 @@
 #include <atomic>
 #include <thread>
 
-#include "render/adaptive.h"
-#include "render/part_file.h"
+#include "render/film/adaptive.h"
+#include "render/parts/part_file.h"
 #include "tests/render/render_scene.h"
 #include "tests/support/input_error.h"
 

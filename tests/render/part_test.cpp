@@ -1,4 +1,4 @@
-#include "render/part.h"
+#include "render/parts/part.h"
 
 #include <gmock/gmock.h>
 
@@ -10,7 +10,7 @@
 #include "core/log.h"
 #include "image/image_file.h"
 #include "render/image_output.h"
-#include "render/part_file.h"
+#include "render/parts/part_file.h"
 #include "tests/render/render_scene.h"
 #include "tests/support/input_error.h"
 

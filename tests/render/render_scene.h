@@ -6,7 +6,7 @@
 
 #include "core/log.h"
 #include "render/session.h"
-#include "scene/words.h"
+#include "scene/format/words.h"
 
 namespace frond::testing {
 

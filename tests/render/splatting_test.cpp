@@ -1,4 +1,4 @@
-#include "render/splatting.h"
+#include "render/film/splatting.h"
 
 #include <gmock/gmock.h>
 
@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "core/random.h"
-#include "instruments/image_error.h"
-#include "render/part_file.h"
+#include "instruments/errors/image_error.h"
+#include "render/parts/part_file.h"
 #include "scene/registry.h"
 #include "tests/render/render_scene.h"
 #include "tests/support/bind.h"

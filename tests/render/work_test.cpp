@@ -1,4 +1,4 @@
-#include "render/work.h"
+#include "render/film/work.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene/distribution.h"
+#include "scene/math/distribution.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "core/log.h"
 #include "core/random.h"
-#include "scene/parser.h"
+#include "scene/format/parser.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

@@ -1,4 +1,4 @@
-#include "scene/parser.h"
+#include "scene/format/parser.h"
 
 #include <gmock/gmock.h>
 

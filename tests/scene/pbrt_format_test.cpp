@@ -5,8 +5,8 @@
 #include "core/log.h"
 #include "core/problems.h"
 #include "render/plugins.h"
-#include "scene/directives.h"
-#include "scene/parser.h"
+#include "scene/format/directives.h"
+#include "scene/format/parser.h"
 #include "scene/pbrt_plugins.h"
 #include "tests/support/input_error.h"
 

@@ -1,4 +1,4 @@
-#include "scene/ply.h"
+#include "scene/shapes/ply.h"
 
 #include <gmock/gmock.h>
 

@@ -7,7 +7,7 @@
 #include "core/problems.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
-#include "scene/parser.h"
+#include "scene/format/parser.h"
 #include "scene/scene.h"
 
 namespace frond {

@@ -11,11 +11,11 @@
 #include "core/random.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
-#include "scene/parser.h"
-#include "scene/ply.h"
+#include "scene/format/parser.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
-#include "scene/subdivision.h"
+#include "scene/shapes/ply.h"
+#include "scene/shapes/subdivision.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "image/image_file.h"
-#include "scene/mip_map.h"
-#include "scene/noise.h"
 #include "scene/registry.h"
+#include "scene/textures/mip_map.h"
+#include "scene/textures/noise.h"
 #include "tests/support/bind.h"
 #include "tests/support/input_error.h"
 #include "tests/support/ramp.h"

@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "integrators/registry.h"
 #include "materials/registry.h"
-#include "scene/parser.h"
+#include "scene/format/parser.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "tests/support/input_error.h"

@@ -7,10 +7,10 @@
 
 #include "core/random.h"
 #include "spectra/analytic.h"
-#include "spectra/band_preview.h"
 #include "spectra/cie.h"
-#include "spectra/registry.h"
 #include "spectra/tabulated.h"
+#include "spectra/wavelengths/band_preview.h"
+#include "spectra/wavelengths/registry.h"
 #include "tests/support/bind.h"
 #include "tests/support/input_error.h"
 

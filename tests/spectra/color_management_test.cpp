@@ -1,4 +1,4 @@
-#include "spectra/color_management.h"
+#include "spectra/color/color_management.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "spectra/builtin_config.h"
-#include "spectra/color_space.h"
+#include "spectra/color/builtin_config.h"
+#include "spectra/color/color_space.h"
 #include "tests/support/input_error.h"
 
 namespace frond {

@@ -1,4 +1,4 @@
-#include "spectra/color_space.h"
+#include "spectra/color/color_space.h"
 
 #include <gmock/gmock.h>
 

@@ -1,10 +1,10 @@
-#include "spectra/film_sensor.h"
+#include "spectra/color/film_sensor.h"
 
 #include <gtest/gtest.h>
 
 #include "spectra/beyond_data.h"
 #include "spectra/cie.h"
-#include "spectra/color_space.h"
+#include "spectra/color/color_space.h"
 #include "spectra/daylight.h"
 #include "spectra/tabulated.h"
 

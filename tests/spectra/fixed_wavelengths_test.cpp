@@ -1,4 +1,4 @@
-#include "spectra/fixed_wavelengths.h"
+#include "spectra/wavelengths/fixed_wavelengths.h"
 
 #include <gmock/gmock.h>
 

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "spectra/cie.h"
-#include "spectra/color_space.h"
-#include "spectra/registry.h"
+#include "spectra/color/color_space.h"
 #include "spectra/tabulated.h"
+#include "spectra/wavelengths/registry.h"
 #include "tests/support/bind.h"
 
 namespace frond {

@@ -1,4 +1,4 @@
-#include "spectra/reflectance_table.h"
+#include "spectra/color/reflectance_table.h"
 
 #include <gtest/gtest.h>
 

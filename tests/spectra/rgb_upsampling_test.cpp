@@ -1,4 +1,4 @@
-#include "spectra/rgb_upsampling.h"
+#include "spectra/color/rgb_upsampling.h"
 
 #include <gmock/gmock.h>
 

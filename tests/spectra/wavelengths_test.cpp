@@ -6,9 +6,9 @@
 #include "spectra/analytic.h"
 #include "spectra/check_range.h"
 #include "spectra/cie.h"
-#include "spectra/color_space.h"
+#include "spectra/color/color_space.h"
 #include "spectra/named.h"
-#include "spectra/registry.h"
+#include "spectra/wavelengths/registry.h"
 #include "tests/support/bind.h"
 #include "tests/support/input_error.h"
 

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 #include "tests/stability/page.h"
 
 namespace frond::stability {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 #include "leaf/solve/solver.h"
 #include "leaf/walk/walk.h"
 #include "tests/stability/comparison.h"

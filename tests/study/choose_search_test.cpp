@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "instruments/statistics.h"
+#include "instruments/errors/statistics.h"
 #include "study/choose/pilot_pixels.h"
 #include "study/choose/screening.h"
 

@@ -5,7 +5,7 @@
 #include "core/log.h"
 #include "image/image_file.h"
 #include "render/plugins.h"
-#include "scene/parser.h"
+#include "scene/format/parser.h"
 #include "scene/scene_options.h"
 #include "study/choose/choice_report.h"
 #include "tests/cli/command.h"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "study/compare/html.h"
+#include "study/compare/report/html.h"
 
 namespace frond::compare {
 namespace {

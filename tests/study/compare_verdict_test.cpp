@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 
-#include "study/compare/charts.h"
 #include "study/compare/figures.h"
+#include "study/compare/report/charts.h"
+#include "study/compare/report/verdict.h"
 #include "study/compare/speed_up.h"
-#include "study/compare/verdict.h"
 #include "tests/support/xml.h"
 
 namespace frond::compare {

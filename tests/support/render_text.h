@@ -6,8 +6,8 @@
 #include "integrators/registry.h"
 #include "materials/registry.h"
 #include "render/render_loop.h"
+#include "scene/format/parser.h"
 #include "scene/overrides.h"
-#include "scene/parser.h"
 #include "scene/scene.h"
 
 namespace frond::testing {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/plugin_text.h"
+#include "scene/format/plugin_text.h"
 #include "scene/registry.h"
 
 namespace frond::choose {

@@ -3,10 +3,10 @@
 #include <map>
 
 #include "core/log.h"
-#include "instruments/convergence.h"
-#include "instruments/paired_difference.h"
+#include "instruments/errors/convergence.h"
+#include "instruments/errors/paired_difference.h"
 #include "render/session.h"
-#include "spectra/color_management.h"
+#include "spectra/color/color_management.h"
 #include "study/choose/question.h"
 #include "study/paired_films.h"
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "core/log.h"
-#include "scene/normal_map.h"
 #include "scene/resolver.h"
 #include "scene/scene_options.h"
 #include "scene/swap.h"
+#include "scene/textures/normal_map.h"
 
 namespace frond::choose {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "instruments/convergence.h"
+#include "instruments/errors/convergence.h"
 #include "study/choose/question.h"
 
 namespace frond::choose {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/words.h"
+#include "scene/format/words.h"
 
 namespace frond::compare {
 namespace {

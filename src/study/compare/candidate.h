@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/plugin_text.h"
+#include "scene/format/plugin_text.h"
 
 namespace frond::compare {
 

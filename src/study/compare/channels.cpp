@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
-#include "spectra/band_preview.h"
 #include "spectra/cie.h"
-#include "spectra/color_space.h"
+#include "spectra/color/color_space.h"
+#include "spectra/wavelengths/band_preview.h"
 
 namespace frond::compare {
 namespace {

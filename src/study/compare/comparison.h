@@ -3,8 +3,8 @@
 #include <array>
 #include <optional>
 
-#include "instruments/convergence.h"
-#include "instruments/render_error.h"
+#include "instruments/errors/convergence.h"
+#include "instruments/errors/render_error.h"
 #include "study/compare/candidate.h"
 #include "study/compare/channels.h"
 #include "study/compare/cutoff.h"

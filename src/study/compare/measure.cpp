@@ -5,7 +5,7 @@
 
 #include "core/log.h"
 #include "core/random.h"
-#include "instruments/flip.h"
+#include "instruments/errors/flip.h"
 #include "study/compare/paper_manner.h"
 #include "study/compare/picture.h"
 #include "study/compare/reference_store.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/image.h"
-#include "render/film.h"
-#include "spectra/color_management.h"
+#include "render/film/film.h"
+#include "spectra/color/color_management.h"
 #include "study/compare/channels.h"
 
 namespace frond::compare {

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "core/log.h"
-#include "render/part_file.h"
+#include "render/parts/part_file.h"
 #include "system/atomic_file.h"
 #include "system/cache_limit.h"
 #include "system/file_bytes.h"

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "render/session.h"
-#include "scene/unsupported.h"
+#include "scene/format/unsupported.h"
 #include "study/compare/candidate.h"
 
 namespace frond::compare {

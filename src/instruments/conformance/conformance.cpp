@@ -1,0 +1,80 @@
+#include "instruments/conformance/conformance.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "instruments/conformance/examination.h"
+#include "instruments/errors/statistics.h"
+
+namespace frond {
+
+std::string_view law_name(Law law) { return kLaws[static_cast<size_t>(law)].name; }
+
+Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims,
+                 const ExaminationEffort& effort, const std::string& where) {
+  Findings findings;
+  for (const double angle_deg : effort.angles_deg)
+    for (const int side : {1, -1}) {
+      const double cos_theta = side * std::cos(angle_deg * std::numbers::pi / 180);
+      const double phi = 0.4 + 0.03 * angle_deg;  // no axis, where mistakes of azimuth hide
+      ExaminationEffort own = effort;
+      own.seed = hash_key(effort.seed, static_cast<uint64_t>(angle_deg), static_cast<uint64_t>(side + 1));
+      const Series s(bsdf, lambda, sphere_direction(cos_theta, phi), own,
+                     fmt::format("{}, wo at {} deg on the {}", where, angle_deg, side > 0 ? "front" : "back"));
+      check_sampling(s, findings);
+      check_normalisation(s, findings);
+      check_energy(s, claims, own.seed, findings);
+      check_unbiasedness(s, findings);
+      check_streams(s, own.seed, findings);
+      check_agreement(s, findings);
+      check_flags(s, findings);
+      check_lanes(s, findings);
+      check_coverage(s, findings);
+      check_values(s, findings);
+    }
+  check_awkward_values(bsdf, where, effort.seed, findings);
+  if (claims.reciprocal) check_reciprocity(bsdf, where, effort, findings);
+  return findings;
+}
+
+double judge(Findings& findings, double false_alarm_rate) {
+  size_t tests = 0;
+  for (const Finding& f : findings) tests += f.statistical ? 1 : 0;
+  const double level = sidak_level(false_alarm_rate, tests);
+  for (Finding& f : findings) f.passed = f.p_value >= level;
+  return level;
+}
+
+std::vector<LawSummary> summarise(std::span<const Finding> findings) {
+  std::vector<LawSummary> laws;
+  for (const LawInfo& law : kLaws) laws.push_back({law});
+  for (const Finding& f : findings) {
+    LawSummary& law = laws[static_cast<size_t>(f.law)];
+    ++law.tests;
+    law.failures += f.passed ? 0 : 1;
+    if (!law.worst || f.p_value < law.worst->p_value) law.worst = &f;
+  }
+  return laws;
+}
+
+std::set<Law> broken_laws(std::span<const Finding> findings) {
+  std::set<Law> laws;
+  for (const Finding& f : findings)
+    if (!f.passed) laws.insert(f.law);
+  return laws;
+}
+
+std::string failures_text(std::span<const Finding> findings) {
+  constexpr int kLines = 20;
+  std::string text;
+  int failures = 0;
+  for (const Finding& f : findings)
+    if (!f.passed && ++failures <= kLines)
+      text += fmt::format("{} [{}] {} (p = {:.2g})\n", law_name(f.law), f.where, f.message, f.p_value);
+  if (failures > kLines) text += fmt::format("and {} more\n", failures - kLines);
+  return text;
+}
+
+}  // namespace frond

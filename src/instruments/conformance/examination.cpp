@@ -1,0 +1,79 @@
+#include "instruments/conformance/examination.h"
+
+#include <algorithm>
+
+namespace frond {
+namespace {
+
+std::vector<Vec3> directions(std::span<const BsdfSample> samples) {
+  std::vector<Vec3> result;
+  for (const BsdfSample& s : samples)
+    if (!any(s.flags & Lobes::specular)) result.push_back(s.wi);
+  return result;
+}
+
+}  // namespace
+
+Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
+               const ExaminationEffort& effort, const std::string& asked_where)
+    : bsdf(asked),
+      lambda(wavelengths),
+      wo(direction),
+      where(asked_where),
+      maps(effort.maps),
+      drawn(effort.samples),
+      pilot(draw(effort.samples / kPilotShare, hash_key(effort.seed, 0))),
+      samples(draw(effort.samples, hash_key(effort.seed, 1))),
+      exact(!any(bsdf.flags() & Lobes::stochastic) && std::ranges::none_of(samples, &BsdfSample::pdf_is_approximate)),
+      bins(directions(pilot), std::min(effort.samples / (exact ? 256 : 512), exact ? 128 : 64)) {
+  integrate_pdf();
+  probe(hash_key(effort.seed, 2));
+}
+
+std::shared_ptr<const SphereMap> Series::map(std::string found_name, std::span<const double> found,
+                                             std::string expected_name, std::span<const double> expected) const {
+  if (!maps) return nullptr;
+  SphereMap result{wo, std::move(found_name), std::move(expected_name), {}};
+  for (size_t b = 0; b < bins.size(); ++b)
+    result.patches.push_back({bins.box(b), found[b], expected.empty() ? 0 : expected[b]});
+  return std::make_shared<SphereMap>(std::move(result));
+}
+
+std::shared_ptr<const SphereMap> Verdict::map_of_faults() const {
+  std::vector<double> share(asked_.size(), 0);
+  for (size_t b = 0; b < share.size(); ++b)
+    if (asked_[b] > 0) share[b] = std::min(1.0, faults_[b] / asked_[b]);
+  return series_->map("share of directions that break the law", share);
+}
+
+void Series::integrate_pdf() {
+  constexpr double kTolerance = 1e-8;  // for each of up to some 1,000 parts of the sphere
+  const auto density = [this](const Vec3& wi) { return static_cast<double>(bsdf.pdf(wo, wi)); };
+  for (size_t b = 0; b < bins.size(); ++b) {
+    auto parts = integrate(bins.box(b), density, kTolerance, bins.points(b));
+    pdf_mass.push_back(total(parts));
+    in_bin.emplace_back(std::move(parts));
+  }
+}
+
+std::vector<BsdfSample> Series::draw(int64_t count, uint64_t seed) const {
+  std::vector<BsdfSample> result;
+  result.reserve(static_cast<size_t>(count));
+  for (int64_t i = 0; i < count; ++i)
+    if (const auto s = draw_once(bsdf, wo, hash_key(seed, i))) result.push_back(*s);
+  return result;
+}
+
+void Series::probe(uint64_t seed) {
+  // An exact f needs no mean: a few directions a bin are enough to look at it.
+  const int64_t each = exact ? 4 : std::max<int64_t>(4, drawn / static_cast<int64_t>(bins.size()));
+  probes.reserve(bins.size() * static_cast<size_t>(each));
+  RandomStream numbers(seed);
+  for (size_t bin = 0; bin < bins.size(); ++bin)
+    for (int64_t i = 0; i < each; ++i) {
+      const auto drawn_wi = in_bin[bin].draw(numbers);
+      probes.push_back({drawn_wi, f_once(bsdf, wo, drawn_wi.w, hash_key(seed, bin, i)), bsdf.pdf(wo, drawn_wi.w), bin});
+    }
+}
+
+}  // namespace frond

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "instruments/conformance/conformance.h"
+#include "instruments/cubature.h"
+#include "instruments/errors/statistics.h"
+
+template <>
+struct fmt::formatter<frond::Vec3> : fmt::formatter<float> {
+  template <class Context>
+  auto format(const frond::Vec3& v, Context& context) const {
+    return fmt::format_to(context.out(), "({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
+  }
+};
+
+template <>
+struct fmt::formatter<frond::SampledSpectrum> : fmt::formatter<float> {
+  template <class Context>
+  auto format(const frond::SampledSpectrum& s, Context& context) const {
+    return fmt::format_to(context.out(), "[{:.6g} {:.6g} {:.6g} {:.6g}]", s[0], s[1], s[2], s[3]);
+  }
+};
+
+namespace frond {
+
+/// Everything that was asked of a BSDF for one direction wo: the material the laws are judged by. Part of
+/// the laws' own implementation.
+struct Series {
+  /// f for a direction drawn in one bin.
+  struct Probe {
+    PartSampler::Draw drawn;
+    SampledSpectrum f;
+    float pdf;
+    size_t bin;
+    const Vec3& wi() const { return drawn.w; }
+  };
+
+  static constexpr int kPilotShare = 4;
+
+  Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
+         const ExaminationEffort& effort, const std::string& asked_where);
+
+  /// For a finding: a pair of numbers for each bin. nullptr where nobody asked for maps. Without `expected` there is
+  /// nothing to compare with.
+  std::shared_ptr<const SphereMap> map(std::string found_name, std::span<const double> found,
+                                       std::string expected_name = {}, std::span<const double> expected = {}) const;
+  double share(int64_t count) const { return static_cast<double>(count) / static_cast<double>(drawn); }
+
+  const Bsdf& bsdf;
+  const SampledWavelengths& lambda;
+  Vec3 wo;
+  std::string where;
+  bool maps;
+  int64_t drawn;  ///< calls of `sample`
+  /// Further samples, a quarter as many, that decide where the bins are and which of them can be tested: what is tested
+  /// must not choose its own tests.
+  std::vector<BsdfSample> pilot;
+  std::vector<BsdfSample> samples;  ///< those that gave a direction
+  bool exact;                       ///< see Law
+  SphereBins bins;
+  std::vector<double> pdf_mass;     ///< integral of `pdf` over each bin
+  std::vector<PartSampler> in_bin;  ///< draws directions in each bin
+  std::vector<Probe> probes;
+
+ private:
+  std::vector<BsdfSample> draw(int64_t count, uint64_t seed) const;
+  void integrate_pdf();
+  void probe(uint64_t seed);
+};
+
+/// Largest relative difference that float arithmetic explains, where exponents go to 1000: 1000 times a few roundings.
+inline constexpr double kRounding = 1e-3;
+
+/// Relative error allowed to the quadrature of a pdf: float rounding of the pdf and the rule's own error.
+inline constexpr double kQuadrature = 5e-4;
+
+/// Means of fewer equal values than this are far from a normal distribution.
+inline constexpr double kEnoughForNormal = 100;
+
+inline std::optional<BsdfSample> draw_once(const Bsdf& bsdf, const Vec3& wo, uint64_t key) {
+  RandomStream numbers(hash_key(key, 0)), stream(hash_key(key, 1));
+  const float uc = numbers.uniform(), u = numbers.uniform(), v = numbers.uniform();
+  return bsdf.sample(wo, uc, {u, v}, stream);
+}
+
+/// A random stream for one call of `f`.
+inline SampledSpectrum f_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, uint64_t key) {
+  RandomStream stream(key);
+  return bsdf.f(wo, wi, stream);
+}
+
+/// Equal but for rounding.
+inline bool near(float a, float b) {
+  return std::abs(a - b) <= static_cast<float>(kRounding) * std::max(std::abs(a), std::abs(b));
+}
+
+inline bool near(const SampledSpectrum& a, const SampledSpectrum& b) {
+  for (int i = 0; i < kLanes; ++i)
+    if (!near(a[i], b[i])) return false;
+  return true;
+}
+
+inline bool is_proper(float x) { return std::isfinite(x) && x >= 0; }
+inline bool is_proper(const SampledSpectrum& s) {
+  for (int i = 0; i < kLanes; ++i)
+    if (!is_proper(s[i])) return false;
+  return true;
+}
+
+inline Finding statistical(Law law, const Series& s, double p_value, std::string message,
+                           std::shared_ptr<const SphereMap> map) {
+  Finding finding{.law = law, .where = s.where, .message = std::move(message), .p_value = p_value, .statistical = true};
+  finding.map = std::move(map);
+  return finding;
+}
+
+inline bool is_specular(const BsdfSample& sample) { return any(sample.flags & Lobes::specular); }
+
+inline double weight(const BsdfSample& sample, int lane) {
+  return static_cast<double>(sample.f[lane]) * std::abs(static_cast<double>(sample.wi.z)) /
+         static_cast<double>(sample.pdf);
+}
+
+// Laws of one series.
+void check_sampling(const Series& s, Findings& findings);
+void check_normalisation(const Series& s, Findings& findings);
+void check_energy(const Series& s, const Claims& claims, uint64_t seed, Findings& findings);
+void check_unbiasedness(const Series& s, Findings& findings);
+void check_streams(const Series& s, uint64_t seed, Findings& findings);
+void check_agreement(const Series& s, Findings& findings);
+void check_flags(const Series& s, Findings& findings);
+void check_lanes(const Series& s, Findings& findings);
+void check_coverage(const Series& s, Findings& findings);
+void check_values(const Series& s, Findings& findings);
+
+// Laws of a BSDF as a whole.
+void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
+void check_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort, Findings& findings);
+
+/// The verdict on a law that allows no exception: passes until the first fault, whose text it keeps.
+class Verdict {
+ public:
+  Verdict(Law law, const std::string& where) : finding_{.law = law, .where = where, .message = {}} {}
+  /// Of the directions of a series: for a map, it counts the faults in each bin.
+  Verdict(Law law, const Series& s) : Verdict(law, s.where) {
+    if (!s.maps) return;
+    series_ = &s;
+    asked_.assign(s.bins.size(), 0);
+    faults_.assign(s.bins.size(), 0);
+  }
+
+  bool failed() const { return finding_.p_value == 0; }
+  /// What is expected from now on concerns this direction.
+  void at(const Vec3& wi) {
+    if (!series_) return;
+    bin_ = series_->bins.find(wi);
+    asked_[bin_] += 1;
+  }
+  template <class... Args>
+  void expect(bool holds, fmt::format_string<Args...> format, const Args&... args) {
+    if (holds) return;
+    if (series_) faults_[bin_] += 1;
+    if (failed()) return;
+    finding_.p_value = 0;
+    finding_.message = fmt::vformat(format, fmt::make_format_args(args...));
+  }
+  Finding finding() const {
+    Finding result = finding_;
+    if (series_ && failed()) result.map = map_of_faults();
+    return result;
+  }
+
+ private:
+  std::shared_ptr<const SphereMap> map_of_faults() const;
+
+  Finding finding_;
+  const Series* series_ = nullptr;
+  size_t bin_ = 0;
+  std::vector<double> asked_, faults_;
+};
+
+}  // namespace frond

@@ -1,0 +1,130 @@
+#include <cmath>
+#include <vector>
+
+#include "instruments/conformance/examination.h"
+
+namespace frond {
+namespace {
+
+bool idle_lanes_are_black(const SampledSpectrum& s, const SampledWavelengths& lambda) {
+  for (int lane = 0; lane < kLanes; ++lane)
+    if (!lambda.is_active(lane) && s[lane] != 0) return false;
+  return true;
+}
+
+}  // namespace
+
+namespace {
+
+double sum(const SampledSpectrum& s) {
+  double result = 0;
+  for (int i = 0; i < kLanes; ++i) result += static_cast<double>(s[i]);
+  return result;
+}
+
+/// Sums over the samples in each bin: of their f or pdf, and of what `f` and `pdf` say.
+class AgreementMap {
+ public:
+  explicit AgreementMap(const Series& s) : s_(s), f_(s.bins.size(), 0), own_f_(f_), pdf_(f_), own_pdf_(f_) {}
+
+  void add(const BsdfSample& sample, const SampledSpectrum& f, float pdf) {
+    const size_t bin = s_.bins.find(sample.wi);
+    own_f_[bin] += sum(sample.f), f_[bin] += sum(f);
+    own_pdf_[bin] += static_cast<double>(sample.pdf), pdf_[bin] += static_cast<double>(pdf);
+  }
+  std::shared_ptr<const SphereMap> map(bool of_pdf) const {
+    return of_pdf ? s_.map("pdf of samples", own_pdf_, "pdf()", pdf_) : s_.map("f of samples", own_f_, "f()", f_);
+  }
+
+ private:
+  const Series& s_;
+  std::vector<double> f_, own_f_, pdf_, own_pdf_;
+};
+
+}  // namespace
+
+void check_agreement(const Series& s, Findings& findings) {
+  if (!s.exact) return;
+  Verdict verdict(Law::agreement, s.where);
+  AgreementMap map(s);
+  bool pdf_agrees = true;
+  for (const BsdfSample& sample : s.samples) {
+    if (any(sample.flags & Lobes::specular)) continue;
+    const float pdf = s.bsdf.pdf(s.wo, sample.wi);
+    const SampledSpectrum f = f_once(s.bsdf, s.wo, sample.wi, 0);
+    pdf_agrees = pdf_agrees && near(sample.pdf, pdf);
+    verdict.expect(near(sample.pdf, pdf), "wi {}: the sample's pdf is {}, pdf() {}", sample.wi, sample.pdf, pdf);
+    verdict.expect(near(sample.f, f), "wi {}: the sample's f is {}, f() {}", sample.wi, sample.f, f);
+    if (s.maps)
+      map.add(sample, f, pdf);
+    else if (verdict.failed())
+      break;
+  }
+  findings.push_back(verdict.finding());
+  findings.back().map = map.map(!pdf_agrees);
+}
+
+void check_flags(const Series& s, Findings& findings) {
+  Verdict verdict(Law::flags, s);
+  const Lobes all = s.bsdf.flags();
+  for (const BsdfSample& sample : s.samples) {
+    verdict.at(sample.wi);
+    const bool back = any(sample.flags & Lobes::reflection), through = any(sample.flags & Lobes::transmission);
+    verdict.expect((sample.flags & all) == sample.flags, "a sample has flags {:#x}, the BSDF {:#x}",
+                   static_cast<int>(sample.flags), static_cast<int>(all));
+    verdict.expect(back != through, "a sample is both or neither of reflected and transmitted");
+    verdict.expect(sample.wi.z == 0 || back == same_side(s.wo, sample.wi), "wi {} is called {}", sample.wi,
+                   back ? "reflected" : "transmitted");
+    verdict.expect(any(sample.flags & (Lobes::diffuse | Lobes::glossy | Lobes::specular)),
+                   "a sample is neither diffuse nor glossy nor specular");
+  }
+  for (const Series::Probe& probe : s.probes) {
+    verdict.at(probe.wi());
+    const Lobes side = same_side(s.wo, probe.wi()) ? Lobes::reflection : Lobes::transmission;
+    verdict.expect(any(all & side) || probe.f.is_black(), "f is {} for wi {}, a side that the flags exclude", probe.f,
+                   probe.wi());
+  }
+  findings.push_back(verdict.finding());
+}
+
+void check_lanes(const Series& s, Findings& findings) {
+  Verdict verdict(Law::lanes, s);
+  for (const BsdfSample& sample : s.samples) {
+    verdict.at(sample.wi);
+    verdict.expect(idle_lanes_are_black(sample.f, s.lambda), "sample, wi {}: a lane that is not active is not 0",
+                   sample.wi);
+  }
+  for (const Series::Probe& probe : s.probes) {
+    verdict.at(probe.wi());
+    verdict.expect(idle_lanes_are_black(probe.f, s.lambda), "f, wi {}: a lane that is not active is not 0", probe.wi());
+  }
+  findings.push_back(verdict.finding());
+}
+
+void check_coverage(const Series& s, Findings& findings) {
+  constexpr float kUnderflow = 1e-30f;  // where f has all but vanished, a density may have vanished
+  Verdict verdict(Law::coverage, s);
+  for (const Series::Probe& probe : s.probes) {
+    verdict.at(probe.wi());
+    verdict.expect(probe.pdf > 0 || !(probe.f.max() > kUnderflow), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
+                   probe.pdf);
+  }
+  findings.push_back(verdict.finding());
+}
+
+void check_values(const Series& s, Findings& findings) {
+  Verdict verdict(Law::values, s);
+  for (const BsdfSample& sample : s.samples) {
+    verdict.at(sample.wi);
+    verdict.expect(is_proper(sample.f) && std::isfinite(sample.pdf) && sample.pdf > 0, "sample, wi {}: f is {}, pdf {}",
+                   sample.wi, sample.f, sample.pdf);
+  }
+  for (const Series::Probe& probe : s.probes) {
+    verdict.at(probe.wi());
+    verdict.expect(is_proper(probe.f) && is_proper(probe.pdf), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
+                   probe.pdf);
+  }
+  findings.push_back(verdict.finding());
+}
+
+}  // namespace frond

@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "instruments/conformance/examination.h"
+
+namespace frond {
+namespace {
+
+double total(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum;
+}
+
+}  // namespace
+
+namespace {
+
+/// How many samples went into each bin, delta lobes apart.
+std::vector<double> counts(const Series& s) {
+  std::vector<double> result(s.bins.size(), 0);
+  for (const BsdfSample& sample : s.samples)
+    if (!is_specular(sample)) result[s.bins.find(sample.wi)] += 1;
+  return result;
+}
+
+std::string box_text(const SphereBox& box) {
+  return fmt::format("cos theta {:.3f} to {:.3f}, phi {:.3f} to {:.3f}", box.z0, box.z1, box.phi0, box.phi1);
+}
+
+/// What was counted in the bin that is farthest off, in standard errors.
+std::string farthest_off(const Series& s, const std::vector<double>& observed, const std::vector<double>& expected) {
+  const auto off = [&](size_t b) { return std::abs(observed[b] - expected[b]) / std::sqrt(expected[b] + 1); };
+  size_t worst = 0;
+  for (size_t b = 1; b < s.bins.size(); ++b)
+    if (off(b) > off(worst)) worst = b;
+  return fmt::format("{}: {} for {:.1f} expected", box_text(s.bins.box(worst)), observed[worst], expected[worst]);
+}
+
+std::vector<double> scaled(std::vector<double> values, double scale) {
+  for (double& v : values) v *= scale;
+  return values;
+}
+
+}  // namespace
+
+void check_sampling(const Series& s, Findings& findings) {
+  if (!s.exact) return;
+  const std::vector<double> observed = counts(s);
+  const double count = total(observed), mass = total(s.pdf_mass);
+  if (count < 50 || mass <= 0) return;  // a purely specular one; coverage and normalisation see what is wrong otherwise
+  const std::vector<double> expected = scaled(s.pdf_mass, count / mass);
+  findings.push_back(statistical(Law::sampling, s, chi_square_p(observed, expected),
+                                 fmt::format("{} sampled directions in {} bins, farthest off in {}", count,
+                                             s.bins.size(), farthest_off(s, observed, expected)),
+                                 s.map("directions sampled", observed, "directions as pdf has them", expected)));
+}
+
+void check_normalisation(const Series& s, Findings& findings) {
+  const double mass = total(s.pdf_mass);
+  const auto deltas = std::ranges::count_if(s.samples, is_specular);
+  const auto map = s.exact ? s.map("directions sampled", counts(s), "directions as pdf promises them",
+                                   scaled(s.pdf_mass, static_cast<double>(s.drawn)))
+                           : nullptr;
+  if (!s.exact || !(mass <= 1 + kQuadrature)) {
+    Verdict verdict(Law::normalisation, s.where);
+    const double least = deltas > 0 ? 0 : 1 - kQuadrature;
+    verdict.expect(mass >= least && mass <= 1 + kQuadrature, "pdf integrates to {:.6g}, not to 1", mass);
+    findings.push_back(verdict.finding());
+    findings.back().map = map;
+    return;
+  }
+  const int64_t directions = static_cast<int64_t>(s.samples.size()) - deltas;
+  findings.push_back(
+      statistical(Law::normalisation, s, binomial_p(directions, s.drawn, mass - kQuadrature, mass + kQuadrature),
+                  fmt::format("pdf integrates to {:.6g}, sample gives a direction in {:.6g} of all calls", mass,
+                              s.share(directions)),
+                  map));
+}
+
+namespace {
+
+/// What `sample` and `f` say of one bin, or of several together.
+struct BinComparison {
+  Moments sampled;           // weights of samples in the bin; calls that went elsewhere are not counted yet
+  double sampled_count = 0;  // effective count that the pilot promises
+  Estimate integrated;       // of f |cos theta| over the bin
+  double integrated_count = 0;
+
+  void add(const BinComparison& other) {
+    sampled.add(other.sampled);
+    sampled_count += other.sampled_count;
+    integrated += other.integrated;
+    integrated_count += other.integrated_count;
+  }
+};
+
+std::vector<BinComparison> compare_bins(const Series& s, int lane) {
+  std::vector<BinComparison> bins(s.bins.size());
+  std::vector<Moments> pilots(s.bins.size()), integrals(s.bins.size());
+  for (const BsdfSample& sample : s.pilot)
+    if (!is_specular(sample)) pilots[s.bins.find(sample.wi)].add(weight(sample, lane));
+  for (const BsdfSample& sample : s.samples)
+    if (!is_specular(sample)) bins[s.bins.find(sample.wi)].sampled.add(weight(sample, lane));
+  for (const Series::Probe& probe : s.probes)
+    integrals[probe.bin].add(static_cast<double>(probe.f[lane] * std::abs(probe.wi().z)) / probe.drawn.density);
+  for (size_t b = 0; b < bins.size(); ++b) {
+    bins[b].sampled_count = Series::kPilotShare * pilots[b].effective_count();
+    bins[b].integrated = integrals[b].estimate();
+    bins[b].integrated_count = integrals[b].effective_count();
+  }
+  return bins;
+}
+
+/// What the bins of one lane say, as a map: the shares of light that `sample` and f send into each.
+std::shared_ptr<const SphereMap> weight_map(const Series& s, std::span<const BinComparison> bins) {
+  std::vector<double> sampled, integrated;
+  for (const BinComparison& bin : bins) {
+    sampled.push_back(bin.sampled.mean() * s.share(bin.sampled.count()));
+    integrated.push_back(bin.integrated.mean);
+  }
+  return s.map("light as sample sends it", sampled, "light as f has it", integrated);
+}
+
+Finding compare(const Series& s, int lane, BinComparison bin, const std::string& name,
+                const std::shared_ptr<const SphereMap>& map) {
+  bin.sampled.add_zeros(s.drawn - bin.sampled.count());
+  const Estimate sampled = bin.sampled.estimate();
+  const double slack = kRounding * std::max(sampled.mean, bin.integrated.mean);
+  return statistical(Law::unbiasedness, s, equality_p(sampled, bin.integrated, slack),
+                     fmt::format("{} nm, {}: sample carries {:.4g} +- {:.2g}, f {:.4g} +- {:.2g}",
+                                 s.lambda.nm[static_cast<size_t>(lane)], name, sampled.mean, sampled.standard_error(),
+                                 bin.integrated.mean, bin.integrated.standard_error()),
+                     map);
+}
+
+}  // namespace
+
+void check_unbiasedness(const Series& s, Findings& findings) {
+  if (s.exact) return;
+  for (int lane = 0; lane < s.lambda.count; ++lane) {
+    if (!s.lambda.is_active(lane)) continue;
+    // Bins with too little in them to be compared alone; and each side as a whole, where little errors add up.
+    BinComparison thin, front, back;
+    const auto bins = compare_bins(s, lane);
+    const auto map = weight_map(s, bins);
+    for (size_t b = 0; b < bins.size(); ++b) {
+      const SphereBox& box = s.bins.box(b);
+      (box.z0 >= 0 ? front : back).add(bins[b]);
+      if (bins[b].sampled_count < kEnoughForNormal)
+        thin.add(bins[b]);
+      else
+        findings.push_back(compare(s, lane, bins[b], box_text(box), map));
+    }
+    const std::pair<const BinComparison&, const char*> sums[] = {
+        {thin, "all thin bins"}, {front, "all of the front"}, {back, "all of the back"}};
+    for (const auto& [bin, name] : sums)
+      if (std::max(bin.sampled_count, bin.integrated_count) >= kEnoughForNormal)
+        findings.push_back(compare(s, lane, bin, name, map));
+  }
+}
+
+/// At a pair of directions f keeps its mean over the streams; a hair's breadth aside that mean is the same. Noise made
+/// from directions is one number at the pair and another one beside it: it never averages out where directions repeat.
+void check_streams(const Series& s, uint64_t seed, Findings& findings) {
+  if (s.exact) return;
+  constexpr int kPairs = 4;
+  constexpr float kHair = 1e-5f;
+  RandomStream numbers(hash_key(seed, 3));
+  for (uint64_t pair = 0; pair < kPairs; ++pair) {
+    const Vec3 wi = s.probes[numbers.bits() % s.probes.size()].wi();
+    std::array<Moments, kLanes> here, beside;
+    for (int64_t i = 0; i < s.drawn / 20; ++i) {
+      const Vec3 aside{numbers.uniform() - 0.5f, numbers.uniform() - 0.5f, 0};
+      const SampledSpectrum f = f_once(s.bsdf, s.wo, wi, hash_key(seed, pair, i, 0));
+      const SampledSpectrum g = f_once(s.bsdf, s.wo, normalize(wi + aside * kHair), hash_key(seed, pair, i, 1));
+      for (size_t lane = 0; lane < kLanes; ++lane) here[lane].add(f.v[lane]), beside[lane].add(g.v[lane]);
+    }
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      if (beside[lane].effective_count() < kEnoughForNormal) continue;
+      const Estimate a = here[lane].estimate(), b = beside[lane].estimate();
+      findings.push_back(statistical(Law::streams, s, equality_p(a, b, kRounding * std::max(a.mean, b.mean)),
+                                     fmt::format("wi {}: mean f is {:.4g} +- {:.2g}, beside it {:.4g} +- {:.2g}", wi,
+                                                 a.mean, a.standard_error(), b.mean, b.standard_error()),
+                                     nullptr));
+    }
+  }
+}
+
+}  // namespace frond

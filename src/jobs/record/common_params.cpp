@@ -1,0 +1,79 @@
+#include "jobs/record/common_params.h"
+
+#include <fmt/ranges.h>
+
+#include "report/chart.h"
+#include "scene/format/parser.h"
+
+namespace frond {
+namespace {
+
+/// "leaf=abm" or "leaf=abm,mode=analog".
+MaterialSwap parse_swap(const std::string& text, const Arguments& args) {
+  const std::string option = args.spelled("swap");
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    fail({}, "{} takes MATERIAL=PLUGIN[,parameter=value...], \"{}\" was given", option, text);
+  const Location where{std::make_shared<const std::string>(option + " " + text)};
+  return {text.substr(0, equals), parse_plugin_text(text.substr(equals + 1), where), where};
+}
+
+bool has(const Arguments& args, std::string_view name) { return args.declares(name) && args.given(name); }
+
+}  // namespace
+
+std::vector<std::string> materials_of(const JobRun& run) {
+  std::vector<std::string> texts{material_text(run.args.texts("material"), run.log())};
+  if (has(run.args, "with"))
+    for (const std::string& text : run.args.texts("with")) texts.push_back(material_text({text}, run.log()));
+  return texts;
+}
+
+SceneOverrides overrides_of(const Arguments& args) {
+  SceneOverrides overrides;
+  if (has(args, "swap"))
+    for (const std::string& text : args.texts("swap")) overrides.swaps.push_back(parse_swap(text, args));
+  if (args.declares("wavelengths")) overrides.wavelengths = wavelengths_text(args);
+  if (has(args, "integrator")) overrides.integrator = parse_plugin_text(args.text("integrator"), {});
+  if (has(args, "filter")) overrides.filter = parse_plugin_text(args.text("filter"), {});
+  if (has(args, "seed")) overrides.seed = args.seed("seed");
+  overrides.quick = args.declares("quick") && args.flag("quick");
+  return overrides;
+}
+
+Unsupported unsupported_of(const Arguments& args) {
+  return args.given("ignore-unsupported") ? Unsupported(args.text("ignore-unsupported")) : Unsupported();
+}
+
+SceneDescription described_scene(const JobRun& run) {
+  SceneDescription description = run.session().read(run.args.text("scene"), unsupported_of(run.args));
+  apply_overrides(overrides_of(run.args), description, run.session().registry(), run.log());
+  return description;
+}
+
+std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files) {
+  std::vector<std::vector<std::filesystem::path>> scenes;
+  bool is_open = false;  // the last scene has no world yet
+  for (const std::string& file : files) {
+    if (!is_open) scenes.emplace_back();
+    scenes.back().emplace_back(file);
+    is_open = files.size() > 1 && !holds_world(file);
+  }
+  return scenes;
+}
+
+std::string wavelengths_text(const Arguments& args) {
+  const std::string text = args.text("wavelengths");
+  if (text.empty() || std::string_view("0123456789.").find(text[0]) == std::string_view::npos) return text;
+  const auto numbers = parse_numbers(text);
+  if (!numbers)
+    fail({}, "{}: {} is neither a list of wavelengths, as in 450,550 or 400:700:10, nor a plug-in",
+         args.spelled("wavelengths"), text);
+  return fmt::format("bands,wavelengths={}", fmt::join(*numbers, ","));
+}
+
+void check_chart_param(const JobRun& run, std::string_view name) {
+  if (run.args.given(name)) check_chart(run.args.text(name));
+}
+
+}  // namespace frond

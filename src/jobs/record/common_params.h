@@ -1,0 +1,70 @@
+#pragma once
+
+#include "jobs/record/job.h"
+#include "scene/format/unsupported.h"
+#include "scene/overrides.h"
+
+/// Parameters that several jobs have, with one spelling and one meaning, and how they are read.
+namespace frond {
+
+inline constexpr JobParam kSceneParam(
+    "scene", ArgumentKind::text, "Scene file (pbrt-v4 format).",
+    {.type = "SCENE", .path = PathUse::read, .decides = true, .positional = true, .required = true});
+/// Positional: files to read; `count` of them, or any number.
+constexpr JobParam files_param(std::string_view name, std::string_view doc, size_t count = 0) {
+  return JobParam(name, ArgumentKind::texts, doc,
+                  {.type = "FILE", .values = count, .path = PathUse::read, .positional = true, .required = true});
+}
+/// -o, --output: a file to write.
+constexpr JobParam output_param(std::string_view doc, bool required, std::string_view excludes = "") {
+  return JobParam("output", ArgumentKind::text, doc,
+                  {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = required, .excludes = excludes});
+}
+inline constexpr JobParam kSwapParam(
+    "swap", ArgumentKind::texts,
+    "MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; \"*=PLUGIN\" replaces every leaf.",
+    {.type = "SWAP", .decides = true});
+inline constexpr JobParam kIntegratorParam(
+    "integrator", ArgumentKind::text,
+    "PLUGIN[,parameter=value...]: integrator; one of the scene's kind keeps the scene's other parameters.",
+    {.type = "INTEGRATOR", .decides = true});
+inline constexpr JobParam kSeedParam("seed", ArgumentKind::seed, "Seed of all random numbers.", {.decides = true});
+inline constexpr JobParam kIgnoreUnsupportedParam(
+    "ignore-unsupported", ArgumentKind::text,
+    "Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a "
+    "list of media, materials, integrators, cameras, motion, textures, films, displacement.",
+    {.type = "KINDS", .decides = true, .implied = "all"});
+inline constexpr JobParam kStrictParam("strict", ArgumentKind::flag, "Treat warnings as errors.");
+inline constexpr JobParam kTimeLimitParam("time-limit", ArgumentKind::real,
+                                          "Time after which the job ends with the result it has by then.",
+                                          {.unit = "s", .range = kAboveZero});
+inline constexpr JobParam kCsvParam("csv", ArgumentKind::text, "CSV file to write; - is standard output.",
+                                    {.type = "FILE", .path = PathUse::write});
+inline constexpr JobParam kJsonParam("json", ArgumentKind::text, "JSON file to write; - is standard output.",
+                                     {.type = "FILE", .path = PathUse::write});
+/// A chart: .svg or .png. `doc` says of what.
+constexpr JobParam chart_param(std::string_view name, std::string_view doc) {
+  return JobParam(name, ArgumentKind::text, doc, {.type = "CHART", .path = PathUse::write});
+}
+
+inline constexpr JobParam kMaterialParam("material", ArgumentKind::texts,
+                                         "NAME[,parameter=value...]: material, as in abm,specimen=maize.",
+                                         {.type = "MATERIAL", .decides = true, .positional = true, .required = true});
+inline constexpr JobParam kWithParam("with", ArgumentKind::texts, "NAME[,parameter=value...]: one more material.",
+                                     {.type = "MATERIAL", .decides = true});
+
+/// The job's material and those of --with, in the grammar of material_text.
+std::vector<std::string> materials_of(const JobRun& run);
+/// Overrides by --swap, --wavelengths, --integrator, --filter, --seed and --quick, as far as the job has them.
+SceneOverrides overrides_of(const Arguments& args);
+Unsupported unsupported_of(const Arguments& args);
+/// The scene file with the overrides written into it.
+SceneDescription described_scene(const JobRun& run);
+/// Scenes from files: a scene may be in several files, of which the last one has its world.
+std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files);
+/// "smpte", "bands,wavelengths=450,550" or numbers alone, 450,550 or 400:700:10, which are bands.
+std::string wavelengths_text(const Arguments& args);
+/// Refuses a chart that cannot be written, if it is asked for.
+void check_chart_param(const JobRun& run, std::string_view name);
+
+}  // namespace frond

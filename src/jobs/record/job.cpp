@@ -1,0 +1,183 @@
+#include "jobs/record/job.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "report/text_output.h"
+#include "scene/format/words.h"
+#include "system/atomic_file.h"
+
+namespace frond {
+namespace {
+
+using enum ArgumentKind;
+
+constexpr JobParam kSession[] = {
+    JobParam("quiet", flag, "Print errors and requested data only.", {.aliases = "q"}),
+    JobParam("plugin", texts,
+             "Shared object with further plug-ins. Those in the folders of FROND_PLUGIN_PATH are always loaded.",
+             {.type = "FILE", .path = PathUse::read, .decides = true}),
+    JobParam("threads", count, "Number of threads; by default one for each processor. Results do not depend on it.",
+             {.range = {1, 1024}, .aliases = "nthreads"}),
+    JobParam("cache", text, "Folder for computed tables; by default $XDG_CACHE_HOME/frond, or ~/.cache/frond.",
+             {.type = "FOLDER", .path = PathUse::write}),
+    JobParam("no-cache", flag, "Keep no computed tables on disk."),
+};
+
+std::string file_name(const JobParam& p, const std::string& word) {
+  return p.path == PathUse::none ? word : std::filesystem::path(word).filename().string();
+}
+
+bool is_path(const JobParam& p, const std::string& word) { return p.path != PathUse::none && word != "-"; }
+
+/// Refuses outputs that cannot be written, and more than one "-".
+void check_outputs(const JobRun& run, std::span<const JobParam> params) {
+  std::string_view first;
+  for (const JobParam& p : params) {
+    if (p.path != PathUse::write || p.type != "FILE" || !run.args.given(p.name)) continue;
+    const std::string path = run.args.text(p.name);
+    if (path != "-") {
+      check_replaceable(path);
+    } else if (!first.empty()) {
+      fail({}, "only one of {} and {} can go to standard output", run.args.spelled(first), run.args.spelled(p.name));
+    } else {
+      first = p.name;
+    }
+  }
+}
+
+void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) {
+  for (const JobParam& p : job.params) {
+    if (p.path != PathUse::write || !run.args.given(p.name)) continue;
+    if (p.name == "csv") write_text(run.args.text(p.name), to_csv(result.tables.at(0), result.notes));
+    if (p.name != "json") continue;
+    const bool is_own = !result.json.empty();
+    write_text(run.args.text(p.name), is_own ? result.json : to_json(result.notes, result.facts, result.tables));
+  }
+}
+
+}  // namespace
+
+Result run_job(const JobInfo& job, const JobRun& run) {
+  run.args.check();
+  if (!job.extends) check_outputs(run, job.params);  // else they are of the jobs that it starts
+  StrictLog& log = run.context.log();
+  log.begin(run.args.declares("strict") && run.args.flag("strict"));
+  Result result = job.run(run);
+  log.check();
+  if (!result.stopped) write_outputs(job, run, result);
+  return result;
+}
+
+RenderControl JobRun::control_until(double seconds) const {
+  using Clock = std::chrono::steady_clock;
+  RenderControl until = control;
+  if (seconds > 0)
+    until.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  return until;
+}
+
+void JobRun::check_stop() const {
+  if (control.stop.stop_requested()) throw Stopped();
+}
+
+std::span<const JobParam> session_params(SessionUse use) {
+  constexpr size_t kUsed[] = {1, 2, 3, std::size(kSession)};
+  return std::span(kSession).first(kUsed[size_t(use)]);
+}
+
+std::filesystem::path default_cache() {
+  if (const char* base = std::getenv("XDG_CACHE_HOME"); base && *base) return std::filesystem::path(base) / "frond";
+  if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "frond";
+  return {};
+}
+
+SessionOptions session_options(const Arguments& args) {
+  SessionOptions options;
+  if (args.declares("plugin")) options.plugins = args.texts("plugin");
+  if (!args.declares("threads")) return options;
+  options.threads = int(args.count("threads"));
+  if (!args.declares("cache")) return options;
+  if (!args.flag("no-cache"))
+    options.cache = args.given("cache") ? std::filesystem::path(args.text("cache")) : default_cache();
+  return options;
+}
+
+std::vector<const JobParam*> params_of(const JobInfo& job) {
+  std::vector<const JobParam*> all;
+  const auto add = [&all](std::span<const JobParam> params) {
+    for (const JobParam& p : params)
+      if (std::ranges::find(all, p.name, &JobParam::name) == all.end()) all.push_back(&p);
+  };
+  add(job.params);
+  if (job.extends) add(job.extends->params);
+  add(session_params(job.session));
+  return all;
+}
+
+const JobInfo& find_job(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const JobInfo* job : all_jobs()) {
+    if (job->name == name) return *job;
+    names.push_back(job->name);
+  }
+  fail({}, "there is no command \"{}\"{}", name, suggestion(name, names));
+}
+
+std::string identifying_command(const JobInfo& job, const Arguments& args) {
+  std::string positional, options;
+  for (const JobParam* p : args.params()) {
+    if (!p->decides || !args.given(p->name)) continue;
+    if (p->kind == flag) {
+      if (args.flag(p->name)) options += " --" + std::string(p->name);
+      continue;
+    }
+    for (const std::string& word : args.words(p->name))
+      p->positional ? positional += ' ' + file_name(*p, word)
+                    : options += fmt::format(" --{} {}", p->name, file_name(*p, word));
+  }
+  return fmt::format("frond {}{}{}", job.name, positional, options);
+}
+
+std::vector<std::string> absolute_words(const Arguments& args, std::span<const JobParam* const> params) {
+  std::vector<std::string> result;
+  for (const JobParam* p : params) {
+    if (!args.given(p->name)) continue;
+    const std::string name = "--" + std::string(p->name);
+    if (p->kind == flag) {
+      if (args.flag(p->name)) result.push_back(name);
+      continue;
+    }
+    for (const std::string& word : args.words(p->name)) {
+      if (!p->positional) result.push_back(name);
+      result.push_back(is_path(*p, word) ? std::filesystem::absolute(word).string() : word);
+    }
+  }
+  return result;
+}
+
+std::string material_text(const std::vector<std::string>& words, const Log& log) {
+  const auto is_parameter = [](const std::string& word) { return word.find('=') != std::string::npos; };
+  std::string text;
+  bool is_old = words.size() > 1;
+  for (const std::string& word : words) {
+    if (word.empty()) fail({}, "a material is needed, as in abm,specimen=maize");
+    if (&word != &words.front() && !is_parameter(word))
+      fail({}, "a parameter looks like name=value: \"{}\" in {}", word, fmt::join(words, " "));
+    auto parts = split(word, ' ');
+    std::erase(parts, "");
+    // "abm specimen=maize" is a name and its parameters; a blank elsewhere is part of a value, such as a file's path.
+    const bool is_split =
+        parts.size() > 1 && parts[0].find_first_of("=,") == std::string::npos && is_parameter(parts[1]);
+    if (!is_split) parts = {word};
+    is_old = is_old || is_split;
+    for (size_t i = 0; i < parts.size(); ++i)
+      text += (i > 1 && !is_parameter(parts[i]) ? " " : text.empty() ? "" : ",") + parts[i];
+  }
+  if (is_old) log.info(fmt::format("write a material as one word, {}; the form with blanks is deprecated", text));
+  return text;
+}
+
+}  // namespace frond

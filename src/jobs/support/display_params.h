@@ -1,0 +1,14 @@
+#pragma once
+
+#include "image/display_image.h"
+#include "jobs/record/common_params.h"
+
+namespace frond {
+
+inline constexpr JobParam kDisplayParam("display", ArgumentKind::text,
+                                        "Display of PNG and JPEG output; sRGB by default.");
+inline constexpr JobParam kViewParam("view", ArgumentKind::text, "View of that display.");
+
+inline DisplayChoice display_choice(const Arguments& args) { return {args.text("display"), args.text("view")}; }
+
+}  // namespace frond

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <chrono>
+#include <span>
+
+#include "instruments/rays.h"
+#include "jobs/record/common_params.h"
+#include "render/measured_material.h"
+
+/// What the jobs of both instruments share: parameters, materials under test, progress.
+namespace frond {
+
+inline constexpr JobParam kAnglesParam(
+    "angles", ArgumentKind::numbers, "Angles of incidence from the front's normal; above 90 the back is lit.",
+    {.default_value = "8", .unit = "degrees", .range = {0, 180}, .aliases = "angle", .decides = true});
+inline constexpr JobParam kInstrumentWavelengthsParam(
+    "wavelengths", ArgumentKind::numbers, "Wavelengths.",
+    {.unit = "nm", .range = {360, 2500}, .aliases = "wavelength", .decides = true, .required = true});
+inline constexpr JobParam kRenderedParam(
+    "rendered", ArgumentKind::flag,
+    "Measure what a renderer shows: light along wi, seen along wo, though the model calls wo incident.",
+    {.decides = true});
+inline constexpr Interval kRayCounts{2, kCounts.max};
+
+/// The materials under test and the beams on them, made and checked before the first ray.
+class MaterialsUnderTest {
+ public:
+  /// Throws InputError for materials that do not exist or, as rendered, have a delta lobe.
+  explicit MaterialsUnderTest(const JobRun& run);
+
+  const std::vector<double>& angles_deg() const { return angles_deg_; }
+  const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
+  const std::vector<MeasuredMaterial>& materials() const { return materials_; }
+  /// Of measurements: wavelengths run fastest, then angles, then materials.
+  size_t size() const { return materials_.size() * per_material(); }
+  size_t per_material() const { return angles_deg_.size() * wavelengths_nm_.size(); }
+
+  /// Of measurement i. Random numbers depend on material, angle and wavelength, not on i.
+  Exposure exposure(size_t i) const;
+  const MeasuredMaterial& material(size_t i) const { return materials_[i / per_material()]; }
+
+  /// For the measurement's call of `shoot`: shows the progress, and throws Stopped where the front end asks for an end.
+  RayProgress progress(size_t i, int64_t rays_each) const;
+  /// Comments of CSV: who measured what, and which direction is the incident one.
+  std::vector<std::string> notes(std::string_view instrument) const;
+
+ private:
+  const JobRun& run_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool as_rendered_;
+  std::vector<double> angles_deg_, wavelengths_nm_;
+  std::vector<MeasuredMaterial> materials_;
+};
+
+}  // namespace frond

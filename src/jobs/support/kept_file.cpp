@@ -1,0 +1,36 @@
+#include "jobs/support/kept_file.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace frond {
+
+std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
+  std::error_code error;
+  const auto& path = std::filesystem::exists(names_.finished, error) ? names_.finished : names_.checkpoint;
+  if (!std::filesystem::exists(path, error)) return {};
+  if (!resume) fail({}, "\"{}\" is there already: --resume goes on from it; delete it to begin anew", path.string());
+  return path;
+}
+
+void KeptFile::keep(bool is_complete, bool is_result,
+                    const std::function<void(const std::filesystem::path&)>& write) const try {
+  write(is_complete ? names_.finished : names_.checkpoint);
+  if (is_complete && names_.checkpoint != names_.finished) std::filesystem::remove(names_.checkpoint);
+} catch (const InputError& error) {
+  if (!is_complete || is_result) throw;
+  log_.warn({}, fmt::format("no checkpoint was written: {}", error.what()));
+}
+
+void KeptFile::report_stop() const {
+  log_.info(fmt::format("stopped; the partial result is in {}: the same command with --resume goes on from there",
+                        names_.checkpoint.string()));
+}
+
+double checkpoint_seconds(const Arguments& args) {
+  constexpr double kDefault = 60;
+  return args.given("checkpoint") ? args.real("checkpoint") : kDefault;
+}
+
+}  // namespace frond

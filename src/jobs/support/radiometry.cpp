@@ -1,0 +1,33 @@
+#include "jobs/support/radiometry.h"
+
+#include <fmt/ranges.h>
+
+#include "system/atomic_file.h"
+
+namespace frond {
+
+std::optional<Target> target_of(const Arguments& args) {
+  const auto v = args.numbers("target");
+  if (v.empty()) return {};
+  const Target t{v[0], v[1], v[2], v[3], v[4]};
+  if (!(t.x0 < t.x1 && t.y0 < t.y1))
+    fail({}, "{} takes x0,x1,y0,y1,z: {} is empty", args.spelled("target"), fmt::join(v, ","));
+  return t;
+}
+
+std::optional<std::array<double, 2>> period_of(const Arguments& args) {
+  const auto v = args.numbers("period");
+  return v.empty() ? std::nullopt : std::optional(std::array{v[0], v[1]});
+}
+
+std::optional<KeptFile::Names> kept_names_of(const Arguments& args) {
+  if (!args.given("checkpoint") && !args.flag("resume")) return {};
+  if (args.text("csv") == "-")
+    fail({}, "{} and {} keep a file beside that of {}: standard output has none", args.spelled("checkpoint"),
+         args.spelled("resume"), args.spelled("csv"));
+  const std::string part = args.text("csv") + ".part";
+  check_replaceable(part);
+  return KeptFile::Names{part, part};
+}
+
+}  // namespace frond

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+
+#include "jobs/record/common_params.h"
+#include "jobs/support/kept_file.h"
+#include "radiometry/brf.h"
+
+/// What the jobs brf and flux share: parameters of a measurement in a scene, with checkpoints beside the CSV file.
+namespace frond {
+
+inline constexpr JobParam kRadiometryWavelengthsParam(
+    "wavelengths", ArgumentKind::text, "Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=...",
+    {.type = "WAVELENGTHS", .default_value = "450,550,670,800", .unit = "nm", .decides = true});
+inline constexpr JobParam kTargetParam(
+    "target", ArgumentKind::numbers,
+    "x0,x1,y0,y1,z: horizontal rectangle that is measured; by default one period, or the whole scene, at its top.",
+    {.type = "X0,X1,Y0,Y1,Z", .values = 5, .decides = true});
+inline constexpr JobParam kPeriodParam("period", ArgumentKind::numbers,
+                                       "Lengths along x and y after which the scene is repeated periodically.",
+                                       {.type = "X,Y", .range = kAboveZero, .values = 2, .decides = true});
+inline constexpr JobParam kRmsParam(
+    "rms", ArgumentKind::real,
+    "Stop when the RMS standard error, relative to the mean, is below this; --paths is then not used.",
+    {.range = kAboveZero});
+inline constexpr JobParam kCheckpointParam(
+    "checkpoint", ArgumentKind::real,
+    "Keep the partial result in CSV.part at this interval, and when stopped by SIGINT or SIGTERM.",
+    {.unit = "s", .range = kAboveZero, .needs = "csv"});
+inline constexpr JobParam kResumeParam("resume", ArgumentKind::flag,
+                                       "Resume from CSV.part if it is there; keep one too.", {.needs = "csv"});
+
+std::optional<Target> target_of(const Arguments& args);
+std::optional<std::array<double, 2>> period_of(const Arguments& args);
+/// The file beside that of csv; nothing where neither checkpoint nor resume is given.
+std::optional<KeptFile::Names> kept_names_of(const Arguments& args);
+
+}  // namespace frond

@@ -1,0 +1,134 @@
+#include "jobs/support/render_task.h"
+
+#include <fmt/ranges.h>
+
+#include <charconv>
+
+#include "core/problems.h"
+#include "jobs/record/common_params.h"
+#include "render/film/adaptive.h"
+#include "scene/format/words.h"
+
+namespace frond {
+namespace {
+
+/// Flags that stand for options of the scene.
+constexpr std::pair<const char*, const char*> kSceneOptions[] = {
+    {"disable-pixel-jitter", "disablepixeljitter"},
+    {"disable-texture-filtering", "disabletexturefiltering"},
+    {"disable-wavelength-jitter", "disablewavelengthjitter"}};
+
+void set_scene_options(const Arguments& args, SceneDescription& description) {
+  for (const auto& [flag, option] : kSceneOptions) {
+    if (!args.flag(flag)) continue;
+    std::erase_if(description.options, [option](const ParsedParam& p) { return p.name == option; });
+    description.options.push_back({"bool", option, {}, {}, std::vector<bool>{true}});
+  }
+}
+
+/// The crop that the arguments ask for; the scene's if they do not. Throws InputError where it holds no pixel.
+Crop crop_of(const Arguments& args, const FilmSettings& film, const Log& log) {
+  const char* name = args.given("pixel") ? "pixel" : args.given("pixels") ? "pixels" : "crop";
+  std::vector<double> bounds = args.numbers(name);
+  if (bounds.empty()) return film.crop;
+  if (bounds.size() == 2) bounds = {bounds[0], bounds[0] + 1, bounds[1], bounds[1] + 1};
+  if (put_in_order(bounds))
+    log.warn({}, fmt::format("the crop's ends are the wrong way round: taken for {}", fmt::join(bounds, ",")));
+  const Crop crop = args.given("crop")
+                        ? crop_of_fractions(bounds, film.width, film.height)
+                        : crop_of_pixels(std::vector<int>(bounds.begin(), bounds.end()), film.width, film.height);
+  if (crop.width() <= 0 || crop.height() <= 0)
+    fail({}, "{} {} holds no pixel of the {} x {} film: x0,x1,y0,y1 is needed", args.spelled(name), args.words(name)[0],
+         film.width, film.height);
+  return crop;
+}
+
+/// Of --samples 64:128. Throws InputError.
+SampleRange range_of(const Arguments& args) {
+  const std::string text = args.text("samples");
+  const auto ends = split(text, ':');
+  SampleRange range;
+  const auto read = [&text](const std::string& word, uint64_t& value) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size();
+  };
+  if (ends.size() != 2 || !read(ends[0], range.begin) || !read(ends[1], range.end) || range.empty() ||
+      range.end > 1u << 30)
+    fail({}, "{} takes FIRST:END, such as 64:128 for the 64 samples from number 64 on: \"{}\"", args.spelled("samples"),
+         text);
+  return range;
+}
+
+}  // namespace
+
+void RenderTask::read(const std::vector<std::filesystem::path>& files) {
+  Problems problems;
+  Session& session = run_.session();
+  description_ = session.read(files, unsupported_of(run_.args), problems);
+  set_scene_options(run_.args, description_);
+  // Where the file has errors, those of the scene are reported as well.
+  if (!problems.empty() && !description_.files.empty()) problems.attempt([&] { session.check(description_); });
+  problems.check();
+  apply_arguments();
+}
+
+void RenderTask::read_text(const std::string& text, const std::string& name) {
+  description_ = run_.session().read_text(text, name, unsupported_of(run_.args));
+  set_scene_options(run_.args, description_);
+  apply_arguments();
+}
+
+void RenderTask::apply_arguments() {
+  const Arguments& args = run_.args;
+  Session& session = run_.session();
+  FilmSettings film = session.film(description_);  // at full size: crops are given in its pixels
+  apply_overrides(overrides_of(args), description_, session.registry(), run_.log());
+  film.crop = crop_of(args, film, run_.log());
+  if (args.flag("quick")) film = halved(film);
+  film_file_ = film.filename;
+  if (args.given("samples")) samples_ = range_of(args);
+  const std::string channels = args.text("channels");
+  request_ = {.pixels = film.crop,
+              .is_piece = args.given("part"),
+              .channels = channels.empty() ? std::vector<std::string>() : split(channels, ','),
+              .color_space = args.text("color-space"),
+              .adaptive = is_adaptive(),
+              .command = identifying_command(kRenderJob, args)};
+}
+
+void RenderTask::choose(const ImageOutput* output) {
+  Session& session = run_.session();
+  if (output) output->check_channels(make_wavelengths(description_, session.registry())->film_space());
+  auto chosen = choose::choose_for(session, description_, uint64_t(run_.args.count("spp")), request_);
+  if (!chosen) return;
+  choice_ = std::move(chosen->choice);
+  pilot_ = std::move(chosen->scene);
+}
+
+void RenderTask::load(const ImageOutput* output) {
+  const Arguments& args = run_.args;
+  scene_.emplace(run_.session().load(std::move(description_), request_, pilot_.get()));
+  if (!args.given("samples")) samples_ = {0, args.given("spp") ? uint64_t(args.count("spp")) : scene_->samples()};
+  scene_->check_samples(samples_.count());
+  if (args.given("max-rms") && args.given("spp") && samples_.count() < kLeastAdaptive)
+    fail({}, "{}: at least {} samples per pixel are needed to estimate the noise, {} allows {}",
+         args.spelled("max-rms"), kLeastAdaptive, args.spelled("spp"), samples_.count());
+  if (output) output->check(scene_->picture());
+}
+
+RenderPart RenderTask::empty_part() const {
+  RenderPart part = scene_->empty_part();
+  part.header.request = samples_.end;
+  return part;
+}
+
+RenderStatistics RenderTask::render(RenderPart& part, const RenderControl& control,
+                                    const std::function<void(const PartHeader&)>& plan_changed) const {
+  Session& session = run_.session();
+  if (!is_adaptive()) return session.render(*scene_, samples_, part, control);
+  NoiseRequest request{.max_rms = run_.args.real("max-rms"), .planned = plan_changed};
+  if (run_.args.given("spp")) request.most_samples = samples_.count();
+  return session.render_to(*scene_, request, part, control);
+}
+
+}  // namespace frond

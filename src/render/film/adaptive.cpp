@@ -1,0 +1,129 @@
+#include "render/film/adaptive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "instruments/errors/statistics.h"
+
+namespace frond {
+namespace {
+
+constexpr uint64_t kBlock = FilmTile::kBlock;
+
+/// Of a pixel's mean, over colours.
+double noise_of(const Film& film, int x, int y) {
+  const Triple v = film.block_variance(x, y);
+  return (v[0] + v[1] + v[2]) / 3;
+}
+
+double pixels_of(const Crop& c) { return double(c.width()) * double(c.height()); }
+
+/// What there is to know of a tile for dealing out samples.
+struct TileNoise {
+  double pixels, samples;
+  double variance;  ///< of one sample, mean over its pixels
+  double cost;      ///< rays of a path, and as much again for what goes with them
+};
+
+TileNoise noise_of(const Film& film, size_t i) {
+  const FilmTile& tile = film.tile(i);
+  const Crop& c = tile.pixels();
+  double noise = 0;
+  if (film.format().splatting) {
+    const Crop reached = intersection(tile.reached(), film.settings().crop);
+    for (int y = reached.y0; y < reached.y1; ++y)
+      for (int x = reached.x0; x < reached.x1; ++x) noise += film.block_variance_by(i, x, y);
+  } else {
+    for (int y = c.y0; y < c.y1; ++y)
+      for (int x = c.x0; x < c.x1; ++x) noise += noise_of(film, x, y);
+  }
+  const double pixels = pixels_of(c), samples = double(tile.pixel(c.x0, c.y0).samples);
+  return {pixels, samples, noise / pixels * samples, double(tile.rays()) / (pixels * samples) + 1};
+}
+
+/// Half a tile's own variance, half the mean of those around it and its own.
+std::vector<double> smoothed(const std::vector<TileNoise>& tiles, size_t columns) {
+  std::vector<double> result;
+  const auto rows = tiles.size() / columns;
+  for (size_t row = 0; row < rows; ++row)
+    for (size_t column = 0; column < columns; ++column) {
+      double sum = 0, count = 0;
+      for (size_t r = row - std::min<size_t>(row, 1); r < std::min(row + 2, rows); ++r)
+        for (size_t c = column - std::min<size_t>(column, 1); c < std::min(column + 2, columns); ++c)
+          sum += tiles[r * columns + c].variance, ++count;
+      result.push_back((tiles[row * columns + column].variance + sum / count) / 2);
+    }
+  return result;
+}
+
+}  // namespace
+
+double NoiseEstimate::rms() const { return std::sqrt(mean_square); }
+double NoiseEstimate::upper_rms() const { return std::sqrt(upper); }
+
+NoiseEstimate picture_noise(const Film& film, double z) {
+  const Crop& c = film.settings().crop;
+  double sum = 0, squares = 0;
+  for (int y = c.y0; y < c.y1; ++y)
+    for (int x = c.x0; x < c.x1; ++x) {
+      const double noise = noise_of(film, x, y);
+      sum += noise, squares += noise * noise;
+    }
+  const double pixels = pixels_of(c), alike = film.format().splatting ? film.format().splatting->correlated_pixels : 1;
+  return {sum / pixels, (sum + z * std::sqrt(squares * alike)) / pixels};
+}
+
+double noise_z() { return normal_upper_quantile(sidak_level(1 - kNoiseConfidence, kNoiseLooks)); }
+
+SamplePlan first_plan(const Film& film) {
+  return {std::vector<uint64_t>(film.tiles(), kLeastAdaptive), uint64_t(pixels_of(film.sampled())) * kLeastAdaptive};
+}
+
+SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples) {
+  const uint64_t most = most_samples / kBlock * kBlock;
+  std::vector<TileNoise> tiles;
+  for (size_t i = 0; i < film.tiles(); ++i) tiles.push_back(noise_of(film, i));
+  const std::vector<double> variance = smoothed(tiles, film.columns());
+  // A little less noise than asked for, so that it is met when the bound is looked at.
+  const NoiseEstimate now = picture_noise(film, noise_z());
+  const double sharpness = now.mean_square > 0 ? now.mean_square / now.upper : 1;
+  const double goal = max_rms * max_rms * sharpness * pixels_of(film.settings().crop);
+  const auto samples_at = [&](size_t i, double scale) {
+    return std::clamp(scale * std::sqrt(variance[i] / tiles[i].cost), tiles[i].samples,
+                      std::max(double(most), tiles[i].samples));
+  };
+  const auto noise_at = [&](double scale) {
+    double noise = 0;
+    for (size_t i = 0; i < tiles.size(); ++i) noise += tiles[i].pixels * variance[i] / samples_at(i, scale);
+    return noise;
+  };
+  const auto plan_for = [&](double noise) {
+    double low = 0, high = 1;
+    constexpr double kMostScale = 1e30;
+    while (noise_at(high) > noise && high < kMostScale) low = high, high *= 2;
+    for (int i = 0; i < 50; ++i) {
+      const double middle = (low + high) / 2;
+      (noise_at(middle) > noise ? low : high) = middle;
+    }
+    SamplePlan plan;
+    for (size_t i = 0; i < tiles.size(); ++i) {
+      const double wanted = samples_at(i, high);
+      plan.predicted_paths += uint64_t(wanted * tiles[i].pixels);
+      const double end = std::min(wanted, 2 * tiles[i].samples);
+      plan.tile_ends.push_back(uint64_t(std::ceil(end / double(kBlock))) * kBlock);
+    }
+    return plan;
+  };
+  const auto has_more = [&](const SamplePlan& plan) {
+    for (size_t i = 0; i < tiles.size(); ++i)
+      if (double(plan.tile_ends[i]) > tiles[i].samples) return true;
+    return false;
+  };
+  SamplePlan plan = plan_for(goal);
+  // The look before has not been content with what the plan takes for enough.
+  constexpr double kStricter = 0.8, kStrictest = 1e-6;
+  for (double part = kStricter; !has_more(plan) && part > kStrictest; part *= kStricter) plan = plan_for(goal * part);
+  return plan;
+}
+
+}  // namespace frond

@@ -1,0 +1,343 @@
+#include "render/film/film_tile.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+
+namespace frond {
+namespace {
+
+/// Of the values that a sum and the sum of squares can take.
+constexpr double kBrightest = 0x1p28;
+static_assert(kBrightest <= ExactSum<60>::kLargestTerm && kBrightest * kBrightest <= ExactSum<40>::kLargestTerm);
+
+/// From -1022 to 1023; std::ldexp is a call.
+double power_of_two(int exponent) { return std::bit_cast<double>(uint64_t(1023 + exponent) << 52); }
+
+/// Whether no lane is larger in magnitude, or no number.
+bool is_within(const Double4& v, double bound) {
+  const Double4 size = v < 0 ? -v : v;
+  return size[0] <= bound && size[1] <= bound && size[2] <= bound && size[3] <= bound;
+}
+
+/// Samples that sums in doubles may have.
+constexpr size_t kAtOnce = SplatSums::kMost;
+
+double held(double value) {
+  constexpr double kMost = ExactSum<40>::kLargestTerm;
+  return std::isfinite(value) ? std::clamp(value, -kMost, kMost) : 0;
+}
+
+/// What the film sums of a sample's response: in its colours, in its units, cut off where that is too much.
+class Exposure {
+ public:
+  explicit Exposure(const FilmFormat& format)
+      : has_colors_(format.bands == 0),
+        exposure_(format.settings.exposure),
+        most_(format.settings.max_component),
+        unit_(format.settings.exposure * power_of_two(-format.exponent)) {
+    for (size_t c = 0; c < 3; ++c)
+      columns_[c] = Double4{format.color.row[0][c], format.color.row[1][c], format.color.row[2][c], 0};
+  }
+
+  /// False where not all of it could be kept.
+  bool expose(const FilmTile::Sample& sample, Double4& value) const {
+    const std::array<double, kLanes>& response = sample.sensor.value;
+    value = Double4{response[0], response[1], response[2], response[3]};
+    const bool is_finite = std::isfinite((value[0] + value[1]) + (value[2] + value[3]));
+    if (!is_finite) value = Double4{};
+    const double largest = std::max({value[0], value[1], value[2], value[3]}) * exposure_;  // of the sensor, as in pbrt
+    if (has_colors_) value = columns_[0] * value[0] + columns_[1] * value[1] + columns_[2] * value[2];
+    value *= sample.weight * unit_ * (largest > most_ ? most_ / largest : 1);
+    if (is_within(value, kBrightest)) return is_finite;
+    for (int i = 0; i < kLanes; ++i)
+      value[i] = std::isnan(value[i]) ? 0 : std::clamp(value[i], -kBrightest, kBrightest);
+    return false;
+  }
+
+ private:
+  bool has_colors_;
+  double exposure_, most_, unit_;
+  std::array<Double4, 3> columns_;
+};
+
+/// Sums of a few samples' colours that are not very bright, in doubles: each is rounded to a multiple of a unit, and
+/// its square too, so that their sums are exact.
+class ModestSums {
+ public:
+  /// False, and nothing changes, where a sample is too bright.
+  bool add(const Double4& color) {
+    if (!is_within(color, kMost)) return false;
+    add_rounded(color, kUnit, sum_);
+    add_rounded(color * color, kSquareUnit, square_);
+    return true;
+  }
+  void add_to(FilmTile::Pixel& pixel) const {
+    for (size_t i = 0; i < 3; ++i) {
+      pixel.sum[i].add_multiple(int64_t(sum_[i] / kUnit), 60 - kBits);
+      pixel.square[i].add_multiple(int64_t(square_[i] / kSquareUnit), 0);
+    }
+  }
+
+ private:
+  static constexpr double kMost = 4;  ///< kAtOnce of this do not leave the range of whole numbers
+  static constexpr int kBits = 44;
+  static constexpr double kUnit = 0x1p-44, kSquareUnit = 0x1p-40;
+  static_assert(double(kAtOnce) * kMost / kUnit <= 0x1p53 && double(kAtOnce) * kMost * kMost / kSquareUnit <= 0x1p53);
+  /// To the nearest.
+  static void add_rounded(const Double4& value, double unit, Double4& sum) {
+    const double rounds = 0x1.8p52 * unit;
+    sum += value + rounds - rounds;
+  }
+  Double4 sum_{}, square_{};
+};
+
+template <class Sums>
+void add_all(std::vector<Sums>& to, size_t at, const std::vector<Sums>& from, size_t from_at, size_t count) {
+  for (size_t i = 0; i < count; ++i) to[at + i] += from[from_at + i];
+}
+
+}  // namespace
+
+FilmTile::Pixel& FilmTile::Pixel::operator+=(const Pixel& other) {
+  for (size_t c = 0; c < 3; ++c) sum[c] += other.sum[c], square[c] += other.square[c];
+  weight += other.weight, samples += other.samples, leaf += other.leaf, not_finite += other.not_finite;
+  return *this;
+}
+
+FilmTile::BandSums& FilmTile::BandSums::operator+=(const BandSums& other) {
+  sum += other.sum, square += other.square, samples += other.samples;
+  return *this;
+}
+
+FilmTile::BlockSums& FilmTile::BlockSums::operator+=(const BlockSums& other) {
+  for (size_t c = 0; c < 3; ++c) square[c] += other.square[c];
+  blocks += other.blocks;
+  return *this;
+}
+
+FilmTile::Splat& FilmTile::Splat::operator+=(const Splat& other) {
+  for (size_t c = 0; c < 3; ++c) sum[c] += other.sum[c];
+  weight += other.weight;
+  return *this;
+}
+
+FilmTile::BandSplat& FilmTile::BandSplat::operator+=(const BandSplat& other) {
+  sum += other.sum, weight += other.weight;
+  return *this;
+}
+
+FilmTile::SplatBlocks& FilmTile::SplatBlocks::operator+=(const SplatBlocks& other) {
+  for (size_t c = 0; c < 3; ++c) square[c] += other.square[c], product[c] += other.product[c];
+  weight_square += other.weight_square, blocks += other.blocks;
+  return *this;
+}
+
+Features::Features(const ChannelList& channels, const CameraHit& hit) {
+  size_t mean = 0, id = 0;
+  for (const ChannelInfo* channel : channels.infos()) {
+    if (channel->kind == ChannelInfo::Kind::sample_count) continue;
+    const Triple value = channel->value(hit);
+    for (size_t c = 0; c < channel->size(); ++c)
+      (channel->kind == ChannelInfo::Kind::mean ? means[mean++] : ids[id++]) = value[c];
+  }
+}
+
+FilmTile::FilmTile(const FilmFormat& format, const Crop& pixels)
+    : band_count_(format.bands),
+      mean_count_(format.channels.means()),
+      id_count_(format.channels.ids()),
+      has_blocks_(format.blocks),
+      width_(format.settings.width),
+      height_(format.settings.height) {
+  if (const auto& s = format.splatting) reach_x_ = s->reach_x(), reach_y_ = s->reach_y();
+  clear(pixels);
+}
+
+void FilmTile::clear(const Crop& pixels) {
+  crop_ = pixels;
+  const size_t count = size_t(pixels.width()) * size_t(pixels.height());
+  pixels_.assign(count, {});
+  bands_.assign(count * band_count_, {});
+  hits_.assign(mean_count_ + id_count_ > 0 ? count : 0, {});
+  mean_sums_.assign(count * mean_count_, {});
+  ids_.assign(count * id_count_, 0);
+  blocks_.assign(has_blocks_ && !shares_samples() ? count : 0, {});
+  reached_ = {};
+  if (shares_samples() && count > 0)
+    reached_ = intersection(widened(pixels, reach_x_, reach_y_), {0, 0, width_, height_});
+  const size_t reached = size_t(reached_.width()) * size_t(reached_.height());
+  splats_.assign(reached, {});
+  band_splats_.assign(reached * band_count_, {});
+  splat_blocks_.assign(has_blocks_ ? reached : 0, {});
+  rays_ = 0;
+  coverage_ = {};
+}
+
+void FilmTile::add(const FilmFormat& format, int x, int y, std::span<const Sample> samples, const SplatKernel* kernel) {
+  if (samples.size() > kAtOnce) {
+    add(format, x, y, samples.first(kAtOnce), kernel);
+    return add(format, x, y, samples.subspan(kAtOnce), kernel);
+  }
+  const size_t at = index(x, y);
+  assert(at < pixels_.size());
+  Pixel& pixel = pixels_[at];
+  const Exposure exposure(format);
+  ModestSums modest;
+  SplatSums splats(kernel);
+  for (const Sample& sample : samples) {
+    Double4 value;
+    const bool is_kept = exposure.expose(sample, value);
+    pixel.weight += static_cast<int64_t>(sample.weight * kWeightsOfOne);
+    pixel.leaf += sample.leaf ? 1 : 0;
+    pixel.not_finite += is_kept ? 0 : 1;
+    ++pixel.samples;
+    if (band_count_ > 0) {
+      add_bands(at, sample.sensor, value);
+      if (kernel) add_band_splats(x, y, sample.sensor, value, kernel->at(sample.place));
+      continue;
+    }
+    if (!modest.add(value)) {
+      for (size_t i = 0; i < 3; ++i) {
+        pixel.sum[i].add(value[i]);
+        pixel.square[i].add(value[i] * value[i]);
+      }
+    }
+    if (!kernel) continue;
+    const SplatValue splat(value);
+    if (splats.exponent() != splat.exponent) {
+      if (splats.exponent()) add_splats(x, y, splats);
+      splats.restart(splat.exponent);
+    }
+    splats.add(sample.place, splat);
+  }
+  if (splats.exponent()) add_splats(x, y, splats);
+  modest.add_to(pixel);
+}
+
+void FilmTile::add_bands(size_t at, const SensorResponse& sensor, const Double4& value) {
+  for (size_t i = 0; i < size_t(sensor.count); ++i) {
+    assert(sensor.channel[i] < band_count_);
+    BandSums& band = bands_[at * band_count_ + sensor.channel[i]];
+    band.sum.add(value[i]);
+    band.square.add(value[i] * value[i]);
+    ++band.samples;
+  }
+}
+
+/// Calls each(index, column, row) for the pixels of the picture that a pixel's samples reach, counted from -reach.
+template <class Each>
+void FilmTile::for_each_reached(int x, int y, const Each& each) {
+  const int left = x - reach_x_, top = y - reach_y_;
+  const int end_x = std::min(x + reach_x_ + 1, reached_.x1), end_y = std::min(y + reach_y_ + 1, reached_.y1);
+  for (int py = std::max(top, reached_.y0); py < end_y; ++py)
+    for (int px = std::max(left, reached_.x0); px < end_x; ++px)
+      each(reached_index(px, py), size_t(px - left), size_t(py - top));
+}
+
+void FilmTile::add_splats(int x, int y, const SplatSums& sums) {
+  for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
+    Splat& splat = splats_[at];
+    for (size_t c = 0; c < 3; ++c) splat.sum[c].add_multiple(sums.sum(column, row, c), sums.shift());
+    splat.weight += sums.weight(column, row);
+  });
+}
+
+void FilmTile::add_band_splats(int x, int y, const SensorResponse& sensor, const Double4& exposed,
+                               const SplatKernel::Weights& weights) {
+  for (size_t i = 0; i < size_t(sensor.count); ++i) {
+    const SplatValue value(Double4{exposed[i], 0, 0, 0});
+    for_each_reached(x, y, [&](size_t at, size_t column, size_t row) {
+      const auto weight = double(weights.at(column, row));
+      BandSplat& band = band_splats_[at * band_count_ + sensor.channel[i]];
+      band.sum.add_multiple(SplatValue::whole(value.multiples[0] * weight), value.shift());
+      band.weight += int64_t(weight * kWeightsOfOne);
+    });
+  }
+}
+
+void FilmTile::add(int x, int y, const Features& f) {
+  const size_t at = index(x, y);
+  Hits& hits = hits_[at];
+  ++hits.count;
+  for (size_t i = 0; i < mean_count_; ++i) mean_sums_[at * mean_count_ + i].add(held(f.means[i]));
+  if (std::pair(double(f.from_center), f.sample) < std::pair(hits.nearest_distance, hits.nearest_sample)) {
+    hits.nearest_distance = double(f.from_center), hits.nearest_sample = f.sample;
+    std::copy_n(f.ids.begin(), id_count_, &ids_[at * id_count_]);
+  }
+}
+
+void FilmTile::add_features(size_t at, const FilmTile& other, size_t from) {
+  Hits& hits = hits_[at];
+  const Hits& others = other.hits_[from];
+  hits.count += others.count;
+  for (size_t i = 0; i < mean_count_; ++i) mean_sums_[at * mean_count_ + i] += other.mean_sums_[from * mean_count_ + i];
+  if (std::pair(others.nearest_distance, others.nearest_sample) <
+      std::pair(hits.nearest_distance, hits.nearest_sample)) {
+    hits.nearest_distance = others.nearest_distance, hits.nearest_sample = others.nearest_sample;
+    std::copy_n(&other.ids_[from * id_count_], id_count_, &ids_[at * id_count_]);
+  }
+}
+
+void FilmTile::add_block(int x, int y, const Pixel& before) {
+  BlockSums& block = blocks_[index(x, y)];
+  const Pixel& after = pixel(x, y);
+  for (size_t c = 0; c < 3; ++c) {
+    const double mean = (after.sum[c].value() - before.sum[c].value()) / double(kBlock);
+    block.square[c].add(mean * mean);
+  }
+  ++block.blocks;
+}
+
+void FilmTile::add_block(const std::vector<Splat>& before) {
+  for (size_t i = 0; i < splats_.size(); ++i) {
+    SplatBlocks& block = splat_blocks_[i];
+    const double c = double(splats_[i].weight - before[i].weight) / (kWeightsOfOne * double(kBlock));
+    for (size_t k = 0; k < 3; ++k) {
+      const double b = (splats_[i].sum[k].value() - before[i].sum[k].value()) / double(kBlock);
+      block.square[k].add(held(b * b));
+      block.product[k].add(held(b * c));
+    }
+    block.weight_square.add(c * c);
+    ++block.blocks;
+  }
+}
+
+double FilmTile::samples_per_pixel() const {
+  uint64_t samples = 0;
+  for (const WorkItem& item : coverage_.items()) samples += item.paths();
+  return double(samples) / (double(crop_.width()) * double(crop_.height()));
+}
+
+void FilmTile::merge_splats(const FilmTile& other) {
+  const Crop& c = other.reached_;
+  const auto width = size_t(c.width());
+  for (int y = c.y0; y < c.y1; ++y) {
+    const size_t to = reached_index(c.x0, y), from = other.reached_index(c.x0, y);
+    add_all(splats_, to, other.splats_, from, width);
+    add_all(band_splats_, to * band_count_, other.band_splats_, from * band_count_, width * band_count_);
+    if (has_blocks_) add_all(splat_blocks_, to, other.splat_blocks_, from, width);
+  }
+}
+
+bool FilmTile::merge(const FilmTile& other) {
+  Coverage both = coverage_;
+  for (const WorkItem& item : other.coverage_.items())
+    if (!both.add(item)) return false;
+  coverage_ = std::move(both);
+  const Crop& c = other.crop_;
+  const auto width = size_t(c.width());
+  for (int y = c.y0; y < c.y1; ++y) {
+    const size_t to = index(c.x0, y), from = other.index(c.x0, y);
+    add_all(pixels_, to, other.pixels_, from, width);
+    add_all(bands_, to * band_count_, other.bands_, from * band_count_, width * band_count_);
+    for (size_t i = 0; i < (hits_.empty() ? 0 : width); ++i) add_features(to + i, other, from + i);
+    if (!blocks_.empty()) add_all(blocks_, to, other.blocks_, from, width);
+  }
+  if (shares_samples()) merge_splats(other);
+  rays_ += other.rays_;
+  return true;
+}
+
+}  // namespace frond

@@ -1,0 +1,157 @@
+#include "render/film/splatting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace frond {
+namespace {
+
+/// Half the place of a sample in its pixel between two that integrals take.
+constexpr int kSteps = 1024;
+
+/// Mean over evenly spread places in a pixel.
+template <class F>
+double mean_over_pixel(const F& value) {
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) sum += value((i + 0.5) / kSteps);
+  return sum / kSteps;
+}
+
+bool can_splat(const Filter& filter) {
+  const Vec2 radius = filter.radius();
+  constexpr float kWidest = float(kMostReach) + 0.5f;
+  return radius.x > 0 && radius.y > 0 && radius.x <= kWidest && radius.y <= kWidest && !filter.stays_in_pixel();
+}
+
+/// Variance of a pixel whose own samples are drawn by the filter's magnitude, over what a box filter of one pixel
+/// makes: (integral of |f| / integral of f)^2, along an axis.
+double noise_of_importance(double radius, const auto& value) {
+  double sum = 0, magnitude = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double f = value((2 * (i + 0.5) / kSteps - 1) * radius);
+    sum += f, magnitude += std::abs(f);
+  }
+  return std::pow(magnitude / sum, 2);
+}
+
+}  // namespace
+
+Crop widened(const Crop& c, int x, int y) { return {c.x0 - x, c.y0 - y, c.x1 + x, c.y1 + y}; }
+
+Crop intersection(const Crop& a, const Crop& b) {
+  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+Crop Splatting::reaching(const Crop& pixels) const {
+  return intersection(widened(pixels, reach_x(), reach_y()), sampled);
+}
+
+template <class F>
+SplatKernel::Axis::Axis(float radius, const F& value)
+    : reach(std::max(int(std::ceil(radius - 0.5f)), 0)), width(2 * reach + 1) {
+  for (int node = 0; node <= kNodes; ++node)
+    for (int pixel = -reach; pixel <= reach; ++pixel)
+      table.push_back(value(float(node) / kNodes - 0.5f - float(pixel)));
+  float largest = 0;
+  for (const float w : table) largest = std::max(largest, std::abs(w));
+  const SplatAxis unscaled = described();
+  const double sum = std::accumulate(unscaled.mean.begin(), unscaled.mean.end(), 0.0);
+  for (float& w : table) w /= std::max(largest, float(sum));
+}
+
+double SplatKernel::Axis::weight(double u, int pixel) const {
+  const double place = u * kNodes;
+  const int node = std::min(int(place), kNodes - 1);
+  const auto at = [&](int n) { return double(table[size_t(n * width + pixel + reach)]); };
+  return std::lerp(at(node), at(node + 1), place - node);
+}
+
+SplatAxis SplatKernel::Axis::described() const {
+  SplatAxis axis{.reach = reach};
+  for (int pixel = -reach; pixel <= reach; ++pixel) {
+    axis.mean.push_back(mean_over_pixel([&](double u) { return weight(u, pixel); }));
+    axis.square.push_back(mean_over_pixel([&](double u) { return std::pow(weight(u, pixel), 2); }));
+  }
+  return axis;
+}
+
+double SplatKernel::Axis::correlated_pixels() const {
+  const auto products = [this](int lag) {
+    double sum = 0;
+    for (int pixel = -reach; pixel + lag <= reach; ++pixel)
+      sum += mean_over_pixel([&](double u) { return weight(u, pixel) * weight(u, pixel + lag); });
+    return sum;
+  };
+  double sum = 1;
+  for (int lag = 1; lag <= 2 * reach; ++lag) sum += 2 * std::abs(products(lag) / products(0));
+  return sum;
+}
+
+bool SplatKernel::Axis::has_negative_weights() const {
+  return std::ranges::any_of(table, [](float w) { return w < 0; });
+}
+
+double SplatKernel::Axis::noise() const {
+  const SplatAxis axis = described();
+  return std::accumulate(axis.square.begin(), axis.square.end(), 0.0) /
+         std::pow(std::accumulate(axis.mean.begin(), axis.mean.end(), 0.0), 2);
+}
+
+SplatKernel::SplatKernel(const Filter& filter)
+    : axes_{Axis(filter.radius().x,
+                 [&](float x) {
+                   return filter.along({x, 0}).x;
+                 }),
+            Axis(filter.radius().y, [&](float y) {
+              return filter.along({0, y}).y;
+            })} {}
+
+Splatting SplatKernel::splatting() const {
+  return {.axes = {axes_[0].described(), axes_[1].described()},
+          .has_negative_weights = axes_[0].has_negative_weights() || axes_[1].has_negative_weights(),
+          .correlated_pixels = axes_[0].correlated_pixels() * axes_[1].correlated_pixels()};
+}
+
+SplatValue::SplatValue(const Double4& values) : exponent(kLeastExponent) {
+  const double largest = std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2]), std::abs(values[3])});
+  double bound = std::ldexp(1.0, kLeastExponent);
+  for (; largest >= bound; exponent += kStep) bound *= 1 << kStep;
+  const double scale = double(1 << kBits) / bound;
+  constexpr double kRounds = 0x1.8p52;
+  multiples = values * scale + kRounds - kRounds;
+}
+
+void SplatSums::restart(int exponent) {
+  exponent_ = exponent;
+  std::fill_n(sums_.begin(), kernel_->width() * kernel_->height(), Sums{});
+}
+
+void SplatSums::add(Vec2 u, const SplatValue& value) {
+  const SplatKernel::Weights weights = kernel_->at(u);
+  const Double2 red_green{value.multiples[0], value.multiples[1]}, blue_weight{value.multiples[2], 1};
+  Sums* sums = sums_.data();
+  for (size_t row = 0; row < size_t(kernel_->height()); ++row)
+    for (size_t column = 0; column < size_t(kernel_->width()); ++column, ++sums) {
+      const auto weight = double(weights.at(column, row));
+      sums->red_green += red_green * weight;
+      sums->blue_weight += blue_weight * weight;
+    }
+}
+
+bool splats(const Filter& filter) {
+  if (!can_splat(filter) || filter.reconstruction() == Reconstruction::importance) return false;
+  if (filter.reconstruction() == Reconstruction::splatting) return true;
+  const SplatKernel kernel(filter);
+  const double splatted = kernel.axes_[0].noise() * kernel.axes_[1].noise(),
+               importance = noise_of_importance(double(filter.radius().x),
+                                                [&](double x) {
+                                                  return double(filter.along({float(x), 0}).x);
+                                                }) *
+                            noise_of_importance(double(filter.radius().y), [&](double y) {
+                              return double(filter.along({0, float(y)}).y);
+                            });
+  return splatted < importance;
+}
+
+}  // namespace frond

@@ -1,0 +1,75 @@
+#include "render/parts/inputs.h"
+
+#include <cstdlib>
+#include <cstring>
+
+#include "core/random.h"
+#include "image/image_codec.h"
+#include "scene/plugin_library.h"
+#include "system/file_bytes.h"
+#include "system/shared_object.h"
+
+namespace frond {
+namespace {
+
+void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::vector<std::filesystem::path>& files) {
+  for (const ParsedParam& p : plugin.params) {
+    const auto* words = std::get_if<std::vector<std::string>>(&p.values);
+    if (!words) continue;
+    for (const std::string& word : *words) {
+      const std::filesystem::path path = scene.resolve(word, p.value_where);
+      std::error_code error;
+      if (std::filesystem::is_regular_file(path, error)) files.push_back(path);
+    }
+  }
+}
+
+uint64_t hash_words(std::span<const std::byte> bytes, uint64_t seed) {
+  uint64_t hash = hash_key(seed, bytes.size());
+  size_t at = 0;
+  for (; at + sizeof(uint64_t) <= bytes.size(); at += sizeof(uint64_t)) {
+    uint64_t word;  // by words: tables of instances have gigabytes
+    std::memcpy(&word, bytes.data() + at, sizeof word);
+    hash = mix64(hash ^ word) + 1;
+  }
+  return hash_bytes({reinterpret_cast<const char*>(bytes.data()) + at, bytes.size() - at}, hash);
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> input_files(const SceneDescription& scene, const ParsedPlugin& wavelengths) {
+  std::vector<std::filesystem::path> files;
+  for (const ParsedPlugin* plugin :
+       {&wavelengths, &scene.camera, &scene.film, &scene.sampler, &scene.integrator, &scene.filter})
+    add_files(*plugin, scene, files);
+  for (const auto& t : scene.textures) add_files(t.plugin, scene, files);
+  for (const auto& m : scene.materials) add_files(m.plugin, scene, files);
+  for (const auto& a : scene.area_lights) add_files(a, scene, files);
+  for (const auto& s : scene.shapes) add_files(s.plugin, scene, files);
+  for (const auto& l : scene.lights) add_files(l.plugin, scene, files);
+  for (const auto& o : scene.objects)
+    for (const auto& s : o.shapes) add_files(s.plugin, scene, files);
+  return files;
+}
+
+std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plugins) {
+  std::vector<std::filesystem::path> files;
+  if (const char* folders = std::getenv("FROND_PLUGIN_PATH"))
+    for (const auto& file : plugins_in(folders)) files.push_back(file);
+  files.insert(files.end(), plugins.begin(), plugins.end());
+  return files;
+}
+
+uint64_t hash_program(uint64_t seed) { return hash_library(image_codec_file(), hash_library(own_file(), seed)); }
+
+uint64_t hash_library(const std::filesystem::path& path, uint64_t seed) {
+  const std::string bytes = read_file_bytes(path, {});
+  return hash_words(std::as_bytes(std::span(bytes)), seed);
+}
+
+uint64_t hash_file(const std::filesystem::path& path, uint64_t seed) {
+  const MappedFile file(path, {});
+  return hash_words(file.bytes(), seed);
+}
+
+}  // namespace frond

@@ -1,0 +1,399 @@
+#include "render/parts/part_file.h"
+
+#include <zstd.h>
+
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "system/atomic_file.h"
+#include "system/file_bytes.h"
+
+static_assert(std::endian::native == std::endian::little, "parts are kept in this order of bytes");
+
+namespace frond {
+
+using Json = nlohmann::ordered_json;
+
+/// The sums of a tile, as they are in memory.
+class PartFile {
+ public:
+  static_assert(std::has_unique_object_representations_v<FilmTile::Pixel>, "no byte of a file is left to chance");
+  static_assert(std::has_unique_object_representations_v<FilmTile::BandSums>);
+  static_assert(std::has_unique_object_representations_v<FilmTile::Splat>);
+  static_assert(std::has_unique_object_representations_v<FilmTile::BandSplat>);
+  static_assert(std::has_unique_object_representations_v<FilmTile::SplatBlocks>);
+  static_assert(sizeof(FilmTile::Hits) == 24);
+
+  /// calls each(pointer, bytes) for every array.
+  template <class Tile, class Each>
+  static void for_each_array(Tile& tile, const Each& each) {
+    const auto array = [&each](auto& values) { each(values.data(), values.size() * sizeof(values[0])); };
+    array(tile.pixels_);
+    array(tile.bands_);
+    array(tile.hits_);
+    array(tile.mean_sums_);
+    array(tile.ids_);
+    array(tile.blocks_);
+    array(tile.splats_);
+    array(tile.band_splats_);
+    array(tile.splat_blocks_);
+    each(&tile.rays_, sizeof tile.rays_);
+  }
+};
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "frond part 2\n", kEnd = "frond part end\n";
+
+[[noreturn]] void fail_to_read(const fs::path& path, std::string_view why) {
+  fail({}, "\"{}\" {}: render it again", path.string(), why);
+}
+
+// --- header
+
+Json json_of(const Crop& c) { return {c.x0, c.y0, c.x1, c.y1}; }
+Crop crop_of(const Json& j) { return {j.at(0), j.at(1), j.at(2), j.at(3)}; }
+
+Json json_of(const std::vector<Band>& bands) {
+  Json list = Json::array();
+  for (const Band& band : bands) {
+    Json points = Json::array();
+    for (const ResponsePoint& p : band.response) points.push_back({p.nm, p.value});
+    list.push_back({{"nm", band.nm}, {"response", points}});
+  }
+  return list;
+}
+std::vector<Band> bands_of(const Json& list) {
+  std::vector<Band> bands;
+  for (const Json& j : list) {
+    Band& band = bands.emplace_back(Band{j.at("nm")});
+    for (const Json& p : j.at("response")) band.response.push_back({p.at(0), p.at(1)});
+  }
+  return bands;
+}
+
+Json json_of(const std::optional<Splatting>& s) {
+  if (!s) return {};
+  Json axes = Json::array();
+  for (const SplatAxis& axis : s->axes)
+    axes.push_back({{"reach", axis.reach}, {"mean", axis.mean}, {"square", axis.square}});
+  return {{"sampled", json_of(s->sampled)},
+          {"axes", axes},
+          {"has_negative_weights", s->has_negative_weights},
+          {"correlated_pixels", s->correlated_pixels}};
+}
+std::optional<Splatting> splatting_of(const Json& j, const Crop& crop) {
+  if (j.is_null()) return {};
+  Splatting s;
+  for (size_t i = 0; i < 2; ++i) {
+    const Json& axis = j.at("axes").at(i);
+    s.axes[i] = {axis.at("reach"), axis.at("mean").get<std::vector<double>>(),
+                 axis.at("square").get<std::vector<double>>()};
+    const auto width = size_t(2 * s.axes[i].reach + 1);
+    if (s.axes[i].reach < 0 || s.axes[i].reach > kMostReach || s.axes[i].mean.size() != width ||
+        s.axes[i].square.size() != width)
+      throw Json::other_error::create(501, "a filter that reaches too far", &j);
+  }
+  s.has_negative_weights = j.at("has_negative_weights"), s.correlated_pixels = j.at("correlated_pixels");
+  s.sampled = crop_of(j.at("sampled"));
+  if (intersection(s.sampled, crop) != crop ||
+      intersection(s.sampled, widened(crop, s.reach_x(), s.reach_y())) != s.sampled)
+    throw Json::other_error::create(501, "samples of other pixels", &j);
+  return s;
+}
+
+Json json_of(const FilmFormat& f) {
+  const FilmSettings& s = f.settings;
+  return {{"width", s.width},
+          {"height", s.height},
+          {"crop", json_of(s.crop)},
+          {"half", s.half},
+          {"exposure", s.exposure},
+          {"max_component", std::isinf(s.max_component) ? Json() : Json(s.max_component)},  // JSON has no infinity
+          {"bands", f.bands},
+          {"channels", f.channels.names()},
+          {"means", f.channels.means()},
+          {"ids", f.channels.ids()},
+          {"blocks", f.blocks},
+          {"exponent", f.exponent},
+          {"color", f.color.row},
+          {"white", f.white},
+          {"splatting", json_of(f.splatting)}};
+}
+FilmFormat film_format_of(const Json& j) {
+  FilmFormat f;
+  FilmSettings& s = f.settings;
+  s.width = j.at("width"), s.height = j.at("height"), s.crop = crop_of(j.at("crop"));
+  s.half = j.at("half"), s.exposure = j.at("exposure");
+  const Json& most = j.at("max_component");
+  s.max_component = most.is_null() ? std::numeric_limits<double>::infinity() : most.get<double>();
+  f.bands = j.at("bands"), f.channels = ChannelList(j.at("channels").get<std::vector<std::string>>()),
+  f.blocks = j.at("blocks"), f.exponent = j.at("exponent");
+  f.color.row = j.at("color").get<std::array<Triple, 3>>(), f.white = j.at("white").get<Triple>();
+  if (s.crop.x0 < 0 || s.crop.y0 < 0 || s.crop.x1 > s.width || s.crop.y1 > s.height || s.crop.width() <= 0 ||
+      s.crop.height() <= 0)
+    throw Json::other_error::create(501, "a film without pixels", &j);
+  f.splatting = splatting_of(j.at("splatting"), s.crop);
+  return f;
+}
+
+Json json_of(const RenderStatistics& s) {
+  return {{"paths", s.paths},
+          {"rays", s.rays},
+          {"wall_seconds", s.wall_seconds},
+          {"cpu_seconds", s.cpu_seconds},
+          {"escaped", s.ends.escaped},
+          {"absorbed", s.ends.absorbed}};
+}
+RenderStatistics statistics_of(const Json& j) {
+  RenderStatistics s;
+  s.paths = j.at("paths"), s.rays = j.at("rays");
+  s.wall_seconds = j.at("wall_seconds"), s.cpu_seconds = j.at("cpu_seconds");
+  s.ends.escaped = j.at("escaped"), s.ends.absorbed = j.at("absorbed");
+  return s;
+}
+
+std::string header_text(const PartHeader& h, const FilmFormat& film) {
+  Json identity = Json::array();
+  for (const Identity::Field& f : h.identity.fields()) identity.push_back({f.name, f.value});
+  const Json j{{"identity", identity},
+               {"film", json_of(film)},
+               {"picture",
+                {{"space", h.picture.space},
+                 {"bands", json_of(h.picture.bands)},
+                 {"from_world", h.picture.from_world},
+                 {"attributes", h.picture.attributes}}},
+               {"command", h.command},
+               {"scene_crop", json_of(h.scene_crop)},
+               {"pixel_scale", h.pixel_scale},
+               {"request", h.request},
+               {"adaptive", h.adaptive},
+               {"tile_ends", h.tile_ends},
+               {"round", h.round},
+               {"statistics", json_of(h.statistics)}};
+  return j.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+PartHeader header_of(const Json& j) {
+  PartHeader h;
+  for (const Json& field : j.at("identity")) h.identity.add(field.at(0), field.at(1));
+  const Json& picture = j.at("picture");
+  h.picture.space = picture.at("space");
+  h.picture.bands = bands_of(picture.at("bands"));
+  h.picture.from_world = picture.at("from_world").get<decltype(h.picture.from_world)>();
+  h.picture.attributes = picture.at("attributes").get<std::map<std::string, std::string>>();
+  h.command = j.at("command");
+  h.scene_crop = crop_of(j.at("scene_crop"));
+  h.pixel_scale = j.at("pixel_scale");
+  h.request = j.at("request"), h.adaptive = j.at("adaptive"), h.round = j.at("round");
+  h.tile_ends = j.at("tile_ends").get<std::vector<uint64_t>>();
+  h.statistics = statistics_of(j.at("statistics"));
+  return h;
+}
+
+PartHead head_of(const Json& j) { return {header_of(j), film_format_of(j.at("film"))}; }
+
+// --- sums, compressed
+
+class Compressor {
+ public:
+  explicit Compressor(std::vector<unsigned char>& to) : to_(to), context_(ZSTD_createCCtx()) {
+    if (!context_) throw std::bad_alloc();
+    ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, 1);
+    ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_checksumFlag, 1);
+  }
+  void add(const void* data, size_t bytes) { run({data, bytes, 0}, ZSTD_e_continue); }
+  void finish() { run({nullptr, 0, 0}, ZSTD_e_end); }
+
+ private:
+  void run(ZSTD_inBuffer in, ZSTD_EndDirective end) {
+    for (size_t left = 1; left != 0;) {
+      const size_t start = to_.size();
+      to_.resize(start + ZSTD_CStreamOutSize());
+      ZSTD_outBuffer out{to_.data() + start, ZSTD_CStreamOutSize(), 0};
+      left = ZSTD_compressStream2(context_.get(), &out, &in, end);
+      if (ZSTD_isError(left)) fail({}, "a part cannot be compressed: {}", ZSTD_getErrorName(left));
+      to_.resize(start + out.pos);
+      if (end == ZSTD_e_continue) left = in.size - in.pos;
+    }
+  }
+
+  struct Release {
+    void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+  };
+  std::vector<unsigned char>& to_;
+  std::unique_ptr<ZSTD_CCtx, Release> context_;
+};
+
+class Decompressor {
+ public:
+  Decompressor(std::string_view from, const fs::path& path)
+      : in_{from.data(), from.size(), 0}, path_(path), context_(ZSTD_createDCtx()) {
+    if (!context_) throw std::bad_alloc();
+  }
+  void get(void* data, size_t bytes) {
+    ZSTD_outBuffer out{data, bytes, 0};
+    while (out.pos < out.size) step(out);
+  }
+  template <class T>
+  T get() {
+    T value;
+    get(&value, sizeof value);
+    return value;
+  }
+  /// The checksum is looked at with the last byte: nothing is believed before.
+  void finish() {
+    char none;
+    ZSTD_outBuffer out{&none, 0, 0};
+    while (left_ != 0) step(out);
+    if (in_.pos != in_.size) fail_to_read(path_, "is damaged");
+  }
+
+ private:
+  void step(ZSTD_outBuffer& out) {
+    const size_t in_before = in_.pos, out_before = out.pos;
+    left_ = ZSTD_decompressStream(context_.get(), &out, &in_);
+    if (ZSTD_isError(left_)) fail_to_read(path_, fmt::format("is damaged ({})", ZSTD_getErrorName(left_)));
+    if (in_.pos == in_before && out.pos == out_before && left_ != 0) fail_to_read(path_, "is cut short");
+    if (left_ == 0 && out.pos < out.size) fail_to_read(path_, "is damaged");
+  }
+
+  struct Release {
+    void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+  };
+  ZSTD_inBuffer in_;
+  const fs::path& path_;
+  std::unique_ptr<ZSTD_DCtx, Release> context_;
+  size_t left_ = 1;
+};
+
+void append(std::vector<unsigned char>& to, std::string_view bytes) { to.insert(to.end(), bytes.begin(), bytes.end()); }
+void append(std::vector<unsigned char>& to, uint64_t number) {
+  append(to, {reinterpret_cast<const char*>(&number), sizeof number});
+}
+
+void write_tile(const FilmTile& tile, Compressor& to) {
+  const auto& items = tile.coverage().items();
+  const uint64_t count = items.size();
+  to.add(&count, sizeof count);
+  for (const WorkItem& item : items) {
+    static_assert(std::has_unique_object_representations_v<WorkItem>);
+    to.add(&item, sizeof item);
+  }
+  PartFile::for_each_array(tile, [&to](const void* data, size_t bytes) { to.add(data, bytes); });
+}
+
+void read_tile(Decompressor& from, FilmTile& tile, const fs::path& path) {
+  const auto count = from.get<uint64_t>();
+  for (uint64_t i = 0; i < count; ++i)
+    if (!tile.cover(from.get<WorkItem>())) fail_to_read(path, "is damaged");
+  PartFile::for_each_array(tile, [&from](void* data, size_t bytes) { from.get(data, bytes); });
+}
+
+uint64_t take_number(std::string_view& bytes) {
+  uint64_t number = 0;
+  std::memcpy(&number, bytes.data(), sizeof number);
+  bytes.remove_prefix(sizeof number);
+  return number;
+}
+
+/// Its size, which stands at the front behind the magic word.
+uint64_t take_header_size(std::string_view& bytes, const fs::path& path) {
+  if (!bytes.starts_with(kMagic.substr(0, 11))) fail({}, "\"{}\" is no part of a render", path.string());
+  if (!bytes.starts_with(kMagic))
+    fail({}, "\"{}\" is a part in another version of the format: this frond reads version 2", path.string());
+  bytes.remove_prefix(kMagic.size());
+  if (bytes.size() < sizeof(uint64_t)) fail_to_read(path, "is cut short");
+  return take_number(bytes);
+}
+
+/// Takes the header off the front.
+Json take_header(std::string_view& bytes, const fs::path& path) {
+  const uint64_t size = take_header_size(bytes, path);
+  if (bytes.size() < sizeof(uint64_t) || size > bytes.size() - sizeof(uint64_t)) fail_to_read(path, "is cut short");
+  const std::string_view text = bytes.substr(0, size);
+  bytes.remove_prefix(size);
+  if (take_number(bytes) != hash_bytes(text)) fail_to_read(path, "is damaged");
+  return Json::parse(text);
+}
+
+void check_readable(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || !std::ifstream(path)) read_file_bytes(path, {});  // which says why not
+}
+
+/// A part's front, with the whole header and no more.
+std::string read_front(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string front(kMagic.size() + sizeof(uint64_t), '\0');
+  file.read(front.data(), static_cast<std::streamsize>(front.size()));
+  front.resize(static_cast<size_t>(file.gcount()));
+  std::string_view rest = front;
+  const uint64_t size = take_header_size(rest, path) + sizeof(uint64_t);
+  std::error_code error;
+  if (const uintmax_t whole = fs::file_size(path, error); error || size > whole) fail_to_read(path, "is cut short");
+  const size_t start = front.size();
+  front.resize(start + size);
+  file.read(front.data() + start, static_cast<std::streamsize>(size));
+  front.resize(start + static_cast<size_t>(file.gcount()));
+  return front;
+}
+
+}  // namespace
+
+void write_part(const fs::path& path, const PartHeader& header, const Film& film) {
+  replace_file(path, encode_part(header, film));
+}
+
+std::vector<unsigned char> encode_part(const PartHeader& header, const Film& film) {
+  std::vector<unsigned char> bytes;
+  const std::string text = header_text(header, film.format());
+  append(bytes, kMagic);
+  append(bytes, text.size());
+  append(bytes, text);
+  append(bytes, hash_bytes(text));
+  Compressor compressor(bytes);
+  for (size_t i = 0; i < film.tiles(); ++i) write_tile(film.snapshot(i), compressor);
+  compressor.finish();
+  append(bytes, kEnd);
+  return bytes;
+}
+
+PartHead read_part_head(const fs::path& path) try {
+  check_readable(path);
+  const std::string front = read_front(path);
+  std::string_view bytes = front;
+  return head_of(take_header(bytes, path));
+} catch (const Json::exception& error) {
+  fail_to_read(path, "is damaged");
+}
+
+RenderPart read_part(const fs::path& path) { return decode_part(read_file_bytes(path, {}), path); }
+
+RenderPart decode_part(std::string_view bytes, const fs::path& path) try {
+  if (bytes.starts_with(kMagic)) {
+    if (!bytes.ends_with(kEnd)) fail_to_read(path, "is cut short");
+    bytes.remove_suffix(kEnd.size());
+  }
+  PartHead head = head_of(take_header(bytes, path));
+  Film film(head.film);
+  RenderPart part{std::move(head.header), std::move(film)};
+  Decompressor sums(bytes, path);
+  for (size_t i = 0; i < part.film.tiles(); ++i) {
+    FilmTile tile(part.film.format(), part.film.tile_pixels(i));
+    read_tile(sums, tile, path);
+    part.film.merge(i, tile);
+  }
+  sums.finish();
+  return part;
+} catch (const Json::exception& error) {
+  fail_to_read(path, "is damaged");
+}
+
+}  // namespace frond

@@ -1,0 +1,364 @@
+#include "scene/format/description_builder.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/log.h"
+#include "scene/format/plugin_text.h"
+#include "spectra/color/color_space.h"
+
+namespace frond {
+namespace {
+
+/// "file:line:column" in the middle of a message.
+std::string place(const Location& where) {
+  const std::string text = where.text();
+  return text.substr(0, text.size() - std::min<size_t>(text.size(), 2));  // without ": "
+}
+
+/// pbrt's older names of a surface that is not there become the one of today.
+ParsedPlugin with_name_of_interface(ParsedPlugin material) {
+  if (material.name.empty() || material.name == "none") material.name = "interface";
+  return material;
+}
+
+/// Takes "string type" out of the parameters of MakeNamedMaterial and makes it the plugin's name.
+ParsedPlugin typed_by_parameter(const std::string& name, ParsedPlugin plugin) {
+  const auto type =
+      std::find_if(plugin.params.begin(), plugin.params.end(), [](const ParsedParam& p) { return p.name == "type"; });
+  if (type == plugin.params.end()) fail(plugin.where, "MakeNamedMaterial \"{}\" needs parameter \"string type\"", name);
+  if (type->type != "string") fail(type->where, "\"type\" is string, type {} was given", type->type);
+  const auto& values = std::get<std::vector<std::string>>(type->values);
+  if (values.size() != 1) fail(type->value_where, "\"type\" takes 1 value, {} given", values.size());
+  plugin.name = values[0];
+  plugin.where = type->value_where;
+  plugin.params.erase(type);
+  return plugin;
+}
+
+}  // namespace
+
+DescriptionBuilder::DescriptionBuilder(SceneDescription& scene, const Log& log) : scene_(scene), log_(log) {
+  new_material({"", {"diffuse", {}, {}}});
+}
+
+void DescriptionBuilder::world_begin(const Location& where) {
+  if (in_world_) fail(where, "WorldBegin is given twice");
+  in_world_ = true;
+  if (!scene_.film.where.file) set_film_space();
+  state_.transform = Transform();
+  activate_transforms(true);
+  name_transform("world", where);
+}
+
+std::string_view DescriptionBuilder::name_of(Opener opener) {
+  constexpr std::array<std::string_view, 4> kNames{"AttributeBegin", "TransformBegin", "ObjectBegin", "Import"};
+  return kNames[static_cast<size_t>(opener)];
+}
+
+std::string_view DescriptionBuilder::ender_of(Opener opener) {
+  constexpr std::array<std::string_view, 4> kNames{"AttributeEnd", "TransformEnd", "ObjectEnd", "the end of the file"};
+  return kNames[static_cast<size_t>(opener)];
+}
+
+void DescriptionBuilder::finish(const Location& where, Problems& problems) {
+  if (problems.empty()) {  // else what is missing may have been there
+    if (!in_world_) fail(where, "the file ends before WorldBegin");
+    if (!saved_.empty())
+      fail(saved_.back().where, "{} without {}", name_of(saved_.back().by), ender_of(saved_.back().by));
+  }
+  settle_unknown_materials(problems);
+  std::vector<std::string_view> defined;
+  for (const auto& [text, name] : objects_)
+    if (name.is_defined) defined.push_back(text);
+  for (const auto& [text, name] : objects_)
+    if (!name.is_defined && !scene_.may_be_unread(text))
+      problems.attempt([&] {
+        fail(name.first_use, "there is no object \"{}\"{}", text,
+             defined.empty() ? "; ObjectBegin makes them" : suggestion(text, defined));
+      });
+}
+
+/// A name that no shape needs may stay unknown, as in pbrt.
+void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
+  std::vector<bool> is_used(scene_.materials.size(), false);
+  const auto use = [&](const std::vector<ShapeDescription>& shapes) {
+    for (const ShapeDescription& shape : shapes) is_used[shape.material] = true;
+  };
+  use(scene_.shapes);
+  for (const ObjectDescription& object : scene_.objects) use(object.shapes);
+  std::vector<std::string_view> defined;
+  for (const auto& [text, name] : materials_)
+    if (name.is_defined) defined.push_back(text);
+  for (const auto& [text, name] : materials_) {
+    if (name.is_defined) continue;
+    const std::string message =
+        fmt::format("there is no named material \"{}\"{}", text,
+                    defined.empty() ? "; MakeNamedMaterial makes them" : suggestion(text, defined));
+    scene_.materials[name.index] = {"", {"diffuse", name.first_use, {}}};
+    if (scene_.may_be_unread(text)) continue;
+    if (is_used[name.index])
+      problems.add(InputError(name.first_use, message));
+    else
+      log_.warn(name.first_use, message + "; no shape needs it");
+  }
+}
+
+void DescriptionBuilder::import_begin(const Location& where) {
+  if (!in_world_) fail(where, "Import belongs after WorldBegin");
+  push(Opener::import, where);
+  saved_.back().coordinate_systems = scene_.coordinate_systems;
+}
+
+void DescriptionBuilder::import_end() {
+  while (saved_.back().by != Opener::import) {
+    const Saved open = std::move(saved_.back());
+    saved_.pop_back();
+    if (saved_.back().by == Opener::import) {  // the outermost is told
+      scene_.coordinate_systems = std::move(saved_.back().coordinate_systems);
+      pop();
+      fail(open.where, "{} without {}", name_of(open.by), ender_of(open.by));
+    }
+  }
+  scene_.coordinate_systems = std::move(saved_.back().coordinate_systems);
+  pop();
+}
+
+/// Names as pbrt takes them: case, - and _ do not count.
+void DescriptionBuilder::option(ParsedParam param) {
+  std::string name;
+  for (const char c : param.name)
+    if (c != '-' && c != '_') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  param.name = std::move(name);
+  set_param(scene_.options, std::move(param));
+}
+
+void DescriptionBuilder::camera(ParsedPlugin plugin) {
+  if (!state_.transform.is_valid()) fail(plugin.where, "the camera's transform cannot be inverted");
+  set_option_plugin(&SceneDescription::camera, "Camera", std::move(plugin));
+  scene_.camera_from_world = state_.transform;
+  scene_.coordinate_systems["camera"] = state_.transform.inverse();
+}
+
+void DescriptionBuilder::set_option_plugin(ParsedPlugin SceneSettings::*option, std::string_view directive,
+                                           ParsedPlugin plugin) {
+  ParsedPlugin& slot = scene_.*option;
+  if (slot.where.file)
+    log_.warn(plugin.where, fmt::format("this {} takes the place of that at {}", directive, place(slot.where)));
+  slot = std::move(plugin);
+}
+
+void DescriptionBuilder::film(ParsedPlugin plugin) {
+  set_option_plugin(&SceneDescription::film, "Film", std::move(plugin));
+  set_film_space();
+}
+
+void DescriptionBuilder::set_film_space() {
+  scene_.color_space = state_.color_space;
+  scene_.color_space_where = state_.color_space_where;
+}
+
+void DescriptionBuilder::color_space(const std::string& name, const Location& where) {
+  state_.color_space = frond::color_space(name, where).name;
+  state_.color_space_where = where;
+}
+
+void DescriptionBuilder::note_color_space(std::vector<ParsedParam>& params) const {
+  for (ParsedParam& p : params)
+    if (p.type == "rgb") p.color_space = state_.color_space;
+}
+
+void DescriptionBuilder::concat(const Transform& transform, std::string_view directive, const Location& where) {
+  set_transform(state_.transform * transform, directive, where);
+}
+
+/// pbrt goes on where a transform cannot be inverted: what stands under it has no volume.
+void DescriptionBuilder::set_transform(const Transform& transform, std::string_view directive, const Location& where) {
+  if (!state_.is_transform_active) return;
+  const bool was_valid = state_.transform.is_valid();
+  state_.transform = transform;
+  if (was_valid && !transform.is_valid())
+    log_.warn(where,
+              fmt::format("after this {} the transform cannot be inverted: shapes, lights and copies under it are "
+                          "left out",
+                          directive));
+}
+
+void DescriptionBuilder::recall_transform(const std::string& name, const Location& where) {
+  const auto& systems = scene_.coordinate_systems;
+  if (const auto found = systems.find(name); found != systems.end()) {
+    state_.transform = found->second;
+    return;
+  }
+  std::vector<std::string_view> names;
+  for (const auto& [known, transform] : systems) names.push_back(known);
+  log_.warn(where, fmt::format("unknown coordinate system \"{}\"{}; the transform stays as it is", name,
+                               suggestion(name, names)));
+}
+
+void DescriptionBuilder::transform_begin(const Location& where) {
+  if (!has_warned_of_transform_begin_)
+    log_.warn(
+        where,
+        "TransformBegin saves all that AttributeBegin does, the material too, as in pbrt-v4: TransformEnd brings it "
+        "back");
+  has_warned_of_transform_begin_ = true;
+  push(Opener::transform, where);
+}
+
+void DescriptionBuilder::end(std::string_view directive, std::string_view beginner, const Location& where) {
+  if (saved_.empty() || saved_.back().by == Opener::import)
+    return log_.warn(where, fmt::format("{} without {} is left out", directive, beginner));
+  const Saved& last = saved_.back();
+  if (last.by == Opener::object) fail(where, "{} while the ObjectBegin at {} is open", directive, place(last.where));
+  pop();
+}
+
+void DescriptionBuilder::attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params) {
+  if (target == "medium") return;  // there are none
+  const auto found = std::find(kTargets.begin(), kTargets.end(), target);
+  if (found == kTargets.end())
+    fail(where, "unknown target \"{}\" of Attribute{}", target, suggestion(target, {kTargets.begin(), kTargets.end()}));
+  auto& defaults = state_.defaults[static_cast<size_t>(found - kTargets.begin())];
+  note_color_space(params);
+  for (ParsedParam& param : params) {
+    param.may_be_unused = true;
+    scene_.attributes.emplace(std::pair(target, param.name), param.where);
+    set_param(defaults, std::move(param));
+  }
+}
+
+ParsedPlugin DescriptionBuilder::with_defaults(ParsedPlugin plugin, Target target) const {
+  note_color_space(plugin.params);
+  const size_t own = plugin.params.size();
+  for (const ParsedParam& p : state_.defaults[static_cast<size_t>(target)]) {
+    const auto own_end = plugin.params.begin() + static_cast<std::ptrdiff_t>(own);
+    if (std::none_of(plugin.params.begin(), own_end, [&](const ParsedParam& given) { return given.name == p.name; }))
+      plugin.params.push_back(p);
+  }
+  return plugin;
+}
+
+size_t DescriptionBuilder::new_material(MaterialDescription material) {
+  scene_.materials.push_back(std::move(material));
+  return scene_.materials.size() - 1;
+}
+
+DescriptionBuilder::Name& DescriptionBuilder::material_called(const std::string& name, const Location& where) {
+  if (const auto found = materials_.find(name); found != materials_.end()) return found->second;
+  return materials_.emplace(name, Name{new_material({name, {}}), where}).first->second;
+}
+
+DescriptionBuilder::Name& DescriptionBuilder::object_called(const std::string& name, const Location& where) {
+  if (const auto found = objects_.find(name); found != objects_.end()) return found->second;
+  scene_.objects.push_back({name, {}, {}, {}});
+  return objects_.emplace(name, Name{scene_.objects.size() - 1, where}).first->second;
+}
+
+void DescriptionBuilder::material(ParsedPlugin plugin) {
+  state_.material = new_material({"", with_defaults(with_name_of_interface(std::move(plugin)), Target::material)});
+}
+
+void DescriptionBuilder::named_material(const std::string& name, const Location& where) {
+  state_.material = material_called(name, where).index;
+}
+
+void DescriptionBuilder::make_named_material(const std::string& name, ParsedPlugin plugin) {
+  const Location where = plugin.where;
+  Name& entry = material_called(name, where);
+  if (entry.is_defined) fail(where, "material \"{}\" is defined again", name);
+  plugin = with_name_of_interface(typed_by_parameter(name, std::move(plugin)));
+  entry.is_defined = true;
+  scene_.materials[entry.index].plugin = with_defaults(std::move(plugin), Target::material);
+}
+
+void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, ParsedPlugin plugin) {
+  using Value = TextureDescription::Value;
+  if (value.text != "float" && value.text != "spectrum")
+    fail(value.where, "unknown kind of texture \"{}\"{}", value.text, suggestion(value.text, {"float", "spectrum"}));
+  const Value kind = value.text == "float" ? Value::real : Value::spectrum;
+  const auto [known, is_new] = textures_.emplace(std::pair(kind, name.text), name.where);
+  if (!is_new)
+    fail(name.where, "{} texture \"{}\" is defined again; first at {}", value.text, name.text, place(known->second));
+  scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture),
+                             state_.transform.is_valid() ? state_.transform : Transform()});
+}
+
+void DescriptionBuilder::area_light(ParsedPlugin plugin) {
+  if (plugin.name.empty()) return state_.area_light.reset();
+  scene_.area_lights.push_back(with_defaults(std::move(plugin), Target::light));
+  state_.area_light = scene_.area_lights.size() - 1;
+}
+
+void DescriptionBuilder::shape(ParsedPlugin plugin) {
+  if (!state_.transform.is_valid()) return;
+  auto& shapes = state_.open_object ? scene_.objects[*state_.open_object].shapes : scene_.shapes;
+  std::optional<size_t> area_light = state_.area_light;
+  if (area_light && state_.open_object) {
+    log_.warn(plugin.where,
+              fmt::format("shapes in objects give off no light, as in pbrt-v4; the area light of {} is in "
+                          "force here",
+                          place(scene_.area_lights[*area_light].where)));
+    area_light.reset();
+  }
+  if (area_light && scene_.materials[state_.material].plugin.name == "interface") {
+    log_.warn(plugin.where, "the area light does not shine: with material \"interface\" there is no surface");
+    area_light.reset();
+  }
+  shapes.push_back({with_defaults(std::move(plugin), Target::shape), state_.transform, state_.reverse_orientation,
+                    state_.material, area_light});
+}
+
+void DescriptionBuilder::light(ParsedPlugin plugin) {
+  if (!state_.transform.is_valid()) return;
+  if (state_.open_object)
+    log_.warn(plugin.where, "a light inside an object is not part of its instances: it shines once");
+  scene_.lights.push_back({with_defaults(std::move(plugin), Target::light), state_.transform});
+}
+
+void DescriptionBuilder::object_begin(const std::string& name, const Location& where) {
+  if (state_.open_object)
+    fail(where, "ObjectBegin inside object \"{}\"; ObjectInstance places one object in another",
+         scene_.objects[*state_.open_object].name);
+  Name& entry = object_called(name, where);
+  ObjectDescription& object = scene_.objects[entry.index];
+  if (entry.is_defined) fail(where, "object \"{}\" is defined again; first at {}", name, place(object.where));
+  entry.is_defined = true;
+  object.where = where;
+  open_object(entry.index, where);
+}
+
+void DescriptionBuilder::refused_object_begin(const Location& where) {
+  if (!in_world_) return;
+  scene_.objects.push_back({"", where, {}, {}});
+  open_object(scene_.objects.size() - 1, where);
+}
+
+void DescriptionBuilder::open_object(size_t index, const Location& where) {
+  push(Opener::object, where);
+  state_.open_object = index;
+}
+
+void DescriptionBuilder::object_end(const Location& where) {
+  if (!state_.open_object) {
+    const std::string message = "ObjectEnd without ObjectBegin";
+    if (scene_.is_incomplete) throw Consequence(where, message);
+    fail(where, "{}", message);
+  }
+  if (const Saved& last = saved_.back(); last.by != Opener::object)
+    fail(where, "ObjectEnd while the {} at {} is open", name_of(last.by), place(last.where));
+  pop();
+}
+
+void DescriptionBuilder::object_instance(const std::string& name, const Location& where) {
+  if (!state_.transform.is_valid()) return;
+  const AffineMap map{state_.transform.rows()};
+  if (const std::string problem = problem_of(map); !problem.empty())
+    fail(where, "this copy is not possible: {}", problem);
+  const auto object = uint32_t(object_called(name, where).index);
+  CopyList& copies = state_.open_object ? scene_.objects[*state_.open_object].copies : scene_.copies;
+  copies.maps->push_back(map);
+  copies.objects.push_back(object);
+}
+
+}  // namespace frond

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/log.h"
+#include "core/problems.h"
+#include "scene/format/description.h"
+
+namespace frond {
+
+/// A quoted word of the scene and its place.
+struct Quoted {
+  std::string text;
+  Location where;
+};
+
+/// What the directives of a scene file mean, once they are read: keeps the graphics state (transform, material, ...)
+/// and writes down what comes under it. Every method throws InputError where the directive makes no sense.
+class DescriptionBuilder {
+ public:
+  DescriptionBuilder(SceneDescription& scene, const Log& log);
+
+  bool in_world() const { return in_world_; }
+  bool is_incomplete() const { return scene_.is_incomplete; }
+  void world_begin(const Location& where);
+  /// End of the main file: everything must be closed and every name known. `where` is that end.
+  void finish(const Location& where, Problems& problems);
+
+  // Import: the state goes in, and does not come out
+  void import_begin(const Location& where);
+  void import_end();
+
+  // Options
+  void camera(ParsedPlugin plugin);
+  void film(ParsedPlugin plugin);
+  void set_option_plugin(ParsedPlugin SceneSettings::*option, std::string_view directive, ParsedPlugin plugin);
+  void option(ParsedParam param);
+  void color_space(const std::string& name, const Location& where);
+
+  // Transforms
+  void concat(const Transform& transform, std::string_view directive, const Location& where);
+  void set_transform(const Transform& transform, std::string_view directive, const Location& where);
+  void name_transform(const std::string& name, const Location&) { scene_.coordinate_systems[name] = state_.transform; }
+  void recall_transform(const std::string& name, const Location& where);
+  /// Whether transforms change anything: those that are for the end of a motion alone do not.
+  void activate_transforms(bool active) { state_.is_transform_active = active; }
+
+  // Graphics state
+  void attribute_begin(const Location& where) { push(Opener::attribute, where); }
+  void attribute_end(const Location& where) { end("AttributeEnd", "AttributeBegin", where); }
+  /// As AttributeBegin, also for the material: pbrt-v4 has it so.
+  void transform_begin(const Location& where);
+  void transform_end(const Location& where) { end("TransformEnd", "TransformBegin", where); }
+  void attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params);
+  void reverse_orientation() { state_.reverse_orientation = !state_.reverse_orientation; }
+  void material(ParsedPlugin plugin);
+  void named_material(const std::string& name, const Location& where);
+  void area_light(ParsedPlugin plugin);
+
+  // Things of the scene
+  void make_named_material(const std::string& name, ParsedPlugin plugin);
+  void texture(const Quoted& name, const Quoted& value, ParsedPlugin plugin);
+  void shape(ParsedPlugin plugin);
+  void light(ParsedPlugin plugin);
+  void object_begin(const std::string& name, const Location& where);
+  /// In place of an ObjectBegin that is wrong: what comes up to its ObjectEnd goes into an object that nobody can name.
+  void refused_object_begin(const Location& where);
+  void object_end(const Location& where);
+  void object_instance(const std::string& name, const Location& where);
+
+ private:
+  /// Kinds of plugins that `Attribute` gives defaults to, in the order of kTargets.
+  enum class Target : uint8_t { shape, light, material, texture };
+  static constexpr std::array<std::string_view, 4> kTargets{"shape", "light", "material", "texture"};
+
+  struct State {
+    Transform transform;
+    bool is_transform_active = true;
+    bool reverse_orientation = false;
+    size_t material = 0;
+    std::optional<size_t> area_light;
+    std::optional<size_t> open_object;
+    std::string color_space = "srgb";
+    Location color_space_where;
+    std::array<std::vector<ParsedParam>, kTargets.size()> defaults;
+  };
+  enum class Opener : uint8_t { attribute, transform, object, import };
+  struct Saved {
+    Opener by;
+    Location where;
+    State state;
+    std::map<std::string, Transform> coordinate_systems;  ///< of an import
+  };
+  /// A name that may be used before it is defined.
+  struct Name {
+    size_t index;
+    Location first_use;
+    bool is_defined = false;
+  };
+  using Names = std::map<std::string, Name, std::less<>>;
+
+  static std::string_view name_of(Opener opener);
+  static std::string_view ender_of(Opener opener);
+  void push(Opener by, const Location& where) { saved_.push_back({by, where, state_, {}}); }
+  void pop() { state_ = std::move(saved_.back().state), saved_.pop_back(); }
+  /// As pbrt, either takes what the other begins.
+  void end(std::string_view directive, std::string_view beginner, const Location& where);
+  void settle_unknown_materials(Problems& problems);
+  ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
+  void note_color_space(std::vector<ParsedParam>& params) const;
+  /// The colour space that holds here is the film's.
+  void set_film_space();
+  void open_object(size_t index, const Location& where);
+  size_t new_material(MaterialDescription material);
+  Name& material_called(const std::string& name, const Location& where);
+  Name& object_called(const std::string& name, const Location& where);
+
+  SceneDescription& scene_;
+  const Log& log_;
+  State state_;
+  std::vector<Saved> saved_;
+  bool in_world_ = false;
+  bool has_warned_of_transform_begin_ = false;
+  Names materials_, objects_;
+  std::map<std::pair<TextureDescription::Value, std::string>, Location> textures_;
+};
+
+}  // namespace frond

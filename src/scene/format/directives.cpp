@@ -1,0 +1,274 @@
+#include "scene/format/directives.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace frond {
+namespace {
+
+using Kind = Token::Kind;
+
+/// One directive being carried out.
+struct Directive {
+  std::string_view name;
+  Location where;
+  DirectiveContext& context;
+
+  Token quoted() const { return read_quoted(context.tokens, name); }
+  std::string text(const Token& token) const { return context.tokens.text_of(token); }
+  Location place(const Token& token) const { return context.tokens.where(token); }
+  DescriptionBuilder& scene() { return context.scene; }
+
+  /// A plugin's quoted name and its parameters.
+  ParsedPlugin plugin() {
+    const Token token = quoted();
+    return {text(token), place(token), parameters()};
+  }
+  /// What is given twice counts as it is given last, as in pbrt.
+  std::vector<ParsedParam> parameters() {
+    std::vector<ParsedParam> params = context.parameters.read(context.tokens);
+    for (size_t i = 1; i < params.size(); ++i) {
+      const auto end = params.begin() + static_cast<std::ptrdiff_t>(i);
+      const auto older = std::find_if(params.begin(), end, [&](const ParsedParam& p) { return p.name == end->name; });
+      if (older == end) continue;
+      context.log.warn(end->where, fmt::format("parameter \"{}\" is given twice: this one counts", end->name));
+      params.erase(older);
+      --i;
+    }
+    return params;
+  }
+  template <size_t N>
+  std::array<double, N> numbers() {
+    std::array<double, N> values;
+    for (double& value : values) value = number_at(context.tokens, context.tokens.next(), usage(N));
+    return values;
+  }
+  void bracket(Kind kind) {
+    const Token token = context.tokens.next();
+    if (token.kind != kind) fail(place(token), "{} takes 16 numbers in brackets, {} was given", name, token.shown());
+  }
+  std::string usage(size_t count) const { return fmt::format("{} takes {} numbers", name, count); }
+};
+
+template <size_t N>
+Vec3 vec3_at(const std::array<double, N>& v, size_t i) {
+  return {static_cast<float>(v[i]), static_cast<float>(v[i + 1]), static_cast<float>(v[i + 2])};
+}
+
+void scale(Directive d) { d.scene().concat(Transform::scale(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }
+
+void rotate(Directive d) {
+  const auto v = d.numbers<4>();
+  const Vec3 axis = vec3_at(v, 1);
+  if (axis != Vec3{}) return d.scene().concat(Transform::rotate(v[0], axis), d.name, d.where);
+  if (v[0] != 0) fail(d.where, "Rotate about the axis 0 0 0");
+}
+
+void look_at(Directive d) {
+  constexpr double kParallel = 1e-6;  // sine of the least angle between up and the view: float's resolution
+  const auto v = d.numbers<9>();
+  const Vec3d view{v[3] - v[0], v[4] - v[1], v[5] - v[2]}, up{v[6], v[7], v[8]};
+  if (view == Vec3d{}) fail(d.where, "LookAt: eye and target are the same point");
+  if (up == Vec3d{}) fail(d.where, "LookAt: up is 0 0 0");
+  if (!(length(cross(normalize(view), normalize(up))) > kParallel))
+    fail(d.where, "LookAt: up is parallel to the direction of view");
+  d.scene().concat(Transform::look_at(vec3_at(v, 0), vec3_at(v, 3), vec3_at(v, 6)), d.name, d.where);
+}
+
+/// 16 numbers, column after column, in brackets.
+Transform matrix(Directive& d) {
+  d.bracket(Kind::open_bracket);
+  const auto m = d.numbers<16>();
+  d.bracket(Kind::close_bracket);
+  constexpr double kRounding = 1e-6;
+  const double w = m[15], projective = std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11])});
+  if (!(projective <= kRounding * std::abs(w)) || w == 0)
+    fail(d.where, "{}: the matrix is projective (its last row is {} {} {} {}, not 0 0 0 1)", d.name, m[3], m[7], m[11],
+         w);
+  if (projective > 0)
+    d.context.log.warn(
+        d.where, fmt::format("{}: the last row {} {} {} {} is taken for 0 0 0 {}", d.name, m[3], m[7], m[11], w, w));
+  Transform::RowsDouble rows;
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 4; ++j) rows[i][j] = m[4 * j + i] / w;
+  return Transform(rows);
+}
+
+void texture(Directive d) {
+  const Token name = d.quoted(), value = d.quoted();
+  d.scene().texture({d.text(name), d.place(name)}, {d.text(value), d.place(value)}, d.plugin());
+}
+
+void make_named_material(Directive d) {
+  ParsedPlugin plugin = d.plugin();
+  const std::string name = plugin.name;
+  d.scene().make_named_material(name, std::move(plugin));
+}
+
+void attribute(Directive d) {
+  const Token target = d.quoted();
+  d.scene().attribute(d.text(target), d.place(target), d.parameters());
+}
+
+void option(Directive d) { d.scene().option(d.context.parameters.read_option(d.context.tokens)); }
+
+void accelerator(Directive d) {
+  constexpr std::string_view kOfPbrt[] = {"bvh", "kdtree"};
+  const ParsedPlugin plugin = d.plugin();
+  if (std::ranges::find(kOfPbrt, plugin.name) == std::end(kOfPbrt))
+    d.context.log.warn(plugin.where, fmt::format("unknown accelerator \"{}\": Embree brings its own", plugin.name));
+}
+
+void medium_interface(Directive d) {
+  const bool is_empty = d.text(d.quoted()).empty();
+  const bool is_outside_empty = d.context.tokens.peek().kind != Kind::string || d.text(d.quoted()).empty();
+  if (is_empty && is_outside_empty) return;
+  d.context.unsupported.handle("media", d.where, d.name, "is left out", d.context.log);
+}
+
+void active_transform(Directive d) {
+  const Token which = d.context.tokens.next();
+  if (which.text == "All") return d.scene().activate_transforms(true);
+  if (which.kind != Kind::word || (which.text != "StartTime" && which.text != "EndTime"))
+    fail(d.place(which), "ActiveTransform takes StartTime, EndTime or All, {} was given", which.shown());
+  d.context.unsupported.handle("motion", d.where, d.name, "leaves all as it is at the start", d.context.log);
+  d.scene().activate_transforms(which.text == "StartTime");
+}
+
+template <ParsedPlugin SceneSettings::*option>
+void option_plugin(Directive d) {
+  d.scene().set_option_plugin(option, d.name, d.plugin());
+}
+
+/// Directives that take one name, or one plugin, or nothing.
+template <void (DescriptionBuilder::*act)(const std::string&, const Location&)>
+void with_name(Directive d) {
+  const Token name = d.quoted();
+  (d.scene().*act)(d.text(name), d.place(name));
+}
+template <void (DescriptionBuilder::*act)(ParsedPlugin)>
+void with_plugin(Directive d) {
+  (d.scene().*act)(d.plugin());
+}
+template <void (DescriptionBuilder::*act)(const Location&)>
+void alone(Directive d) {
+  (d.scene().*act)(d.where);
+}
+
+enum class Block : uint8_t { options, world, any };
+
+struct DirectiveEntry {
+  std::string_view name;
+  Block block;
+  void (*carry_out)(Directive);
+};
+
+using Builder = DescriptionBuilder;
+using Scene = SceneDescription;
+
+constexpr DirectiveEntry kDirectives[] = {
+    {"Accelerator", Block::options, accelerator},
+    {"ActiveTransform", Block::any, active_transform},
+    {"AreaLightSource", Block::world, with_plugin<&Builder::area_light>},
+    {"Attribute", Block::any, attribute},
+    {"AttributeBegin", Block::world, alone<&Builder::attribute_begin>},
+    {"AttributeEnd", Block::world, alone<&Builder::attribute_end>},
+    {"Camera", Block::options, with_plugin<&Builder::camera>},
+    {"ColorSpace", Block::any, with_name<&Builder::color_space>},
+    {"ConcatTransform", Block::any, [](Directive d) { d.scene().concat(matrix(d), d.name, d.where); }},
+    {"CoordSysTransform", Block::any, with_name<&Builder::recall_transform>},
+    {"CoordinateSystem", Block::any, with_name<&Builder::name_transform>},
+    {"Film", Block::options, with_plugin<&Builder::film>},
+    {"Identity", Block::any, [](Directive d) { d.scene().set_transform(Transform(), d.name, d.where); }},
+    {"Integrator", Block::options, option_plugin<&Scene::integrator>},
+    {"LightSource", Block::world, with_plugin<&Builder::light>},
+    {"LookAt", Block::any, look_at},
+    {"MakeNamedMaterial", Block::world, make_named_material},
+    {"MakeNamedMedium", Block::any, [](Directive d) { (void)d.plugin(); }},  // MediumInterface asks for it
+    {"Material", Block::world, with_plugin<&Builder::material>},
+    {"MediumInterface", Block::any, medium_interface},
+    {"NamedMaterial", Block::world, with_name<&Builder::named_material>},
+    {"ObjectBegin", Block::world, with_name<&Builder::object_begin>},
+    {"ObjectEnd", Block::world, alone<&Builder::object_end>},
+    {"ObjectInstance", Block::world, with_name<&Builder::object_instance>},
+    {"Option", Block::any, option},
+    {"PixelFilter", Block::options, option_plugin<&Scene::filter>},
+    {"ReverseOrientation", Block::world, [](Directive d) { d.scene().reverse_orientation(); }},
+    {"Rotate", Block::any, rotate},
+    {"Sampler", Block::options, option_plugin<&Scene::sampler>},
+    {"Scale", Block::any, scale},
+    {"Shape", Block::world, with_plugin<&Builder::shape>},
+    {"Texture", Block::world, texture},
+    {"Transform", Block::any, [](Directive d) { d.scene().set_transform(matrix(d), d.name, d.where); }},
+    {"TransformBegin", Block::world, alone<&Builder::transform_begin>},
+    {"TransformEnd", Block::world, alone<&Builder::transform_end>},
+    {"TransformTimes", Block::options, [](Directive d) { (void)d.numbers<2>(); }},  // ActiveTransform asks for it
+    {"Translate", Block::any,
+     [](Directive d) { d.scene().concat(Transform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},
+    {"WorldBegin", Block::any, alone<&Builder::world_begin>},
+};
+
+/// pbrt --upgrade of pbrt-v4 reads pbrt-v3's files alone.
+constexpr std::string_view kOfPbrt2[] = {"AreaLight",        "Exterior", "Interior",    "LightSourceBegin",
+                                         "Renderer",         "Search",   "SearchPath",  "SurfaceIntegrator",
+                                         "VolumeIntegrator", "Volume",   "VolumeRegion"};
+
+[[noreturn]] void fail_unknown(const Token& token, const Location& where) {
+  if (token.kind != Kind::word || parse_number(token.text))
+    fail(where, "a directive is needed, {} was given", token.shown());
+  if (token.text == "WorldEnd")
+    fail(where, "WorldEnd: this is a file for pbrt-v3 or older; \"pbrt --upgrade\" of pbrt-v4 makes one for pbrt-v4");
+  if (std::ranges::find(kOfPbrt2, token.text) != std::end(kOfPbrt2))
+    fail(where,
+         "{}: this is a file for pbrt-v2 or older; it has to become one for pbrt-v3 by hand (Integrator in place of "
+         "SurfaceIntegrator and Renderer), then for pbrt-v4 by \"pbrt --upgrade\"",
+         token.text);
+  std::vector<std::string_view> names{"Include", "Import"};
+  for (const DirectiveEntry& entry : kDirectives) names.push_back(entry.name);
+  const std::string_view match = nearest(token.text.substr(0, 80), names);
+  if (match.empty()) fail(where, "unknown directive {}", token.shown());
+  fail(where, "unknown directive {}; did you mean {}?", token.shown(), match);
+}
+
+const DirectiveEntry* find_directive(const Token& token) {
+  if (token.kind != Kind::word) return nullptr;
+  const auto found =
+      std::lower_bound(std::begin(kDirectives), std::end(kDirectives), token.text,
+                       [](const DirectiveEntry& entry, std::string_view name) { return entry.name < name; });
+  return found != std::end(kDirectives) && found->name == token.text ? found : nullptr;
+}
+static_assert(std::is_sorted(std::begin(kDirectives), std::end(kDirectives),
+                             [](const DirectiveEntry& a, const DirectiveEntry& b) { return a.name < b.name; }));
+
+}  // namespace
+
+Token read_quoted(Tokenizer& tokens, std::string_view directive) {
+  const Token token = tokens.next();
+  if (token.kind != Kind::string)
+    fail(tokens.where(token), "{} needs a quoted name, {} was given", directive, token.shown());
+  return token;
+}
+
+bool is_directive(std::string_view word) {
+  Token token;
+  token.kind = Kind::word;
+  token.text = word;
+  return word == "Include" || word == "Import" || find_directive(token);
+}
+
+void carry_out(const Token& name, DirectiveContext& context) {
+  const Location where = context.tokens.where(name);
+  const DirectiveEntry* entry = find_directive(name);
+  if (!entry) fail_unknown(name, where);
+  const bool in_world = context.scene.in_world();
+  if (entry->block == Block::options && in_world) fail(where, "{} belongs before WorldBegin", entry->name);
+  if (entry->block == Block::world && !in_world) {
+    const std::string message = fmt::format("{} belongs after WorldBegin", entry->name);
+    if (context.scene.is_incomplete()) throw Consequence(where, message);
+    fail(where, "{}", message);
+  }
+  entry->carry_out({entry->name, where, context});
+}
+
+}  // namespace frond

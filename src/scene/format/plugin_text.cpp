@@ -1,0 +1,135 @@
+#include "scene/format/plugin_text.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+
+#include "scene/format/words.h"
+
+namespace frond {
+namespace {
+
+std::optional<double> number(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') return {};
+  return value;
+}
+
+std::vector<double> numbers(const std::string& name, const std::string& text, const Location& where) {
+  std::vector<double> values;
+  for (const std::string& part : split(text, ',')) {
+    const auto value = number(part);
+    if (!value) fail(where, "\"{}\" is a number, {} was given", name, text);
+    values.push_back(*value);
+  }
+  return values;
+}
+
+/// One number: that at every wavelength. Three: rgb. Pairs: wavelengths (nm) and values. Else a name or an .spd file.
+void set_spectrum(const std::string& text, const Location& where, ParsedParam& p) {
+  p.type = "spectrum";
+  if (!number(split(text, ',')[0])) {
+    p.values = std::vector<std::string>{text};
+    return;
+  }
+  auto values = numbers(p.name, text, where);
+  if (values.size() == 1) values = {360, values[0], 2500, values[0]};
+  if (values.size() == 3) p.type = "rgb";
+  p.values = std::move(values);
+}
+
+/// The value as a scene file would have it.
+ParsedParam typed(const Param& declared, const std::string& text, const Location& where) {
+  ParsedParam p{"", std::string(declared.name), where, where, {}};
+  switch (declared.kind) {
+    case ParamKind::boolean:
+      if (text != "true" && text != "false") fail(where, "\"{}\" is true or false, {} was given", p.name, text);
+      p.type = "bool";
+      p.values = std::vector<bool>{text == "true"};
+      return p;
+    case ParamKind::string:
+    case ParamKind::material:
+      p.type = "string";
+      p.values = declared.list ? split(text, ',') : std::vector<std::string>{text};
+      return p;
+    case ParamKind::illuminant:
+    case ParamKind::albedo:
+    case ParamKind::unbounded:
+    case ParamKind::spectrum_texture:
+      set_spectrum(text, where, p);
+      return p;
+    case ParamKind::integer:
+    case ParamKind::real:
+    case ParamKind::float_texture:
+      p.type = declared.kind == ParamKind::integer ? "integer" : "float";
+      p.values = numbers(p.name, text, where);
+      return p;
+    default:
+      fail(where, "\"{}\" cannot be given on the command line: write it in the scene", p.name);
+  }
+}
+
+}  // namespace
+
+PluginText parse_plugin_text(const std::string& text, const Location& where) {
+  const auto parts = split(text, ',');
+  PluginText result{parts[0], {}};
+  if (result.name.empty()) fail(where, "a plugin's name and parameters look like NAME,parameter=value: {}", text);
+  for (size_t i = 1; i < parts.size(); ++i) {
+    const size_t equals = parts[i].find('=');
+    if (equals == std::string::npos && !parts[i].empty() && !result.params.empty()) {
+      result.params.back().second += ',' + parts[i];  // a list goes on
+      continue;
+    }
+    if (equals == std::string::npos || equals == 0 || equals + 1 == parts[i].size())
+      fail(where, "a parameter looks like name=value: \"{}\" in {}", parts[i], text);
+    result.params.emplace_back(parts[i].substr(0, equals), parts[i].substr(equals + 1));
+  }
+  return result;
+}
+
+const Param* find_param(const PluginInfo& info, std::string_view name) {
+  const auto found = std::ranges::find(info.params, name, &Param::name);
+  return found == info.params.end() ? nullptr : &*found;
+}
+
+const ParsedParam* find_param(const std::vector<ParsedParam>& params, std::string_view name) {
+  const auto found = std::ranges::find(params, name, &ParsedParam::name);
+  return found == params.end() ? nullptr : &*found;
+}
+
+bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
+  return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
+           return p.type == q.type && p.name == q.name && p.values == q.values && p.color_space == q.color_space;
+         });
+}
+
+ParsedParam parsed_numbers(const char* type, const char* name, std::vector<double> values) {
+  return {type, name, {}, {}, std::move(values)};
+}
+
+void set_param(std::vector<ParsedParam>& params, ParsedParam param) {
+  std::erase_if(params, [&param](const ParsedParam& p) { return p.name == param.name; });
+  params.push_back(std::move(param));
+}
+
+void set_params(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin) {
+  for (const auto& param : text.params) {
+    const std::string &name = param.first, &value = param.second;
+    const Param* declared = find_param(info, name);
+    if (!declared) {
+      std::vector<std::string_view> names;
+      for (const Param& p : info.params) names.push_back(p.name);
+      fail(where, "{} \"{}\" has no parameter \"{}\"{}", info.kind, info.name, name, suggestion(name, names));
+    }
+    set_param(plugin.params, typed(*declared, value, where));
+  }
+}
+
+void override_plugin(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin) {
+  if (plugin.name != text.name) plugin = {text.name, where, {}};
+  set_params(text, info, where, plugin);
+}
+
+}  // namespace frond

@@ -1,0 +1,221 @@
+#include "scene/geometry/embree_copies.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "scene/geometry/embree_surfaces.h"
+
+namespace frond {
+namespace {
+
+Float4 to_float4(const Vec3& v) { return Float4{v.x, v.y, v.z, 0}; }
+
+/// Whether a ray passes a box. Copies' boxes in the world are wider than those in their own space: most of the rays
+/// that pass the one miss the other.
+bool passes(Float4 origin, Float4 direction, float t_max, const Bounds& box) {
+  const Float4 inverse = 1 / direction;
+  const Float4 a = (to_float4(box.min) - origin) * inverse, b = (to_float4(box.max) - origin) * inverse;
+  // NaN, where a ray runs along a face, may be in or out: boxes are a little wider than what is in them.
+  const Float4 near = b < a ? b : a, far = a < b ? b : a;
+  const Float4 start{}, end = start + t_max;
+  const Float4 enter = start < near ? near : start, leave = far < end ? far : end;
+  return std::max({enter[0], enter[1], enter[2]}) <= std::min({leave[0], leave[1], leave[2]}) * (1 + 0x1p-20f);
+}
+
+using Float8 = float __attribute__((vector_size(32), may_alias));
+
+Float8& lanes(float* x) { return *reinterpret_cast<Float8*>(x); }
+const Float8& lanes(const float* x) { return *reinterpret_cast<const Float8*>(x); }
+
+/// Both may be the same rays.
+void transform(const AffineMap::Inverse& map, const RTCRay8& in, RTCRay8& out) {
+  const auto& [x, y, z, t] = map;
+  const Float8 px = lanes(in.org_x) - t[0], py = lanes(in.org_y) - t[1], pz = lanes(in.org_z) - t[2];
+  lanes(out.org_x) = x[0] * px + y[0] * py + z[0] * pz;
+  lanes(out.org_y) = x[1] * px + y[1] * py + z[1] * pz;
+  lanes(out.org_z) = x[2] * px + y[2] * py + z[2] * pz;
+  const Float8 dx = lanes(in.dir_x), dy = lanes(in.dir_y), dz = lanes(in.dir_z);
+  lanes(out.dir_x) = x[0] * dx + y[0] * dy + z[0] * dz;
+  lanes(out.dir_y) = x[1] * dx + y[1] * dy + z[1] * dz;
+  lanes(out.dir_z) = x[2] * dx + y[2] * dy + z[2] * dz;
+  lanes(out.tnear) = lanes(in.tnear);
+  lanes(out.tfar) = lanes(in.tfar);
+  lanes(out.time) = lanes(in.time);
+  std::memcpy(out.mask, in.mask, sizeof out.mask);
+  std::memcpy(out.id, in.id, sizeof out.id);
+  std::memcpy(out.flags, in.flags, sizeof out.flags);
+}
+
+/// As `passes` of one ray. Whether any does.
+bool passes(const RTCRay8& rays, const Bounds& box, const int* valid, int* passing) {
+  Float8 enter{}, leave = lanes(rays.tfar);
+  const auto clip = [&](const float* origins, const float* directions, float low, float high) {
+    const Float8 inverse = 1 / lanes(directions);
+    const Float8 a = (low - lanes(origins)) * inverse, b = (high - lanes(origins)) * inverse;
+    const Float8 near = a < b ? a : b, far = a < b ? b : a;
+    enter = near > enter ? near : enter;
+    leave = far < leave ? far : leave;
+  };
+  clip(rays.org_x, rays.dir_x, box.min.x, box.max.x);
+  clip(rays.org_y, rays.dir_y, box.min.y, box.max.y);
+  clip(rays.org_z, rays.dir_z, box.min.z, box.max.z);
+  const auto inside = enter <= leave * (1 + 0x1p-20f);
+  int any = 0;
+  for (int i = 0; i < RayPacket::kWidth; ++i) any |= passing[i] = valid[i] & inside[i];
+  return any != 0;
+}
+
+/// What Embree asks of copies of objects: the ray is taken into the object's space, and the search goes on there.
+struct Callbacks {
+  /// False where the ray misses the object's box.
+  static bool to_object(const embree::Copy& copy, const RTCRay& ray, RTCRay& inner) {
+    const GeometryCopies& copies = *static_cast<const GeometryCopies*>(copy.copies);
+    Float4 origin = embree::origin(ray), direction = embree::direction(ray);
+    if (copies.instances.is_placed) {
+      origin = copies.from_placement.point(origin);
+      direction = copies.from_placement.vector(direction);
+    }
+    AffineMap::Inverse made;
+    const AffineMap::Inverse& map = copies.inverse(copy.row, made);
+    inner = embree::from_vectors(map.point(origin), map.vector(direction), ray.tfar);
+    return passes(embree::origin(inner), embree::direction(inner), ray.tfar, copies.object(copy.row).bounds);
+  }
+
+  static void intersect(const RTCIntersectFunctionNArguments* args) {
+    const auto& copies = *static_cast<const GeometryCopies*>(args->geometryUserPtr);
+    auto& query = *reinterpret_cast<embree::Query*>(args->context);
+    const embree::Copy copy{&copies, args->primID};
+    if (args->N == RayPacket::kWidth) {
+      intersect(copy, args->valid, *reinterpret_cast<RTCRayHit8*>(args->rayhit), query);
+    } else if (args->valid[0]) {
+      intersect(copy, *reinterpret_cast<RTCRayHit*>(args->rayhit), query);
+    }
+  }
+
+  static void occluded(const RTCOccludedFunctionNArguments* args) {
+    const auto& copies = *static_cast<const GeometryCopies*>(args->geometryUserPtr);
+    auto& query = *reinterpret_cast<embree::Query*>(args->context);
+    const embree::Copy copy{&copies, args->primID};
+    if (args->N == RayPacket::kWidth) {
+      occluded(copy, args->valid, *reinterpret_cast<RTCRay8*>(args->ray), query);
+    } else if (args->valid[0]) {
+      occluded(copy, *reinterpret_cast<RTCRay*>(args->ray), query);
+    }
+  }
+
+  static void intersect(const embree::Copy& copy, RTCRayHit& ray, embree::Query& query) {
+    const auto& copies = *static_cast<const GeometryCopies*>(copy.copies);
+    RTCRayHit nested;
+    if (!to_object(copy, ray.ray, nested.ray)) return;
+    const GeometryObject& object = copies.object(copy.row);
+    const uint32_t level = query.depth;
+    query.enter(copy);
+    if (object.only_primitive) {
+      constexpr embree::Target kOnly{0, 0};
+      const Ray inner = embree::to_ray(nested.ray);
+      if (const auto point = embree::meet(*object.only_primitive, kOnly, inner, query, *query.lane)) {
+        embree::report(*point, kOnly, reinterpret_cast<RTCRayHitN*>(&ray), 1, 0, query);
+        query.lane->hit[level] = copy;
+      }
+    } else {
+      nested.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      embree::intersect(object.scene.get(), nested, query);
+      if (nested.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
+        ray.ray.tfar = nested.ray.tfar;
+        ray.hit = nested.hit;
+        query.lane->hit[level] = copy;
+      }
+    }
+    query.leave();
+  }
+
+  static void occluded(const embree::Copy& copy, RTCRay& ray, embree::Query& query) {
+    const auto& copies = *static_cast<const GeometryCopies*>(copy.copies);
+    RTCRay nested;
+    if (!to_object(copy, ray, nested)) return;
+    const GeometryObject& object = copies.object(copy.row);
+    query.enter(copy);
+    if (object.only_primitive) {
+      if (embree::meet(*object.only_primitive, {0, 0}, embree::to_ray(nested), query, *query.lane))
+        ray.tfar = -INFINITY;
+    } else {
+      embree::occluded(object.scene.get(), nested, query);
+      if (nested.tfar < 0) ray.tfar = -INFINITY;
+    }
+    query.leave();
+  }
+
+  /// The rays of a packet in the object's space, and which of them pass its box. False where none does.
+  static bool to_object(const embree::Copy& copy, const int* valid, const RTCRay8& rays, RTCRay8& inner, int* passing) {
+    const GeometryCopies& copies = *static_cast<const GeometryCopies*>(copy.copies);
+    AffineMap::Inverse made;
+    const AffineMap::Inverse& map = copies.inverse(copy.row, made);
+    if (copies.instances.is_placed) {
+      transform(copies.from_placement, rays, inner);
+      transform(map, inner, inner);
+    } else {
+      transform(map, rays, inner);
+    }
+    return passes(inner, copies.object(copy.row).bounds, valid, passing);
+  }
+
+  static void intersect(const embree::Copy& copy, const int* valid, RTCRayHit8& rays, embree::Query& query) {
+    RTCRayHit8 inner;
+    alignas(32) std::array<int, RayPacket::kWidth> passing;
+    if (!to_object(copy, valid, rays.ray, inner.ray, passing.data())) return;
+    std::ranges::fill(inner.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+    const uint32_t level = query.depth;
+    query.enter(copy);
+    embree::intersect(passing.data(), static_cast<const GeometryCopies*>(copy.copies)->object(copy.row).scene.get(),
+                      inner, query);
+    query.leave();
+    for (unsigned i = 0; i < RayPacket::kWidth; ++i) {
+      if (!passing[i] || inner.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      rays.ray.tfar[i] = inner.ray.tfar[i];
+      const RTCHit at = rtcGetHitFromHitN(reinterpret_cast<RTCHitN*>(&inner.hit), RayPacket::kWidth, i);
+      rtcCopyHitToHitN(reinterpret_cast<RTCHitN*>(&rays.hit), &at, RayPacket::kWidth, i);
+      query.lane[i].hit[level] = copy;
+    }
+  }
+
+  static void occluded(const embree::Copy& copy, const int* valid, RTCRay8& rays, embree::Query& query) {
+    RTCRay8 inner;
+    alignas(32) std::array<int, RayPacket::kWidth> passing;
+    if (!to_object(copy, valid, rays, inner, passing.data())) return;
+    query.enter(copy);
+    embree::occluded(passing.data(), static_cast<const GeometryCopies*>(copy.copies)->object(copy.row).scene.get(),
+                     inner, query);
+    query.leave();
+    for (unsigned i = 0; i < RayPacket::kWidth; ++i)
+      if (passing[i] && inner.tfar[i] < 0) rays.tfar[i] = -INFINITY;
+  }
+
+  static void bounds(const RTCBoundsFunctionArguments* args) {
+    const auto& copies = *static_cast<const GeometryCopies*>(args->geometryUserPtr);
+    const Instances& i = copies.instances;
+    const AffineMap map = i.table->map(args->primID);
+    Bounds b;
+    for (const Vec3& corner : copies.object(args->primID).outline) {
+      const Vec3 p = map.point(corner);
+      b.add(i.is_placed ? i.placement.point(p) : p);
+    }
+    b = widened(b);  // points are rounded on their way out, rays on their way in
+    *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
+  }
+};
+
+}  // namespace
+
+RTCGeometry embree::new_geometry(RTCDevice device, const GeometryCopies& copies) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(copies.instances.table->size()));
+  rtcSetGeometryBoundsFunction(geometry, Callbacks::bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, Callbacks::intersect);
+  rtcSetGeometryOccludedFunction(geometry, Callbacks::occluded);
+  rtcSetGeometryUserData(geometry, const_cast<GeometryCopies*>(&copies));
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+}  // namespace frond

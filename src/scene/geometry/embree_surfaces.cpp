@@ -1,0 +1,132 @@
+#include "scene/geometry/embree_surfaces.h"
+
+#include <algorithm>
+
+#include "scene/geometry/triangle.h"
+
+namespace frond::embree {
+namespace {
+
+/// On a mesh, in the space of the object that it is part of.
+TexturePoint texture_point(const Surface& surface, const RTCHit& hit) {
+  const Triangle t(*std::get<MeshPtr>(surface.geometry), hit.primID, {hit.u, hit.v});
+  return {.uv = t.uv(), .p = t.p(), .n = normalize_any(Vec3{hit.Ng_x, hit.Ng_y, hit.Ng_z})};
+}
+TexturePoint texture_point(const AnalyticShape& shape, unsigned primitive, const ShapePoint& at) {
+  return {.uv = shape.uv(primitive, at.at), .p = at.p, .n = normalize_any(at.ng)};
+}
+
+/// Whether a ray passes a partly transparent surface: decided for each ray and primitive, in whatever order Embree
+/// asks. `layer` counts the sheets of one primitive along the ray.
+bool passes(const Surface& surface, const Target& target, const TexturePoint& at, const Query& query, const Lane& lane,
+            unsigned layer = 0) {
+  const float alpha = surface.alpha->evaluate(at);
+  if (alpha >= 1) return false;
+  RandomStream random(
+      hash_key(lane.key, (uint64_t(target.geometry) << 32) | target.primitive, query.place(), uint64_t(layer)));
+  return random.uniform() >= alpha;
+}
+
+template <class Context>
+Query& query_of(Context* context) {
+  return *reinterpret_cast<Query*>(context);
+}
+
+void filter_alpha(const RTCFilterFunctionNArguments* args) {
+  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  const Query& query = query_of(args->context);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const RTCHit hit = rtcGetHitFromHitN(args->hit, args->N, i);
+    if (passes(surface, {hit.geomID, hit.primID}, texture_point(surface, hit), query, query.lane[i]))
+      args->valid[i] = 0;
+  }
+}
+
+void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
+  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  Query& query = query_of(args->context);
+  const Target target{args->geomID, args->primID};
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const Ray ray = to_ray(rtcGetRayFromRayN(rays, args->N, i));
+    if (const auto point = meet(surface, target, ray, query, query.lane[i]))
+      report(*point, target, args->rayhit, args->N, i, query);
+  }
+}
+
+void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
+  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  const Query& query = query_of(args->context);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (!args->valid[i]) continue;
+    const Ray ray = to_ray(rtcGetRayFromRayN(args->ray, args->N, i));
+    if (meet(surface, {args->geomID, args->primID}, ray, query, query.lane[i]))
+      RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+  }
+}
+
+void bounds_analytic(const RTCBoundsFunctionArguments* args) {
+  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  const Bounds b = std::get<AnalyticShapePtr>(surface.geometry)->bounds(args->primID);
+  *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
+}
+
+RTCGeometry mesh_geometry(RTCDevice device, const Surface& surface) {
+  const TriangleMesh& mesh = *std::get<MeshPtr>(surface.geometry);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                             sizeof(mesh.triangles[0]), mesh.triangles.size());
+  // Embree reads 16 bytes at the last vertex: a copy that it pads itself.
+  void* vertices =
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.p.size());
+  std::copy(mesh.p.begin(), mesh.p.end(), static_cast<Vec3*>(vertices));
+  if (surface.alpha) {
+    rtcSetGeometryIntersectFilterFunction(geometry, filter_alpha);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter_alpha);
+  }
+  return geometry;
+}
+
+RTCGeometry analytic_geometry(RTCDevice device, const Surface& surface) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, std::get<AnalyticShapePtr>(surface.geometry)->count());
+  rtcSetGeometryBoundsFunction(geometry, bounds_analytic, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect_analytic);
+  rtcSetGeometryOccludedFunction(geometry, occluded_analytic);
+  return geometry;
+}
+
+}  // namespace
+
+std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query,
+                               const Lane& lane) {
+  const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
+  auto point = shape.intersect(target.primitive, ray, 0);
+  for (unsigned layer = 0; point && surface.alpha &&
+                           passes(surface, target, texture_point(shape, target.primitive, *point), query, lane, layer);
+       ++layer)
+    point = shape.intersect(target.primitive, ray, point->t);
+  return point;
+}
+
+void report(const ShapePoint& point, const Target& target, RTCRayHitN* rays, unsigned n, unsigned i, Query& query) {
+  RTCRayN_tfar(RTCRayHitN_RayN(rays, n), n, i) = point.t;
+  query.lane[i].p = point.p;
+  RTCHitN* hit = RTCRayHitN_HitN(rays, n);
+  RTCHitN_Ng_x(hit, n, i) = point.ng.x, RTCHitN_Ng_y(hit, n, i) = point.ng.y, RTCHitN_Ng_z(hit, n, i) = point.ng.z;
+  RTCHitN_u(hit, n, i) = point.at.x, RTCHitN_v(hit, n, i) = point.at.y;
+  RTCHitN_primID(hit, n, i) = target.primitive, RTCHitN_geomID(hit, n, i) = target.geometry;
+  RTCHitN_instID(hit, n, i, 0) = query.base.instID[0];
+}
+
+RTCGeometry new_geometry(RTCDevice device, const Surface& surface) {
+  RTCGeometry geometry = std::holds_alternative<MeshPtr>(surface.geometry) ? mesh_geometry(device, surface)
+                                                                           : analytic_geometry(device, surface);
+  rtcSetGeometryUserData(geometry, const_cast<Surface*>(&surface));
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+}  // namespace frond::embree

@@ -1,0 +1,333 @@
+#include "scene/geometry/geometry.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/error.h"
+#include "scene/geometry/embree_copies.h"
+#include "scene/geometry/embree_surfaces.h"
+#include "scene/geometry/outline.h"
+#include "scene/geometry/triangle.h"
+
+namespace frond {
+namespace {
+
+Bounds bounds_of(RTCScene scene) {
+  RTCBounds b;
+  rtcGetSceneBounds(scene, &b);
+  return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+}
+
+/// How far offset_origin lifts rays off, as a share of a hit's extent.
+constexpr float kLiftOfExtent = 0x1p-17f;
+
+Vec3 face_forward(const Vec3& n, const Vec3& reference) { return dot(n, reference) < 0 ? -n : n; }
+
+/// Where the surface is so small, or its vertex normals so contrary, that there is no normal, the next best: no NaN.
+void set_frame(Hit& hit, const Vec3* ns, const Vec3& direction) {
+  const Vec3 geometric = normalize_any(hit.ng), shading = ns ? normalize_any(*ns) : geometric;
+  hit.ng = geometric == Vec3{} ? -direction : geometric;
+  hit.shading = Frame::around(shading == Vec3{} ? hit.ng : face_forward(shading, hit.ng));
+}
+
+RTCRay8 from_packet(const RayPacket& packet) {
+  RTCRay8 rays;
+  for (size_t i = 0; i < RayPacket::kWidth; ++i) {
+    const Ray& r = packet.rays[i];
+    rays.org_x[i] = r.o.x, rays.org_y[i] = r.o.y, rays.org_z[i] = r.o.z;
+    rays.dir_x[i] = r.d.x, rays.dir_y[i] = r.d.y, rays.dir_z[i] = r.d.z;
+    rays.tfar[i] = r.t_max;
+  }
+  std::ranges::fill(rays.tnear, 0x1p-126f);  // a camera may stand in the plane of what it does not see
+  std::ranges::fill(rays.time, 0.f);
+  std::ranges::fill(rays.mask, ~0u);
+  std::ranges::fill(rays.id, 0u);
+  std::ranges::fill(rays.flags, 0u);
+  return rays;
+}
+
+/// What Embree, and we, know of a packet's rays.
+struct PacketQuery {
+  alignas(32) std::array<int, RayPacket::kWidth> valid;
+  std::array<embree::Lane, RayPacket::kWidth> lanes;
+  embree::Query query{lanes.data()};
+
+  explicit PacketQuery(const RayPacket& packet) {
+    for (size_t i = 0; i < RayPacket::kWidth; ++i) {
+      valid[i] = -int(packet.lanes >> i & 1);
+      lanes[i].key = packet.keys[i];
+    }
+  }
+};
+
+/// In the space of the object that the surface is part of. Whether the shading normal is not the geometric one.
+bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hit& hit, Vec3& ns) {
+  hit.extent = 0;
+  if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry)) {
+    const Triangle t(**mesh, at.primID, {at.u, at.v});
+    hit.p = t.p();
+    for (const uint32_t i : t.corners()) hit.extent = std::max(hit.extent, largest_coordinate((*mesh)->p[i]));
+    hit.ng = t.ng();
+    hit.at.uv = t.uv();
+    if ((*mesh)->n.empty()) return false;
+    ns = t.ns();
+    return true;
+  }
+  hit.ng = {at.Ng_x, at.Ng_y, at.Ng_z};
+  const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
+  hit.at.uv = shape.uv(at.primID, {at.u, at.v});
+  hit.p = lane.p;
+  hit.extent = largest_coordinate(hit.p);
+  if (shape.is_plain()) return false;
+  hit.extent = std::max(hit.extent, shape.clearance({lane.p, hit.ng, {at.u, at.v}, 0, at.primID}) / kLiftOfExtent);
+  ns = shape.shading_normal(at.primID, {at.u, at.v});
+  return !(ns == Vec3{});
+}
+
+SurfaceDerivatives derivatives_of(const Surface& surface, const RTCHit& at, const embree::Lane& lane) {
+  if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry))
+    return Triangle(**mesh, at.primID, {at.u, at.v}).derivatives();
+  return std::get<AnalyticShapePtr>(surface.geometry)
+      ->derivatives({lane.p, {at.Ng_x, at.Ng_y, at.Ng_z}, {at.u, at.v}, 0, at.primID});
+}
+
+/// Out of an object into the space where a copy of it stands. Normals grow in length with what they are of.
+void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDerivatives& d) {
+  d.dpdu = map.vector(d.dpdu), d.dpdv = map.vector(d.dpdv);
+  d.dndu = inverse.normal_out(d.dndu), d.dndv = inverse.normal_out(d.dndv);
+}
+
+/// A hit's, and its frame along them.
+[[gnu::noinline]] void set_derivatives(const Surface& surface, const RTCHit& at, const embree::Lane& lane,
+                                       uint32_t level, Hit& hit) {
+  SurfaceDerivatives d = derivatives_of(surface, at, lane);
+  for (uint32_t i = level; i-- > 0;) {
+    const auto& copies = *static_cast<const GeometryCopies*>(lane.hit[i].copies);
+    const uint32_t row = lane.hit[i].row;
+    AffineMap::Inverse made;
+    place(copies.instances.table->map(row), copies.inverse(row, made), d);
+    if (copies.instances.is_placed) place(copies.instances.placement, copies.from_placement, d);
+  }
+  hit.derivatives = d;
+  hit.shading = Frame::along(hit.shading.z, d.dpdu);
+}
+
+/// A normal that a map may be applied to: no product of it overflows or vanishes.
+Vec3 of_moderate_length(const Vec3& n) {
+  const float square = dot(n, n);
+  return square > 1e-16f && square < 1e16f ? n : normalize_any(n);
+}
+
+/// Out of an object into the space where a copy of it stands. `ns` is nullptr where it is that of the hit.
+void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Vec3* ns) {
+  hit.p = map.point(hit.p);
+  hit.extent = map.largest_stretch() * hit.extent + largest_coordinate(map.translation());
+  hit.ng = inverse.normal_out(of_moderate_length(hit.ng));
+  if (ns) *ns = inverse.normal_out(of_moderate_length(*ns));
+}
+
+}  // namespace
+
+void embree::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+void embree::Release::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+
+Geometry::Geometry(std::vector<ObjectParts> objects, ObjectParts world, int threads) {
+  // AVX-512 gains nothing for single rays, and changes the last bits of hits.
+  device_.reset(rtcNewDevice(fmt::format("max_isa=avx2,threads={}", threads).c_str()));
+  if (!device_) fail({}, "Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
+  for (ObjectParts& parts : objects) {
+    const uint64_t first_id = parts.surfaces.empty() ? 0 : 1;
+    objects_.push_back(build(std::move(parts), first_id));
+  }
+  world_ = build(std::move(world), 1);
+  if (world_->depth > InstanceRows::kMost)
+    fail({}, "copies of objects are nested {} deep: {} is the limit", world_->depth, InstanceRows::kMost);
+}
+
+Geometry::~Geometry() = default;
+
+void Geometry::check() const {
+  if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
+    fail({}, "Embree cannot build the scene: {}",
+         error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(error)));
+}
+
+std::unique_ptr<GeometryObject> Geometry::build(ObjectParts parts, uint64_t first_id) {
+  auto object = std::make_unique<GeometryObject>(GeometryObject{.parts = std::move(parts)});
+  if (!object->parts.instances.empty()) object->ids = first_id;
+  object->scene.reset(rtcNewScene(device_.get()));
+  RTCScene scene = object->scene.get();
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips between triangles
+  attach(*object);
+  rtcCommitScene(scene);
+  check();
+  object->bounds = widened(bounds_of(scene));
+  object->outline = outline_of(object->parts, bounds_of(scene));
+  const auto& surfaces = object->parts.surfaces;
+  if (object->copies.empty() && surfaces.size() == 1)
+    if (const auto* shape = std::get_if<AnalyticShapePtr>(&surfaces[0].geometry); shape && (*shape)->count() == 1)
+      object->only_primitive = &surfaces[0];
+  return object;
+}
+
+void Geometry::attach(GeometryObject& object) {
+  unsigned id = 0;
+  const auto add = [&](RTCGeometry geometry) {
+    rtcAttachGeometryByID(object.scene.get(), geometry, id++);
+    rtcReleaseGeometry(geometry);
+  };
+  for (const Surface& surface : object.parts.surfaces) add(embree::new_geometry(device_.get(), surface));
+  if (object.parts.instances.empty()) return;
+  for (const Instances& instances : object.parts.instances) {
+    GeometryCopies copies{.instances = instances, .objects = {}, .first_id = object.ids};
+    for (const uint32_t place : instances.objects) copies.objects.push_back(objects_[place].get());
+    const size_t rows = instances.table->size();
+    if (rows <= GeometryCopies::kMostKept) {
+      copies.inverses.reserve(rows);
+      for (size_t row = 0; row < rows; ++row) copies.inverses.push_back(instances.table->map(row).inverse());
+    }
+    if (instances.is_placed) copies.from_placement = instances.placement.inverse();
+    const auto as_many = [&](const GeometryObject* o) { return o->ids == copies.objects.front()->ids; };
+    if (rows == 0 || std::ranges::all_of(copies.objects, as_many)) {
+      object.ids += rows == 0 ? 0 : rows * copies.objects.front()->ids;
+    } else {
+      for (size_t row = 0; row < rows; ++row) {
+        copies.ids.push_back(object.ids);
+        object.ids += copies.object(row).ids;
+      }
+    }
+    for (const GeometryObject* o : copies.objects) object.depth = std::max(object.depth, o->depth + 1);
+    object.copies.push_back(std::move(copies));
+  }
+  for (const GeometryCopies& copies : object.copies) add(embree::new_geometry(device_.get(), copies));
+}
+
+std::vector<InstanceColumn> Geometry::columns() const {
+  std::vector<InstanceColumn> all;
+  const auto add = [&all](const GeometryObject& object) {
+    for (const Instances& set : object.parts.instances)
+      for (const InstanceColumn& c : set.table->columns()) {
+        const auto known = std::ranges::find(all, c.name, &InstanceColumn::name);
+        if (known == all.end())
+          all.push_back(c);
+        else
+          known->range = {std::min(known->range.min, c.range.min), std::max(known->range.max, c.range.max)};
+      }
+  };
+  for (const auto& object : objects_) add(*object);
+  add(*world_);
+  return all;
+}
+
+bool Geometry::closest(const Ray& ray, uint64_t key, RTCRayHit& query) const {
+  embree::Lane lane;
+  lane.key = key;
+  embree::Query context(&lane);
+  return closest(ray, context, query);
+}
+
+bool Geometry::closest(const Ray& ray, embree::Query& context, RTCRayHit& query) const {
+  query.ray = embree::from_ray(ray);
+  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  embree::intersect(world_->scene.get(), query, context);
+  return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+bool Geometry::intersect(const Ray& ray, uint64_t key, DetailedMaterials detailed, GeometryHit& met, Hit& hit) const {
+  RTCRayHit query;
+  embree::Lane lane;
+  lane.key = key;
+  embree::Query context(&lane);
+  if (!closest(ray, context, query)) return false;
+  met.t = query.ray.tfar;
+  describe(query.hit, lane, ray, detailed, met, hit);
+  return true;
+}
+
+uint32_t Geometry::closest(const RayPacket& packet, embree::Query& context, const int* valid, RTCRayHit8& query) const {
+  query.ray = from_packet(packet);
+  std::ranges::fill(query.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+  std::ranges::fill(query.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+  embree::intersect(valid, world_->scene.get(), query, context);
+  uint32_t hits = 0;
+  for (size_t i = 0; i < RayPacket::kWidth; ++i)
+    if (valid[i] && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) hits |= 1u << i;
+  return hits;
+}
+
+uint32_t Geometry::closest(const RayPacket& packet, RTCRayHit8& query) const {
+  PacketQuery context(packet);
+  return closest(packet, context.query, context.valid.data(), query);
+}
+
+uint32_t Geometry::intersect(const RayPacket& packet, DetailedMaterials detailed, GeometryHit* met,
+                             SurfacePoint* points) const {
+  PacketQuery context(packet);
+  RTCRayHit8 query;
+  const uint32_t hits = closest(packet, context.query, context.valid.data(), query);
+  for (unsigned i = 0; i < RayPacket::kWidth; ++i)
+    if (hits >> i & 1) {
+      const RTCHit at = rtcGetHitFromHitN(reinterpret_cast<RTCHitN*>(&query.hit), RayPacket::kWidth, i);
+      met[i].t = query.ray.tfar[i];
+      describe(at, context.lanes[i], packet.rays[i], detailed, met[i], points[i].hit);
+    }
+  return hits;
+}
+
+void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& ray, DetailedMaterials detailed,
+                        GeometryHit& met, Hit& hit) const {
+  const GeometryObject* object = world_.get();
+  const uint32_t level = embree::level_of(at);
+  hit.at.instance = {};
+  met.instance = 0;
+  for (uint32_t i = 0; i < level; ++i) {
+    const auto& copies = *static_cast<const GeometryCopies*>(lane.hit[i].copies);
+    const uint32_t row = lane.hit[i].row;
+    const InstanceTable& table = *copies.instances.table;
+    object = &copies.object(row);
+    met.instance += copies.ids.empty() ? copies.first_id + row * object->ids : copies.ids[row];
+    if (!table.columns().empty()) hit.at.instance.add(table.columns(), table.bytes(row));
+  }
+  const Surface& surface = object->parts.surfaces[at.geomID];
+  Vec3 own_normal;
+  Vec3* const ns = fill(surface, at, lane, hit, own_normal) ? &own_normal : nullptr;
+  for (uint32_t i = level; i-- > 0;) {
+    const auto& copies = *static_cast<const GeometryCopies*>(lane.hit[i].copies);
+    const uint32_t row = lane.hit[i].row;
+    AffineMap::Inverse made;
+    place(copies.instances.table->map(row), copies.inverse(row, made), hit, ns);
+    if (copies.instances.is_placed) place(copies.instances.placement, copies.from_placement, hit, ns);
+  }
+  set_frame(hit, ns, ray.d);
+  if (detailed.contains(surface.material)) set_derivatives(surface, at, lane, level, hit);
+  met.material = surface.material;
+  met.surface = level == 0 ? std::optional(at.geomID) : std::nullopt;
+  met.primitive = at.primID;
+}
+
+uint32_t Geometry::occluded(const RayPacket& packet) const {
+  PacketQuery context(packet);
+  RTCRay8 query = from_packet(packet);
+  embree::occluded(context.valid.data(), world_->scene.get(), query, context.query);
+  uint32_t hits = 0;
+  for (size_t i = 0; i < RayPacket::kWidth; ++i)
+    if (context.valid[i] && query.tfar[i] < 0) hits |= 1u << i;
+  return hits;
+}
+
+bool Geometry::occluded(const Ray& ray, uint64_t key) const {
+  RTCRay query = embree::from_ray(ray);
+  embree::Lane lane;
+  lane.key = key;
+  embree::Query context(&lane);
+  embree::occluded(world_->scene.get(), query, context);
+  return query.tfar < 0;
+}
+
+Bounds Geometry::bounds() const { return bounds_of(world_->scene.get()); }
+
+const std::vector<Surface>& Geometry::surfaces() const { return world_->parts.surfaces; }
+
+uint64_t Geometry::instances() const { return world_->copies.empty() ? 0 : world_->ids - 1; }
+
+}  // namespace frond

@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <map>
+
+#include "scene/geometry/geometry_object.h"
+
+namespace frond {
+namespace {
+
+/// Goes through all copies, and those in them.
+class Areas {
+ public:
+  explicit Areas(std::vector<float>& areas) : areas_(areas) {}
+
+  /// `first`: the number of the object's own surfaces; those of copies in it count from there.
+  void visit(const GeometryObject& object, const Transform& to_world, uint64_t first) {
+    if (first > 0)
+      for (const Surface& s : object.parts.surfaces) areas_[first - 1] += float(area(s, to_world));
+    for (const GeometryCopies& copies : object.copies) {
+      const Instances& set = copies.instances;
+      const Transform placed = set.is_placed ? to_world * transform_of(set.placement) : to_world;
+      for (size_t row = 0; row < set.table->size(); ++row) {
+        const GeometryObject& copied = copies.object(row);
+        const uint64_t id = copies.ids.empty() ? copies.first_id + row * copied.ids : copies.ids[row];
+        visit(copied, placed * transform_of(set.table->map(row)), first + id);
+      }
+    }
+  }
+
+ private:
+  static Transform transform_of(const AffineMap& map) {
+    Transform::RowsDouble rows;
+    for (size_t i = 0; i < 3; ++i) std::ranges::copy(map.rows[i], rows[i].begin());
+    return Transform(rows);
+  }
+
+  /// Of a similar image the area is that of the surface times a factor.
+  double area(const Surface& surface, const Transform& t) {
+    if (const auto scale = AffineMap{t.rows()}.area_scale()) {
+      const auto [known, is_new] = own_.try_emplace(&surface, 0);
+      if (is_new) known->second = area_under(surface, Transform());
+      return known->second * double(*scale);
+    }
+    return area_under(surface, t);
+  }
+
+  static double area_under(const Surface& surface, const Transform& t) {
+    double sum = 0;
+    if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry)) {
+      for (const auto& [a, b, c] : (*mesh)->triangles) {
+        const auto& p = (*mesh)->p;
+        sum += double(length(cross(t.vector(p[b] - p[a]), t.vector(p[c] - p[a])))) / 2;
+      }
+      return sum;
+    }
+    // By how much the map stretches the surface, on average over its points: exact where it is flat.
+    constexpr int kPoints = 64;
+    const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
+    const AffineMap map{t.rows()};
+    for (unsigned primitive = 0; primitive < shape.count(); ++primitive)
+      for (int i = 0; i < kPoints; ++i) {
+        const Vec2 u{(float(i) + 0.5f) / kPoints, float((i * 37) % kPoints) / kPoints};
+        const ShapePoint point = shape.sample(primitive, u);
+        sum += double(length(map.normal(point.ng))) * point.area / kPoints;
+      }
+    return sum;
+  }
+
+  std::vector<float>& areas_;
+  std::map<const Surface*, double> own_;
+};
+
+}  // namespace
+
+std::vector<float> Geometry::areas() const {
+  std::vector<float> areas(instances());
+  Areas(areas).visit(*world_, Transform(), 0);
+  return areas;
+}
+
+}  // namespace frond

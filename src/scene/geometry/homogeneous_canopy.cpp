@@ -1,0 +1,102 @@
+#include "scene/geometry/homogeneous_canopy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "scene/geometry/instance_writer.h"
+
+namespace frond {
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+
+constexpr LeafAngles kDistributions[] = {
+    {"spherical", [](double theta) { return std::sin(theta); }},
+    {"planophile", [](double theta) { return 1 + std::cos(2 * theta); }},
+    {"erectophile", [](double theta) { return 1 - std::cos(2 * theta); }},
+    {"plagiophile", [](double theta) { return 1 - std::cos(4 * theta); }},
+    {"extremophile", [](double theta) { return 1 + std::cos(4 * theta); }},
+    {"uniform", [](double) { return 1.0; }},
+    {"horizontal", nullptr},
+};
+
+}  // namespace
+
+std::span<const LeafAngles> leaf_angle_distributions() { return kDistributions; }
+
+uint64_t HomogeneousCanopy::leaves() const {
+  if (count > 0) return count;
+  return uint64_t(std::llround(leaf_area_index * size[0] * size[1] / (leaf_area * scale * scale)));
+}
+
+LeafPlacer::LeafPlacer(const HomogeneousCanopy& canopy) : canopy_(canopy) {
+  constexpr int kSteps = 1 << 14;
+  if (!canopy.angles->density) {
+    angle_at_ = {0, 0};
+    return;
+  }
+  // The cumulative distribution by the midpoint rule, then its inverse at even steps.
+  std::vector<double> cumulative{0};
+  const double step = kPiD / 2 / kSteps;
+  for (int i = 0; i < kSteps; ++i) cumulative.push_back(cumulative.back() + canopy.angles->density((i + 0.5) * step));
+  size_t below = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double wanted = cumulative.back() * i / kSteps;
+    while (below + 1 < size_t(kSteps) && cumulative[below + 1] < wanted) ++below;
+    const double width = cumulative[below + 1] - cumulative[below];
+    const double within = width > 0 ? std::clamp((wanted - cumulative[below]) / width, 0.0, 1.0) : 0;
+    angle_at_.push_back((double(below) + within) * step);
+  }
+}
+
+Vec3d LeafPlacer::position(RandomStream& random) const {
+  const auto between = [&random](double a, double b) { return std::lerp(a, b, random.uniform_double()); };
+  if (canopy_.ball == 0) {
+    const double x = between(0, canopy_.size[0]), y = between(0, canopy_.size[1]);
+    return {x, y, between(canopy_.heights[0], canopy_.heights[1])};
+  }
+  const double z = between(-1, 1), phi = between(0, 2 * kPiD), r = canopy_.ball * std::cbrt(random.uniform_double());
+  const double ring = std::sqrt(1 - z * z);
+  return Vec3d{ring * std::cos(phi), ring * std::sin(phi), z} * r;
+}
+
+LeafPlacer::Cell LeafPlacer::cell_of(const Vec3d& p) const {
+  const auto at = [this](double x) { return int64_t(std::floor(x / canopy_.apart)); };
+  return {at(p.x), at(p.y), at(p.z)};
+}
+
+bool LeafPlacer::takes_room(const Vec3d& p) {
+  if (canopy_.apart == 0) return true;
+  const Cell middle = cell_of(p);
+  for (int64_t i = -1; i <= 1; ++i)
+    for (int64_t j = -1; j <= 1; ++j)
+      for (int64_t k = -1; k <= 1; ++k)
+        if (const auto cell = there_.find({middle[0] + i, middle[1] + j, middle[2] + k}); cell != there_.end())
+          for (const Vec3d& other : cell->second)
+            if (length(other - p) < canopy_.apart) return false;
+  there_[middle].push_back(p);
+  return true;
+}
+
+AffineMap LeafPlacer::place(std::span<float> values) {
+  constexpr int kMostTries = 100000;
+  RandomStream random(hash_key(canopy_.seed, next_++));
+  const auto between = [&random](double a, double b) { return std::lerp(a, b, random.uniform_double()); };
+  Vec3d at_position = position(random);
+  for (int i = 1; !takes_room(at_position); ++i) {
+    if (i == kMostTries) fail({}, "there is no room for leaf {}: they are to be {:g} apart", next_, canopy_.apart);
+    at_position = position(random);
+  }
+  const double at = random.uniform_double() * double(angle_at_.size() - 1);
+  const auto i = std::min(size_t(at), angle_at_.size() - 2);
+  const double theta = std::lerp(angle_at_[i], angle_at_[i + 1], at - double(i)), phi = between(0, 2 * kPiD);
+  const Vec3d normal{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+  const double spin = between(0, 2 * kPiD);
+  for (size_t c = 0; c < canopy_.columns.size(); ++c)
+    values[c] = float(between(canopy_.columns[c].range.min, canopy_.columns[c].range.max));
+  return oriented_map(at_position, normal, spin, canopy_.scale);
+}
+
+}  // namespace frond

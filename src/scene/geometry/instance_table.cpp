@@ -1,0 +1,84 @@
+#include "scene/geometry/instance_table.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "scene/geometry/npy.h"
+
+namespace frond {
+namespace {
+
+constexpr std::string_view kNumber = "<f4";
+constexpr size_t kMapNumbers = 12;
+
+bool is_map(const NpyField& field) {
+  return field.count() == kMapNumbers && (field.name.empty() || field.name == "transform");
+}
+
+}  // namespace
+
+InstanceTable::InstanceTable(std::shared_ptr<const std::vector<AffineMap>> maps)
+    : own_(std::move(maps)),
+      first_(reinterpret_cast<const std::byte*>(own_->data())),
+      size_(own_->size()),
+      stride_(sizeof(AffineMap)) {}
+
+InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& where, const ThreadPool& pool)
+    : file_(std::make_unique<MappedFile>(path, where)) {
+  const NpyLayout layout = read_npy_layout(file_->bytes(), path.string(), where);
+  bool found = false;
+  for (const NpyField& field : layout.fields) {
+    if (field.name.empty() && field.type.find('V') != std::string::npos) continue;  // what fills records up
+    if (field.type != kNumber)
+      fail(where, "{}: \"{}\" holds {}: numbers are {} (numpy.float32)", path.string(),
+           field.name.empty() ? "the array" : field.name, field.type, kNumber);
+    if (is_map(field))
+      found = true, map_offset_ = field.offset;
+    else if (field.count() == 1 && !field.name.empty())
+      columns_.push_back({field.name, field.offset, {INFINITY, -INFINITY}});
+    else
+      fail(where, "{}: \"{}\" has {} numbers in a row: \"transform\" has {}, all others have one", path.string(),
+           field.name, field.count(), kMapNumbers);
+  }
+  if (!found)
+    fail(where, "{}: no field \"transform\" of {} numbers: the three rows of a matrix, four numbers each",
+         path.string(), kMapNumbers);
+  constexpr size_t kMost = 0xfffffffe;  // of one geometry, in Embree
+  if (layout.rows > kMost)
+    fail(where, "{}: {} rows, {} is the limit: tables of tables hold more", path.string(), layout.rows, kMost);
+  first_ = file_->bytes().data() + layout.begin;
+  size_ = layout.rows;
+  stride_ = layout.row_bytes;
+  check(path, where, pool);
+}
+
+void InstanceTable::check(const std::filesystem::path& path, const Location& where, const ThreadPool& pool) {
+  constexpr size_t kBlock = 1 << 16;
+  std::mutex mutex;
+  size_t first_wrong = size_;
+  pool.for_each(int64_t((size_ + kBlock - 1) / kBlock), [&](int64_t block, int) {
+    std::vector<Interval> ranges(columns_.size(), {INFINITY, -INFINITY});
+    size_t wrong = size_;
+    const size_t begin = size_t(block) * kBlock, end = std::min(size_, begin + kBlock);
+    for (size_t row = begin; row < end && wrong == size_; ++row) {
+      if (!problem_of(map(row)).empty()) wrong = row;
+      for (size_t c = 0; c < columns_.size(); ++c) {
+        float value;
+        std::memcpy(&value, bytes(row) + columns_[c].offset, sizeof value);
+        if (!std::isfinite(value)) wrong = row;
+        ranges[c] = {std::min(ranges[c].min, double(value)), std::max(ranges[c].max, double(value))};
+      }
+    }
+    const std::lock_guard lock(mutex);
+    first_wrong = std::min(first_wrong, wrong);
+    for (size_t c = 0; c < columns_.size(); ++c)
+      columns_[c].range = {std::min(columns_[c].range.min, ranges[c].min),
+                           std::max(columns_[c].range.max, ranges[c].max)};
+  });
+  if (first_wrong == size_) return;
+  const std::string problem = problem_of(map(first_wrong));
+  fail(where, "{}: row {} (counted from 0): {}", path.string(), first_wrong,
+       problem.empty() ? "one of its numbers is not finite" : problem);
+}
+
+}  // namespace frond

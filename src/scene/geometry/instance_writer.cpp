@@ -1,0 +1,55 @@
+#include "scene/geometry/instance_writer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+
+#include "core/error.h"
+#include "scene/geometry/npy.h"
+
+namespace frond {
+
+InstanceWriter::InstanceWriter(const std::filesystem::path& path, size_t rows, const std::vector<std::string>& columns)
+    : file_(path), columns_(columns.size()), rows_left_(rows) {
+  std::vector<NpyField> fields{{.name = "transform", .type = "<f4", .shape = {3, 4}}};
+  for (const std::string& name : columns) {
+    const bool is_name = !name.empty() && name != "transform" && std::ranges::all_of(name, [](unsigned char c) {
+      return std::isalnum(c) || c == '_' || c == '-' || c == '.';
+    });
+    if (!is_name) fail({}, "\"{}\" is no name of a column: letters, digits, _ - and . make one", name);
+    fields.push_back({.name = name, .type = "<f4", .shape = {}});
+  }
+  const std::string header = npy_header(fields, rows);
+  file_.write({reinterpret_cast<const unsigned char*>(header.data()), header.size()});
+}
+
+void InstanceWriter::add(const AffineMap& map, std::span<const float> values) {
+  constexpr size_t kBuffer = 1 << 18;
+  assert(values.size() == columns_ && rows_left_ > 0);
+  for (const auto& row : map.rows) buffer_.insert(buffer_.end(), row.begin(), row.end());
+  buffer_.insert(buffer_.end(), values.begin(), values.end());
+  --rows_left_;
+  if (buffer_.size() >= kBuffer) flush();
+}
+
+void InstanceWriter::flush() {
+  file_.write({reinterpret_cast<const unsigned char*>(buffer_.data()), buffer_.size() * sizeof(float)});
+  buffer_.clear();
+}
+
+void InstanceWriter::finish() {
+  assert(rows_left_ == 0);
+  flush();
+  file_.finish();
+}
+
+AffineMap oriented_map(const Vec3d& position, const Vec3d& normal, double spin, double scale) {
+  const Framed frame = Framed::around(normal);
+  const Vec3d x = (frame.x * std::cos(spin) + frame.y * std::sin(spin)) * scale;
+  const Vec3d y = (frame.y * std::cos(spin) - frame.x * std::sin(spin)) * scale, z = normal * scale;
+  AffineMap map;
+  for (int i = 0; i < 3; ++i) map.rows[size_t(i)] = {float(x[i]), float(y[i]), float(z[i]), float(position[i])};
+  return map;
+}
+
+}  // namespace frond

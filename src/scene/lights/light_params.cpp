@@ -1,0 +1,24 @@
+#include "scene/lights/light_params.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace frond {
+
+std::optional<double> stated_total(const Params& p, std::string_view name) {
+  if (!p.given(name)) return {};
+  const double total = p.real(name);
+  if (total > 0) return total;
+  p.warn(name, fmt::format("\"{}\" {} counts as not given, as in pbrt-v4: the light has its own", name, total));
+  return {};
+}
+
+float light_scale(const Params& p, std::string_view total, double unit_total) {
+  const std::optional<double> stated = stated_total(p, total);
+  if (!stated) return float(p.real("scale"));
+  if (!(unit_total > 0)) fail(p.where(total), "the image is black: it has no {} to scale", total);
+  return float(p.real("scale") * *stated / unit_total);
+}
+
+}  // namespace frond

@@ -1,0 +1,196 @@
+#include <algorithm>
+
+#include "core/error.h"
+#include "scene/registry.h"
+#include "scene/shape.h"
+#include "scene/shapes/bilinear.h"
+#include "scene/shapes/ply.h"
+#include "scene/shapes/subdivision.h"
+
+namespace frond {
+namespace {
+
+Vec3 face_normal(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
+  return cross(mesh.p[t[1]] - mesh.p[t[0]], mesh.p[t[2]] - mesh.p[t[0]]);
+}
+
+/// As in pbrt: the normals decide which side is the front where a mesh has them, winding and handedness where not, or
+/// where they are 0 or lie in the face.
+void orient(TriangleMesh& mesh, const ShapePlacement& placement) {
+  const bool flip_winding = placement.reverse_orientation != placement.to_scene.swaps_handedness();
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    auto& t = mesh.triangles[i];
+    const Vec3 n = mesh.n.empty() ? Vec3{} : mesh.n[t[0]] + mesh.n[t[1]] + mesh.n[t[2]];
+    const float agreement = dot(normalize_any(face_normal(mesh, t)), n);
+    if (!(agreement == 0 ? flip_winding : agreement < 0)) continue;
+    std::swap(t[1], t[2]);
+    if (!mesh.uv.empty()) continue;
+    mesh.turned.resize(mesh.triangles.size());
+    mesh.turned[i] = true;
+  }
+}
+
+void place_corners(std::vector<Vec3>& p, std::vector<Vec3>& n, const ShapePlacement& placement) {
+  for (Vec3& at : p) at = placement.to_scene.point(at);
+  place_normals(n, placement);
+}
+
+/// Winding counter-clockwise about the front; positions and normals are in the scene's space already.
+ShapeGeometry oriented(TriangleMesh mesh, const ShapePlacement& placement) {
+  orient(mesh, placement);
+  return std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
+/// The two ways from a quadrilateral's first corner to its third add up to the same: what is bilinear between such
+/// corners is linear.
+template <class T>
+bool is_linear(const std::array<T, 4>& q, float slack) {
+  const T twist = q[0] - q[1] + q[2] - q[3];
+  const T sides = q[2] - q[0];
+  if constexpr (std::is_same_v<T, Vec2>)
+    return std::max(std::abs(twist.x), std::abs(twist.y)) <= slack * std::max(std::abs(sides.x), std::abs(sides.y));
+  else
+    return length(twist) <= slack * std::max(length(sides), length(q[3] - q[1]));
+}
+
+/// A parallelogram with everything on it linear: two triangles make the same picture as a patch, and faster.
+bool is_flat(const TriangleMesh& mesh, const std::array<uint32_t, 4>& quad) {
+  const auto four = [&quad](const auto& values) {
+    return std::array{values[quad[0]], values[quad[1]], values[quad[2]], values[quad[3]]};
+  };
+  return is_linear(four(mesh.p), 1e-5f) && (mesh.uv.empty() || is_linear(four(mesh.uv), 1e-4f)) &&
+         (mesh.n.empty() || length(four(mesh.n)[0] - four(mesh.n)[1] + four(mesh.n)[2] - four(mesh.n)[3]) <= 1e-4f);
+}
+
+/// Triangles, and bilinear patches of quadrilaterals as in pbrt-v4.
+std::vector<ShapeGeometry> surfaces_of(PlyMesh file, const ShapePlacement& placement) {
+  TriangleMesh& mesh = file.mesh;
+  place_corners(mesh.p, mesh.n, placement);
+  PatchMesh twisted;
+  mesh.halves_from = mesh.triangles.size();
+  for (const auto& [a, b, c, d] : file.quads) {
+    if (is_flat(mesh, {a, b, c, d})) {
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    } else {
+      twisted.patches.push_back({a, b, d, c});
+    }
+  }
+  std::vector<ShapeGeometry> surfaces;
+  if (!twisted.patches.empty()) {
+    const bool is_all = mesh.triangles.empty();
+    twisted.p = is_all ? std::move(mesh.p) : mesh.p;
+    twisted.n = is_all ? std::move(mesh.n) : mesh.n;
+    twisted.uv = is_all ? std::move(mesh.uv) : mesh.uv;
+    surfaces.push_back(patches(std::move(twisted), placement));
+  }
+  if (!mesh.triangles.empty()) surfaces.push_back(oriented(std::move(mesh), placement));
+  return surfaces;
+}
+
+void check_indices(const Params& p, const std::vector<int>& indices, size_t vertices) {
+  if (indices.size() % 3 != 0)
+    fail(p.where("indices"), "a triangle mesh takes 3 indices for each triangle, {} given", indices.size());
+  for (const int i : indices)
+    if (i < 0 || size_t(i) >= vertices)
+      fail(p.where("indices"), "index {} is out of range: there are {} vertices", i, vertices);
+}
+
+MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
+  TriangleMesh mesh{.p = p.vec3s("P"), .n = p.vec3s("N"), .uv = p.vec2s("uv"), .triangles = {}};
+  auto indices = p.integers("indices");
+  if (indices.empty() && mesh.p.size() == 3) indices = {0, 1, 2};
+  if (indices.empty()) fail(p.where(), "shape \"trianglemesh\" needs parameter \"integer indices\"");
+  check_indices(p, indices, mesh.p.size());
+  for (size_t i = 0; i < indices.size(); i += 3)
+    mesh.triangles.push_back({uint32_t(indices[i]), uint32_t(indices[i + 1]), uint32_t(indices[i + 2])});
+  if (!mesh.n.empty() && mesh.n.size() != mesh.p.size())
+    fail(p.where("N"), "{} values of \"N\" for {} of \"P\"", mesh.n.size(), mesh.p.size());
+  if (!mesh.uv.empty() && mesh.uv.size() != mesh.p.size())
+    fail(p.where("uv"), "{} values of \"uv\" for {} of \"P\"", mesh.uv.size(), mesh.p.size());
+  p.vec3s("S"), p.integers("faceIndices");
+  place_corners(mesh.p, mesh.n, placement);
+  return std::vector{oriented(std::move(mesh), placement)};
+}
+
+MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
+  try {
+    PlyMesh file = read_ply(p.file("filename"));
+    if (file.ignored > 0)
+      p.warn("filename",
+             fmt::format("{} faces are neither triangles nor quadrilaterals and are left out, as in pbrt-v4",
+                         file.ignored));
+    return surfaces_of(std::move(file), placement);
+  } catch (const InputError& error) {
+    fail(p.where("filename"), "{}", error.what());
+  }
+}
+
+/// Loop's subdivision of a triangle mesh, at its limit.
+MadeShape make_loop_subdivision(const Params& p, const ShapePlacement& placement) {
+  const std::vector<Vec3> cage = p.vec3s("P");
+  const std::vector<int> indices = p.integers("indices");
+  if (indices.empty()) fail(p.where("indices"), "shape \"loopsubdiv\" needs a triangle at least");
+  check_indices(p, indices, cage.size());
+  std::vector<std::array<uint32_t, 3>> faces;
+  for (size_t i = 0; i < indices.size(); i += 3)
+    faces.push_back({uint32_t(indices[i]), uint32_t(indices[i + 1]), uint32_t(indices[i + 2])});
+  p.string("scheme");
+  const int levels = p.integer("levels");
+  constexpr double kMostTriangles = 20e6, kBytesEach = 150;  // measured, with Embree's
+  if (const double count = double(faces.size()) * std::pow(4.0, levels); count > kMostTriangles)
+    fail(p.where("levels"), "{} levels make {:.3g} triangles, of some {:.0f} GB: {:.0f} million are the limit", levels,
+         count, std::ceil(count * kBytesEach / 1e9), kMostTriangles / 1e6);
+  TriangleMesh mesh;
+  if (const std::string problem = subdivide(cage, faces, levels, mesh); !problem.empty())
+    fail(p.where("indices"), "{}", problem);
+  place_corners(mesh.p, mesh.n, placement);
+  return std::vector{oriented(std::move(mesh), placement)};
+}
+
+constexpr Param kTriangleMesh[] = {
+    {.name = "P", .kind = ParamKind::point3, .doc = "Vertices.", .list = true, .required = true},
+    {.name = "N",
+     .kind = ParamKind::normal3,
+     .doc = "Shading normals, one for each vertex; they also decide the front.",
+     .list = true},
+    {.name = "uv", .kind = ParamKind::point2, .doc = "Texture coordinates, one for each vertex.", .list = true},
+    {.name = "indices", .kind = ParamKind::integer, .doc = "Three vertices for each triangle.", .list = true},
+    {.name = "S", .kind = ParamKind::vector3, .doc = "pbrt-v4's tangents: not used.", .list = true},
+    {.name = "faceIndices", .kind = ParamKind::integer, .doc = "pbrt-v4's numbers of faces: not used.", .list = true},
+    kAlphaParam};
+constexpr Param kPlyMesh[] = {{.name = "filename",
+                               .kind = ParamKind::string,
+                               .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals, which are "
+                                      "bilinear patches; .ply.gz: compressed.",
+                               .required = true},
+                              kAlphaParam};
+constexpr Param kLoopSubdivision[] = {
+    {.name = "P", .kind = ParamKind::point3, .doc = "Vertices of the control mesh.", .list = true, .required = true},
+    {.name = "indices",
+     .kind = ParamKind::integer,
+     .doc = "Three vertices for each triangle.",
+     .list = true,
+     .required = true},
+    {.name = "levels",
+     .kind = ParamKind::integer,
+     .default_value = 3,
+     .range = {0, 12},
+     .doc = "How often each triangle becomes four; vertices then lie on the limit surface."},
+    {.name = "scheme",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("loop"),
+     .doc = "Loop's, whatever it says, as in pbrt-v4."},
+    kAlphaParam};
+
+}  // namespace
+
+extern const ShapeInfo triangle_mesh_shape{{"shape", "trianglemesh", "Triangles.", "pbrt-v4", kTriangleMesh},
+                                           make_triangle_mesh};
+extern const ShapeInfo ply_mesh_shape{
+    {"shape", "plymesh", "Triangles and bilinear patches from a PLY file.", "pbrt-v4", kPlyMesh}, make_ply_mesh};
+extern const ShapeInfo loop_subdivision_shape{
+    {"shape", "loopsubdiv", "The smooth surface that Loop's subdivision leads to.", "pbrt-v4", kLoopSubdivision},
+    make_loop_subdivision};
+
+}  // namespace frond

@@ -1,0 +1,218 @@
+#include "scene/shapes/ply.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scene/shapes/ply_header.h"
+#include "scene/shapes/ply_source.h"
+#include "system/file_bytes.h"
+#include "system/gzip.h"
+
+namespace frond {
+namespace {
+
+/// Where a vertex property goes: x y z, nx ny nz, u v; or nowhere.
+constexpr size_t kSlots = 8, kNoSlot = kSlots;
+
+size_t slot_of(std::string_view name) {
+  constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
+  for (size_t i = 0; i < std::size(kNames); ++i)
+    if (name == kNames[i]) return i;
+  if (name == "u" || name == "s" || name == "texture_u" || name == "texture_s") return 6;
+  if (name == "v" || name == "t" || name == "texture_v" || name == "texture_t") return 7;
+  return kNoSlot;
+}
+
+/// Which slots the vertices of a file fill: whole groups, each by the first property that has such a name.
+struct VertexLayout {
+  std::vector<size_t> slots;  ///< one for each property
+  bool has_normals = false, has_uv = false;
+
+  explicit VertexLayout(const PlyElement& element) {
+    std::array<bool, kSlots + 1> filled{};
+    for (const PlyProperty& p : element.properties) {
+      size_t slot = p.count_type ? kNoSlot : slot_of(p.name);
+      if (filled[slot]) slot = kNoSlot;
+      filled[slot] = true;
+      slots.push_back(slot);
+    }
+    if (!(filled[0] && filled[1] && filled[2])) fail(element.where, "element \"vertex\" needs properties x, y and z");
+    has_normals = filled[3] && filled[4] && filled[5];
+    has_uv = filled[6] && filled[7];
+    for (size_t& slot : slots)
+      if ((!has_normals && slot >= 3 && slot < 6) || (!has_uv && slot >= 6)) slot = kNoSlot;
+  }
+};
+
+size_t index_property(const PlyElement& element) {
+  for (size_t i = 0; i < element.properties.size(); ++i) {
+    const PlyProperty& p = element.properties[i];
+    if (p.name != "vertex_indices" && p.name != "vertex_index") continue;
+    if (!p.count_type || !is_integer(p.type)) fail(p.where, "property \"{}\" must be a list of integers", p.name);
+    return i;
+  }
+  fail(element.where, "element \"face\" needs property \"vertex_indices\"");
+}
+
+const PlyElement& element_called(const PlyHeader& header, std::string_view name, const Location& end) {
+  for (const PlyElement& element : header.elements)
+    if (element.name == name) return element;
+  fail(end, "the header declares no element \"{}\"", name);
+}
+
+/// Where the mesh is among the file's elements; checked before any of the body is read.
+struct MeshLayout {
+  uint64_t vertices;  ///< how many the header declares
+  VertexLayout vertex;
+  size_t indices;  ///< property of a face
+
+  MeshLayout(const PlyElement& vertex_element, const PlyElement& face_element)
+      : vertices(vertex_element.count), vertex(vertex_element), indices(index_property(face_element)) {
+    if (vertices > UINT32_MAX) fail(vertex_element.where, "{} vertices are more than indices can tell", vertices);
+    if (face_element.count == 0) fail(face_element.where, "the mesh has no faces");
+  }
+};
+
+template <class Source>
+class BodyReader {
+ public:
+  BodyReader(Source& source, const PlyHeader& header, const MeshLayout& layout, PlyMesh& result)
+      : source_(source), header_(header), layout_(layout), result_(result), mesh_(result.mesh) {}
+
+  void read() {
+    for (const PlyElement& element : header_.elements) {
+      start(element);
+      if (element.name == "vertex")
+        read_vertices();
+      else if (element.name == "face")
+        read_faces();
+      else
+        for_each_row([&](const PlyProperty& p, size_t) { skip(p); }, [] {});
+    }
+    if (!source_.at_end())
+      source_.fail_here("there is more data after the last element: a count in the header is wrong");
+  }
+
+ private:
+  /// Believes a count only as far as the file's size goes, before anything is allocated.
+  void start(const PlyElement& element) {
+    element_ = &element;
+    row_ = 0;
+    size_t least = 0;
+    for (const PlyProperty& p : element.properties) least += Source::least_bytes(p.count_type.value_or(p.type));
+    if (element.count > 0 && least == 0) fail(element.where, "element \"{}\" has no properties", element.name);
+    if (element.count > 0 && element.count > (source_.bytes_left() + Source::kMissingEnd) / least)
+      fail(element.where, "element \"{}\" has {} rows of at least {} bytes, but {} bytes are left in the file",
+           element.name, element.count, least, source_.bytes_left());
+  }
+
+  template <class ReadProperty, class EndRow>
+  void for_each_row(const ReadProperty& read_property, const EndRow& finish) {
+    for (row_ = 0; row_ < element_->count; ++row_) {
+      if (!source_.start_row()) fail_row(source_.problem());
+      for (size_t i = 0; i < element_->properties.size(); ++i) read_property(element_->properties[i], i);
+      if (!source_.end_row()) fail_row(source_.problem());
+      finish();
+    }
+  }
+
+  void read_vertices() {
+    const VertexLayout& layout = layout_.vertex;
+    const size_t count = static_cast<size_t>(element_->count);
+    mesh_.p.reserve(count);
+    if (layout.has_normals) mesh_.n.reserve(count);
+    if (layout.has_uv) mesh_.uv.reserve(count);
+    std::array<float, kSlots + 1> v{};
+    for_each_row(
+        [&](const PlyProperty& p, size_t i) {
+          const size_t slot = layout.slots[i];
+          if (slot == kNoSlot) return skip(p);
+          v[slot] = static_cast<float>(number(p.type));
+          if (!std::isfinite(v[slot])) fail_row(fmt::format("{} is {}", p.name, v[slot]));
+        },
+        [&] {
+          mesh_.p.push_back({v[0], v[1], v[2]});
+          if (layout.has_normals) mesh_.n.push_back({v[3], v[4], v[5]});
+          if (layout.has_uv) mesh_.uv.push_back({v[6], v[7]});
+        });
+  }
+
+  void read_faces() {
+    const size_t indices = layout_.indices;
+    const size_t least = 3 * Source::least_bytes(element_->properties[indices].type);
+    const size_t most = std::min(static_cast<size_t>(element_->count), source_.bytes_left() / least);
+    mesh_.triangles.reserve(most);
+    for_each_row([&](const PlyProperty& p, size_t i) { i == indices ? read_face(p) : skip(p); }, [] {});
+  }
+
+  void read_face(const PlyProperty& p) {
+    const double corners = number(*p.count_type);
+    if (corners != 3 && corners != 4) {
+      ++result_.ignored;
+      return skip_values(p, corners);
+    }
+    std::array<uint32_t, 4> c{};
+    for (size_t i = 0; i < static_cast<size_t>(corners); ++i) c[i] = index(p.type);
+    if (corners == 3)
+      mesh_.triangles.push_back({c[0], c[1], c[2]});
+    else
+      result_.quads.push_back(c);
+  }
+
+  uint32_t index(PlyType type) {
+    const double value = number(type);
+    if (!(value >= 0 && value < static_cast<double>(layout_.vertices)) || value != std::floor(value))
+      fail_row(fmt::format("index {} is out of range: there are {} vertices", value, layout_.vertices));
+    return static_cast<uint32_t>(value);
+  }
+
+  double number(PlyType type) {
+    double value = 0;
+    if (!source_.next(type, value)) fail_row(source_.problem());
+    return value;
+  }
+
+  void skip(const PlyProperty& p) { skip_values(p, p.count_type ? number(*p.count_type) : 1); }
+
+  void skip_values(const PlyProperty& p, double count) {
+    if (!(count >= 0 && count <= static_cast<double>(source_.bytes_left())) || count != std::floor(count))
+      fail_row(fmt::format("\"{}\" is a list of {} values, which the file does not hold", p.name, count));
+    if (!source_.skip(p.type, static_cast<size_t>(count))) fail_row(source_.problem());
+  }
+
+  [[noreturn]] void fail_row(const std::string& message) const {
+    source_.fail_here(fmt::format("{} {}: {}", element_->name, row_, message));
+  }
+
+  Source& source_;
+  const PlyHeader& header_;
+  const MeshLayout& layout_;
+  PlyMesh& result_;
+  TriangleMesh& mesh_;
+  const PlyElement* element_ = nullptr;
+  uint64_t row_ = 0;
+};
+
+}  // namespace
+
+PlyMesh read_ply_text(std::string_view bytes, const std::string& name) {
+  const auto file = std::make_shared<const std::string>(name);
+  const PlyHeader header = read_ply_header(bytes, file);
+  const Location end{file, header.lines, 1};
+  const MeshLayout layout(element_called(header, "vertex", end), element_called(header, "face", end));
+  PlyMesh result;
+  const auto read_from = [&](auto source) { BodyReader(source, header, layout, result).read(); };
+  if (header.format == PlyFormat::ascii)
+    read_from(ply::AsciiSource(bytes, header, file));
+  else
+    read_from(ply::BinarySource(bytes, header, file));
+  return result;
+}
+
+PlyMesh read_ply(const std::filesystem::path& path) {
+  const std::string bytes = read_file_bytes(path, {});
+  return read_ply_text(is_gzip(bytes) ? unpack_gzip(bytes, path.string(), {}) : bytes, path.string());
+}
+
+}  // namespace frond

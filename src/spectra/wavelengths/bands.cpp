@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cmath>
+
+#include "spectra/spd_file.h"
+#include "spectra/wavelengths/registry.h"
+#include "spectra/wavelengths/response_sampler.h"
+
+namespace frond {
+namespace {
+
+constexpr Interval kAllowed_nm{300, 2500};
+constexpr size_t kMostBands = 10000;
+
+constexpr Param kParams[] = {
+    {.name = "wavelengths",
+     .kind = ParamKind::real,
+     .unit = "nm",
+     .range = kAllowed_nm,
+     .doc = "One band at each of these wavelengths.",
+     .list = true},
+    {.name = "responses",
+     .kind = ParamKind::string,
+     .doc =
+         "Files (.spd) of a sensor's responses, one for each band: a channel is the mean radiance under its response.",
+     .list = true},
+    {.name = "lambdamin",
+     .kind = ParamKind::real,
+     .default_value = 400.0,
+     .unit = "nm",
+     .range = kAllowed_nm,
+     .doc = "First of evenly spaced wavelengths, where no others are given."},
+    {.name = "lambdamax",
+     .kind = ParamKind::real,
+     .default_value = 700.0,
+     .unit = "nm",
+     .range = kAllowed_nm,
+     .doc = "End of these; counts as one where the steps meet it."},
+    {.name = "step",
+     .kind = ParamKind::real,
+     .default_value = 10.0,
+     .unit = "nm",
+     .range = {0.1, 2200},
+     .doc = "Step of these."},
+};
+
+std::vector<double> even_wavelengths(const Params& p) {
+  const double min = p.real("lambdamin"), max = p.real("lambdamax"), step = p.real("step");
+  if (min > max) fail(p.where("lambdamax"), "\"lambdamax\" is {} nm, below \"lambdamin\", {} nm", max, min);
+  std::vector<double> nm;
+  const auto last = static_cast<int>(std::floor((max - min) / step + 1e-6));
+  for (int i = 0; i <= last; ++i) nm.push_back(min + i * step);
+  return nm;
+}
+
+void check_choice(const Params& p) {
+  const bool listed = p.given("wavelengths"), sensor = p.given("responses");
+  if (listed && sensor) fail(p.where("responses"), "\"wavelengths\" and \"responses\" exclude each other");
+  for (const std::string_view name : {"lambdamin", "lambdamax", "step"})
+    if ((listed || sensor) && p.given(name))
+      fail(p.where(name), "\"{}\" is for evenly spaced wavelengths: others are given", name);
+}
+
+/// Any number of bands. A path carries four of them at most, in turn from sample to sample; each channel is the mean
+/// over the samples that saw it.
+class Bands final : public WavelengthStrategy {
+ public:
+  explicit Bands(const Params& p) {
+    check_choice(p);
+    const std::vector<double> even = even_wavelengths(p), listed = p.reals("wavelengths");
+    const auto files = p.files("responses");
+    if (!files.empty())
+      read_responses(files, p.where("responses"));
+    else
+      for (const double nm : listed.empty() ? even : listed) bands_.push_back({nm});
+    sort_and_check(p.where(files.empty() ? "wavelengths" : "responses"));
+    if (files.empty())
+      for (const Band& band : bands_) listed_nm_.push_back(static_cast<float>(band.nm));
+    for (const Band& band : bands_)
+      if (!band.response.empty()) samplers_.emplace_back(band.response, p.where("responses"));
+    find_range();
+  }
+
+  /// A run of samples may then miss a band; sample_in_turn does not.
+  SampledWavelengths sample(float u) const override {
+    const double turn = double(u) * double(bands_.size());
+    return sample_in_turn(static_cast<uint64_t>(turn), static_cast<float>(turn - std::floor(turn)));
+  }
+
+  /// The lanes lie a quarter of the bands apart: what is common to them is then noise of brightness, not of colour.
+  SampledWavelengths sample_in_turn(uint64_t index, float u) const override {
+    const size_t count = bands_.size(), lanes = std::min<size_t>(count, kLanes);
+    SampledWavelengths lambda;
+    lambda.count = static_cast<int>(lanes);
+    for (size_t i = 0; i < lanes; ++i) {
+      const size_t band = count <= kLanes ? i : (index + i * count / kLanes) % count;
+      lambda.band[i] = static_cast<uint16_t>(band);
+      lambda.active[i] = true;
+      lambda.nm[i] = samplers_.empty() ? listed_nm_[band] : samplers_[band].sample(u);
+      lambda.pdf[i] = 1;
+    }
+    return lambda;
+  }
+
+  Interval range_nm() const override { return range_nm_; }
+  std::span<const float> fixed_nm() const override {
+    return listed_nm_.size() <= kLanes ? std::span<const float>(listed_nm_) : std::span<const float>();
+  }
+  std::span<const float> listed_nm() const override { return listed_nm_; }
+  std::span<const Band> bands() const override { return bands_; }
+  std::string_view film_space() const override { return {}; }
+
+  SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const override {
+    SensorResponse response;
+    response.count = lambda.count;
+    for (size_t i = 0; i < size_t(lambda.count); ++i) {
+      response.channel[i] = lambda.band[i];
+      response.value[i] = double(radiance.v[i]);
+    }
+    return response;
+  }
+
+ private:
+  void read_responses(const std::vector<std::filesystem::path>& files, const Location& where) {
+    for (const auto& file : files) {
+      std::vector<ResponsePoint> response;
+      for (const SpectrumPoint& p : read_spd_points(file, where)) response.push_back({p.lambda_nm, p.value});
+      response = without_margins(response);
+      bands_.push_back({ResponseSampler(response, where).centroid_nm(), response});
+    }
+  }
+
+  /// Channels are known by their wavelength.
+  void sort_and_check(const Location& where) {
+    if (bands_.size() > kMostBands) fail(where, "these are {} bands, {} is the limit", bands_.size(), kMostBands);
+    std::ranges::sort(bands_, {}, &Band::nm);
+    for (size_t i = 1; i < bands_.size(); ++i)
+      if (bands_[i].nm - bands_[i - 1].nm < 1e-6) fail(where, "there are two bands at {:.8g} nm", bands_[i].nm);
+  }
+
+  void find_range() {
+    range_nm_ = {bands_.front().nm, bands_.back().nm};
+    for (const ResponseSampler& sampler : samplers_) {
+      range_nm_.min = std::min(range_nm_.min, sampler.support_nm().min);
+      range_nm_.max = std::max(range_nm_.max, sampler.support_nm().max);
+    }
+  }
+
+  std::vector<Band> bands_;                ///< ascending
+  std::vector<float> listed_nm_;           ///< of the bands; empty where they have responses
+  std::vector<ResponseSampler> samplers_;  ///< of the responses
+  Interval range_nm_{};
+};
+
+}  // namespace
+
+extern const WavelengthsInfo bands_wavelengths{
+    {"wavelengths", "bands",
+     "Any wavelengths or responses of a sensor, from 300 to 2500 nm: a channel for each, in an EXR file.",
+     "Imaging spectrometers", kParams},
+    [](const Params& p) -> std::unique_ptr<WavelengthStrategy> { return std::make_unique<Bands>(p); }};
+
+}  // namespace frond

@@ -1,0 +1,35 @@
+#include "spectra/wavelengths/fixed_wavelengths.h"
+
+namespace frond {
+namespace {
+
+class KnownSpectrum final : public Spectrum {
+ public:
+  KnownSpectrum(SpectrumPtr spectrum, std::span<const float> nm) : spectrum_(std::move(spectrum)) {
+    for (const float wavelength : nm) {
+      const int lane = known_.count++;
+      known_.nm[size_t(lane)] = wavelength;
+      values_[lane] = spectrum_->at(wavelength);
+    }
+  }
+  float at(float lambda_nm) const override { return spectrum_->at(lambda_nm); }
+  Interval range_nm() const override { return spectrum_->range_nm(); }
+  float max_value() const override { return spectrum_->max_value(); }
+  SampledSpectrum sample(const SampledWavelengths& lambda) const override {
+    return lambda.nm == known_.nm && lambda.count == known_.count ? values_ : spectrum_->sample(lambda);
+  }
+
+ private:
+  SpectrumPtr spectrum_;
+  SampledWavelengths known_;
+  SampledSpectrum values_;
+};
+
+}  // namespace
+
+SpectrumPtr known_at(SpectrumPtr spectrum, std::span<const float> nm) {
+  if (nm.empty() || nm.size() > kLanes) return spectrum;
+  return std::make_shared<KnownSpectrum>(std::move(spectrum), nm);
+}
+
+}  // namespace frond

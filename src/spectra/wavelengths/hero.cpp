@@ -1,0 +1,129 @@
+#include <cmath>
+#include <optional>
+
+#include "spectra/cie.h"
+#include "spectra/color/color_space.h"
+#include "spectra/color/film_sensor.h"
+#include "spectra/wavelengths/registry.h"
+
+namespace frond {
+namespace {
+
+constexpr Interval kAllowed_nm{300, 2500};
+constexpr Param kMin{.name = "lambdamin",
+                     .kind = ParamKind::real,
+                     .default_value = 360.0,
+                     .unit = "nm",
+                     .range = kAllowed_nm,
+                     .doc = "Shortest wavelength."};
+constexpr Param kMax{.name = "lambdamax",
+                     .kind = ParamKind::real,
+                     .default_value = 830.0,
+                     .unit = "nm",
+                     .range = kAllowed_nm,
+                     .doc = "Longest wavelength; the film sees none beyond 830 nm."};
+constexpr Param kSensor{.name = "sensor",
+                        .kind = ParamKind::string,
+                        .default_value = kFilmSensors[0],
+                        .doc = "What the film is made of; the scene's film says so too.",
+                        .choices = kFilmSensors};
+constexpr Param kWhiteBalance{.name = "whitebalance",
+                              .kind = ParamKind::real,
+                              .default_value = 0.0,
+                              .unit = "K",
+                              .range = {0, 1e5},
+                              .doc =
+                                  "Colour temperature of the daylight that is to be white; 0: of cameras 6500 K, of "
+                                  "cie1931 none. The scene's film says so too."};
+constexpr Param kParams[] = {kMin, kMax, kSensor, kWhiteBalance};
+
+/// Density proportional to 1 / cosh^2 of the distance from 538 nm, close to the eye's response (Radziszewski et al.
+/// 2009); over 360 to 830 nm it is 0.0039398042 / cosh^2(...). Its integral is a difference of tanh.
+class VisibleDensity {
+ public:
+  explicit VisibleDensity(Interval nm)
+      : range_nm_(nm), tanh_min_(std::tanh(reduced(nm.min))), tanh_max_(std::tanh(reduced(nm.max))) {}
+
+  struct Sample {
+    double nm, pdf;
+  };
+  Sample sample(double u) const {
+    const double t = std::lerp(tanh_min_, tanh_max_, u);
+    const double atanh_t = std::log((1 + t) / (1 - t)) / 2;
+    return {std::clamp(kPeak_nm + atanh_t / kRate, range_nm_.min, range_nm_.max),
+            kRate * (1 - t * t) / (tanh_max_ - tanh_min_)};
+  }
+  Interval range_nm() const { return range_nm_; }
+
+ private:
+  static constexpr double kRate = 0.0072, kPeak_nm = 538;  // 1/nm, nm
+  static double reduced(double nm) { return kRate * (nm - kPeak_nm); }
+
+  Interval range_nm_;
+  double tanh_min_, tanh_max_;
+};
+
+Interval range_of(const Params& p) {
+  const Interval nm{p.real("lambdamin"), p.real("lambdamax")};
+  if (nm.min >= nm.max)
+    fail(p.where("lambdamax"), "\"lambdamax\" is {} nm, above \"lambdamin\", {} nm, is needed", nm.max, nm.min);
+  return nm;
+}
+
+/// Nothing for the eye as it is.
+std::optional<FilmSensor> sensor_of(const Params& p) {
+  constexpr double kColdest_kelvin = 1000;
+  const std::string name = p.string("sensor");
+  const double white_kelvin = p.real("whitebalance");
+  if (white_kelvin > 0 && white_kelvin < kColdest_kelvin)
+    fail(p.where("whitebalance"), "\"whitebalance\" is {} K: 0, or {} K at least, is needed", white_kelvin,
+         kColdest_kelvin);
+  if (name == kFilmSensors[0] && white_kelvin == 0) return {};
+  return FilmSensor(name, white_kelvin);
+}
+
+/// Four wavelengths at equal steps of the density's integral, all turned by the same random number (Wilkie et al. 2014,
+/// hero wavelength spectral sampling). The film's channels are CIE XYZ.
+class Hero final : public WavelengthStrategy {
+ public:
+  explicit Hero(const Params& p) : density_(range_of(p)), film_(sensor_of(p)) {}
+
+  SampledWavelengths sample(float u) const override {
+    SampledWavelengths lambda;
+    lambda.count = kLanes;
+    for (size_t i = 0; i < kLanes; ++i) {
+      double turned = double(u) + double(i) / kLanes;
+      turned -= turned < 1 ? 0 : 1;
+      const auto [nm, pdf] = density_.sample(turned);
+      lambda.nm[i] = static_cast<float>(nm);
+      lambda.pdf[i] = static_cast<float>(pdf);
+      lambda.active[i] = true;
+    }
+    return lambda;
+  }
+  Interval range_nm() const override { return density_.range_nm(); }
+  std::span<const float> fixed_nm() const override { return {}; }
+  SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const override {
+    Triple xyz{};
+    for (size_t i = 0; i < kLanes; ++i) {
+      const Triple bar = film_ ? film_->at(double(lambda.nm[i])) : cie_xyz(double(lambda.nm[i]));
+      const double weight = double(radiance.v[i]) / (double(lambda.pdf[i]) * lambda.count);
+      for (size_t c = 0; c < 3; ++c) xyz[c] += bar[c] * weight;
+    }
+    return xyz;
+  }
+  std::string_view film_space() const override { return kXyzName; }
+
+ private:
+  VisibleDensity density_;
+  std::optional<FilmSensor> film_;
+};
+
+}  // namespace
+
+extern const WavelengthsInfo hero_wavelengths{
+    {"wavelengths", "hero", "Four of a full spectrum, stratified, drawn by the eye's sensitivity.",
+     "Wilkie et al. 2014; density after Radziszewski et al. 2009", kParams},
+    [](const Params& p) -> std::unique_ptr<WavelengthStrategy> { return std::make_unique<Hero>(p); }};
+
+}  // namespace frond

@@ -1,0 +1,57 @@
+#include "spectra/wavelengths/response_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frond {
+namespace {
+
+/// Of the line from `a` to `b` over [0, 1] as a density: where its integral is the share `u` of the whole. The form of
+/// the quadratic's root that loses no digits and holds for a = b.
+double invert_line(double a, double b, double u) {
+  if (u <= 0) return 0;
+  const double begin = a / (a + b), end = b / (a + b);
+  return u / (begin + std::sqrt(std::lerp(begin * begin, end * end, u)));
+}
+
+}  // namespace
+
+ResponseSampler::ResponseSampler(std::vector<ResponsePoint> points, const Location& where)
+    : points_(std::move(points)) {
+  double area = 0, moment = 0;  // about the first point
+  for (size_t i = 1; i < points_.size(); ++i) {
+    const auto [begin_nm, a] = points_[i - 1];
+    const auto [end_nm, b] = points_[i];
+    const double width = end_nm - begin_nm, from = begin_nm - points_[0].nm;
+    area += width * (a + b) / 2;
+    moment += width * (from * (a + b) / 2 + width * (a + 2 * b) / 6);
+    cumulative_.push_back(area);
+  }
+  if (!(area > 0)) fail(where, "this response is 0 at every wavelength");
+  centroid_nm_ = points_[0].nm + moment / area;
+  const auto rounded = [](double nm) { return double(static_cast<float>(nm)); };  // as samples are
+  support_nm_ = {rounded(points_.front().nm), rounded(points_.back().nm)};
+}
+
+float ResponseSampler::sample(float u) const {
+  constexpr float kBelowOne = 1 - 0x1p-24f;
+  const double wanted = double(std::min(u, kBelowOne)) * cumulative_.back();
+  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), wanted);
+  const auto cell = static_cast<size_t>(found - cumulative_.begin());
+  const double below = cell == 0 ? 0 : cumulative_[cell - 1], share = cumulative_[cell] - below;
+  const auto [begin_nm, a] = points_[cell];
+  const auto [end_nm, b] = points_[cell + 1];
+  return static_cast<float>(std::lerp(begin_nm, end_nm, invert_line(a, b, (wanted - below) / share)));
+}
+
+std::vector<ResponsePoint> without_margins(std::span<const ResponsePoint> points) {
+  const auto is_lit = [](const ResponsePoint& p) { return p.value != 0; };
+  auto begin = std::ranges::find_if(points, is_lit);
+  if (begin == points.end()) return {};
+  auto end = std::find_if(points.rbegin(), points.rend(), is_lit).base();
+  if (begin != points.begin()) --begin;
+  if (end != points.end()) ++end;
+  return {begin, end};
+}
+
+}  // namespace frond

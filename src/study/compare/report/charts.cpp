@@ -1,0 +1,152 @@
+#include "study/compare/report/charts.h"
+
+#include <fmt/format.h>
+
+#include "study/compare/figures.h"
+
+namespace frond::compare {
+namespace {
+
+/// In a colour, dashes and a mark of its own; without points.
+Series candidate_series(size_t candidate, std::string label) {
+  constexpr size_t kSolid = 4;
+  const Dash dash = candidate < kSolid ? Dash::solid : Dash::dashed;
+  return {std::move(label), kSeriesColors[candidate], 2, dash, series_mark(candidate)};
+}
+
+/// Seconds and error as the axis has it, with its interval; none where a logarithmic axis cannot show it.
+std::vector<ChartPoint> points_of(const Subject& subject, Measure measure, const ErrorUnit& unit) {
+  std::vector<ChartPoint> points;
+  for (const Rung& rung : subject.rungs) {
+    const MeanSquare& e = rung.errors[measure == Measure::rms_leaf ? kLeaf : kAll][kTogether].total;
+    ChartPoint p{rung.cost.cpu_seconds, rung.flip.value_or(0)};
+    if (measure != Measure::flip)
+      p.y = unit.on_axis(e.root()), p.bar = {unit.on_axis(e.root_at(-kZ95)), unit.on_axis(e.root_at(kZ95))};
+    if (p.x > 0 && p.y > 0) points.push_back(p);
+  }
+  return points;
+}
+
+Series frontier(const std::vector<Series>& curves) {
+  std::vector<CostAndError> all;
+  for (const Series& curve : curves)
+    for (const ChartPoint& p : curve.points) all.push_back({p.x, p.y});
+  Series s = line("Pareto frontier: nothing measured beats it in both", "#d9d9d9", 9);
+  for (const size_t i : pareto_frontier(all)) s.points.push_back({all[i].cost, all[i].error});
+  return s;
+}
+
+/// The level of the bias, from where noise has fallen to it; none where there is no bias.
+std::optional<ChartPoint> plateau_of(const Subject& subject, Measure measure) {
+  if (measure == Measure::flip) return {};
+  const Convergence c = subject.convergence(measure == Measure::rms_leaf ? kLeaf : kAll);
+  if (const auto effort = c.until_plateau()) return ChartPoint{effort->seconds, c.bias().root()};
+  return {};
+}
+
+double mean_step_nm(const ChannelList& channels) {
+  const size_t count = channels.bands.size();
+  return count < 2 ? 10 : (channels.bands.back().nm - channels.bands.front().nm) / double(count - 1);
+}
+
+/// Bias, as the axis has it, with its interval of 95 %; no number where it is not told from none, with 97.5 %
+/// confidence.
+ChartPoint bias_point(double nm, const MeanSquare& bias, const ErrorUnit& unit) {
+  const Range bar{unit.on_axis(bias.root_at(-kZ95)), unit.on_axis(bias.root_at(kZ95))};
+  return {nm, bar.low > 0 ? unit.on_axis(bias.root()) : NAN, bar};
+}
+
+std::string rms_caption(const Comparison& c) {
+  return fmt::format(
+      "One point for each doubling of samples per pixel, from {} to {}; bars are 95 % intervals. Error is against what "
+      "the reference converges to: its noise, {}, is taken out. A cross and the dotted line after it: from there "
+      "on noise is below the candidate’s bias, and more samples help little. A curve without one has no bias that "
+      "could be told from none.",
+      c.subjects.front().rungs.front().samples, c.subjects.front().rungs.back().samples,
+      c.request.error_unit().rounded(c.reference.noise[kAll][kTogether].root()));
+}
+
+std::string flip_caption(const Comparison& c) {
+  return fmt::format(
+      "What a person would see who flips between a render and the reference (Andersson et al. 2020, 67 pixels per "
+      "degree, exposure {:+g} stops); 0: nothing, 1: all. The reference’s two renders differ by {:.2g}.",
+      c.exposure_stops, c.reference.flip.value_or(0));
+}
+
+constexpr const char* kBandsCaption =
+    "All pixels. Points: bias, with bars of 95 %. A bar without a point: a bias that cannot be told from none, up to "
+    "the bar’s end. Dotted: the noise that is left.";
+
+}  // namespace
+
+std::optional<Chart> curves_chart(const Comparison& c, Measure measure) {
+  const ErrorUnit unit = c.request.error_unit();
+  Range x, y;
+  std::vector<Series> curves, plateaus;
+  for (size_t i = 0; i < c.subjects.size(); ++i) {
+    Series& s = curves.emplace_back(candidate_series(i, c.subjects[i].candidate.label));
+    s.points = points_of(c.subjects[i], measure, unit);
+    for (const ChartPoint& p : s.points) x.include(p.x), y.include(p.y);
+    auto plateau = plateau_of(c.subjects[i], measure);
+    if (!plateau) continue;
+    s.label += fmt::format(": bias {}, noise below it from {} s", unit.rounded(plateau->y), figures(plateau->x, 2));
+    plateau->y = unit.on_axis(plateau->y);
+    x.include(plateau->x), y.include(plateau->y);
+    // A cross, and a dotted line to the end of the axis.
+    plateaus.push_back(marks("", s.color, Mark::cross, 5.5, {*plateau}));
+    plateaus.push_back(line("", s.color, 2, Dash::dotted, {*plateau, {1e300, plateau->y}}));
+  }
+  std::vector<Series> all{frontier(curves)};
+  if (all[0].points.empty()) return {};
+  all.insert(all.end(), curves.begin(), curves.end()), all.insert(all.end(), plateaus.begin(), plateaus.end());
+  const std::string pixels = measure == Measure::rms_leaf ? "leaf" : "all", unit_text = unit.of_axis(c.channels),
+                    time = fmt::format("CPU time of one {} × {} render (s)", c.width, c.height),
+                    error = measure == Measure::flip ? "mean FLIP"
+                                                     : fmt::format("RMS error, {} pixels ({})", pixels, unit_text);
+  return Chart{1, {{900, 520, "", {time, x.widened(), true}, {error, y.widened(), true}, "", false, all}}};
+}
+
+std::optional<Chart> bands_chart(const Comparison& c) {
+  const ErrorUnit unit = c.request.error_unit();
+  const double step_nm = mean_step_nm(c.channels);
+  const auto& bands = c.channels.bands;
+  std::vector<Series> series;
+  Range y;
+  for (size_t i = 0; i < c.subjects.size(); ++i) {
+    // Keeps candidates' bars off each other.
+    const double aside = step_nm * 0.5 * ((double(i) + 0.5) / double(c.subjects.size()) - 0.5);
+    Series noise = line("", kSeriesColors[i], 2, Dash::dotted),
+           bias = candidate_series(i, c.subjects[i].candidate.label);
+    for (size_t b = 0; b < bands.size(); ++b) {
+      const RenderError& e = c.subjects[i].rungs.back().errors[kAll][kFirst + b];
+      noise.points.push_back({bands[b].nm, unit.on_axis(e.noise.root())});
+      bias.points.push_back(bias_point(bands[b].nm + aside, e.bias, unit));
+      for (const double v : {noise.points.back().y, bias.points.back().bar.low, bias.points.back().bar.high})
+        if (v > 0) y.include(v);
+    }
+    series.insert(series.end(), {noise, bias});
+  }
+  if (y.is_empty()) return {};
+  y = Range{std::max(y.low, y.high / 1e4), y.high}.widened();
+  series.push_back(
+      marks("bars: intervals of 95 %; without a mark the bias is not told from none", "#000000", Mark::bar, 5));
+  const uint64_t samples = c.subjects[0].rungs.back().samples;
+  series.push_back(line(fmt::format("noise of one render of {} samples", samples), "#000000", 2, Dash::dotted));
+  const Range nm{bands.front().nm - step_nm, bands.back().nm + step_nm};
+  const std::string error = fmt::format("bias and noise ({})", unit.of_axis(c.channels));
+  return Chart{1, {{900, 520, "", {"wavelength (nm)", nm}, {error, y, true}, "", false, series}}};
+}
+
+std::vector<ReportChart> charts_of(const Comparison& c) {
+  std::vector<ReportChart> charts{
+      {"rms", "RMS error against CPU time, all pixels", rms_caption(c), curves_chart(c, Measure::rms_all)},
+      {"rms-leaf", "RMS error against CPU time, leaf pixels", "The same over the pixels that see a leaf.",
+       curves_chart(c, Measure::rms_leaf)}};
+  if (c.channels.are_bands())
+    charts.push_back({"bands", "Bias and noise against wavelength", kBandsCaption, bands_chart(c)});
+  else
+    charts.push_back({"flip", "FLIP against CPU time", flip_caption(c), curves_chart(c, Measure::flip)});
+  return charts;
+}
+
+}  // namespace frond::compare

@@ -1,0 +1,33 @@
+#include "study/compare/report/summary.h"
+
+#include "report/table.h"
+#include "study/compare/speed_up.h"
+
+namespace frond::compare {
+
+std::string summary_text(const Comparison& c) {
+  const ErrorUnit unit = c.request.error_unit();
+  const auto fixed = [&unit](double error) { return unit.fixed(error, 5); };
+  const std::string noise = fmt::format("noise of {}", c.subjects.front().rungs.back().samples);
+  Table table{"summary"};
+  for (size_t i = 0; i < c.subjects.size(); ++i) {
+    const Subject& s = c.subjects[i];
+    const Rung& r = s.rungs.back();
+    const RenderError& e = r.errors[kAll][kTogether];
+    const SpeedUps v = speed_ups(c, i);
+    const bool told = v.equal_error_at_bias && v.equal_error_at_bias->value > 0;
+    table.add("candidate", s.candidate.label);
+    table.add("CPU s/sample", fmt::format("{:.3g}", r.cost.cpu_seconds / double(r.samples)));
+    table.add("bias (95 %)", fmt::format("{} ({} to {})", fixed(e.bias.root()), fixed(e.bias.root_at(-kZ95)),
+                                         fixed(e.bias.root_at(kZ95))));
+    table.add(noise, fixed(e.noise.root()));
+    table.add("FLIP", r.flip ? fmt::format("{:.4f}", *r.flip) : "-");
+    table.add("(a)", fmt::format("{:.2f}", v.equal_samples));
+    table.add("(c*)", told ? fmt::format("{:.2f}", v.equal_error_at_bias->value) : "-");
+    table.add("(d)", fmt::format("{:.2f}", v.equal_noise));
+  }
+  return to_text(table) + (unit.is_relative() ? fmt::format("{}\n", kRelativeExplained) : "") +
+         "Speed-up by CPU time: (a) at equal samples, (c*) at an RMS of 1.5 times the bias, (d) at equal noise.\n";
+}
+
+}  // namespace frond::compare
