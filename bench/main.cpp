@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "study/compare/report/machine.h"
+#include "system/machine.h"
 
 namespace {
 
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   benchmark::AddCustomContext("frond_version", FROND_VERSION);
   benchmark::AddCustomContext("compiler", kCompiler);
   benchmark::AddCustomContext("compiler_flags", FROND_BENCH_FLAGS);
-  benchmark::AddCustomContext("machine", frond::compare::machine_description());
+  benchmark::AddCustomContext("machine", frond::machine_description());
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

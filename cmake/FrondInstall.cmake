@@ -9,7 +9,7 @@ install(TARGETS libfrond frond_plugin EXPORT frond
 # One of an earlier installation would be loaded in place of this one.
 install(CODE "file(REMOVE_RECURSE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/${frond_hwcaps_dir}\")"
         COMPONENT runtime)
-if(FROND_X86_64_V3)
+if(FROND_INSTRUCTIONS STREQUAL both)
   install(TARGETS libfrond_v3 LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/${frond_hwcaps_dir}" COMPONENT runtime
           NAMELINK_SKIP)
 endif()
@@ -30,12 +30,8 @@ install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/frond" COMPONENT 
         REGEX "scenes/canopy/[^/]*[.]npy$" EXCLUDE)
 
 install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}" COMPONENT development)
-foreach(layer IN LISTS frond_layers)
-  install(DIRECTORY "src/${layer}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond" COMPONENT development
-          FILES_MATCHING PATTERN "*.h")
-endforeach()
-install(FILES "${frond_generated}/core/build_identity.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond/core"
-        COMPONENT development)
+install(DIRECTORY "${frond_headers}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond" COMPONENT development
+        FILES_MATCHING PATTERN "*.h")
 configure_package_config_file(cmake/frondConfig.cmake.in "${CMAKE_CURRENT_BINARY_DIR}/frondConfig.cmake"
                               INSTALL_DESTINATION "${frond_package_dir}")
 write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/frondConfigVersion.cmake" COMPATIBILITY SameMinorVersion)

@@ -59,6 +59,22 @@ quietly() {
   rm -f "$log"
 }
 
+# with_progress COMMAND...: like quietly, for a build by Ninja: on a terminal one line says how far it is.
+with_progress() {
+  if [ ! -t 1 ]; then
+    quietly "$@"
+    return
+  fi
+  local log code=0 step all
+  log=$(mktemp)
+  (cd "$root" && "$@") 2>&1 | tee "$log" | sed -un 's|^\[\([0-9]*\)/\([0-9]*\)\].*|\1 \2|p' |
+    while read -r step all; do printf '\r  step %d of %d, %d %%\033[K' "$step" "$all" $((100 * step / all)); done ||
+    code=$?
+  printf '\r\033[K'
+  [ "$code" = 0 ] || { tail -n 60 "$log" >&2; rm -f "$log"; exit "$code"; }
+  rm -f "$log"
+}
+
 # python_venv NAME PACKAGE...: Debian's Python with packages of PyPI in build/NAME. False where they cannot be had.
 python_venv() {
   local venv="$root/build/$1"
@@ -82,14 +98,16 @@ with_python_module() {
 
 configure() {
   local options=("${configure_options[@]}")
-  command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  # Without these words ccache leaves out what includes a precompiled header.
+  command -v ccache >/dev/null &&
+    options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache")
   quietly cmake --preset "$1" "${options[@]}"
 }
 
 # build_preset PRESET WORD...: the words are those of cmake --build.
 build_preset() {
   configure "$1"
-  quietly cmake --build --preset "$@"
+  with_progress cmake --build --preset "$@"
 }
 
 # build TARGET...: as programs are used.

@@ -8,11 +8,20 @@
 #include <algorithm>
 
 #include "cli/pbrt_options.h"
+#include "core/error.h"
 #include "jobs/record/command_line.h"
+#include "jobs/record/pbrt_options.h"
 #include "scene/format/words.h"
 
 namespace frond {
 namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  frond render scenes/soybean-front/scene.pbrt --wavelengths smpte -o leaf.png\n"
+    "  frond compare scenes/soybean-front/scene.pbrt --quick -o report\n"
+    "frond COMMAND --help prints the options of a command.\n"
+    "frond SCENE.pbrt is short for frond render SCENE.pbrt.";
 
 /// Columns of the terminal that help is printed to, or those of a page.
 size_t help_width() {
@@ -103,11 +112,16 @@ bool is_of_session(const JobInfo& job, const JobParam& p) {
   return std::ranges::any_of(session_params(job.session), [&p](const JobParam& own) { return &own == &p; });
 }
 
-}  // namespace
+/// A job as a subcommand.
+struct Command {
+  const JobInfo* job;
+  CLI::App* app;
+  std::vector<std::pair<const JobParam*, CLI::Option*>> options;
+};
 
-Arguments Command::arguments() const {
-  Arguments args(params_of(*job), command_spelling);
-  for (const auto& [param, option] : options) {
+Arguments arguments_of(const Command& command) {
+  Arguments args(params_of(*command.job), command_spelling);
+  for (const auto& [param, option] : command.options) {
     std::vector<std::string> words = option->results();
     if (words.empty()) continue;
     if (param->kind == ArgumentKind::flag) words = {words.back()};
@@ -116,6 +130,19 @@ Arguments Command::arguments() const {
   return args;
 }
 
+/// The options of pbrt-v4 that frond has no use for. They are not in --help, but in --help-pbrt and the man page.
+void add_pbrt_options(CLI::App& render) {
+  for (const PbrtOption& o : kPbrtOptions) {
+    CLI::Option* option = o.value[0] == '\0' ? render.add_flag(o.name)
+                                             : render.add_option(o.name, [](const CLI::results_t&) { return true; });
+    option->group("");  // not in --help
+  }
+  render.get_option("--render-coord-sys")->check(CLI::IsMember({"camera", "cameraworld", "world"}));
+  const std::string doc(kHelpPbrtParam.doc);  // CLI11 writes to what is no constant
+  render.add_flag(command_spelling(kHelpPbrtParam.name), doc);
+}
+
+/// Adds a subcommand for each job, made from its record. Help is wrapped at the width of the terminal.
 std::vector<Command> add_commands(CLI::App& app) {
   app.formatter(std::make_shared<HelpFormatter>());
   std::vector<Command> commands;
@@ -135,6 +162,84 @@ std::vector<Command> add_commands(CLI::App& app) {
     if (job->name == "render") add_pbrt_options(*sub);
   }
   return commands;
+}
+
+bool is_option(std::string_view word) { return word.starts_with("--") && word.size() > 2; }
+
+std::string unknown_command(const std::string& word, const CLI::App& app) {
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return fmt::format("there is no command \"{}\"{}", word, suggestion(word, names));
+}
+
+/// `word` without its "=value".
+std::string unknown_option(std::string_view word, const std::string& command_name, const CLI::App& command) {
+  std::vector<std::string_view> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
+  const std::string_view match = nearest(word.substr(2), names);
+  return fmt::format(
+      "{} has no option {}; {}", command_name, word,
+      match.empty() ? command_name + " --help prints what it has" : fmt::format("did you mean --{}?", match));
+}
+
+std::string unknown_option_of(const CLI::App& command, const std::string& name) {
+  for (const std::string& word : command.remaining())
+    if (is_option(word)) return unknown_option(std::string_view(word).substr(0, word.find('=')), name, command);
+  return "";
+}
+
+/// After a parse that failed: which command or long option nothing is called by, and what may have been meant; "" where
+/// that is not what went wrong.
+std::string mistyped(const CLI::App& app) {
+  const auto words = app.remaining();
+  const auto commands = app.get_subcommands();
+  if (commands.empty() && !words.empty() && !words[0].starts_with('-')) return unknown_command(words[0], app);
+  if (const std::string message = unknown_option_of(app, app.get_name()); !message.empty()) return message;
+  return commands.empty() ? "" : unknown_option_of(*commands[0], app.get_name() + " " + commands[0]->get_name());
+}
+
+/// Also prints help, which CLI11 takes for an error. An unknown word is reported first: CLI11 would report what that
+/// word was meant to be as missing.
+int refuse(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string message = error.get_exit_code() == 0 ? "" : mistyped(app);
+  if (message.empty()) return app.exit(error) == 0 ? 0 : 1;
+  fmt::print(stderr, "frond: {}\n", message);
+  return 1;
+}
+
+std::vector<std::string> long_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
+std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const* argv) {
+  CLI::App app{"frond: a spectral path tracer for plant leaves.", "frond"};
+  app.set_version_flag("--version", "frond " FROND_VERSION);
+  app.require_subcommand(1);
+  app.footer(kExamples);
+  const std::vector<Command> commands = add_commands(app);
+  const CLI::App& render = *app.get_subcommand("render");
+  std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc}, long_names(render));
+  std::ranges::reverse(words);  // CLI11 takes them from the end
+  try {
+    app.parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    return refuse(app, error);
+  }
+  const auto chosen = std::ranges::find_if(commands, [](const Command& c) { return c.app->parsed(); });
+  ParsedCommand parsed{.job = chosen->job, .arguments = arguments_of(*chosen), .pbrt_options = {}};
+  if (chosen->app == &render) {
+    parsed.asks_for_pbrt_help = render.count(command_spelling(kHelpPbrtParam.name)) > 0;
+    for (const PbrtOption& o : kPbrtOptions)
+      if (render.count(o.name) > 0) parsed.pbrt_options.push_back(&o);
+  }
+  return parsed;
 }
 
 }  // namespace frond

@@ -1,28 +1,23 @@
 #pragma once
 
-#include <string>
+#include <variant>
 #include <vector>
 
 #include "jobs/record/job.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
+#include "jobs/record/pbrt_options.h"
 
 namespace frond {
 
-/// A job as a subcommand.
-struct Command {
+/// A command line as the records of jobs read it.
+struct ParsedCommand {
   const JobInfo* job;
-  CLI::App* app;
-  std::vector<std::pair<const JobParam*, CLI::Option*>> options;
-
-  /// What the command line says. Throws InputError.
-  Arguments arguments() const;
+  Arguments arguments;
+  std::vector<const PbrtOption*> pbrt_options;  ///< of `frond render`: those of pbrt-v4 that frond has no use for
+  bool asks_for_pbrt_help = false;              ///< --help-pbrt
 };
 
-/// Adds a subcommand for each job, made from its record. Help is wrapped at the width of the terminal.
-std::vector<Command> add_commands(CLI::App& app);
+/// The one place that knows CLI11. A number is the program's exit code: help, the version, or what is wrong has been
+/// printed. Throws InputError for a value that a job's record refuses.
+std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const* argv);
 
 }  // namespace frond

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 
 #include "core/error.h"
-#include "jobs/record/command_line.h"
 #include "jobs/record/pbrt_options.h"
 #include "scene/format/unsupported.h"
 
@@ -34,29 +32,16 @@ std::string normalized(std::string_view name) {
 }
 
 /// "-NThreads=2" as "--nthreads=2"; any other word as it is.
-std::string with_our_name(const std::string& word, const CLI::App& command) {
+std::string with_our_name(const std::string& word, const std::vector<std::string>& names) {
   const std::string_view all = word;
   const size_t name_end = std::min(all.find('='), all.size());
   if (!all.starts_with('-') || name_end < 3) return word;
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames())
-      if (normalized(name) == normalized(all.substr(0, name_end)))
-        return "--" + name + std::string(all.substr(name_end));
+  for (const std::string& name : names)
+    if (normalized(name) == normalized(all.substr(0, name_end))) return "--" + name + std::string(all.substr(name_end));
   return word;
 }
 
 }  // namespace
-
-void add_pbrt_options(CLI::App& render) {
-  for (const PbrtOption& o : kPbrtOptions) {
-    CLI::Option* option = o.value[0] == '\0' ? render.add_flag(o.name)
-                                             : render.add_option(o.name, [](const CLI::results_t&) { return true; });
-    option->group("");  // not in --help
-  }
-  render.get_option("--render-coord-sys")->check(CLI::IsMember({"camera", "cameraworld", "world"}));
-  const std::string doc(kHelpPbrtParam.doc);  // CLI11 writes to what is no constant
-  render.add_flag(command_spelling(kHelpPbrtParam.name), doc);
-}
 
 std::string pbrt_options_text() {
   std::string text = "Options of pbrt-v4 that frond render ignores with a warning, or refuses:\n";
@@ -66,14 +51,13 @@ std::string pbrt_options_text() {
   return text;
 }
 
-std::vector<std::string> pbrt_warnings(const CLI::App& render) {
+std::vector<std::string> pbrt_warnings(const std::vector<const PbrtOption*>& given) {
   std::vector<std::string> warnings;
-  for (const PbrtOption& o : kPbrtOptions) {
-    if (render.count(o.name) == 0) continue;
-    if (o.is_refused) fail({}, "{}: {}", o.name, o.doc);
-    const std::string_view name = o.name;
+  for (const PbrtOption* o : given) {
+    if (o->is_refused) fail({}, "{}: {}", o->name, o->doc);
+    const std::string_view name = o->name;
     if (name != "--stats" && name != "--render-coord-sys")
-      warnings.push_back(fmt::format("{} of pbrt has no effect here", o.name));
+      warnings.push_back(fmt::format("{} of pbrt has no effect here", o->name));
   }
   return warnings;
 }
@@ -82,11 +66,11 @@ bool is_scene_name(const std::string& word) {
   return word.ends_with(".pbrt") || word.ends_with(".pbrt.gz") || word == "-";
 }
 
-std::vector<std::string> with_pbrt_spelling(std::vector<std::string> words, const CLI::App& render) {
+std::vector<std::string> with_pbrt_spelling(std::vector<std::string> words, const std::vector<std::string>& names) {
   if (!words.empty() && (words[0].starts_with('-') || is_scene_name(words[0])) &&
       std::ranges::any_of(words, is_scene_name)) {
-    for (std::string& word : words) word = with_our_name(word, render);
-    words.insert(words.begin(), render.get_name());
+    for (std::string& word : words) word = with_our_name(word, names);
+    words.insert(words.begin(), "render");
   }
   for (size_t i = 1; i < words.size(); ++i)
     if (words[i - 1] == kIgnore && are_kinds(words[i])) {

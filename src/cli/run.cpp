@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
 
 #include "cli/app.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/mistyped.h"
 #include "cli/pbrt_options.h"
 #include "cli/progress.h"
 #include "core/problems.h"
@@ -18,22 +16,6 @@ namespace frond {
 namespace {
 
 constexpr int kTryAgainLater = 75;  // EX_TEMPFAIL of sysexits.h
-
-constexpr const char* kExamples =
-    "Examples:\n"
-    "  frond render scenes/soybean-front/scene.pbrt --wavelengths smpte -o leaf.png\n"
-    "  frond compare scenes/soybean-front/scene.pbrt --quick -o report\n"
-    "frond COMMAND --help prints the options of a command.\n"
-    "frond SCENE.pbrt is short for frond render SCENE.pbrt.";
-
-/// Also prints help, which CLI11 takes for an error. An unknown word is reported first: CLI11 would report what that
-/// word was meant to be as missing.
-int refuse(const CLI::App& app, const CLI::ParseError& error) {
-  const std::string message = error.get_exit_code() == 0 ? "" : mistyped(app);
-  if (message.empty()) return app.exit(error) == 0 ? 0 : 1;
-  fmt::print(stderr, "frond: {}\n", message);
-  return 1;
-}
 
 bool asks_for_parts(const Arguments& args) {
   return (args.declares("checkpoint") && args.given("checkpoint")) || (args.declares("resume") && args.flag("resume"));
@@ -46,12 +28,11 @@ bool writes_to_standard_output(const Arguments& args) {
   });
 }
 
-int execute(const Command& command) {
-  const Arguments args = command.arguments();
+int execute(const ParsedCommand& command) {
+  const Arguments& args = command.arguments;
   const bool quiet = args.flag("quiet");
   const ConsoleLog console(quiet);
-  if (command.job->name == "render")
-    for (const std::string& warning : pbrt_warnings(*command.app)) console.warn({}, warning);
+  for (const std::string& warning : pbrt_warnings(command.pbrt_options)) console.warn({}, warning);
   JobContext context(console, session_options(args));
   ProgressLine progress(quiet);
   std::optional<Interrupt> interrupt;
@@ -65,31 +46,16 @@ int execute(const Command& command) {
   return result.code;
 }
 
-int parse_and_execute(CLI::App& app, const std::vector<Command>& commands, int argc, const char* const* argv) {
-  std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc}, *app.get_subcommand("render"));
-  std::ranges::reverse(words);  // CLI11 takes them from the end
-  try {
-    app.parse(std::move(words));
-  } catch (const CLI::ParseError& error) {
-    return refuse(app, error);
-  }
-  const auto chosen = std::ranges::find_if(commands, [](const Command& c) { return c.app->parsed(); });
-  if (chosen->job->name == "render" && chosen->app->count("--help-pbrt") > 0) {
-    write_text("-", pbrt_options_text());
-    return 0;
-  }
-  return execute(*chosen);
-}
-
 }  // namespace
 
 int run(int argc, const char* const* argv) {
-  CLI::App app{"frond: a spectral path tracer for plant leaves.", "frond"};
-  app.set_version_flag("--version", "frond " FROND_VERSION);
-  app.require_subcommand(1);
-  app.footer(kExamples);
   try {
-    return parse_and_execute(app, add_commands(app), argc, argv);
+    const auto parsed = parse_command_line(argc, argv);
+    if (const int* code = std::get_if<int>(&parsed)) return *code;
+    const auto& command = std::get<ParsedCommand>(parsed);
+    if (!command.asks_for_pbrt_help) return execute(command);
+    write_text("-", pbrt_options_text());
+    return 0;
   } catch (const Busy& error) {
     fmt::print(stderr, "frond: {}\n", error.what());
     return kTryAgainLater;

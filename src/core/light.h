@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
+#include "core/plugin.h"
+#include "core/shape.h"
 #include "core/spectrum.h"
-#include "core/vec.h"
+#include "core/transform.h"
 
 namespace frond {
 
@@ -56,6 +59,15 @@ class Light {
   int index_ = 0;
 };
 
+struct LightInfo : PluginInfo {
+  std::unique_ptr<Light> (*make)(const Params&, const Transform& world_from_light);
+};
+
+template <class T>
+std::unique_ptr<Light> make_light(const Params& p, const Transform& world_from_light) {
+  return std::make_unique<T>(p, world_from_light);
+}
+
 /// A point of a surface that gives off light.
 struct EmittingPoint {
   Vec3 p;   ///< world space
@@ -70,6 +82,39 @@ class AreaLight : public Light {
   virtual SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const = 0;
   /// Density of `sample` at `from`, per solid angle at that point, for a point of the surface.
   virtual float pdf(const Vec3& from, const EmittingPoint& at) const = 0;
+};
+
+/// Points over the area of a shape that gives off light, or of one of its faces, in world space.
+class EmittingSurface {
+ public:
+  virtual ~EmittingSurface() = default;
+  struct Sample {
+    ShapePoint point;
+    Vec2 uv;
+    float weight;  ///< 1 / area over the density: 1 where points are evenly spread over the area
+  };
+  virtual Sample sample(Vec2 u) const = 0;
+  /// Of one side.
+  virtual double area() const = 0;
+  /// Of its points and normals; one-sided.
+  virtual LightBounds bounds() const = 0;
+  /// Whether rays can meet it. With an alpha of 0 they never do: all of its light comes from samples, as in pbrt-v4.
+  virtual bool is_met() const = 0;
+  /// Share of the light that alpha leaves of what is met or sampled there.
+  virtual float opacity(const EmittingPoint& at) const = 0;
+};
+
+/// An AreaLightSource: what it says of any number of surfaces, which share its spectrum and image.
+class AreaEmission {
+ public:
+  virtual ~AreaEmission() = default;
+  /// Each face of a shape is a light of its own, as in pbrt-v4 where a total is stated.
+  virtual bool is_by_face() const = 0;
+  virtual std::unique_ptr<AreaLight> over(std::unique_ptr<const EmittingSurface> surface) const = 0;
+};
+
+struct AreaLightInfo : PluginInfo {
+  std::unique_ptr<AreaEmission> (*make)(const Params&);
 };
 
 /// Light from outside the scene, met by every ray that leaves it.

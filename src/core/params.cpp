@@ -63,20 +63,100 @@ Vec3 vec3_at(const std::vector<double>& v, size_t i) {
   return {static_cast<float>(v[i]), static_cast<float>(v[i + 1]), static_cast<float>(v[i + 2])};
 }
 
+/// A default that is a number.
+std::optional<double> default_number(const Default& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* whole = std::get_if<int>(&value)) return double(*whole);
+  return {};
+}
+
+[[noreturn]] void fail_without_value(const PluginInfo& info, const Param& declared) {
+  throw std::logic_error(
+      fmt::format("{} \"{}\" reads parameter \"{}\", which the scene does not give and which has no "
+                  "default of its kind",
+                  info.kind, info.name, declared.name));
+}
+
+double number_by_default(const PluginInfo& info, const Param& declared) {
+  if (const auto number = default_number(declared.default_value)) return *number;
+  fail_without_value(info, declared);
+}
+
+template <class T>
+const T& value_by_default(const PluginInfo& info, const Param& declared) {
+  if (const T* value = std::get_if<T>(&declared.default_value)) return *value;
+  fail_without_value(info, declared);
+}
+
+/// Of a default that is there, what a parameter of the kind takes; empty where it is that.
+std::string_view wrong_default(const Param& declared) {
+  const Default& value = declared.default_value;
+  const bool is_number = default_number(value).has_value(),
+             is_triple = std::holds_alternative<std::array<double, 3>>(value);
+  switch (declared.kind) {
+    case ParamKind::boolean:
+      return std::holds_alternative<bool>(value) ? "" : "true or false";
+    case ParamKind::integer:
+      return std::holds_alternative<int>(value) ? "" : "an int";
+    case ParamKind::real:
+    case ParamKind::float_texture:
+      return is_number ? "" : "a number";
+    case ParamKind::string:
+    case ParamKind::material:
+      return std::holds_alternative<std::string_view>(value) ? "" : "a string";
+    case ParamKind::point2:
+    case ParamKind::vector2:
+    case ParamKind::point3:
+    case ParamKind::vector3:
+    case ParamKind::normal3:
+      return is_triple ? "" : "three numbers";
+    case ParamKind::illuminant:
+    case ParamKind::albedo:
+    case ParamKind::unbounded:
+    case ParamKind::spectrum_texture:
+      return is_number || is_triple ? "" : "a number or three";
+  }
+  return "of a known kind";
+}
+
+/// Of a declaration by itself; empty where there is none.
+std::string problem_of(const Param& p) {
+  if (p.name.empty()) return "a parameter has no name";
+  if (std::holds_alternative<std::monostate>(p.default_value)) return "";
+  if (const std::string_view takes = wrong_default(p); !takes.empty())
+    return fmt::format("the default of \"{}\" has the wrong type: it takes {}", p.name, takes);
+  if (const auto x = default_number(p.default_value); x && !(std::isfinite(*x) && p.range.contains(*x)))
+    return fmt::format("the default of \"{}\" is {}, outside its range {} to {}", p.name, *x, p.range.min, p.range.max);
+  if (const auto* word = std::get_if<std::string_view>(&p.default_value);
+      word && !p.choices.empty() && std::ranges::find(p.choices, *word) == p.choices.end())
+    return fmt::format("the default of \"{}\" is \"{}\", which is none of {}", p.name, *word,
+                       fmt::join(p.choices, ", "));
+  return "";
+}
+
 /// A default of three numbers is "rgb"; of one number, that value at every wavelength ("spectrum" [360 x 2500 x]).
-ParsedParam default_spectrum(const Param& declared, const Location& where) {
+ParsedParam default_spectrum(const PluginInfo& info, const Param& declared, const Location& where) {
   ParsedParam p{"rgb", std::string(declared.name), where, where, {}};
-  if (const auto* level = std::get_if<double>(&declared.default_value)) {
+  if (const auto level = default_number(declared.default_value)) {
     p.type = "spectrum";
     p.values = std::vector<double>{360, *level, 2500, *level};
   } else {
-    const auto& rgb = std::get<std::array<double, 3>>(declared.default_value);
+    const auto& rgb = value_by_default<std::array<double, 3>>(info, declared);
     p.values = std::vector<double>(rgb.begin(), rgb.end());
   }
   return p;
 }
 
 }  // namespace
+
+std::string declaration_problem(const PluginInfo& info) {
+  for (auto p = info.params.begin(); p != info.params.end(); ++p) {
+    if (std::find_if(info.params.begin(), p, [p](const Param& q) { return q.name == p->name; }) != p)
+      return fmt::format("parameter \"{}\" is declared twice", p->name);
+    if (const std::string problem = problem_of(*p); !problem.empty()) return problem;
+  }
+  return "";
+}
 
 Params::Params(const PluginInfo& info, const ParsedPlugin& parsed, ParamResolver& resolver)
     : info_(info), parsed_(parsed), resolver_(resolver), read_(info.params.size(), false) {
@@ -167,22 +247,22 @@ std::vector<std::string_view> Params::unread() const {
 
 bool Params::boolean(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  return parsed ? bool(std::get<std::vector<bool>>(parsed->values)[0]) : std::get<bool>(declared.default_value);
+  return parsed ? bool(std::get<std::vector<bool>>(parsed->values)[0]) : value_by_default<bool>(info_, declared);
 }
 
 int Params::integer(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  return parsed ? static_cast<int>(numbers(*parsed)[0]) : std::get<int>(declared.default_value);
+  return parsed ? static_cast<int>(numbers(*parsed)[0]) : value_by_default<int>(info_, declared);
 }
 
 double Params::real(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  return parsed ? numbers(*parsed)[0] : std::get<double>(declared.default_value);
+  return parsed ? numbers(*parsed)[0] : number_by_default(info_, declared);
 }
 
 std::string Params::string(std::string_view name) const {
   const auto [declared, parsed] = find(name);
-  return parsed ? words(*parsed)[0] : std::string(std::get<std::string_view>(declared.default_value));
+  return parsed ? words(*parsed)[0] : std::string(value_by_default<std::string_view>(info_, declared));
 }
 
 Vec2 Params::vec2(std::string_view name) const {
@@ -235,7 +315,7 @@ SpectrumPtr Params::spectrum(std::string_view name) const {
                           : declared.kind == ParamKind::unbounded ? SpectrumUse::unbounded
                                                                   : SpectrumUse::albedo;
   if (parsed) return resolver_.spectrum(*parsed, use);
-  return resolver_.spectrum(default_spectrum(declared, parsed_.where), use);
+  return resolver_.spectrum(default_spectrum(info_, declared, parsed_.where), use);
 }
 
 namespace {
@@ -279,7 +359,7 @@ std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, co
 std::shared_ptr<const FloatTexture> Params::float_texture(std::string_view name) const {
   const auto [declared, parsed] = find(name);
   if (is_texture(name)) return texture_in_range(resolver_, declared, words(*parsed)[0], parsed->value_where);
-  const double value = parsed ? numbers(*parsed)[0] : std::get<double>(declared.default_value);
+  const double value = parsed ? numbers(*parsed)[0] : number_by_default(info_, declared);
   return std::make_shared<ConstantFloatTexture>(static_cast<float>(value));
 }
 
@@ -302,7 +382,7 @@ bool Params::is_texture(std::string_view name) const {
 std::shared_ptr<const SpectrumTexture> Params::spectrum_texture(std::string_view name) const {
   const auto [declared, parsed] = find(name);
   if (parsed && parsed->type == "texture") return resolver_.spectrum_texture(words(*parsed)[0], parsed->value_where);
-  const ParsedParam& value = parsed ? *parsed : default_spectrum(declared, parsed_.where);
+  const ParsedParam& value = parsed ? *parsed : default_spectrum(info_, declared, parsed_.where);
   return std::make_shared<ConstantSpectrumTexture>(resolver_.spectrum(value, SpectrumUse::albedo));
 }
 

@@ -41,7 +41,8 @@ enum class ParamKind : uint8_t {
 /// Unit of a number, as docs and messages print it; "" where it is a pure number.
 using Unit = std::string_view;
 
-/// Value where the scene gives none. monostate: there is none, and the plugin asks `given` first.
+/// Value where the scene gives none. An int stands for a number of any kind. monostate: there is none, and the plugin
+/// asks `given` first.
 using Default = std::variant<std::monostate, bool, int, double, std::string_view, std::array<double, 3>>;
 
 inline constexpr Interval kAnyValue{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -96,6 +97,10 @@ class ParamResolver {
 };
 
 struct PluginInfo;
+
+/// What is wrong with the parameters that a plugin declares: a name that is there twice, a default that is of another
+/// kind than the parameter, outside its range or none of its choices. Empty where they are right.
+std::string declaration_problem(const PluginInfo& info);
 
 /// A plugin's parameters, checked against its declaration: names, types, counts and ranges are right once this exists.
 class Params {

@@ -18,6 +18,13 @@ struct PluginInfo {
   std::span<const Param> params;
 };
 
+/// What a plugin made, by a pointer. Throws InputError where that is nothing.
+template <class Pointer>
+Pointer made_by(const PluginInfo& info, const Location& where, Pointer made) {
+  if (!made) fail(where, "{} \"{}\" has made nothing: this is a defect of the plug-in", info.kind, info.name);
+  return made;
+}
+
 /// The plugins of one kind.
 template <class Info>
 class PluginTable {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/build_identity.h"
+#include "core/build_record.h"
 #include "image/image_file.h"
 
 namespace frond {
@@ -34,7 +34,7 @@ const ImageCodec& open_image_codec(const std::filesystem::path& file);
 
 /// What the shared object offers: by its one function, `frond_image_codec`.
 struct ImageCodecModule {
-  const char* build = FROND_BUILD_IDENTITY;  ///< leave it as it is
+  BuildRecord build = {};  ///< leave it as it is
   const ImageCodec* codec = nullptr;
 };
 

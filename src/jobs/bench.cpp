@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "core/build_identity.h"
 #include "instruments/beam.h"
 #include "instruments/bsdf_calls.h"
 #include "instruments/given_wavelengths.h"
@@ -15,7 +14,7 @@
 #include "render/material_words.h"
 #include "render/measured_material.h"
 #include "report/chart.h"
-#include "study/compare/report/machine.h"
+#include "system/machine.h"
 
 namespace frond {
 namespace {
@@ -170,8 +169,8 @@ std::string json_of(const std::string& of_times, const Arguments& args, std::spa
   Json json = Json::parse(of_times);
   Json& context = json["context"];
   context["frond_version"] = FROND_VERSION;
-  context["frond"] = FROND_BUILD_IDENTITY;
-  context["machine"] = compare::machine_description();
+  context["frond"] = "frond " FROND_VERSION;
+  context["machine"] = machine_description();
   context["min_time"] = args.real("min-time");
   context["samples"] = args.count("samples");
   context["seed"] = args.seed("seed");

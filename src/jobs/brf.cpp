@@ -12,7 +12,7 @@
 #include "report/brf_chart.h"
 #include "report/chart.h"
 #include "study/compare/candidate.h"
-#include "system/cpu_clock.h"
+#include "system/machine.h"
 
 namespace frond {
 namespace {

@@ -7,11 +7,10 @@
 #include "study/choose/choice_report.h"
 #include "study/compare/measure.h"
 #include "study/compare/report/charts.h"
-#include "study/compare/report/machine.h"
 #include "study/compare/report/report.h"
-#include "study/compare/report/summary.h"
+#include "study/compare/report/tables.h"
 #include "study/compare/report/verdict.h"
-#include "system/cpu_clock.h"
+#include "system/machine.h"
 
 namespace frond {
 
@@ -167,7 +166,7 @@ Result compare_models(const JobRun& run) {
     result.leaf_by_leaf += (result.leaf_by_leaf.empty() ? "" : "\n") + leaf_by_leaf(run, rms, study, plan);
   result.scene = scene_name(args.text("scene"));
   result.command = identifying_command(kCompareJob, args);
-  result.machine = compare::machine_description();
+  result.machine = machine_description();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.cpu_seconds = cpu_seconds();
   compare::ComparisonData data = compare::data_of(result);

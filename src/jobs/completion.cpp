@@ -5,7 +5,7 @@
 #include <regex>
 
 #include "jobs/record/command_line.h"
-#include "jobs/support/completion_templates.h"
+#include "jobs/support/templates.h"
 #include "leaf/tissue/specimens.h"
 #include "render/film/channels.h"
 #include "render/plugins.h"

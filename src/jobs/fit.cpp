@@ -9,7 +9,7 @@
 #include "report/fit_report.h"
 #include "report/text_output.h"
 #include "scene/format/tokenizer.h"
-#include "system/cpu_clock.h"
+#include "system/machine.h"
 
 namespace frond {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "jobs/support/render_task.h"
-#include "jobs/support/slurm_templates.h"
+#include "jobs/support/templates.h"
 #include "report/text_output.h"
 #include "system/child_process.h"
 

@@ -14,7 +14,7 @@
 #include "materials/registry.h"
 #include "report/text_output.h"
 #include "scene/format/plugin_text.h"
-#include "system/cpu_clock.h"
+#include "system/machine.h"
 
 namespace frond {
 namespace {

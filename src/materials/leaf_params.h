@@ -9,7 +9,7 @@
 #include "core/wavelengths.h"
 #include "leaf/table/depth_map.h"
 #include "leaf/tissue/specimens.h"
-#include "materials/incident.h"
+#include "materials/lobes/incident.h"
 
 namespace frond {
 

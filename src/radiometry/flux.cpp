@@ -9,8 +9,7 @@
 #include "radiometry/horizontal_irradiance.h"
 #include "radiometry/radiometer_scene.h"
 #include "radiometry/sums_file.h"
-#include "system/cpu_clock.h"
-#include "system/memory.h"
+#include "system/machine.h"
 
 namespace frond {
 namespace {

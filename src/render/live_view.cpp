@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "image/exr.h"
-#include "system/cpu_clock.h"
+#include "system/machine.h"
 
 namespace frond {
 

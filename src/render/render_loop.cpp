@@ -8,7 +8,7 @@
 #include <mutex>
 #include <new>
 
-#include "system/cpu_clock.h"
+#include "system/machine.h"
 
 namespace frond {
 namespace {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/build_identity.h"
-
 namespace frond {
 namespace {
 
@@ -82,7 +80,7 @@ std::string conform_text(const ConformReport& r) {
 }
 
 std::vector<Fact> conform_facts(const ConformReport& r) {
-  return {{"frond", std::string(FROND_BUILD_IDENTITY)},
+  return {{"frond", std::string("frond " FROND_VERSION)},
           {"material", r.material},
           {"wavelengths_nm", r.wavelengths_nm},
           {"angles_deg", r.effort.angles_deg},

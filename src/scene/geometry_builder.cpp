@@ -4,8 +4,35 @@
 #include <map>
 #include <set>
 
+#include "scene/format/plugin_text.h"
+
 namespace frond {
+
+extern const FloatTextureInfo instance_float_texture;
+
 namespace {
+
+/// A shape of a shared object may make anything; Embree does not check it.
+void check_made(const ShapeGeometry& geometry, const ShapeInfo& info, const Location& where) {
+  const auto* pointer = std::get_if<MeshPtr>(&geometry);
+  if (!pointer) {
+    made_by(info, where, std::get<AnalyticShapePtr>(geometry).get());
+    return;
+  }
+  const TriangleMesh& mesh = *made_by(info, where, pointer->get());
+  const size_t vertices = mesh.p.size();
+  const auto fits = [](size_t size, size_t all) { return size == 0 || size == all; };
+  if (!fits(mesh.n.size(), vertices) || !fits(mesh.uv.size(), vertices))
+    fail(where, "shape \"{}\" has made a mesh of {} vertices with {} normals and {} texture coordinates", info.name,
+         vertices, mesh.n.size(), mesh.uv.size());
+  if (!fits(mesh.turned.size(), mesh.triangles.size()))
+    fail(where, "shape \"{}\" has made a mesh of {} triangles, and says of {} whether they are turned", info.name,
+         mesh.triangles.size(), mesh.turned.size());
+  for (const auto& triangle : mesh.triangles)
+    if (const uint32_t last = std::ranges::max(triangle); last >= vertices)
+      fail(where, "shape \"{}\" has made a mesh of {} vertices with a triangle that names number {}", info.name,
+           vertices, last);
+}
 
 /// Embree leaves out what lies farther than 1.8e18, without a word.
 void check_extent(const ShapeGeometry& geometry, const Location& where) {
@@ -115,15 +142,17 @@ class GeometryBuilder {
       parts.instances.push_back(instances(*copies, shape, params));
     else
       for (ShapeGeometry& geometry : std::get<std::vector<ShapeGeometry>>(made))
-        parts.surfaces.push_back(surface(std::move(geometry), shape, params));
+        parts.surfaces.push_back(surface(std::move(geometry), info, shape, params));
   }
 
-  Surface surface(ShapeGeometry geometry, const ShapeDescription& shape, const Params& params) {
+  Surface surface(ShapeGeometry geometry, const ShapeInfo& info, const ShapeDescription& shape, const Params& params) {
     const Location& where = shape.plugin.where;
+    check_made(geometry, info, where);
     Surface result{.geometry = std::move(geometry), .material = uint32_t(shape.material), .alpha = nullptr};
     check_extent(result.geometry, where);
-    const auto alpha = params.float_texture("alpha");
-    if (!alpha->is_constant() || alpha->range().min < 1) result.alpha = alpha;
+    if (find_param(info, kAlphaParam.name))
+      if (const auto alpha = params.float_texture("alpha"); !alpha->is_constant() || alpha->range().min < 1)
+        result.alpha = alpha;
     if (shape.area_light) {
       check_emitter(result.geometry, where);
       result.area_light = uint32_t(*shape.area_light);
@@ -171,6 +200,26 @@ std::shared_ptr<const Geometry> build_geometry(const SceneDescription& descripti
                                                SceneResolver& resolver, const ThreadPool& pool, const Log& log,
                                                Problems& problems) {
   return GeometryBuilder(description, registry, resolver, pool, log, problems).build();
+}
+
+void check_instance_textures(const SceneSettings& description, const Geometry& geometry, const Log& log) {
+  const std::vector<InstanceColumn> columns = geometry.columns();
+  std::vector<std::string_view> names;
+  for (const InstanceColumn& c : columns) names.push_back(c.name);
+  for (const TextureDescription& texture : description.textures) {
+    if (texture.plugin.name != instance_float_texture.name) continue;
+    const ParsedParam& name = *find_param(texture.plugin.params, "column");  // it is required, and a single one
+    const std::string& wanted = std::get<std::vector<std::string>>(name.values).front();
+    const auto column = std::ranges::find(columns, wanted, &InstanceColumn::name);
+    if (column == columns.end())
+      fail(name.value_where, "no table of copies has a column \"{}\"{}", wanted,
+           names.empty() ? ": none has any numbers beside \"transform\"" : suggestion(wanted, names));
+    const auto& range = std::get<std::vector<double>>(find_param(texture.plugin.params, "range")->values);
+    if (column->range.min < range[0] || column->range.max > range[1])
+      log.warn(name.value_where,
+               fmt::format("column \"{}\" goes from {:g} to {:g}: what is beyond \"range\" is taken as its ends",
+                           wanted, column->range.min, column->range.max));
+  }
 }
 
 }  // namespace frond

@@ -14,4 +14,8 @@ std::shared_ptr<const Geometry> build_geometry(const SceneDescription& descripti
                                                SceneResolver& resolver, const ThreadPool& pool, const Log& log,
                                                Problems& problems);
 
+/// Throws InputError where a Texture "instance" asks for a column that no table of copies has; warns where the column
+/// goes beyond the texture's range.
+void check_instance_textures(const SceneSettings& description, const Geometry& geometry, const Log& log);
+
 }  // namespace frond

@@ -8,9 +8,15 @@
 #include "scene/format/description.h"
 #include "scene/format/plugin_text.h"
 #include "scene/registry.h"
-#include "scene/swap.h"
 
 namespace frond {
+
+/// Puts one material in place of another.
+struct MaterialSwap {
+  std::string from;  ///< name of a named material, or of a plugin; "*": every leaf
+  PluginText to;
+  Location where = {};  ///< of what asks for it
+};
 
 /// What a user says over a scene file.
 struct SceneOverrides {
@@ -26,5 +32,14 @@ struct SceneOverrides {
 /// (`files`, `content_hash`) stays. Throws InputError.
 void apply_overrides(const SceneOverrides& overrides, SceneSettings& description, const Registry& registry,
                      const Log& log);
+
+/// What the new material does not know of the old one's parameters is left out, with a warning: the two describe the
+/// same leaf, but each has its own method. Throws InputError at `where`, which is then the place of what is new.
+void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log,
+                   const Location& where = {});
+
+/// In this order, each on what the last one left. Throws InputError where the scene has no such material.
+void apply_swaps(SceneSettings& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
+                 const Log& log);
 
 }  // namespace frond

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/plugin_module.h"
+#include "system/build_check.h"
 #include "system/shared_object.h"
 
 namespace frond {
@@ -18,8 +19,8 @@ const PluginModule& module_of(const SharedObject& library, const fs::path& file)
   if (module->interface_version != kPluginInterface)
     fail({}, "plug-in \"{}\" has version {} of the plug-in interface, this frond has version {}: build it again",
          file.string(), module->interface_version, kPluginInterface);
-  if (const std::string_view ours = FROND_PLUGIN_BUILD; module->build != ours)
-    fail({}, "plug-in \"{}\" was built for {}, this is {}: build it again", file.string(), module->build, ours);
+  if (const std::string problem = mismatch(module->build); !problem.empty())
+    fail({}, "plug-in \"{}\" {}: build it again", file.string(), problem);
   return *module;
 }
 
@@ -32,6 +33,9 @@ void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTab
     if (info->kind != table.kind())
       fail({}, "plug-in \"{}\" offers \"{}\" as a {}, but calls it a {}", file.string(), info->name, table.kind(),
            info->kind);
+    if (!info->make) fail({}, "plug-in \"{}\": {} \"{}\" has no `make`", file.string(), info->kind, info->name);
+    if (const std::string problem = declaration_problem(*info); !problem.empty())
+      fail({}, "plug-in \"{}\": {} \"{}\": {}", file.string(), info->kind, info->name, problem);
     table.add(*info);
   }
 }
@@ -46,6 +50,10 @@ void load_plugin(const fs::path& file, Registry& registry) {
   add_all(module.cameras, file, registry.cameras);
   add_all(module.samplers, file, registry.samplers);
   add_all(module.filters, file, registry.filters);
+  add_all(module.films, file, registry.films);
+  add_all(module.shapes, file, registry.shapes);
+  add_all(module.lights, file, registry.lights);
+  add_all(module.area_lights, file, registry.area_lights);
   add_all(module.float_textures, file, registry.float_textures);
   add_all(module.spectrum_textures, file, registry.spectrum_textures);
 }

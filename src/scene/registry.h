@@ -1,14 +1,14 @@
 #pragma once
 
 #include "core/camera.h"
+#include "core/film.h"
 #include "core/filter.h"
 #include "core/integrator.h"
+#include "core/light.h"
 #include "core/material.h"
 #include "core/sampler.h"
+#include "core/shape.h"
 #include "core/texture.h"
-#include "scene/cameras/film_settings.h"
-#include "scene/lights/lights.h"
-#include "scene/shape.h"
 
 namespace frond {
 

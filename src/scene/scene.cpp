@@ -5,9 +5,10 @@
 
 #include "core/log.h"
 #include "core/problems.h"
+#include "scene/cameras/films.h"
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
-#include "scene/instances.h"
+#include "scene/lights/shape_emitter.h"
 #include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"
 
@@ -40,7 +41,20 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
   const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
   for (const ParsedParam& p : sensor_params(description))
     if (find_param(info, p.name) && !find_param(plugin.params, p.name)) plugin.params.push_back(p);
-  return info.make(Params(info, plugin, resolver));
+  return made_by(info, where, info.make(Params(info, plugin, resolver)));
+}
+
+/// A film of a shared object may ask for anything.
+void check_film(const FilmSettings& film, const FilmInfo& info, const Location& where) {
+  const auto [x0, y0, x1, y1] = film.crop;
+  if (film.width < 1 || film.height < 1 || film.width > 65536 || film.height > 65536)
+    fail(where, "film \"{}\" has {} x {} pixels: 1 to 65536 are possible", info.name, film.width, film.height);
+  if (x0 < 0 || y0 < 0 || x1 > film.width || y1 > film.height || x0 >= x1 || y0 >= y1)
+    fail(where, "film \"{}\" has a crop from ({}, {}) to ({}, {}), which holds no pixel of its {} x {} or lies outside",
+         info.name, x0, y0, x1, y1, film.width, film.height);
+  if (!(std::isfinite(film.exposure) && film.exposure >= 0 && film.max_component >= 0))
+    fail(where, "film \"{}\" has the exposure {} and clamps at {}: neither can be below 0", info.name, film.exposure,
+         film.max_component);
 }
 
 /// Of a camera's shutter, in seconds; 1 of one that has none.
@@ -147,7 +161,7 @@ class SceneBuilder {
   template <class Info, class... Args>
   auto make(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver, const Args&... args) {
     const Info& info = table.get(plugin.name, plugin.where);
-    return info.make(Params(info, plugin, resolver), args...);
+    return made_by(info, plugin.where, info.make(Params(info, plugin, resolver), args...));
   }
 
   template <class Info>
@@ -306,7 +320,7 @@ class SceneBuilder {
   void build_area_light(const Surface& surface, SceneResolver& resolver, SurfaceLights& of_surface) {
     const AreaEmission& emission = emission_of(*surface.area_light, resolver);
     const Location& where = description_.area_lights[*surface.area_light].where;
-    const auto add_over = [&](EmittingSurface emitting) {
+    const auto add_over = [&](std::unique_ptr<const EmittingSurface> emitting) {
       auto light = emission.over(std::move(emitting));
       const AreaLight* const added = light.get();
       add(std::move(light), where);
@@ -314,7 +328,7 @@ class SceneBuilder {
     };
     const unsigned faces = faces_of(surface.geometry);
     if (faces == 1 || !emission.is_by_face()) {
-      of_surface.whole = add_over(EmittingSurface(surface));
+      of_surface.whole = add_over(std::make_unique<ShapeEmitter>(surface));
       return;
     }
     log_.warn(where, fmt::format("each of the shape's {} triangles or patches gives off this \"power\", as in pbrt-v4: "
@@ -323,8 +337,8 @@ class SceneBuilder {
     of_surface.by_primitive.resize(primitives_of(surface.geometry));
     for (unsigned i = 0; i < of_surface.by_primitive.size();) {
       const Primitives face = face_of(surface.geometry, i);
-      EmittingSurface emitting(surface, face);
-      const AreaLight* const light = emitting.area() > 0 ? add_over(std::move(emitting)) : nullptr;
+      auto emitting = std::make_unique<ShapeEmitter>(surface, face);
+      const AreaLight* const light = emitting->area() > 0 ? add_over(std::move(emitting)) : nullptr;
       for (; i < face.end; ++i) of_surface.by_primitive[i] = light;
     }
   }
@@ -422,6 +436,7 @@ FilmSettings Scene::film_settings(const SceneSettings& description, const Regist
   OptionResolver resolver(description, log);
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
   FilmSettings film = info.make(Params(info, description.film, resolver));
+  check_film(film, info, description.film.where);
   const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
   film.exposure *= open_time(Params(camera, description.camera, resolver), camera);
   return description.is_quick ? halved(film) : film;

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace frond {
 namespace {
@@ -35,36 +37,137 @@ const Layers kAllowed{
     {"cli", {"core", "system", "scene", "render", "report", "jobs"}},
 };
 
-/// "file: includes" lines of every include that `allowed` does not permit.
-std::set<std::string> violations(const std::filesystem::path& src, const Layers& allowed) {
-  static const std::regex include(R"re(^\s*#include\s+"([a-z_]+)/([^"]+)")re");
-  std::set<std::string> found;
+/// Inside a layer that has folders: what each folder may include of the same layer, besides itself. "" is what lies in
+/// the layer itself.
+const std::map<std::string, Layers> kAllowedInside{
+    {"scene",
+     {{"math", {}},
+      {"format", {"math"}},
+      {"geometry", {"math"}},
+      {"shapes", {"math", "format"}},
+      {"lights", {"math", "geometry"}},
+      {"textures", {}},
+      {"cameras", {"math"}},
+      {"", {"math", "format", "geometry", "shapes", "lights", "textures", "cameras"}}}},
+    {"spectra", {{"", {}}, {"color", {""}}, {"wavelengths", {"", "color"}}}},
+    {"leaf",
+     {{"tissue", {}},
+      {"walk", {"tissue"}},
+      {"solve", {"tissue"}},
+      {"table", {"tissue", "walk", "solve"}},
+      {"fit", {"tissue", "solve"}}}},
+    {"materials", {{"lobes", {}}, {"", {"lobes"}}}},
+    {"render", {{"film", {}}, {"parts", {"film"}}, {"", {"film", "parts"}}}},
+    {"instruments", {{"errors", {}}, {"", {"errors"}}, {"conformance", {"", "errors"}}}},
+    {"study", {{"", {}}, {"compare", {""}}, {"compare/report", {"compare", ""}}, {"choose", {""}}}},
+    {"jobs", {{"record", {}}, {"support", {"record"}}, {"", {"record", "support"}}}},
+};
+
+struct Include {
+  std::filesystem::path by, of;  ///< relative to src
+};
+
+std::vector<Include> all_includes(const std::filesystem::path& src) {
+  static const std::regex include(R"re(^\s*#include\s+"([a-z_0-9/]+\.h)")re");
+  std::vector<Include> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(src)) {
     if (!entry.is_regular_file()) continue;
-    const auto relative = std::filesystem::relative(entry.path(), src);
-    const std::string layer = relative.begin()->string();
-    const auto rule = allowed.find(layer);
-    if (rule == allowed.end()) {
-      found.insert(relative.string() + ": unknown layer");
-      continue;
-    }
     std::ifstream in(entry.path());
     std::smatch match;
     for (std::string line; std::getline(in, line);)
-      if (std::regex_search(line, match, include) && match[1] != layer && !rule->second.contains(match[1]))
-        found.insert(relative.string() + ": " + match[1].str() + "/" + match[2].str());
+      if (std::regex_search(line, match, include))
+        found.push_back({std::filesystem::relative(entry.path(), src), match[1].str()});
   }
   return found;
 }
 
+std::string layer_of(const std::filesystem::path& file) { return file.begin()->string(); }
+/// Within its layer; "" of a file in the layer itself.
+std::string folder_of(const std::filesystem::path& file) {
+  const auto folder = std::filesystem::relative(file.parent_path(), layer_of(file)).string();
+  return folder == "." ? "" : folder;
+}
+
+/// "file: includes" lines of every include that is not permitted, and folders that are in no table.
+std::set<std::string> violations(const std::vector<Include>& includes, const Layers& allowed,
+                                 const std::map<std::string, Layers>& inside) {
+  std::set<std::string> found;
+  for (const auto& [by, of] : includes) {
+    const std::string layer = layer_of(by), folder = folder_of(by);
+    const std::string text = by.string() + ": " + of.string();
+    const auto rule = allowed.find(layer);
+    if (rule == allowed.end()) {
+      found.insert(layer + ": unknown layer");
+    } else if (layer != layer_of(of)) {
+      if (!rule->second.contains(layer_of(of))) found.insert(text);
+    } else if (const auto folders = inside.find(layer); folders == inside.end()) {
+      if (!folder.empty()) found.insert(layer + "/" + folder + ": unknown folder");
+    } else if (const auto here = folders->second.find(folder); here == folders->second.end()) {
+      found.insert(layer + "/" + folder + ": unknown folder");
+    } else if (folder != folder_of(of) && !here->second.contains(folder_of(of))) {
+      found.insert(text);
+    }
+  }
+  return found;
+}
+
+/// The first cycle among the tables' names, or "".
+std::string cycle_in(const Layers& layers) {
+  std::set<std::string> done;
+  while (done.size() < layers.size()) {
+    const auto next = std::ranges::find_if(layers, [&done](const auto& layer) {
+      return !done.contains(layer.first) &&
+             std::ranges::all_of(layer.second, [&done](const std::string& of) { return done.contains(of); });
+    });
+    if (next == layers.end())
+      return std::ranges::find_if(layers, [&done](const auto& l) { return !done.contains(l.first); })->first + " ...";
+    done.insert(next->first);
+  }
+  return "";
+}
+
+const std::filesystem::path kSrc = FROND_SOURCE_DIR "/src";
+
 TEST(Architecture, IncludesPointOneWay) {
-  EXPECT_EQ(violations(FROND_SOURCE_DIR "/src", kAllowed), std::set<std::string>{});
+  const std::vector<Include> includes = all_includes(kSrc);
+  EXPECT_GT(includes.size(), 1000u);
+  EXPECT_EQ(violations(includes, kAllowed, kAllowedInside), std::set<std::string>{});
+}
+
+TEST(Architecture, TheTablesHaveNoCycle) {
+  EXPECT_EQ(cycle_in(kAllowed), "");
+  for (const auto& [layer, folders] : kAllowedInside) EXPECT_EQ(cycle_in(folders), "") << layer;
+  EXPECT_EQ(cycle_in({{"a", {"b"}}, {"b", {"a"}}, {"c", {}}}), "a ...");
 }
 
 TEST(Architecture, AnIncludeTheOtherWayIsFound) {
+  const std::vector<Include> includes = all_includes(kSrc);
   Layers stricter = kAllowed;
   stricter["spectra"].clear();
-  EXPECT_FALSE(violations(FROND_SOURCE_DIR "/src", stricter).empty());
+  EXPECT_FALSE(violations(includes, stricter, kAllowedInside).empty());
+  auto inside = kAllowedInside;
+  inside["scene"]["lights"].erase("geometry");
+  EXPECT_EQ(violations(includes, kAllowed, inside).count("scene/lights/shape_emitter.h: scene/geometry/geometry.h"),
+            1u);
+  inside["scene"].erase("shapes");
+  EXPECT_EQ(violations(includes, kAllowed, inside).count("scene/shapes: unknown folder"), 1u);
+}
+
+// What is longer, or fuller, is to be divided.
+TEST(Architecture, FilesAndFoldersAreSmall) {
+  constexpr int kMostLines = 500, kMostFiles = 40;
+  std::map<std::filesystem::path, int> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSrc)) {
+    if (!entry.is_regular_file()) continue;
+    const int in_folder = ++files[entry.path().parent_path()];
+    EXPECT_LE(in_folder, kMostFiles) << entry.path().parent_path();
+    const auto extension = entry.path().extension();
+    if (extension != ".h" && extension != ".cpp") continue;
+    std::ifstream in(entry.path());
+    const auto lines = std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+    EXPECT_LE(lines, kMostLines) << entry.path();
+  }
+  EXPECT_GT(files.size(), 20u);
 }
 
 TEST(Architecture, ImageAndColourLibrariesStayInTheFilesThatNeedThem) {

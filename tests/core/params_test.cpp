@@ -45,6 +45,13 @@ constexpr Param kParams[] = {
 const PluginInfo kInfo{"material", "test", "For tests.", "", kParams};
 
 constexpr Param kNeedy[] = {{.name = "file", .kind = ParamKind::string, .doc = "A file.", .required = true}};
+constexpr Param kWhole[] = {
+    {.name = "real", .kind = ParamKind::real, .default_value = 0, .doc = "A number."},
+    {.name = "texture", .kind = ParamKind::float_texture, .default_value = 2, .doc = "A number."},
+    {.name = "none", .kind = ParamKind::real, .doc = "None by default."},
+};
+const PluginInfo kWholeInfo{"light", "whole", "For tests.", "", kWhole};
+
 const PluginInfo kNeedyInfo{"shape", "needy", "For tests.", "", kNeedy};
 
 /// Keeps what it was asked for.
@@ -229,6 +236,56 @@ TEST_F(ParamsTest, UnreadListsWhatNobodyAskedFor) {
 
 TEST_F(ParamsTest, ReadingAnUndeclaredParameterIsOurMistake) {
   EXPECT_THROW(make({}).real("secret"), std::logic_error);
+}
+
+TEST_F(ParamsTest, AWholeNumberIsADefaultOfAReal) {
+  RecordingResolver resolver;
+  const Params p(kWholeInfo, {"whole", {}, {}}, resolver);
+  EXPECT_EQ(p.real("real"), 0);
+  EXPECT_EQ(p.float_texture("texture")->evaluate({}), 2);
+  EXPECT_FALSE(p.given("none"));
+  try {
+    p.real("none");
+    FAIL() << "it has no value";
+  } catch (const std::logic_error& e) {
+    EXPECT_STREQ(e.what(),
+                 "light \"whole\" reads parameter \"none\", which the scene does not give and which has no default of "
+                 "its kind");
+  }
+}
+
+TEST(Declarations, AreCheckedWhenTheyAreRegistered) {
+  const auto problem = [](const std::vector<Param>& params) {
+    return declaration_problem({"light", "x", "", "", params});
+  };
+  using enum ParamKind;
+  EXPECT_EQ(declaration_problem(kInfo), "");
+  EXPECT_EQ(declaration_problem(kWholeInfo), "");
+  EXPECT_EQ(problem({{.name = "a", .kind = real, .doc = ""}, {.name = "a", .kind = boolean, .doc = ""}}),
+            "parameter \"a\" is declared twice");
+  EXPECT_EQ(problem({{.name = "", .kind = real, .doc = ""}}), "a parameter has no name");
+  const auto wrong = [&](ParamKind kind, Default value) {
+    return problem({{.name = "a", .kind = kind, .default_value = value, .doc = ""}});
+  };
+  constexpr std::array<double, 3> kThree{1, 2, 3};
+  for (const auto& [kind, value] : std::vector<std::pair<ParamKind, Default>>{{boolean, 1},
+                                                                              {integer, 1.5},
+                                                                              {real, true},
+                                                                              {string, 1},
+                                                                              {point3, 1.0},
+                                                                              {vector2, std::string_view("x")},
+                                                                              {illuminant, false},
+                                                                              {unbounded, std::string_view("x")},
+                                                                              {float_texture, kThree},
+                                                                              {spectrum_texture, true},
+                                                                              {material, 1}})
+    EXPECT_THAT(wrong(kind, value), ::testing::StartsWith("the default of \"a\" has the wrong type: it takes "))
+        << int(kind);
+  EXPECT_EQ(problem({{.name = "a", .kind = real, .default_value = 2, .range = {0, 1}, .doc = ""}}),
+            "the default of \"a\" is 2, outside its range 0 to 1");
+  EXPECT_EQ(
+      problem({{.name = "a", .kind = string, .default_value = std::string_view("x"), .doc = "", .choices = kModes}}),
+      "the default of \"a\" is \"x\", which is none of analog, weighted");
 }
 
 TEST_F(ParamsTest, PlaceIsThatOfTheValueOrElseOfTheDirective) {

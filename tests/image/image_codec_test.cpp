@@ -8,7 +8,6 @@ namespace frond {
 namespace {
 
 using testing::AllOf;
-using testing::EndsWith;
 using testing::HasSubstr;
 
 std::string refusal(const std::string& file) {
@@ -26,9 +25,8 @@ TEST(ImageCodec, WhatIsNoneIsRefusedWithAReason) {
   EXPECT_THAT(refusal(folder.write("text.so", "not a shared object").string()),
               AllOf(HasSubstr("text.so\" cannot be loaded"), HasSubstr("file too short")));
   EXPECT_THAT(refusal(FROND_TEST_PLUGINS "/planted.so"), HasSubstr("planted.so\" has no function frond_image_codec"));
-  EXPECT_THAT(
-      refusal(FROND_TEST_PLUGINS "/other_codec.so"),
-      AllOf(HasSubstr("was built for frond 0.0.1 (contracts of old), this is "), EndsWith(FROND_BUILD_IDENTITY)));
+  EXPECT_THAT(refusal(FROND_TEST_PLUGINS "/other_codec.so"),
+              HasSubstr("other_codec.so\" was compiled from other headers than this frond (core/vec.h)"));
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
-// Compiled with tests/plugins/other_build in front: as if against the headers of another frond.
 #include "core/plugin_module.h"
+
+/// As if compiled against the headers of another frond: a plug-in. `core/vec.h` is another one there.
+namespace {
+[[gnu::used, gnu::section("frond_headers")]] const char kOther[] = "core/vec.h 0123456789abcdef";
+}
 
 const frond::PluginModule* frond_plugin() {
   static const frond::PluginModule module;

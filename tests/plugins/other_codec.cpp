@@ -1,5 +1,9 @@
-// Compiled with tests/plugins/other_build in front: the library for image files of another frond.
 #include "image/image_codec.h"
+
+/// The library for image files of another frond. `core/vec.h` is another one there.
+namespace {
+[[gnu::used, gnu::section("frond_headers")]] const char kOther[] = "core/vec.h 0123456789abcdef";
+}
 
 const frond::ImageCodecModule* frond_image_codec() {
   static const frond::ImageCodecModule module;

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "study/compare/figures.h"
+#include "study/compare/error_unit.h"
 #include "study/compare/report/charts.h"
 #include "study/compare/report/verdict.h"
 #include "study/compare/speed_up.h"

@@ -7,6 +7,7 @@
 #include "core/problems.h"
 #include "jobs/record/common_params.h"
 #include "render/film/adaptive.h"
+#include "scene/cameras/films.h"
 #include "scene/format/words.h"
 
 namespace frond {

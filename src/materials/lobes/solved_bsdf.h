@@ -5,7 +5,7 @@
 #include "core/bsdf.h"
 #include "leaf/table/body_table.h"
 #include "leaf/table/surface_scaling.h"
-#include "materials/incident.h"
+#include "materials/lobes/incident.h"
 #include "materials/lobes/surface_lobe.h"
 
 namespace frond {

@@ -5,7 +5,7 @@
 #include "core/bsdf.h"
 #include "leaf/table/lookup.h"
 #include "leaf/table/reciprocal_lookup.h"
-#include "materials/incident.h"
+#include "materials/lobes/incident.h"
 #include "materials/lobes/surface_lobe.h"
 
 namespace frond {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "system/memory.h"
+#include "system/machine.h"
 
 namespace frond {
 namespace {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/exact_sum.h"
+#include "core/film.h"
 #include "core/wavelengths.h"
 #include "render/film/channels.h"
 #include "render/film/splatting.h"
 #include "render/film/work.h"
-#include "scene/cameras/film_settings.h"
 #include "spectra/matrix3.h"
 
 namespace frond {

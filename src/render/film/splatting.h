@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/film.h"
 #include "core/filter.h"
 #include "core/float4.h"
-#include "scene/cameras/film_settings.h"
 
 namespace frond {
 

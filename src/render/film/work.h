@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/cameras/film_settings.h"
+#include "core/film.h"
 
 namespace frond {
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/camera.h"
 #include "core/error.h"
 #include "core/sampling.h"
 #include "scene/math/equal_area.h"
-#include "scene/registry.h"
 
 namespace frond {
 namespace {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/camera.h"
 #include "core/error.h"
-#include "scene/registry.h"
 
 namespace frond {
 namespace {

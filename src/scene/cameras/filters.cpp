@@ -3,7 +3,6 @@
 
 #include "core/filter.h"
 #include "scene/math/distribution.h"
-#include "scene/registry.h"
 
 namespace frond {
 namespace {

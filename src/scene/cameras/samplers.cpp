@@ -2,7 +2,6 @@
 #include <array>
 
 #include "core/sampler.h"
-#include "scene/registry.h"
 
 namespace frond {
 namespace {

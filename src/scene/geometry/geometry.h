@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/shape.h"
 #include "core/world.h"
 #include "scene/geometry/instance_table.h"
-#include "scene/shape.h"
 
 // Embree's, by name alone: who includes this header need not have Embree.
 struct RTCDeviceTy;

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/ray.h"
-#include "scene/shape.h"
+#include "core/shape.h"
 
 namespace frond {
 

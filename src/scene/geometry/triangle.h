@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/material.h"
-#include "scene/mesh.h"
+#include "core/shape.h"
 
 namespace frond {
 

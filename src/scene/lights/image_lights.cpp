@@ -1,11 +1,11 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/light.h"
 #include "scene/lights/light_image.h"
 #include "scene/lights/light_params.h"
 #include "scene/math/direction_map.h"
 #include "scene/math/equal_area.h"
-#include "scene/registry.h"
 #include "spectra/cie.h"
 
 namespace frond {

@@ -1,13 +1,13 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/light.h"
 #include "scene/lights/light_params.h"
 #include "scene/lights/portal_light.h"
 #include "scene/lights/sphere_image.h"
 #include "scene/math/direction_map.h"
 #include "scene/math/distribution.h"
 #include "scene/math/equal_area.h"
-#include "scene/registry.h"
 #include "spectra/cie.h"
 
 namespace frond {

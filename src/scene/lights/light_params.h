@@ -26,9 +26,4 @@ std::optional<double> stated_total(const Params& p, std::string_view name);
 /// "scale", times what makes the light's total match where the scene states one.
 float light_scale(const Params& p, std::string_view total, double unit_total);
 
-template <class T>
-std::unique_ptr<Light> make_light(const Params& p, const Transform& world_from_light) {
-  return std::make_unique<T>(p, world_from_light);
-}
-
 }  // namespace frond

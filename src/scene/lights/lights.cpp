@@ -1,13 +1,11 @@
-#include "scene/lights/lights.h"
-
 #include <cmath>
 #include <numbers>
 
 #include "core/error.h"
+#include "core/light.h"
 #include "core/sampling.h"
 #include "scene/lights/light_image.h"
 #include "scene/lights/light_params.h"
-#include "scene/registry.h"
 #include "spectra/cie.h"
 
 namespace frond {
@@ -140,17 +138,17 @@ struct DiffuseEmission {
 
 class DiffuseAreaLight final : public AreaLight {
  public:
-  DiffuseAreaLight(std::shared_ptr<const DiffuseEmission> emission, EmittingSurface surface)
-      : emission_(std::move(emission)), surface_(std::move(surface)) {
-    if (!(surface_.area() > 0))
-      fail(emission_->where, "an area light needs a surface with an area, this one has {}", surface_.area());
+  DiffuseAreaLight(std::shared_ptr<const DiffuseEmission> emission, std::unique_ptr<const EmittingSurface> surface)
+      : emission_(std::move(emission)), surface_(std::move(surface)), area_(float(surface_->area())) {
+    if (!(surface_->area() > 0))
+      fail(emission_->where, "an area light needs a surface with an area, this one has {}", surface_->area());
     scale_ = float(emission_->scale);
     if (emission_->power)
-      scale_ =
-          float(emission_->scale * *emission_->power / (emission_->sides() * kPiD * surface_.area() * emission_->mean));
+      scale_ = float(emission_->scale * *emission_->power /
+                     (emission_->sides() * kPiD * surface_->area() * emission_->mean));
   }
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
-    const auto [on_light, uv, weight] = surface_.sample(u);
+    const auto [on_light, uv, weight] = surface_->sample(u);
     const Vec3 d = on_light.p - p;
     const float distance = length(d);
     if (distance == 0) return {};
@@ -166,19 +164,19 @@ class DiffuseAreaLight final : public AreaLight {
     if (!emission_->two_sided && !(dot(at.ng, w) > 0)) return {};
     const SampledSpectrum emitted = emission_->image ? emission_->image->bilinear({at.uv.x, 1 - at.uv.y}, lambda)
                                                      : emission_->spectrum->sample(lambda);
-    return emitted * (scale_ * surface_.opacity(at));
+    return emitted * (scale_ * surface_->opacity(at));
   }
   float pdf(const Vec3& from, const EmittingPoint& at) const override {
     const Vec3 d = at.p - from;
     const float density = pdf_along(at.ng, normalize_any(d), length(d));
     return density > 0 ? density : 0;  // no number where the points are one
   }
-  bool is_delta() const override { return !surface_.is_met(); }
+  bool is_delta() const override { return !surface_->is_met(); }
   double power(float) const override {
-    return emission_->luminance * double(scale_) * kPiD * surface_.area() * emission_->sides();
+    return emission_->luminance * double(scale_) * kPiD * surface_->area() * emission_->sides();
   }
   std::optional<LightBounds> bounds() const override {
-    LightBounds bounds = surface_.bounds();
+    LightBounds bounds = surface_->bounds();
     bounds.two_sided = emission_->two_sided;
     return bounds;
   }
@@ -186,11 +184,12 @@ class DiffuseAreaLight final : public AreaLight {
 
  private:
   float pdf_along(const Vec3& ng, const Vec3& wi, float distance) const {
-    return distance * distance / (std::abs(dot(ng, wi)) * float(surface_.area()));
+    return distance * distance / (std::abs(dot(ng, wi)) * area_);
   }
 
   std::shared_ptr<const DiffuseEmission> emission_;
-  EmittingSurface surface_;
+  std::unique_ptr<const EmittingSurface> surface_;
+  float area_;
   float scale_ = 0;
 };
 
@@ -198,7 +197,7 @@ class DiffuseAreaEmission final : public AreaEmission {
  public:
   explicit DiffuseAreaEmission(const Params& p) : emission_(std::make_shared<const DiffuseEmission>(p)) {}
   bool is_by_face() const override { return emission_->power.has_value(); }
-  std::unique_ptr<AreaLight> over(EmittingSurface surface) const override {
+  std::unique_ptr<AreaLight> over(std::unique_ptr<const EmittingSurface> surface) const override {
     return std::make_unique<DiffuseAreaLight>(emission_, std::move(surface));
   }
 

@@ -4,8 +4,7 @@
 #include <array>
 
 #include "core/error.h"
-#include "scene/registry.h"
-#include "scene/shape.h"
+#include "core/shape.h"
 
 namespace frond {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/shape.h"
+#include "core/shape.h"
 
 namespace frond {
 

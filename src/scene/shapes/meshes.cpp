@@ -1,8 +1,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "scene/registry.h"
-#include "scene/shape.h"
+#include "core/shape.h"
 #include "scene/shapes/bilinear.h"
 #include "scene/shapes/ply.h"
 #include "scene/shapes/subdivision.h"

@@ -1,9 +1,8 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/shape.h"
 #include "scene/math/affine_map.h"
-#include "scene/registry.h"
-#include "scene/shape.h"
 
 namespace frond {
 namespace {

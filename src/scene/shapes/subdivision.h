@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/mesh.h"
+#include "core/shape.h"
 
 namespace frond {
 

@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "core/texture.h"
 #include "image/rgb_file.h"
-#include "scene/registry.h"
 #include "scene/textures/clamped.h"
 #include "scene/textures/mip_map.h"
 #include "spectra/color/reflectance_table.h"

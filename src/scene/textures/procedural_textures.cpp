@@ -4,7 +4,6 @@
 
 #include "core/error.h"
 #include "core/texture.h"
-#include "scene/registry.h"
 #include "scene/textures/clamped.h"
 #include "scene/textures/noise.h"
 #include "scene/textures/texture_mapping.h"

@@ -1,6 +1,5 @@
 #include "core/error.h"
 #include "core/texture.h"
-#include "scene/registry.h"
 #include "scene/textures/clamped.h"
 
 namespace frond {

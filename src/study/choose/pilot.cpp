@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 #include "study/choose/pilot_pixels.h"
-#include "system/cpu_clock.h"
+#include "system/machine.h"
 
 namespace frond::choose {
 namespace {

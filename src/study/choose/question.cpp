@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "core/log.h"
+#include "scene/overrides.h"
 #include "scene/resolver.h"
 #include "scene/scene_options.h"
-#include "scene/swap.h"
 #include "scene/textures/normal_map.h"
 
 namespace frond::choose {

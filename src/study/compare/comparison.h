@@ -90,4 +90,11 @@ struct Comparison {
   double wall_seconds = 0, cpu_seconds = 0;
 };
 
+inline Convergence Subject::convergence(Region region, size_t channel) const {
+  std::vector<ConvergencePoint> points;
+  for (const Rung& r : rungs)
+    points.push_back({double(r.samples), r.cost.cpu_seconds, r.errors[region][channel].noise});
+  return {std::move(points), rungs.back().errors[region][channel].bias};
+}
+
 }  // namespace frond::compare

@@ -1,7 +1,5 @@
 #include "study/compare/error_unit.h"
 
-#include "study/compare/figures.h"
-
 namespace frond::compare {
 
 std::string ErrorUnit::of_data(const ChannelList& channels) const {
@@ -22,6 +20,12 @@ std::string ErrorUnit::rounded(double error) const {
 
 std::string ErrorUnit::as_asked(double error) const {
   return relative_ ? fmt::format("{:g} %", 100 * error) : fmt::format("{:g}", error);
+}
+
+std::string figures(double value, int count) {
+  if (value == 0 || !std::isfinite(value)) return fmt::format("{}", value);
+  const double place = std::pow(10, std::floor(std::log10(std::abs(value))) + 1 - count);
+  return fmt::format("{:.{}g}", std::round(value / place) * place, std::max(count, 6));
 }
 
 }  // namespace frond::compare

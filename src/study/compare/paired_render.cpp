@@ -1,6 +1,6 @@
 #include "study/compare/paired_render.h"
 
-#include "system/cpu_clock.h"
+#include "system/machine.h"
 
 namespace frond::compare {
 namespace {

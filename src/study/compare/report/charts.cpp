@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "study/compare/figures.h"
+#include "study/compare/error_unit.h"
 
 namespace frond::compare {
 namespace {

@@ -1,6 +1,5 @@
-#include "study/compare/report/summary.h"
-
 #include "report/table.h"
+#include "study/compare/report/tables.h"
 #include "study/compare/speed_up.h"
 
 namespace frond::compare {

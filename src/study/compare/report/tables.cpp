@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "study/compare/figures.h"
+#include "study/compare/error_unit.h"
 #include "study/compare/report/html.h"
 #include "study/compare/report/verdict.h"
 #include "study/compare/speed_up.h"
@@ -128,14 +128,14 @@ std::string worst_band(const Comparison& c, const std::vector<RenderError>& e) {
 
 std::string error_note(const Comparison& c) {
   if (c.request.relative)
-    return std::string(kRelativeExplained) +
-           " The reference’s noise is taken out. Bias is what no number of samples takes away.";
-  const std::string unit =
+    return fmt::format("{} The reference’s noise is taken out. Bias is what no number of samples takes away.",
+                       kRelativeExplained);
+  return fmt::format(
+      "{} The paper’s RMS is that of clipped pictures, of two renders that are both noisy; here the reference’s noise "
+      "is "
+      "taken out. Bias is what no number of samples takes away.",
       c.channels.are_bands() ? "Radiance over that of a white diffuse surface of luminance 1 in the light of the scene."
-                             : "Linear SMPTE-C.";
-  return unit +
-         " The paper’s RMS is that of clipped pictures, of two renders that are both noisy; here the reference’s "
-         "noise is taken out. Bias is what no number of samples takes away.";
+                             : "Linear SMPTE-C.");
 }
 
 std::string error_table(const Comparison& c, Region region) {

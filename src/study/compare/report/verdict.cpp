@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "instruments/errors/statistics.h"
-#include "study/compare/figures.h"
+#include "study/compare/error_unit.h"
 
 namespace frond::compare {
 namespace {

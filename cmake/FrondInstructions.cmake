@@ -1,0 +1,31 @@
+# frond_march: for what libfrond.so is compiled; frond_march_link: what tells the loader of it; frond_march_v3: for the second
+# library of FROND_INSTRUCTIONS `both`.
+if(NOT FROND_INSTRUCTIONS MATCHES "^(baseline|native|both)$")
+  message(FATAL_ERROR "FROND_INSTRUCTIONS is baseline, native or both, not \"${FROND_INSTRUCTIONS}\"")
+endif()
+include(CheckCXXCompilerFlag)
+include(CheckCXXSourceRuns)
+include(CheckLinkerFlag)
+set(frond_march_v3 -march=x86-64-v3)
+set(frond_march "")
+set(frond_march_link "")
+if(FROND_INSTRUCTIONS STREQUAL both)
+  check_cxx_compiler_flag(${frond_march_v3} FROND_CAN_X86_64_V3)
+  if(NOT FROND_CAN_X86_64_V3)
+    message(STATUS "FROND_INSTRUCTIONS: there are no others by this compiler, for this machine")
+    set(FROND_INSTRUCTIONS baseline)
+  endif()
+elseif(FROND_INSTRUCTIONS STREQUAL native AND NOT CMAKE_CROSSCOMPILING)
+  check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") &&
+    __builtin_cpu_supports(\"bmi\") && __builtin_cpu_supports(\"bmi2\") && __builtin_cpu_supports(\"f16c\") ? 0 : 1; }"
+                        FROND_MACHINE_HAS_AVX2)
+  check_cxx_compiler_flag(${frond_march_v3} FROND_CAN_X86_64_V3)
+  if(FROND_MACHINE_HAS_AVX2 AND FROND_CAN_X86_64_V3)
+    set(frond_march ${frond_march_v3})
+    # On a machine without them the loader says so, where the program would be killed.
+    check_linker_flag(CXX LINKER:-z,x86-64-v3 FROND_CAN_MARK_X86_64_V3)
+    if(FROND_CAN_MARK_X86_64_V3)
+      set(frond_march_link LINKER:-z,x86-64-v3)
+    endif()
+  endif()
+endif()

@@ -1,0 +1,56 @@
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/texture.h"
+
+// A texture that follows the numbers of copies of an object.
+
+namespace frond {
+namespace {
+
+class InstanceTexture final : public FloatTexture {
+ public:
+  explicit InstanceTexture(const Params& p) : column_(p.string("column")) {
+    const std::vector<double> range = p.reals("range");
+    if (range.size() != 2) fail(p.where("range"), "\"range\" takes 2 values, {} given", range.size());
+    if (range[0] > range[1])
+      fail(p.where("range"), "\"range\" goes from the least to the largest value: {} is more than {}", range[0],
+           range[1]);
+    range_ = {range[0], range[1]};
+    elsewhere_ = p.given("default") ? p.real("default") : range_.min;
+    if (!range_.contains(elsewhere_)) fail(p.where("default"), "\"default\" {} is outside \"range\"", elsewhere_);
+  }
+  float evaluate(const TexturePoint& at) const override {
+    const double value = double(at.instance.find(column_).value_or(float(elsewhere_)));
+    return float(std::clamp(value, range_.min, range_.max));
+  }
+  Interval range() const override { return range_; }
+
+ private:
+  std::string column_;
+  Interval range_;
+  double elsewhere_;
+};
+
+constexpr Param kInstanceTexture[] = {
+    {.name = "column", .kind = ParamKind::string, .doc = "Which number of the table.", .required = true},
+    {.name = "range",
+     .kind = ParamKind::real,
+     .doc = "The least and the largest value; what lies beyond is taken as that.",
+     .list = true,
+     .required = true},
+    {.name = "default",
+     .kind = ParamKind::real,
+     .doc = "Value where a surface is no copy with such a number; the least of \"range\" by default."}};
+
+std::unique_ptr<FloatTexture> make_instance_texture(const Params& p, const TexturePlacement&) {
+  return std::make_unique<InstanceTexture>(p);
+}
+
+}  // namespace
+
+extern const FloatTextureInfo instance_float_texture{
+    {"float texture", "instance", "A number of the table that a copy of an object comes from.", "", kInstanceTexture},
+    make_instance_texture};
+
+}  // namespace frond

@@ -1,8 +1,0 @@
-#pragma once
-
-namespace frond {
-
-/// Of this machine, bytes.
-double machine_memory();
-
-}  // namespace frond

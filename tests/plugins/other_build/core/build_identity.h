@@ -1,3 +1,0 @@
-#pragma once
-
-#define FROND_BUILD_IDENTITY "frond 0.0.1 (contracts of old)"

@@ -1,0 +1,37 @@
+#include "system/build_check.h"
+
+#include <gmock/gmock.h>
+
+namespace frond {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+/// As the linker leaves it: entries with zeros between them.
+std::string problem_of(const std::string& section) {
+  return mismatch({.headers = section.data(), .headers_end = section.data() + section.size()});
+}
+std::string entry(const std::string& header, size_t zeros = 1) {
+  return header + " " + std::string(own_headers().at(header)) + std::string(zeros, '\0');
+}
+
+TEST(BuildCheck, HeadersThatAreTheSameGo) {
+  EXPECT_GT(own_headers().size(), 200u);
+  EXPECT_EQ(problem_of(entry("core/vec.h") + entry("core/light.h", 7) + entry("core/vec.h")), "");
+}
+
+TEST(BuildCheck, ThoseThatDifferAreNamedOnce) {
+  const std::string zero(1, '\0'), other = " 0123456789abcdef" + zero;
+  EXPECT_EQ(problem_of(entry("core/light.h") + "core/vec.h" + other + "core/vec.h" + other + "core/gone.h" + other),
+            "was compiled from other headers than this frond (core/gone.h, core/vec.h)");
+}
+
+TEST(BuildCheck, NoRecordIsNoPermission) {
+  EXPECT_THAT(mismatch({.headers = nullptr, .headers_end = nullptr}), HasSubstr("does not say which headers"));
+  EXPECT_THAT(mismatch({.standard_library = "libc++"}), AllOf(HasSubstr("libc++"), EndsWith(FROND_STANDARD_LIBRARY)));
+}
+
+}  // namespace
+}  // namespace frond
