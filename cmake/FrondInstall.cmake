@@ -30,6 +30,9 @@ install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/frond" COMPONENT 
         REGEX "scenes/canopy/[^/]*[.]npy$" EXCLUDE)
 
 install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}" COMPONENT development)
+# Those of an earlier installation that are gone would be found.
+install(CODE "file(REMOVE_RECURSE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/frond\")"
+        COMPONENT development)
 install(DIRECTORY "${frond_headers}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/frond" COMPONENT development
         FILES_MATCHING PATTERN "*.h")
 configure_package_config_file(cmake/frondConfig.cmake.in "${CMAKE_CURRENT_BINARY_DIR}/frondConfig.cmake"

@@ -68,7 +68,7 @@ with_progress() {
   local log code=0 step all
   log=$(mktemp)
   (cd "$root" && "$@") 2>&1 | tee "$log" | sed -un 's|^\[\([0-9]*\)/\([0-9]*\)\].*|\1 \2|p' |
-    while read -r step all; do printf '\r  step %d of %d, %d %%\033[K' "$step" "$all" $((100 * step / all)); done ||
+    while read -r step all; do [ "$all" = 0 ] || printf '\r  step %d of %d, %d %%\033[K' "$step" "$all" $((100 * step / all)); done ||
     code=$?
   printf '\r\033[K'
   [ "$code" = 0 ] || { tail -n 60 "$log" >&2; rm -f "$log"; exit "$code"; }
@@ -96,11 +96,12 @@ with_python_module() {
   configure_options+=(-DFROND_PYTHON=ON "-DPython_EXECUTABLE=$root/build/python-venv/bin/python")
 }
 
+# Without these words ccache leaves out what includes a precompiled header.
+export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:+$CCACHE_SLOPPINESS,}pch_defines,time_macros"
+
 configure() {
   local options=("${configure_options[@]}")
-  # Without these words ccache leaves out what includes a precompiled header.
-  command -v ccache >/dev/null &&
-    options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache")
+  command -v ccache >/dev/null && options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=$CCACHE_SLOPPINESS;ccache")
   quietly cmake --preset "$1" "${options[@]}"
 }
 

@@ -42,6 +42,7 @@ MadeShape make_blade(const Params& p, const ShapePlacement& placement) {
     mesh->triangles.push_back({a, a + 1, a + 3});
     if (a + 2 < 2 * uint32_t(segments)) mesh->triangles.push_back({a, a + 3, a + 2});  // the last one ends in the tip
   }
+  orient_mesh(*mesh, placement);
   return std::vector<ShapeGeometry>{MeshPtr(mesh)};
 }
 

@@ -37,24 +37,24 @@ def boxes(ways, scale, x=0.0, depth=0):
         x += width
 
 
-def legend(rooms, top):
-    """Rooms in lines that fit; and the height that takes."""
+def legend(modules, top):
+    """Modules in lines that fit; and the height that takes."""
     parts, x, y = [], MARGIN, top
-    for room in rooms:
-        width = 18 + (len(room) + 2) * LETTER
+    for module in modules:
+        width = 18 + (len(module) + 2) * LETTER
         if x + width > WIDTH - MARGIN:
             x, y = MARGIN, y + ROW
-        parts.append(f'<rect x="{x:.1f}" y="{y}" width="12" height="12" fill="{COLORS.get(room, OTHER)}" stroke="#888"/>'
-                     f'<text x="{x + 17:.1f}" y="{y + 10.5}">{escape(room)}</text>')
+        parts.append(f'<rect x="{x:.1f}" y="{y}" width="12" height="12" fill="{COLORS.get(module, OTHER)}" stroke="#888"/>'
+                     f'<text x="{x + 17:.1f}" y="{y + 10.5}">{escape(module)}</text>')
         x += width
     return parts, y + ROW - top
 
 
 def svg(ways, title, notes):
-    """`ways`: counts by tuples of (name, room), outermost first. The program's begin is above."""
+    """`ways`: counts by tuples of (name, module), outermost first. The program's begin is above."""
     total = sum(ways.values())
     drawn = list(boxes(ways, (WIDTH - 2 * MARGIN) / max(total, 1)))
-    count = collections.Counter({room: 0 for *_, (_, room), _ in drawn})
+    count = collections.Counter({module: 0 for *_, (_, module), _ in drawn})
     for way, samples in ways.items():
         count[way[-1][1]] += samples
     head = [f'<text x="{MARGIN}" y="26" class="title">{escape(clipped(title, (WIDTH - 2 * MARGIN) * 12 / 16))}</text>']
@@ -62,17 +62,17 @@ def svg(ways, title, notes):
     for note in notes:
         head.append(f'<text x="{MARGIN}" y="{top + 12}">{escape(clipped(note, WIDTH - 2 * MARGIN))}</text>')
         top += ROW
-    entries, high = legend(sorted(count, key=lambda room: (-count[room], room)), top + 6)
+    entries, high = legend(sorted(count, key=lambda module: (-count[module], module)), top + 6)
     top += 6 + high + 6
     body = []
-    for x, width, depth, (name, room), samples in drawn:
+    for x, width, depth, (name, module), samples in drawn:
         y = top + depth * ROW
         share = f"{100 * samples / total:.1f} %"
         label = clipped(name, width)
         text = f'<text x="{MARGIN + x + 2:.2f}" y="{y + 13}">{escape(label)}</text>' if label else ""
-        body.append(f'<g><title>{escape(name)}: {share}, {samples} samples ({escape(room)})</title>'
+        body.append(f'<g><title>{escape(name)}: {share}, {samples} samples ({escape(module)})</title>'
                     f'<rect x="{MARGIN + x:.2f}" y="{y}" width="{width:.2f}" height="{ROW - 1}" '
-                    f'fill="{COLORS.get(room, OTHER)}" stroke="#fff" stroke-width="0.4"/>{text}</g>')
+                    f'fill="{COLORS.get(module, OTHER)}" stroke="#fff" stroke-width="0.4"/>{text}</g>')
     height = top + ROW * (1 + max((depth for _, _, depth, _, _ in drawn), default=0)) + MARGIN
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" viewBox="0 0 {WIDTH} {height}">',

@@ -60,13 +60,13 @@ def table(ways, frequency, notes):
         error = 196 * (share * (1 - share) / total) ** 0.5
         return f"{100 * share:6.1f} % ±{error:4.1f}  {count / frequency:8.2f} s  {100 * deep / total:6.1f} %"
 
-    lines = [*notes, "", f"{'room':<20} {'itself':>15}  {'CPU time':>10}  {'with what it calls':>8}"]
-    for room in sorted(below, key=lambda r: (-itself[r], -below[r], r)):
-        lines.append(f"{room:<20} {row(itself[room], below[room])}")
-    lines += ["", f"{'function':<52} {'room':<18} itself"]
-    for (name, room), count in stacks.functions(ways).most_common(20):
+    lines = [*notes, "", f"{'module':<20} {'itself':>15}  {'CPU time':>10}  {'with what it calls':>8}"]
+    for module in sorted(below, key=lambda r: (-itself[r], -below[r], r)):
+        lines.append(f"{module:<20} {row(itself[module], below[module])}")
+    lines += ["", f"{'function':<52} {'module':<18} itself"]
+    for (name, module), count in stacks.functions(ways).most_common(20):
         shown = name if len(name) <= 52 else name[:51] + "…"
-        lines.append(f"{shown:<52} {room:<18} {100 * count / total:.1f} %")
+        lines.append(f"{shown:<52} {module:<18} {100 * count / total:.1f} %")
     return "\n".join(line.rstrip() for line in lines) + "\n"
 
 
@@ -86,7 +86,7 @@ def main():
     if not sampled:
         raise SystemExit("scripts/profile: the render was over before it was sampled once; give it more --spp")
     whole, cut, lost = stacks.graft(sampled)
-    ways = stacks.fold(stacks.join_threads(whole), stacks.Rooms.of_build(tools.BUILD))
+    ways = stacks.fold(stacks.join_threads(whole), stacks.Modules.of_build(tools.BUILD))
     (folder / "stacks.txt").write_text(
         "".join(f"{';'.join(name for name, _ in way)} {count}\n" for way, count in sorted(ways.items())), encoding="utf-8")
     title = shlex.join(["frond", "render", options.scene, *extra])

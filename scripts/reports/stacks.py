@@ -20,7 +20,7 @@ STRANGERS = [
 ]
 OURS = re.compile(r"^(libfrond.*\.so.*|frond(_bench)?)$")
 OTHERS = "other libraries"
-NO_ROOM = "frond"  # code of ours that no room is known of
+NO_MODULE = "frond"  # code of ours that no module is known of
 CUT = "cut off"
 # Where a program and its threads begin.
 PROGRAM = re.compile(r"^(_start|_dl_start_user)$")
@@ -95,40 +95,40 @@ def join_threads(stacks):
     return [THREAD.match(stack[0].symbol) and joined(stack, ways, ours) or stack for stack in stacks]
 
 
-class Rooms:
-    """Which room of the house a symbol is compiled in: where the object files of one room alone have it. What several have
+class Modules:
+    """Which module  a symbol is compiled in: where the object files of one module alone have it. What several have
     (templates, inline functions) belongs to whoever calls it."""
 
-    def __init__(self, rooms_of_symbol):
-        self.rooms = {symbol: next(iter(rooms)) for symbol, rooms in rooms_of_symbol.items() if len(rooms) == 1}
+    def __init__(self, modules_of_symbol):
+        self.modules = {symbol: next(iter(modules)) for symbol, modules in modules_of_symbol.items() if len(modules) == 1}
 
     @classmethod
     def of_build(cls, build):
-        rooms = collections.defaultdict(set)
+        modules = collections.defaultdict(set)
         for folder in sorted(pathlib.Path(build).glob("CMakeFiles/frond*.dir/src/*/")):
             objects = sorted(folder.rglob("*.o"))
             names = tools.run("nm", "--defined-only", "-P", "-A", *objects) if objects else ""
             for line in names.splitlines():
                 symbol, kind = line.split(": ", 1)[1].split()[:2]
                 if kind in "tTwWi":
-                    rooms[symbol].add(folder.name)
-        return cls(rooms)
+                    modules[symbol].add(folder.name)
+        return cls(modules)
 
     def of_stack(self, stack):
-        """A room, or what stands in for one, for each frame."""
+        """A module, or what stands in for one, for each frame."""
         result = []
         for frame in stack:
             stranger = next((name for pattern, name in STRANGERS if re.search(pattern, frame.file)), None)
             if frame.symbol == CUT:
-                room = CUT
+                module = CUT
             elif PROGRAM.match(frame.symbol):
-                room = "C and C++ library"
+                module = "C and C++ library"
             elif OURS.match(frame.file):
                 callers = [r for r, f in zip(result, stack) if OURS.match(f.file)]
-                room = self.rooms.get(frame.symbol) or (callers[-1] if callers else NO_ROOM)
+                module = self.modules.get(frame.symbol) or (callers[-1] if callers else NO_MODULE)
             else:
-                room = stranger or OTHERS
-            result.append(room)
+                module = stranger or OTHERS
+            result.append(module)
         return result
 
 
@@ -154,33 +154,33 @@ def short(name):
     return re.sub(r"(^|\s|::)(frond::|::)+", r"\1", name).split(" ")[-1] if "operator " not in name else name
 
 
-def fold(stacks, rooms):
-    """Counts of ways through the program: tuples of (name, room). Neighbours of one name become one frame: code without symbols
+def fold(stacks, modules):
+    """Counts of ways through the program: tuples of (name, module). Neighbours of one name become one frame: code without symbols
     has the name of its file, Embree's libraries that of Embree, and what the kernel does inside is not asked."""
     names = readable({frame.symbol for stack in stacks for frame in stack if frame.symbol not in ("", CUT)}) | {CUT: CUT}
     ways = collections.Counter()
     for stack in stacks:
         way = []
-        for frame, room in zip(stack, rooms.of_stack(stack)):
-            name = room if room == "kernel" else names.get(frame.symbol) or (room if room == "Embree" else frame.file)
-            if not way or way[-1] != (name, room):
-                way.append((name, room))
+        for frame, module in zip(stack, modules.of_stack(stack)):
+            name = module if module == "kernel" else names.get(frame.symbol) or (module if module == "Embree" else frame.file)
+            if not way or way[-1] != (name, module):
+                way.append((name, module))
         ways[tuple(way)] += 1
     return ways
 
 
 def shares(ways):
-    """By room: samples in it, and samples in it or in what it calls."""
+    """By module: samples in it, and samples in it or in what it calls."""
     itself, below = collections.Counter(), collections.Counter()
     for way, count in ways.items():
         itself[way[-1][1]] += count
-        for room in {room for _, room in way}:
-            below[room] += count
+        for module in {module for _, module in way}:
+            below[module] += count
     return itself, below
 
 
 def functions(ways):
-    """Samples in each function itself, by (name, room)."""
+    """Samples in each function itself, by (name, module)."""
     count = collections.Counter()
     for way, samples in ways.items():
         count[way[-1]] += samples

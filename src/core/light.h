@@ -110,6 +110,7 @@ class AreaEmission {
   virtual ~AreaEmission() = default;
   /// Each face of a shape is a light of its own, as in pbrt-v4 where a total is stated.
   virtual bool is_by_face() const = 0;
+  /// Not null. The surface has an area above 0.
   virtual std::unique_ptr<AreaLight> over(std::unique_ptr<const EmittingSurface> surface) const = 0;
 };
 

@@ -119,14 +119,29 @@ std::string_view wrong_default(const Param& declared) {
   return "of a known kind";
 }
 
+/// Numbers of a default; none of what is no number.
+std::vector<double> numbers_of(const Default& value) {
+  if (const auto x = default_number(value)) return {*x};
+  if (const auto* triple = std::get_if<std::array<double, 3>>(&value)) return {triple->begin(), triple->end()};
+  return {};
+}
+
 /// Of a declaration by itself; empty where there is none.
 std::string problem_of(const Param& p) {
   if (p.name.empty()) return "a parameter has no name";
+  if (!(p.range.min <= p.range.max))
+    return fmt::format("\"{}\" has a range from {} to {}", p.name, p.range.min, p.range.max);
+  if (!p.choices.empty() && p.kind != ParamKind::string)
+    return fmt::format("\"{}\" has choices, which only strings can have", p.name);
   if (std::holds_alternative<std::monostate>(p.default_value)) return "";
   if (const std::string_view takes = wrong_default(p); !takes.empty())
     return fmt::format("the default of \"{}\" has the wrong type: it takes {}", p.name, takes);
-  if (const auto x = default_number(p.default_value); x && !(std::isfinite(*x) && p.range.contains(*x)))
-    return fmt::format("the default of \"{}\" is {}, outside its range {} to {}", p.name, *x, p.range.min, p.range.max);
+  for (const double x : numbers_of(p.default_value)) {
+    if (!std::isfinite(x)) return fmt::format("the default of \"{}\" is {}: finite numbers are needed", p.name, x);
+    if (!p.range.contains(x))
+      return fmt::format("the default of \"{}\" is {}, outside its range {} to {}", p.name, x, p.range.min,
+                         p.range.max);
+  }
   if (const auto* word = std::get_if<std::string_view>(&p.default_value);
       word && !p.choices.empty() && std::ranges::find(p.choices, *word) == p.choices.end())
     return fmt::format("the default of \"{}\" is \"{}\", which is none of {}", p.name, *word,

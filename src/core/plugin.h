@@ -1,8 +1,11 @@
 #pragma once
 
+#include <exception>
 #include <memory>
+#include <new>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "core/params.h"
@@ -18,10 +21,23 @@ struct PluginInfo {
   std::span<const Param> params;
 };
 
-/// What a plugin made, by a pointer. Throws InputError where that is nothing.
-template <class Pointer>
-Pointer made_by(const PluginInfo& info, const Location& where, Pointer made) {
-  if (!made) fail(where, "{} \"{}\" has made nothing: this is a defect of the plug-in", info.kind, info.name);
+/// What a plugin makes by `make()`, whose errors get a place. Throws InputError, also where a pointer is null.
+template <class Make>
+auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
+  const auto attempt = [&] {
+    try {
+      return make();
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      fail(where, "{} \"{}\" has a defect: {}", info.kind, info.name, error.what());
+    }
+  };
+  auto made = attempt();
+  if constexpr (std::is_constructible_v<bool, decltype(made)>)
+    if (!made) fail(where, "{} \"{}\" has a defect: it has made nothing", info.kind, info.name);
   return made;
 }
 

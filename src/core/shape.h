@@ -16,7 +16,8 @@
 
 namespace frond {
 
-/// Triangles over shared vertices. Every index is below p.size(); `n` and `uv` are empty or as long as `p`.
+/// Triangles over shared vertices, in the scene's space. Every index is below p.size(); `n` and `uv` are empty or as
+/// long as `p`. Triangles wind counter-clockwise about the front: `orient_mesh` turns them so.
 struct TriangleMesh {
   std::vector<Vec3> p;   ///< vertices
   std::vector<Vec3> n;   ///< shading normals, any length
@@ -114,6 +115,24 @@ inline void place_normals(std::vector<Vec3>& normals, const ShapePlacement& plac
   for (Vec3& n : normals) {
     const Vec3 m = normalize_any(placement.to_scene.normal(normalize_any(n)));
     n = placement.reverse_orientation ? -m : m;
+  }
+}
+
+/// Turns triangles so that they wind counter-clockwise about the front, which is what decides the side of a surface. As
+/// in pbrt: the normals say which side that is where a mesh has them, winding and handedness where not, or where they
+/// are 0 or lie in the face. Positions and normals are in the scene's space already.
+inline void orient_mesh(TriangleMesh& mesh, const ShapePlacement& placement) {
+  const bool flip_winding = placement.reverse_orientation != placement.to_scene.swaps_handedness();
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    auto& t = mesh.triangles[i];
+    const Vec3 n = mesh.n.empty() ? Vec3{} : mesh.n[t[0]] + mesh.n[t[1]] + mesh.n[t[2]];
+    const Vec3 face = cross(mesh.p[t[1]] - mesh.p[t[0]], mesh.p[t[2]] - mesh.p[t[0]]);
+    const float agreement = dot(normalize_any(face), n);
+    if (!(agreement == 0 ? flip_winding : agreement < 0)) continue;
+    std::swap(t[1], t[2]);
+    if (!mesh.uv.empty()) continue;
+    mesh.turned.resize(mesh.triangles.size());
+    mesh.turned[i] = true;
   }
 }
 

@@ -90,8 +90,8 @@ std::optional<BrfReading> measure(const JobRun& run, const BrfMeter& meter, cons
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
   const bool refines = run.args.given("rms");
   const auto paths = uint64_t(run.args.count("paths"));
-  const Effort effort{std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
-                      uint64_t{1} << 32, run.args.real("rms")};
+  const RefineLimits limits{std::max(refines ? kFirst : (paths + BrfMeter::kRows - 1) / BrfMeter::kRows, needed),
+                            uint64_t{1} << 32, run.args.real("rms")};
   RenderPart part = first_part(run, meter, kept);
   std::optional<Checkpointer> checkpointer;
   if (kept) {
@@ -101,7 +101,7 @@ std::optional<BrfReading> measure(const JobRun& run, const BrfMeter& meter, cons
   const auto write = [&checkpointer](const auto&) { checkpointer->write(); };
   std::optional<BrfReading> reading;
   const RefineEnd end = refine(
-      effort, sample_count(part.film).most, control,
+      limits, sample_count(part.film).most, control,
       [&](uint64_t samples) {
         run.session().render(meter.scene(), {0, samples}, part, control);
       },

@@ -144,7 +144,7 @@ std::optional<FluxReading> measure(const JobRun& run, FluxMeter& meter, const Ke
   const RenderControl control = run.control_until(run.args.real("time-limit"));
   constexpr uint64_t kFirst = 1 << 16;
   const double rms = run.args.real("rms");
-  const Effort effort{rms > 0 ? kFirst : uint64_t(run.args.count("paths")), uint64_t{1} << 40, rms};
+  const RefineLimits limits{rms > 0 ? kFirst : uint64_t(run.args.count("paths")), uint64_t{1} << 40, rms};
   std::function<void()> checkpoint;
   if (kept) {
     if (const auto path = kept->found(run.args.flag("resume"))) meter.resume(*path);
@@ -152,7 +152,7 @@ std::optional<FluxReading> measure(const JobRun& run, FluxMeter& meter, const Ke
   }
   std::optional<FluxReading> reading;
   const RefineEnd end = refine(
-      effort, meter.paths(), control,
+      limits, meter.paths(), control,
       [&](uint64_t paths) {
         reading.reset();
         if (meter.paths() < paths) meter.trace(paths - meter.paths(), run.session().pool(), control, checkpoint);

@@ -14,31 +14,33 @@ namespace {
 
 /// A shape of a shared object may make anything; Embree does not check it.
 void check_made(const ShapeGeometry& geometry, const ShapeInfo& info, const Location& where) {
+  const auto refuse = [&](const std::string& what) { fail(where, "shape \"{}\" has a defect: {}", info.name, what); };
   const auto* pointer = std::get_if<MeshPtr>(&geometry);
-  if (!pointer) {
-    made_by(info, where, std::get<AnalyticShapePtr>(geometry).get());
-    return;
-  }
-  const TriangleMesh& mesh = *made_by(info, where, pointer->get());
-  const size_t vertices = mesh.p.size();
+  if (pointer ? !*pointer : !std::get<AnalyticShapePtr>(geometry)) refuse("it has made nothing");
+  if (!pointer) return;
+  const TriangleMesh& mesh = **pointer;
+  const size_t vertices = mesh.p.size(), triangles = mesh.triangles.size();
   const auto fits = [](size_t size, size_t all) { return size == 0 || size == all; };
   if (!fits(mesh.n.size(), vertices) || !fits(mesh.uv.size(), vertices))
-    fail(where, "shape \"{}\" has made a mesh of {} vertices with {} normals and {} texture coordinates", info.name,
-         vertices, mesh.n.size(), mesh.uv.size());
-  if (!fits(mesh.turned.size(), mesh.triangles.size()))
-    fail(where, "shape \"{}\" has made a mesh of {} triangles, and says of {} whether they are turned", info.name,
-         mesh.triangles.size(), mesh.turned.size());
+    refuse(fmt::format("it has made a mesh of {} vertices with {} normals and {} texture coordinates", vertices,
+                       mesh.n.size(), mesh.uv.size()));
+  if (!fits(mesh.turned.size(), triangles))
+    refuse(fmt::format("it has made a mesh of {} triangles, and says of {} whether they are turned", triangles,
+                       mesh.turned.size()));
+  if (mesh.halves_from < triangles && (triangles - mesh.halves_from) % 2 != 0)
+    refuse(
+        fmt::format("it has made a mesh of {} triangles, which from {} on are no pairs", triangles, mesh.halves_from));
   for (const auto& triangle : mesh.triangles)
     if (const uint32_t last = std::ranges::max(triangle); last >= vertices)
-      fail(where, "shape \"{}\" has made a mesh of {} vertices with a triangle that names number {}", info.name,
-           vertices, last);
+      refuse(fmt::format("it has made a mesh of {} vertices with a triangle that names number {}", vertices, last));
 }
 
 /// Embree leaves out what lies farther than 1.8e18, without a word.
 void check_extent(const ShapeGeometry& geometry, const Location& where) {
   static constexpr float kFarthest = 1e18f;
   const auto check = [&where](const Vec3& p) {
-    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthest))
+    const bool is_within = std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+    if (!is_within)  // or no number
       fail(where, "this shape reaches to ({:g}, {:g}, {:g}): {:g} units from the origin is the limit", p.x, p.y, p.z,
            kFarthest);
   };
@@ -137,7 +139,9 @@ class GeometryBuilder {
     const Location& where = shape.plugin.where;
     const ShapeInfo& info = registry_.shapes.get(shape.plugin.name, where);
     const Params params(info, shape.plugin, resolver_);
-    MadeShape made = info.make(params, {shape.world_from_object, shape.reverse_orientation});
+    MadeShape made = made_by(info, where, [&] {
+      return info.make(params, {shape.world_from_object, shape.reverse_orientation});
+    });
     if (const auto* copies = std::get_if<ObjectCopies>(&made))
       parts.instances.push_back(instances(*copies, shape, params));
     else
@@ -150,7 +154,7 @@ class GeometryBuilder {
     check_made(geometry, info, where);
     Surface result{.geometry = std::move(geometry), .material = uint32_t(shape.material), .alpha = nullptr};
     check_extent(result.geometry, where);
-    if (find_param(info, kAlphaParam.name))
+    if (const Param* declared = find_param(info, kAlphaParam.name); declared && declared->kind == kAlphaParam.kind)
       if (const auto alpha = params.float_texture("alpha"); !alpha->is_constant() || alpha->range().min < 1)
         result.alpha = alpha;
     if (shape.area_light) {

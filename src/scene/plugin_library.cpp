@@ -27,6 +27,10 @@ const PluginModule& module_of(const SharedObject& library, const fs::path& file)
 template <class Info>
 void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTable<Info>& table) {
   for (const Info* info : infos) {
+    if (!info) fail({}, "plug-in \"{}\" has a null pointer among its {}s", file.string(), table.kind());
+    if (info->name.empty() || info->name.find_first_of(" \t\n\",=@;:") != std::string_view::npos)
+      fail({}, "plug-in \"{}\": a {} is called \"{}\"; a name is one word without quotes, commas and the like",
+           file.string(), table.kind(), info->name);
     const Info* known = table.find(info->name);
     if (known == info) continue;
     if (known) fail({}, "plug-in \"{}\": there is a {} \"{}\" already", file.string(), table.kind(), info->name);

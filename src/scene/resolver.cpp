@@ -123,8 +123,9 @@ std::shared_ptr<const Texture> SceneResolver::texture(const std::string& name, c
     std::shared_ptr<const Texture> result = make(
         key,
         [&] {
-          return made_by(info, t.plugin.where,
-                         info.make(Params(info, t.plugin, *this), {t.world_from_texture, &shared_}));
+          return made_by(info, t.plugin.where, [&] {
+            return info.make(Params(info, t.plugin, *this), {t.world_from_texture, &shared_});
+          });
         },
         needs_details);
     pass_on(needs_details);
@@ -179,7 +180,8 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
       "material " + m.name,
       [&] {
         made.bend = make_normal_bend(m.plugin, *this);
-        return made_by(info, m.plugin.where, info.make(Params(info, split_bend(m.plugin, false), *this)));
+        return made_by(info, m.plugin.where,
+                       [&] { return info.make(Params(info, split_bend(m.plugin, false), *this)); });
       },
       made.needs_details);
   if (made.bend) made.needs_details = true;

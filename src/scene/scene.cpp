@@ -41,7 +41,7 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
   const WavelengthsInfo& info = registry.wavelengths.get(plugin.name, where);
   for (const ParsedParam& p : sensor_params(description))
     if (find_param(info, p.name) && !find_param(plugin.params, p.name)) plugin.params.push_back(p);
-  return made_by(info, where, info.make(Params(info, plugin, resolver)));
+  return made_by(info, where, [&] { return info.make(Params(info, plugin, resolver)); });
 }
 
 /// A film of a shared object may ask for anything.
@@ -59,7 +59,11 @@ void check_film(const FilmSettings& film, const FilmInfo& info, const Location& 
 
 /// Of a camera's shutter, in seconds; 1 of one that has none.
 double open_time(const Params& camera, const CameraInfo& info) {
-  if (!find_param(info, "shutterclose")) return 1;
+  const auto is_time = [&info](std::string_view name) {
+    const Param* declared = find_param(info, name);
+    return declared && declared->kind == ParamKind::real;
+  };
+  if (!is_time("shutteropen") || !is_time("shutterclose")) return 1;
   return std::abs(camera.real("shutterclose") - camera.real("shutteropen"));
 }
 
@@ -161,7 +165,7 @@ class SceneBuilder {
   template <class Info, class... Args>
   auto make(const PluginTable<Info>& table, const ParsedPlugin& plugin, SceneResolver& resolver, const Args&... args) {
     const Info& info = table.get(plugin.name, plugin.where);
-    return made_by(info, plugin.where, info.make(Params(info, plugin, resolver), args...));
+    return made_by(info, plugin.where, [&] { return info.make(Params(info, plugin, resolver), args...); });
   }
 
   template <class Info>
@@ -293,6 +297,9 @@ class SceneBuilder {
   }
 
   const Light* add(std::unique_ptr<Light> light, const Location& where) {
+    // A single one that is none would leave nothing to the others, which are chosen by their share.
+    if (const double power = light->power(1); !(std::isfinite(power) && power >= 0))
+      fail(where, "this light has the power {}, which is not possible", power);
     const Light* const added = light.get();
     if (period_) light_where_.emplace(added, where);
     lights_->add(std::move(light));
@@ -321,7 +328,11 @@ class SceneBuilder {
     const AreaEmission& emission = emission_of(*surface.area_light, resolver);
     const Location& where = description_.area_lights[*surface.area_light].where;
     const auto add_over = [&](std::unique_ptr<const EmittingSurface> emitting) {
-      auto light = emission.over(std::move(emitting));
+      // Lights divide by it.
+      if (const double area = emitting->area(); !(std::isfinite(area) && area > 0))
+        fail(where, "an area light needs a surface with an area, this one has {}", area);
+      auto light = made_by(registry_.area_lights.get(description_.area_lights[*surface.area_light].name, where), where,
+                           [&] { return emission.over(std::move(emitting)); });
       const AreaLight* const added = light.get();
       add(std::move(light), where);
       return added;
@@ -435,7 +446,8 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& descri
 FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry, const Log& log) {
   OptionResolver resolver(description, log);
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
-  FilmSettings film = info.make(Params(info, description.film, resolver));
+  FilmSettings film =
+      made_by(info, description.film.where, [&] { return info.make(Params(info, description.film, resolver)); });
   check_film(film, info, description.film.where);
   const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
   film.exposure *= open_time(Params(camera, description.camera, resolver), camera);

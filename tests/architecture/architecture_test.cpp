@@ -6,6 +6,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -68,7 +69,7 @@ struct Include {
 };
 
 std::vector<Include> all_includes(const std::filesystem::path& src) {
-  static const std::regex include(R"re(^\s*#include\s+"([a-z_0-9/]+\.h)")re");
+  static const std::regex include(R"re(^\s*#include\s+"([^"]+)")re");
   std::vector<Include> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(src)) {
     if (!entry.is_regular_file()) continue;
@@ -140,6 +141,39 @@ TEST(Architecture, TheTablesHaveNoCycle) {
   EXPECT_EQ(cycle_in({{"a", {"b"}}, {"b", {"a"}}, {"c", {}}}), "a ...");
 }
 
+/// Rows of a Markdown table whose first column is `name` and whose last is what it includes.
+Layers table_of(const std::string& page, const std::string& after) {
+  static const std::regex word(R"re(`([a-z]+)`)re");
+  const auto words = [](const std::string& text) {
+    std::set<std::string> found;
+    for (std::sregex_iterator i(text.begin(), text.end(), word), end; i != end; ++i) found.insert((*i)[1]);
+    return found;
+  };
+  Layers table;
+  std::istringstream in(page.substr(page.find(after)));
+  std::string line;
+  while (std::getline(in, line) && !line.starts_with("|---")) {
+  }
+  while (std::getline(in, line) && line.starts_with("| `")) {
+    const size_t end = line.rfind('|'), last = line.rfind('|', end - 1);
+    const std::string name = *words(line.substr(0, line.find('|', 1))).begin();
+    table[line.find("itself") < line.find('|', 1) ? "" : name] = words(line.substr(last, end - last));
+  }
+  return table;
+}
+
+TEST(Architecture, ThePageHasTheSameTables) {
+  std::ifstream in(FROND_SOURCE_DIR "/docs/architecture.md");
+  const std::string page{std::istreambuf_iterator<char>(in), {}};
+  Layers modules = table_of(page, "## Modules"), folders = table_of(page, "Inside `scene`");
+  EXPECT_EQ(modules["jobs"], std::set<std::string>{"cli"}) << "all but";
+  modules["jobs"] = kAllowed.at("jobs");
+  EXPECT_EQ(modules, kAllowed);
+  Layers inside = kAllowedInside.at("scene");
+  inside[""].clear();  // all of these
+  EXPECT_EQ(folders, inside);
+}
+
 TEST(Architecture, AnIncludeTheOtherWayIsFound) {
   const std::vector<Include> includes = all_includes(kSrc);
   Layers stricter = kAllowed;
@@ -180,8 +214,45 @@ TEST(Architecture, ImageAndColourLibrariesStayInTheFilesThatNeedThem) {
   }
 }
 
+TEST(Architecture, CLI11IsIncludedOnce) {
+  std::set<std::string> by;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSrc)) {
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);)
+      if (line.starts_with("#include <CLI/")) by.insert(std::filesystem::relative(entry.path(), kSrc).string());
+  }
+  EXPECT_EQ(by, std::set<std::string>{"cli/app.cpp"});
+}
+
+/// Two types of one name in one namespace are one to the linker, which takes the functions of either for both.
+TEST(Architecture, TypesOfOneNameAreDefinedOnce) {
+  static const std::regex opens(R"re(^namespace ?([a-z_:]*) ?\{)re"),
+      type(R"re(^(?:struct|class|enum class) (\w+)(?: final)?(?: : [^;]*)? \{)re");
+  std::map<std::string, std::set<std::string>> defined;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSrc)) {
+    if (!entry.is_regular_file()) continue;
+    std::vector<std::string> namespaces;
+    std::ifstream in(entry.path());
+    std::smatch match;
+    for (std::string line; std::getline(in, line);) {
+      if (std::regex_search(line, match, opens))
+        namespaces.push_back(match[1].length() > 0 ? match[1].str() : "unnamed in " + entry.path().string());
+      else if (line.starts_with("}  // namespace") && !namespaces.empty())
+        namespaces.pop_back();
+      else if (std::regex_search(line, match, type)) {
+        std::string name;
+        for (const std::string& n : namespaces) name += n + "::";
+        defined[name + match[1].str()].insert(std::filesystem::relative(entry.path(), kSrc).string());
+      }
+    }
+  }
+  EXPECT_GT(defined.size(), 400u);
+  for (const auto& [name, files] : defined)
+    EXPECT_EQ(files.size(), 1u) << name << ": " << testing::PrintToString(files);
+}
+
 // Linking it takes 0.3 s: it is opened where a picture needs it (image/image_codec.h).
-TEST(Architecture, OpenImageIOIsCalledByItsRoomAlone) {
+TEST(Architecture, OpenImageIOIsCalledByItsModuleAlone) {
   int includes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FROND_SOURCE_DIR "/src")) {
     std::ifstream in(entry.path());

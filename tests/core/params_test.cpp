@@ -283,6 +283,12 @@ TEST(Declarations, AreCheckedWhenTheyAreRegistered) {
         << int(kind);
   EXPECT_EQ(problem({{.name = "a", .kind = real, .default_value = 2, .range = {0, 1}, .doc = ""}}),
             "the default of \"a\" is 2, outside its range 0 to 1");
+  EXPECT_EQ(wrong(real, INFINITY), "the default of \"a\" is inf: finite numbers are needed");
+  EXPECT_EQ(problem({{.name = "a", .kind = albedo, .default_value = kThree, .range = {0, 1}, .doc = ""}}),
+            "the default of \"a\" is 2, outside its range 0 to 1");
+  EXPECT_EQ(problem({{.name = "a", .kind = real, .range = {1, 0}, .doc = ""}}), "\"a\" has a range from 1 to 0");
+  EXPECT_EQ(problem({{.name = "a", .kind = real, .doc = "", .choices = kModes}}),
+            "\"a\" has choices, which only strings can have");
   EXPECT_EQ(
       problem({{.name = "a", .kind = string, .default_value = std::string_view("x"), .doc = "", .choices = kModes}}),
       "the default of \"a\" is \"x\", which is none of analog, weighted");

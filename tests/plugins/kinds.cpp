@@ -52,14 +52,24 @@ MadeShape make_tile(const Params&, const ShapePlacement& placement) {
 }
 const ShapeInfo kTile{{"shape", "tile", "A square.", "", {}}, make_tile};
 
-/// A triangle whose third corner is not there.
-MadeShape make_torn(const Params&, const ShapePlacement&) {
+constexpr std::string_view kHow[] = {"corner", "odd", "normals", "null", "endless"};
+constexpr Param kTornParams[] = {{.name = "how",
+                                  .kind = ParamKind::string,
+                                  .default_value = std::string_view("corner"),
+                                  .doc = "What is wrong; corner: the third one is not there.",
+                                  .choices = kHow}};
+MadeShape make_torn(const Params& p, const ShapePlacement&) {
+  const std::string how = p.string("how");
+  if (how == "null") return std::vector<ShapeGeometry>{AnalyticShapePtr()};
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->p = {{0, 0, 0}, {1, 0, 0}};
+  if (how != "corner") mesh->p.push_back({0, how == "endless" ? NAN : 1, 0});
+  if (how == "normals") mesh->n = {{0, 0, 1}};
+  if (how == "odd") mesh->halves_from = 0;
   mesh->triangles = {{0, 1, 2}};
   return std::vector<ShapeGeometry>{MeshPtr(mesh)};
 }
-const ShapeInfo kTorn{{"shape", "torn", "A mesh that is none.", "", {}}, make_torn};
+const ShapeInfo kTorn{{"shape", "torn", "A mesh that is none.", "", kTornParams}, make_torn};
 
 /// AreaLightSource "glow": the radiance L on the front.
 class Glow final : public AreaLight {
@@ -90,22 +100,30 @@ class Glow final : public AreaLight {
 };
 class GlowEmission final : public AreaEmission {
  public:
-  explicit GlowEmission(const Params& p) : spectrum_(p.spectrum("L")) {}
+  explicit GlowEmission(const Params& p) : spectrum_(p.spectrum("L")), makes_nothing_(p.boolean("nothing")) {}
   bool is_by_face() const override { return false; }
   std::unique_ptr<AreaLight> over(std::unique_ptr<const EmittingSurface> surface) const override {
+    if (makes_nothing_) return nullptr;
     return std::make_unique<Glow>(spectrum_, std::move(surface));
   }
 
  private:
   SpectrumPtr spectrum_;
+  bool makes_nothing_;
 };
 constexpr Param kGlowParams[] = {
-    {.name = "L", .kind = ParamKind::illuminant, .default_value = std::array<double, 3>{1, 1, 1}, .doc = "Radiance."}};
+    {.name = "L", .kind = ParamKind::illuminant, .default_value = std::array<double, 3>{1, 1, 1}, .doc = "Radiance."},
+    {.name = "nothing", .kind = ParamKind::boolean, .default_value = false, .doc = "Make no light."}};
 std::unique_ptr<AreaEmission> make_glow(const Params& p) { return std::make_unique<GlowEmission>(p); }
 const AreaLightInfo kGlow{{"area light", "glow", "The same in every direction.", "", kGlowParams}, make_glow};
 
-const LightInfo kNothing{{"light", "nothing", "Not made.", "", {}},
-                         [](const Params&, const Transform&) { return std::unique_ptr<Light>(); }};
+constexpr Param kThrows[] = {
+    {.name = "throws", .kind = ParamKind::boolean, .default_value = false, .doc = "Throw what is no InputError."}};
+std::unique_ptr<Light> make_nothing(const Params& p, const Transform&) {
+  if (p.boolean("throws")) throw std::runtime_error("thrown on purpose");
+  return nullptr;
+}
+const LightInfo kNothing{{"light", "nothing", "Not made.", "", kThrows}, make_nothing};
 
 const FilmInfo* const kFilms[] = {&kSquareFilm};
 const ShapeInfo* const kShapes[] = {&kTile, &kTorn};

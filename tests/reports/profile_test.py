@@ -1,4 +1,4 @@
-"""What scripts/profile makes of stacks that perf sampled: whole ones of those that were cut off, rooms, a table and a picture."""
+"""What scripts/profile makes of stacks that perf sampled: whole ones of those that were cut off, modules, a table and a picture."""
 
 import os
 import pathlib
@@ -53,7 +53,7 @@ frond
 	         99ff602 [unknown] (/usr/lib/libembree3.so.3.13.5)
 	ffffffffffffffff [unknown] ([unknown])
 """
-ROOMS = stacks.Rooms({
+MODULES = stacks.Modules({
     "_ZNK5frond8Geometry9intersectEv": {"scene"}, "_ZN5frond5traceEv": {"integrators"}, "_ZN5frond3runEv": {"cli"},
     "_ZN5frond8templateEv": {"scene", "leaf"}})
 
@@ -99,27 +99,27 @@ class StacksTest(unittest.TestCase):
         alone = (Frame("clone3", "libc.so.6"), Frame("own", "libfrond.so"))
         self.assertEqual(stacks.join_threads([alone, *self.whole])[0], alone)
 
-    def test_rooms_are_those_of_the_object_files_and_what_several_have_is_the_callers(self):
+    def test_modules_are_those_of_the_object_files_and_what_several_have_is_the_callers(self):
         stack = [Frame("_start", "frond"), Frame("_ZN5frond3runEv", "frond"), Frame("_ZN5frond5traceEv", "libfrond.so.0.1.0"),
                  Frame("_ZN5frond8templateEv", "libfrond.so.0.1.0"), Frame("cos", "libm.so.6"), Frame("", "libtbb.so.12", 7),
                  Frame("x", "libfrond_image.so.0.1"), Frame("read", "libOpenImageIO.so.2.4"), Frame("_dl_fixup", "ld-linux-x86-64.so.2")]
-        self.assertEqual(ROOMS.of_stack(stack), ["C and C++ library", "cli", "integrators", "integrators", "libm", "Embree",
+        self.assertEqual(MODULES.of_stack(stack), ["C and C++ library", "cli", "integrators", "integrators", "libm", "Embree",
                                                  "integrators", "other libraries", "dynamic linking"])
-        self.assertEqual(ROOMS.of_stack([Frame("_ZN5frond8templateEv", "libfrond.so")]), ["frond"])
+        self.assertEqual(MODULES.of_stack([Frame("_ZN5frond8templateEv", "libfrond.so")]), ["frond"])
 
-    def test_rooms_of_a_build_come_from_its_object_files(self):
+    def test_modules_of_a_build_come_from_its_object_files(self):
         with tempfile.TemporaryDirectory() as name:
             build = pathlib.Path(name)
-            for room in ("scene", "leaf"):
-                folder = build / "CMakeFiles" / f"frond_{room}.dir" / "src" / room / "below"
+            for module in ("scene", "leaf"):
+                folder = build / "CMakeFiles" / f"frond_{module}.dir" / "src" / module / "below"
                 folder.mkdir(parents=True)
-                source = f"inline int shared() {{ return 1; }} int {room}() {{ return shared(); }}"
+                source = f"inline int shared() {{ return 1; }} int {module}() {{ return shared(); }}"
                 subprocess.run(["g++", "-O0", "-x", "c++", "-c", "-", "-o", folder / "a.cpp.o"], input=source, text=True, check=True)
-            rooms = stacks.Rooms.of_build(build).rooms
-        self.assertEqual(rooms, {"_Z5scenev": "scene", "_Z4leafv": "leaf"})
+            modules = stacks.Modules.of_build(build).modules
+        self.assertEqual(modules, {"_Z5scenev": "scene", "_Z4leafv": "leaf"})
 
     def test_folding_counts_ways_and_merges_what_has_no_symbols(self):
-        ways = stacks.fold(stacks.join_threads(self.whole), ROOMS)
+        ways = stacks.fold(stacks.join_threads(self.whole), MODULES)
         self.assertEqual(sum(ways.values()), 6)
         begin = (("_start", "C and C++ library"), ("__libc_start_main", "C and C++ library"), ("run", "cli"), ("trace", "integrators"))
         inside = (("Geometry::intersect", "scene"), ("rtcIntersect1", "Embree"), ("Embree", "Embree"))
@@ -167,7 +167,7 @@ class FlameGraphTest(unittest.TestCase):
         (("main", "cli"), ("Map<int>::at & more", "scene")): 60,
         (("main", "cli"), ("a very long name of a function" * 5, "materials")): 30,
         (("main", "cli"),): 9,
-        (("main", "cli"), ("rare", "no such room")): 1,
+        (("main", "cli"), ("rare", "no such module")): 1,
     }
 
     def draw(self, ways, title="frond render a.pbrt", notes=("a note",)):
@@ -210,11 +210,11 @@ class FlameGraphTest(unittest.TestCase):
         frames = self.frames(self.draw(many))
         self.assertEqual([label for *_, label in frames.values()], ["wide"])
 
-    def test_the_legend_names_every_room_once(self):
-        many = {((f"f{i}", f"room number {i}"),): 100 for i in range(40)}
+    def test_the_legend_names_every_module_once(self):
+        many = {((f"f{i}", f"module number {i}"),): 100 for i in range(40)}
         texts = [text.text for text in self.draw(many).iter(f"{SVG}text")]
         for i in range(40):
-            self.assertEqual(texts.count(f"room number {i}"), 1)
+            self.assertEqual(texts.count(f"module number {i}"), 1)
 
     def test_it_is_the_same_each_time(self):
         backwards = dict(reversed(self.WAYS.items()))

@@ -15,19 +15,19 @@ class ThreadSanitizer(unittest.TestCase):
         presets = json.loads((ROOT / "CMakePresets.json").read_text(encoding="utf-8"))
         self.build, = (p for p in presets["buildPresets"] if p["name"] == "tsan")
         self.test, = (p for p in presets["testPresets"] if p["name"] == "tsan")
-        self.rooms = [target.removeprefix("test_") for target in self.build["targets"]]
+        self.modules = [target.removeprefix("test_") for target in self.build["targets"]]
 
     def test_programs_that_are_built_are_run(self):
-        self.assertEqual(self.test["filter"]["include"]["name"], f"^({'|'.join(self.rooms)})$")
+        self.assertEqual(self.test["filter"]["include"]["name"], f"^({'|'.join(self.modules)})$")
 
     def test_every_pattern_fits_a_case_and_every_program_has_one(self):
         patterns = self.test["environment"]["GTEST_FILTER"].split(":")
         unused = set(patterns)
-        for room in self.rooms:
-            text = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests" / room).glob("*_test.cpp"))
+        for module in self.modules:
+            text = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests" / module).glob("*_test.cpp"))
             cases = [".".join(names) for names in CASE.findall(text)]
             used = {p for p in patterns if fnmatch.filter(cases, p)}
-            self.assertTrue(used, room)
+            self.assertTrue(used, module)
             unused -= used
         self.assertFalse(unused)
 

@@ -25,7 +25,12 @@ TEST(BuildCheck, HeadersThatAreTheSameGo) {
 TEST(BuildCheck, ThoseThatDifferAreNamedOnce) {
   const std::string zero(1, '\0'), other = " 0123456789abcdef" + zero;
   EXPECT_EQ(problem_of(entry("core/light.h") + "core/vec.h" + other + "core/vec.h" + other + "core/gone.h" + other),
-            "was compiled from other headers than this frond (core/gone.h, core/vec.h)");
+            "was compiled from other headers than this frond (core/gone.h, which it has not; core/vec.h)");
+  std::string many;
+  for (const char* header : {"core/bsdf.h", "core/light.h", "core/film.h", "core/ray.h", "core/shape.h", "core/vec.h"})
+    many += header + other;
+  EXPECT_THAT(problem_of(many), EndsWith("core/shape.h; and 1 more)"));
+  EXPECT_THAT(problem_of("core/vec.h" + zero), HasSubstr("(core/vec.h)")) << "without a hash";
 }
 
 TEST(BuildCheck, NoRecordIsNoPermission) {

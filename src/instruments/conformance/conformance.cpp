@@ -21,8 +21,8 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
       const double phi = 0.4 + 0.03 * angle_deg;  // no axis, where mistakes of azimuth hide
       ExaminationEffort own = effort;
       own.seed = hash_key(effort.seed, static_cast<uint64_t>(angle_deg), static_cast<uint64_t>(side + 1));
-      const Series s(bsdf, lambda, sphere_direction(cos_theta, phi), own,
-                     fmt::format("{}, wo at {} deg on the {}", where, angle_deg, side > 0 ? "front" : "back"));
+      const Examination s(bsdf, lambda, sphere_direction(cos_theta, phi), own,
+                          fmt::format("{}, wo at {} deg on the {}", where, angle_deg, side > 0 ? "front" : "back"));
       check_sampling(s, findings);
       check_normalisation(s, findings);
       check_energy(s, claims, own.seed, findings);

@@ -14,8 +14,8 @@ std::vector<Vec3> directions(std::span<const BsdfSample> samples) {
 
 }  // namespace
 
-Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
-               const ExaminationEffort& effort, const std::string& asked_where)
+Examination::Examination(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
+                         const ExaminationEffort& effort, const std::string& asked_where)
     : bsdf(asked),
       lambda(wavelengths),
       wo(direction),
@@ -30,8 +30,8 @@ Series::Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const V
   probe(hash_key(effort.seed, 2));
 }
 
-std::shared_ptr<const SphereMap> Series::map(std::string found_name, std::span<const double> found,
-                                             std::string expected_name, std::span<const double> expected) const {
+std::shared_ptr<const SphereMap> Examination::map(std::string found_name, std::span<const double> found,
+                                                  std::string expected_name, std::span<const double> expected) const {
   if (!maps) return nullptr;
   SphereMap result{wo, std::move(found_name), std::move(expected_name), {}};
   for (size_t b = 0; b < bins.size(); ++b)
@@ -46,7 +46,7 @@ std::shared_ptr<const SphereMap> Verdict::map_of_faults() const {
   return series_->map("share of directions that break the law", share);
 }
 
-void Series::integrate_pdf() {
+void Examination::integrate_pdf() {
   constexpr double kTolerance = 1e-8;  // for each of up to some 1,000 parts of the sphere
   const auto density = [this](const Vec3& wi) { return static_cast<double>(bsdf.pdf(wo, wi)); };
   for (size_t b = 0; b < bins.size(); ++b) {
@@ -56,7 +56,7 @@ void Series::integrate_pdf() {
   }
 }
 
-std::vector<BsdfSample> Series::draw(int64_t count, uint64_t seed) const {
+std::vector<BsdfSample> Examination::draw(int64_t count, uint64_t seed) const {
   std::vector<BsdfSample> result;
   result.reserve(static_cast<size_t>(count));
   for (int64_t i = 0; i < count; ++i)
@@ -64,7 +64,7 @@ std::vector<BsdfSample> Series::draw(int64_t count, uint64_t seed) const {
   return result;
 }
 
-void Series::probe(uint64_t seed) {
+void Examination::probe(uint64_t seed) {
   // An exact f needs no mean: a few directions a bin are enough to look at it.
   const int64_t each = exact ? 4 : std::max<int64_t>(4, drawn / static_cast<int64_t>(bins.size()));
   probes.reserve(bins.size() * static_cast<size_t>(each));

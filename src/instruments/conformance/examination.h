@@ -31,7 +31,7 @@ namespace frond {
 
 /// Everything that was asked of a BSDF for one direction wo: the material the laws are judged by. Part of
 /// the laws' own implementation.
-struct Series {
+struct Examination {
   /// f for a direction drawn in one bin.
   struct Probe {
     PartSampler::Draw drawn;
@@ -43,8 +43,8 @@ struct Series {
 
   static constexpr int kPilotShare = 4;
 
-  Series(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
-         const ExaminationEffort& effort, const std::string& asked_where);
+  Examination(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
+              const ExaminationEffort& effort, const std::string& asked_where);
 
   /// For a finding: a pair of numbers for each bin. nullptr where nobody asked for maps. Without `expected` there is
   /// nothing to compare with.
@@ -113,7 +113,7 @@ inline bool is_proper(const SampledSpectrum& s) {
   return true;
 }
 
-inline Finding statistical(Law law, const Series& s, double p_value, std::string message,
+inline Finding statistical(Law law, const Examination& s, double p_value, std::string message,
                            std::shared_ptr<const SphereMap> map) {
   Finding finding{.law = law, .where = s.where, .message = std::move(message), .p_value = p_value, .statistical = true};
   finding.map = std::move(map);
@@ -128,16 +128,16 @@ inline double weight(const BsdfSample& sample, int lane) {
 }
 
 // Laws of one series.
-void check_sampling(const Series& s, Findings& findings);
-void check_normalisation(const Series& s, Findings& findings);
-void check_energy(const Series& s, const Claims& claims, uint64_t seed, Findings& findings);
-void check_unbiasedness(const Series& s, Findings& findings);
-void check_streams(const Series& s, uint64_t seed, Findings& findings);
-void check_agreement(const Series& s, Findings& findings);
-void check_flags(const Series& s, Findings& findings);
-void check_lanes(const Series& s, Findings& findings);
-void check_coverage(const Series& s, Findings& findings);
-void check_values(const Series& s, Findings& findings);
+void check_sampling(const Examination& s, Findings& findings);
+void check_normalisation(const Examination& s, Findings& findings);
+void check_energy(const Examination& s, const Claims& claims, uint64_t seed, Findings& findings);
+void check_unbiasedness(const Examination& s, Findings& findings);
+void check_streams(const Examination& s, uint64_t seed, Findings& findings);
+void check_agreement(const Examination& s, Findings& findings);
+void check_flags(const Examination& s, Findings& findings);
+void check_lanes(const Examination& s, Findings& findings);
+void check_coverage(const Examination& s, Findings& findings);
+void check_values(const Examination& s, Findings& findings);
 
 // Laws of a BSDF as a whole.
 void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
@@ -148,7 +148,7 @@ class Verdict {
  public:
   Verdict(Law law, const std::string& where) : finding_{.law = law, .where = where, .message = {}} {}
   /// Of the directions of a series: for a map, it counts the faults in each bin.
-  Verdict(Law law, const Series& s) : Verdict(law, s.where) {
+  Verdict(Law law, const Examination& s) : Verdict(law, s.where) {
     if (!s.maps) return;
     series_ = &s;
     asked_.assign(s.bins.size(), 0);
@@ -180,7 +180,7 @@ class Verdict {
   std::shared_ptr<const SphereMap> map_of_faults() const;
 
   Finding finding_;
-  const Series* series_ = nullptr;
+  const Examination* series_ = nullptr;
   size_t bin_ = 0;
   std::vector<double> asked_, faults_;
 };

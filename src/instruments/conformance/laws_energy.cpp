@@ -17,7 +17,7 @@ struct Outgoing {
 };
 
 /// Mean weight of `sample`, of power, a call without a direction counting as 0.
-Outgoing mean_weight(const Series& s, int lane) {
+Outgoing mean_weight(const Examination& s, int lane) {
   Moments moments;
   std::vector<double> by_bin(s.bins.size(), 0);
   for (const BsdfSample& sample : s.samples) {
@@ -31,7 +31,7 @@ Outgoing mean_weight(const Series& s, int lane) {
 
 /// Integral of f(w, s.wo) |cos theta| over w, lane by lane, for a BSDF that conserves the energy of light that arrives
 /// along wi, summed over wo: a stratified mean over the bins.
-std::array<Outgoing, kLanes> albedo_from_light(const Series& s, uint64_t seed) {
+std::array<Outgoing, kLanes> albedo_from_light(const Examination& s, uint64_t seed) {
   std::array<Outgoing, kLanes> result{};
   const int64_t each = std::max<int64_t>(4, s.drawn / static_cast<int64_t>(s.bins.size()));
   RandomStream numbers(seed);
@@ -52,7 +52,7 @@ std::array<Outgoing, kLanes> albedo_from_light(const Series& s, uint64_t seed) {
 }
 
 /// Energy through each bin, over what an evenly white sheet would send there: |cos theta| / pi.
-std::shared_ptr<const SphereMap> energy_map(const Series& s, std::vector<double> by_bin) {
+std::shared_ptr<const SphereMap> energy_map(const Examination& s, std::vector<double> by_bin) {
   for (size_t b = 0; b < by_bin.size(); ++b) {
     const SphereBox& box = s.bins.box(b);
     const double projected = std::abs(box.z1 * box.z1 - box.z0 * box.z0) / 2 * (box.phi1 - box.phi0);
@@ -63,7 +63,7 @@ std::shared_ptr<const SphereMap> energy_map(const Series& s, std::vector<double>
 
 }  // namespace
 
-void check_energy(const Series& s, const Claims& claims, uint64_t seed, Findings& findings) {
+void check_energy(const Examination& s, const Claims& claims, uint64_t seed, Findings& findings) {
   const bool is_from_light = any(s.bsdf.flags() & Lobes::from_light);
   std::array<Outgoing, kLanes> from_light{};
   if (is_from_light) from_light = albedo_from_light(s, seed);

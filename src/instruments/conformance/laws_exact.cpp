@@ -25,7 +25,7 @@ double sum(const SampledSpectrum& s) {
 /// Sums over the samples in each bin: of their f or pdf, and of what `f` and `pdf` say.
 class AgreementMap {
  public:
-  explicit AgreementMap(const Series& s) : s_(s), f_(s.bins.size(), 0), own_f_(f_), pdf_(f_), own_pdf_(f_) {}
+  explicit AgreementMap(const Examination& s) : s_(s), f_(s.bins.size(), 0), own_f_(f_), pdf_(f_), own_pdf_(f_) {}
 
   void add(const BsdfSample& sample, const SampledSpectrum& f, float pdf) {
     const size_t bin = s_.bins.find(sample.wi);
@@ -37,13 +37,13 @@ class AgreementMap {
   }
 
  private:
-  const Series& s_;
+  const Examination& s_;
   std::vector<double> f_, own_f_, pdf_, own_pdf_;
 };
 
 }  // namespace
 
-void check_agreement(const Series& s, Findings& findings) {
+void check_agreement(const Examination& s, Findings& findings) {
   if (!s.exact) return;
   Verdict verdict(Law::agreement, s.where);
   AgreementMap map(s);
@@ -64,7 +64,7 @@ void check_agreement(const Series& s, Findings& findings) {
   findings.back().map = map.map(!pdf_agrees);
 }
 
-void check_flags(const Series& s, Findings& findings) {
+void check_flags(const Examination& s, Findings& findings) {
   Verdict verdict(Law::flags, s);
   const Lobes all = s.bsdf.flags();
   for (const BsdfSample& sample : s.samples) {
@@ -78,7 +78,7 @@ void check_flags(const Series& s, Findings& findings) {
     verdict.expect(any(sample.flags & (Lobes::diffuse | Lobes::glossy | Lobes::specular)),
                    "a sample is neither diffuse nor glossy nor specular");
   }
-  for (const Series::Probe& probe : s.probes) {
+  for (const Examination::Probe& probe : s.probes) {
     verdict.at(probe.wi());
     const Lobes side = same_side(s.wo, probe.wi()) ? Lobes::reflection : Lobes::transmission;
     verdict.expect(any(all & side) || probe.f.is_black(), "f is {} for wi {}, a side that the flags exclude", probe.f,
@@ -87,24 +87,24 @@ void check_flags(const Series& s, Findings& findings) {
   findings.push_back(verdict.finding());
 }
 
-void check_lanes(const Series& s, Findings& findings) {
+void check_lanes(const Examination& s, Findings& findings) {
   Verdict verdict(Law::lanes, s);
   for (const BsdfSample& sample : s.samples) {
     verdict.at(sample.wi);
     verdict.expect(idle_lanes_are_black(sample.f, s.lambda), "sample, wi {}: a lane that is not active is not 0",
                    sample.wi);
   }
-  for (const Series::Probe& probe : s.probes) {
+  for (const Examination::Probe& probe : s.probes) {
     verdict.at(probe.wi());
     verdict.expect(idle_lanes_are_black(probe.f, s.lambda), "f, wi {}: a lane that is not active is not 0", probe.wi());
   }
   findings.push_back(verdict.finding());
 }
 
-void check_coverage(const Series& s, Findings& findings) {
+void check_coverage(const Examination& s, Findings& findings) {
   constexpr float kUnderflow = 1e-30f;  // where f has all but vanished, a density may have vanished
   Verdict verdict(Law::coverage, s);
-  for (const Series::Probe& probe : s.probes) {
+  for (const Examination::Probe& probe : s.probes) {
     verdict.at(probe.wi());
     verdict.expect(probe.pdf > 0 || !(probe.f.max() > kUnderflow), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
                    probe.pdf);
@@ -112,14 +112,14 @@ void check_coverage(const Series& s, Findings& findings) {
   findings.push_back(verdict.finding());
 }
 
-void check_values(const Series& s, Findings& findings) {
+void check_values(const Examination& s, Findings& findings) {
   Verdict verdict(Law::values, s);
   for (const BsdfSample& sample : s.samples) {
     verdict.at(sample.wi);
     verdict.expect(is_proper(sample.f) && std::isfinite(sample.pdf) && sample.pdf > 0, "sample, wi {}: f is {}, pdf {}",
                    sample.wi, sample.f, sample.pdf);
   }
-  for (const Series::Probe& probe : s.probes) {
+  for (const Examination::Probe& probe : s.probes) {
     verdict.at(probe.wi());
     verdict.expect(is_proper(probe.f) && is_proper(probe.pdf), "wi {}: f is {}, pdf {}", probe.wi(), probe.f,
                    probe.pdf);

@@ -21,7 +21,7 @@ double total(const std::vector<double>& values) {
 namespace {
 
 /// How many samples went into each bin, delta lobes apart.
-std::vector<double> counts(const Series& s) {
+std::vector<double> counts(const Examination& s) {
   std::vector<double> result(s.bins.size(), 0);
   for (const BsdfSample& sample : s.samples)
     if (!is_specular(sample)) result[s.bins.find(sample.wi)] += 1;
@@ -33,7 +33,8 @@ std::string box_text(const SphereBox& box) {
 }
 
 /// What was counted in the bin that is farthest off, in standard errors.
-std::string farthest_off(const Series& s, const std::vector<double>& observed, const std::vector<double>& expected) {
+std::string farthest_off(const Examination& s, const std::vector<double>& observed,
+                         const std::vector<double>& expected) {
   const auto off = [&](size_t b) { return std::abs(observed[b] - expected[b]) / std::sqrt(expected[b] + 1); };
   size_t worst = 0;
   for (size_t b = 1; b < s.bins.size(); ++b)
@@ -48,7 +49,7 @@ std::vector<double> scaled(std::vector<double> values, double scale) {
 
 }  // namespace
 
-void check_sampling(const Series& s, Findings& findings) {
+void check_sampling(const Examination& s, Findings& findings) {
   if (!s.exact) return;
   const std::vector<double> observed = counts(s);
   const double count = total(observed), mass = total(s.pdf_mass);
@@ -60,7 +61,7 @@ void check_sampling(const Series& s, Findings& findings) {
                                  s.map("directions sampled", observed, "directions as pdf has them", expected)));
 }
 
-void check_normalisation(const Series& s, Findings& findings) {
+void check_normalisation(const Examination& s, Findings& findings) {
   const double mass = total(s.pdf_mass);
   const auto deltas = std::ranges::count_if(s.samples, is_specular);
   const auto map = s.exact ? s.map("directions sampled", counts(s), "directions as pdf promises them",
@@ -99,17 +100,17 @@ struct BinComparison {
   }
 };
 
-std::vector<BinComparison> compare_bins(const Series& s, int lane) {
+std::vector<BinComparison> compare_bins(const Examination& s, int lane) {
   std::vector<BinComparison> bins(s.bins.size());
   std::vector<Moments> pilots(s.bins.size()), integrals(s.bins.size());
   for (const BsdfSample& sample : s.pilot)
     if (!is_specular(sample)) pilots[s.bins.find(sample.wi)].add(weight(sample, lane));
   for (const BsdfSample& sample : s.samples)
     if (!is_specular(sample)) bins[s.bins.find(sample.wi)].sampled.add(weight(sample, lane));
-  for (const Series::Probe& probe : s.probes)
+  for (const Examination::Probe& probe : s.probes)
     integrals[probe.bin].add(static_cast<double>(probe.f[lane] * std::abs(probe.wi().z)) / probe.drawn.density);
   for (size_t b = 0; b < bins.size(); ++b) {
-    bins[b].sampled_count = Series::kPilotShare * pilots[b].effective_count();
+    bins[b].sampled_count = Examination::kPilotShare * pilots[b].effective_count();
     bins[b].integrated = integrals[b].estimate();
     bins[b].integrated_count = integrals[b].effective_count();
   }
@@ -117,7 +118,7 @@ std::vector<BinComparison> compare_bins(const Series& s, int lane) {
 }
 
 /// What the bins of one lane say, as a map: the shares of light that `sample` and f send into each.
-std::shared_ptr<const SphereMap> weight_map(const Series& s, std::span<const BinComparison> bins) {
+std::shared_ptr<const SphereMap> weight_map(const Examination& s, std::span<const BinComparison> bins) {
   std::vector<double> sampled, integrated;
   for (const BinComparison& bin : bins) {
     sampled.push_back(bin.sampled.mean() * s.share(bin.sampled.count()));
@@ -126,7 +127,7 @@ std::shared_ptr<const SphereMap> weight_map(const Series& s, std::span<const Bin
   return s.map("light as sample sends it", sampled, "light as f has it", integrated);
 }
 
-Finding compare(const Series& s, int lane, BinComparison bin, const std::string& name,
+Finding compare(const Examination& s, int lane, BinComparison bin, const std::string& name,
                 const std::shared_ptr<const SphereMap>& map) {
   bin.sampled.add_zeros(s.drawn - bin.sampled.count());
   const Estimate sampled = bin.sampled.estimate();
@@ -140,7 +141,7 @@ Finding compare(const Series& s, int lane, BinComparison bin, const std::string&
 
 }  // namespace
 
-void check_unbiasedness(const Series& s, Findings& findings) {
+void check_unbiasedness(const Examination& s, Findings& findings) {
   if (s.exact) return;
   for (int lane = 0; lane < s.lambda.count; ++lane) {
     if (!s.lambda.is_active(lane)) continue;
@@ -166,7 +167,7 @@ void check_unbiasedness(const Series& s, Findings& findings) {
 
 /// At a pair of directions f keeps its mean over the streams; a hair's breadth aside that mean is the same. Noise made
 /// from directions is one number at the pair and another one beside it: it never averages out where directions repeat.
-void check_streams(const Series& s, uint64_t seed, Findings& findings) {
+void check_streams(const Examination& s, uint64_t seed, Findings& findings) {
   if (s.exact) return;
   constexpr int kPairs = 4;
   constexpr float kHair = 1e-5f;

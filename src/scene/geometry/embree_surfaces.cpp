@@ -106,8 +106,11 @@ std::optional<ShapePoint> meet(const Surface& surface, const Target& target, con
   auto point = shape.intersect(target.primitive, ray, 0);
   for (unsigned layer = 0; point && surface.alpha &&
                            passes(surface, target, texture_point(shape, target.primitive, *point), query, lane, layer);
-       ++layer)
-    point = shape.intersect(target.primitive, ray, point->t);
+       ++layer) {
+    const float behind = point->t;
+    point = shape.intersect(target.primitive, ray, behind);
+    if (point && !(point->t > behind)) return {};  // a shape that does not keep to its contract
+  }
   return point;
 }
 

@@ -9,26 +9,6 @@
 namespace frond {
 namespace {
 
-Vec3 face_normal(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
-  return cross(mesh.p[t[1]] - mesh.p[t[0]], mesh.p[t[2]] - mesh.p[t[0]]);
-}
-
-/// As in pbrt: the normals decide which side is the front where a mesh has them, winding and handedness where not, or
-/// where they are 0 or lie in the face.
-void orient(TriangleMesh& mesh, const ShapePlacement& placement) {
-  const bool flip_winding = placement.reverse_orientation != placement.to_scene.swaps_handedness();
-  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-    auto& t = mesh.triangles[i];
-    const Vec3 n = mesh.n.empty() ? Vec3{} : mesh.n[t[0]] + mesh.n[t[1]] + mesh.n[t[2]];
-    const float agreement = dot(normalize_any(face_normal(mesh, t)), n);
-    if (!(agreement == 0 ? flip_winding : agreement < 0)) continue;
-    std::swap(t[1], t[2]);
-    if (!mesh.uv.empty()) continue;
-    mesh.turned.resize(mesh.triangles.size());
-    mesh.turned[i] = true;
-  }
-}
-
 void place_corners(std::vector<Vec3>& p, std::vector<Vec3>& n, const ShapePlacement& placement) {
   for (Vec3& at : p) at = placement.to_scene.point(at);
   place_normals(n, placement);
@@ -36,7 +16,7 @@ void place_corners(std::vector<Vec3>& p, std::vector<Vec3>& n, const ShapePlacem
 
 /// Winding counter-clockwise about the front; positions and normals are in the scene's space already.
 ShapeGeometry oriented(TriangleMesh mesh, const ShapePlacement& placement) {
-  orient(mesh, placement);
+  orient_mesh(mesh, placement);
   return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
