@@ -20,7 +20,7 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     output: Image: .exr (linear), .png or .jpg (through the display transform). By default the file that the scene's film names. Excludes part.
     spp: Number of samples per pixel; by default the scene's. Range: from 1 to 1073741824.
     wavelengths: Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in nm: 450,550,850 or 400:1000:10.
-    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. May be given again.
+    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
     crop: Crop as fractions of the film; ends are rounded up. Range: from 0 to 1. Excludes pixels, pixel.
     pixels: Crop in pixels; x1 and y1 are not part of it. Range: from 0 to 1073741824. Excludes pixel.
@@ -52,13 +52,13 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
     """Measure what each leaf model costs in a scene, and what error it makes.
 
     scene: Scene file (pbrt-v4 format).
-    materials: Candidates, separated by ; or given again: [LABEL:]MATERIAL[,parameter=value...], with @wavelengths=PLUGIN or @integrator=PLUGIN behind it. The first is the baseline of speed-ups. Default: abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert. May be given again.
+    materials: Candidates, separated by ; or given again: [LABEL:]MATERIAL[,parameter=value...], with @wavelengths=PLUGIN or @integrator=PLUGIN behind it. The first is the baseline of speed-ups. Default: abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert. Repeatable.
     output: Folder of the report: charts, tables, index.html. Without it results are printed alone.
     reference: Candidate that errors are measured against, once converged. The default is the expectation of the analog walk, with less noise. Default: abm,mode=weighted.
     rms: Report the cheapest candidate with this RMS error. Range: above 0.
     target: RMS errors of red, green and blue for speed-up (c): three numbers, or front, back, ambient for the paper's. Excludes relative.
     relative: Errors relative to the reference: of each channel the RMS over pixels divided by the reference's mean over these pixels; rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.
-    leaf: Name of a material to replace; by default every leaf. May be given again.
+    leaf: Name of a material to replace; by default every leaf. Repeatable.
     wavelengths: Wavelengths in place of the scene's; smpte for the paper's three.
     size: Pixels of the longer side; 256 by default, 128 with quick. Range: from 1 to 65536.
     spp: Samples per pixel of the last measurement of a candidate; 256 by default, 32 with quick. Range: from 1 to 16777216.
@@ -89,7 +89,7 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, sieve = None, fi
     angle: Angle of incidence, where the file does not have it. Unit: degrees. Range: from 0 to 180. Default: 8.
     structure: Structure of the leaf; by default the one that fits better. One of bifacial, unifacial.
     sieve: Absorption with sieve and detour effects; by default what fits better. One of on, off.
-    fix: NAME=NUMBER: a known number, in the scene's units. May be given again.
+    fix: NAME=NUMBER: a known number, in the scene's units. Repeatable.
     like: Specimen used as a prior (standard deviation about one third). One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex.
     material: Material type to write. One of leaf, leaf_solved, leaf_simplified, leaf_lambert, abm. Default: leaf."""
 
@@ -125,10 +125,10 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     paths: Number of paths for each view. Range: from 1 to 4294967296. Default: 65536.
     rms: Stop when the RMS standard error, relative to the mean, is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends with the result it has by then. Unit: s. Range: above 0.
-    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. May be given again.
+    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; one of the scene's kind keeps the scene's other parameters.
     seed: Seed of all random numbers.
-    compare: MODEL[,parameter=value...];...: leaf models that replace the scene's leaves: which is accurate enough? Excludes plot, checkpoint, resume. May be given again.
+    compare: MODEL[,parameter=value...];...: leaf models that replace the scene's leaves: which is accurate enough? Excludes plot, checkpoint, resume. Repeatable.
     reference: Leaf model that the models of compare are compared with. Default: leaf_solved.
     within: Largest relative difference that is accurate enough for compare. Range: above 0. Default: 0.02.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
@@ -158,7 +158,7 @@ def flux(scene, wavelengths = None, *, by_instance = False, target: float | Sequ
     time_limit: Time after which the job ends with the result it has by then. Unit: s. Range: above 0.
     by: Measure what each instance of an object absorbs: a row for each. One of instance.
     irradiance: Irradiance of the horizontal plane, for photon flux: name of a spectrum, or an .spd file. Unit: W/(m2 nm). Default: solar-am1.5-global.
-    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. May be given again.
+    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; one of the scene's kind keeps the scene's other parameters.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
@@ -174,7 +174,7 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | Sequenc
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
     wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
-    with_: NAME[,parameter=value...]: one more material. May be given again.
+    with_: NAME[,parameter=value...]: one more material. Repeatable.
     rays: Number of rays for each measurement: 1e6 by default; with se the largest number, 1e9 by default.
     se: Stop when the standard errors of R, T and A are no larger than this. Range: above 0.
     rendered: Measure what a renderer shows: light along wi, seen along wo, though the model calls wo incident.
@@ -193,7 +193,7 @@ def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), wi
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
     wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
-    with_: NAME[,parameter=value...]: one more material. May be given again.
+    with_: NAME[,parameter=value...]: one more material. Repeatable.
     rays: Number of rays for each measurement. Default: 1e6.
     patches: THETAxPHI: numbers of detectors, patches of equal angles over the whole sphere. Default: 20x40.
     integrate: Integrate f over each patch, without noise, where it is not a random estimate; use rays elsewhere.
@@ -242,7 +242,7 @@ def bench(material: str | Sequence[str] | Mapping[str, str], with_: str | Sequen
     """Time the calls of a material's BSDF, and measure the variance of its samples.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    with_: NAME[,parameter=value...]: one more material. May be given again.
+    with_: NAME[,parameter=value...]: one more material. Repeatable.
     angles: Angles of the path's ray from the front's normal; above 90 it meets the back. Unit: degrees. Range: from 0 to 180. Default: 0,45,80.
     lanes: Numbers of wavelengths that a path carries. Range: from 1 to 4. Default: 1,2,3,4.
     wavelengths: Wavelengths; a path of n lanes carries the first n. By default those of frond_bench (docs/bench.md). Unit: nm. Range: above 0.
@@ -289,7 +289,7 @@ def canopy(output: str | os.PathLike, lai: float = 3.0, count: int | None = None
     size: Size of the plot along x and y, from 0: its period. Range: above 0. Default: 10,10.
     heights: Least and largest height of the leaves' centres. Default: 0,1.
     apart: Least distance between the leaves' centres; by default positions are independent. Range: above 0.
-    column: Number that each leaf has for Texture "instance", uniform between two bounds: chlorophylla=2:5. May be given again.
+    column: Number that each leaf has for Texture "instance", uniform between two bounds: chlorophylla=2:5. Repeatable.
     seed: Seed of all random numbers."""
 
 def instances(csv: str | os.PathLike, output: str | os.PathLike, *, progress = None, session: Session | None | None = None) -> Result:
@@ -331,7 +331,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     run: Submit it too, by sbatch.
     folder: Folder of the job's scripts, parts and logs; OUTPUT.slurm by default.
     wavelengths: Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in nm: 450,550,850 or 400:1000:10.
-    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. May be given again.
+    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.
     crop: Crop as fractions of the film; ends are rounded up. Range: from 0 to 1. Excludes pixels, pixel.
     pixels: Crop in pixels; x1 and y1 are not part of it. Range: from 0 to 1073741824. Excludes pixel.

@@ -85,7 +85,7 @@ def test_errors_have_a_place(scene_text, tmp_path):
 def test_messages_go_to_logging(scene_text, caplog):
     with caplog.at_level(logging.INFO, logger="frond"):
         frond.loads(scene_text)
-    assert any("leaf modes" in record.getMessage() for record in caplog.records)
+    assert any("mode table" in record.getMessage() for record in caplog.records)
 
 
 def test_progress_is_told_and_may_throw(scene_text):

@@ -173,7 +173,7 @@ def verdict(canopies):
                                             for c in canopies)
         par = max(abs(c.par_difference(model)[0]) for c in canopies)
         lines.append(f"- `{model}`: BRF off by {100 * worst:.0f} % at most ({canopy}, {band:g} nm, view "
-                     f"{zenith:g}°); nowhere clearly off by more than {100 * ENOUGH:.0f} % in "
+                     f"{zenith:g}°); within {100 * ENOUGH:.0f} % in every view, to three standard errors, in "
                      f"{sum(e.all(axis=None) for e in enough)} of {len(canopies)} canopies over all bands, in "
                      f"{sum(e[800].all() for e in enough)} at 800 nm alone; absorbed photons off by {100 * par:.1f} % at most.")
     return "\n".join(lines)

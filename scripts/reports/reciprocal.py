@@ -23,7 +23,7 @@ either choice costs something: `"string incident" "traced"`, as published, does 
 `"light"` conserves it, but its samples have weights without bound where a path looks along a leaf. Neither can be
 followed from the light and from the camera alike.
 
-`"string incident" "reciprocal"` is a third: the leaf nearest to the model that gives back what it takes. `leaf_solved`,
+`"string incident" "reciprocal"` is a third: the reciprocal, energy-conserving BSDF closest to the model. `leaf_solved`,
 `leaf_simplified`, `leaf_lambert` and `leaf` have it; `abm` has not, since a walk knows nothing of the way back.
 `frond brf` and `frond flux` take it where the scene says nothing; leaves by `abm` take `light` there.
 
@@ -39,7 +39,7 @@ followed from the light and from the camera alike.
 
     f_r(i, o) = d(i) (f(i, o) + f(o, i)) / 2 d(o),
 
-where d is a positive number for each direction, such that every direction gives back as much light as before:
+where d is a positive number for each direction, such that light from every direction is scattered in the same amount as before:
 
     ∫ f_r(i, o) |cos θo| dωo = ∫ f(i, o) |cos θo| dωo = Rd(i) + T(i).
 

@@ -28,7 +28,7 @@ class Consequence : public InputError {
   using InputError::InputError;
 };
 
-/// Errors that are collected, so that all of a scene's are told in one run.
+/// Errors that are collected, so that all of a scene's are reported in one run.
 class Problems {
  public:
   /// Each message once.

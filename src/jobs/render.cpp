@@ -266,7 +266,7 @@ class SceneRender {
         fmt::format("{}: {} samples per pixel in {:.2f} s ({:.2f} s of CPU, {:.3f} us and {:.2f} rays per path), "
                     "loaded in {:.2f} s",
                     output, count, s.wall_seconds, s.cpu_seconds, us_per_path, rays_per_path, load_seconds_));
-    run_.log().info(fmt::format("foliar ratio {:.2f} %", 100 * film.foliar_ratio()));
+    run_.log().info(fmt::format("foliar ratio (camera samples that hit a leaf): {:.2f} %", 100 * film.foliar_ratio()));
   }
 
   void add_json(Result& result) const {

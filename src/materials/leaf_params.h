@@ -77,9 +77,10 @@ inline constexpr std::array kLeafParams{
     Param{.name = "incident",
           .kind = ParamKind::string,
           .default_value = std::string_view("traced"),
-          .doc = "What the model, which is not reciprocal, takes for its incident ray: the one that is traced, as "
-                 "published, the light, or neither: reciprocal is the leaf nearest to the model that is "
-                 "(docs/reciprocal_leaf.md).",
+          .doc =
+              "Incident direction of the model, which is not reciprocal: that of the traced ray, as published, or of "
+              "the light; reciprocal: of neither, by the reciprocal BSDF closest to the model "
+              "(docs/reciprocal_leaf.md).",
           .choices = detail::kIncident},
 };
 

@@ -19,7 +19,7 @@ constexpr Param kOwn[] = {
      .kind = ParamKind::real,
      .default_value = 5e-4,
      .range = {1e-5, 0.1},
-     .doc = "Largest error of pi f that the table may have, where white paper has 1: what missing modes and "
+     .doc = "Largest error of the mode table, as a share of a white diffuse surface's BSDF: what missing modes and "
             "interpolation between angles leave out. Of a file's modes, what looking them up may add."},
     {.name = "tablefile",
      .kind = ParamKind::string,
@@ -89,7 +89,7 @@ class LeafSolved final : public Material {
                                                                preparation.log, preparation.cache_dir);
       if (leaf_.is_reciprocal()) spectrum = leaf::make_reciprocal(spectrum).value();
       leaf::BodyTable table(request, spectrum, vary);
-      preparation.log.info(fmt::format("leaf modes: {}, {} kB in memory", leaf_.specimen(), table.bytes() / 1024));
+      preparation.log.info(fmt::format("mode table: {}, {} kB in memory", leaf_.specimen(), table.bytes() / 1024));
       return table;
     };
     table_ = preparation.share<leaf::BodyTable>(key(preparation, describe(request)), make);
@@ -117,12 +117,12 @@ class LeafSolved final : public Material {
     if (leaf_.is_reciprocal()) {
       auto reciprocal = leaf::make_reciprocal(spectrum);
       if (!reciprocal)
-        fail(file_.where(), "{}: no reciprocal leaf gives back as much light as these modes do in every direction",
+        fail(file_.where(), "{}: no reciprocal BSDF scatters as much light as this mode table does in every direction",
              name);
       spectrum = std::move(*reciprocal);
     }
     leaf::BodyTable table(request, spectrum, preparation.wavelengths.fixed_nm().empty());
-    preparation.log.info(fmt::format("leaf modes: {}, {} wavelengths x {} cells, {} kB in memory", name,
+    preparation.log.info(fmt::format("mode table: {}, {} wavelengths x {} cells, {} kB in memory", name,
                                      file.columns.size(), spectrum.cells, table.bytes() / 1024));
     return table;
   }

@@ -31,7 +31,7 @@ class PartLock {
 };
 
 /// Writes a part from time to time while it is being rendered, by a thread of its own. Is the render's Progress, and
-/// passes on what it is told.
+/// passes on what it receives.
 class Checkpointer final : public Progress {
  public:
   /// `part` and `log` must outlive it; of its header a copy is kept. `next` may be nullptr.

@@ -24,7 +24,7 @@ class Viewer {
 /// has taken is below a hundredth of the process's CPU time. A viewer that fails is a warning, and shown nothing more.
 class LiveView {
  public:
-  /// `film` and `viewer` must outlive it. The log is told from the thread.
+  /// `film` and `viewer` must outlive it. The log is called from that thread.
   LiveView(const Film& film, PictureFormat format, Viewer& viewer, const Log& log);
   /// Ends it. What was shown last stays.
   ~LiveView();

@@ -72,7 +72,7 @@ struct SessionOptions {
   std::vector<std::string> plugins = {};  ///< shared objects beside those of FROND_PLUGIN_PATH
 };
 
-/// What renders have in common: the plugins, the threads, the cache, and whom messages go to. The way in for programs
+/// What renders have in common: plug-ins, threads, cache and log. The entry point for programs
 /// that render with frond:
 ///
 ///   Session session(log);

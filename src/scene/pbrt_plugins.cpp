@@ -126,7 +126,7 @@ class Answerer {
                             fmt::format("is replaced by \"{}\"{}", by.ours, by.caution), log_);
       });
     else if (by.name != by.ours)
-      log_.info(fmt::format("{} \"{}\" is answered by \"{}\"", directive, by.name, by.ours));
+      log_.info(fmt::format("{} \"{}\" is replaced by frond's \"{}\"", directive, by.name, by.ours));
     std::erase_if(plugin.params, [&](const ParsedParam& p) {
       const auto is_called_so = [&p](const Param& known) { return known.name == p.name; };
       if (std::ranges::any_of(ours.params, is_called_so)) return false;

@@ -8,7 +8,7 @@
 
 namespace frond {
 
-/// Names of pbrt-v4 that frond answers by plugins of another name. What gives the same picture, but for noise, is told
+/// Replaces names of pbrt-v4 by plug-ins of another name. What gives the same image, but for noise, is reported
 /// in the log (samplers; volpath, where there are no media); what does not has to be let pass
 /// (scene/format/unsupported.h). Names of older versions of pbrt are errors that say how a file is upgraded.
 void answer_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,

@@ -80,7 +80,7 @@ class Scene final : public World {
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
   const Geometry& geometry() const { return *geometry_; }
-  /// Along x and y, after which what stands in the scene is there again; empty: it is there once.
+  /// Along x and y, after which the scene is repeated; empty: it is not.
   std::optional<Vec2> period() const { return period_; }
   /// That of the description at this place; nullptr where nothing is made of it.
   const Material* material(size_t place) const { return material_at_[place]; }

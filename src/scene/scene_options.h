@@ -13,7 +13,7 @@ struct SceneOptions {
   std::optional<uint64_t> seed;  ///< empty: the sampler's own
   std::string wavelengths;       ///< a PluginText
   Location wavelengths_where;
-  std::optional<Vec2> period;  ///< empty: what stands in the scene is there once
+  std::optional<Vec2> period;  ///< empty: the scene is not repeated
   Location period_where;
   bool has_pixel_jitter = true, has_wavelength_jitter = true, filters_textures = true;
 };

@@ -61,7 +61,7 @@ TEST(TableFile, RefusesBadRowsByLine) {
   struct {
     std::string row, message;
   } const kCases[] = {
-      {"10,550,.4,.4,.4\n", "leaf.csv:3:1: Rs + Rd + T is 1.2: a leaf gives back 1 at most"},
+      {"10,550,.4,.4,.4\n", "leaf.csv:3:1: Rs + Rd + T is 1.2: a leaf scatters 1 at most"},
       {"10,550,.1,nan,.4\n", "leaf.csv:3:11: Rd is a share of the light, from 0 to 1; nan was given"},
       {"10,550,-.1,.1,.4\n", "leaf.csv:3:8: Rs is a share of the light, from 0 to 1; -0.1 was given"},
       {"10,550,.1,.1,inf\n", "leaf.csv:3:14: T is a share"},

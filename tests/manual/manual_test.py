@@ -65,7 +65,7 @@ class ManPages(Folder):
     def test_choices_units_ranges_defaults_and_relations_are_there_once(self):
         text = frond("man", "brf").replace("\n", " ").replace("\\-", "-")
         for sentence in ("Range: from 1 to 1024.", "Unit: degrees.", "Default: -75:75:5.", "Excludes --zenith, --azimuth.",
-                         "Needs --csv.", "May be given again."):
+                         "Needs --csv.", "Repeatable."):
             self.assertIn(sentence, text)
         self.assertIn("One of spherical, planophile,", frond("man", "canopy").replace("\n", " "))
 

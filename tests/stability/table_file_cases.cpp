@@ -66,8 +66,8 @@ void add_accepted(Files& files) {
 }
 
 void add_bad_numbers(Files& files) {
-  files.refuses("R + T = 1.1", "8,551,0.1,0.5,0.5\n", "Rs + Rd + T is 1.1: a leaf gives back 1 at most");
-  files.refuses("R + T = 1.00001", "8,551,0.1,0.4,0.50001\n", "a leaf gives back 1 at most");
+  files.refuses("R + T = 1.1", "8,551,0.1,0.5,0.5\n", "Rs + Rd + T is 1.1: a leaf scatters 1 at most");
+  files.refuses("R + T = 1.00001", "8,551,0.1,0.4,0.50001\n", "a leaf scatters 1 at most");
   files.refuses("NaN", "8,551,0.1,nan,0.5\n", "Rd is a share of the light, from 0 to 1; nan was given");
   files.refuses("infinite", "8,551,0.1,inf,0.5\n", "Rd is a share of the light, from 0 to 1; inf was given");
   files.refuses("negative", "8,551,0.1,-0.1,0.5\n", "Rd is a share of the light, from 0 to 1; -0.1 was given");

@@ -107,7 +107,7 @@ std::string relations(const JobParam& p) {
       names += (names.empty() ? "" : ", ") + command_spelling(name);
     text += fmt::format(" Excludes {}.", names);
   }
-  if (p.kind == ArgumentKind::texts && !p.positional) text += " May be given again.";
+  if (p.kind == ArgumentKind::texts && !p.positional) text += " Repeatable.";
   return text;
 }
 

@@ -21,7 +21,7 @@ enum class ArgumentKind : uint8_t {
   real,     ///< finite number
   numbers,  ///< list 0,8,30 or range first:last:step, or both: 0:80:10,85
   text,     ///< one string
-  texts,    ///< any number of strings: the option may be given again
+  texts,    ///< any number of strings: the option is repeatable
 };
 
 /// What a path is used for. submit makes paths absolute; outputs are checked before any work.
@@ -67,7 +67,7 @@ std::string needed(const JobParam& param);
 
 /// "from 1 to 1024", "above 0", "horizontal, uniform"; "" where any value is accepted.
 std::string accepted(const JobParam& param);
-/// Sentences about the parameters that it needs or excludes, and whether it may be given again.
+/// Sentences about the parameters that it needs or excludes, and whether it is repeatable.
 std::string relations(const JobParam& param);
 /// The parameter's documentation with its choices, unit, range, default and what it needs: the text of help, man pages,
 /// docs/commands.md and docstrings.

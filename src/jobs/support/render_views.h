@@ -22,7 +22,7 @@ class RenderViews {
 
   /// Throws InputError for a preview of bands that have no colours, or by a display that does not go with them.
   void check(const PictureFormat& format);
-  /// `film` and `log` must outlive it; the log is told from other threads. `output`: where the film goes.
+  /// `film` and `log` must outlive it; the log is called from other threads. `output`: where the film goes.
   void begin(const Film& film, const PictureFormat& format, const std::string& output, const Log& log);
   /// The preview as it is in the end.
   void finish_preview();

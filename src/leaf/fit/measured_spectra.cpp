@@ -219,7 +219,7 @@ class Reader {
         if (**share < -kNoise) refuse_share(wheres_[i], what, fmt::format("{}", **share));
       }
       const double sum = reading.r.value_or(0) + reading.t.value_or(0);
-      if (sum > 1 + kNoise) fail(wheres_[i], "R + T is {:.4g}: a leaf gives back 1 at most", sum);
+      if (sum > 1 + kNoise) fail(wheres_[i], "R + T is {:.4g}: a leaf scatters 1 at most", sum);
     }
   }
 

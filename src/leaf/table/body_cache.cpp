@@ -32,7 +32,7 @@ std::optional<BodySpectrum> parse(std::string_view text, std::string_view header
 
 std::string summary(const BodyRequest& request, std::string_view name, const BodySpectrum& spectrum) {
   const std::string depths = request.depths.empty() ? "" : fmt::format(" x {} depths", request.depths.depths().size());
-  return fmt::format("leaf modes: {}, {} wavelengths{} x {} cells, error of pi f <= {:.1e}", name,
+  return fmt::format("mode table: {}, {} wavelengths{} x {} cells, BSDF error <= {:.1e} of white", name,
                      request.wavelengths_nm.size(), depths, spectrum.cells, spectrum.error + request.tolerance / 2);
 }
 

@@ -8,7 +8,8 @@ namespace frond::leaf {
 /// What makes a leaf of three lobes reciprocal, by direction and column of a TableLookup:
 ///   f_r(i, o) = s(i) p(i, o) s(o) + d(i) (Rd(i) + Rd(o)) / (2 pi) d(o) on one side, p the surface's lobe before its
 ///   cut, f_r(i, o) = d(i) (T(i) + T(o)) / (2 pi) d(o) to the other,
-/// such that every direction gives back Rs by the first lobe, and Rd + T by the other two (docs/reciprocal_leaf.md).
+/// such that of light from every direction the first lobe scatters Rs, and the other two Rd + T
+/// (docs/reciprocal_leaf.md).
 class ReciprocalLookup {
  public:
   /// `exponents` of the surface's lobe.

@@ -83,7 +83,7 @@ class Header {
       if (columns_[i] != kColumns) row.value[columns_[i]] = checked(columns_[i], fields[i]);
     const double sum = row.value[kRs] + row.value[kRd] + row.value[kT];
     constexpr double kRounding = 1e-6;
-    if (sum > 1 + kRounding) fail(row.where, "Rs + Rd + T is {:.7g}: a leaf gives back 1 at most", sum);
+    if (sum > 1 + kRounding) fail(row.where, "Rs + Rd + T is {:.7g}: a leaf scatters 1 at most", sum);
     return row;
   }
 

@@ -22,8 +22,8 @@ struct BatchRay {
 /// tissue, wo, the absorption, the key and its number alone: not on the other rays, nor on the machine's instructions,
 /// of which the widest are chosen at run time.
 ///
-/// A ray that total reflection holds for ever between two smooth, clear interfaces (indices that no leaf has) counts as
-/// absorbed.
+/// A ray that total reflection holds without end between two smooth, clear interfaces (indices that no leaf has) counts
+/// as absorbed.
 void walk_batch(const Tissue& tissue, const Vec3d& wo, Absorption absorption, uint64_t key, std::span<BatchRay> out,
                 uint64_t first = 0);
 

@@ -126,7 +126,7 @@ class Walker {
   }
 
   /// One event. False where the ray is absorbed, or never leaves: between two interfaces that mirror it and let nothing
-  /// through it goes to and fro until it is absorbed, in a clear medium for ever.
+  /// through it goes to and fro until it is absorbed, in a clear medium without end.
   template <class Connect>
   bool step(const Connect& connect) {
     if (!pass_medium()) return false;

@@ -7,7 +7,7 @@
 
 namespace frond {
 
-/// What a surface gives back of the light that meets one of its sides, lane by lane.
+/// Reflectance and transmittance of one side of a surface, lane by lane.
 struct SideShares {
   SampledSpectrum reflected, transmitted;
 };

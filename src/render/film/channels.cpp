@@ -17,7 +17,7 @@ constexpr ChannelInfo kChannels[] = {
      {"albedo.R", "albedo.G", "albedo.B"},
      Kind::mean,
      Space::none,
-     "share of light that the surface gives back, on both sides",
+     "share of light that the surface reflects or transmits",
      [](const CameraHit& hit) { return hit.albedo; }},
     {"normal",
      {"normal.X", "normal.Y", "normal.Z"},

@@ -7,10 +7,10 @@
 
 namespace frond {
 
-/// A scene that goes on for ever along x and y: what stands in it is there again every so far.
+/// A scene that is repeated periodically along x and y.
 class Tiling {
  public:
-  /// `period`: along x and y, above 0. `bounds`: of what stands in the scene; it may be larger than a period.
+  /// `period`: along x and y, above 0. `bounds`: of the scene; they may be larger than a period.
   Tiling(Vec2 period, const Bounds& bounds);
 
   /// A copy of the scene: where it has been moved to, and where a ray goes there.

@@ -62,8 +62,8 @@ void refine_reflectance(const ColorSpace& space, const Triple& rgb, bool from_fl
 /// Largest error of a fit that the functions below accept, for the colour at full scale.
 inline constexpr double kLargestFitError = 5e-3;
 
-/// A reflectance. Where none has that colour it is the nearest, and `warn` is told. Throws InputError unless `rgb` lies
-/// in [0, 1].
+/// A reflectance. Where none has that colour it is the nearest, and `warn` is called. Throws InputError unless `rgb`
+/// lies in [0, 1].
 SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where,
                        const std::function<void(const std::string&)>& warn);
 

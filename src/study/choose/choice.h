@@ -15,7 +15,7 @@ struct RmsBounds {
   double low = 0, high = 0;
 };
 
-/// What a pilot found of one answer to one question, all others answered by their base.
+/// What a pilot found of one answer to one question, with the base answer to all others.
 struct OptionResult {
   std::string name;
   double price = 1, noise = 1;  ///< as in Screening::Single

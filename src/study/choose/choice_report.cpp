@@ -42,9 +42,10 @@ std::string failures_text(const Choice& c) {
 
 std::string samples_text(const Choice& c) {
   return fmt::format(
-      "{} samples per pixel leave noise of {:.2g} beside; about {:.0f} bring both down to {:g}, where {} would take "
+      "noise at {} samples per pixel: {:.2g} (RMS); noise and bias together reach {:g} at about {:.0f}, where {} would "
+      "take "
       "{:.2g} times the CPU time",
-      c.samples, c.noise_rms(), c.samples_needed(), c.rms, c.reference, c.time_saved());
+      c.samples, c.noise_rms(), c.rms, c.samples_needed(), c.reference, c.time_saved());
 }
 
 nlohmann::ordered_json to_json(const Answer& a) {

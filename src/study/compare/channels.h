@@ -16,7 +16,8 @@ inline constexpr size_t kTogether = 0;
 /// That of the film's first channel; the others follow.
 inline constexpr size_t kFirst = 1;
 
-/// What errors are told of: all channels of the film together, each by itself, and luminance where they are colours.
+/// What errors are reported of: all channels of the film together, each by itself, and luminance where they are
+/// colours.
 struct ChannelList {
   std::vector<std::string> names = {};
   std::vector<Triple> shown = {};  ///< of each channel of the film: what it adds to a picture's linear SMPTE-C

@@ -12,7 +12,7 @@ namespace frond::compare {
 /// to shot rays. Those of the others end there too, and their cutoff is such that the same is left.
 class PaperManner {
  public:
-  /// How paths end is told by pilots of so many samples a pixel.
+  /// How paths end is estimated by pilots of so many samples per pixel.
   PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples);
 
   /// What to time. Nothing where the scene's integrator, or the candidate's own, has no such end.
