@@ -74,7 +74,7 @@ Written by `scripts/adaptive`. {machine}
 
 `frond render --max-rms 0.001` renders until the noise of the picture, the RMS over its pixels and linear colours, is below
 0.001 with 95 % confidence, and puts samples where they do most against it: tile by tile, n proportional to the root of
-variance over rays (`src/render/film/adaptive.h`). Noise is told from how blocks of 16 samples differ, which are spread evenly by
+variance over rays (`src/render/film/adaptive.h`). Noise is estimated from how blocks of 16 samples differ, which are spread evenly by
 themselves; that larger sets are spread more evenly still it does not see, so that what comes is better than what was asked
 for.
 

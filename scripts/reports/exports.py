@@ -341,7 +341,7 @@ OSL = """## An OSL shader for Cycles
 viewing angle (every 2.5°) and the side. Red, green and blue are 608, 551 and 455 nm, or three `--wavelengths` in that order, and
 go into the renderer's own colours as they are.
 
-- R and T are f integrated to 10⁻⁴ of themselves; how much of R is Rs is told by rays (`--rays`, 10⁶ each by default). A material
+- R and T are f integrated to 10⁻⁴ of themselves; the share of Rs in R is estimated by rays (`--rays`, 10⁶ each by default). A material
   that does not tell its surface from its body has no surface lobe, and a warning says so.
 - The lobe's exponent follows from the surface's rays at normal incidence. Cycles weighs its lobe by the cosine with the
   normal besides, frond does not; the table divides by what Cycles' lobe alone sends on, so that Rs stays Rs.

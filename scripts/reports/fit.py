@@ -40,7 +40,7 @@ whichever fits better (`--structure`, `--sieve` say it). `--fix chlorophylla=3.9
 third or so.
 
 **What it gives.** A `Material` line (`-o`; `--material` names another than `leaf`), a table for people, `--json`, `--csv`, and a
-chart. Errors are told by band. Each number has its standard error, which is wider where residuals go together along the spectrum,
+chart. Errors are reported by band. Each number has its standard error, which is wider where residuals go together along the spectrum,
 as a model's errors do; numbers that the data do not tell are named, as are pairs that cannot be told apart. These are no measurement: a
 number with "not told by the data" behind it only completes the leaf. Chlorophylls a and b absorb alike in this model, as do
 cellulose and lignin: the second follows the first by the specimen's ratio. The thickness and `mesophyllfraction` act by their

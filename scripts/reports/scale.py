@@ -104,7 +104,7 @@ PAGE = """# A hundred million leaves
 
 Written by `scripts/scale`. {machine}
 
-Disks of {radius} m, each by itself, at a leaf area index of {lai}, in a layer of {height} m that goes on for ever; the more
+Disks of {radius} m, each by itself, at a leaf area index of {lai}, in a layer of {height} m that is repeated periodically; the more
 leaves, the larger the plot. **One level**: every leaf is a row of one table, {row} bytes in a file that is mapped into memory.
 **Two levels**: four plots of {plant} leaves, and a table of plots. **Load**: reading, checking the rows and building, wall
 time. **Memory**: the largest that the program had for itself, less what it has for a scene of one leaf, a leaf; with the

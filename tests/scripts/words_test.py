@@ -1,4 +1,5 @@
-"""Pages, help (docs/commands.md and docs/plugins.md are made of it) and public headers use the words of docs/glossary.md."""
+"""Pages, the scripts that write them, help (docs/commands.md and docs/plugins.md are made of it) and public headers use the words
+of docs/glossary.md."""
 
 import pathlib
 import re
@@ -24,7 +25,8 @@ REFUSED = {
 
 def files():
     pages = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "scenes").rglob("*.md"), *(ROOT / "examples").rglob("*.md")]
-    return [p for p in pages if p.name != "glossary.md"] + list((ROOT / "src").rglob("*.h"))
+    return [p for p in pages if p.name != "glossary.md"] + list((ROOT / "src").rglob("*.h")) + \
+        list((ROOT / "scripts" / "reports").rglob("*.py"))
 
 
 class Words(unittest.TestCase):

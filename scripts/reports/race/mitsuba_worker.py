@@ -1,7 +1,7 @@
 """Renders for scripts/race in a process of its own, by the Python that Mitsuba 3 is installed for.
 
 Arguments: a variant, the scene (JSON that scenes.py writes), threads. Each line of the standard input asks for a render, as
-JSON; each is answered by a line with what it took.
+JSON; each job returns a line with what it took.
 """
 
 import json

@@ -7,9 +7,9 @@ namespace frond::compare {
 /// A number with so many significant figures, as people write it: 1230, not 1.23e+03.
 std::string figures(double value, int count);
 
-/// The unit in which errors are reported. An absolute one stands in the channels' unit. A relative one is the RMS over
-/// a region's pixels divided by the reference's mean over the same pixels in the same channel: a share in data files
-/// and where the user asks for one (0.05), per cent where people read it (5 %).
+/// The unit in which errors are reported. An absolute error has the unit of the channels. A relative one is the RMS
+/// over a region's pixels divided by the reference's mean over the same pixels in the same channel: a share in data
+/// files and where the user asks for one (0.05), per cent where people read it (5 %).
 class ErrorUnit {
  public:
   explicit ErrorUnit(bool relative) : relative_(relative) {}
