@@ -5,7 +5,6 @@
 
 #include "core/log.h"
 #include "core/problems.h"
-#include "scene/cameras/films.h"
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
 #include "scene/lights/shape_emitter.h"
@@ -42,29 +41,6 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
   for (const ParsedParam& p : sensor_params(description))
     if (find_param(info, p.name) && !find_param(plugin.params, p.name)) plugin.params.push_back(p);
   return made_by(info, where, [&] { return info.make(Params(info, plugin, resolver)); });
-}
-
-/// A film of a shared object may ask for anything.
-void check_film(const FilmSettings& film, const FilmInfo& info, const Location& where) {
-  const auto [x0, y0, x1, y1] = film.crop;
-  if (film.width < 1 || film.height < 1 || film.width > 65536 || film.height > 65536)
-    fail(where, "film \"{}\" has {} x {} pixels: 1 to 65536 are possible", info.name, film.width, film.height);
-  if (x0 < 0 || y0 < 0 || x1 > film.width || y1 > film.height || x0 >= x1 || y0 >= y1)
-    fail(where, "film \"{}\" has a crop from ({}, {}) to ({}, {}), which holds no pixel of its {} x {} or lies outside",
-         info.name, x0, y0, x1, y1, film.width, film.height);
-  if (!(std::isfinite(film.exposure) && film.exposure >= 0 && film.max_component >= 0))
-    fail(where, "film \"{}\" has the exposure {} and clamps at {}: neither can be below 0", info.name, film.exposure,
-         film.max_component);
-}
-
-/// Of a camera's shutter, in seconds; 1 of one that has none.
-double open_time(const Params& camera, const CameraInfo& info) {
-  const auto is_time = [&info](std::string_view name) {
-    const Param* declared = find_param(info, name);
-    return declared && declared->kind == ParamKind::real;
-  };
-  if (!is_time("shutteropen") || !is_time("shutterclose")) return 1;
-  return std::abs(camera.real("shutterclose") - camera.real("shutteropen"));
 }
 
 bool is_mixture(const MaterialInfo& info) {
@@ -441,17 +417,6 @@ ParsedPlugin wavelengths_plugin(const SceneSettings& description, const Registry
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& description, const Registry& registry) {
   const SceneOptions options = read_options(description);
   return make_wavelengths(options.wavelengths, options.wavelengths_where, description, registry);
-}
-
-FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry, const Log& log) {
-  OptionResolver resolver(description, log);
-  const FilmInfo& info = registry.films.get(description.film.name, description.film.where);
-  FilmSettings film =
-      made_by(info, description.film.where, [&] { return info.make(Params(info, description.film, resolver)); });
-  check_film(film, info, description.film.where);
-  const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
-  film.exposure *= open_time(Params(camera, description.camera, resolver), camera);
-  return description.is_quick ? halved(film) : film;
 }
 
 std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, const Registry& registry) {
