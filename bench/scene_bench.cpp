@@ -3,7 +3,7 @@
 #include "bench/scene_study.h"
 #include "render/render_loop.h"
 
-/// The leaf models in whole scenes: what a sample costs, and how far off the picture is that it goes into
+/// The leaf models in whole scenes: what a sample costs, and how far off the image is that it goes into
 /// (docs/benchmarks.md says what each counter means). Names stay from release to release.
 namespace frond {
 namespace {

@@ -20,11 +20,11 @@ compare::StudyOptions options(const std::string& name) {
       .scene = FROND_SOURCE_DIR "/scenes/" + name + "/scene.pbrt", .wavelengths = "smpte", .size = SceneStudy::kPixels};
 }
 
-std::array<Image, 2> pictures_of(const PairedRender& render, const ColorManager& colors) {
+std::array<Image, 2> images_of(const PairedRender& render, const ColorManager& colors) {
   const Scene& scene = render.scene();
   const compare::ChannelList channels = compare::channels_of(scene);
-  return {compare::picture_of(render.film(0), scene, channels, colors),
-          compare::picture_of(render.film(1), scene, channels, colors)};
+  return {compare::image_of(render.film(0), scene, channels, colors),
+          compare::image_of(render.film(1), scene, channels, colors)};
 }
 
 /// The difference's variance is that of the mean of two renders and of that of the reference's two.
@@ -69,22 +69,22 @@ const Accuracy& SceneStudy::accuracy(const std::string& material) {
 }
 
 Accuracy SceneStudy::measure(const std::string& material) {
-  const std::vector<Pictures> candidate = render(material, kCandidateSeed, kSamples);
+  const std::vector<Images> candidate = render(material, kCandidateSeed, kSamples);
   Accuracy a;
   for (size_t c = 0; c < a.channels.size(); ++c) a.channels[c] = accuracy_of(candidate, reference(), c);
   a.noise = mean_of(std::array{a.channels[0].error, a.channels[1].error, a.channels[2].error}).noise;
   return a;
 }
 
-const std::vector<SceneStudy::Pictures>& SceneStudy::reference() {
+const std::vector<SceneStudy::Images>& SceneStudy::reference() {
   if (reference_.empty()) reference_ = render(kReference, kReferenceSeed, kReferenceSamples);
   return reference_;
 }
 
-std::vector<SceneStudy::Pictures> SceneStudy::render(const std::string& material, SeedUse use, uint64_t samples) const {
+std::vector<SceneStudy::Images> SceneStudy::render(const std::string& material, SeedUse use, uint64_t samples) const {
   const compare::Candidate candidate = compare::parse_candidate(material);
   const ColorManager colors;
-  std::vector<Pictures> result;
+  std::vector<Images> result;
   for (uint64_t repeat = 0; repeat < kRepeats; ++repeat) {
     const auto seed = [&](uint64_t half) { return hash_key(study_.seed(), uint64_t{use} + half, repeat); };
     PairedRender render(study_, candidate, seed(0), seed(1));
@@ -96,7 +96,7 @@ std::vector<SceneStudy::Pictures> SceneStudy::render(const std::string& material
       render.advance_to(samples, study_.session().pool(), nullptr);
       store.save(render);
     }
-    result.push_back(pictures_of(render, colors));
+    result.push_back(images_of(render, colors));
   }
   return result;
 }

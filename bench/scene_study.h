@@ -7,7 +7,7 @@
 #include "core/log.h"
 #include "instruments/errors/render_error.h"
 #include "instruments/errors/statistics.h"
-#include "study/compare/picture.h"
+#include "study/compare/film_images.h"
 #include "study/compare/study.h"
 
 namespace frond {
@@ -27,7 +27,7 @@ struct Accuracy {
 /// it is asked for is made once.
 class SceneStudy {
  public:
-  static constexpr int kPixels = 64;                              ///< of the picture's longer side
+  static constexpr int kPixels = 64;                              ///< of the image's longer side
   static constexpr uint64_t kSamples = 32;                        ///< of each pixel, where errors are told
   static constexpr const char* kReference = "abm,mode=weighted";  ///< the analog walk's expectation, with less noise
   static constexpr uint64_t kReferenceSamples = 4 * kSamples;
@@ -46,18 +46,18 @@ class SceneStudy {
  private:
   /// No candidate shares a seed with the reference.
   enum SeedUse : uint64_t { kCandidateSeed = 1, kReferenceSeed = 3 };
-  using Pictures = std::array<Image, 2>;
+  using Images = std::array<Image, 2>;
 
   Accuracy measure(const std::string& material);
-  const std::vector<Pictures>& reference();
-  std::vector<Pictures> render(const std::string& material, SeedUse use, uint64_t samples) const;
+  const std::vector<Images>& reference();
+  std::vector<Images> render(const std::string& material, SeedUse use, uint64_t samples) const;
 
   const Log& log_ = silent_log();
   Session session_;
   compare::Study study_;
   std::map<std::string, std::shared_ptr<const Scene>> scenes_;
   std::map<std::string, Accuracy> accuracies_;
-  std::vector<Pictures> reference_;
+  std::vector<Images> reference_;
 };
 
 }  // namespace frond

@@ -26,7 +26,7 @@ endif()
 install(FILES "${frond_manual_dir}/_frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${frond_zsh_folder}" COMPONENT runtime)
 # As they are in the repository; canopy/make makes the tables of leaves that those of canopy name.
 install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/frond" COMPONENT runtime USE_SOURCE_PERMISSIONS
-        PATTERN ".gitignore" EXCLUDE PATTERN "*.md" EXCLUDE PATTERN "picture.*" EXCLUDE PATTERN "generator" EXCLUDE
+        PATTERN ".gitignore" EXCLUDE PATTERN "*.md" EXCLUDE PATTERN "image.*" EXCLUDE PATTERN "generator" EXCLUDE
         REGEX "scenes/canopy/[^/]*[.]npy$" EXCLUDE)
 
 install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}" COMPONENT development)

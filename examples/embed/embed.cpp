@@ -25,7 +25,7 @@ frond::Image render(frond::Session& session, frond::SceneDescription description
   frond::RenderPart part = scene.empty_part();
   Dots dots;
   session.render(scene, {0, 8}, part, {.progress = &dots});
-  return film_image(part.film, part.header.picture);
+  return film_image(part.film, part.header.image);
 }
 
 }  // namespace

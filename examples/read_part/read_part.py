@@ -11,7 +11,7 @@ import struct
 import subprocess
 import sys
 
-MAGIC, END = b"frond part 2\n", b"frond part end\n"
+MAGIC, END = b"frond part 3\n", b"frond part end\n"
 TILE = 16
 ITEM = struct.Struct("<4i2Q")  # x0 y0 x1 y1, first sample, end
 PIXEL_BYTES, BAND_BYTES, BLOCK_BYTES = 128, 48, 64
@@ -54,7 +54,7 @@ def split(data):
 
 
 def tiles_of(pixels):
-    """Rectangles of the tiles, in the file's order: a grid from pixel (0, 0) of the whole picture, cut to the pixels
+    """Rectangles of the tiles, in the file's order: a grid from pixel (0, 0) of the whole image, cut to the pixels
     whose samples the part has."""
     x0, y0, x1, y1 = pixels
     for top in range(y0 // TILE * TILE, y1, TILE):
@@ -184,7 +184,7 @@ def print_summary(header, tiles):
         print(f"  {name}: {value}")
     film = header["film"]
     print("film: {} x {}, crop {}, {}".format(film["width"], film["height"], film["crop"],
-                                              f"{film['bands']} bands" if film["bands"] else header["picture"]["space"]))
+                                              f"{film['bands']} bands" if film["bands"] else header["image"]["space"]))
     print("coverage:")
     covered = {}  # rectangles that have the same samples
     for tile in tiles:

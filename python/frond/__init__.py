@@ -2,8 +2,8 @@
 
     import frond
     scene = frond.load("scene.pbrt", swap={"*": "leaf_solved"}, wavelengths="smpte")
-    picture = scene.render(samples=64)
-    picture["G"]                                    # NumPy, rows from the top
+    image = scene.render(samples=64)
+    image["G"]                                    # NumPy, rows from the top
 
     frond.spectrophotometer("leaf_solved", wavelengths=[450, 551, 680])
     frond.fit(path="leaf.csv").material
@@ -19,14 +19,16 @@ imported with the first array, pandas, where it is installed, with the first tab
 from . import _jobs
 from ._errors import InputError
 from ._frond import version as __version__
-from ._session import Picture, Scene, Session, default_session, load, loads, read_image
+from ._session import Image, Scene, Session, default_session, load, loads, read_image
 from ._jobs import Result, run
 from ._measure import (Fit, brf, compare, conform, fit, flux, goniophotometer, names, read_spectra, register_material,
                        spectrophotometer)
 from ._bsdf import Bsdf, FlatBsdf, LeafTable, bsdf, leaf_table
 
+Picture = Image  # the name that it had before 1.0
+
 globals().update({name: function for name, function in _jobs.FUNCTIONS.items() if name not in globals()})
 
 __all__ = sorted({name for name in _jobs.FUNCTIONS if name != "list"} | {
-    "Bsdf", "Fit", "FlatBsdf", "InputError", "LeafTable", "Picture", "Result", "Scene", "Session", "__version__", "bsdf",
+    "Bsdf", "Fit", "FlatBsdf", "InputError", "Image", "LeafTable", "Picture", "Result", "Scene", "Session", "__version__", "bsdf",
     "default_session", "leaf_table", "load", "loads", "names", "read_image", "read_spectra", "register_material", "run"})

@@ -8,7 +8,7 @@ from ._bsdf import Bsdf as Bsdf, FlatBsdf as FlatBsdf, LeafTable as LeafTable, b
 from ._errors import InputError as InputError
 from ._jobs import Result as Result, run as run
 from ._measure import Fit as Fit, names as names, read_spectra as read_spectra, register_material as register_material
-from ._session import (Picture as Picture, Scene as Scene, Session as Session, default_session as default_session,
+from ._session import (Image as Image, Scene as Scene, Session as Session, default_session as default_session,
                        load as load, loads as loads, read_image as read_image)
 
 __version__: str
@@ -63,7 +63,7 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
     size: Pixels of the longer side; 256 by default, 128 with quick. Range: from 1 to 65536.
     spp: Samples per pixel of the last measurement of a candidate; 256 by default, 32 with quick. Range: from 1 to 16777216.
     reference_spp: Samples per pixel of each of the reference's two renders; 1024 by default, 128 with quick, or the number that is cached. Range: from 1 to 1073741824.
-    exposure: Exposure of images and FLIP; by default such that the image is neither dark nor overexposed. Unit: stops. Range: from -20 to 20.
+    exposure: LitMaterial of images and FLIP; by default such that the image is neither dark nor overexposed. Unit: stops. Range: from -20 to 20.
     seed: Seed of all random numbers.
     quick: Preview: 128 pixels, up to 32 samples, a reference of 2 x 128 samples.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
@@ -217,7 +217,7 @@ def describe(name: str | os.PathLike | None = None, markdown: bool = False, comm
     markdown: Print Markdown; without a name, of every plug-in.
     commands: Print Markdown of every command. Excludes markdown."""
 
-def conform(material, *, session = None, sweep: bool = False, samples: int = 20000, angles: float | Sequence[float] | str = '0,30,60,80,89', wavelengths: float | Sequence[float] | str = '608,551,455', seed: int = 1, lossless: bool = False, reciprocal: bool = False, false_alarm_rate: float = 1e-06, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, picture: str | os.PathLike | None = None, progress = None) -> object:
+def conform(material, *, session = None, sweep: bool = False, samples: int = 20000, angles: float | Sequence[float] | str = '0,30,60,80,89', wavelengths: float | Sequence[float] | str = '608,551,455', seed: int = 1, lossless: bool = False, reciprocal: bool = False, false_alarm_rate: float = 1e-06, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, map: str | os.PathLike | None = None, progress = None) -> object:
     """Whether a BSDF obeys the laws of scattering: a material as text, or an object of `frond.Bsdf`. A dictionary:
     `["laws"]` has the verdicts by law, `["findings"]` a table, `all_hold` whether none is broken.
 
@@ -236,7 +236,7 @@ def conform(material, *, session = None, sweep: bool = False, samples: int = 200
     false_alarm_rate: Probability that any law is called broken although all hold. Range: from 1e-12 to 0.5. Default: 1e-6.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
-    picture: Map of the directions of the worst finding, where a law is broken: .svg or .png."""
+    map: Map of the directions of the worst finding: .svg or .png."""
 
 def bench(material: str | Sequence[str] | Mapping[str, str], with_: str | Sequence[str] | Mapping[str, str] | None = None, angles: float | Sequence[float] | str = '0,45,80', *, lanes: float | Sequence[float] | str = '1,2,3,4', wavelengths: float | Sequence[float] | str | None = None, repetitions: int = 5, min_time: float = 0.01, samples: int = 100000, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Time the calls of a material's BSDF, and measure the variance of its samples.

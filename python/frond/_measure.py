@@ -85,7 +85,7 @@ def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **opti
     nm, theta = _numbers(wavelengths), _numbers(angles)
     counts = tuple(patches)
     found = run("goniophotometer", material=material_text(material), wavelengths=nm, angles=theta,
-                patches="x".join(map(str, counts)), **options).columns["readings"]
+                patches="x".join(map(str, counts)), **options).columns["measurements"]
     arrays = {name: numpy.reshape(found[name], (len(theta), len(nm), *counts)) for name in
               ("f_per_sr", "f_se", "theta_deg", "phi_deg", "projected_solid_angle_sr")}
     result = {"theta_o_deg": arrays["theta_deg"][0, 0], "phi_o_deg": arrays["phi_deg"][0, 0],

@@ -1,4 +1,4 @@
-"""Scenes and their pictures."""
+"""Scenes and their images."""
 
 import json
 import os
@@ -60,7 +60,7 @@ class Session:
         return Scene(scene, over["spp"])
 
 
-#: What of the job `render` is said to `Scene.render` and `Picture.save`.
+#: What of the job `render` is said to `Scene.render` and `Image.save`.
 _NOT_OF_LOADING = {"scene", "output", "part", "samples", "checkpoint", "resume", "time-limit", "pilot", "preview",
                    "display", "view", "display-server", "json"}
 _default = None
@@ -115,31 +115,31 @@ class Scene:
         return json.loads(self._scene.choice) if self._scene.choice else None
 
     def render(self, samples=None, *, max_rms=None, time_limit=None, progress=None):
-        """A picture. samples: of each pixel. max_rms: until the noise is that small (of a scene that was loaded as
+        """An image. samples: of each pixel. max_rms: until the noise is that small (of a scene that was loaded as
         adaptive). time_limit: seconds. progress: a function of the share that is done, or True for a line of text.
         """
-        picture = Picture(self._scene.picture(), self)
-        picture.render_more(samples or self.samples, max_rms=max_rms, time_limit=time_limit, progress=progress)
-        return picture
+        image = Image(self._scene.image(), self)
+        image.render_more(samples or self.samples, max_rms=max_rms, time_limit=time_limit, progress=progress)
+        return image
 
 
-class Picture:
-    """What has been rendered, channel by channel: `picture["R"]`, `picture.array`, `picture.rgb`."""
+class Image:
+    """What has been rendered, channel by channel: `image["R"]`, `image.array`, `image.rgb`."""
 
-    def __init__(self, picture, scene):
-        self._picture, self._scene, self._image = picture, scene, None
+    def __init__(self, image, scene):
+        self._rendered, self._scene, self._image = image, scene, None
 
     def render_more(self, samples=None, *, max_rms=None, time_limit=None, progress=None):
-        """Until each pixel has `samples`, those that it has included: the picture is the same as if it had been
+        """Until each pixel has `samples`, those that it has included: the image is the same as if it had been
         rendered at once."""
         if max_rms is not None and not self._scene._scene.is_adaptive:
             raise ValueError("max_rms is for scenes that are loaded with adaptive=True")
         self._image = None
-        self._picture.render_more(samples or self._scene.samples, max_rms or 0, time_limit or 0, _show(progress))
+        self._rendered.render_more(samples or self._scene.samples, max_rms or 0, time_limit or 0, _show(progress))
 
     def _load(self):
         if self._image is None:
-            self._image = self._picture.image()
+            self._image = self._rendered.pixels()
         return self._image
 
     @property
@@ -173,23 +173,23 @@ class Picture:
         names = [name for name in self.channels if name.startswith("variance.")]
         return self._several(names)
 
-    color_space = property(lambda self: self._picture.color_space, doc="Of R, G, B; empty where channels are bands.")
-    statistics = property(lambda self: self._picture.statistics(), doc="Paths, rays, and seconds that it took.")
-    attributes = property(lambda self: self._picture.attributes(), doc="What the header of its file says.")
-    samples = property(lambda self: self._picture.samples(), doc="Of a pixel: least and most.")
+    color_space = property(lambda self: self._rendered.color_space, doc="Of R, G, B; empty where channels are bands.")
+    statistics = property(lambda self: self._rendered.statistics(), doc="Paths, rays, and seconds that it took.")
+    attributes = property(lambda self: self._rendered.attributes(), doc="What the header of its file says.")
+    samples = property(lambda self: self._rendered.samples(), doc="Of a pixel: least and most.")
 
     def save(self, path):
         """As EXR, all channels; as PNG or JPEG, colours for a display. Whole or not at all."""
-        self._picture.save(os.fspath(path))
+        self._rendered.save(os.fspath(path))
 
     def save_part(self, path):
         """As a part that `frond merge` adds others to, and that can go on."""
-        self._picture.save_part(os.fspath(path))
+        self._rendered.save_part(os.fspath(path))
 
     def __repr__(self):
         least, most = self.samples
         count = f"{least}" if least == most else f"{least} to {most}"
-        return f"<frond.Picture {self._scene.width} x {self._scene.height}, {count} samples a pixel>"
+        return f"<frond.Image {self._scene.width} x {self._scene.height}, {count} samples a pixel>"
 
     def _repr_png_(self):
         """For notebooks: colours as a display shows them."""
@@ -197,6 +197,6 @@ class Picture:
         if not self.color_space:
             return None
         with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "picture.png"
+            path = Path(folder) / "image.png"
             self.save(path)
             return path.read_bytes()

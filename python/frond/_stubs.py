@@ -30,7 +30,7 @@ def stub():
             "from ._errors import InputError as InputError\n"
             "from ._jobs import Result as Result, run as run\n"
             "from ._measure import Fit as Fit, names as names, read_spectra as read_spectra, register_material as register_material\n"
-            "from ._session import (Picture as Picture, Scene as Scene, Session as Session, default_session as default_session,\n"
+            "from ._session import (Image as Image, Scene as Scene, Session as Session, default_session as default_session,\n"
             "                       load as load, loads as loads, read_image as read_image)\n\n__version__: str\n")
     for name in _jobs.FUNCTIONS:
         text += "\n" + stub_of(name, getattr(frond, name))

@@ -90,7 +90,7 @@ void bind_leaf(nb::module_& m) {
       "read_spectra",
       [](const std::string& path, const std::string& leaf, double theta_deg) {
         std::vector<std::tuple<double, double, std::optional<double>, std::optional<double>>> rows;
-        for (const leaf::LeafReading& r : leaf::read_measured_spectra(path, {leaf, theta_deg}).readings)
+        for (const leaf::LeafMeasurement& r : leaf::read_measured_spectra(path, {leaf, theta_deg}).measurements)
           rows.emplace_back(r.lambda_nm, r.theta_deg, r.r, r.t);
         return rows;
       },

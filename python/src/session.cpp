@@ -23,7 +23,7 @@ struct SceneHandle {
 };
 
 /// What has been rendered of a scene so far. One thread at a time.
-struct PictureHandle {
+struct ImageHandle {
   std::shared_ptr<SceneHandle> scene;
   RenderPart part;
 };
@@ -47,9 +47,9 @@ std::shared_ptr<SceneHandle> load(const std::shared_ptr<SessionHandle>& owner, c
 }
 
 /// Adds samples until each pixel has `samples`, or the noise is below `max_rms`, or the time is over.
-void render_more(PictureHandle& picture, uint64_t samples, double max_rms, double time_limit_seconds,
+void render_more(ImageHandle& image, uint64_t samples, double max_rms, double time_limit_seconds,
                  const nb::object& progress) {
-  SceneHandle& handle = *picture.scene;
+  SceneHandle& handle = *image.scene;
   Session& session = handle.owner->session();
   const LoadedScene& scene = handle.task.scene();
   if (samples == 0) samples = scene.samples();
@@ -59,9 +59,9 @@ void render_more(PictureHandle& picture, uint64_t samples, double max_rms, doubl
         const RenderControl until =
             JobRun{handle.owner->context, handle.args, control}.control_until(time_limit_seconds);
         if (max_rms > 0)
-          session.render_to(scene, {.max_rms = max_rms}, picture.part, until);
+          session.render_to(scene, {.max_rms = max_rms}, image.part, until);
         else
-          session.render(scene, {0, samples}, picture.part, until);
+          session.render(scene, {0, samples}, image.part, until);
       },
       progress);
 }
@@ -94,37 +94,37 @@ void bind_session(nb::module_& m) {
       },
       "path"_a);
 
-  nb::class_<PictureHandle>(m, "Picture")
-      .def("image",
-           [](const PictureHandle& p) {
+  nb::class_<ImageHandle>(m, "Image")
+      .def("pixels",
+           [](const ImageHandle& p) {
              Image image;
              {
                const nb::gil_scoped_release release;
-               image = film_image(p.part.film, finished_picture(p.part));
+               image = film_image(p.part.film, finished_image(p.part));
              }
              return arrays_of(std::move(image));
            })
       .def("render_more", &render_more, "samples"_a, "max_rms"_a, "time_limit"_a, "progress"_a.none())
       .def("samples",
-           [](const PictureHandle& p) {
+           [](const ImageHandle& p) {
              const SampleCount count = sample_count(p.part.film);
              return std::pair(count.least, count.most);
            })
-      .def("statistics", [](const PictureHandle& p) { return statistics_of(p.part.header.statistics); })
-      .def("attributes", [](const PictureHandle& p) { return finished_picture(p.part).attributes; })
-      .def_prop_ro("color_space", [](const PictureHandle& p) { return p.part.header.picture.space; })
+      .def("statistics", [](const ImageHandle& p) { return statistics_of(p.part.header.statistics); })
+      .def("attributes", [](const ImageHandle& p) { return finished_image(p.part).attributes; })
+      .def_prop_ro("color_space", [](const ImageHandle& p) { return p.part.header.image.space; })
       .def(
           "save",
-          [](const PictureHandle& p, const std::string& path) {
+          [](const ImageHandle& p, const std::string& path) {
             const nb::gil_scoped_release release;
             const ImageOutput output(path, {});
-            output.check(p.scene->task.scene().picture());
-            output.write(p.part.film, finished_picture(p.part));
+            output.check(p.scene->task.scene().image_format());
+            output.write(p.part.film, finished_image(p.part));
           },
           "path"_a)
       .def(
           "save_part",
-          [](const PictureHandle& p, const std::string& path) {
+          [](const ImageHandle& p, const std::string& path) {
             const nb::gil_scoped_release release;
             write_part(path, p.part.header, p.part.film);
           },
@@ -134,7 +134,7 @@ void bind_session(nb::module_& m) {
       .def_prop_ro("width", [](const SceneHandle& s) { return s.task.scene().film_format().settings.width; })
       .def_prop_ro("height", [](const SceneHandle& s) { return s.task.scene().film_format().settings.height; })
       .def_prop_ro("samples", [](const SceneHandle& s) { return s.task.samples().end; })
-      .def_prop_ro("color_space", [](const SceneHandle& s) { return s.task.scene().picture().space; })
+      .def_prop_ro("color_space", [](const SceneHandle& s) { return s.task.scene().image_format().space; })
       .def_prop_ro("is_adaptive", [](const SceneHandle& s) { return s.task.is_adaptive(); })
       .def_prop_ro(
           "choice",
@@ -146,8 +146,8 @@ void bind_session(nb::module_& m) {
                        names.emplace_back(d.name, d.plugin.name);
                      return names;
                    })
-      .def("picture", [](const std::shared_ptr<SceneHandle>& s) {
-        return std::make_unique<PictureHandle>(s, s->task.empty_part());
+      .def("image", [](const std::shared_ptr<SceneHandle>& s) {
+        return std::make_unique<ImageHandle>(s, s->task.empty_part());
       });
 
   nb::class_<SessionHandle>(m, "Session")

@@ -25,5 +25,5 @@ def test_recipes(tmp_path, monkeypatch):
     names = {}
     for block in blocks:
         exec(compile(block, "docs/cookbook.md", "exec"), names)
-    for picture in ("from_python.exr", "mine.png", "mitsuba.png"):
-        assert (tmp_path / picture).stat().st_size > 1000
+    for image in ("from_python.exr", "mine.png", "mitsuba.png"):
+        assert (tmp_path / image).stat().st_size > 1000

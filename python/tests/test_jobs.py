@@ -237,13 +237,13 @@ def test_an_open_leaf_is_the_same_image_from_both(scene_text, tmp_path):
     text = scene_text.replace('"leaf_solved"', '"leaf" "float maxrms" 0.05')
     (tmp_path / "scene.pbrt").write_text(text)
     session = frond.Session(cache=tmp_path / "cache")
-    picture = frond.load(tmp_path / "scene.pbrt", session=session).render(4)
-    picture.save(tmp_path / "module.exr")
+    image = frond.load(tmp_path / "scene.pbrt", session=session).render(4)
+    image.save(tmp_path / "module.exr")
     done = frond_command("render", "scene.pbrt", "--spp", "4", "-o", "command.exr", "--cache", "cache", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     (names, ours), (others, theirs) = (frond.read_image(tmp_path / f"{name}.exr") for name in ("module", "command"))
     assert names == others and numpy.array_equal(ours, theirs)
-    assert picture.color_space == "linear sRGB"
+    assert image.color_space == "linear sRGB"
 
 
 def test_parts_of_both_are_of_one_render(scene_text, tmp_path):

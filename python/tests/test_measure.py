@@ -13,7 +13,7 @@ def test_spectrophotometer_is_the_commands():
     text = subprocess.run([os.environ["FROND"], "spectrophotometer", "leaf_solved", "specimen=maize", "--wavelengths", "551,800",
                            "--angles", "8,172", "--rays", "20000", "--seed", "3", "--json", "-", "-q"], capture_output=True,
                           text=True, check=True).stdout
-    expected = json.loads(text)["readings"]
+    expected = json.loads(text)["measurements"]
     assert numpy.allclose(list(found["R"]), [r["R"] for r in expected], rtol=1e-12)
     assert numpy.allclose(list(found["T_se"]), [r["T_se"] for r in expected], rtol=1e-12)
 
@@ -76,10 +76,10 @@ def test_a_bsdf_in_python_is_a_material(scene_text):
     frond.register_material("white", White(), session=session)
     frond.register_material("three", Colored(), session=session)
     text = scene_text.replace('"leaf_solved"', '"white"')
-    picture = frond.loads(text, session=session, wavelengths=[551, 800]).render(4)
+    image = frond.loads(text, session=session, wavelengths=[551, 800]).render(4)
     of_ours = scene_text.replace('"leaf_solved"', '"diffuse" "spectrum reflectance" [ 300 1 900 1 ]')
     expected = frond.loads(of_ours, session=session, wavelengths=[551, 800]).render(4)
-    assert numpy.allclose(picture.array[:, :, :2], expected.array[:, :, :2], rtol=1e-4)  # an even light: without noise
+    assert numpy.allclose(image.array[:, :, :2], expected.array[:, :, :2], rtol=1e-4)  # an even light: without noise
     with pytest.raises(frond.InputError, match='there is a material "white" already'):
         frond.register_material("white", White(), session=session)
     with pytest.raises(ValueError, match="a BSDF is asked at 2 wavelengths, and gave 3 values"):

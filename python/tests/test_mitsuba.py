@@ -107,7 +107,7 @@ def test_reflectance_and_transmittance_are_ours(theta_deg):
 
 
 def test_a_scalar_variant():
-    """One direction at a time: means of a small picture are those of the compiled variant."""
+    """One direction at a time: means of a small image are those of the compiled variant."""
     world = {"type": "scene", "integrator": {"type": "path", "max_depth": 2}, "sky": {"type": "constant"}}
     means = {}
     for name in ("scalar_rgb", "llvm_ad_rgb"):

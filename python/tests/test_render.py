@@ -11,29 +11,29 @@ import numpy
 import pytest
 
 
-def test_a_picture_is_that_of_the_command(scene_text, tmp_path):
+def test_an_image_is_that_of_the_command(scene_text, tmp_path):
     (tmp_path / "scene.pbrt").write_text(scene_text)
-    picture = frond.load(tmp_path / "scene.pbrt", wavelengths="smpte").render(4)
-    picture.save(tmp_path / "module.exr")
+    image = frond.load(tmp_path / "scene.pbrt", wavelengths="smpte").render(4)
+    image.save(tmp_path / "module.exr")
     command = [os.environ["FROND"], "render", "scene.pbrt", "--spp", "4", "--wavelengths", "smpte", "-o", "command.exr", "-q"]
     subprocess.run(command, cwd=tmp_path, check=True)
     (names, ours), (_, theirs) = (frond.read_image(tmp_path / f"{name}.exr") for name in ("module", "command"))
     assert numpy.array_equal(ours, theirs)
-    assert numpy.array_equal(ours[:, :, names.index("G")], picture["G"])
+    assert numpy.array_equal(ours[:, :, names.index("G")], image["G"])
 
 
 def test_channels_and_arrays(scene_text):
-    picture = frond.loads(scene_text, channels=["normal", "depth"]).render(4)
-    assert picture.array.shape == (16, 16, len(picture.channels))
-    assert picture.array.dtype == numpy.float32
-    assert numpy.array_equal(picture["G"], picture.rgb[:, :, 1])
-    assert picture.variance.shape == (16, 16, 3)
-    assert picture.samples == (4, 4)
+    image = frond.loads(scene_text, channels=["normal", "depth"]).render(4)
+    assert image.array.shape == (16, 16, len(image.channels))
+    assert image.array.dtype == numpy.float32
+    assert numpy.array_equal(image["G"], image.rgb[:, :, 1])
+    assert image.variance.shape == (16, 16, 3)
+    assert image.samples == (4, 4)
     with pytest.raises(KeyError, match="no channel 'Q': there are R, G, B"):
-        picture["Q"]
+        image["Q"]
 
 
-def test_a_picture_goes_on(scene_text):
+def test_an_image_goes_on(scene_text):
     scene = frond.loads(scene_text)
     whole, pieces = scene.render(8), scene.render(3)
     pieces.render_more(8)
@@ -41,9 +41,9 @@ def test_a_picture_goes_on(scene_text):
 
 
 def test_bands_have_no_colours(scene_text):
-    picture = frond.loads(scene_text, wavelengths=[551, 800]).render(4)
-    assert picture.color_space == ""
-    assert any("800" in name for name in picture.channels)
+    image = frond.loads(scene_text, wavelengths=[551, 800]).render(4)
+    assert image.color_space == ""
+    assert any("800" in name for name in image.channels)
 
 
 def test_swap_and_pixels(scene_text):
@@ -55,8 +55,8 @@ def test_swap_and_pixels(scene_text):
 
 
 def test_adaptive(scene_text):
-    picture = frond.loads(scene_text, adaptive=True).render(max_rms=0.02)
-    assert picture.samples[0] >= 1
+    image = frond.loads(scene_text, adaptive=True).render(max_rms=0.02)
+    assert image.samples[0] >= 1
     with pytest.raises(ValueError, match="adaptive=True"):
         frond.loads(scene_text).render(max_rms=0.02)
 
@@ -135,9 +135,9 @@ def test_ctrl_c_ends_a_render(scene_text):
 
 def test_two_sessions_side_by_side(scene_text):
     one, two = frond.Session(threads=1, cache=False), frond.Session(threads=2, cache=False)
-    pictures = [session.loads(scene_text).render(4).array for session in (one, two)]
+    images = [session.loads(scene_text).render(4).array for session in (one, two)]
     assert one.threads == 1 and two.threads == 2
-    assert numpy.array_equal(*pictures)
+    assert numpy.array_equal(*images)
 
 
 def test_a_plugin_from_a_shared_object():
@@ -162,7 +162,7 @@ def test_nothing_is_left_behind(scene_text):
     renders(200)
     before = resident()
     renders(1000)
-    assert resident() - before < 20e6  # a picture and its film are 40 kB
+    assert resident() - before < 20e6  # an image and its film are 40 kB
 
 
 def test_import_brings_nothing_along():

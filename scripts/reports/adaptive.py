@@ -22,11 +22,11 @@ class Pair:
     def __init__(self, scene, folder, name, seeds, samples=None, max_rms=None):
         self.images, costs = [], []
         for seed in seeds:
-            picture = frond.load(ROOT / "scenes" / scene / "scene.pbrt", seed=seed, quick=True, wavelengths="smpte",
+            image = frond.load(ROOT / "scenes" / scene / "scene.pbrt", seed=seed, quick=True, wavelengths="smpte",
                                  swap="leaf_simplified", adaptive=max_rms is not None).render(samples, max_rms=max_rms)
             self.images.append(folder / f"{scene}-{name}-{seed}.exr")
-            picture.save(self.images[-1])
-            costs.append([picture.statistics[key] for key in ("cpu_seconds", "rays", "paths")])
+            image.save(self.images[-1])
+            costs.append([image.statistics[key] for key in ("cpu_seconds", "rays", "paths")])
         self.cpu, rays, paths = numpy.mean(costs, axis=0)
         self.work = rays + paths
 
@@ -72,7 +72,7 @@ PAGE = """# Adaptive sampling
 
 Written by `scripts/adaptive`. {machine}
 
-`frond render --max-rms 0.001` renders until the noise of the picture, the RMS over its pixels and linear colours, is below
+`frond render --max-rms 0.001` renders until the noise of the image, the RMS over its pixels and linear colours, is below
 0.001 with 95 % confidence, and puts samples where they do most against it: tile by tile, n proportional to the root of
 variance over rays (`src/render/film/adaptive.h`). Noise is estimated from how blocks of 16 samples differ, which are spread evenly by
 themselves; that larger sets are spread more evenly still it does not see, so that what comes is better than what was asked
@@ -93,7 +93,7 @@ leaves the sky, which has none, costs next to nothing with even samples either.
 - A tile gets fewer samples where the first ones happened to be alike. What a pixel's own samples decide is small, since its
   tile has 256 and half of what counts is that of the nine tiles around it; the bias above bounds what is left of it.
 - Noise that the first 32 samples of a tile do not meet is not known to anyone: a light that only one path in thousands finds
-  leaves a picture that looks finished. More samples by `--spp` show it.
+  leaves an image that looks finished. More samples by `--spp` show it.
 """
 
 

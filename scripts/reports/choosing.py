@@ -19,7 +19,7 @@ SCENES = {
 }
 TEXTURED = ["spotted"]  # which leaf_lambert does not take
 REQUESTS = [0.02, 0.01, 0.005, 0.002, 0.001]
-# One for each scene at full size: so small that models differ, so large that abm's picture can be waited for.
+# One for each scene at full size: so small that models differ, so large that abm's image can be waited for.
 FULL_SIZE_REQUESTS = {"near and far": 0.005, "maize": 0.01, "dark": 0.002, "spotted": 0.005, "hundred leaves": 0.002, "shade": 0.005}
 RESOLUTION = 96
 RESOLUTIONS = [64, 128, 256, 512]
@@ -40,9 +40,9 @@ class Render:
 
 def render(scene, models, samples, seed, image):
     """Its CPU seconds."""
-    picture = frond.load(scene, seed=seed, **models).render(samples)
-    picture.save(image)
-    return picture.statistics["cpu_seconds"]
+    rendered = frond.load(scene, seed=seed, **models).render(samples)
+    rendered.save(image)
+    return rendered.statistics["cpu_seconds"]
 
 
 class Error:
@@ -159,7 +159,7 @@ def by_resolution(path, samples, folder):
 
 
 class FullSize:
-    """One request on one scene, from the first pilot to the picture."""
+    """One request on one scene, from the first pilot to the image."""
 
     def __init__(self, name, path, request, size, folder):
         self.name, self.request = name, request
@@ -246,16 +246,16 @@ could be shown to be good enough, and `abm` was taken: they prove nothing. Of {l
 was said to be needed, {exceeded} had an RMS above what was asked for, {max(full):.2f} times at most.
 
 The pilot took {pilots[0]:.1f} to {pilots[-1]:.1f} s of CPU time, {pilots[len(pilots) // 2]:.1f} in the middle, which is more than
-it saves in most pictures as small as these.
+it saves in most images as small as these.
 
 {full_size_text(large, options.full_size)}
 ## Resolution
 
-The RMS by which `leaf_lambert` differs from `leaf_solved`, when the whole picture is rendered small:
+The RMS by which `leaf_lambert` differs from `leaf_solved`, when the whole image is rendered small:
 
 {table(("scene", *(f"{s} x {s}" for s in RESOLUTIONS), "largest over smallest"), sizes)}
-A small picture hides what differs in sign from place to place, most of all where there are glints, and says too little. The pilot
-renders pixels of the full picture instead.
+A small image hides what differs in sign from place to place, most of all where there are glints, and says too little. The pilot
+renders pixels of the full image instead.
 
 Machine: {machine()}.
 """

@@ -175,7 +175,7 @@ def xyz_over_white(primaries, rgb):
 
 
 class Scene:
-    """A leaf that fills the picture, under parallel light, by rtrace and by frond."""
+    """A leaf that fills the image, under parallel light, by rtrace and by frond."""
 
     SIZE, FOV, LIGHT, VIEW = 48, 40, 40, 30  # pixels; degrees, the latter two from the normal, on both sides of it
     TIMES = 32  # that rtrace follows each ray: what it makes of one is random
@@ -363,7 +363,7 @@ def main():
         text += RADIANCE + "\n".join(comparison(reference, Klems(folder)))
         if has("pyradiance"):
             scene = Scene(folder, (LEAF, "incident=reciprocal"), spp)
-            pictures, worst = scene.comparison()
+            images, worst = scene.comparison()
             _, of_paper = Scene(folder, ("diffusetransmission",), spp).comparison()
             text += f"""
 `checkBSDF` of Radiance says of the file with colour, which `wrapBSDF` reads too (`tests/exports/readers_test.py`)
@@ -372,15 +372,15 @@ def main():
 {scene.report[scene.report.index("Type:"):].strip()}
 ```
 
-**A scene**: a leaf that fills a picture of {Scene.SIZE} × {Scene.SIZE} pixels, parallel light of D65 of irradiance 1 across it at
+**A scene**: a leaf that fills an image of {Scene.SIZE} × {Scene.SIZE} pixels, parallel light of D65 of irradiance 1 across it at
 {Scene.LIGHT}° from the normal, a perspective camera of {Scene.FOV}° at {Scene.VIEW}° on the other side of the normal. X, Y and Z over those of white, mean
-over the picture: `frond render` ({spp} samples a pixel), Radiance (`rtrace -ab 0`, {Scene.TIMES} rays a
+over the image: `frond render` ({spp} samples a pixel), Radiance (`rtrace -ab 0`, {Scene.TIMES} rays a
 pixel). Means of Y differ by up to {worst[1]:.1f} %, of X and Z by up to {max(worst):.1f} %; of a `diffusetransmission` in place of the
 leaf, whose f patches do not change, by up to {of_paper[1]:.1f} and {max(of_paper):.1f} %:
 
-{pictures}"""
+{images}"""
         else:
-            text += "\nRadiance (pyradiance) could not be installed: no picture was rendered.\n"
+            text += "\nRadiance (pyradiance) could not be installed: no image was rendered.\n"
         values = Table(folder)
         text += "\n" + TABLES.format(megabytes=values.bytes / 1e6) + "\n".join(comparison(reference, values)) + "\n" + OSL
         if has("bpy"):

@@ -43,8 +43,8 @@ def measure(scene, samples):
                                 swap="leaf_solved", filter=FILTERS[name])
             renders[name].append(loaded.render(samples))
     rows = []
-    for name, pictures in renders.items():
-        a, b = (picture.rgb.astype(float) for picture in pictures)
+    for name, images in renders.items():
+        a, b = (image.rgb.astype(float) for image in images)
         squares, means = (a - b) ** 2 / 2, (a + b) / 2
         lit = means > 1e-3 * means.mean()
         relative = squares[lit] / means[lit] ** 2
@@ -52,8 +52,8 @@ def measure(scene, samples):
                      "relative": relative.mean() ** 0.5,
                      # The median of one squared difference is 0.455 of its mean, were it normal.
                      "median": (numpy.median(relative) / 0.455) ** 0.5,
-                     "cpu": numpy.mean([picture.statistics["cpu_seconds"] for picture in pictures]),
-                     "paths": pictures[0].statistics["paths"]})
+                     "cpu": numpy.mean([image.statistics["cpu_seconds"] for image in images]),
+                     "paths": images[0].statistics["paths"]})
     return pandas.DataFrame(rows)
 
 
@@ -74,7 +74,7 @@ Written by `scripts/filters`. {machine}
 
 A `PixelFilter` that is wider than a pixel can be had in two ways. **Importance sampling**, as in pbrt-v4: a pixel draws its
 samples from its filter, and no other pixel has them. **Splatting**, as in Mitsuba: samples lie evenly in their pixels, and each
-counts in all pixels that the filter reaches, by its weight; a pixel is sum(w L) / sum(w). Both give the same picture with the same
+counts in all pixels that the filter reaches, by its weight; a pixel is sum(w L) / sum(w). Both give the same image with the same
 blur, and splatting uses each sample several times: with the Gaussian, pbrt-v4's default and ours, a pixel has the noise of three
 times the samples, for up to a tenth more time (`sinc`, whose samples reach 81 pixels, a third). That is what frond does unless a scene or a command says
 otherwise:
@@ -85,7 +85,7 @@ frond render scene.pbrt --filter gaussian,reconstruction=importance -o leaf.exr
 frond render scene.pbrt --filter box -o leaf.exr
 ```
 
-`auto`, the default, is splatting where that makes less noise, were all samples of a picture alike: for `gaussian`, `mitchell`,
+`auto`, the default, is splatting where that makes less noise, were all samples of an image alike: for `gaussian`, `mitchell`,
 `triangle` and `sinc` with their usual parameters and for a `box` wider than a pixel; not for a box of one pixel, which is the
 same in both ways, nor for a filter much narrower than its radius, or with one above 8.5 pixels.
 
@@ -93,7 +93,7 @@ same in both ways, nor for a filter much narrower than its radius, or with one a
 
 {size}, leaf_solved, wavelengths smpte, two renders of each, in turn. The boxes beside that of one pixel have
 a radius of 0.830, which blurs as much as the Gaussian (a standard deviation of 0.479 pixels). **RMS**: noise over pixels and
-linear colours. **Relative**: the same of noise over the pixel's own mean, where that is above a thousandth of the picture's, and
+linear colours. **Relative**: the same of noise over the pixel's own mean, where that is above a thousandth of the image's, and
 its **median** over pixels and colours. **Efficiency**: 1 / (variance × CPU time), over that of importance samples from the same
 filter, and over that of the box of one pixel, which blurs less; by relative errors too.
 
@@ -109,10 +109,10 @@ filter, and over that of the box of one pixel, which blurs less; by relative err
   with low-discrepancy samples as they are without splatting.
 - **Channels** of what camera rays meet first, `leaf` and `samples` are of the pixel's own samples: those of a box. Edges are
   sharper in them than in the colours.
-- **Crops** have the pixels of the whole picture, to the bit: samples of the pixels around that reach them are taken too. `frond
+- **Crops** have the pixels of the whole image, to the bit: samples of the pixels around that reach them are taken too. `frond
   render --part` leaves those to the other parts.
 - **Weights** may be negative (`mitchell`, `sinc`). A pixel's sum of weights is near its mean when its neighbours have samples; where
-  it falls below a quarter of that, in pictures of one sample a pixel, the mean stands in for it.
+  it falls below a quarter of that, in images of one sample a pixel, the mean stands in for it.
 - **Memory**: the film takes 128 bytes a pixel, and for shared samples 64 more for each pixel that a tile's samples reach: 209 bytes
   a pixel with the Gaussian, 228 with `mitchell` and `triangle`, 272 with `sinc`.
 """

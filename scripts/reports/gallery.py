@@ -1,4 +1,4 @@
-"""docs/gallery.md: a picture for every plugin that a scene can name, and the lines that made it."""
+"""docs/gallery.md: an image for every plugin that a scene can name, and the lines that made it."""
 
 import pathlib
 import tempfile
@@ -9,7 +9,7 @@ from tools import ROOT, arguments, write
 SIZE = 200
 SAMPLES = 256
 
-# Made by this script beside a scene that reads it: a picture with an up and a left.
+# Made by this script beside a scene that reads it: an image with an up and a left.
 LETTER = "letter.ppm"
 
 VIEW = """Scale -1 1 1
@@ -173,7 +173,7 @@ def write_letter(path):
 
 def main():
     options = arguments("gallery", ("--only", dict(default="", metavar="WORD", help="plugins whose names hold it; others stay")))
-    page = ["# Gallery", "", "Written by `scripts/gallery`: what the plugins that a scene can name look like, and the lines that made the picture.",
+    page = ["# Gallery", "", "Written by `scripts/gallery`: what the plugins that a scene can name look like, and the lines that made the image.",
             "[All their parameters](plugins.md)."]
     with tempfile.TemporaryDirectory() as folder:
         write_letter(pathlib.Path(folder) / LETTER)
@@ -181,15 +181,15 @@ def main():
             page += ["", f"## {kind[0].upper() + kind[1:]}", ""]
             for name, doc in frond.names(kind).items():
                 lines = table.get(name, default and default.format(name))
-                if lines is None:  # it has no picture
+                if lines is None:  # it has no image
                     continue
-                picture = options.docs / "images" / "gallery" / f"{kind.replace(' ', '-')}-{name}.jpg"
-                picture.parent.mkdir(parents=True, exist_ok=True)
+                image = options.docs / "images" / "gallery" / f"{kind.replace(' ', '-')}-{name}.jpg"
+                image.parent.mkdir(parents=True, exist_ok=True)
                 if options.only in name:
                     scene, samples = scene_of(kind, name, lines)
-                    frond.loads(scene, folder).render(min(samples, 4) if options.quick else samples).save(picture)
+                    frond.loads(scene, folder).render(min(samples, 4) if options.quick else samples).save(image)
                 shown = lines.replace(f"{ROOT}/scenes/", "")
-                page += [f"### `{name}`", "", doc, "", f"![{name}](images/gallery/{picture.name})", "", "```", shown, "```", ""]
+                page += [f"### `{name}`", "", doc, "", f"![{name}](images/gallery/{image.name})", "", "```", shown, "```", ""]
     write(options.docs / "gallery.md", "\n".join(page).rstrip() + "\n")
 
 

@@ -18,7 +18,7 @@ WIDTH, HEIGHT = 1920, 1080
 PARTS = (1, 2, 4, 8)
 SAMPLES = 4  # of a part
 
-# The picture of the calculation.
+# The image of the calculation.
 LARGE_WIDTH, LARGE_HEIGHT, LARGE_SAMPLES, NODES = 3840, 2160, 4096, 1000
 
 
@@ -47,7 +47,7 @@ def start_and_load(folder, scene):
 
 
 def bytes_a_pixel(folder):
-    """Of parts of more and more samples, of a small picture of the same view."""
+    """Of parts of more and more samples, of a small image of the same view."""
     width, height = 160, 90
     scene, sizes = sized(SCENE, folder, width, height), {}
     for samples in (4, 64, 1024, 4096):
@@ -123,7 +123,7 @@ def main():
         part_bytes = mean(p.stat().st_size for p in parts)
         strips = render_strips(folder, scene, width, height)
         if merged(folder, parts[:1]) != merged(folder, strips) or merged(folder, parts) != merged(folder, parts[::-1]):
-            raise SystemExit("parts of the same samples make other pictures")
+            raise SystemExit("parts of the same samples make other images")
         by_parts = merges(folder, parts, counts)
         strips_cpu = median_cpu("merge", *strips, "-o", folder / "strips.exr", "-q", runs=3)
         image_bytes = (folder / "strips.exr").stat().st_size
@@ -152,7 +152,7 @@ def main():
 
 
 def print_calculation(load, path, sizes, part_bytes, each, image, part, least_memory, merge_memory, render_memory):
-    """From figures a megapixel to those of the large picture."""
+    """From figures a megapixel to those of the large image."""
     large = LARGE_WIDTH * LARGE_HEIGHT / 1e6
     seconds = large * 1e6 * LARGE_SAMPLES * path
 

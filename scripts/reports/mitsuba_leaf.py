@@ -58,11 +58,11 @@ difference from `leaf_solved`, which is 1 for white paper.
 sides, {rgb} nm. Root mean square {share_rms:.1e}, where the standard errors of the samples are {share_error:.1e}; furthest
 {share_z:.1f} standard errors of {shares}.
 
-**Pictures** of a hundred leaves ([the race's scenes](race.md), {size} x {size} pixels, {samples} samples a pixel, 16 scattering events, box filter):
+**Images** of a hundred leaves ([the race's scenes](race.md), {size} x {size} pixels, {samples} samples a pixel, 16 scattering events, box filter):
 means over all pixels; errors follow from two renders each. Leaves of soybean, reciprocal; and the race's diffuse ones, where the
 leaf is nobody's and the programs differ by what else they do:
 
-{picture_table}
+{image_table}
 ![A hundred leaves in Mitsuba, and in frond](images/mitsuba/hundred-leaves.png)
 
 ## What it costs
@@ -75,7 +75,7 @@ not in it.
 
 `params = mi.traverse(scene)` has the leaf's numbers. They act through the optical depth of the mesophyll, over which the table stands
 in steps of 0.15 of its logarithm, linear between: derivatives are those of that interpolant. Against finite differences of the
-plug-in and of frond's own leaf: `python/tests/test_mitsuba.py`. `python/examples/chlorophyll_map.ipynb` finds a map of chlorophyll again in a picture.
+plug-in and of frond's own leaf: `python/tests/test_mitsuba.py`. `python/examples/chlorophyll_map.ipynb` finds a map of chlorophyll again in an image.
 
 Aspect ratios of cells, `incident` and `specimen` are fixed when the leaf is loaded: other numbers take another table.
 
@@ -133,7 +133,7 @@ def differences_of_shares(count):
     return numpy.array(found), numpy.array(errors)
 
 
-def pictures(image, samples):
+def images(image, samples):
     rows, shown = [], []
     solved = {"type": "frond_leaf", "incident": "reciprocal"}, {"leaf": "leaf_solved,incident=reciprocal"}
     for name, (leaf, swap) in (("front", solved), ("ambient", solved), ("front", (None, None)), ("ambient", (None, None))):
@@ -215,13 +215,13 @@ def main():
     found, errors = differences_of_shares(count)
     figures = {"share_rms": rms(found), "share_error": rms(errors), "share_z": abs(found / errors).max(), "shares": len(found)}
     print(figures)
-    picture_table = pictures(options.docs / "images" / "mitsuba" / "hundred-leaves.png", samples)
-    print(picture_table)
+    image_table = images(options.docs / "images" / "mitsuba" / "hundred-leaves.png", samples)
+    print(image_table)
     cost_table = costs(rounds, size, of_pixel)
     print(cost_table)
     write(options.docs / "mitsuba.md", PAGE.format(
         machine=machine(), version=mi.__version__, frond_version=frond.__version__, pairs=pairs, f_table=f_table,
-        rgb=", ".join(map(str, RGB_NM)), size=SIZE, samples=2 * samples, picture_table=picture_table, rounds=rounds,
+        rgb=", ".join(map(str, RGB_NM)), size=SIZE, samples=2 * samples, image_table=image_table, rounds=rounds,
         cost_table=cost_table, **figures))
 
 

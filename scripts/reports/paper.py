@@ -12,24 +12,24 @@ from paper_table2 import differences, goals, table_2
 from tools import ROOT, machine, rms, table, write
 
 
-def pictures(runs, images, measured):
+def rendered(runs, images, measured):
     runs.sheet(images / "figures-5-7.jpg")
-    report = measured["front"]["pictures"]["abm"][0]
+    report = measured["front"]["images"]["abm"][0]
     samples, pixels = 2 * report["samples_per_pixel"], report["paths"] // report["samples_per_pixel"]
     body = []
     for s in SETS:
-        seconds = {m: sum(r["cpu_seconds"] for r in measured[s.name]["pictures"][m]) for m in MODELS}
-        foliar = measured[s.name]["pictures"]["abm"][0]["foliar_ratio"]
+        seconds = {m: sum(r["cpu_seconds"] for r in measured[s.name]["images"][m]) for m in MODELS}
+        foliar = measured[s.name]["images"]["abm"][0]["foliar_ratio"]
         body.append((s.order, s.title, f"{s.foliar_percent:.2f} %", f"{100 * foliar:.2f} %",
                      *(f"{seconds[m]:.0f} s" for m in MODELS)))
     return f"""
-## Figures 5 to 7: the pictures
+## Figures 5 to 7: the images
 
-![Three sets of pictures, each with both models](images/paper/figures-5-7.jpg)
+![Three sets of images, each with both models](images/paper/figures-5-7.jpg)
 
 {samples} samples per pixel, {pixels:,} pixels; left the ABM, right the simplified model. The plants, the light and
 the view are ours: the paper does not describe its own. What is matched is what it states: a soybean leaf, which side is lit,
-ambient light alone in the third set, and the foliar ratio, the share of pixels that see a leaf. Pictures are raised by
+ambient light alone in the third set, and the foliar ratio, the share of pixels that see a leaf. Images are raised by
 {', '.join(str(s.stops) for s in SETS)} stops.
 
 {table(("set", "light", "foliar ratio, paper", "ours", "CPU, `abm`", "CPU, `leaf_simplified`"), body)}
@@ -67,7 +67,7 @@ ELSEWHERE = """
 def page(runs, images, measured, tables, command):
     commands = "\n".join(measured["front"][part]["notes"][0].replace(f"{ROOT}/", "") for part in ("comparison", "manner"))
     used = sum(m["comparison"]["cpu_seconds"] + m["manner"]["cpu_seconds"] +
-               sum(r["cpu_seconds"] for halves in m["pictures"].values() for r in halves) for m in measured.values())
+               sum(r["cpu_seconds"] for halves in m["images"].values() for r in halves) for m in measured.values())
     return f"""# The paper's experiments
 
 G. V. G. Baranoski and J. G. Rokne, "A Simplified Model for Light Interaction with Plant Tissue": what it evaluates, its
@@ -76,7 +76,7 @@ with a solved table. 1 is a white diffuse surface in the light.
 
 Made by `{command}` from what it measured, in {used / 60:.0f} minutes of CPU, on {machine()}.
 {goals(measured)}
-{pictures(runs, images, measured)}
+{rendered(runs, images, measured)}
 {convergence(runs, images, measured)}
 {table_2(runs, measured)}
 {leaf_table(runs, tables)}
@@ -98,7 +98,7 @@ def measure(runs):
     for s in SETS:
         measured[s.name]["ends"] = curves_of(runs, s, measured[s.name]["manner"])
     for s in SETS:
-        measured[s.name]["pictures"] = runs.pictures(s)
+        measured[s.name]["images"] = runs.images(s)
         measured[s.name]["difference"] = runs.difference(s)
     return measured
 

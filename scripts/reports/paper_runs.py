@@ -24,7 +24,7 @@ class Set:
     foliar_percent: float
     rms: tuple  # red, green, blue
     speed_up: float
-    stops: int  # by which our pictures are raised; leaves are dark where white in the light is 1
+    stops: int  # by which our images are raised; leaves are dark where white in the light is 1
 
     def scene(self):
         return ROOT / "scenes" / f"soybean-{self.name}" / "scene.pbrt"
@@ -56,8 +56,8 @@ class Setting:
 
     compare: tuple
     manner: tuple
-    picture: tuple
-    picture_samples: int  # of each of the two halves
+    image: tuple
+    image_samples: int  # of each of the two halves
     ends: tuple
     ends_samples: int
     table_rays: int
@@ -123,19 +123,19 @@ class Runs:
     def half(self, s, model, half):
         return self.folder / f"{s.name}-{model}-{half}.exr"
 
-    def pictures(self, s):
-        """What the two halves of each model's picture report, {model: [first, second]}; their mean is the picture."""
+    def images(self, s):
+        """What the two halves of each model's image report, {model: [first, second]}; their mean is the image."""
         reports = {model: [] for model in MODELS}
         for half in (1, 2):
             for model in MODELS:  # in turn: whatever else the machine does falls on both
                 reports[model].append(self.kept(f"{s.name}-{model}-{half}", lambda: program(
                     "render", s.scene(), "--wavelengths", "smpte", "--swap", f"leaf={model}", "--spp",
-                    self.setting.picture_samples, "--seed", half, *self.setting.picture, *self.threads, "-o",
+                    self.setting.image_samples, "--seed", half, *self.setting.image, *self.threads, "-o",
                     self.half(s, model, half), "--json", "-q")))
         return reports
 
     def difference(self, s):
-        """Of the two models' pictures, noise and bias told apart."""
+        """Of the two models' images, noise and bias told apart."""
         halves = [self.half(s, model, half) for model in MODELS for half in (1, 2)]
         return program_json("difference", *halves, "--json")
 
@@ -146,11 +146,11 @@ class Runs:
             for column, (letter, model) in enumerate(zip("ab", MODELS)):
                 file = self.folder / f"{s.name}-{model}.png"
                 program("convert", self.half(s, model, 1), self.half(s, model, 2), "--exposure", s.stops, "-o", file)
-                picture = Image.open(file).convert("RGB")
+                image = Image.open(file).convert("RGB")
                 if size is None:
-                    size = picture.size
+                    size = image.size
                     sheet = Image.new("RGB", (2 * size[0] + gap, 3 * size[1] + 2 * gap))
-                ImageDraw.Draw(picture).text((8, 6), f"{s.figure}{letter}  {model}", font=font, stroke_width=1, stroke_fill="black")
-                sheet.paste(picture, (column * (size[0] + gap), row * (size[1] + gap)))
+                ImageDraw.Draw(image).text((8, 6), f"{s.figure}{letter}  {model}", font=font, stroke_width=1, stroke_fill="black")
+                sheet.paste(image, (column * (size[0] + gap), row * (size[1] + gap)))
         path.parent.mkdir(parents=True, exist_ok=True)
         sheet.save(path, quality=90)

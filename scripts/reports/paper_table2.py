@@ -8,11 +8,11 @@ def triple(values, digits=4):
     return [f"{v:.{digits}f}" for v in values]
 
 
-def picture_rows(measured):
+def image_rows(measured):
     for s in SETS:
         d = measured[s.name]["difference"]
         yield (s.title, "the paper", f"{s.foliar_percent:.2f} %", *triple(s.rms, 3), "", "")
-        foliar = measured[s.name]["pictures"]["abm"][0]["foliar_ratio"]
+        foliar = measured[s.name]["images"]["abm"][0]["foliar_ratio"]
         yield (s.title, "ours", f"{100 * foliar:.2f} %", *triple(d[f"rms_clipped_{c}"] for c in CHANNELS),
                " ".join(triple(d[f"noise_{c}"] for c in CHANNELS)), " ".join(triple(d[f"bias_{c}"] for c in CHANNELS)))
 
@@ -55,11 +55,11 @@ def table_2(runs, measured):
     return f"""
 ## Table 2: error
 
-The paper's RMS error is that of two pictures which are both noisy. So is this: the pictures of Figures 5 to 7,
-{2 * runs.setting.picture_samples} samples per pixel, linear SMPTE-C, clipped to [0, 1], over all pixels. Beside it what of it is
-noise, of both pictures, and what is bias, which no number of samples takes away: red, green, blue.
+The paper's RMS error is that of two images which are both noisy. So is this: the images of Figures 5 to 7,
+{2 * runs.setting.image_samples} samples per pixel, linear SMPTE-C, clipped to [0, 1], over all pixels. Beside it what of it is
+noise, of both images, and what is bias, which no number of samples takes away: red, green, blue.
 
-{table(("set", "whose", "foliar ratio", "RMS, red", "green", "blue", "of it noise", "of it bias"), picture_rows(measured))}
+{table(("set", "whose", "foliar ratio", "RMS, red", "green", "blue", "of it noise", "of it bias"), image_rows(measured))}
 Bias against what `abm` converges to, of all pixels, with the upper end of its 95 % interval (`frond compare`,
 {front['width']} x {front['height']} pixels, {samples} samples per pixel; the reference is `{front['reference_candidate']}`,
 twice {front['reference_samples']}, its noise taken out):
@@ -79,8 +79,8 @@ are the same render: what they differ by is the error of a time.
 
 
 def cost(measured, s, model):
-    """(rays a path, nanoseconds of CPU a ray) of a picture."""
-    reports = measured[s.name]["pictures"][model]
+    """(rays a path, nanoseconds of CPU a ray) of an image."""
+    reports = measured[s.name]["images"][model]
     rays, paths = sum(r["rays"] for r in reports), sum(r["paths"] for r in reports)
     return rays / paths, 1e9 * sum(r["cpu_seconds"] for r in reports) / rays
 
@@ -92,7 +92,7 @@ def cost_rows(measured):
 
 
 def at_shown_exposure(measured):
-    """The largest bias of leaf_simplified as a share of the paper's RMS, were pictures compared as bright as they are shown."""
+    """The largest bias of leaf_simplified as a share of the paper's RMS, were images compared as bright as they are shown."""
     share = 0
     for s in SETS:
         errors = last_errors(measured[s.name]["comparison"], "leaf_simplified")
@@ -121,7 +121,7 @@ def differences(measured):
 **At equal samples, (a) and (b), we gain little or nothing; the paper gained 4 to 10 times.** That is because the walk is cheap
 here: even `leaf_lambert`, which looks up two numbers, is but {lowest:.2f} to {highest:.2f} times as fast, (a). And a killed
 path shoots no more rays, while an attenuated one goes on: more rays, each of which costs less. Rays a path, shadow rays
-included, and CPU time a ray, all of the render in it, in the pictures above:
+included, and CPU time a ray, all of the render in it, in the images above:
 
 {table(("set", "rays a path, `abm`", "`leaf_simplified`", "ns a ray, `abm`", "`leaf_simplified`"), cost_rows(measured))}
 So a speed-up near 1 is no fault of the simplified model: the reference model has become as cheap as it.
@@ -133,7 +133,7 @@ weighted has the same expectation as `abm` and less noise. Against that walk the
 {over_weighted(measured)}.
 
 **Our RMS is smaller than the paper's**, and in {noisy} of the 9 figures it is more noise than bias. The paper does not say how
-bright its pictures are. Ours have white in the light at 1, and leaves at less than a tenth; were they compared as bright as
+bright its images are. Ours have white in the light at 1, and leaves at less than a tenth; were they compared as bright as
 they are shown above, the bias of `leaf_simplified` would be up to {100 * at_shown_exposure(measured):.0f} % of the paper's RMS.
 
 **The paper's shadow rays** (`surfacedirect` false) do not see the surface lobe. A ray that follows the lobe and meets the

@@ -34,7 +34,7 @@ ON_PURPOSE = [
                 "0.5 and that of radius 1 under Scale .5 .5 .5 differ by 4 %; frond's are the same, and agree with the former"),
     ("30_curve_*", "pbrt-v4 sees lights from a point beside the curve, its width away; where that is taken out of pbrt-v4, the two "
                    "agree to 0.03 % of the mean"),
-    ("50_ortho_dof", "pbrt-v4's rays all start at the lens around the axis, which makes the picture a perspective one; "
+    ("50_ortho_dof", "pbrt-v4's rays all start at the lens around the axis, which makes the image a perspective one; "
                      "frond's orthographic camera keeps its parallels"),
     ("40_infinite_image_illuminance_exr", "pbrt-v4 weighs an EXR's channels in the file's order, B G R, with the "
                                           "luminances of R G B: frond's have their own"),
@@ -54,10 +54,10 @@ class Reference:
         self.mean, self.error = (values[:, part].reshape(-1, across, 3) for part in (slice(2, 5), slice(5, 8)))
 
 
-def block_means(picture, size):
+def block_means(image, size):
     """Of all whole blocks, `[row][column][channel]`."""
-    down, across = (n // size for n in picture.shape[:2])
-    return picture[:down * size, :across * size].reshape(down, size, across, size, 3).mean(axis=(1, 3), dtype=float)
+    down, across = (n // size for n in image.shape[:2])
+    return image[:down * size, :across * size].reshape(down, size, across, size, 3).mean(axis=(1, 3), dtype=float)
 
 
 def steadied(variances):
@@ -86,8 +86,8 @@ def examine(name, options, session):
     reference, renders = Reference(FOLDER / f"{name}.csv"), []
     try:
         for seed in range(9001, 9001 + options.seeds):
-            picture = session.load(FOLDER / f"{name}.pbrt", seed=seed).render(options.spp)
-            renders.append(block_means(picture.rgb, reference.block))
+            image = session.load(FOLDER / f"{name}.pbrt", seed=seed).render(options.spp)
+            renders.append(block_means(image.rgb, reference.block))
     except frond.InputError as error:
         return reference, "refused", 0, re.sub(r"^\S*?([^/ ]+\.pbrt)", r"\1", str(error).strip().splitlines()[0])
     z, difference = compare(reference, renders)
@@ -106,7 +106,7 @@ Written by `scripts/pbrt`: {len(results)} small scenes of one feature of pbrt-v4
 ([tests/pbrt_reference](../tests/pbrt_reference/README.md)), rendered with {options.seeds} seeds of {options.spp} samples per
 pixel and compared with pbrt-v4's own figures (commit 5f7a606), means of blocks of 8 x 8 pixels. z is the largest of a scene's
 192 differences over the standard errors of both sides and a tolerance of 0.2 %; up to {options.z:g} a scene agrees. The last
-column is the difference of the whole picture's mean, red, green and blue, in per cent.
+column is the difference of the whole image's mean, red, green and blue, in per cent.
 
 {count["agrees"]} agree, {count["differs"]} differ, {count["refused"]} are refused. {machine()}.
 """

@@ -19,7 +19,7 @@ Written by `scripts/reciprocal`. {machine}
 
 The random walk through a leaf is not reciprocal: light that goes from a to b and light that goes from b to a are not
 scattered alike ([how far](validation.md#reciprocity)). A renderer has to choose which direction it calls incident, and
-either choice costs something: `"string incident" "traced"`, as published, does not conserve energy in a picture, and
+either choice costs something: `"string incident" "traced"`, as published, does not conserve energy in an image, and
 `"light"` conserves it, but its samples have weights without bound where a path looks along a leaf. Neither can be
 followed from the light and from the camera alike.
 
@@ -27,7 +27,7 @@ followed from the light and from the camera alike.
 `leaf_simplified`, `leaf_lambert` and `leaf` have it; `abm` has not, since a walk knows nothing of the way back.
 `frond brf` and `frond flux` take it where the scene says nothing; leaves by `abm` take `light` there.
 
-| `incident` | reciprocal | energy kept in a picture | weights of samples | published |
+| `incident` | reciprocal | energy kept in an image | weights of samples | published |
 |---|---|---|---|---|
 | `traced` | no | no | bounded | yes, and the default of `frond render` |
 | `light` | no | yes | not bounded toward grazing views | no |
@@ -211,7 +211,7 @@ be 1 (`frond goniophotometer --rendered --integrate`):
 {energy()}
 ## Noise
 
-Of pictures by `leaf_solved` in linear SMPTE-C, white in the light 1: {size} × {size} pixels, {samples} samples each; of
+Of images by `leaf_solved` in linear SMPTE-C, white in the light 1: {size} × {size} pixels, {samples} samples each; of
 those that show leaves alone the differences of two renders with seeds of their own, over √2. The median is scaled to be the
 RMS where all pixels are alike and normally distributed; scenes are not, so the last column has the ratio over that of
 `traced`: tails of the estimator, and not the scene's.

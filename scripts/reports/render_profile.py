@@ -76,7 +76,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     extra = options.options
     has_output = any(word in ("-o", "--output", "--part") or word.startswith(("--output=", "--part=")) for word in extra)
-    output = [] if has_output else ["-o", str(folder / "picture.exr")]
+    output = [] if has_output else ["-o", str(folder / "image.exr")]
     command = [str(tools.FROND), "render", options.scene, *extra, *output]
     with tempfile.TemporaryDirectory(prefix="perf.", dir=folder) as scratch:
         data = pathlib.Path(scratch) / "perf.data"

@@ -116,7 +116,7 @@ mapped file's rows beside it. **Path**: CPU time of a path from a distant sensor
 
 Embree 3's own instances take 351 bytes each, and twice as much while they are built. Here a table is one geometry, whose rows
 are taken into the leaf's space when a ray comes by; a leaf of a single analytic surface is then met without another search.
-Boxes are drawn around the points of each copy, not around the corners of the object's box, and a ray that passes a copy's box
+Boxes are drawn around the points of each instance, not around the corners of the object's box, and a ray that passes an instance's box
 in the world is tried against the object's own before it goes in.
 """
 

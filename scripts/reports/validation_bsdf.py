@@ -9,7 +9,7 @@ import numpy
 import charts
 import frond
 from tools import ROOT, plane_of_incidence, program_json, table
-from validation_leaf import readings
+from validation_leaf import measurements
 from validation_report import LEAVES, RGB
 
 
@@ -161,7 +161,7 @@ incidence f is that of patches 1° by 5°.
                       "in the plane, back"], body))
     defect_chart(report)
     lossless(report)
-    pictures(report)
+    images(report)
 
 
 def defect_rows(material, closed_form, a, b, rays):
@@ -205,7 +205,7 @@ def lossless(report):
     angles, body = (5, 30, 60, 75, 85), []
     leaf = "specimen=soybean mesophyllfraction=0"
     for incident in ("traced", "light"):
-        r = readings(f"abm {leaf} incident={incident}", angles, 551, report.rays(1e7), rendered=True)
+        r = measurements(f"abm {leaf} incident={incident}", angles, 551, report.rays(1e7), rendered=True)
         body.append(["`abm`, by rays", incident] + [f"{x.R + x['T']:.4f} ± {x.A_se:.4f}" for _, x in r.iterrows()])
     for material in ("leaf_solved", "leaf_simplified"):
         for incident in ("traced", "light", "reciprocal"):
@@ -220,7 +220,7 @@ render shows of it (light along wi, detectors along wo; `frond spectrophotometer
     report.add(table(["material", "`incident`"] + [f"light at {a}°" for a in angles], body))
 
 
-def pictures(report):
+def images(report):
     body = []
     spp = 8 if report.quick else 32
     for scene in ("front", "back", "ambient"):
@@ -234,7 +234,7 @@ def pictures(report):
         body.append([scene] + [f"{d['leaf_mean_difference_' + c]:+.4f}" for c in ("red", "green", "blue")] +
                     [f"{d['leaf_bias_' + c]:.4f}" for c in ("red", "green", "blue")])
     report.add(f"""
-The same in the pictures: `incident` "traced" minus "light" on leaf pixels of the three scenes, for `leaf_simplified` at
+The same in the images: `incident` "traced" minus "light" on leaf pixels of the three scenes, for `leaf_simplified` at
 {2 * spp} samples per pixel; white in the light is 1.
 """)
     report.add(table(["scene", "mean, red", "green", "blue", "RMS without noise, red", "green", "blue"], body))

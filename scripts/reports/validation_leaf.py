@@ -191,7 +191,7 @@ light at every {step}° on both sides; modes are those of light that comes back 
                      tolerance_body))
 
 
-def readings(material, angles, wavelengths, rays, **options):
+def measurements(material, angles, wavelengths, rays, **options):
     found = frond.spectrophotometer(material, wavelengths, angles, rays=int(float(rays)), **options)
     return found.set_index(["theta_deg", "wavelength_nm"])
 
@@ -200,7 +200,7 @@ def walks(report):
     rays = report.rays(1e7)
     body = []
     for leaf in LEAVES:
-        measured = [readings(f"abm specimen={leaf} mode={mode}", (0, 30, 60, 85, 120, 180), (455, 551, 608, 800), rays)
+        measured = [measurements(f"abm specimen={leaf} mode={mode}", (0, 30, 60, 85, 120, 180), (455, 551, 608, 800), rays)
                     for mode in ("analog", "weighted")]
         (a, a_se), (b, b_se) = ((found[["R", "T"]].to_numpy(), found[["R_se", "T_se"]].to_numpy()) for found in measured)
         z = (a - b) / numpy.hypot(a_se, b_se)

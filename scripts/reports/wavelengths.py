@@ -26,12 +26,12 @@ class Render:
     """XYZ of each pixel, which of them are leaves, and the CPU time."""
 
     def __init__(self, scene, wavelengths, space, samples, seed, folder):
-        picture = frond.load(scene, wavelengths=wavelengths, seed=seed).render(samples)
-        self.seconds, self.leaf = picture.statistics["cpu_seconds"], picture["leaf"] > 0.5
-        if picture.color_space:
-            rgb = picture.rgb
+        image = frond.load(scene, wavelengths=wavelengths, seed=seed).render(samples)
+        self.seconds, self.leaf = image.statistics["cpu_seconds"], image["leaf"] > 0.5
+        if image.color_space:
+            rgb = image.rgb
         else:  # bands: colours are what frond convert makes of them
-            picture.save(folder / "render.exr")
+            image.save(folder / "render.exr")
             program("convert", folder / "render.exr", "-o", folder / "rgb.exr")
             names, pixels = frond.read_image(folder / "rgb.exr")
             rgb = pixels[:, :, [names.index(name) for name in "RGB"]]

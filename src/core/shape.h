@@ -96,14 +96,14 @@ using AnalyticShapePtr = std::shared_ptr<const AnalyticShape>;
 /// A surface: triangles for Embree's own routines, or one with its own.
 using ShapeGeometry = std::variant<MeshPtr, AnalyticShapePtr>;
 
-/// Copies of an object of the scene.
-struct ObjectCopies {
+/// Instances of an object of the scene.
+struct ObjectInstances {
   std::string object;
   std::filesystem::path table;  ///< of an InstanceTable
 };
 
 /// What a shape plugin makes: a surface, or several.
-using MadeShape = std::variant<std::vector<ShapeGeometry>, ObjectCopies>;
+using MadeShape = std::variant<std::vector<ShapeGeometry>, ObjectInstances>;
 
 struct ShapePlacement {
   Transform to_scene;        ///< from the shape's space to that of the scene, or of the object it is defined in

@@ -18,7 +18,7 @@ struct InstanceColumn {
   Interval range;  ///< bounds of its values
 };
 
-/// Rows of the tables that a copy of an object comes from, outermost first: a shoot's, then its leaf's.
+/// Rows of the tables that an instance of an object comes from, outermost first: a shoot's, then its leaf's.
 class InstanceRows {
  public:
   static constexpr uint32_t kMost = 4;

@@ -23,7 +23,7 @@ class Transform {
   /// About an axis of any length but 0, by the right-hand rule.
   static Transform rotate(double angle_deg, const Vec3& axis);
   /// Camera from world: the camera sits at `eye`, +z points at `target`, +y to the side of `up`. The frame is a turned
-  /// one, never mirrored: with +x to the right of the picture the world is left-handed, as in pbrt. Invalid where the
+  /// one, never mirrored: with +x to the right of the image the world is left-handed, as in pbrt. Invalid where the
   /// three give no frame.
   static Transform look_at(const Vec3& eye, const Vec3& target, const Vec3& up);
 

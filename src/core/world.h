@@ -13,8 +13,8 @@ struct SurfacePoint {
   Hit hit;
   const Material* material = nullptr;
   const AreaLight* light = nullptr;  ///< nullptr: the surface gives off no light
-  uint32_t material_id = 0;          ///< place of the material in the scene's description
-  uint64_t instance_id = 0;          ///< of the copy of an object, counted from 1; 0: the shape stands for itself
+  uint32_t material_id = 0;          ///< index of the material in the scene's description
+  uint64_t instance_id = 0;          ///< of the instance of an object, counted from 1; 0: the shape stands for itself
 };
 
 /// Rays that begin close to each other and go nearly the same way: they are traced together.

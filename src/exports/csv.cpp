@@ -14,9 +14,9 @@ std::string note(const Quantity& q) {
                      q.doc);
 }
 
-std::string csv_file(const ExportSubject& subject, const ExportRequest& request) {
-  const BsdfTable t = make_table(subject, request);
-  std::string text = "# frond " FROND_VERSION " export\n# material: " + subject.label + '\n';
+std::string csv_file(const ExportMaterial& material, const ExportRequest& request) {
+  const BsdfTable t = make_table(material, request);
+  std::string text = "# frond " FROND_VERSION " export\n# material: " + material.label + '\n';
   for (const Quantity& q : {kWavelength, kSide, kThetaI, kThetaO, kPhiO}) text += note(q);
   text +=
       "# quantity: R, T: directional-hemispherical reflectance and transmittance, 0 to 1, without a viewer; f_r, f_t: "

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "exports/subject.h"
+#include "exports/exported_bsdf.h"
 
 namespace frond {
 
@@ -26,7 +26,7 @@ struct ExportFormat {
   bool is_text;                           ///< can go to standard output
   std::span<const ExportOption> options;  ///< that it looks at, beside the wavelengths
   void (*check)(const ExportRequest&);    ///< throws InputError for what is asked for in vain, before anything is done
-  std::string (*write)(const ExportSubject&, const ExportRequest&);  ///< the whole file; throws InputError
+  std::string (*write)(const ExportMaterial&, const ExportRequest&);  ///< the whole file; throws InputError
 };
 
 /// Throws InputError for numbers that do not ascend; `what` they are.

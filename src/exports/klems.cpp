@@ -137,17 +137,17 @@ std::vector<KlemsBasis::Node> KlemsBasis::nodes(size_t patch, int order) {
   return nodes;
 }
 
-KlemsMatrices::KlemsMatrices(const ExportSubject& subject, const std::vector<double>& wavelengths_nm)
+KlemsMatrices::KlemsMatrices(const ExportMaterial& material, const std::vector<double>& wavelengths_nm)
     : f_(wavelengths_nm.size() * 4 * KlemsBasis::kPatches * KlemsBasis::kPatches) {
   size_t first = 0;
   for (const std::vector<double>& run : in_fours(wavelengths_nm)) {
-    const ExportedBsdf bsdf(subject, run);
+    const ExportedBsdf bsdf(material, run);
     struct Worst {
       double error = 0;
       size_t unsettled = 0;
     };
     std::array<Worst, 4 * KlemsBasis::kPatches> worst{};
-    subject.pool.for_each(int64_t(worst.size()), [&](int64_t row, int) {
+    material.pool.for_each(int64_t(worst.size()), [&](int64_t row, int) {
       const ExportedBsdf::At f(bsdf);
       const size_t in = size_t(row) % KlemsBasis::kPatches, block = size_t(row) / KlemsBasis::kPatches;
       const bool light_in_front = block < 2, reflected = block % 2 == 0;

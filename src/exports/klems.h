@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "exports/subject.h"
+#include "exports/exported_bsdf.h"
 
 namespace frond {
 
@@ -49,7 +49,7 @@ class KlemsMatrices {
  public:
   /// Integrates f over both patches with respect to projected solid angle, by Gauss's rules of rising order until two
   /// agree: pi f within 2e-5 and 2e-4 of itself.
-  KlemsMatrices(const ExportSubject& subject, const std::vector<double>& wavelengths_nm);
+  KlemsMatrices(const ExportMaterial& material, const std::vector<double>& wavelengths_nm);
 
   /// 1/sr.
   double f(size_t wavelength, LitSide lit, bool reflected, size_t in, size_t out) const {

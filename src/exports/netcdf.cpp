@@ -110,8 +110,8 @@ void check_netcdf(const ExportRequest& request) {
   const NetCdf library;
 }
 
-std::string netcdf_file(const ExportSubject& subject, const ExportRequest& request) {
-  const BsdfTable t = make_table(subject, request);
+std::string netcdf_file(const ExportMaterial& material, const ExportRequest& request) {
+  const BsdfTable t = make_table(material, request);
   NetCdfFile file;
   const std::vector<int> axes{file.dimension(kWavelength, t.wavelengths_nm.size()),
                               file.dimension(kSide, BsdfTable::kSides.size()),
@@ -133,9 +133,9 @@ std::string netcdf_file(const ExportSubject& subject, const ExportRequest& reque
   file.flags(side, BsdfTable::kSides);
   file.flags(kind, BsdfTable::kKinds);
   file.attribute(NC_GLOBAL, "Conventions", "CF-1.8");
-  file.attribute(NC_GLOBAL, "title", "Bidirectional scattering distribution function of " + subject.label);
+  file.attribute(NC_GLOBAL, "title", "Bidirectional scattering distribution function of " + material.label);
   file.attribute(NC_GLOBAL, "source", "frond " FROND_VERSION " export");
-  file.attribute(NC_GLOBAL, "material", subject.label);
+  file.attribute(NC_GLOBAL, "material", material.label);
   file.end_of_header();
   file.put(wavelength, t.wavelengths_nm);
   file.put(theta_i, t.theta_i_deg);
@@ -155,7 +155,7 @@ void check_netcdf(const ExportRequest&) {
   fail({}, "format netcdf: this frond was built without the NetCDF library (Debian's libnetcdf-dev)");
 }
 
-std::string netcdf_file(const ExportSubject&, const ExportRequest& request) {
+std::string netcdf_file(const ExportMaterial&, const ExportRequest& request) {
   check_netcdf(request);
   return {};
 }

@@ -44,8 +44,8 @@ std::string words(const std::vector<size_t>& shape, std::span<const std::string_
   return npy(fmt::format("<U{}", longest), shape, data);
 }
 
-std::string npz_file(const ExportSubject& subject, const ExportRequest& request) {
-  const BsdfTable t = make_table(subject, request);
+std::string npz_file(const ExportMaterial& material, const ExportRequest& request) {
+  const BsdfTable t = make_table(material, request);
   const size_t w = t.wavelengths_nm.size(), i = t.theta_i_deg.size(), o = t.theta_o_deg.size(), p = t.phi_o_deg.size();
   StoredZip zip;
   zip.add("wavelength_nm.npy", numbers({w}, t.wavelengths_nm));
@@ -59,7 +59,7 @@ std::string npz_file(const ExportSubject& subject, const ExportRequest& request)
   zip.add("f_per_sr.npy", numbers({w, 2, i, o, p, 2}, t.f));
   const std::string_view axes[] = {"wavelength_nm", "side", "theta_i_deg", "theta_o_deg", "phi_o_deg", "kind"};
   zip.add("axes.npy", words({6}, axes));
-  const std::string_view label = subject.label, version = "frond " FROND_VERSION;
+  const std::string_view label = material.label, version = "frond " FROND_VERSION;
   zip.add("material.npy", words({}, {&label, 1}));
   zip.add("source.npy", words({}, {&version, 1}));
   return std::move(zip).finish();

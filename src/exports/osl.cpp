@@ -43,7 +43,7 @@ struct SurfaceTally {
 
 /// e of a lobe whose share of the light goes with (cos alpha)^e about the mirror direction: of light along the normal
 /// the mean of cos alpha is (e + 1) / (e + 2).
-double surface_exponent(const Exposure& along_normal, int64_t rays, const ThreadPool& pool) {
+double surface_exponent(const LitMaterial& along_normal, int64_t rays, const ThreadPool& pool) {
   SurfaceTally tally{toward_light(along_normal.beam).z};
   shoot(along_normal, 0, rays, tally, pool, {});
   if (tally.cosines.count() == 0) return 1;
@@ -65,19 +65,19 @@ double phong_albedo(double exponent, double theta_deg) {
 }
 
 /// The shares at one wavelength; true where the material tells its surface from its body.
-bool measure(const ExportSubject& subject, const ExportedBsdf& bsdf, bool front, size_t channel, int64_t rays,
+bool measure(const ExportMaterial& material, const ExportedBsdf& bsdf, bool front, size_t channel, int64_t rays,
              SideTable& side) {
   const double nm = bsdf.wavelengths_nm()[0];
-  const uint64_t seed = subject.seed;
-  const auto exposure = [&](double theta_deg) {
-    return Exposure{bsdf.material(), {front ? theta_deg : 180 - theta_deg, nm}, seed};
+  const uint64_t seed = material.seed;
+  const auto lit_at = [&](double theta_deg) {
+    return LitMaterial{bsdf.material(), {front ? theta_deg : 180 - theta_deg, nm}, seed};
   };
   constexpr int kThetas = 4, kPhis = 6;
   bool tells_surface = true;
   for (size_t i = 0; i < kAngles; ++i) {
-    const GoniophotometerReading whole =
-        integrate_f(exposure(angle_deg(i)), DetectorSphere(kThetas, kPhis), subject.pool);
-    const SpectrophotometerReading parts = measure_shares(exposure(angle_deg(i)), {.rays = rays}, subject.pool);
+    const GoniophotometerMeasurement whole =
+        integrate_f(lit_at(angle_deg(i)), DetectorSphere(kThetas, kPhis), material.pool);
+    const SpectrophotometerMeasurement parts = measure_shares(lit_at(angle_deg(i)), {.rays = rays}, material.pool);
     tells_surface = tells_surface && parts.tells_surface;
     const double reflected = whole.share(true).mean;
     const double surface = parts.tells_surface ? std::min(parts.surface.mean, reflected) : 0;
@@ -85,7 +85,7 @@ bool measure(const ExportSubject& subject, const ExportedBsdf& bsdf, bool front,
     side.body[i][channel] = reflected - surface;
     side.transmitted[i][channel] = whole.share(false).mean;
   }
-  if (channel == 0) side.exponent = surface_exponent(exposure(0), rays, subject.pool);
+  if (channel == 0) side.exponent = surface_exponent(lit_at(0), rays, material.pool);
   return tells_surface;
 }
 
@@ -140,30 +140,30 @@ void check_osl(const ExportRequest& request) {
     fail({}, "the format osl takes three wavelengths, red, green and blue; {} were given", n);
 }
 
-std::string osl_file(const ExportSubject& subject, const ExportRequest& request) {
+std::string osl_file(const ExportMaterial& material, const ExportRequest& request) {
   const auto nm = colors_of(request);
   const int64_t rays = request.rays == 0 ? kRays : request.rays;
   std::array<SideTable, 2> sides;
   bool tells_surface = true;
   for (size_t channel = 0; channel < nm.size(); ++channel) {
-    const ExportedBsdf bsdf(subject, {nm[channel]});
+    const ExportedBsdf bsdf(material, {nm[channel]});
     if (any(ExportedBsdf::At(bsdf).bsdf().flags() & Lobes::from_light))
       fail({},
            "{}: its shares hang on the light's direction, those of an OSL closure on the viewer's: leave "
            "incident=light out",
-           subject.label);
+           material.label);
     for (const bool front : {true, false})
-      tells_surface &= measure(subject, bsdf, front, channel, rays, sides[front ? 0 : 1]);
+      tells_surface &= measure(material, bsdf, front, channel, rays, sides[front ? 0 : 1]);
   }
   if (!tells_surface)
-    subject.log.warn({}, "the material does not tell its surface from its body: all that it reflects is diffuse here");
+    material.log.warn({}, "the material does not tell its surface from its body: all that it reflects is diffuse here");
   std::array<std::array<Color, kAngles>, 2> surface;
   for (size_t s = 0; s < 2; ++s)
     for (size_t i = 0; i < kAngles; ++i) {
       const double albedo = phong_albedo(sides[s].exponent - 1, angle_deg(i));
       for (size_t c = 0; c < 3; ++c) surface[s][i][c] = sides[s].surface[i][c] / albedo;
     }
-  std::string text = "// frond " FROND_VERSION " export, " + subject.label + "\n//\n";
+  std::string text = "// frond " FROND_VERSION " export, " + material.label + "\n//\n";
   text += fmt::format(kHead, nm[0], nm[1], nm[2], 2 * kAngles, kAngles - 2, kAngles);
   text += array_text("surface", "Rs, over what the lobe by itself sends on.", surface);
   text += array_text("body", "Rd.", {sides[0].body, sides[1].body});

@@ -145,17 +145,17 @@ double largest_share(const KlemsMatrices& matrices, size_t wavelengths) {
 
 void check_radiance(const ExportRequest& request) { check_ascending("wavelengths", request.wavelengths_nm); }
 
-std::string radiance_file(const ExportSubject& subject, const ExportRequest& request) {
+std::string radiance_file(const ExportMaterial& material, const ExportRequest& request) {
   const auto nm = request.wavelengths_nm.empty() ? default_wavelengths() : request.wavelengths_nm;
-  const KlemsMatrices matrices(subject, nm);
+  const KlemsMatrices matrices(material, nm);
   if (matrices.unsettled() > 0)
-    subject.log.warn(
+    material.log.warn(
         {}, fmt::format("{} of {} pairs of patches hold a lobe too narrow to be integrated as asked: pi f "
                         "is uncertain by up to {:.2g}",
                         matrices.unsettled(), in_fours(nm).size() * 4 * KlemsBasis::kPatches * KlemsBasis::kPatches,
                         matrices.error()));
   const double share = largest_share(matrices, nm.size());
-  subject.log.info(fmt::format(
+  material.log.info(fmt::format(
       "{} wavelengths, 4 x 145 x 145 patches: the last two rules of integration differ by up to {:.2g} in pi f; {:.4f} "
       "of the light leaves at most",
       nm.size(), matrices.error(), share));
@@ -166,7 +166,7 @@ std::string radiance_file(const ExportSubject& subject, const ExportRequest& req
                            "and the CIE 1931 functions, each by itself, so that grey stays grey.",
                            nm.size(), nm.front(), nm.back());
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  text += comment("frond " FROND_VERSION " export, " + escaped(subject.label));
+  text += comment("frond " FROND_VERSION " export, " + escaped(material.label));
   text += comment("f in 1/sr, mean over pairs of patches by projected solid angle. " + of_light);
   text += comment(fmt::format("The last two rules of integration differ by up to {:.2g} in pi f.", matrices.error()));
   text += comment("The front (adaxial side) is the front, +z, of a Radiance surface, which WINDOW calls back.");
@@ -177,7 +177,7 @@ std::string radiance_file(const ExportSubject& subject, const ExportRequest& req
   text += fmt::format(
       "\t<Material>\n\t\t<Name>{}</Name>\n\t\t<Manufacturer>frond {}</Manufacturer>\n\t\t<DeviceType>Other"
       "</DeviceType>\n\t</Material>\n",
-      escaped(subject.label), FROND_VERSION);
+      escaped(material.label), FROND_VERSION);
   text += "\t<DataDefinition>\n\t\t<IncidentDataStructure>Columns</IncidentDataStructure>\n" + basis_text() +
           "\t</DataDefinition>\n";
   for (const Block& block : blocks_of(nm))

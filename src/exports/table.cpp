@@ -36,20 +36,20 @@ Vec3 direction(double theta_deg, double phi_deg, bool front) {
 }
 
 /// All that leaves, one light at a time.
-void fill(const ExportedBsdf& bsdf, const ExportSubject& subject, size_t wavelength, BsdfTable& table) {
+void fill(const ExportedBsdf& bsdf, const ExportMaterial& material, size_t wavelength, BsdfTable& table) {
   constexpr int kThetas = 4, kPhis = 6;  // patches are cut further where that is needed
   const size_t angles = table.theta_i_deg.size(), views = table.theta_o_deg.size() * table.phi_o_deg.size() * 2;
   const ThreadPool alone(1);
-  subject.pool.for_each(int64_t(angles * 2), [&](int64_t index, int) {
+  material.pool.for_each(int64_t(angles * 2), [&](int64_t index, int) {
     const bool front = size_t(index) < angles;
     const double theta_i = table.theta_i_deg[size_t(index) % angles];
     const size_t row = wavelength * angles * 2 + size_t(index);
-    const Exposure exposure{.material = bsdf.material(),
-                            .beam = {front ? theta_i : 180 - theta_i, bsdf.wavelengths_nm()[0]},
-                            .as_rendered = true};
-    const GoniophotometerReading reading = integrate_f(exposure, DetectorSphere(kThetas, kPhis), alone);
-    table.reflectance[row] = reading.share(true).mean;
-    table.transmittance[row] = reading.share(false).mean;
+    const LitMaterial lit{.material = bsdf.material(),
+                          .beam = {front ? theta_i : 180 - theta_i, bsdf.wavelengths_nm()[0]},
+                          .as_rendered = true};
+    const GoniophotometerMeasurement measurement = integrate_f(lit, DetectorSphere(kThetas, kPhis), alone);
+    table.reflectance[row] = measurement.share(true).mean;
+    table.transmittance[row] = measurement.share(false).mean;
     const ExportedBsdf::At f(bsdf);
     const Vec3 light = direction(theta_i, 0, front);
     size_t i = row * views;
@@ -75,13 +75,13 @@ void check_table(const ExportRequest& request) {
   if (numbers > kMost) fail({}, "a table of {:.3g} numbers was asked for; {:.3g} are the most", numbers, kMost);
 }
 
-BsdfTable make_table(const ExportSubject& subject, const ExportRequest& request) {
+BsdfTable make_table(const ExportMaterial& material, const ExportRequest& request) {
   BsdfTable table = axes_of(request);
   const size_t rows = table.wavelengths_nm.size() * 2 * table.theta_i_deg.size();
   table.reflectance.resize(rows), table.transmittance.resize(rows);
   table.f.resize(rows * table.theta_o_deg.size() * table.phi_o_deg.size() * 2);
   for (size_t w = 0; w < table.wavelengths_nm.size(); ++w)
-    fill(ExportedBsdf(subject, {table.wavelengths_nm[w]}), subject, w, table);
+    fill(ExportedBsdf(material, {table.wavelengths_nm[w]}), material, w, table);
   return table;
 }
 

@@ -25,7 +25,7 @@ struct BsdfTable {
 
 /// f at single directions; R and T integrated over all of them, to 1e-4 of their value. Throws InputError as
 /// ExportedBsdf does, and without wavelengths. Without angles every 5 degrees from the normal, every 15 around it.
-BsdfTable make_table(const ExportSubject& subject, const ExportRequest& request);
+BsdfTable make_table(const ExportMaterial& material, const ExportRequest& request);
 
 /// Throws InputError where a table is too large to be meant: for more than 2^28 numbers.
 void check_table(const ExportRequest& request);

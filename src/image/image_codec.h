@@ -11,7 +11,7 @@
 namespace frond {
 
 /// What is left to OpenImageIO: reading all formats, writing those of 8 bits. To link its 250 libraries takes 0.3 s, so
-/// it lies in a shared object of its own (src/openimageio), which is opened when a picture is first read, or is to be
+/// it lies in a shared object of its own (src/openimageio), which is opened when an image is first read, or is to be
 /// written as PNG or JPEG.
 class ImageCodec {
  public:

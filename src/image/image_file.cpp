@@ -30,7 +30,7 @@ Format format_of(const fs::path& path, const Location& where = {}) {
 
 }  // namespace
 
-void check_picture_name(const fs::path& path, const Location& where) { (void)format_of(path, where); }
+void check_image_name(const fs::path& path, const Location& where) { (void)format_of(path, where); }
 
 bool is_exr(const fs::path& path) { return format_of(path) == Format::exr; }
 

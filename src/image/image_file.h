@@ -33,7 +33,7 @@ enum class ExrDepth { half, single };
 void check_writable(const std::filesystem::path& path);
 
 /// Refuses, by InputError at `where`, an extension that `write_image` does not know.
-void check_picture_name(const std::filesystem::path& path, const Location& where);
+void check_image_name(const std::filesystem::path& path, const Location& where);
 
 /// By the extension, in whatever case.
 bool is_exr(const std::filesystem::path& path);

@@ -51,10 +51,10 @@ void scatter_as_rendered(const Bsdf& bsdf, const Vec3& light, RandomStream& rng,
   }
 }
 
-void check_as_rendered(const Exposure& exposure) {
-  if (!exposure.as_rendered) return;
+void check_as_rendered(const LitMaterial& lit) {
+  if (!lit.as_rendered) return;
   Arena arena;
-  if (any(bsdf_of(exposure.material, exposure.beam, arena).flags() & Lobes::specular))
+  if (any(bsdf_of(lit.material, lit.beam, arena).flags() & Lobes::specular))
     fail({}, "the material has a delta lobe, which can be measured along the model's own incident direction alone");
 }
 

@@ -15,7 +15,7 @@ struct Beam {
 Vec3 toward_light(const Beam& beam);
 
 /// A specimen and the light on it. `material` is prepared for the beam's wavelength.
-struct Exposure {
+struct LitMaterial {
   const Material& material;
   Beam beam;
   uint64_t seed = 0;
@@ -40,8 +40,8 @@ const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena);
 /// either side and weighted by f. Not for delta lobes.
 void scatter_as_rendered(const Bsdf& bsdf, const Vec3& light, RandomStream& rng, std::span<Scattered> rays);
 
-/// Throws InputError where the exposure is as rendered and the material has a delta lobe, which f does not show.
-void check_as_rendered(const Exposure& exposure);
+/// Throws InputError where the lit is as rendered and the material has a delta lobe, which f does not show.
+void check_as_rendered(const LitMaterial& lit);
 
 /// One wavelength for every path: what a material is prepared for before an instrument measures it.
 class OneWavelength final : public WavelengthStrategy {

@@ -22,11 +22,11 @@ struct PatchTally {
   void clear() { caught.assign(caught.size(), {}); }
 };
 
-void check_weights(const GoniophotometerReading& reading) {
-  for (const Moments& m : reading.caught)
+void check_weights(const GoniophotometerMeasurement& measurement) {
+  for (const Moments& m : measurement.caught)
     if (!std::isfinite(m.mean() + m.variance()))
       fail({}, "the material scattered light with a weight that is not a number, at {} degrees and {} nm",
-           reading.beam.theta_deg, reading.beam.lambda_nm);
+           measurement.beam.theta_deg, measurement.beam.lambda_nm);
 }
 
 SphereBox box_of(const Patch& p) {
@@ -38,10 +38,10 @@ SphereBox box_of(const Patch& p) {
 /// f |cos theta| of a material whose f is exact, for one thread at a time.
 class ShareDensity {
  public:
-  explicit ShareDensity(const Exposure& exposure)
-      : bsdf_(bsdf_of(exposure.material, exposure.beam, arena_)),
-        light_(toward_light(exposure.beam)),
-        detector_is_wo_(exposure.as_rendered || any(bsdf_.flags() & Lobes::from_light)) {}
+  explicit ShareDensity(const LitMaterial& lit)
+      : bsdf_(bsdf_of(lit.material, lit.beam, arena_)),
+        light_(toward_light(lit.beam)),
+        detector_is_wo_(lit.as_rendered || any(bsdf_.flags() & Lobes::from_light)) {}
 
   double operator()(const Vec3& detector) const {
     RandomStream unused(0);
@@ -66,14 +66,14 @@ std::vector<SpherePoint> points_in(const SphereBox& box, std::span<const SphereP
   return result;
 }
 
-Lobes flags_of(const Exposure& exposure) {
+Lobes flags_of(const LitMaterial& lit) {
   Arena arena;
-  return bsdf_of(exposure.material, exposure.beam, arena).flags();
+  return bsdf_of(lit.material, lit.beam, arena).flags();
 }
 
 }  // namespace
 
-Estimate GoniophotometerReading::f(size_t patch) const {
+Estimate GoniophotometerMeasurement::f(size_t patch) const {
   const double scale = 1 / sphere.patch(patch).projected_solid_angle;
   if (is_integrated()) return {integral[patch] * scale, 0, 0};
   Moments all = caught[patch];
@@ -82,7 +82,7 @@ Estimate GoniophotometerReading::f(size_t patch) const {
   return {share.mean * scale, share.variance * scale * scale, share.third_cumulant * scale * scale * scale};
 }
 
-Estimate GoniophotometerReading::share(bool reflected) const {
+Estimate GoniophotometerMeasurement::share(bool reflected) const {
   double integrated = 0;
   Moments all;
   for (size_t i = 0; i < sphere.size(); ++i) {
@@ -97,46 +97,46 @@ Estimate GoniophotometerReading::share(bool reflected) const {
   return all.estimate();
 }
 
-void check_no_delta_lobe(const Exposure& exposure) {
-  if (any(flags_of(exposure) & Lobes::specular))
+void check_no_delta_lobe(const LitMaterial& lit) {
+  if (any(flags_of(lit) & Lobes::specular))
     fail({},
          "the material has a delta lobe, whose f no detector of finite size can measure; frond spectrophotometer "
          "measures its share of the light");
 }
 
-GoniophotometerReading measure_f(const Exposure& exposure, const DetectorSphere& sphere, int64_t rays,
-                                 const ThreadPool& pool, const RayProgress& progress) {
-  check_beam(exposure.beam);
+GoniophotometerMeasurement measure_f(const LitMaterial& lit, const DetectorSphere& sphere, int64_t rays,
+                                     const ThreadPool& pool, const RayProgress& progress) {
+  check_beam(lit.beam);
   check_rays(rays);
-  check_as_rendered(exposure);
-  check_no_delta_lobe(exposure);
-  GoniophotometerReading reading{exposure.beam, sphere, rays, {}, {}};
+  check_as_rendered(lit);
+  check_no_delta_lobe(lit);
+  GoniophotometerMeasurement measurement{lit.beam, sphere, rays, {}, {}};
   PatchTally tally{&sphere, std::vector<Moments>(sphere.size())};
-  shoot(exposure, 0, rays, tally, pool, progress);
-  reading.caught = std::move(tally.caught);
-  check_weights(reading);
-  return reading;
+  shoot(lit, 0, rays, tally, pool, progress);
+  measurement.caught = std::move(tally.caught);
+  check_weights(measurement);
+  return measurement;
 }
 
-bool has_exact_f(const Exposure& exposure) { return !any(flags_of(exposure) & Lobes::stochastic); }
+bool has_exact_f(const LitMaterial& lit) { return !any(flags_of(lit) & Lobes::stochastic); }
 
-GoniophotometerReading integrate_f(const Exposure& exposure, const DetectorSphere& sphere, const ThreadPool& pool) {
-  assert(has_exact_f(exposure));
-  check_beam(exposure.beam);
-  check_no_delta_lobe(exposure);
-  const Vec3 light = toward_light(exposure.beam);
+GoniophotometerMeasurement integrate_f(const LitMaterial& lit, const DetectorSphere& sphere, const ThreadPool& pool) {
+  assert(has_exact_f(lit));
+  check_beam(lit.beam);
+  check_no_delta_lobe(lit);
+  const Vec3 light = toward_light(lit.beam);
   const std::array peaks{SpherePoint({-light.x, -light.y, light.z}), SpherePoint(-light)};
-  GoniophotometerReading reading{exposure.beam, sphere, 0, {}, std::vector<double>(sphere.size())};
+  GoniophotometerMeasurement measurement{lit.beam, sphere, 0, {}, std::vector<double>(sphere.size())};
   pool.for_each(sphere.thetas(), [&](int64_t row, int) {
-    const ShareDensity density(exposure);
+    const ShareDensity density(lit);
     for (int column = 0; column < sphere.phis(); ++column) {
       const size_t i = sphere.index(static_cast<int>(row), column);
       const SphereBox box = box_of(sphere.patch(i));
       constexpr double kNegligible = 1e-12;
-      reading.integral[i] = total(integrate(box, std::ref(density), kNegligible, points_in(box, peaks)));
+      measurement.integral[i] = total(integrate(box, std::ref(density), kNegligible, points_in(box, peaks)));
     }
   });
-  return reading;
+  return measurement;
 }
 
 }  // namespace frond

@@ -7,7 +7,7 @@
 namespace frond {
 
 /// What the detectors saw.
-struct GoniophotometerReading {
+struct GoniophotometerMeasurement {
   Beam beam;
   DetectorSphere sphere;
   int64_t rays = 0;              ///< 0: no ray was shot, f was integrated
@@ -27,19 +27,19 @@ struct GoniophotometerReading {
 
 /// Throws InputError where the material has a delta lobe: all of its light would fall into one patch and "f" would be
 /// whatever the patch's size makes of it.
-void check_no_delta_lobe(const Exposure& exposure);
+void check_no_delta_lobe(const LitMaterial& lit);
 
 /// Measures BRDF and BTDF over the whole sphere: light comes in along the direction that the material's model calls
-/// incident. Deterministic: depends on the exposure and the number of rays alone. Throws InputError for fewer than
+/// incident. Deterministic: depends on the lit and the number of rays alone. Throws InputError for fewer than
 /// 2 rays, a beam out of range, a delta lobe, and weights that are not numbers.
-GoniophotometerReading measure_f(const Exposure& exposure, const DetectorSphere& sphere, int64_t rays,
-                                 const ThreadPool& pool, const RayProgress& progress = {});
+GoniophotometerMeasurement measure_f(const LitMaterial& lit, const DetectorSphere& sphere, int64_t rays,
+                                     const ThreadPool& pool, const RayProgress& progress = {});
 
 /// Whether `integrate_f` can take the place of rays: f is no random estimate.
-bool has_exact_f(const Exposure& exposure);
+bool has_exact_f(const LitMaterial& lit);
 
 /// The same without noise: f integrated over each patch, with a relative error below 1e-4 where the density is smooth.
 /// For materials whose f is exact.
-GoniophotometerReading integrate_f(const Exposure& exposure, const DetectorSphere& sphere, const ThreadPool& pool);
+GoniophotometerMeasurement integrate_f(const LitMaterial& lit, const DetectorSphere& sphere, const ThreadPool& pool);
 
 }  // namespace frond

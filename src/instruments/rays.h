@@ -17,16 +17,16 @@ inline constexpr int64_t kRaysPerBlock = 1 << 16;
 /// Called now and then, from the measuring thread, with the rays shot so far.
 using RayProgress = std::function<void(int64_t rays)>;
 
-/// What becomes of the rays of one block, a batch at a time. What they do depends on the exposure and the block's
+/// What becomes of the rays of one block, a batch at a time. What they do depends on the lit and the block's
 /// number alone.
 class RayBlock {
  public:
-  RayBlock(const Exposure& exposure, int64_t number)
-      : bsdf_(bsdf_of(exposure.material, exposure.beam, arena_)),
-        toward_light_(toward_light(exposure.beam)),
-        as_rendered_(exposure.as_rendered),
-        rng_(hash_key(exposure.seed, std::bit_cast<uint64_t>(exposure.beam.theta_deg),
-                      std::bit_cast<uint64_t>(exposure.beam.lambda_nm), number)) {}
+  RayBlock(const LitMaterial& lit, int64_t number)
+      : bsdf_(bsdf_of(lit.material, lit.beam, arena_)),
+        toward_light_(toward_light(lit.beam)),
+        as_rendered_(lit.as_rendered),
+        rng_(hash_key(lit.seed, std::bit_cast<uint64_t>(lit.beam.theta_deg),
+                      std::bit_cast<uint64_t>(lit.beam.lambda_nm), number)) {}
   RayBlock(const RayBlock&) = delete;
   RayBlock& operator=(const RayBlock&) = delete;
 
@@ -54,7 +54,7 @@ class RayBlock {
 /// add(ray), add(tally) and clear(); those of the blocks are added in their order, so that sums have the same bits for
 /// any number of threads.
 template <class Tally>
-void shoot(const Exposure& exposure, int64_t first, int64_t last, Tally& total, const ThreadPool& pool,
+void shoot(const LitMaterial& lit, int64_t first, int64_t last, Tally& total, const ThreadPool& pool,
            const RayProgress& progress) {
   const int64_t wave = int64_t{kRaysPerBlock} * 8 * pool.size();
   Tally blank = total;
@@ -65,7 +65,7 @@ void shoot(const Exposure& exposure, int64_t first, int64_t last, Tally& total, 
     pool.for_each(blocks, [&](int64_t i, int) {
       Tally& tally = tallies[static_cast<size_t>(i)];
       tally.clear();
-      RayBlock block(exposure, start / kRaysPerBlock + i);
+      RayBlock block(lit, start / kRaysPerBlock + i);
       for (int64_t left = std::min(kRaysPerBlock, end - start - i * kRaysPerBlock); left > 0;) {
         const auto batch = block.next(left);
         for (const Scattered& ray : batch) tally.add(ray);

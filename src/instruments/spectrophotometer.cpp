@@ -39,18 +39,19 @@ Moments sum(Moments a, const Moments& b) {
 
 Estimate one_minus(const Estimate& e) { return {1 - e.mean, e.variance, -e.third_cumulant}; }
 
-SpectrophotometerReading reading_of(const ShareTally& tally, int64_t rays, SpectrophotometerReading reading) {
+SpectrophotometerMeasurement measurement_of(const ShareTally& tally, int64_t rays,
+                                            SpectrophotometerMeasurement measurement) {
   const Moments reflected = sum(tally.surface, tally.subsurface);
-  reading.rays = rays;
-  reading.surface = share(tally.surface, rays);
-  reading.subsurface = share(tally.subsurface, rays);
-  reading.reflectance = share(reflected, rays);
-  reading.transmittance = share(tally.transmitted, rays);
-  reading.absorptance = one_minus(share(sum(reflected, tally.transmitted), rays));
-  if (!std::isfinite(reading.absorptance.mean + reading.absorptance.variance))
+  measurement.rays = rays;
+  measurement.surface = share(tally.surface, rays);
+  measurement.subsurface = share(tally.subsurface, rays);
+  measurement.reflectance = share(reflected, rays);
+  measurement.transmittance = share(tally.transmitted, rays);
+  measurement.absorptance = one_minus(share(sum(reflected, tally.transmitted), rays));
+  if (!std::isfinite(measurement.absorptance.mean + measurement.absorptance.variance))
     fail({}, "the material scattered light with a weight that is not a number, at {} degrees and {} nm",
-         reading.beam.theta_deg, reading.beam.lambda_nm);
-  return reading;
+         measurement.beam.theta_deg, measurement.beam.lambda_nm);
+  return measurement;
 }
 
 int64_t whole_blocks(double rays, int64_t most) {
@@ -63,7 +64,7 @@ int64_t first_round(const Dose& dose) {
 }
 
 /// How many rays in all should do. An early error may be far off, so a round grows the total eightfold at most.
-int64_t next_round(const SpectrophotometerReading& so_far, const Dose& dose) {
+int64_t next_round(const SpectrophotometerMeasurement& so_far, const Dose& dose) {
   constexpr double kMargin = 1.02;
   const double ratio = so_far.standard_error() / dose.standard_error, done = double(so_far.rays);
   return whole_blocks(std::max(done + 1, done * std::min(8.0, kMargin * ratio * ratio)), dose.rays);
@@ -71,24 +72,23 @@ int64_t next_round(const SpectrophotometerReading& so_far, const Dose& dose) {
 
 }  // namespace
 
-double SpectrophotometerReading::standard_error() const {
+double SpectrophotometerMeasurement::standard_error() const {
   return std::max({reflectance.standard_error(), transmittance.standard_error(), absorptance.standard_error()});
 }
 
-SpectrophotometerReading measure_shares(const Exposure& exposure, const Dose& dose, const ThreadPool& pool,
-                                        const RayProgress& progress) {
-  check_beam(exposure.beam);
+SpectrophotometerMeasurement measure_shares(const LitMaterial& lit, const Dose& dose, const ThreadPool& pool,
+                                            const RayProgress& progress) {
+  check_beam(lit.beam);
   check_rays(dose.rays);
-  check_as_rendered(exposure);
+  check_as_rendered(lit);
   Arena arena;
-  SpectrophotometerReading reading{.beam = exposure.beam};
-  reading.tells_surface =
-      any(bsdf_of(exposure.material, exposure.beam, arena).flags() & Lobes::surface) && !exposure.as_rendered;
-  ShareTally tally{.lit_side = toward_light(exposure.beam).z};
-  for (int64_t end = first_round(dose);; end = next_round(reading, dose)) {
-    shoot(exposure, reading.rays, end, tally, pool, progress);
-    reading = reading_of(tally, end, reading);
-    if (end == dose.rays || reading.standard_error() <= dose.standard_error) return reading;
+  SpectrophotometerMeasurement measurement{.beam = lit.beam};
+  measurement.tells_surface = any(bsdf_of(lit.material, lit.beam, arena).flags() & Lobes::surface) && !lit.as_rendered;
+  ShareTally tally{.lit_side = toward_light(lit.beam).z};
+  for (int64_t end = first_round(dose);; end = next_round(measurement, dose)) {
+    shoot(lit, measurement.rays, end, tally, pool, progress);
+    measurement = measurement_of(tally, end, measurement);
+    if (end == dose.rays || measurement.standard_error() <= dose.standard_error) return measurement;
   }
 }
 

@@ -12,7 +12,7 @@ struct Dose {
 };
 
 /// Shares of the light on a specimen, each with its standard error.
-struct SpectrophotometerReading {
+struct SpectrophotometerMeasurement {
   Beam beam;
   int64_t rays = 0;
   bool tells_surface = false;   ///< whether the material's flags tell Rs and Rd apart
@@ -28,10 +28,10 @@ struct SpectrophotometerReading {
 
 /// Measures with an integrating sphere on each side: light comes in along the direction that the material's model calls
 /// incident, and each ray's weight counts by the side and the lobe that it leaves by. Deterministic: depends on the
-/// exposure and the number of rays alone. With a standard error asked for, rays are shot in rounds, each as long as the
+/// lit and the number of rays alone. With a standard error asked for, rays are shot in rounds, each as long as the
 /// error so far says, the first long enough (2 / standard error) that an outcome it never met cannot hide a larger one.
 /// Throws InputError for fewer than 2 rays, a beam out of range, and weights that are not numbers.
-SpectrophotometerReading measure_shares(const Exposure& exposure, const Dose& dose, const ThreadPool& pool,
-                                        const RayProgress& progress = {});
+SpectrophotometerMeasurement measure_shares(const LitMaterial& lit, const Dose& dose, const ThreadPool& pool,
+                                            const RayProgress& progress = {});
 
 }  // namespace frond

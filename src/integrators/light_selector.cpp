@@ -58,18 +58,18 @@ LightSelector::LightSelector(const World& world, Strategy strategy)
   }
 }
 
-float LightSelector::tree_share(const Place& place) const {
+float LightSelector::tree_share(const LitPoint& point) const {
   if (everywhere_.empty()) return 1;
-  const float importance = tree_.importance(place.p, place.n);
+  const float importance = tree_.importance(point.p, point.n);
   return importance / (importance + irradiance_);
 }
 
-std::optional<LightSelector::Choice> LightSelector::choose_among_all(const Place& place, float u) const {
+std::optional<LightSelector::Choice> LightSelector::choose_among_all(const LitPoint& point, float u) const {
   float share = 1;
   if (!tree_.empty()) {
-    const float of_tree = tree_share(place);
+    const float of_tree = tree_share(point);
     if (u < of_tree) {
-      const auto choice = tree_.choose(place.p, place.n, std::min(u / of_tree, 0x1.fffffep-1f));
+      const auto choice = tree_.choose(point.p, point.n, std::min(u / of_tree, 0x1.fffffep-1f));
       if (!choice) return {};
       return Choice{lights_[choice->light], of_tree * choice->probability};
     }
@@ -82,12 +82,12 @@ std::optional<LightSelector::Choice> LightSelector::choose_among_all(const Place
   return Choice{lights_[place_of_light], share * probability_[place_of_light]};
 }
 
-float LightSelector::probability(const Light& light, const Place& place) const {
+float LightSelector::probability(const Light& light, const LitPoint& point) const {
   if (count_ == 1) return &light == only_ ? 1.f : 0.f;
   const auto i = size_t(light.index());
   if (tree_.empty()) return probability_[i];
-  const float of_tree = tree_share(place);
-  return of_tree * tree_.probability(place.p, place.n, uint32_t(i)) + (1 - of_tree) * probability_[i];
+  const float of_tree = tree_share(point);
+  return of_tree * tree_.probability(point.p, point.n, uint32_t(i)) + (1 - of_tree) * probability_[i];
 }
 
 }  // namespace frond

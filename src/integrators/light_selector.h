@@ -22,7 +22,7 @@ class LightSelector {
     float probability;
   };
   /// Of a surface: where it is, and its unit geometric normal.
-  struct Place {
+  struct LitPoint {
     Vec3 p, n;
   };
 
@@ -34,17 +34,17 @@ class LightSelector {
   bool has_choice() const { return count_ > 1; }
   /// Some light has points or directions to sample: all but delta lights, and of these surfaces that no ray meets.
   bool has_extent() const { return has_extent_; }
-  /// Nothing where no light reaches the place.
-  std::optional<Choice> choose(const Place& place, float u) const {
+  /// Nothing where no light reaches the point.
+  std::optional<Choice> choose(const LitPoint& point, float u) const {
     if (count_ == 1) return Choice{only_, 1};
-    return choose_among_all(place, u);
+    return choose_among_all(point, u);
   }
-  float probability(const Light& light, const Place& place) const;
+  float probability(const Light& light, const LitPoint& point) const;
 
  private:
-  std::optional<Choice> choose_among_all(const Place& place, float u) const;
-  /// Of all at this place, that one of the tree is chosen.
-  float tree_share(const Place& place) const;
+  std::optional<Choice> choose_among_all(const LitPoint& point, float u) const;
+  /// Of all at this point, that one of the tree is chosen.
+  float tree_share(const LitPoint& point) const;
 
   std::vector<const Light*> lights_;  ///< of the scene; their places are the numbers of the tree
   size_t count_ = 0;                  ///< of those that are chosen at all
@@ -53,7 +53,7 @@ class LightSelector {
   LightTree tree_;
   std::vector<size_t> everywhere_;  ///< places of those that are chosen the same way everywhere
   std::vector<float> cumulative_;   ///< probabilities of these, one among another
-  std::vector<float> probability_;  ///< the same by place; 0 for others
+  std::vector<float> probability_;  ///< the same by point; 0 for others
   float irradiance_ = 0;            ///< of these together
 };
 

@@ -29,10 +29,10 @@ struct Path {
   SampledSpectrum throughput;
   /// Density of the last direction, for the balance with light sampling; infinite where no light sample competes.
   float scatter_pdf;
-  float power_factor;             ///< by which refraction alone has divided the throughput
-  int depth;                      ///< scattering events so far
-  LightSelector::Place previous;  ///< the last vertex
-  VertexKey key;                  ///< of the vertex that it is at
+  float power_factor;                ///< by which refraction alone has divided the throughput
+  int depth;                         ///< scattering events so far
+  LightSelector::LitPoint previous;  ///< the last vertex
+  VertexKey key;                     ///< of the vertex that it is at
 };
 
 /// Places in a bundle, ascending.

@@ -126,15 +126,15 @@ double us_to_percent(const Worth& worth, double variance, const Estimate& time_n
   return time_ns.mean * 1e-3 * variance / (error * error);
 }
 
-void add_row_head(Table& table, const BenchReading& r) {
+void add_row_head(Table& table, const BenchMeasurement& r) {
   table.add("material", r.material);
   table.add("theta_deg", r.theta_deg);
   table.add("wavelengths", r.lanes);
 }
 
-Table times_table(const std::vector<BenchReading>& readings) {
+Table times_table(const std::vector<BenchMeasurement>& measurements) {
   Table table{"times"};
-  for (const BenchReading& r : readings) {
+  for (const BenchMeasurement& r : measurements) {
     add_row_head(table, r);
     for (size_t call = 0; call < kBsdfCalls.size(); ++call)
       table.add(fmt::format("{}_ns", kBsdfCalls[call]), r.time_ns[call].mean, r.time_ns[call].standard_error());
@@ -142,10 +142,10 @@ Table times_table(const std::vector<BenchReading>& readings) {
   return table;
 }
 
-Table worths_table(const std::vector<BenchReading>& readings) {
+Table worths_table(const std::vector<BenchMeasurement>& measurements) {
   constexpr double kRounding = 1e-12;  // of floats, in the variance
   Table table{"worths"};
-  for (const BenchReading& r : readings) {
+  for (const BenchMeasurement& r : measurements) {
     add_row_head(table, r);
     for (const NamedWorth& w : kWorths) {
       const Worth& worth = r.worth.*w.worth;
@@ -165,7 +165,7 @@ using Json = nlohmann::ordered_json;
 
 /// Google Benchmark's JSON with frond's counters.
 std::string json_of(const std::string& of_times, const Arguments& args, std::span<const TimedHit> hits,
-                    const std::vector<BenchReading>& readings) {
+                    const std::vector<BenchMeasurement>& measurements) {
   Json json = Json::parse(of_times);
   Json& context = json["context"];
   context["frond_version"] = FROND_VERSION;
@@ -182,8 +182,8 @@ std::string json_of(const std::string& of_times, const Arguments& args, std::spa
   for (size_t i = 0; i < hits.size(); ++i)
     for (const NamedWorth& w : kWorths) {
       Json& entry = counters[hits[i].name(w.call)];
-      add(entry, w.name, (readings[i].worth.*w.worth).mean);
-      add(entry, w.variance, (readings[i].worth.*w.worth).variance);
+      add(entry, w.name, (measurements[i].worth.*w.worth).mean);
+      add(entry, w.variance, (measurements[i].worth.*w.worth).variance);
     }
   for (Json& entry : json["benchmarks"])
     if (const auto found = counters.find(entry["name"]); found != counters.end() && entry["run_type"] == "iteration")
@@ -205,19 +205,19 @@ Result bench(const JobRun& run) {
   const std::vector<TimedHit> hits = materials.hits();
   const CallTimes times = time_calls(hits, {int(run.args.count("repetitions")), run.args.real("min-time")});
   warn_where_busy(run.log());
-  std::vector<BenchReading> readings;
+  std::vector<BenchMeasurement> measurements;
   for (size_t i = 0; i < hits.size(); ++i) {
     run.check_stop();
-    readings.push_back({hits[i].material, hits[i].hit.theta_deg, hits[i].hit.lambda.count, times.ns[i],
-                        measure_worth(hits[i].hit, run.args.count("samples"), run.session().pool())});
+    measurements.push_back({hits[i].material, hits[i].hit.theta_deg, hits[i].hit.lambda.count, times.ns[i],
+                            measure_worth(hits[i].hit, run.args.count("samples"), run.session().pool())});
   }
-  if (run.args.given("plot")) write_chart(run.args.text("plot"), bench_chart(readings));
-  const Table time = times_table(readings), worth = worths_table(readings);
+  if (run.args.given("plot")) write_chart(run.args.text("plot"), bench_chart(measurements));
+  const Table time = times_table(measurements), worth = worths_table(measurements);
   return {.tables = {time, worth},
           .text = fmt::format("CPU time of a call, ns\n{}\nExpectation and variance of one-sample estimates; us: CPU "
                               "time in microseconds to a standard error of 1 %\n{}",
                               to_text(time), to_text(worth)),
-          .json = json_of(times.json, run.args, hits, readings)};
+          .json = json_of(times.json, run.args, hits, measurements)};
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ RenderPart first_part(const JobRun& run, const BrfMeter& meter, const KeptFile* 
 }
 
 /// Nothing where it was stopped; `kept` may be nullptr.
-std::optional<BrfReading> measure(const JobRun& run, const BrfMeter& meter, const KeptFile* kept) {
+std::optional<BrfMeasurement> measure(const JobRun& run, const BrfMeter& meter, const KeptFile* kept) {
   RenderControl control = run.control_until(run.args.real("time-limit"));
   constexpr uint64_t kFirst = 64;
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
@@ -99,13 +99,13 @@ std::optional<BrfReading> measure(const JobRun& run, const BrfMeter& meter, cons
     control.progress = &*checkpointer;
   }
   const auto write = [&checkpointer](const auto&) { checkpointer->write(); };
-  std::optional<BrfReading> reading;
+  std::optional<BrfMeasurement> measurement;
   const RefineEnd end = refine(
       limits, sample_count(part.film).most, control,
       [&](uint64_t samples) {
         run.session().render(meter.scene(), {0, samples}, part, control);
       },
-      [&] { return reading.emplace(meter.read(part.film)).relative_error(); });
+      [&] { return measurement.emplace(meter.read(part.film)).relative_error(); });
   if (kept) kept->keep(end != RefineEnd::stopped, false, write);
   if (end == RefineEnd::stopped) return {};
   if (end == RefineEnd::time_over && sample_count(part.film).least == 0)
@@ -113,46 +113,47 @@ std::optional<BrfReading> measure(const JobRun& run, const BrfMeter& meter, cons
   return meter.read(part.film);
 }
 
-void add_rows(Table& table, const BrfReading& reading, const std::string& model) {
-  for (size_t view = 0; view < reading.views.size(); ++view)
-    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band) {
+void add_rows(Table& table, const BrfMeasurement& measurement, const std::string& model) {
+  for (size_t view = 0; view < measurement.views.size(); ++view)
+    for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band) {
       if (!model.empty()) table.add("model", model);
-      table.add("zenith_deg", reading.views[view].zenith_deg);
-      table.add("azimuth_deg", reading.views[view].azimuth_deg);
-      table.add("wavelength_nm", reading.wavelengths_nm[band]);
-      table.add("brf", reading.at(view, band));
+      table.add("zenith_deg", measurement.views[view].zenith_deg);
+      table.add("azimuth_deg", measurement.views[view].azimuth_deg);
+      table.add("wavelength_nm", measurement.wavelengths_nm[band]);
+      table.add("brf", measurement.at(view, band));
     }
 }
 
 /// A row for each direction, a column for each wavelength.
-Table by_direction(const BrfReading& reading) {
+Table by_direction(const BrfMeasurement& measurement) {
   Table table{"brf"};
-  for (size_t view = 0; view < reading.views.size(); ++view) {
-    table.add("zenith", reading.views[view].zenith_deg);
-    table.add("azimuth", reading.views[view].azimuth_deg);
-    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
-      table.add(fmt::format("{:g} nm", reading.wavelengths_nm[band]), reading.at(view, band));
+  for (size_t view = 0; view < measurement.views.size(); ++view) {
+    table.add("zenith", measurement.views[view].zenith_deg);
+    table.add("azimuth", measurement.views[view].azimuth_deg);
+    for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band)
+      table.add(fmt::format("{:g} nm", measurement.wavelengths_nm[band]), measurement.at(view, band));
   }
   return table;
 }
 
 /// A leaf model's BRF, and its cost.
-struct ModelReading {
+struct ModelMeasurement {
   compare::Candidate model;
-  BrfReading brf;
+  BrfMeasurement brf;
   double cpu_us_per_path = 0;
 };
 
-Result comparison_result(const ModelReading& reference, const std::vector<ModelReading>& models, double within) {
+Result comparison_result(const ModelMeasurement& reference, const std::vector<ModelMeasurement>& models,
+                         double within) {
   using Answer = BrfVerdict::Answer;
   Table differences{"brf"}, verdicts{"models"};
-  const auto add = [&](const ModelReading& m) {
+  const auto add = [&](const ModelMeasurement& m) {
     add_rows(differences, m.brf, m.model.label);
     for (const MeanError& d : relative_to(reference.brf, m.brf)) differences.add("relative_difference", d);
   };
   add(reference);
-  const ModelReading* enough = nullptr;
-  for (const ModelReading& m : models) {
+  const ModelMeasurement* enough = nullptr;
+  for (const ModelMeasurement& m : models) {
     add(m);
     const BrfVerdict v = judge(reference.brf, m.brf, within);
     verdicts.add("model", m.model.label);
@@ -189,20 +190,20 @@ Result run_comparison(const JobRun& run, const BrfRequest& request) {
                                             first ? &first->scene().scene() : nullptr);
     run.context.log().check();
     const double start = cpu_seconds();
-    auto reading = measure(run, *meter, nullptr);
-    if (!reading) throw Stopped();
-    ModelReading result{model, *std::move(reading)};
+    auto measurement = measure(run, *meter, nullptr);
+    if (!measurement) throw Stopped();
+    ModelMeasurement result{model, *std::move(measurement)};
     const double paths = double(result.brf.paths) * double(result.brf.views.size());
     result.cpu_us_per_path = (cpu_seconds() - start) * 1e6 / paths;
     if (!first) first = std::move(meter);
     return result;
   };
   const auto models = compare::parse_candidates(run.args.texts("compare"));
-  const ModelReading reference = measured(compare::parse_candidate(run.args.text("reference")));
-  std::vector<ModelReading> readings;
-  for (const compare::Candidate& model : models) readings.push_back(measured(model));
-  std::ranges::sort(readings, {}, &ModelReading::cpu_us_per_path);
-  return comparison_result(reference, readings, run.args.real("within"));
+  const ModelMeasurement reference = measured(compare::parse_candidate(run.args.text("reference")));
+  std::vector<ModelMeasurement> measurements;
+  for (const compare::Candidate& model : models) measurements.push_back(measured(model));
+  std::ranges::sort(measurements, {}, &ModelMeasurement::cpu_us_per_path);
+  return comparison_result(reference, measurements, run.args.real("within"));
 }
 
 Result brf(const JobRun& run) {
@@ -222,17 +223,17 @@ Result brf(const JobRun& run) {
     if (kept) kept->report_stop();
     return {.stopped = true};
   }
-  const BrfReading& reading = *measured;
+  const BrfMeasurement& measurement = *measured;
   if (run.args.given("plot"))
     write_chart(run.args.text("plot"),
-                run.args.flag("hemisphere") ? brf_hemisphere_chart(reading) : brf_plane_chart(reading));
-  const double error = reading.relative_error(), rms = run.args.real("rms");
+                run.args.flag("hemisphere") ? brf_hemisphere_chart(measurement) : brf_plane_chart(measurement));
+  const double error = measurement.relative_error(), rms = run.args.real("rms");
   run.log().info(
-      fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", reading.paths, 100 * error));
+      fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", measurement.paths, 100 * error));
   if (rms > 0 && error > rms) run.log().warn({}, fmt::format("{} {:g} was not reached", run.args.spelled("rms"), rms));
-  Result result{.tables = {{"brf"}}, .facts = {{"paths", double(reading.paths)}, {"relative_error", error}}};
-  add_rows(result.tables[0], reading, "");
-  result.text = to_text(by_direction(reading));
+  Result result{.tables = {{"brf"}}, .facts = {{"paths", double(measurement.paths)}, {"relative_error", error}}};
+  add_rows(result.tables[0], measurement, "");
+  result.text = to_text(by_direction(measurement));
   return result;
 }
 

@@ -20,7 +20,7 @@ Problems problems_of(const JobRun& run, const std::vector<std::filesystem::path>
   Problems problems;
   const SceneDescription description = session.read(files, unsupported_of(run.args), problems);
   if (!description.files.empty()) problems.attempt([&] { session.check(description); });
-  problems.attempt([&] { check_picture_name(session.film(description).filename, description.film.where); });
+  problems.attempt([&] { check_image_name(session.film(description).filename, description.film.where); });
   problems.attempt([&] { log.check(); });
   log.begin(false);
   return problems;

@@ -63,7 +63,7 @@ constexpr JobParam kParams[] = {
         "that is cached.",
         {.range = {1, 1 << 30}, .aliases = "reference-samples", .decides = true}),
     JobParam("exposure", real,
-             "Exposure of images and FLIP; by default such that the image is neither dark nor overexposed.",
+             "LitMaterial of images and FLIP; by default such that the image is neither dark nor overexposed.",
              {.unit = "stops", .range = {-20, 20}, .decides = true}),
     kSeedParam,
     JobParam("quick", flag, "Preview: 128 pixels, up to 32 samples, a reference of 2 x 128 samples.",

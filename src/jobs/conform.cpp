@@ -43,7 +43,7 @@ constexpr JobParam kParams[] = {
              {.default_value = "1e-6", .range = {1e-12, 0.5}, .decides = true}),
     kCsvParam,
     kJsonParam,
-    chart_param("picture", "Map of the directions of the worst finding, where a law is broken: .svg or .png."),
+    chart_param("map", "Map of the directions of the worst finding: .svg or .png.", "picture"),
 };
 
 std::vector<ParameterSet> parameter_sets(const MaterialWords& material, const PluginText& text, const Arguments& args) {
@@ -81,7 +81,7 @@ ConformReport examine_material(const JobRun& run) {
                        .effort = {.samples = int(args.count("samples")),
                                   .angles_deg = args.numbers("angles"),
                                   .seed = args.seed("seed"),
-                                  .maps = args.given("picture")},
+                                  .maps = args.given("map")},
                        .false_alarm_rate = args.real("false-alarm-rate"),
                        .findings = {}};
   const Claims claims{args.flag("lossless"), args.flag("reciprocal")};
@@ -102,10 +102,10 @@ ConformReport examine_material(const JobRun& run) {
 
 Result conform(const JobRun& run) {
   constexpr int kBroken = 2;
-  check_chart_param(run, "picture");
+  check_chart_param(run, "map");
   const ConformReport report = examine_material(run);
-  if (run.args.given("picture")) {
-    const std::string path = run.args.text("picture");
+  if (run.args.given("map")) {
+    const std::string path = run.args.text("map");
     const Finding* finding = finding_to_draw(report);
     if (!finding) fail({}, "{}: no finding has directions to draw", path);
     write_chart(path, sphere_chart(*finding));

@@ -71,15 +71,15 @@ std::optional<leaf::Structure> structure_of(const Arguments& args, const leaf::S
   return like->params.structure;
 }
 
-leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafReading> measurements) {
-  leaf::FitRequest request{.readings = std::move(measurements)};
+leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasurement> measurements) {
+  leaf::FitRequest request{.measurements = std::move(measurements)};
   request.like = leaf::find_specimen(args.text("like"));
   request.has_prior = request.like != nullptr;
   request.structure = structure_of(args, request.like);
   if (args.given("sieve")) request.sieve = args.text("sieve") == "on";
   for (const std::string& word : args.texts("fix")) request.fixed.push_back(fixed_of(word, args.spelled("fix")));
   size_t values = 0;
-  for (const leaf::LeafReading& r : request.readings) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
+  for (const leaf::LeafMeasurement& r : request.measurements) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
   const size_t all = std::size(leaf::kFitVariables), free = all - std::min(all, request.fixed.size());
   if (values == 0) fail({}, "there is no value to fit within 360 to 2500 nm");
   if (values < free && !request.has_prior)
@@ -88,11 +88,11 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafReading
   return request;
 }
 
-std::vector<leaf::LeafReading> measurements_of(const JobRun& run) {
+std::vector<leaf::LeafMeasurement> measurements_of(const JobRun& run) {
   const Arguments& args = run.args;
   if (!args.given("file") && !args.given("data"))
     fail({}, "measured spectra are needed: a file, or {}", args.spelled("data"));
-  const leaf::SpectraReading how{args.text("leaf"), args.real("angle"), args.spelled("leaf")};
+  const leaf::SpectraMeasurement how{args.text("leaf"), args.real("angle"), args.spelled("leaf")};
   leaf::MeasuredSpectra measured = args.given("file")
                                        ? leaf::read_measured_spectra(args.text("file"), how)
                                        : leaf::parse_measured_spectra(args.text("data"), args.spelled("data"), how);
@@ -100,7 +100,7 @@ std::vector<leaf::LeafReading> measurements_of(const JobRun& run) {
   if (measured.left_out > 0)
     run.log().warn({},
                    fmt::format("{} rows are left out: beyond 360 to 2500 nm, or without a number", measured.left_out));
-  return std::move(measured.readings);
+  return std::move(measured.measurements);
 }
 
 Result fit(const JobRun& run) {

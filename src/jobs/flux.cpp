@@ -46,12 +46,13 @@ struct Row {
   const std::vector<MeanError>& shares;
 };
 
-std::vector<Row> rows_of(const FluxReading& reading) {
-  std::vector<Row> rows{{"reflected", "", reading.reflected}, {"transmitted", "", reading.transmitted}};
-  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"absorbed", m.name, m.absorbed});
-  rows.push_back({"sum", "", reading.sum});
-  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"incident", m.name, m.incident});
-  for (const FluxReading::OfMaterial& m : reading.materials) rows.push_back({"uncollided", m.name, m.uncollided});
+std::vector<Row> rows_of(const FluxMeasurement& measurement) {
+  std::vector<Row> rows{{"reflected", "", measurement.reflected}, {"transmitted", "", measurement.transmitted}};
+  for (const FluxMeasurement::OfMaterial& m : measurement.materials) rows.push_back({"absorbed", m.name, m.absorbed});
+  rows.push_back({"sum", "", measurement.sum});
+  for (const FluxMeasurement::OfMaterial& m : measurement.materials) rows.push_back({"incident", m.name, m.incident});
+  for (const FluxMeasurement::OfMaterial& m : measurement.materials)
+    rows.push_back({"uncollided", m.name, m.uncollided});
   return rows;
 }
 
@@ -66,7 +67,7 @@ MeanError share_of_photons(std::span<const MeanError> shares, const PhotonWeight
 }
 
 /// A row for each quantity and wavelength; that of PAR photons has no wavelength.
-Table share_table(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+Table share_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
   const auto add = [&table](const Row& row, double nm, const MeanError& share) {
     table.add("quantity", row.quantity);
@@ -74,9 +75,9 @@ Table share_table(const FluxReading& reading, const std::optional<PhotonWeights>
     table.add("wavelength_nm", nm);
     table.add("share", share);
   };
-  for (const Row& row : rows_of(reading)) {
-    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
-      add(row, reading.wavelengths_nm[band], row.shares[band]);
+  for (const Row& row : rows_of(measurement)) {
+    for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band)
+      add(row, measurement.wavelengths_nm[band], row.shares[band]);
     if (photons) add(row, std::numeric_limits<double>::quiet_NaN(), share_of_photons(row.shares, *photons));
   }
   table.columns[2].missing = "PAR";
@@ -84,22 +85,22 @@ Table share_table(const FluxReading& reading, const std::optional<PhotonWeights>
 }
 
 /// A row for each quantity, a column for each wavelength.
-std::string share_text(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+std::string share_text(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
-  for (const Row& row : rows_of(reading)) {
+  for (const Row& row : rows_of(measurement)) {
     table.add("share", row.quantity);
     table.add("material", row.material);
     if (photons) table.add("PAR photons", share_of_photons(row.shares, *photons));
-    for (size_t band = 0; band < reading.wavelengths_nm.size(); ++band)
-      table.add(fmt::format("{:g} nm", reading.wavelengths_nm[band]), row.shares[band]);
+    for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band)
+      table.add(fmt::format("{:g} nm", measurement.wavelengths_nm[band]), row.shares[band]);
   }
   return to_text(table);
 }
 
 /// A row for each instance: its area, the absorbed photon flux, and the absorbed shares of the incident light. There
 /// may be 1e8 of them: whole columns.
-Table instance_table(const FluxReading& reading, const std::optional<PhotonWeights>& photons) {
-  const size_t bands = reading.wavelengths_nm.size(), count = reading.areas.size();
+Table instance_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
+  const size_t bands = measurement.wavelengths_nm.size(), count = measurement.areas.size();
   Table table{"instances"};
   const auto add = [&](const std::string& name, const auto& value) {
     std::vector<double> values(count);
@@ -111,16 +112,16 @@ Table instance_table(const FluxReading& reading, const std::optional<PhotonWeigh
     add(name + "_se", [&](size_t i) { return value(i).standard_error; });
   };
   add("instance", [](size_t i) { return double(i + 1); });
-  add("area", [&](size_t i) { return double(reading.areas[i]); });
+  add("area", [&](size_t i) { return double(measurement.areas[i]); });
   if (photons)
     add_measured("par_umol_m2_s", [&](size_t i) {
-      const MeanError share = share_of_photons(std::span(reading.by_instance).subspan(i * bands, bands), *photons);
-      const double factor = photons->incident * reading.target_area / double(reading.areas[i]);
+      const MeanError share = share_of_photons(std::span(measurement.by_instance).subspan(i * bands, bands), *photons);
+      const double factor = photons->incident * measurement.target_area / double(measurement.areas[i]);
       return MeanError{share.mean * factor, share.standard_error * factor};
     });
   for (size_t band = 0; band < bands; ++band)
-    add_measured(fmt::format("absorbed_{:g}", reading.wavelengths_nm[band]),
-                 [&](size_t i) { return reading.by_instance[i * bands + band]; });
+    add_measured(fmt::format("absorbed_{:g}", measurement.wavelengths_nm[band]),
+                 [&](size_t i) { return measurement.by_instance[i * bands + band]; });
   return table;
 }
 
@@ -140,7 +141,7 @@ std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& mete
 }
 
 /// Nothing where it was stopped; `kept` may be nullptr.
-std::optional<FluxReading> measure(const JobRun& run, FluxMeter& meter, const KeptFile* kept) {
+std::optional<FluxMeasurement> measure(const JobRun& run, FluxMeter& meter, const KeptFile* kept) {
   const RenderControl control = run.control_until(run.args.real("time-limit"));
   constexpr uint64_t kFirst = 1 << 16;
   const double rms = run.args.real("rms");
@@ -150,19 +151,19 @@ std::optional<FluxReading> measure(const JobRun& run, FluxMeter& meter, const Ke
     if (const auto path = kept->found(run.args.flag("resume"))) meter.resume(*path);
     checkpoint = checkpoint_writer(run, meter, *kept);
   }
-  std::optional<FluxReading> reading;
+  std::optional<FluxMeasurement> measurement;
   const RefineEnd end = refine(
       limits, meter.paths(), control,
       [&](uint64_t paths) {
-        reading.reset();
+        measurement.reset();
         if (meter.paths() < paths) meter.trace(paths - meter.paths(), run.session().pool(), control, checkpoint);
       },
-      [&] { return reading.emplace(meter.read()).error(); });
+      [&] { return measurement.emplace(meter.read()).error(); });
   if (end != RefineEnd::stopped && meter.paths() == 0)
     fail({}, "{}: the time was over before any light path was traced", run.args.spelled("time-limit"));
   if (kept) kept->keep(end != RefineEnd::stopped, false, [&meter](const auto& path) { meter.save(path); });
   if (end == RefineEnd::stopped) return {};
-  return reading ? std::move(reading) : meter.read();
+  return measurement ? std::move(measurement) : meter.read();
 }
 
 std::optional<PhotonWeights> photon_weights(const Scene& scene, const Spectrum& irradiance) {
@@ -171,13 +172,13 @@ std::optional<PhotonWeights> photon_weights(const Scene& scene, const Spectrum& 
   return PhotonWeights::of(nm, irradiance);
 }
 
-Result by_instance(const JobRun& run, FluxReading& reading, const std::optional<PhotonWeights>& photons) {
+Result by_instance(const JobRun& run, FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   if (!photons)
     run.log().info(fmt::format("no PAR: it takes bands from 400 to 700 nm, in steps of 50 nm at most ({} 400:700:20)",
                                run.args.spelled("wavelengths")));
   Result result;
-  result.tables.push_back(instance_table(reading, photons));
-  reading.by_instance = {};
+  result.tables.push_back(instance_table(measurement, photons));
+  measurement.by_instance = {};
   if (run.args.given("csv") || run.args.given("json")) return result;
   result.text = to_csv(result.tables[0], {});
   result.is_requested = true;
@@ -203,12 +204,13 @@ Result flux(const JobRun& run) {
     if (kept) kept->report_stop();
     return {.stopped = true};
   }
-  FluxReading& reading = *measured;
-  const double error = reading.error();
-  Result result = is_by_instance ? by_instance(run, reading, photons) : Result{.text = share_text(reading, photons)};
-  result.tables.push_back(share_table(reading, photons));
-  result.facts = {{"paths", double(reading.paths)}, {"error", error}, {"target_area", reading.target_area}};
-  run.log().info(fmt::format("{} paths; RMS standard error {:.2g}", reading.paths, error));
+  FluxMeasurement& measurement = *measured;
+  const double error = measurement.error();
+  Result result =
+      is_by_instance ? by_instance(run, measurement, photons) : Result{.text = share_text(measurement, photons)};
+  result.tables.push_back(share_table(measurement, photons));
+  result.facts = {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}};
+  run.log().info(fmt::format("{} paths; RMS standard error {:.2g}", measurement.paths, error));
   return result;
 }
 

@@ -46,11 +46,11 @@ DetectorSphere sphere_of(const Arguments& args) {
   return {int(counts[0]), int(counts[1])};
 }
 
-std::string kind_of(const GoniophotometerReading& r, const Patch& p) { return r.is_reflected(p) ? "BRDF" : "BTDF"; }
+std::string kind_of(const GoniophotometerMeasurement& r, const Patch& p) { return r.is_reflected(p) ? "BRDF" : "BTDF"; }
 
-Table table_of(const std::vector<LabelledPatches>& readings) {
-  Table table{"readings"};
-  for (const auto& [material, r] : readings)
+Table table_of(const std::vector<LabelledPatches>& measurements) {
+  Table table{"measurements"};
+  for (const auto& [material, r] : measurements)
     for (size_t i = 0; i < r.sphere.size(); ++i) {
       const Patch p = r.sphere.patch(i);
       table.add("incidence_deg", r.beam.theta_deg);
@@ -83,9 +83,9 @@ Table table_of(const std::vector<LabelledPatches>& readings) {
 }
 
 /// Of each side of each measurement: the share of the light, and where f is largest.
-Table summary_of(const std::vector<LabelledPatches>& readings) {
+Table summary_of(const std::vector<LabelledPatches>& measurements) {
   Table table{"summary"};
-  for (const auto& [material, r] : readings)
+  for (const auto& [material, r] : measurements)
     for (const bool reflected : {true, false}) {
       size_t largest = r.sphere.size();
       for (size_t i = 0; i < r.sphere.size(); ++i)
@@ -109,19 +109,19 @@ Table summary_of(const std::vector<LabelledPatches>& readings) {
 
 /// Refuses what would fail after the measurements.
 void check(const JobRun& run, const MaterialsUnderTest& tested, const DetectorSphere& sphere) {
-  const ReadingCounts counts{tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size()};
+  const MeasurementCounts counts{tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size()};
   if (run.args.given("plot")) check_plane_chart(counts, sphere);
   if (run.args.given("map")) check_map_chart(counts, sphere);
-  for (size_t i = 0; i < tested.size(); ++i) check_no_delta_lobe(tested.exposure(i));
+  for (size_t i = 0; i < tested.size(); ++i) check_no_delta_lobe(tested.lit_material(i));
 }
 
-GoniophotometerReading measure(const JobRun& run, const MaterialsUnderTest& tested, size_t i,
-                               const DetectorSphere& sphere) {
+GoniophotometerMeasurement measure(const JobRun& run, const MaterialsUnderTest& tested, size_t i,
+                                   const DetectorSphere& sphere) {
   run.check_stop();
-  const Exposure exposure = tested.exposure(i);
-  if (run.args.flag("integrate") && has_exact_f(exposure)) return integrate_f(exposure, sphere, run.session().pool());
+  const LitMaterial lit = tested.lit_material(i);
+  if (run.args.flag("integrate") && has_exact_f(lit)) return integrate_f(lit, sphere, run.session().pool());
   const int64_t rays = run.args.count("rays");
-  return measure_f(exposure, sphere, rays, run.session().pool(), tested.progress(i, rays));
+  return measure_f(lit, sphere, rays, run.session().pool(), tested.progress(i, rays));
 }
 
 Result goniophotometer(const JobRun& run) {
@@ -130,16 +130,16 @@ Result goniophotometer(const JobRun& run) {
   const DetectorSphere sphere = sphere_of(run.args);
   const MaterialsUnderTest tested(run);
   check(run, tested, sphere);
-  std::vector<LabelledPatches> readings;
+  std::vector<LabelledPatches> measurements;
   for (size_t i = 0; i < tested.size(); ++i)
-    readings.push_back({tested.material(i).label(), measure(run, tested, i, sphere)});
+    measurements.push_back({tested.material(i).label(), measure(run, tested, i, sphere)});
   if (run.control.progress) run.control.progress->finish();
-  if (run.args.given("plot")) write_chart(run.args.text("plot"), plane_chart(readings));
+  if (run.args.given("plot")) write_chart(run.args.text("plot"), plane_chart(measurements));
   if (run.args.given("map"))
-    write_chart(run.args.text("map"), map_chart(readings, run.args.text("map-scale") == "log"));
-  const Table summary = summary_of(readings);
+    write_chart(run.args.text("map"), map_chart(measurements, run.args.text("map-scale") == "log"));
+  const Table summary = summary_of(measurements);
   return {
-      .tables = {table_of(readings), summary},
+      .tables = {table_of(measurements), summary},
       .notes = tested.notes("goniophotometer"),
       .text = fmt::format("{} x {} patches; where f is largest\n{}", sphere.thetas(), sphere.phis(), to_text(summary))};
 }

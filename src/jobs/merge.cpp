@@ -32,7 +32,7 @@ void write_merged(const RenderPart& whole, const ImageOutput& output, const JobR
     run.log().warn({},
                    "pixels at the edges lack samples of those beside them, which the filter reaches: other parts of "
                    "the image have them");
-  output.write(whole.film, finished_picture(whole));
+  output.write(whole.film, finished_image(whole));
 }
 
 Result merge(const JobRun& run) {

@@ -116,7 +116,7 @@ class SceneRender {
     if (run_.args.flag("pilot")) return report_choice(result);
     if (names_) kept_.emplace(*names_, run_.control.stop, run_.log());
     RenderPart part = first_part();
-    views_.begin(part.film, part.header.picture, output_ ? output_->path() : run_.args.text("part"),
+    views_.begin(part.film, part.header.image, output_ ? output_->path() : run_.args.text("part"),
                  run_.context.log().target());
     fill(part);
     result.stopped = run_.control.stop.stop_requested();
@@ -136,7 +136,7 @@ class SceneRender {
     if (task_.choice()) load_start_ = Clock::now();  // its time is reported apart
     task_.load(output_ ? &*output_ : nullptr);
     load_seconds_ = std::chrono::duration<double>(Clock::now() - load_start_).count();
-    views_.check(task_.scene().picture());
+    views_.check(task_.scene().image_format());
     run_.context.log().check();
   }
 
@@ -225,13 +225,13 @@ class SceneRender {
           {}, fmt::format("a thousandth of the pixels holds {:.0f} % of the noise: rare samples outweigh all others "
                           "there, and estimates of the noise are too small",
                           100 * tail.share));
-    if (output_) output_->write(part.film, finished_picture(part));
+    if (output_) output_->write(part.film, finished_image(part));
     views_.finish_display(output_ && output_->rounds_to_halves(part.film));
     report(part.film, samples, tail.share, result);
   }
 
   void report_noise(const Film& film) const {
-    const NoiseEstimate noise = picture_noise(film, noise_z());
+    const NoiseEstimate noise = image_noise(film, noise_z());
     const double max_rms = run_.args.real("max-rms");
     if (noise.upper_rms() <= max_rms)
       run_.log().info(fmt::format("noise RMS {:.5f}, {:.5f} at most ({:.0f} %)", noise.rms(), noise.upper_rms(),

@@ -30,19 +30,19 @@ constexpr JobParam kParams[] = {
 
 struct Share {
   const char* name;
-  Estimate SpectrophotometerReading::*value;
+  Estimate SpectrophotometerMeasurement::*value;
   bool is_optional;  ///< known of materials whose flags tell surface and body apart
 };
-constexpr Share kShares[] = {{"Rs", &SpectrophotometerReading::surface, true},
-                             {"Rd", &SpectrophotometerReading::subsurface, true},
-                             {"R", &SpectrophotometerReading::reflectance, false},
-                             {"T", &SpectrophotometerReading::transmittance, false},
-                             {"A", &SpectrophotometerReading::absorptance, false}};
+constexpr Share kShares[] = {{"Rs", &SpectrophotometerMeasurement::surface, true},
+                             {"Rd", &SpectrophotometerMeasurement::subsurface, true},
+                             {"R", &SpectrophotometerMeasurement::reflectance, false},
+                             {"T", &SpectrophotometerMeasurement::transmittance, false},
+                             {"A", &SpectrophotometerMeasurement::absorptance, false}};
 
-Table table_of(std::span<const LabelledReading> readings) {
+Table table_of(std::span<const LabelledMeasurement> measurements) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  Table table{"readings"};
-  for (const auto& [material, r] : readings) {
+  Table table{"measurements"};
+  for (const auto& [material, r] : measurements) {
     table.add("theta_deg", r.beam.theta_deg);
     table.add("wavelength_nm", r.beam.lambda_nm);
     const auto is_known = [&](const Share& s) { return !s.is_optional || r.tells_surface; };
@@ -66,20 +66,20 @@ Table table_of(std::span<const LabelledReading> readings) {
 }
 
 /// A table for each material, below its name.
-std::string text_of(const std::vector<LabelledReading>& readings, size_t per_material) {
+std::string text_of(const std::vector<LabelledMeasurement>& measurements, size_t per_material) {
   std::string text;
-  for (size_t i = 0; i < readings.size(); i += per_material)
-    text += (i > 0 ? "\n" : "") + readings[i].material + '\n' +
-            to_text(table_of(std::span(readings).subspan(i, per_material)));
+  for (size_t i = 0; i < measurements.size(); i += per_material)
+    text += (i > 0 ? "\n" : "") + measurements[i].material + '\n' +
+            to_text(table_of(std::span(measurements).subspan(i, per_material)));
   return text;
 }
 
-void warn_where_not_reached(const JobRun& run, const Dose& dose, const std::vector<LabelledReading>& readings) {
+void warn_where_not_reached(const JobRun& run, const Dose& dose, const std::vector<LabelledMeasurement>& measurements) {
   const auto missed = std::ranges::count_if(
-      readings, [&](const LabelledReading& r) { return r.reading.standard_error() > dose.standard_error; });
+      measurements, [&](const LabelledMeasurement& r) { return r.measurement.standard_error() > dose.standard_error; });
   if (dose.standard_error > 0 && missed > 0)
     run.log().warn({}, fmt::format("{} of {} measurements ended at {} rays before their standard error was {}", missed,
-                                   readings.size(), dose.rays, dose.standard_error));
+                                   measurements.size(), dose.rays, dose.standard_error));
 }
 
 Result spectrophotometer(const JobRun& run) {
@@ -90,16 +90,17 @@ Result spectrophotometer(const JobRun& run) {
   const MaterialsUnderTest tested(run);
   if (run.args.given("plot"))
     check_shares_chart(tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size());
-  std::vector<LabelledReading> readings;
+  std::vector<LabelledMeasurement> measurements;
   for (size_t i = 0; i < tested.size(); ++i)
-    readings.push_back({tested.material(i).label(),
-                        measure_shares(tested.exposure(i), dose, run.session().pool(), tested.progress(i, dose.rays))});
+    measurements.push_back(
+        {tested.material(i).label(),
+         measure_shares(tested.lit_material(i), dose, run.session().pool(), tested.progress(i, dose.rays))});
   if (run.control.progress) run.control.progress->finish();
-  warn_where_not_reached(run, dose, readings);
-  if (run.args.given("plot")) write_chart(run.args.text("plot"), shares_chart(readings));
-  return {.tables = {table_of(readings)},
+  warn_where_not_reached(run, dose, measurements);
+  if (run.args.given("plot")) write_chart(run.args.text("plot"), shares_chart(measurements));
+  return {.tables = {table_of(measurements)},
           .notes = tested.notes("spectrophotometer"),
-          .text = text_of(readings, tested.per_material())};
+          .text = text_of(measurements, tested.per_material())};
 }
 
 }  // namespace

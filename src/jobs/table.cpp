@@ -4,9 +4,9 @@
 #include <map>
 
 #include "jobs/record/common_params.h"
-#include "leaf/table/body_cache.h"
-#include "leaf/table/body_file.h"
-#include "leaf/table/body_table.h"
+#include "leaf/table/mode_lookup.h"
+#include "leaf/table/mode_table_cache.h"
+#include "leaf/table/mode_table_file.h"
 #include "leaf/table/table_cache.h"
 #include "leaf/table/table_file.h"
 #include "leaf/tissue/constants.h"
@@ -158,17 +158,17 @@ Result make_shares_file(const JobRun& run, const PluginText& leaf) {
 }
 
 Result make_modes_file(const JobRun& run, const Params& params) {
-  const leaf::BodyRequest request{.params = LeafParams(params).tissue(),
-                                  .wavelengths_nm = wavelengths_of(run.args),
-                                  .tolerance = params.real("tolerance"),
-                                  .nodes = int(run.args.count("nodes"))};
+  const leaf::ModeTableRequest request{.params = LeafParams(params).tissue(),
+                                       .wavelengths_nm = wavelengths_of(run.args),
+                                       .tolerance = params.real("tolerance"),
+                                       .nodes = int(run.args.count("nodes"))};
   const double start = cpu_seconds();
-  const leaf::BodySpectrum spectrum = leaf::make_body_spectrum(request, run.session().pool());
+  const leaf::ModeTable spectrum = leaf::make_mode_table(request, run.session().pool());
   const double seconds = cpu_seconds() - start;
   return write_table(run, leaf::to_text(request, spectrum, leaf::describe(request)),
                      leaf::summary(request, run.args.text("output"), spectrum) +
                          fmt::format(", {} in a render, {:.2g} s of CPU",
-                                     kilobytes(leaf::BodyTable(request, spectrum, false).bytes()), seconds));
+                                     kilobytes(leaf::ModeLookup(request, spectrum, false).bytes()), seconds));
 }
 
 /// For programs other than frond: docs/leaf_file.md.

@@ -80,7 +80,7 @@ class AbmBsdf : public Bsdf {
     SampledSpectrum f;
     if (incident.z == 0 || std::abs(leaving.z) < kLeastCosine || lanes_.count == 0) return f;
     const Vec3d from = in_double(incident), to = in_double(leaving);
-    const auto body = leaf::estimate_body_f(lanes_.all(), lanes_.draw_hero(rng), from, to, absorption_, rng);
+    const auto body = leaf::estimate_subsurface_f(lanes_.all(), lanes_.draw_hero(rng), from, to, absorption_, rng);
     for (size_t i = 0; i < lanes_.count; ++i)
       f[lanes_.lane[i]] = static_cast<float>(leaf::surface_f(*lanes_.tissues[i], from, to) + body[i]);
     return f;

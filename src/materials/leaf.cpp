@@ -41,7 +41,7 @@ constexpr Param kOwn[] = {
      .kind = ParamKind::real,
      .default_value = 0.01,
      .range = {1e-6, 1},
-     .doc = "Largest RMS error of the picture that the model may cause, in linear SMPTE-C, where white is 1."},
+     .doc = "Largest RMS error of the image that the model may cause, in linear SMPTE-C, where white is 1."},
 };
 constexpr auto kLeaf = with_leaf_params(kOwn);
 
@@ -54,7 +54,7 @@ const MaterialInfo& material_of(std::string_view model, bool is_reciprocal) {
 
 ParsedParam weighted_walks() { return {"string", "mode", {}, {}, std::vector<std::string>{"weighted"}}; }
 
-/// A material cannot see the picture, so it does not choose: who can writes down what was chosen as "model".
+/// A material cannot see the image, so it does not choose: who can writes down what was chosen as "model".
 std::unique_ptr<Material> make_leaf(const Params& p) {
   (void)p.real("maxrms");
   const MaterialInfo& info = material_of(p.string("model"), p.string("incident") == "reciprocal");
@@ -65,7 +65,7 @@ std::unique_ptr<Material> make_leaf(const Params& p) {
 }  // namespace
 
 extern const MaterialInfo leaf_material{
-    {"material", "leaf", "Leaf by the cheapest model that is accurate enough for the picture.", "docs/choosing.md",
+    {"material", "leaf", "Leaf by the cheapest model that is accurate enough for the image.", "docs/choosing.md",
      kLeaf},
     make_leaf};
 

@@ -44,7 +44,7 @@ struct alignas(16) TwoSides {
   float front_reflected, front_transmitted, back_reflected, back_transmitted;
 };
 
-/// The reciprocal leaf nearest to it, as of leaf/table/reciprocal_body.h: with d of either side
+/// The reciprocal leaf nearest to it, as of leaf/table/reciprocal_modes.h: with d of either side
 ///   d_f (d_f R_f + d_b T) = R_f + T_f,   d_b (d_b R_b + d_f T) = R_b + T_b,   T = (T_f + T_b) / 2,
 /// and d_f d_b solves a quadratic equation.
 TwoSides make_reciprocal(const TwoSides& s) {

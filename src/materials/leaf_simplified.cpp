@@ -111,7 +111,7 @@ class LeafSimplified final : public Material {
     LeafHit at{lookup_.get(), selection, surface, lane_mask(lambda)};
     if (reciprocal_) {
       at.reciprocal = reciprocal_.get();
-      at.exponent = reciprocal_->place(static_cast<float>(surface->exponent()));
+      at.exponent = reciprocal_->position(static_cast<float>(surface->exponent()));
     }
     return arena.make<ThreeLobeBsdf>(at, manner_);
   }

@@ -1,10 +1,10 @@
 #include <optional>
 
 #include "core/material.h"
-#include "leaf/table/body_cache.h"
-#include "leaf/table/body_file.h"
-#include "leaf/table/body_table.h"
-#include "leaf/table/reciprocal_body.h"
+#include "leaf/table/mode_lookup.h"
+#include "leaf/table/mode_table_cache.h"
+#include "leaf/table/mode_table_file.h"
+#include "leaf/table/reciprocal_modes.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/solved_bsdf.h"
@@ -48,7 +48,7 @@ class LeafSolved final : public Material {
                                                 [&] { return leaf::CutLobe(exponent_); });
     fixed_.reset();
     if (file_.is_given())
-      table_ = preparation.share<leaf::BodyTable>(
+      table_ = preparation.share<leaf::ModeLookup>(
           key(preparation, fmt::format("leaf modes file {} {}", tolerance_, file_.path().string())),
           [&] { return read_table(preparation); });
     else
@@ -64,7 +64,7 @@ class LeafSolved final : public Material {
     SolvedHit at{table_.get(), selection(hit, lambda, arena), surface, lane_mask(lambda), leaf_.incident()};
     if (scaling_) {
       at.scaling = scaling_.get();
-      at.exponent = scaling_->place(static_cast<float>(surface->exponent()));
+      at.exponent = scaling_->position(static_cast<float>(surface->exponent()));
     }
     return arena.make<SolvedBsdf>(at);
   }
@@ -73,7 +73,7 @@ class LeafSolved final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
-  using Selection = leaf::BodyTable::Selection;
+  using Selection = leaf::ModeLookup::Selection;
 
   const Selection* selection(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const {
     if (varies_) return arena.make<Selection>(table_->select(lambda, leaf_.depth().at(hit.at, lambda)));
@@ -82,17 +82,17 @@ class LeafSolved final : public Material {
 
   void make_table(const Preparation& preparation) {
     leaf_.check_wavelengths(preparation.wavelengths);
-    const leaf::BodyRequest request = request_for(preparation.wavelengths);
+    const leaf::ModeTableRequest request = request_for(preparation.wavelengths);
     const bool vary = preparation.wavelengths.fixed_nm().empty();
     const auto make = [&] {
-      leaf::BodySpectrum spectrum = leaf::cached_body_spectrum(request, leaf_.specimen(), preparation.pool,
-                                                               preparation.log, preparation.cache_dir);
+      leaf::ModeTable spectrum =
+          leaf::cached_mode_table(request, leaf_.specimen(), preparation.pool, preparation.log, preparation.cache_dir);
       if (leaf_.is_reciprocal()) spectrum = leaf::make_reciprocal(spectrum).value();
-      leaf::BodyTable table(request, spectrum, vary);
+      leaf::ModeLookup table(request, spectrum, vary);
       preparation.log.info(fmt::format("mode table: {}, {} kB in memory", leaf_.specimen(), table.bytes() / 1024));
       return table;
     };
-    table_ = preparation.share<leaf::BodyTable>(key(preparation, describe(request)), make);
+    table_ = preparation.share<leaf::ModeLookup>(key(preparation, describe(request)), make);
   }
 
   std::string key(const Preparation& preparation, const std::string& what) const {
@@ -106,14 +106,14 @@ class LeafSolved final : public Material {
         [&] { return leaf::SurfaceScaling(exponents, indices); });
   }
 
-  leaf::BodyTable read_table(const Preparation& preparation) const {
+  leaf::ModeLookup read_table(const Preparation& preparation) const {
     const std::string name = file_.path().string();
-    const leaf::BodyFile file = leaf::read_body_file(file_.path(), file_.where());
-    const leaf::BodyRequest request{
+    const leaf::ModeTableFile file = leaf::read_mode_table_file(file_.path(), file_.where());
+    const leaf::ModeTableRequest request{
         .params = {},
         .wavelengths_nm = file_wavelengths(file.wavelengths_nm(), preparation.wavelengths, file_.where(), name),
         .tolerance = tolerance_};
-    leaf::BodySpectrum spectrum = leaf::at_wavelengths(file, request.wavelengths_nm);
+    leaf::ModeTable spectrum = leaf::at_wavelengths(file, request.wavelengths_nm);
     if (leaf_.is_reciprocal()) {
       auto reciprocal = leaf::make_reciprocal(spectrum);
       if (!reciprocal)
@@ -121,15 +121,15 @@ class LeafSolved final : public Material {
              name);
       spectrum = std::move(*reciprocal);
     }
-    leaf::BodyTable table(request, spectrum, preparation.wavelengths.fixed_nm().empty());
+    leaf::ModeLookup table(request, spectrum, preparation.wavelengths.fixed_nm().empty());
     preparation.log.info(fmt::format("mode table: {}, {} wavelengths x {} cells, {} kB in memory", name,
                                      file.columns.size(), spectrum.cells, table.bytes() / 1024));
     return table;
   }
 
-  leaf::BodyRequest request_for(const WavelengthStrategy& wavelengths) const {
+  leaf::ModeTableRequest request_for(const WavelengthStrategy& wavelengths) const {
     const double tolerance = leaf_.is_reciprocal() ? tolerance_ / leaf::kReciprocalFiner : tolerance_;
-    leaf::BodyRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance};
+    leaf::ModeTableRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance};
     request.params.cuticle_aspect = 0;  // of no concern to light inside: leaves with other cuticles share the table
     request.wavelengths_nm = varies_ ? index_wavelengths(wavelengths) : table_wavelengths(wavelengths);
     if (varies_) request.depths = depth_axis(leaf_.depth(), wavelengths, leaf::kDepthStep);
@@ -144,7 +144,7 @@ class LeafSolved final : public Material {
   std::shared_ptr<const leaf::SurfaceScaling> scaling_;  ///< nullptr: not reciprocal
   double tolerance_;
   TableFileParam file_;
-  std::shared_ptr<const leaf::BodyTable> table_;
+  std::shared_ptr<const leaf::ModeLookup> table_;
   std::optional<Selection> fixed_;  ///< of all hits, where it is the same for all
 };
 

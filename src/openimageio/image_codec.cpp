@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A file of some bytes that claims an image of terabytes is refused before memory is asked for; no compression of
-/// pictures does better than this.
+/// images does better than this.
 void check_size(const OIIO::ImageSpec& spec, uintmax_t file_size, const Location& where, const fs::path& path) {
   constexpr uintmax_t kMostCompression = 4096, kAlwaysAllowed = 64u << 20;
   if (spec.image_bytes(true) > file_size * kMostCompression + kAlwaysAllowed)

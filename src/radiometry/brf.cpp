@@ -61,7 +61,7 @@ bool has_heavy_tails(const Scene& scene, size_t materials) {
 
 }  // namespace
 
-double BrfReading::relative_error() const {
+double BrfMeasurement::relative_error() const {
   double sum = 0;
   for (const MeanError& v : values) sum += std::pow(v.mean > 0 ? v.standard_error / v.mean : 1.0, 2);
   return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
@@ -93,23 +93,23 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
   for (const double e : irradiance.bands()) white_.push_back(e / std::numbers::pi);
 }
 
-BrfReading BrfMeter::read(const Film& film) const {
-  BrfReading reading{.views = request_.views, .wavelengths_nm = {}, .values = {}, .rows = {}};
-  reading.has_heavy_tails = has_heavy_tails_;
-  for (const Band& band : scene_.scene().wavelengths().bands()) reading.wavelengths_nm.push_back(band.nm);
+BrfMeasurement BrfMeter::read(const Film& film) const {
+  BrfMeasurement measurement{.views = request_.views, .wavelengths_nm = {}, .values = {}, .rows = {}};
+  measurement.has_heavy_tails = has_heavy_tails_;
+  for (const Band& band : scene_.scene().wavelengths().bands()) measurement.wavelengths_nm.push_back(band.nm);
   for (int view = 0; view < film.settings().width; ++view)
     for (size_t band = 0; band < film.bands(); ++band) {
       double sum = 0, squares = 0;
       for (int row = 0; row < kRows; ++row) {
         const double value = film.band_mean(view, row, band).mean / white_[band];
-        reading.rows.push_back(value);
+        measurement.rows.push_back(value);
         sum += value, squares += value * value;
       }
       const double mean = sum / kRows, variance = std::max(0.0, squares / kRows - mean * mean) / (kRows - 1);
-      reading.values.push_back({mean, std::sqrt(variance)});
+      measurement.values.push_back({mean, std::sqrt(variance)});
     }
-  for (int row = 0; row < kRows; ++row) reading.paths += film.samples(0, row);
-  return reading;
+  for (int row = 0; row < kRows; ++row) measurement.paths += film.samples(0, row);
+  return measurement;
 }
 
 }  // namespace frond

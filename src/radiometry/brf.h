@@ -30,7 +30,7 @@ struct BrfRequest {
 
 /// A scene's BRF, as far as it is known: the radiance toward a direction over that of a white Lambertian plane in the
 /// same light.
-struct BrfReading {
+struct BrfMeasurement {
   std::vector<ViewDirection> views;
   std::vector<double> wavelengths_nm;
   std::vector<MeanError> values;  ///< view by view, band by band
@@ -55,7 +55,7 @@ class BrfMeter {
   BrfMeter(Session& session, SceneDescription description, const BrfRequest& request, const Scene* other = nullptr);
 
   const LoadedScene& scene() const { return scene_; }
-  BrfReading read(const Film& film) const;
+  BrfMeasurement read(const Film& film) const;
 
  private:
   BrfRequest request_;

@@ -16,14 +16,14 @@ double student_quantile(double z, double freedom) {
 
 }  // namespace
 
-std::vector<MeanError> relative_to(const BrfReading& reference, const BrfReading& reading) {
+std::vector<MeanError> relative_to(const BrfMeasurement& reference, const BrfMeasurement& measurement) {
   constexpr int kRows = BrfMeter::kRows;
   std::vector<MeanError> differences;
-  for (size_t i = 0; i < reading.values.size(); ++i) {
-    const double b = reference.values[i].mean, ratio = reading.values[i].mean / b;
+  for (size_t i = 0; i < measurement.values.size(); ++i) {
+    const double b = reference.values[i].mean, ratio = measurement.values[i].mean / b;
     double squares = 0;
     for (size_t row = 0; row < kRows; ++row) {
-      const double rest = (reading.rows[i * kRows + row] - ratio * reference.rows[i * kRows + row]) / b;
+      const double rest = (measurement.rows[i * kRows + row] - ratio * reference.rows[i * kRows + row]) / b;
       squares += rest * rest;
     }
     differences.push_back({ratio - 1, std::sqrt(squares / (kRows * (kRows - 1)))});
@@ -31,9 +31,9 @@ std::vector<MeanError> relative_to(const BrfReading& reference, const BrfReading
   return differences;
 }
 
-BrfVerdict judge(const BrfReading& reference, const BrfReading& reading, double within) {
+BrfVerdict judge(const BrfMeasurement& reference, const BrfMeasurement& measurement, double within) {
   constexpr double kRate = 0.05;
-  const auto differences = relative_to(reference, reading);
+  const auto differences = relative_to(reference, measurement);
   const double z =
       student_quantile(normal_upper_quantile(sidak_level(kRate, differences.size()) / 2), BrfMeter::kRows - 1);
   const auto upper = [z](const MeanError& d) { return std::abs(d.mean) + z * d.standard_error; };
@@ -41,12 +41,12 @@ BrfVerdict judge(const BrfReading& reference, const BrfReading& reading, double 
   const bool beyond = std::ranges::any_of(
       differences, [&](const MeanError& d) { return std::abs(d.mean) - z * d.standard_error > within; });
   const auto place = size_t(worst - differences.begin());
-  const bool is_known = !reading.has_heavy_tails && !reference.has_heavy_tails;
+  const bool is_known = !measurement.has_heavy_tails && !reference.has_heavy_tails;
   const auto answer = !is_known                 ? BrfVerdict::Answer::unknown
                       : beyond                  ? BrfVerdict::Answer::not_enough
                       : upper(*worst) <= within ? BrfVerdict::Answer::enough
                                                 : BrfVerdict::Answer::unknown;
-  const size_t bands = reading.wavelengths_nm.size();
+  const size_t bands = measurement.wavelengths_nm.size();
   return {answer, place / bands, place % bands, *worst, upper(*worst)};
 }
 

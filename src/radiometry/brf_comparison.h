@@ -4,9 +4,9 @@
 
 namespace frond {
 
-/// By how much one BRF lies above another, relative to it: view by view, band by band. Readings of one scene with one
-/// seed share their noise in part; row by row it is known how much, and that does not count.
-std::vector<MeanError> relative_to(const BrfReading& reference, const BrfReading& reading);
+/// By how much one BRF lies above another, relative to it: view by view, band by band. Measurements of one scene with
+/// one seed share their noise in part; row by row it is known how much, and that does not count.
+std::vector<MeanError> relative_to(const BrfMeasurement& reference, const BrfMeasurement& measurement);
 
 /// Whether a reading is near enough to another everywhere.
 struct BrfVerdict {
@@ -19,7 +19,7 @@ struct BrfVerdict {
 
 /// `enough`: all differences lie within the limit, with 95 % confidence for all of them together; `not_enough`: one
 /// lies beyond it. Of
-/// readings with heavy tails nothing is known.
-BrfVerdict judge(const BrfReading& reference, const BrfReading& reading, double within);
+/// measurements with heavy tails nothing is known.
+BrfVerdict judge(const BrfMeasurement& reference, const BrfMeasurement& measurement, double within);
 
 }  // namespace frond

@@ -70,7 +70,7 @@ struct Moment {
   }
 };
 
-/// Moments of copies, which any thread adds to: whole numbers, so that the order does not matter.
+/// Moments of instances, which any thread adds to: whole numbers, so that the order does not matter.
 class InstanceSums {
  public:
   InstanceSums(uint64_t instances, size_t bands) : bands_(bands), cells_(instances * bands) {}
@@ -291,9 +291,9 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   state_->seen.resize(bands);
   if (!request.by_instance) return;
   const uint64_t instances = state_->scene().geometry().instances();
-  if (instances == 0) fail({}, "this scene has no copies of objects (ObjectInstance, Shape \"instances\")");
+  if (instances == 0) fail({}, "this scene has no instances of objects (ObjectInstance, Shape \"instances\")");
   if (const double bytes = double(instances) * double(bands) * InstanceSums::kCellBytes; bytes > machine_memory())
-    fail({}, "{} copies and {} bands need {:.1f} GB of memory, this machine has {:.1f} GB: fewer bands take less",
+    fail({}, "{} instances and {} bands need {:.1f} GB of memory, this machine has {:.1f} GB: fewer bands take less",
          instances, bands, bytes * 1e-9, machine_memory() * 1e-9);
   state_->by_instance = std::make_unique<InstanceSums>(instances, bands);
 }
@@ -344,7 +344,7 @@ void FluxMeter::resume(const std::filesystem::path& path) {
   read_sums(path, state_->loaded.identity(), state_->sums());
 }
 
-FluxReading FluxMeter::read() const {
+FluxMeasurement FluxMeter::read() const {
   const State& s = *state_;
   const auto shares = [&](size_t quantity) {
     std::vector<MeanError> result;
@@ -352,33 +352,33 @@ FluxReading FluxMeter::read() const {
       result.push_back(s.moments[quantity * s.bands + band].share(s.seen[band]));
     return result;
   };
-  FluxReading reading{.wavelengths_nm = {},
-                      .reflected = shares(kReflected),
-                      .transmitted = shares(kTransmitted),
-                      .materials = {},
-                      .sum = shares(kTotal),
-                      .paths = s.paths,
-                      .target_area = (s.target.x1 - s.target.x0) * (s.target.y1 - s.target.y0),
-                      .by_instance = {},
-                      .areas = {}};
-  for (const Band& band : s.scene().wavelengths().bands()) reading.wavelengths_nm.push_back(band.nm);
+  FluxMeasurement measurement{.wavelengths_nm = {},
+                              .reflected = shares(kReflected),
+                              .transmitted = shares(kTransmitted),
+                              .materials = {},
+                              .sum = shares(kTotal),
+                              .paths = s.paths,
+                              .target_area = (s.target.x1 - s.target.x0) * (s.target.y1 - s.target.y0),
+                              .by_instance = {},
+                              .areas = {}};
+  for (const Band& band : s.scene().wavelengths().bands()) measurement.wavelengths_nm.push_back(band.nm);
   for (uint32_t m = 0; m < s.materials; ++m) {
     const MaterialDescription& material = s.loaded.description().materials[m];
-    FluxReading::OfMaterial one{
+    FluxMeasurement::OfMaterial one{
         material.name.empty() ? material.plugin.name : material.name, shares(PathRecord::of_material(m, kAbsorbed)),
         shares(PathRecord::of_material(m, kIncident)), shares(PathRecord::of_material(m, kUncollided))};
     if (std::ranges::any_of(one.incident, [](const MeanError& share) { return share.mean > 0; }))
-      reading.materials.push_back(std::move(one));
+      measurement.materials.push_back(std::move(one));
   }
-  if (!s.by_instance) return reading;
-  reading.areas = s.scene().geometry().areas();
-  reading.by_instance.reserve(s.by_instance->size());
+  if (!s.by_instance) return measurement;
+  measurement.areas = s.scene().geometry().areas();
+  measurement.by_instance.reserve(s.by_instance->size());
   for (size_t cell = 0; cell < s.by_instance->size(); ++cell)
-    reading.by_instance.push_back(s.by_instance->at(cell).share(s.seen[cell % s.bands]));
-  return reading;
+    measurement.by_instance.push_back(s.by_instance->at(cell).share(s.seen[cell % s.bands]));
+  return measurement;
 }
 
-double FluxReading::error() const {
+double FluxMeasurement::error() const {
   double squares = 0;
   size_t count = 0;
   const auto add = [&](const std::vector<MeanError>& shares) {

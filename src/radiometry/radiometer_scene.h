@@ -11,7 +11,7 @@ namespace frond {
 /// cannot be, with the light's direction for incident, which is noisier.
 void keep_energy(SceneDescription& description, const Registry& registry);
 
-/// What radiometry asks of a scene that was made for pictures: leaves for which nothing is said are reciprocal, or take
+/// What radiometry asks of a scene that was made for images: leaves for which nothing is said are reciprocal, or take
 /// the light's direction for incident where they cannot be; paths end by roulette alone, unless `keeps_depth`; the
 /// period and the wavelengths, a PluginText of `bands`, are those asked for. Throws InputError.
 void prepare_for_radiometry(const Registry& registry, const std::string& wavelengths,

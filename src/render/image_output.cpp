@@ -14,16 +14,16 @@ ImageOutput::ImageOutput(std::string path, DisplayChoice display)
 
 void ImageOutput::check_channels(std::string_view film_space) const {
   if (film_space.empty() && !is_exr(path_))
-    fail({}, "{}: bands are no picture, and go to an .exr file; frond convert --bands makes a picture of three of them",
+    fail({}, "{}: bands are no image, and go to an .exr file; frond convert --bands makes an image of three of them",
          path_);
 }
 
-void ImageOutput::check(const PictureFormat& format) const {
+void ImageOutput::check(const ImageFormat& format) const {
   check_channels(format.space);
   if (!is_exr(path_)) colors_.check_display(format.space, display_.display, display_.view);
 }
 
-void ImageOutput::write(const Film& film, const PictureFormat& format) const {
+void ImageOutput::write(const Film& film, const ImageFormat& format) const {
   check(format);
   const Image image = film_image(film, format);
   auto attributes = format.attributes;

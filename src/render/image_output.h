@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/display_image.h"
-#include "render/film/picture_format.h"
+#include "render/film/image_format.h"
 
 namespace frond {
 
@@ -14,13 +14,13 @@ class ImageOutput {
   /// Throws what `write` would throw for bands in a PNG or JPEG. Empty: the film's channels are bands.
   void check_channels(std::string_view film_space) const;
 
-  /// Throws what `write` would throw for a display or a view that does not go with the picture's colours, and for bands
+  /// Throws what `write` would throw for a display or a view that does not go with the image's colours, and for bands
   /// in a PNG or JPEG.
-  void check(const PictureFormat& format) const;
+  void check(const ImageFormat& format) const;
 
   /// EXR: all channels of film_image, linear. PNG and JPEG: R G B through the display transform. Throws InputError when
   /// the image does not reach the disk.
-  void write(const Film& film, const PictureFormat& format) const;
+  void write(const Film& film, const ImageFormat& format) const;
 
   /// Whether `write` rounds the film's colours, or bands, to halves.
   bool rounds_to_halves(const Film& film) const;

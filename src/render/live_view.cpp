@@ -9,12 +9,12 @@
 
 namespace frond {
 
-LiveView::LiveView(const Film& film, PictureFormat format, Viewer& viewer, const Log& log)
+LiveView::LiveView(const Film& film, ImageFormat format, Viewer& viewer, const Log& log)
     : film_(film),
       format_(std::move(format)),
       viewer_(viewer),
       log_(log),
-      picture_(empty_picture(film_, format_)),
+      image_(empty_image(film_, format_)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 LiveView::~LiveView() { end_thread(true); }
@@ -22,9 +22,9 @@ LiveView::~LiveView() { end_thread(true); }
 void LiveView::finish(bool in_halves) {
   end_thread(false);
   if (has_failed_) return;
-  renew_picture(film_, format_, {}, picture_);
-  if (in_halves) round_to_halves(picture_.pixels);
-  show("it may not show the picture as it is in the end");
+  renew_image(film_, format_, {}, image_);
+  if (in_halves) round_to_halves(image_.pixels);
+  show("it may not show the image as it is in the end");
 }
 
 void LiveView::end_thread(bool at_once) {
@@ -35,7 +35,7 @@ void LiveView::end_thread(bool at_once) {
   thread_.join();
 }
 
-void LiveView::show(std::string_view consequence) try { viewer_.show(picture_); } catch (const InputError& error) {
+void LiveView::show(std::string_view consequence) try { viewer_.show(image_); } catch (const InputError& error) {
   has_failed_ = true;
   if (!is_left_) log_.warn({}, fmt::format("display: {}; {}", error.what(), consequence));
 }
@@ -47,7 +47,7 @@ void LiveView::run(const std::stop_token& stop) {
   std::unique_lock lock(none);
   const double begin = cpu_seconds();
   while (!stop.stop_requested()) {
-    if (!renew_picture(film_, format_, stop, picture_)) return;
+    if (!renew_image(film_, format_, stop, image_)) return;
     show("the render goes on without it");
     if (has_failed_) return;
     do {

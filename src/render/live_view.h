@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "core/log.h"
-#include "render/film/picture_format.h"
+#include "render/film/image_format.h"
 
 namespace frond {
 
@@ -13,9 +13,9 @@ namespace frond {
 class Viewer {
  public:
   virtual ~Viewer() = default;
-  /// The whole picture, linear, as it is by now. Called from one thread at a time. Throws InputError where it can be
+  /// The whole image, linear, as it is by now. Called from one thread at a time. Throws InputError where it can be
   /// shown no more.
-  virtual void show(const Image& picture) = 0;
+  virtual void show(const Image& image) = 0;
   /// Called from another thread at the end: `show` shall be over in a few seconds, or, where nobody waits for it, now.
   virtual void end(bool at_once) = 0;
 };
@@ -25,7 +25,7 @@ class Viewer {
 class LiveView {
  public:
   /// `film` and `viewer` must outlive it. The log is called from that thread.
-  LiveView(const Film& film, PictureFormat format, Viewer& viewer, const Log& log);
+  LiveView(const Film& film, ImageFormat format, Viewer& viewer, const Log& log);
   /// Ends it. What was shown last stays.
   ~LiveView();
 
@@ -39,10 +39,10 @@ class LiveView {
   void end_thread(bool at_once);
 
   const Film& film_;
-  PictureFormat format_;
+  ImageFormat format_;
   Viewer& viewer_;
   const Log& log_;
-  Image picture_;
+  Image image_;
   bool has_failed_ = false;
   std::atomic<bool> is_left_ = false;  ///< what fails now is no news
   std::condition_variable_any ended_;

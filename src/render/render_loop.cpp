@@ -26,13 +26,13 @@ class Clock {
 };
 
 /// Cuts a plan into work items: the samples of a tile in blocks, all tiles' first blocks before all tiles' second, so
-/// that whatever ends a render early leaves a picture that is finished to the same degree everywhere.
+/// that whatever ends a render early leaves an image that is finished to the same degree everywhere.
 class WorkItems {
  public:
   WorkItems(const WorkPlan& plan, const Film& film) : plan_(plan), film_(film) {
     // Enough paths in a block that what it costs to add it to the film is nothing beside them.
     constexpr uint64_t kLeastSamples = 16, kPaths = 4096;
-    uint64_t pixels = 0;  // of the largest tile: those at a picture's edges are cut
+    uint64_t pixels = 0;  // of the largest tile: those at an image's edges are cut
     for (size_t i = 0; i < film.tiles(); ++i)
       pixels = std::max(pixels, uint64_t(film.tile_pixels(i).width() * film.tile_pixels(i).height()));
     block_ = std::max(kLeastSamples, std::bit_floor(kPaths / std::min(kPaths, pixels)));
@@ -88,10 +88,10 @@ class Worker {
   const RenderStatistics& statistics() const { return statistics_; }
 
  private:
-  PixelPlace place_of(int x, int y) const {
+  PixelPosition place_of(int x, int y) const {
     const Crop& crop = format_.settings.crop;
-    if (job_.places.empty()) return {x, y};
-    return job_.places[size_t(y - crop.y0) * size_t(crop.width()) + size_t(x - crop.x0)];
+    if (job_.pixels.empty()) return {x, y};
+    return job_.pixels[size_t(y - crop.y0) * size_t(crop.width()) + size_t(x - crop.x0)];
   }
 
   void render_pixels(const Crop& pixels, SampleRange samples) {
@@ -132,7 +132,7 @@ class Worker {
     return lanes;
   }
 
-  void trace_bundle(PixelPlace at, uint64_t first, uint32_t wanted) {
+  void trace_bundle(PixelPosition at, uint64_t first, uint32_t wanted) {
     const Sampler& sampler = job_.sampler;
     PathBundle& b = bundle_;
     b.samples = {at.x, at.y, first, kBundle};

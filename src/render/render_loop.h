@@ -16,8 +16,8 @@
 
 namespace frond {
 
-/// A pixel of the whole picture.
-struct PixelPlace {
+/// A pixel of the whole image.
+struct PixelPosition {
   int x, y;
 };
 
@@ -30,9 +30,9 @@ struct RenderJob {
   const Filter& filter;
   const Sampler& sampler;
   uint64_t seed;
-  /// Which pixels of the picture the film's stand for, row by row: some of them, drawn from all. Empty: themselves.
+  /// Which pixels of the image the film's stand for, row by row: some of them, drawn from all. Empty: themselves.
   /// Pixels that share samples stand for themselves.
-  std::span<const PixelPlace> places = {};
+  std::span<const PixelPosition> pixels = {};
   bool pixel_jitter = true;       ///< else all samples lie at the pixels' centres and the lens's, unfiltered
   bool wavelength_jitter = true;  ///< else they have the same wavelengths
 };
@@ -60,7 +60,7 @@ struct RenderControl {
 RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
                         const RenderControl& control = {});
 
-/// The film's exponent for pictures of this job: of the median over some paths' brightest responses. The same on every
+/// The film's exponent for images of this job: of the median over some paths' brightest responses. The same on every
 /// machine; 0 where all of them are black.
 int film_exponent(const RenderJob& job, const FilmSettings& settings);
 

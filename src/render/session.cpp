@@ -35,7 +35,7 @@ Triple white_of(const WavelengthStrategy& wavelengths, const Matrix3& color) {
 }
 
 /// What the image's R, G and B are in: what the scene's ColorSpace says, or what was asked for, or else the film's own.
-std::string space_of(const SceneSettings& description, const PictureRequest& request, std::string_view film_space) {
+std::string space_of(const SceneSettings& description, const ImageRequest& request, std::string_view film_space) {
   if (film_space.empty()) return {};
   std::string space = request.color_space;
   if (description.color_space_where.file)
@@ -52,34 +52,34 @@ std::array<std::array<double, 4>, 3> to_double_rows(const Transform& t) {
 }
 
 /// Names of materials, by the numbers of the channel that has them.
-void name_materials(const SceneSettings& description, PictureFormat& picture) {
+void name_materials(const SceneSettings& description, ImageFormat& image) {
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
-    picture.attributes[fmt::format("frond:material:{}", i + 1)] = m.name.empty() ? m.plugin.name : m.name;
+    image.attributes[fmt::format("frond:material:{}", i + 1)] = m.name.empty() ? m.plugin.name : m.name;
   }
 }
 
-PictureFormat picture_of(const SceneSettings& description, const PictureRequest& request, const Scene& scene,
-                         const FilmSettings& film, const ChannelList& channels) {
+ImageFormat image_of(const SceneSettings& description, const ImageRequest& request, const Scene& scene,
+                     const FilmSettings& film, const ChannelList& channels) {
   const auto bands = scene.wavelengths().bands();
-  PictureFormat picture{.space = space_of(description, request, scene.wavelengths().film_space()),
-                        .bands = {bands.begin(), bands.end()},
-                        .attributes = request.attributes};
-  if (film.features_in_camera_space) picture.from_world = to_double_rows(description.camera_from_world);
-  if (channels.has("material")) name_materials(description, picture);
-  picture.attributes["frond:version"] = FROND_VERSION;
-  picture.attributes["frond:seed"] = std::to_string(scene.seed());
-  picture.attributes["frond:wavelengths"] = scene.wavelengths_name();
-  picture.attributes["frond:scene_hash"] = fmt::format("{:016x}", description.content_hash);
-  return picture;
+  ImageFormat image{.space = space_of(description, request, scene.wavelengths().film_space()),
+                    .bands = {bands.begin(), bands.end()},
+                    .attributes = request.attributes};
+  if (film.features_in_camera_space) image.from_world = to_double_rows(description.camera_from_world);
+  if (channels.has("material")) name_materials(description, image);
+  image.attributes["frond:version"] = FROND_VERSION;
+  image.attributes["frond:seed"] = std::to_string(scene.seed());
+  image.attributes["frond:wavelengths"] = scene.wavelengths_name();
+  image.attributes["frond:scene_hash"] = fmt::format("{:016x}", description.content_hash);
+  return image;
 }
 
 /// Nothing where pixels have samples of their own.
-std::optional<Splatting> splatting_of(const Scene& scene, const Crop& whole, const Crop& pixels, bool is_piece) {
+std::optional<Splatting> splatting_of(const Scene& scene, const Crop& whole, const Crop& pixels, bool is_part) {
   if (scene.camera().pixels_are_apart() || !scene.has_pixel_jitter() || !splats(scene.filter())) return {};
   Splatting splatting = SplatKernel(scene.filter()).splatting();
   splatting.sampled = widened(pixels, splatting.reach_x(), splatting.reach_y());
-  if (is_piece) {  // beside it are other pieces, but where the whole ends
+  if (is_part) {  // beside it are other pieces, but where the whole ends
     Crop& sampled = splatting.sampled;
     if (pixels.x0 > whole.x0) sampled.x0 = pixels.x0;
     if (pixels.y0 > whole.y0) sampled.y0 = pixels.y0;
@@ -139,7 +139,7 @@ RenderPart LoadedScene::empty_part() const {
   Film film(facts_.format, description_.film.where);
   PartHeader header;
   header.identity = identity();
-  header.picture = picture_;
+  header.image = image_format_;
   header.command = facts_.command;
   header.scene_crop = scene_crop_;
   header.pixel_scale = description_.is_quick ? 2 : 1;
@@ -176,7 +176,7 @@ FilmSettings Session::film(const SceneSettings& description) const {
   return Scene::film_settings(description, registry_);
 }
 
-LoadedScene Session::load(SceneDescription description, const PictureRequest& request, const Scene* other) {
+LoadedScene Session::load(SceneDescription description, const ImageRequest& request, const Scene* other) {
   LoadedScene loaded;
   loaded.scene_ = std::make_unique<Scene>(description, registry_, pool_, log_, cache(), other);
   FilmSettings film = loaded.scene_->film();
@@ -190,15 +190,16 @@ LoadedScene Session::load(SceneDescription description, const PictureRequest& re
                    .command = request.command};
   FilmFormat& format = loaded.facts_.format;
   format.settings = film;
-  format.splatting = splatting_of(*loaded.scene_, loaded.scene_crop_, film.crop, request.is_piece);
+  format.splatting = splatting_of(*loaded.scene_, loaded.scene_crop_, film.crop, request.is_part);
   std::vector<std::string> channels = film.channels;
   if (!loaded.scene_->wavelengths().bands().empty()) std::erase(channels, "albedo");  // a colour; bands have none
   channels.insert(channels.end(), request.channels.begin(), request.channels.end());
   format.channels = ChannelList(channels);
-  loaded.picture_ = picture_of(description, request, *loaded.scene_, film, format.channels);
-  loaded.facts_.color_space = loaded.picture_.space;
+  loaded.image_format_ = image_of(description, request, *loaded.scene_, film, format.channels);
+  loaded.facts_.color_space = loaded.image_format_.space;
   if (format.splatting)
-    loaded.picture_.attributes["frond:correlated_pixels"] = fmt::format("{:.3f}", format.splatting->correlated_pixels);
+    loaded.image_format_.attributes["frond:correlated_pixels"] =
+        fmt::format("{:.3f}", format.splatting->correlated_pixels);
   loaded.description_ = std::move(description);
   const WavelengthStrategy& wavelengths = loaded.scene_->wavelengths();
   format.bands = wavelengths.bands().size();
@@ -208,7 +209,7 @@ LoadedScene Session::load(SceneDescription description, const PictureRequest& re
   if (request.adaptive && format.bands > 0)
     fail({}, "noise is measured in colours: wavelengths \"{}\" give bands", loaded.scene_->wavelengths_name());
   if (format.bands == 0) {
-    format.color = matrix_of(wavelengths.film_space(), loaded.picture_.space);
+    format.color = matrix_of(wavelengths.film_space(), loaded.image_format_.space);
     format.white = white_of(wavelengths, format.color);
   }
   format.exponent = film_exponent(loaded.job(), film);
@@ -242,7 +243,7 @@ RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest
     progress.plan(statistics.paths, plan.predicted_paths);
     statistics += render_plan(scene, {part.film.sampled(), {}, header.tile_ends}, part, each);
     if (!has_all(part.film, header.tile_ends)) return statistics;  // ended early
-    if (picture_noise(part.film, noise_z()).upper_rms() <= request.max_rms) return statistics;
+    if (image_noise(part.film, noise_z()).upper_rms() <= request.max_rms) return statistics;
     plan = next_plan(part.film, request.max_rms, request.most_samples);
     if (plan.tile_ends == header.tile_ends) return statistics;  // no tile may have more
     header.tile_ends = plan.tile_ends;

@@ -16,13 +16,13 @@
 
 namespace frond {
 
-/// What is said of the picture over what the scene says.
-struct PictureRequest {
+/// What is said of the image over what the scene says.
+struct ImageRequest {
   std::optional<Crop> pixels = {};  ///< of the film, which --quick has halved
   /// The other pixels of the scene's crop are rendered elsewhere, to be merged with these: samples that are shared are
   /// taken of these pixels alone, and of those around the whole. Else of all that reach these pixels, which are then
-  /// the whole picture's.
-  bool is_piece = false;
+  /// the whole image's.
+  bool is_part = false;
   std::vector<std::string> channels = {};  ///< beside those of the scene's film: names of render/film/channels.h
   std::string color_space = {};  ///< by linear name, where the scene names none; empty: as the wavelengths have it
   std::map<std::string, std::string> attributes = {};  ///< for the image's header
@@ -30,14 +30,14 @@ struct PictureRequest {
   std::string command = {};  ///< what asks for all this, without samples and pixels: for the header, and the identity
 };
 
-/// A scene, ready to be rendered, with all that its picture is made of.
+/// A scene, ready to be rendered, with all that its image is made of.
 class LoadedScene {
  public:
   const Scene& scene() const { return *scene_; }
   const SceneDescription& description() const { return description_; }
   /// What a film of it holds.
   const FilmFormat& film_format() const { return facts_.format; }
-  const PictureFormat& picture() const { return picture_; }
+  const ImageFormat& image_format() const { return image_format_; }
   /// Of each pixel, that the scene asks for.
   uint64_t samples() const { return uint64_t(scene_->samples_per_pixel()); }
   /// Throws InputError where a sensor's bands cannot all be seen in so many samples.
@@ -52,13 +52,13 @@ class LoadedScene {
   friend class Session;
 
   SceneDescription description_;
-  PictureFacts facts_;
+  ImageFacts facts_;
   std::unique_ptr<Scene> scene_;
   Crop scene_crop_{};
-  PictureFormat picture_;
+  ImageFormat image_format_;
 };
 
-/// A picture whose noise is small enough.
+/// An image whose noise is small enough.
 struct NoiseRequest {
   double max_rms = 0;                ///< over pixels and colours, in the film's units
   uint64_t most_samples = 1u << 30;  ///< of a pixel
@@ -79,7 +79,7 @@ struct SessionOptions {
 ///   const LoadedScene scene = session.load(session.read("scene.pbrt"));
 ///   RenderPart part = scene.empty_part();
 ///   session.render(scene, SampleRange{0, 64}, part);
-///   const Image image = film_image(part.film, part.header.picture);
+///   const Image image = film_image(part.film, part.header.image);
 ///
 /// Whatever is wrong with the input is an InputError.
 class Session {
@@ -112,7 +112,7 @@ class Session {
   FilmSettings film(const SceneSettings& description) const;
   /// The description says all: overrides have been written into it (scene/overrides.h). `other`: a scene in which the
   /// same stands, which is then not made again.
-  LoadedScene load(SceneDescription description, const PictureRequest& request = {}, const Scene* other = nullptr);
+  LoadedScene load(SceneDescription description, const ImageRequest& request = {}, const Scene* other = nullptr);
 
   /// Adds these samples of all the part's pixels to it, but what it has already. Says what this call took; the part's
   /// own statistics grow by it.

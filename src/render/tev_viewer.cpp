@@ -6,20 +6,20 @@
 
 namespace frond {
 
-void TevViewer::show(const Image& picture) {
+void TevViewer::show(const Image& image) {
   if (!client_) {
     client_.emplace(at_, patience_);
-    client_->send(create_image_packet(name_, picture));
-    sent_.resize(picture.pixels.size());
+    client_->send(create_image_packet(name_, image));
+    sent_.resize(image.pixels.size());
   }
-  const size_t row = size_t(picture.width) * picture.channels.size();
-  for (int y = 0; y < picture.height; y += Film::kTile) {
-    const int end = std::min(y + Film::kTile, picture.height);
-    const auto first = picture.pixels.begin() + ptrdiff_t(size_t(y) * row),
-               last = picture.pixels.begin() + ptrdiff_t(size_t(end) * row);
+  const size_t row = size_t(image.width) * image.channels.size();
+  for (int y = 0; y < image.height; y += Film::kTile) {
+    const int end = std::min(y + Film::kTile, image.height);
+    const auto first = image.pixels.begin() + ptrdiff_t(size_t(y) * row),
+               last = image.pixels.begin() + ptrdiff_t(size_t(end) * row);
     const auto before = sent_.begin() + ptrdiff_t(size_t(y) * row);
     if (!is_last_ && std::equal(first, last, before)) continue;
-    client_->send(update_image_packet(name_, picture, y, end));
+    client_->send(update_image_packet(name_, image, y, end));
     std::copy(first, last, before);
   }
 }

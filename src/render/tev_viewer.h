@@ -13,8 +13,8 @@ class TevViewer final : public Viewer {
   /// `name`: of the image there. Nobody is called until something is to be shown.
   TevViewer(ServerAddress at, std::string name) : at_(std::move(at)), name_(std::move(name)) {}
 
-  /// Of the first picture what is not black, later what has changed; after `end` all of it.
-  void show(const Image& picture) override;
+  /// Of the first image what is not black, later what has changed; after `end` all of it.
+  void show(const Image& image) override;
   void end(bool at_once) override;
 
  private:

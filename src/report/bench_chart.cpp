@@ -9,7 +9,7 @@ namespace {
 constexpr size_t kMostAngles = 6;
 
 /// Relative variance against time; no number where the mean is 0.
-ChartPoint point_of(const BenchReading& r, const Worth& w) {
+ChartPoint point_of(const BenchMeasurement& r, const Worth& w) {
   const double square = w.mean.mean * w.mean.mean, variance = w.variance.mean / square;
   return with_error(r.time(BsdfCall::hit).mean, variance > 0 ? variance : NAN, w.variance.standard_error() / square);
 }
@@ -24,17 +24,17 @@ void check_bench_chart(size_t materials, size_t angles) {
     fail({}, "--plot: {} angles are more than the {} marks that can be told apart", angles, kMostAngles);
 }
 
-Chart bench_chart(const std::vector<BenchReading>& readings) {
-  const int lanes = std::ranges::max(readings, {}, &BenchReading::lanes).lanes;
-  const auto materials = distinct(readings, &BenchReading::material);
-  const auto angles = distinct(readings, &BenchReading::theta_deg);
+Chart bench_chart(const std::vector<BenchMeasurement>& measurements) {
+  const int lanes = std::ranges::max(measurements, {}, &BenchMeasurement::lanes).lanes;
+  const auto materials = distinct(measurements, &BenchMeasurement::material);
+  const auto angles = distinct(measurements, &BenchMeasurement::theta_deg);
   check_bench_chart(materials.size(), angles.size());
   const std::string time = fmt::format("CPU time of a hit, {} wavelength{} (ns)", lanes, lanes == 1 ? "" : "s");
   Chart chart{2};
   for (const auto worth : {&SampleWorth::sky, &SampleWorth::sun}) {
     Range x, y;
     std::vector<Series> points;
-    for (const BenchReading& r : readings) {
+    for (const BenchMeasurement& r : measurements) {
       if (r.lanes != lanes) continue;
       const ChartPoint p = point_of(r, r.worth.*worth);
       x.include(p.x), y.include(p.y);

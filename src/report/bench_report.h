@@ -15,7 +15,7 @@ enum class BsdfCall { sample, f, pdf, hit };
 inline constexpr std::array<std::string_view, 4> kBsdfCalls{"sample", "f", "pdf", "hit"};
 
 /// The measurements of a material seen from one direction with so many wavelengths.
-struct BenchReading {
+struct BenchMeasurement {
   std::string material;  ///< its text
   double theta_deg = 0;
   int lanes = 1;
@@ -27,7 +27,7 @@ struct BenchReading {
 
 /// Relative variance of the lit planes against the time of a hit, at the largest number of
 /// wavelengths; a colour for each material, a mark for each angle, lines where time x variance is the same.
-Chart bench_chart(const std::vector<BenchReading>& readings);
+Chart bench_chart(const std::vector<BenchMeasurement>& measurements);
 /// Throws InputError for more materials or angles than that chart can tell apart.
 void check_bench_chart(size_t materials, size_t angles);
 

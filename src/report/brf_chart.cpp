@@ -9,7 +9,7 @@
 
 namespace frond {
 
-Chart brf_plane_chart(const BrfReading& r) {
+Chart brf_plane_chart(const BrfMeasurement& r) {
   constexpr double kLogarithmic = 8;  // bands that differ by more have no room on one even scale
   const auto [least, most] = std::ranges::minmax(r.values, {}, &MeanError::mean);
   const bool logarithmic = least.mean > 0 && most.mean / least.mean > kLogarithmic;
@@ -30,7 +30,7 @@ Chart brf_plane_chart(const BrfReading& r) {
   return {1, {panel}};
 }
 
-Chart brf_hemisphere_chart(const BrfReading& r) {
+Chart brf_hemisphere_chart(const BrfMeasurement& r) {
   constexpr size_t kMost = 12;
   const size_t bands = r.wavelengths_nm.size();
   if (bands > kMost) fail({}, "--plot has room for {} maps, these are {} wavelengths", kMost, bands);

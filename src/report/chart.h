@@ -40,7 +40,7 @@ struct Axis {
   std::vector<Tick> ticks = {};  ///< empty: chosen
 
   /// 0 at the low end of the range, 1 at the high end. Not finite for 0 and less on a logarithmic axis.
-  double place(double value) const;
+  double position(double value) const;
 };
 
 /// Ticks within the range, `most` or a few more: multiples of 1, 2 or 5 times a power of ten; on logarithmic axes of
@@ -59,7 +59,7 @@ struct ChartPoint {
 /// With a bar of `error` each way.
 inline ChartPoint with_error(double x, double y, double error) { return {x, y, {y - error, y + error}}; }
 
-/// A curve, interrupted where a point has no place, or an area. Without points: an entry of the legend.
+/// A curve, interrupted where a point has no position, or an area. Without points: an entry of the legend.
 struct Series {
   std::string label, color;  ///< label: in the legend; empty: none
   double width = 1.5;        ///< of lines, pixels; 0: no line

@@ -89,7 +89,7 @@ std::string fit_scene(const FitReport& report) {
 std::string fit_text(const FitReport& report) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("{}: {} measurements, RMSE {:.4f} (R {:.4f}, T {:.4f})\n", report.source,
-                                 report.request.readings.size(), result.rmse, result.rmse_r, result.rmse_t);
+                                 report.request.measurements.size(), result.rmse, result.rmse_r, result.rmse_t);
   for (const NamedBand& band : kBands)
     if (const auto rmse = leaf::rmse_between(report.request, result, band.nm))
       text += fmt::format("  {:<20} {:4.0f} to {:4.0f} nm   RMSE {:.4f}\n", band.name, band.nm.min, band.nm.max, *rmse);
@@ -117,7 +117,7 @@ std::string fit_text(const FitReport& report) {
 std::vector<Fact> fit_facts(const FitReport& report) {
   const leaf::FitResult& r = report.result;
   return {{"source", report.source},
-          {"measurements", double(report.request.readings.size())},
+          {"measurements", double(report.request.measurements.size())},
           {"rmse", r.rmse},
           {"rmse_R", r.rmse_r},
           {"rmse_T", r.rmse_t},
@@ -131,7 +131,7 @@ std::vector<Table> fit_tables(const FitReport& report) {
   const leaf::FitResult& result = report.result;
   Table spectra{"spectra"}, leaf{"leaf"}, numbers{"numbers"}, bands{"bands"}, correlations{"correlations"};
   for (size_t i = 0; i < result.fitted.size(); ++i) {
-    const leaf::LeafReading& r = report.request.readings[i];
+    const leaf::LeafMeasurement& r = report.request.measurements[i];
     spectra.add("theta_deg", r.theta_deg);
     spectra.add("wavelength_nm", r.lambda_nm);
     spectra.add("R", r.r.value_or(kNone));
@@ -168,7 +168,7 @@ std::vector<Table> fit_tables(const FitReport& report) {
 }
 
 Chart fit_chart(const FitReport& report) {
-  const auto all = distinct(report.request.readings, &leaf::LeafReading::theta_deg);
+  const auto all = distinct(report.request.measurements, &leaf::LeafMeasurement::theta_deg);
   if (all.size() > kSeriesColors.size())
     fail({}, "--plot: {} angles are more than the {} colours that can be told apart", all.size(), kSeriesColors.size());
   Panel panel = shares_panel("wavelength (nm)");
@@ -177,7 +177,7 @@ Chart fit_chart(const FitReport& report) {
     Series r = line("fitted" + of_angle, kSeriesColors[all.size() == 1 ? 1 : a], 2), t = line("", r.color, 2),
            measured = marks("measured" + of_angle, kSeriesColors[0], series_mark(a), 1.8);
     for (size_t i = 0; i < report.result.fitted.size(); ++i) {
-      const leaf::LeafReading& m = report.request.readings[i];
+      const leaf::LeafMeasurement& m = report.request.measurements[i];
       if (m.theta_deg != all[a]) continue;
       r.points.push_back({m.lambda_nm, report.result.fitted[i].r});
       t.points.push_back({m.lambda_nm, 1 - report.result.fitted[i].t});

@@ -9,14 +9,14 @@
 namespace frond {
 namespace {
 
-constexpr size_t kMostReadings = 12;
+constexpr size_t kMostMeasurements = 12;
 constexpr size_t kMostCells = 100'000;
 
 /// Of what is above 0. A logarithmic scale spans a decade at least, so that a number stands at it.
-ColorScale scale_of(const std::vector<LabelledPatches>& readings, bool logarithmic) {
+ColorScale scale_of(const std::vector<LabelledPatches>& measurements, bool logarithmic) {
   constexpr double kLeastSpan = 11;
   Range range;
-  for (const auto& [material, r] : readings)
+  for (const auto& [material, r] : measurements)
     for (size_t i = 0; i < r.sphere.size(); ++i)
       if (const double f = r.f(i).mean; f > 0) range.include(f);
   if (range.is_empty()) range = {1e-6, 1};
@@ -24,7 +24,7 @@ ColorScale scale_of(const std::vector<LabelledPatches>& readings, bool logarithm
 }
 
 /// Seen from the light's side, the light coming from the left: azimuths run the other way round if that is the back.
-void add_patches(const PolarMap& map, const ColorScale& scale, const GoniophotometerReading& r, bool reflected) {
+void add_patches(const PolarMap& map, const ColorScale& scale, const GoniophotometerMeasurement& r, bool reflected) {
   const double handed = r.beam.theta_deg <= 90 ? std::numbers::pi / 180 : -std::numbers::pi / 180;
   for (size_t i = 0; i < r.sphere.size(); ++i) {
     const Patch p = r.sphere.patch(i);
@@ -38,19 +38,19 @@ void add_patches(const PolarMap& map, const ColorScale& scale, const Goniophotom
 
 }  // namespace
 
-void check_map_chart(const ReadingCounts& c, const DetectorSphere& sphere) {
-  const size_t readings = c.materials * c.angles * c.wavelengths;
-  if (readings > kMostReadings)
-    fail({}, "--map draws {} readings at most, {} were asked for ({} materials, {} angles, {} wavelengths)",
-         kMostReadings, readings, c.materials, c.angles, c.wavelengths);
+void check_map_chart(const MeasurementCounts& c, const DetectorSphere& sphere) {
+  const size_t measurements = c.materials * c.angles * c.wavelengths;
+  if (measurements > kMostMeasurements)
+    fail({}, "--map draws {} measurements at most, {} were asked for ({} materials, {} angles, {} wavelengths)",
+         kMostMeasurements, measurements, c.materials, c.angles, c.wavelengths);
   if (sphere.size() > kMostCells)
     fail({}, "--map draws {} patches at most, there are {} x {}", kMostCells, sphere.thetas(), sphere.phis());
 }
 
-Chart map_chart(const std::vector<LabelledPatches>& readings, bool logarithmic) {
-  const ColorScale scale = scale_of(readings, logarithmic);
+Chart map_chart(const std::vector<LabelledPatches>& measurements, bool logarithmic) {
+  const ColorScale scale = scale_of(measurements, logarithmic);
   Chart chart{3};
-  for (const auto& [material, r] : readings) {
+  for (const auto& [material, r] : measurements) {
     const auto& [theta_deg, lambda_nm] = r.beam;
     const double radius = std::min(theta_deg, 180 - theta_deg) / 90;
     const std::string light = fmt::format("BTDF, seen through: light at {:g}°, {:g} nm", theta_deg, lambda_nm);

@@ -9,7 +9,7 @@ namespace frond {
 /// A goniophotometer's measurement and the material under test.
 struct LabelledPatches {
   std::string material;
-  GoniophotometerReading reading;
+  GoniophotometerMeasurement measurement;
 };
 
 }  // namespace frond

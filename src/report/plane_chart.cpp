@@ -11,7 +11,7 @@ constexpr std::array kMarks{Mark::disk, Mark::ring, Mark::square, Mark::open_squ
 
 /// f of each patch in the plane of incidence, with its standard error. The angle is from the normal of that side,
 /// negative on the light's side.
-std::vector<ChartPoint> plane_points(const GoniophotometerReading& r, bool reflected) {
+std::vector<ChartPoint> plane_points(const GoniophotometerMeasurement& r, bool reflected) {
   std::vector<ChartPoint> points;
   for (const int column : {0, r.sphere.phis() / 2})
     for (int row = 0; row < r.sphere.thetas(); ++row) {
@@ -25,10 +25,10 @@ std::vector<ChartPoint> plane_points(const GoniophotometerReading& r, bool refle
   return points;
 }
 
-/// A panel with the vertical lines of one angle, y up to the largest f of all readings.
-Panel empty_panel(const std::vector<LabelledPatches>& readings, double theta_deg, bool reflected) {
+/// A panel with the vertical lines of one angle, y up to the largest f of all measurements.
+Panel empty_panel(const std::vector<LabelledPatches>& measurements, double theta_deg, bool reflected) {
   double top = 0;
-  for (const auto& [material, r] : readings)
+  for (const auto& [material, r] : measurements)
     for (const ChartPoint& p : plane_points(r, reflected)) top = std::max(top, 1.08 * p.y);
   const double mirror = std::min(theta_deg, 180 - theta_deg), high = top > 0 ? top : 1;
   const std::string title = fmt::format("{} light at θ = {:g}°", reflected ? "Reflected," : "Transmitted,", theta_deg);
@@ -42,7 +42,7 @@ Panel empty_panel(const std::vector<LabelledPatches>& readings, double theta_deg
 
 }  // namespace
 
-void check_plane_chart(const ReadingCounts& c, const DetectorSphere& sphere) {
+void check_plane_chart(const MeasurementCounts& c, const DetectorSphere& sphere) {
   if (sphere.phis() % 2 != 0)
     fail({}, "--plot: with {} patches in phi none is centred across from the light; an even number is needed",
          sphere.phis());
@@ -51,26 +51,27 @@ void check_plane_chart(const ReadingCounts& c, const DetectorSphere& sphere) {
          kSeriesColors.size(), kMostMaterials, kMostAngles, c.wavelengths, c.materials, c.angles);
 }
 
-Chart plane_chart(const std::vector<LabelledPatches>& readings) {
-  const auto materials = distinct(readings, &LabelledPatches::material);
-  const auto angles = distinct(readings, [](const auto& r) { return r.reading.beam.theta_deg; });
-  const auto wavelengths = distinct(readings, [](const auto& r) { return r.reading.beam.lambda_nm; });
-  const bool some_integrated = std::ranges::any_of(readings, [](const auto& r) { return r.reading.is_integrated(); });
+Chart plane_chart(const std::vector<LabelledPatches>& measurements) {
+  const auto materials = distinct(measurements, &LabelledPatches::material);
+  const auto angles = distinct(measurements, [](const auto& r) { return r.measurement.beam.theta_deg; });
+  const auto wavelengths = distinct(measurements, [](const auto& r) { return r.measurement.beam.lambda_nm; });
+  const bool some_integrated =
+      std::ranges::any_of(measurements, [](const auto& r) { return r.measurement.is_integrated(); });
   // A line alone where f was integrated, points about it where that of another reading was.
   const auto series = [&](const LabelledPatches& r, std::string label, std::string color) -> Series {
     const size_t m = place_in(materials, r.material);
-    const bool exact = r.reading.is_integrated();
+    const bool exact = r.measurement.is_integrated();
     return {label, color, exact || !some_integrated ? 1.5 : 0, Dash(m), exact ? Mark::none : kMarks[m], 2.5};
   };
   Chart chart{angles.size()};
   for (const bool reflected : {true, false})
     for (const double theta_deg : angles) {
-      Panel& panel = chart.panels.emplace_back(empty_panel(readings, theta_deg, reflected));
+      Panel& panel = chart.panels.emplace_back(empty_panel(measurements, theta_deg, reflected));
       if (angles.size() == 1) panel.width *= 2;
-      for (const LabelledPatches& r : readings) {
-        if (r.reading.beam.theta_deg != theta_deg) continue;
-        panel.series.push_back(series(r, "", kSeriesColors[place_in(wavelengths, r.reading.beam.lambda_nm)]));
-        panel.series.back().points = plane_points(r.reading, reflected);
+      for (const LabelledPatches& r : measurements) {
+        if (r.measurement.beam.theta_deg != theta_deg) continue;
+        panel.series.push_back(series(r, "", kSeriesColors[place_in(wavelengths, r.measurement.beam.lambda_nm)]));
+        panel.series.back().points = plane_points(r.measurement, reflected);
       }
     }
   auto& legend = chart.panels[0].series;
@@ -78,7 +79,7 @@ Chart plane_chart(const std::vector<LabelledPatches>& readings) {
   for (size_t i = 0; i < wavelengths.size(); ++i)
     legend.push_back(line(fmt::format("{:g} nm", wavelengths[i]), kSeriesColors[i], 2));
   for (const std::string& m : materials)
-    legend.push_back(series(*std::ranges::find(readings, m, &LabelledPatches::material), m, "#404040"));
+    legend.push_back(series(*std::ranges::find(measurements, m, &LabelledPatches::material), m, "#404040"));
   return chart;
 }
 

@@ -7,8 +7,8 @@
 namespace frond {
 
 std::string ColorScale::color(double value) const {
-  const double place = axis.place(value), at = std::clamp(place, 0., 1.) * double(palette.size() - 1);
-  if (std::isnan(place)) return "#c0c0c0";
+  const double position = axis.position(value), at = std::clamp(position, 0., 1.) * double(palette.size() - 1);
+  if (std::isnan(position)) return "#c0c0c0";
   const size_t i = std::min(size_t(at), palette.size() - 2);
   std::string text = "#";
   for (const int shift : {16, 8, 0}) {
@@ -21,7 +21,7 @@ std::string ColorScale::color(double value) const {
 Panel ColorScale::panel(double height) const {
   constexpr int kShades = 128;
   Axis y{axis.label, {0, 1}, false, 0, ticks_of(axis, height / 60)};
-  for (Tick& t : y.ticks) t.value = axis.place(t.value);
+  for (Tick& t : y.ticks) t.value = axis.position(t.value);
   Panel panel{116, height, " ", {"", {0.1, 0.9}, false, 1}, y};
   for (double i = 0; i < kShades; ++i) {
     const double low = i / kShades, high = (i + 1) / kShades;

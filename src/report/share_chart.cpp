@@ -20,28 +20,28 @@ void check_shares_chart(size_t materials, size_t angles, size_t wavelengths) {
          curves, materials, angles, wavelengths, kSeriesColors.size());
 }
 
-Chart shares_chart(const std::vector<LabelledReading>& readings) {
-  const size_t angles = distinct(readings, [](const auto&r) { return r.reading.beam.theta_deg; }).size(),
-               wavelengths = distinct(readings, [](const auto&r) { return r.reading.beam.lambda_nm; }).size();
+Chart shares_chart(const std::vector<LabelledMeasurement>& measurements) {
+  const size_t angles = distinct(measurements, [](const auto&r) { return r.measurement.beam.theta_deg; }).size(),
+               wavelengths = distinct(measurements, [](const auto&r) { return r.measurement.beam.lambda_nm; }).size();
   const bool by_wavelength = wavelengths >= angles, alone = std::min(angles, wavelengths) == 1;
-  const auto x_of = [&](const LabelledReading& r) {
-    return by_wavelength ? r.reading.beam.lambda_nm : r.reading.beam.theta_deg;
+  const auto x_of = [&](const LabelledMeasurement& r) {
+    return by_wavelength ? r.measurement.beam.lambda_nm : r.measurement.beam.theta_deg;
   };
-  const auto label_of = [&](const LabelledReading& r) {
+  const auto label_of = [&](const LabelledMeasurement& r) {
     if (alone) return r.material;
-    return by_wavelength ? fmt::format("{}, {:.6g}°", r.material, r.reading.beam.theta_deg)
-                         : fmt::format("{}, {:.6g} nm", r.material, r.reading.beam.lambda_nm);
+    return by_wavelength ? fmt::format("{}, {:.6g}°", r.material, r.measurement.beam.theta_deg)
+                         : fmt::format("{}, {:.6g} nm", r.material, r.measurement.beam.lambda_nm);
   };
-  const auto labels = distinct(readings, label_of);
+  const auto labels = distinct(measurements, label_of);
   check_shares_chart(labels.size() / std::min(angles, wavelengths), angles, wavelengths);
   Panel panel = shares_panel(by_wavelength ? "wavelength (nm)" : "angle of incidence (degrees)");
   // Points where they stand apart, lines and bars alone where there are many.
   const Mark mark = std::max(angles, wavelengths) <= 40 ? Mark::disk : Mark::none;
   for (size_t i = 0; i < labels.size(); ++i) {
     Series r{labels[i], kSeriesColors[i], 1.5, {}, mark, 2.5}, t{"", r.color, 1.5, Dash::dashed, mark, 2.5};
-    for (const LabelledReading& l : readings) {
+    for (const LabelledMeasurement& l : measurements) {
       if (label_of(l) != labels[i]) continue;
-      const Estimate &up = l.reading.reflectance, &down = l.reading.transmittance;
+      const Estimate &up = l.measurement.reflectance, &down = l.measurement.transmittance;
       r.points.push_back(with_error(x_of(l), up.mean, up.standard_error()));
       t.points.push_back(with_error(x_of(l), 1 - down.mean, down.standard_error()));
     }

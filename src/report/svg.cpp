@@ -75,8 +75,8 @@ std::string mark_at(double x, double y, const Series& s) {
   if (s.mark == Mark::none) return "";
   const double width = s.mark < Mark::ring ? 0 : std::max(1.5, s.width) / s.mark_size;
   const std::string fill = s.mark == Mark::ring || s.mark == Mark::open_square ? "#fff" : s.color,
-                    place = fmt::format("translate({:.2f} {:.2f}) scale({})", x, y, s.mark_size);
-  return fmt::format("<path transform='{}' d='{}' fill='{}' stroke='{}' stroke-width='{:.3f}'/>\n", place,
+                    position = fmt::format("translate({:.2f} {:.2f}) scale({})", x, y, s.mark_size);
+  return fmt::format("<path transform='{}' d='{}' fill='{}' stroke='{}' stroke-width='{:.3f}'/>\n", position,
                      kMarks[size_t(s.mark)], fill, s.color, width);
 }
 
@@ -111,7 +111,7 @@ class PanelDrawing {
     out += "</g>\n";
     for (const Series& s : p_.series) {
       for (const ChartPoint& p : s.points)
-        if (is_inside(x_.place(p.x)) && is_inside(y_.place(p.y))) out += mark_at(x_at(p.x), y_at(p.y), s);
+        if (is_inside(x_.position(p.x)) && is_inside(y_.position(p.y))) out += mark_at(x_at(p.x), y_at(p.y), s);
       if (!s.text.empty() && !s.points.empty())
         out += text_at(x_at(s.points[0].x), y_at(s.points[0].y) + 4, s.text, kHalo);
     }
@@ -119,9 +119,9 @@ class PanelDrawing {
   }
 
  private:
-  static bool is_inside(double place) { return place >= -1e-6 && place <= 1 + 1e-6; }
-  double x_at(double v) const { return std::lerp(left_, right_, std::clamp(x_.place(v), -kFar, kFar)); }
-  double y_at(double v) const { return std::lerp(bottom_, top_, std::clamp(y_.place(v), -kFar, kFar)); }
+  static bool is_inside(double position) { return position >= -1e-6 && position <= 1 + 1e-6; }
+  double x_at(double v) const { return std::lerp(left_, right_, std::clamp(x_.position(v), -kFar, kFar)); }
+  double y_at(double v) const { return std::lerp(bottom_, top_, std::clamp(y_.position(v), -kFar, kFar)); }
   std::string frame() const {
     return fmt::format("M{:.2f},{:.2f}H{:.2f}V{:.2f}H{:.2f}Z", left_, top_, right_, bottom_, left_);
   }
@@ -131,7 +131,7 @@ class PanelDrawing {
     std::string path;
     bool goes_on = false;
     for (const ChartPoint& p : s.points) {
-      const bool has_place = std::isfinite(x_.place(p.x)) && std::isfinite(y_.place(p.y));
+      const bool has_place = std::isfinite(x_.position(p.x)) && std::isfinite(y_.position(p.y));
       if (has_place) path += fmt::format("{}{:.2f},{:.2f}", goes_on ? 'L' : 'M', x_at(p.x), y_at(p.y));
       goes_on = has_place;
     }
@@ -145,7 +145,7 @@ class PanelDrawing {
     // The ends of bars may lie where a logarithmic axis has nothing.
     const auto end = [&](double v) { return y_at(y_.is_logarithmic ? std::max(v, y_.range.low / 10) : v); };
     for (const ChartPoint& p : s.points)
-      if (p.bar.low < p.bar.high && std::isfinite(x_.place(p.x)))
+      if (p.bar.low < p.bar.high && std::isfinite(x_.position(p.x)))
         bars += fmt::format("M{:.2f},{:.2f}V{:.2f}", x_at(p.x), end(p.bar.low), end(p.bar.high));
     return stroke(s.width > 0 ? path_of(s) : "", s.color, s.width, s.dash) + stroke(bars, s.color, 1.2);
   }
@@ -204,7 +204,7 @@ Range Range::widened() const {
           std::pow(10, std::ceil(std::log10(high) * kSteps + 0.5) / kSteps)};
 }
 
-double Axis::place(double value) const {
+double Axis::position(double value) const {
   if (is_logarithmic) return std::log(value / range.low) / std::log(range.high / range.low);
   return (value - range.low) / (range.high - range.low);
 }

@@ -25,7 +25,7 @@ struct Column {
 
 /// A result as rows and columns. All columns have one length. This is what front ends print, write and convert.
 struct Table {
-  std::string name;  ///< "readings"; the key in JSON
+  std::string name;  ///< "measurements"; the key in JSON
   std::vector<Column> columns = {};
 
   size_t rows() const { return columns.empty() ? 0 : columns[0].size(); }

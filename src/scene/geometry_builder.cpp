@@ -79,7 +79,7 @@ void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where, 
                         doubles, (*mesh)->triangles.size()));
 }
 
-/// Turns shapes into surfaces and copies, objects in the order in which they hold each other.
+/// Turns shapes into surfaces and instances, objects in the order in which they hold each other.
 class GeometryBuilder {
  public:
   GeometryBuilder(const SceneDescription& description, const Registry& registry, SceneResolver& resolver,
@@ -98,7 +98,7 @@ class GeometryBuilder {
     ObjectParts world;
     problems_.attempt([&] {
       for (size_t i = 0; i < description_.objects.size(); ++i) visit(i);
-      world = parts_of(description_.shapes, description_.copies);
+      world = parts_of(description_.shapes, description_.instances);
     });
     problems_.check();
     return std::make_shared<const Geometry>(std::move(objects_), std::move(world), pool_.size());
@@ -113,23 +113,23 @@ class GeometryBuilder {
 
   uint32_t visit(size_t index) {
     const ObjectDescription& object = description_.objects[index];
-    if (visits_[index].is_open) fail(object.where, "object \"{}\" holds a copy of itself", object.name);
+    if (visits_[index].is_open) fail(object.where, "object \"{}\" holds an instance of itself", object.name);
     if (!visits_[index].place) {
       visits_[index].is_open = true;
-      ObjectParts parts = parts_of(object.shapes, object.copies);
+      ObjectParts parts = parts_of(object.shapes, object.instances);
       visits_[index] = {false, uint32_t(objects_.size())};
       objects_.push_back(std::move(parts));
     }
     return *visits_[index].place;
   }
 
-  ObjectParts parts_of(const std::vector<ShapeDescription>& shapes, const CopyList& copies) {
+  ObjectParts parts_of(const std::vector<ShapeDescription>& shapes, const InstanceList& set) {
     ObjectParts parts;
     for (const ShapeDescription& shape : shapes) problems_.attempt([&] { add(shape, parts); });
-    if (copies.objects.empty()) return parts;
-    Instances instances{.table = std::make_shared<const InstanceTable>(copies.maps), .objects = {}, .placement = {}};
-    const bool is_one = std::ranges::all_of(copies.objects, [&](uint32_t o) { return o == copies.objects.front(); });
-    for (const uint32_t object : std::span(copies.objects).first(is_one ? 1 : copies.objects.size()))
+    if (set.objects.empty()) return parts;
+    Instances instances{.table = std::make_shared<const InstanceTable>(set.maps), .objects = {}, .placement = {}};
+    const bool is_one = std::ranges::all_of(set.objects, [&](uint32_t o) { return o == set.objects.front(); });
+    for (const uint32_t object : std::span(set.objects).first(is_one ? 1 : set.objects.size()))
       instances.objects.push_back(visit(object));
     parts.instances.push_back(std::move(instances));
     return parts;
@@ -142,8 +142,8 @@ class GeometryBuilder {
     MadeShape made = made_by(info, where, [&] {
       return info.make(params, {shape.world_from_object, shape.reverse_orientation});
     });
-    if (const auto* copies = std::get_if<ObjectCopies>(&made))
-      parts.instances.push_back(instances(*copies, shape, params));
+    if (const auto* set = std::get_if<ObjectInstances>(&made))
+      parts.instances.push_back(instances(*set, shape, params));
     else
       for (ShapeGeometry& geometry : std::get<std::vector<ShapeGeometry>>(made))
         parts.surfaces.push_back(surface(std::move(geometry), info, shape, params));
@@ -165,17 +165,18 @@ class GeometryBuilder {
     return result;
   }
 
-  Instances instances(const ObjectCopies& copies, const ShapeDescription& shape, const Params& params) {
+  Instances instances(const ObjectInstances& set, const ShapeDescription& shape, const Params& params) {
     if (shape.area_light)
-      fail(shape.plugin.where, "copies of objects cannot give off light: area lights inside objects are not supported");
-    const auto object = by_name_.find(copies.object);
-    if (object == by_name_.end()) fail_unknown(copies.object, params.where("object"));
-    auto& table = tables_[copies.table];
-    if (!table) table = std::make_shared<const InstanceTable>(copies.table, params.where("filename"), pool_);
+      fail(shape.plugin.where,
+           "instances of objects cannot give off light: area lights inside objects are not supported");
+    const auto object = by_name_.find(set.object);
+    if (object == by_name_.end()) fail_unknown(set.object, params.where("object"));
+    auto& table = tables_[set.table];
+    if (!table) table = std::make_shared<const InstanceTable>(set.table, params.where("filename"), pool_);
     Instances result{.table = table, .objects = {visit(object->second)}, .placement = {shape.world_from_object.rows()}};
     result.is_placed = !(shape.world_from_object == Transform());
     if (const std::string problem = problem_of(result.placement); !problem.empty())
-      fail(shape.plugin.where, "these copies are not possible: {}", problem);
+      fail(shape.plugin.where, "these instances are not possible: {}", problem);
     return result;
   }
 
@@ -216,7 +217,7 @@ void check_instance_textures(const SceneSettings& description, const Geometry& g
     const std::string& wanted = std::get<std::vector<std::string>>(name.values).front();
     const auto column = std::ranges::find(columns, wanted, &InstanceColumn::name);
     if (column == columns.end())
-      fail(name.value_where, "no table of copies has a column \"{}\"{}", wanted,
+      fail(name.value_where, "no table of instances has a column \"{}\"{}", wanted,
            names.empty() ? ": none has any numbers beside \"transform\"" : suggestion(wanted, names));
     const auto& range = std::get<std::vector<double>>(find_param(texture.plugin.params, "range")->values);
     if (column->range.min < range[0] || column->range.max > range[1])

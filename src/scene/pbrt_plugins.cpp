@@ -17,7 +17,7 @@ namespace {
 /// dropped.
 struct StandIn {
   std::string_view name, ours;
-  std::string_view feature;                   ///< of --ignore-unsupported; empty: the picture is the same
+  std::string_view feature;                   ///< of --ignore-unsupported; empty: the image is the same
   std::span<const std::string_view> of_pbrt;  ///< parameters that it may have; empty: any
   std::string_view caution = {};
 };

@@ -42,7 +42,7 @@ class SceneResolver final : public ParamResolver {
 
   /// Without its bend, which is with those of `materials`.
   std::shared_ptr<Material> material(size_t index);
-  /// All that have been made, each once, by their places in the description.
+  /// All that have been made, each once, by their index in the description.
   const std::map<size_t, MadeMaterial>& materials() const { return materials_; }
 
  private:

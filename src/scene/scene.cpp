@@ -385,14 +385,14 @@ void Scene::add_details(uint32_t material, Hit& hit) const {
 bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const {
   if (!tiling_) return geometry_->intersect(ray, key, {is_detailed_.data()}, nearest, hit);
   float distance = INFINITY;
-  return tiling_->march(ray, [&](const Tiling::Copy& copy) {
+  return tiling_->march(ray, [&](const Tiling::Repeat& repeat) {
     GeometryHit at;
     Hit there_hit;
-    Ray there = copy.ray;
-    there.t_max = std::min(there.t_max, distance - copy.distance);
+    Ray there = repeat.ray;
+    there.t_max = std::min(there.t_max, distance - repeat.distance);
     if (!geometry_->intersect(there, key, {is_detailed_.data()}, at, there_hit)) return false;
-    distance = copy.distance + at.t;
-    there_hit.p += copy.shift;
+    distance = repeat.distance + at.t;
+    there_hit.p += repeat.shift;
     there_hit.extent = std::max(there_hit.extent, std::max(std::abs(there_hit.p.x), std::abs(there_hit.p.y)));
     nearest = at;
     hit = there_hit;
@@ -402,7 +402,7 @@ bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) 
 
 bool Scene::occluded(const Ray& ray, uint64_t key) const {
   if (!tiling_) return geometry_->occluded(ray, key);
-  return tiling_->march(ray, [&](const Tiling::Copy& copy) { return geometry_->occluded(copy.ray, key); });
+  return tiling_->march(ray, [&](const Tiling::Repeat& repeat) { return geometry_->occluded(repeat.ray, key); });
 }
 
 uint32_t Scene::occluded(const RayPacket& packet) const {

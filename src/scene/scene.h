@@ -48,7 +48,7 @@ class Scene final : public World {
   static FilmSettings film_settings(const SceneSettings& description, const Registry& registry,
                                     const Log& log = silent_log());
 
-  /// Which of the description's materials are leaves (Material::is_leaf), by place. A mixture of others is none: its
+  /// Which of the description's materials are leaves (Material::is_leaf), by index. A mixture of others is none: its
   /// parts stand for themselves. Throws InputError.
   static std::vector<size_t> leaf_materials(const SceneSettings& description, const Registry& registry);
 
@@ -82,8 +82,8 @@ class Scene final : public World {
   const Geometry& geometry() const { return *geometry_; }
   /// Along x and y, after which the scene is repeated; empty: it is not.
   std::optional<Vec2> period() const { return period_; }
-  /// That of the description at this place; nullptr where nothing is made of it.
-  const Material* material(size_t place) const { return material_at_[place]; }
+  /// The material of this index in the description; nullptr where nothing is made of it.
+  const Material* material(size_t index) const { return material_at_[index]; }
   int samples_per_pixel() const { return samples_per_pixel_; }
   /// Else all samples lie at the pixels' centres and the lens's.
   bool has_pixel_jitter() const { return has_pixel_jitter_; }
@@ -107,11 +107,11 @@ class Scene final : public World {
   std::unique_ptr<Sampler> sampler_;
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<Integrator> integrator_;
-  std::map<size_t, MadeMaterial> materials_;         ///< by their places in the description
+  std::map<size_t, MadeMaterial> materials_;         ///< by their index in the description
   std::map<size_t, ParsedPlugin> material_plugins_;  ///< what they were made from
   std::vector<const Material*> material_at_;         ///< `materials_` for hits; nullptr where nothing is made
-  std::vector<uint8_t> is_detailed_;                 ///< by place: whether hits need details
-  std::vector<const NormalBend*> bend_at_;           ///< by place; nullptr: none
+  std::vector<uint8_t> is_detailed_;                 ///< by index: whether hits need details
+  std::vector<const NormalBend*> bend_at_;           ///< by index; nullptr: none
   Footprint footprint_;
   std::shared_ptr<const LightTable> lights_;
   std::shared_ptr<const Geometry> geometry_;

@@ -45,15 +45,15 @@ constexpr Param kOptionParams[] = {
     {.name = "msereferenceimage",
      .kind = ParamKind::string,
      .default_value = std::string_view(),
-     .doc = "pbrt's; has no effect: frond difference compares pictures."},
+     .doc = "pbrt's; has no effect: frond difference compares images."},
     {.name = "msereferenceout",
      .kind = ParamKind::string,
      .default_value = std::string_view(),
-     .doc = "pbrt's; has no effect: frond difference compares pictures."},
+     .doc = "pbrt's; has no effect: frond difference compares images."},
     {.name = "rendercoordsys",
      .kind = ParamKind::string,
      .default_value = std::string_view("cameraworld"),
-     .doc = "pbrt's; has no effect: it does not change the picture.",
+     .doc = "pbrt's; has no effect: it does not change the image.",
      .choices = kCoordSystems},
 };
 constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};

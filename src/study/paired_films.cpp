@@ -20,11 +20,11 @@ int film_exponent(const Scene& scene) {
 
 PairedFilms::PairedFilms(const FilmSettings& film, int exponent, std::array<uint64_t, 2> seeds,
                          const SceneSettings& description, const Registry& registry, const Scene& scene,
-                         std::vector<PixelPlace> places)
+                         std::vector<PixelPosition> pixels)
     : seeds_(seeds),
       samplers_{make_sampler(description, registry, scene.wavelengths(), seeds[0]),
                 make_sampler(description, registry, scene.wavelengths(), seeds[1])},
-      places_(std::move(places)),
+      pixels_(std::move(pixels)),
       films_{Film({film}), Film({film})} {
   const FilmFormat format{.settings = film, .bands = scene.wavelengths().bands().size(), .exponent = exponent};
   for (Film& half : films_) half = Film(format);
@@ -32,7 +32,7 @@ PairedFilms::PairedFilms(const FilmSettings& film, int exponent, std::array<uint
 
 RenderJob PairedFilms::job(size_t half, const Scene& scene) const {
   return {scene,          scene.camera(),   scene.integrator(), scene.wavelengths(),
-          scene.filter(), *samplers_[half], seeds_[half],       places_};
+          scene.filter(), *samplers_[half], seeds_[half],       pixels_};
 }
 
 void PairedFilms::advance_to(uint64_t samples, const Scene& scene, const ThreadPool& pool, Progress* progress) {

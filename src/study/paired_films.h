@@ -19,14 +19,14 @@ std::unique_ptr<Sampler> make_sampler(const SceneSettings& description, const Re
 /// The unit of films of a scene (FilmFormat).
 int film_exponent(const Scene& scene);
 
-/// Two renders of one picture with seeds of their own, which tell noise from bias. They can be continued to more
+/// Two renders of one image with seeds of their own, which tell noise from bias. They can be continued to more
 /// samples at any time, and then hold the very sums of a render that had all of them at once.
 class PairedFilms {
  public:
   /// By the description's sampler; films of the scene's wavelengths, with their colours as they are, in units of
-  /// 2^exponent. `places`: as in a RenderJob.
+  /// 2^exponent. `pixels`: as in a RenderJob.
   PairedFilms(const FilmSettings& film, int exponent, std::array<uint64_t, 2> seeds, const SceneSettings& description,
-              const Registry& registry, const Scene& scene, std::vector<PixelPlace> places = {});
+              const Registry& registry, const Scene& scene, std::vector<PixelPosition> pixels = {});
 
   /// Up to so many samples a pixel; nothing where there are as many. `scene` is that of the constructor.
   void advance_to(uint64_t samples, const Scene& scene, const ThreadPool& pool, Progress* progress);
@@ -42,7 +42,7 @@ class PairedFilms {
 
   std::array<uint64_t, 2> seeds_;
   std::array<std::unique_ptr<Sampler>, 2> samplers_;
-  std::vector<PixelPlace> places_;
+  std::vector<PixelPosition> pixels_;
   std::array<Film, 2> films_;
   uint64_t samples_ = 0;
   RenderCost cost_;

@@ -251,7 +251,7 @@ TEST(Architecture, TypesOfOneNameAreDefinedOnce) {
     EXPECT_EQ(files.size(), 1u) << name << ": " << testing::PrintToString(files);
 }
 
-// Linking it takes 0.3 s: it is opened where a picture needs it (image/image_codec.h).
+// Linking it takes 0.3 s: it is opened where an image needs it (image/image_codec.h).
 TEST(Architecture, OpenImageIOIsCalledByItsModuleAlone) {
   int includes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FROND_SOURCE_DIR "/src")) {

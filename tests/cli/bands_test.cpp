@@ -117,7 +117,7 @@ TEST_F(BandCommands, WriteTheResponsesPointByPoint) {
   EXPECT_EQ(file.header.text.at(spectral_channel(840.25)), "839.25nm:0;840.25nm:0.125;841.25nm:0;");
 }
 
-TEST_F(BandCommands, AreNoPictureUntilThreeAreChosen) {
+TEST_F(BandCommands, AreNoImageUntilThreeAreChosen) {
   const Outcome png = render("bands,wavelengths=650,551,900", "a.png");
   EXPECT_EQ(png.code, 1);
   EXPECT_THAT(png.err, HasSubstr("frond convert --bands"));

@@ -183,7 +183,7 @@ TEST_F(Commands, RenderWritesWhatItSays) {
   EXPECT_THAT(o.err, IsEmpty());
   const auto json = nlohmann::json::parse(o.out);
   EXPECT_EQ(json["samples_per_pixel"], 3);
-  EXPECT_EQ(json["paths"], 26 * 18 * 3);  // samples of the pixels around reach into the picture
+  EXPECT_EQ(json["paths"], 26 * 18 * 3);  // samples of the pixels around reach into the image
   const ImageFile file = read_image(path("a.exr"), {});
   EXPECT_EQ(file.image.width, 24);
   EXPECT_EQ(file.image.height, 16);
@@ -339,7 +339,7 @@ Shape "sphere"
   EXPECT_EQ(nlohmann::json::parse(o.out)["paths_absorbed_by_depth"].get<std::vector<int>>(), (std::vector{0, 16}));
 }
 
-TEST_F(Commands, APictureSaysThroughWhichViewItWasMade) {
+TEST_F(Commands, AnImageSaysThroughWhichViewItWasMade) {
   ASSERT_EQ(render({"-o", path("a.png"), "--spp", "1", "-q", "--display", "sRGB"}).code, 0);
   EXPECT_EQ(read_image(path("a.png"), {}).header.text.at("frond:command"),
             "frond render scene.pbrt --spp 1 --display sRGB");
@@ -347,7 +347,7 @@ TEST_F(Commands, APictureSaysThroughWhichViewItWasMade) {
 
 TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
   const auto before = files();
-  for (const std::string& output : {path("no/such/folder.exr"), path("picture.xyz"), folder_.name_of(".")}) {
+  for (const std::string& output : {path("no/such/folder.exr"), path("image.xyz"), folder_.name_of(".")}) {
     const Outcome o = render({"-o", output, "--spp", "100000000"});  // would take days
     EXPECT_EQ(o.code, 1) << output;
     EXPECT_THAT(o.err, ::testing::Not(IsEmpty()));
@@ -453,7 +453,7 @@ TEST_F(Commands, WhatTheOutputCannotHoldIsRefusedFirst) {
   EXPECT_THAT(refusal({"-o", path("x.png"), "--display", "foo"}), HasSubstr("unknown display \"foo\""));
   EXPECT_THAT(refusal({"-o", path("x.png"), "--view", "foo"}), HasSubstr("unknown view of display sRGB \"foo\""));
   EXPECT_THAT(refusal({"-o", path("x.png"), "--wavelengths", "bands,wavelengths=450,900"}),
-              HasSubstr("bands are no picture"));
+              HasSubstr("bands are no image"));
   EXPECT_THAT(refusal({"-o", path("x.exr"), "--view", "Raw"}), HasSubstr("holds linear values"));
   EXPECT_THAT(refusal({"-o", path("x.png")}), HasSubstr("no_such"));
 }

@@ -98,12 +98,12 @@ TEST(Conform, JsonHasEveryLawAndFinding) {
   EXPECT_EQ(failures, law(Law::sampling)["failures"]);
 }
 
-TEST(Conform, PicturesShowTheWorstFinding) {
+TEST(Conform, ImagesShowTheWorstFinding) {
   const TestFolder folder("conform");
   for (const char* material : {"wrong_warp", "lost_energy", "good"}) {
     if (!png_refusal().empty()) break;
     const std::string path = folder.name_of(std::string(material) + ".png");
-    EXPECT_THAT(conform_planted({material, "--picture", path}).err, IsEmpty());
+    EXPECT_THAT(conform_planted({material, "--map", path}).err, IsEmpty());
     EXPECT_EQ(read_image(path, {}).image.width, 1000);
   }
   const std::string svg = folder.name_of("a.svg");
@@ -123,7 +123,7 @@ TEST(Conform, BadUseExitsWithOne) {
                                              {"abm", "--wavelengths", "3000"},
                                              {"mix"},
                                              {"diffuse", "--wavelengths", "0"},
-                                             {"diffuse", "--picture", "picture.gif"},
+                                             {"diffuse", "--map", "map.gif"},
                                              {"diffuse", "--json", "/no/such/folder/a.json"}}) {
     const Outcome o = conform(arguments);
     EXPECT_EQ(o.code, 1) << ::testing::PrintToString(arguments);

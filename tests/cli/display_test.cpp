@@ -79,7 +79,7 @@ TEST_F(LiveDisplay, ShowsWhatTheFileHoldsInTheEnd) {
   }
 }
 
-TEST_F(LiveDisplay, ShowsPartsAndPicturesOfEightBitsToo) {
+TEST_F(LiveDisplay, ShowsPartsAndImagesOfEightBitsToo) {
   for (const char* output : {"a.png", "a.part"}) {
     TevListener listener;
     const Outcome o =
@@ -131,7 +131,7 @@ TEST_F(LiveDisplay, HasAnAddress) {
 }
 
 // Whether a viewer is at home there or not.
-TEST_F(LiveDisplay, TevIsNoDisplayOfPictures) {
+TEST_F(LiveDisplay, TevIsNoDisplayOfImages) {
   const Outcome o = render("a.exr", {"--display", "tev", "--spp", "1"});
   EXPECT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.err, ::testing::AnyOf(Not(HasSubstr("display:")), HasSubstr("127.0.0.1:14158")));

@@ -52,10 +52,10 @@ TEST_F(GoniophotometerCommand, JsonSaysTheSameAsCsv) {
   ASSERT_EQ(o.code, 0) << o.err;
   const auto json = nlohmann::json::parse(o.out);
   const CsvTable csv = parse_csv(bytes_of(path("a.csv")));
-  ASSERT_EQ(json["readings"].size(), 48u);
+  ASSERT_EQ(json["measurements"].size(), 48u);
   ASSERT_EQ(csv.rows.size(), 48u);
   for (size_t i = 0; i < csv.rows.size(); ++i) {
-    const auto& patch = json["readings"][i];
+    const auto& patch = json["measurements"][i];
     EXPECT_EQ(patch["kind"], csv.text(i, "kind"));
     EXPECT_EQ(patch["caught"], csv.number(i, "caught"));
     EXPECT_NEAR(patch["f_per_sr"].get<double>(), csv.number(i, "f_per_sr"), 1e-6);

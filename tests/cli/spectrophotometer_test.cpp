@@ -60,10 +60,10 @@ TEST_F(SpectrophotometerCommand, JsonSaysTheSameAsCsv) {
   ASSERT_EQ(o.code, 0) << o.err;
   const auto json = nlohmann::json::parse(o.out);
   const CsvTable csv = parse_csv(bytes_of(path("a.csv")));
-  ASSERT_EQ(json["readings"].size(), csv.rows.size());
+  ASSERT_EQ(json["measurements"].size(), csv.rows.size());
   for (size_t i = 0; i < csv.rows.size(); ++i)
     for (const std::string& name : csv.names) {
-      const auto& value = json["readings"][i][name];
+      const auto& value = json["measurements"][i][name];
       if (value.is_number()) {
         EXPECT_NEAR(value.get<double>(), csv.number(i, name), 1e-3 * std::abs(value.get<double>())) << name;
       } else {

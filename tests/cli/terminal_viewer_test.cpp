@@ -70,7 +70,7 @@ TEST(TerminalViewers, DrawOverWhatTheyHaveDrawn) {
   terminal.resize(200, 6);
   viewer.show(white_image(60, 30));  // 16 x 8 pixels: two lines are left
   const std::string line = "\x1b[0m\r\n", white = "\x1b[38;2;255;255;255m\x1b[48;2;255;255;255m▀";
-  const auto picture = [&](int columns, int rows) {
+  const auto image = [&](int columns, int rows) {
     std::string text;
     for (int y = 0; y < rows; y += 2) {
       for (int x = 0; x < columns; ++x) text += y + 1 < rows ? white : "\x1b[38;2;255;255;255m▀";
@@ -78,8 +78,8 @@ TEST(TerminalViewers, DrawOverWhatTheyHaveDrawn) {
     }
     return text;
   };
-  EXPECT_EQ(terminal.text(), "\r\x1b[K\x1b[J" + picture(30, 15) + "\r\x1b[8A" + picture(30, 15) + "\r\x1b[8A\x1b[J" +
-                                 picture(10, 5) + "\r\x1b[3A\x1b[J" + picture(16, 8));
+  EXPECT_EQ(terminal.text(), "\r\x1b[K\x1b[J" + image(30, 15) + "\r\x1b[8A" + image(30, 15) + "\r\x1b[8A\x1b[J" +
+                                 image(10, 5) + "\r\x1b[3A\x1b[J" + image(16, 8));
 }
 
 TEST(TerminalViewers, RefuseDisplaysThatAreNotThere) {

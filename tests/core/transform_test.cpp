@@ -82,7 +82,7 @@ TEST(Transform, LooksAlongZAndTakesTheWorldForLeftHanded) {
   const Transform camera_from_world = Transform::look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
   expect_near(camera_from_world.point({0, 0, 5}), {0, 0, 0}, 0);
   expect_near(camera_from_world.point({0, 0, 0}), {0, 0, 5}, 0);
-  // Camera +x is the right of the picture: in a left-handed world with y up, seen from +z, that is -x.
+  // Camera +x is the right of the image: in a left-handed world with y up, seen from +z, that is -x.
   expect_near(camera_from_world.point({-1, 0, 0}), {1, 0, 5}, 0);
   expect_near(camera_from_world.point({0, 1, 0}), {0, 1, 5}, 0);
 }

@@ -45,9 +45,8 @@ TEST(KlemsBasis, NodesFindMeansOverTheirPatch) {
 
 // f = (2 + light.z) (3 + seen.z) + light.x, which tells sides and directions apart.
 TEST(KlemsMatrices, HoldMeansOfEachPairOnEachSide) {
-  const PlantedSubject planted(
-      [](const Vec3& seen, const Vec3& light) { return (2 + light.z) * (3 + seen.z) + light.x; });
-  const KlemsMatrices m(planted.subject(), {500});
+  const Planted planted([](const Vec3& seen, const Vec3& light) { return (2 + light.z) * (3 + seen.z) + light.x; });
+  const KlemsMatrices m(planted.exported(), {500});
   EXPECT_LT(m.error(), std::numbers::pi * 12 * 2e-4 + 2e-5);  // f is 12 at most
   EXPECT_EQ(m.unsettled(), 0u);
   for (const size_t in : {0ul, 1ul, 9ul, 77ul, 144ul})
@@ -64,19 +63,19 @@ TEST(KlemsMatrices, HoldMeansOfEachPairOnEachSide) {
 }
 
 TEST(KlemsMatrices, SayWhereALobeIsTooNarrow) {
-  const PlantedSubject planted([](const Vec3& seen, const Vec3& light) {
+  const Planted planted([](const Vec3& seen, const Vec3& light) {
     const float across = std::hypot(seen.x + light.x, seen.y + light.y);
     return seen.z * light.z > 0 ? 100 * std::exp(-1e6f * across * across) : 0;
   });
-  const KlemsMatrices m(planted.subject(), {500});
+  const KlemsMatrices m(planted.exported(), {500});
   EXPECT_GT(m.unsettled(), 100u);
   EXPECT_GT(m.error(), 1e-3);
 }
 
 TEST(ExportedBsdf, RefusesWhatNoTableCanHold) {
   const auto with = [](Lobes flags, float index) {
-    const PlantedSubject planted([](const Vec3&, const Vec3&) { return 1.f; }, flags, index);
-    return error_of([&] { ExportedBsdf(planted.subject(), {500}); });
+    const Planted planted([](const Vec3&, const Vec3&) { return 1.f; }, flags, index);
+    return error_of([&] { ExportedBsdf(planted.exported(), {500}); });
   };
   EXPECT_EQ(with(Lobes::reflection, 1), "");
   EXPECT_THAT(with(Lobes::stochastic, 1), ::testing::HasSubstr("planted: its f is a random estimate"));

@@ -25,7 +25,7 @@ def direction(theta_deg, phi_deg, front):
 
 
 class Sheet:
-    """A square in the plane z = 0, its front up, that fills the picture."""
+    """A square in the plane z = 0, its front up, that fills the image."""
 
     def __init__(self, shader):
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -85,12 +85,12 @@ class Sheet:
         self.sun.rotation_euler = Vector(toward).to_track_quat("Z", "Y").to_euler()
         self.sun.data.energy = irradiance
 
-    def picture(self, width, height, samples):
+    def image(self, width, height, samples):
         """Rows from below, of red, green and blue."""
         self.scene.cycles.samples = samples
         self.scene.render.resolution_x, self.scene.render.resolution_y = width, height
         with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "picture.exr"
+            path = pathlib.Path(folder) / "image.exr"
             self.scene.render.filepath = str(path)
             bpy.ops.render.render(write_still=True)
             image = bpy.data.images.load(str(path))
@@ -104,11 +104,11 @@ class Sheet:
         self.camera.data.type, self.camera.data.ortho_scale = "ORTHO", 0.1
         self.camera.location = [10 * x for x in toward]
         self.camera.rotation_euler = Vector(toward).to_track_quat("Z", "Y").to_euler()
-        pixels = sum(self.picture(PIXELS, PIXELS, samples), [])
+        pixels = sum(self.image(PIXELS, PIXELS, samples), [])
         return [sum(p[c] for p in pixels) / len(pixels) for c in range(3)]
 
     def seen_from_everywhere(self, step_deg, front):
-        """Radiance toward directions of one side: [theta, phi, colour], by a picture of all directions from a point close
+        """Radiance toward directions of one side: [theta, phi, colour], by an image of all directions from a point close
         to the sheet."""
         camera = self.camera.data
         camera.type = "PANO"
@@ -117,10 +117,10 @@ class Sheet:
                 holder.panorama_type = "EQUIRECTANGULAR"
         camera.clip_start = 1e-6
         self.camera.location = (0, 0, 1e-3 if front else -1e-3)
-        self.camera.rotation_euler = (math.pi / 2, 0, 0)  # the middle of the picture is +y, its right +x, its top +z
+        self.camera.rotation_euler = (math.pi / 2, 0, 0)  # the middle of the image is +y, its right +x, its top +z
         width, height = round(360 / step_deg), round(180 / step_deg)
         found = []
-        for y, row in enumerate(self.picture(width, height, 1)):
+        for y, row in enumerate(self.image(width, height, 1)):
             latitude = (y + 0.5) * step_deg - 90
             if (latitude < 0) != front:
                 continue
@@ -150,7 +150,7 @@ def main():
         else:
             (theta, front, viewer_in_front), step = question["f"], question["step"]
             sheet.sky(0, 0)
-            sheet.sunlight(direction(theta, step / 2, front), 1)  # so that a column of the picture is at its azimuth
+            sheet.sunlight(direction(theta, step / 2, front), 1)  # so that a column of the image is at its azimuth
             cosine = math.cos(math.radians(theta))
             answers.append([[t, (p - step / 2) % 360, [x / cosine for x in color]]
                             for t, p, color in sheet.seen_from_everywhere(step, viewer_in_front)])

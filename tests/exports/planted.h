@@ -3,20 +3,20 @@
 #include <functional>
 
 #include "core/bsdf.h"
-#include "exports/subject.h"
+#include "exports/exported_bsdf.h"
 #include "tests/support/input_error.h"
 
 namespace frond {
 
 /// A material whose f is any function of where it is seen from and where light comes from.
-class PlantedSubject {
+class Planted {
  public:
   using F = std::function<float(const Vec3& seen, const Vec3& light)>;
 
-  explicit PlantedSubject(F f, Lobes flags = Lobes::reflection | Lobes::transmission, float index_ratio = 1)
+  explicit Planted(F f, Lobes flags = Lobes::reflection | Lobes::transmission, float index_ratio = 1)
       : material_(std::make_shared<PlantedMaterial>(PlantedBsdf{std::move(f), flags, index_ratio})) {}
 
-  ExportSubject subject() const {
+  ExportMaterial exported() const {
     return {"planted", [this](const std::vector<double>&) { return material_; }, 0, pool_, silent_log()};
   }
 

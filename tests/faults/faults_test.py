@@ -240,15 +240,15 @@ class OneOutput(FrondTest):
 
     def test_without_checkpoints_the_last_one_stays(self):
         output = self.folder / "a.exr"
-        pictures = []
+        images = []
         for seed in (1, 2):
             self.run_to_end(self.command(output, "--seed", seed, "-q"))
-            pictures.append(output.read_bytes())
+            images.append(output.read_bytes())
         for _ in range(3):
             both = [self.start(self.command(output, "--seed", seed, "-q")) for seed in (1, 2)]
             for process in both:
                 self.assertEqual(process.wait(), 0)
-            self.assertIn(output.read_bytes(), pictures)
+            self.assertIn(output.read_bytes(), images)
         self.assertEqual(self.files(), ["a.exr", "scene.pbrt"])
 
 

@@ -79,14 +79,14 @@ SphereBox box_of(const Patch& p) {
 
 /// Chi-square test of what the detectors caught against the integrals of f. All rays weigh the same.
 void expect_agreement(const Prepared& specimen, double theta, const DetectorSphere& sphere, int64_t rays) {
-  const Exposure exposure = specimen.under(theta);
-  const auto reading = measure_f(exposure, sphere, rays, kPool);
-  const auto exact = integrate_f(exposure, sphere, kPool);
+  const LitMaterial lit = specimen.under(theta);
+  const auto measurement = measure_f(lit, sphere, rays, kPool);
+  const auto exact = integrate_f(lit, sphere, kPool);
   std::vector<double> observed, expected;
   double weight = 0;
   for (size_t i = 0; i < sphere.size(); ++i) {
     weight += exact.integral[i];
-    observed.push_back(double(reading.count(i)));
+    observed.push_back(double(measurement.count(i)));
     expected.push_back(exact.integral[i] * double(rays));
   }
   double absorbed = double(rays);
@@ -97,7 +97,7 @@ void expect_agreement(const Prepared& specimen, double theta, const DetectorSphe
   EXPECT_EQ(absorbed, 0);
   EXPECT_GT(chi_square_p(observed, expected), kFalseAlarmRate) << theta;
   for (size_t i = 0; i < sphere.size(); ++i) {
-    const Estimate f = reading.f(i);
+    const Estimate f = measurement.f(i);
     const double count = observed[i], area = sphere.patch(i).projected_solid_angle;
     EXPECT_NEAR(f.mean, weight * count / (double(rays) * area), 1e-4 * f.mean + 1e-12);
   }
@@ -106,9 +106,9 @@ void expect_agreement(const Prepared& specimen, double theta, const DetectorSphe
 TEST(Goniophotometer, MeasuresALambertianSurface) {
   const Prepared sheet("diffusetransmission", {level("reflectance", 0.3), level("transmittance", 0.55)}, 1000);
   for (const double theta : {0.0, 45.0, 150.0}) expect_agreement(sheet, theta, DetectorSphere(20, 40), 300000);
-  const auto reading = measure_f(sheet.under(30), DetectorSphere(2, 1), 300000, kPool);
-  EXPECT_GT(equality_p(reading.f(0), {0.3 / std::numbers::pi, 0, 0}, 1e-6), kFalseAlarmRate);
-  EXPECT_GT(equality_p(reading.f(1), {0.55 / std::numbers::pi, 0, 0}, 1e-6), kFalseAlarmRate);
+  const auto measurement = measure_f(sheet.under(30), DetectorSphere(2, 1), 300000, kPool);
+  EXPECT_GT(equality_p(measurement.f(0), {0.3 / std::numbers::pi, 0, 0}, 1e-6), kFalseAlarmRate);
+  EXPECT_GT(equality_p(measurement.f(1), {0.55 / std::numbers::pi, 0, 0}, 1e-6), kFalseAlarmRate);
 }
 
 TEST(Goniophotometer, MeasuresALeafWithThreeLobes) {
@@ -120,11 +120,11 @@ TEST(Goniophotometer, MeasuresALeafWithThreeLobes) {
 // What the walk sends out and what f says of the walk are estimated apart: two-sample test in every patch.
 TEST(Goniophotometer, AgreesWithTheWalksOwnF) {
   const Prepared leaf("abm", {}, 800);
-  const Exposure exposure = leaf.under(30);
+  const LitMaterial lit = leaf.under(30);
   const DetectorSphere sphere(6, 6);
-  const auto reading = measure_f(exposure, sphere, 200000, kPool);
+  const auto measurement = measure_f(lit, sphere, 200000, kPool);
   Arena arena;
-  const Bsdf& bsdf = bsdf_of(exposure.material, exposure.beam, arena);
+  const Bsdf& bsdf = bsdf_of(lit.material, lit.beam, arena);
   for (size_t i = 0; i < sphere.size(); ++i) {
     RandomStream numbers(hash_key(5, i));
     const Patch patch = sphere.patch(i);
@@ -132,25 +132,25 @@ TEST(Goniophotometer, AgreesWithTheWalksOwnF) {
     for (int n = 0; n < 3000; ++n) {
       const double a = numbers.uniform_open(), b = numbers.uniform_open();
       const Vec3 w = box_of(patch).at(a, b);
-      f.add(double(bsdf.f(toward_light(exposure.beam), w, numbers)[0] * std::abs(w.z)) * patch.solid_angle /
+      f.add(double(bsdf.f(toward_light(lit.beam), w, numbers)[0] * std::abs(w.z)) * patch.solid_angle /
             patch.projected_solid_angle);
     }
-    EXPECT_GT(equality_p(reading.f(i), f.estimate(), 1e-6), sidak_level(kFalseAlarmRate, sphere.size())) << i;
+    EXPECT_GT(equality_p(measurement.f(i), f.estimate(), 1e-6), sidak_level(kFalseAlarmRate, sphere.size())) << i;
   }
 }
 
 TEST(Goniophotometer, IntegratesALambertianSurface) {
   const Prepared sheet("diffusetransmission", {level("reflectance", 0.3), level("transmittance", 0.55)}, 1000);
   for (const double theta : {0.0, 45.0, 150.0}) {
-    const auto reading = integrate_f(sheet.under(theta), DetectorSphere(20, 40), kPool);
-    EXPECT_TRUE(reading.is_integrated());
-    for (size_t i = 0; i < reading.sphere.size(); ++i) {
-      const bool reflected = reading.is_reflected(reading.sphere.patch(i));
-      EXPECT_NEAR(reading.f(i).mean, (reflected ? 0.3 : 0.55) / std::numbers::pi, 1e-6);
-      EXPECT_EQ(reading.f(i).variance, 0);
+    const auto measurement = integrate_f(sheet.under(theta), DetectorSphere(20, 40), kPool);
+    EXPECT_TRUE(measurement.is_integrated());
+    for (size_t i = 0; i < measurement.sphere.size(); ++i) {
+      const bool reflected = measurement.is_reflected(measurement.sphere.patch(i));
+      EXPECT_NEAR(measurement.f(i).mean, (reflected ? 0.3 : 0.55) / std::numbers::pi, 1e-6);
+      EXPECT_EQ(measurement.f(i).variance, 0);
     }
-    EXPECT_NEAR(reading.share(true).mean, 0.3, 1e-6);
-    EXPECT_NEAR(reading.share(false).mean, 0.55, 1e-6);
+    EXPECT_NEAR(measurement.share(true).mean, 0.3, 1e-6);
+    EXPECT_NEAR(measurement.share(false).mean, 0.55, 1e-6);
   }
 }
 
@@ -159,20 +159,21 @@ TEST(Goniophotometer, IntegratesWhatTheSolverKnows) {
   for (const char* incident : {"traced", "light"})
     for (const double theta : {0.0, 30.0, 80.0, 100.0}) {
       const Prepared leaf("leaf_simplified", {word("incident", incident), real("oblateness", 1000)}, 551);
-      const auto reading = integrate_f(leaf.under(theta), DetectorSphere(20, 40), kPool);
+      const auto measurement = integrate_f(leaf.under(theta), DetectorSphere(20, 40), kPool);
       const auto shares = measure_shares(leaf.under(theta), {.rays = 300000}, kPool);
-      EXPECT_GT(equality_p({reading.share(true).mean, 0, 0}, shares.reflectance, 1e-4), kFalseAlarmRate) << theta;
-      EXPECT_GT(equality_p({reading.share(false).mean, 0, 0}, shares.transmittance, 1e-4), kFalseAlarmRate) << theta;
+      EXPECT_GT(equality_p({measurement.share(true).mean, 0, 0}, shares.reflectance, 1e-4), kFalseAlarmRate) << theta;
+      EXPECT_GT(equality_p({measurement.share(false).mean, 0, 0}, shares.transmittance, 1e-4), kFalseAlarmRate)
+          << theta;
     }
 }
 
 TEST(Goniophotometer, IntegratesAsRendered) {
   const Prepared leaf("leaf_solved", {}, 551);
-  Exposure exposure = leaf.under(60);
-  const auto model = integrate_f(exposure, DetectorSphere(6, 6), kPool);
-  exposure.as_rendered = true;
-  const auto rendered = integrate_f(exposure, DetectorSphere(6, 6), kPool);
-  const auto rays = measure_f(exposure, DetectorSphere(6, 6), 300000, kPool);
+  LitMaterial lit = leaf.under(60);
+  const auto model = integrate_f(lit, DetectorSphere(6, 6), kPool);
+  lit.as_rendered = true;
+  const auto rendered = integrate_f(lit, DetectorSphere(6, 6), kPool);
+  const auto rays = measure_f(lit, DetectorSphere(6, 6), 300000, kPool);
   for (size_t i = 0; i < rays.sphere.size(); ++i)
     EXPECT_GT(equality_p(rays.f(i), rendered.f(i), 1e-5), sidak_level(kFalseAlarmRate, rays.sphere.size())) << i;
   EXPECT_NE(model.f(0).mean, rendered.f(0).mean);
@@ -204,8 +205,9 @@ TEST(Goniophotometer, StandardErrorsAreThoseOfRepeatedMeasurements) {
   const DetectorSphere sphere(4, 6);
   std::vector<Moments> means(sphere.size()), variances(sphere.size());
   for (uint64_t seed = 1; seed <= kTimes; ++seed) {
-    const auto reading = measure_f(leaf.under(30, seed), sphere, 2000, kPool);
-    for (size_t i = 0; i < sphere.size(); ++i) means[i].add(reading.f(i).mean), variances[i].add(reading.f(i).variance);
+    const auto measurement = measure_f(leaf.under(30, seed), sphere, 2000, kPool);
+    for (size_t i = 0; i < sphere.size(); ++i)
+      means[i].add(measurement.f(i).mean), variances[i].add(measurement.f(i).variance);
   }
   const boost::math::chi_squared distribution(kTimes - 1);
   for (size_t i = 0; i < sphere.size(); ++i) {

@@ -51,14 +51,14 @@ TEST(PairedDifference, NoiseBelowNothingDoesNotNarrowTheInterval) {
 
 /// One part in fifty of 4096 pixels is off, log-normally, with normal noise in each half. How often the upper bound
 /// lies below the truth.
-int64_t misses(double sigma, double z, int64_t pictures) {
+int64_t misses(double sigma, double z, int64_t images) {
   constexpr double kShare = 0.02, kNoise = 0.5;
   const double truth = kShare * std::exp(2 * sigma * sigma);
   std::mt19937_64 rng(7);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   int64_t count = 0;
-  for (int64_t i = 0; i < pictures; ++i) {
+  for (int64_t i = 0; i < images; ++i) {
     PairedDifference d{{}, 1};
     for (size_t pixel = 0; pixel < 4096; ++pixel) {
       const double bias = uniform(rng) < kShare ? std::exp(sigma * normal(rng)) : 0;
@@ -69,20 +69,20 @@ int64_t misses(double sigma, double z, int64_t pictures) {
   return count;
 }
 
-constexpr int64_t kPictures = 2000;
+constexpr int64_t kImages = 2000;
 
 TEST(PairedDifference, AnIntervalHoldsAsOftenAsItSays) {
   for (const double tail : {0.05, 0.005})
-    EXPECT_GT(binomial_p(misses(0, normal_upper_quantile(tail), kPictures), kPictures, 0.9 * tail, 1.1 * tail), 1e-6);
+    EXPECT_GT(binomial_p(misses(0, normal_upper_quantile(tail), kImages), kImages, 0.9 * tail, 1.1 * tail), 1e-6);
 }
 
 /// Where few pixels have most of the error a single bound holds less often than it says. Those of the chooser, which
 /// are taken at the level of all its comparisons (here 80), still miss less than the 5 % that all of them together may.
 TEST(PairedDifference, SimultaneousBoundsHoldWhereFewPixelsHaveMostOfTheError) {
   const double z = normal_upper_quantile(sidak_level(0.05, 80));
-  const int64_t missed = misses(1, z, kPictures);
+  const int64_t missed = misses(1, z, kImages);
   RecordProperty("missed", std::to_string(missed));  // docs/choosing.md
-  EXPECT_GT(binomial_p(missed, kPictures, 0, 0.05), 1e-6);
+  EXPECT_GT(binomial_p(missed, kImages, 0, 0.05), 1e-6);
 }
 
 TEST(PairedDifference, OfNothingIsNothing) {

@@ -24,7 +24,7 @@ inline double score(double count, double rays, double probability) {
 
 /// All rays that leave weigh 1, as those of an analog walk: then the counts are multinomial, and the exact integrals
 /// tell their variances too.
-inline PatchComparison compare(const GoniophotometerReading& walked, const GoniophotometerReading& exact) {
+inline PatchComparison compare(const GoniophotometerMeasurement& walked, const GoniophotometerMeasurement& exact) {
   PatchComparison result;
   const auto rays = static_cast<double>(walked.rays);
   std::vector<double> observed, expected;

@@ -12,15 +12,15 @@ constexpr size_t kPixels = 20000;
 /// Each bound below fails by chance less than once in a million seeds.
 constexpr double kZ = 5;
 
-struct Pictures {
+struct Images {
   std::vector<float> a1, a2, r1, r2;
 };
 
 /// A candidate that is off by `bias` in every other pixel, with normal noise.
-Pictures pictures(double bias, double noise, double reference_noise) {
+Images images(double bias, double noise, double reference_noise) {
   std::mt19937_64 rng(7);
   std::normal_distribution<double> normal;
-  Pictures p;
+  Images p;
   for (size_t i = 0; i < kPixels; ++i) {
     const double truth = 0.3 + 0.2 * std::sin(double(i)), off = i % 2 == 0 ? bias : 0;
     p.a1.push_back(float(truth + off + noise * normal(rng)));
@@ -31,7 +31,7 @@ Pictures pictures(double bias, double noise, double reference_noise) {
   return p;
 }
 
-RenderError error_of(const Pictures& p, std::span<const float> use = {}) {
+RenderError error_of(const Images& p, std::span<const float> use = {}) {
   return render_error({p.a1, p.a2}, {p.r1, p.r2}, use);
 }
 
@@ -41,7 +41,7 @@ void expect_near(const MeanSquare& m, double expected) {
 }
 
 TEST(RenderError, TellsBiasFromNoiseAndFromTheReferencesNoise) {
-  const RenderError e = error_of(pictures(0.04, 0.05, 0.03));
+  const RenderError e = error_of(images(0.04, 0.05, 0.03));
   const double bias = 0.04 * 0.04 / 2, noise = 0.05 * 0.05;
   expect_near(e.bias, bias);
   expect_near(e.noise, noise);
@@ -51,13 +51,13 @@ TEST(RenderError, TellsBiasFromNoiseAndFromTheReferencesNoise) {
 }
 
 TEST(RenderError, OfAnUnbiasedMethodHasNoBiasButItsInterval) {
-  const RenderError e = error_of(pictures(0, 0.05, 0.03));
+  const RenderError e = error_of(images(0, 0.05, 0.03));
   EXPECT_NEAR(e.bias.value, 0, kZ * e.bias.standard_error);
   EXPECT_GT(e.bias.standard_error, 0);
 }
 
 TEST(RenderError, CountsThePixelsThatAreUsed) {
-  const Pictures p = pictures(0.04, 0.001, 0.001);
+  const Images p = images(0.04, 0.001, 0.001);
   std::vector<float> even(kPixels), none(kPixels);
   for (size_t i = 0; i < kPixels; i += 2) even[i] = 1;
   expect_near(error_of(p, even).bias, 0.04 * 0.04);
@@ -66,7 +66,7 @@ TEST(RenderError, CountsThePixelsThatAreUsed) {
 
 /// Over the true mean, 0.3: noise of either method leaves the relative figures what they are.
 TEST(RenderError, InUnitsOfTheReferencesMeanIsRelative) {
-  const Pictures p = pictures(0.04, 0.05, 0.03);
+  const Images p = images(0.04, 0.05, 0.03);
   const RenderError e = in_units_of(mean_of({p.r1, p.r2}), error_of(p));
   const double bias = 0.04 * 0.04 / 2, noise = 0.05 * 0.05, mean_squared = 0.3 * 0.3;
   expect_near(e.bias, bias / mean_squared);

@@ -41,8 +41,8 @@ std::vector<Setting> settings() {
 /// them, and the limit of one of 48 chi-squares in 1 %.
 constexpr double kLargest = 5.2, kFalseAlarms = 0.01;
 
-GoniophotometerReading integrated(const Setting& s, double tolerance, const DetectorSphere& sphere,
-                                  const ThreadPool& pool) {
+GoniophotometerMeasurement integrated(const Setting& s, double tolerance, const DetectorSphere& sphere,
+                                      const ThreadPool& pool) {
   const Prepared leaf("leaf_solved", {word("specimen", s.specimen), real("tolerance", tolerance)}, s.lambda_nm);
   return integrate_f(leaf.under(s.theta_deg), sphere, pool);
 }
@@ -60,7 +60,7 @@ void expect_walks_fill_patches(const Setting& s, int64_t rays, size_t tests) {
   const ThreadPool pool;
   const DetectorSphere sphere(20, 40);
   const Prepared walks("abm", {word("specimen", s.specimen)}, s.lambda_nm);
-  const GoniophotometerReading walked = measure_f(walks.under(s.theta_deg, 11), sphere, rays, pool);
+  const GoniophotometerMeasurement walked = measure_f(walks.under(s.theta_deg, 11), sphere, rays, pool);
   const PatchComparison fine = compare(walked, integrated(s, 1e-5, sphere, pool));
   EXPECT_LT(fine.largest, kLargest);
   EXPECT_GT(fine.chi_square.p, sidak_level(kFalseAlarms, tests))

@@ -34,7 +34,7 @@ class Prepared {
       : Prepared(PluginTable<MaterialInfo>("material", builtin_materials()).get(name, {}), std::move(params),
                  lambda_nm) {}
 
-  Exposure under(double theta_deg, uint64_t seed = 0) const { return {*material_, {theta_deg, lambda_nm_}, seed}; }
+  LitMaterial under(double theta_deg, uint64_t seed = 0) const { return {*material_, {theta_deg, lambda_nm_}, seed}; }
 
  private:
   double lambda_nm_;

@@ -23,8 +23,8 @@ constexpr double kFloat = 2e-7;
 
 const ThreadPool kPool(2);
 
-SpectrophotometerReading measure(const Exposure& exposure, int64_t rays) {
-  return measure_shares(exposure, {.rays = rays}, kPool);
+SpectrophotometerMeasurement measure(const LitMaterial& lit, int64_t rays) {
+  return measure_shares(lit, {.rays = rays}, kPool);
 }
 
 /// Probability of these figures or stranger ones if the truth is `expected`.
@@ -116,17 +116,18 @@ TEST(Spectrophotometer, MeasuresDeltaLobes) {
 }
 
 /// Many short measurements of one thing.
-std::vector<SpectrophotometerReading> repeat(const Prepared& specimen, int times, int64_t rays) {
-  std::vector<SpectrophotometerReading> readings;
-  for (int seed = 1; seed <= times; ++seed) readings.push_back(measure(specimen.under(8, uint64_t(seed)), rays));
-  return readings;
+std::vector<SpectrophotometerMeasurement> repeat(const Prepared& specimen, int times, int64_t rays) {
+  std::vector<SpectrophotometerMeasurement> measurements;
+  for (int seed = 1; seed <= times; ++seed) measurements.push_back(measure(specimen.under(8, uint64_t(seed)), rays));
+  return measurements;
 }
 
 /// Two-sided p-value of "the stated variances are those of the means", by the means' own spread.
-double spread_p(const std::vector<SpectrophotometerReading>& readings, Estimate SpectrophotometerReading::*value) {
+double spread_p(const std::vector<SpectrophotometerMeasurement>& measurements,
+                Estimate SpectrophotometerMeasurement::*value) {
   Moments means, variances;
-  for (const auto& r : readings) means.add((r.*value).mean), variances.add((r.*value).variance);
-  const double degrees = double(readings.size()) - 1;
+  for (const auto& r : measurements) means.add((r.*value).mean), variances.add((r.*value).variance);
+  const double degrees = double(measurements.size()) - 1;
   const boost::math::chi_squared distribution(degrees);
   const double statistic = degrees * means.variance() / variances.mean();
   return 2 * std::min(cdf(distribution, statistic), cdf(complement(distribution, statistic)));
@@ -134,11 +135,11 @@ double spread_p(const std::vector<SpectrophotometerReading>& readings, Estimate 
 
 TEST(Spectrophotometer, StandardErrorsAreThoseOfRepeatedMeasurements) {
   for (const char* mode : {"analog", "weighted"}) {
-    const auto readings = repeat(Prepared("abm", {word("mode", mode)}, 551), 400, 2000);
-    for (const auto value : {&SpectrophotometerReading::surface, &SpectrophotometerReading::subsurface,
-                             &SpectrophotometerReading::reflectance, &SpectrophotometerReading::transmittance,
-                             &SpectrophotometerReading::absorptance})
-      EXPECT_GT(spread_p(readings, value), sidak_level(kFalseAlarmRate, 10)) << mode;
+    const auto measurements = repeat(Prepared("abm", {word("mode", mode)}, 551), 400, 2000);
+    for (const auto value : {&SpectrophotometerMeasurement::surface, &SpectrophotometerMeasurement::subsurface,
+                             &SpectrophotometerMeasurement::reflectance, &SpectrophotometerMeasurement::transmittance,
+                             &SpectrophotometerMeasurement::absorptance})
+      EXPECT_GT(spread_p(measurements, value), sidak_level(kFalseAlarmRate, 10)) << mode;
   }
 }
 
@@ -211,10 +212,10 @@ TEST(Spectrophotometer, SaysSoWhenTheMaterialIsAtFault) {
   EXPECT_NE(error_of([&] { measure(Prepared(not_there, {}, 551).under(8), 100); }), "");
 }
 
-SpectrophotometerReading measure_as_rendered(const Prepared& specimen, double theta) {
-  Exposure exposure = specimen.under(theta);
-  exposure.as_rendered = true;
-  return measure(exposure, 200000);
+SpectrophotometerMeasurement measure_as_rendered(const Prepared& specimen, double theta) {
+  LitMaterial lit = specimen.under(theta);
+  lit.as_rendered = true;
+  return measure(lit, 200000);
 }
 
 TEST(Spectrophotometer, SeesWhatARendererShows) {

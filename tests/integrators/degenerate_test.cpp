@@ -34,7 +34,7 @@ std::string plane(const std::string& more, const std::string& scale = "") {
       scale, more);
 }
 
-/// Mean of the picture, all of whose samples are finite.
+/// Mean of the image, all of whose samples are finite.
 double mean_of(const std::string& text) {
   const Film film = render_text(text);
   EXPECT_EQ(film.not_finite(), 0) << text;
@@ -112,7 +112,7 @@ TEST(Degenerate, WhatEmbreeWouldLeaveOutIsRefused) {
   expect_error("WorldBegin\nShape \"sphere\" \"float radius\" 1e20", "test.pbrt:2:7: this shape reaches to");
   expect_error("LookAt 0 -3e15 2 0 0 0 0 0 1\nCamera \"perspective\"\nWorldBegin", "test.pbrt:2:8: this camera");
   expect_error("WorldBegin ObjectBegin \"o\" ObjectEnd Scale 1e-12 1 1\nObjectInstance \"o\"",
-               "test.pbrt:2:16: this copy is not possible: it scales by 1e-12");
+               "test.pbrt:2:16: this instance is not possible: it scales by 1e-12");
   expect_error("Camera \"perspective\" \"float lensradius\" 1e30\nWorldBegin", "test.pbrt:1:8: this camera");
 }
 

@@ -13,7 +13,7 @@ namespace {
 using testing::channel_mean;
 using testing::render_text;
 
-/// A plane seen from above so that its (u, v) spans the picture: u to the right, v up.
+/// A plane seen from above so that its (u, v) spans the image: u to the right, v up.
 std::string textured_plane(const std::string& texture, const std::string& material) {
   return fmt::format(R"(
 Scale -1 1 1

@@ -1,4 +1,4 @@
-"""Renders that are killed at random moments and resumed: the picture is that of an undisturbed render, and little is
+"""Renders that are killed at random moments and resumed: the image is that of an undisturbed render, and little is
 rendered twice.
 
 What a killed run has rendered since its last checkpoint is lost, and is rendered again. Every --checkpoint seconds
@@ -8,7 +8,7 @@ run's loss is measured in seconds, from the time stamp of the part (or the start
 one) to the kill, but no more than the run's CPU time, shared by its threads: on a busy machine it has not worked all
 the time. The mean over all kills has to be below one and a half intervals. And nothing that a part holds
 is rendered again: the paths that the runs counted into it, one after the other, never become fewer, and in the end are
-no more than the picture has.
+no more than the image has.
 """
 
 import os
@@ -27,7 +27,7 @@ LONGEST = 0.6  # seconds of a run that is killed, beside those that it loads its
 
 
 class Kill(FrondTest):
-    pictures = {}  # of undisturbed renders, by their words
+    images = {}  # of undisturbed renders, by their words
     per_second = None
 
     def setUp(self):
@@ -41,11 +41,11 @@ class Kill(FrondTest):
         return self.command(self.output, "--spp", spp, "--checkpoint", interval, "--resume", *words)
 
     def undisturbed(self, spp, *words):
-        if (spp, *words) not in self.pictures:
+        if (spp, *words) not in self.images:
             path = self.folder / "undisturbed.exr"
             self.run_to_end(self.command(path, "--spp", spp, "-q", *words))
-            self.pictures[(spp, *words)] = path.read_bytes()
-        return self.pictures[(spp, *words)]
+            self.images[(spp, *words)] = path.read_bytes()
+        return self.images[(spp, *words)]
 
     def paths_kept(self):
         return part_header(self.part)["statistics"]["paths"] if self.part.exists() else 0

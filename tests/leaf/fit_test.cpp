@@ -13,15 +13,16 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-std::vector<LeafReading> spectra_of(const TissueParams& params, const std::vector<double>& theta_deg, double step_nm) {
+std::vector<LeafMeasurement> spectra_of(const TissueParams& params, const std::vector<double>& theta_deg,
+                                        double step_nm) {
   const TissueModel model(params);
-  std::vector<LeafReading> readings;
+  std::vector<LeafMeasurement> measurements;
   for (double nm = 400; nm <= 2500; nm += step_nm) {
     const std::vector<Shares> shares = solve(model.at(nm), theta_deg);
     for (size_t a = 0; a < theta_deg.size(); ++a)
-      readings.push_back({nm, theta_deg[a], shares[a].surface + shares[a].subsurface, shares[a].transmitted});
+      measurements.push_back({nm, theta_deg[a], shares[a].surface + shares[a].subsurface, shares[a].transmitted});
   }
-  return readings;
+  return measurements;
 }
 
 TissueParams another(std::string_view specimen) {
@@ -54,18 +55,18 @@ void expect_found(const TissueParams& truth, const FitRequest& request, double t
 TEST(Fit, FindsALeafAgainByItsSpectra) {
   for (const std::string_view specimen : {"soybean", "maize"}) {
     const TissueParams truth = another(specimen);
-    expect_found(truth, {.readings = spectra_of(truth, {8}, 10)}, 0.01);
+    expect_found(truth, {.measurements = spectra_of(truth, {8}, 10)}, 0.01);
   }
 }
 
 TEST(Fit, TakesBothSidesAndSeveralAngles) {
   const TissueParams truth = another("soybean");
-  expect_found(truth, {.readings = spectra_of(truth, {8, 50, 172}, 25), .structure = truth.structure}, 0.02);
+  expect_found(truth, {.measurements = spectra_of(truth, {8, 50, 172}, 25), .structure = truth.structure}, 0.02);
 }
 
 TEST(Fit, KeepsWhatIsFixed) {
   const TissueParams truth = another("soybean");
-  FitRequest request{.readings = spectra_of(truth, {8}, 50), .structure = truth.structure, .sieve = true};
+  FitRequest request{.measurements = spectra_of(truth, {8}, 50), .structure = truth.structure, .sieve = true};
   request.fixed = {{"chlorophylla", truth.chlorophyll_a}, {"chlorophyllb", truth.chlorophyll_b}, {"palisadeaspect", 2}};
   const FitResult result = fit_leaf(request, ThreadPool(2));
   EXPECT_EQ(result.params.chlorophyll_a, truth.chlorophyll_a);
@@ -78,13 +79,13 @@ TEST(Fit, KeepsWhatIsFixed) {
 /// One reading in twenty is anything at all.
 TEST(Fit, IsNotLedAstrayByBadPoints) {
   const TissueParams truth = another("soybean");
-  FitRequest request{.readings = spectra_of(truth, {8}, 10), .structure = truth.structure, .sieve = true};
+  FitRequest request{.measurements = spectra_of(truth, {8}, 10), .structure = truth.structure, .sieve = true};
   RandomStream rng(4);
-  for (size_t i = 0; i < request.readings.size(); i += 20) request.readings[i].r = rng.uniform_double();
+  for (size_t i = 0; i < request.measurements.size(); i += 20) request.measurements[i].r = rng.uniform_double();
   const FitResult result = fit_leaf(request, ThreadPool(2));
   double largest = 0;
-  for (size_t i = 0; i < request.readings.size(); ++i)
-    if (i % 20 != 0) largest = std::max(largest, std::abs(result.fitted[i].r - *request.readings[i].r));
+  for (size_t i = 0; i < request.measurements.size(); ++i)
+    if (i % 20 != 0) largest = std::max(largest, std::abs(result.fitted[i].r - *request.measurements[i].r));
   EXPECT_LT(largest, 0.02);
   EXPECT_GE(std::ranges::count(result.fitted, true, &FitResult::Fitted::is_outlier), 5);
 }
@@ -92,8 +93,8 @@ TEST(Fit, IsNotLedAstrayByBadPoints) {
 /// Visible light alone says nothing of what absorbs beyond.
 TEST(Fit, SaysWhatTheDataDoNotTell) {
   const TissueParams truth = find_specimen("soybean")->params;
-  FitRequest request{.readings = spectra_of(truth, {8}, 10), .structure = truth.structure, .sieve = false};
-  std::erase_if(request.readings, [](const LeafReading& r) { return r.lambda_nm > 700; });
+  FitRequest request{.measurements = spectra_of(truth, {8}, 10), .structure = truth.structure, .sieve = false};
+  std::erase_if(request.measurements, [](const LeafMeasurement& r) { return r.lambda_nm > 700; });
   const FitResult result = fit_leaf(request, ThreadPool(2));
   for (const FittedNumber& n : result.numbers) {
     if (n.variable->name == "protein" || n.variable->name == "cellulose") {
@@ -103,39 +104,39 @@ TEST(Fit, SaysWhatTheDataDoNotTell) {
 }
 
 TEST(Fit, IsTheSameOnAnyNumberOfThreads) {
-  const FitRequest request{.readings = spectra_of(find_specimen("maize")->params, {8}, 100)};
+  const FitRequest request{.measurements = spectra_of(find_specimen("maize")->params, {8}, 100)};
   EXPECT_EQ(fit_leaf(request, ThreadPool(1)).params, fit_leaf(request, ThreadPool(3)).params);
 }
 
 TEST(MeasuredSpectra, AreReadAsInstrumentsWriteThem) {
-  const auto read = [](std::string_view text, const SpectraReading& how = {}) {
+  const auto read = [](std::string_view text, const SpectraMeasurement& how = {}) {
     return parse_measured_spectra(text, "a.csv", how);
   };
   const MeasuredSpectra own =
       read("# a comment\ntheta_deg,wavelength_nm,Rs,Rd,R,T,A\n8,550,.04,.06,.1,.2,.7\n172,550,0,0,.2,,1\n");
-  ASSERT_EQ(own.readings.size(), 2u);
-  EXPECT_EQ(own.readings[0].r, 0.1);
-  EXPECT_EQ(own.readings[0].t, 0.2);
-  EXPECT_EQ(own.readings[1].theta_deg, 172);
-  EXPECT_FALSE(own.readings[1].t.has_value());
+  ASSERT_EQ(own.measurements.size(), 2u);
+  EXPECT_EQ(own.measurements[0].r, 0.1);
+  EXPECT_EQ(own.measurements[0].t, 0.2);
+  EXPECT_EQ(own.measurements[1].theta_deg, 172);
+  EXPECT_FALSE(own.measurements[1].t.has_value());
   const MeasuredSpectra percents =
       read("Wavelength [nm];Reflectance (%);Transmittance (%)\r\n550,5;10,5;20\r\n350;1;1\r\n");
   EXPECT_TRUE(percents.is_in_percent);
   EXPECT_EQ(percents.left_out, 1u);
-  ASSERT_EQ(percents.readings.size(), 1u);
-  EXPECT_EQ(percents.readings[0].lambda_nm, 550.5);
-  EXPECT_DOUBLE_EQ(*percents.readings[0].r, 0.105);
+  ASSERT_EQ(percents.measurements.size(), 1u);
+  EXPECT_EQ(percents.measurements[0].lambda_nm, 550.5);
+  EXPECT_DOUBLE_EQ(*percents.measurements[0].r, 0.105);
   const MeasuredSpectra plain = read("0.55  0.1\n0.56  0.2\n");
-  ASSERT_EQ(plain.readings.size(), 2u);
-  EXPECT_DOUBLE_EQ(plain.readings[1].lambda_nm, 560);
+  ASSERT_EQ(plain.measurements.size(), 2u);
+  EXPECT_DOUBLE_EQ(plain.measurements[1].lambda_nm, 560);
   const std::string two = "leaf,nm,R,side\noak,550,.1,upper\nelm,550,.2,lower\n";
   const MeasuredSpectra elm = read(two, {.leaf = "elm"});
-  ASSERT_EQ(elm.readings.size(), 1u);
-  EXPECT_EQ(elm.readings[0].theta_deg, 172);
+  ASSERT_EQ(elm.measurements.size(), 1u);
+  EXPECT_EQ(elm.measurements[0].theta_deg, 172);
 }
 
 TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
-  const auto error = [](std::string_view text, const SpectraReading& how = {}) {
+  const auto error = [](std::string_view text, const SpectraMeasurement& how = {}) {
     return error_of([&] { parse_measured_spectra(text, "a.csv", how); });
   };
   EXPECT_THAT(error(""), HasSubstr("no spectra"));

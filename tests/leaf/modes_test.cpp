@@ -50,12 +50,12 @@ TEST(AzimuthModes, AreTheCosineTransformOfTheLobe) {
 
 double radians(double degrees) { return degrees * kPi / 180; }
 
-double f_of(const BodyModes& modes, const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, size_t i, size_t o) {
+double f_of(const LeafModes& modes, const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, size_t i, size_t o) {
   const size_t count = modes.sines().size();
   const double phi = std::atan2(wi.y, wi.x) - std::atan2(-wo.y, -wo.x);
   double sum = 0;
   double m = 0;
-  for (const BodyModes::Grid& h : modes.series(wo.z < 0, wo.z * wi.z < 0))
+  for (const LeafModes::Grid& h : modes.series(wo.z < 0, wo.z * wi.z < 0))
     sum += h[i * count + o] * std::cos(m++ * phi);
   return passage(tissue, std::abs(wo.z), std::abs(wi.z)) * sum;
 }
@@ -68,7 +68,7 @@ void expect_energy_of_solver(const Tissue& tissue, double tolerance) {
   std::vector<double> sines;
   for (const double degrees : theta) sines.push_back(std::sin(radians(degrees)));
   for (const auto& [x, weight] : rule) sines.push_back(std::sqrt(1 - x * x * x * x));
-  const BodyModes modes = solve_modes(tissue, sines, 1e-2, mode_nodes(tissue));
+  const LeafModes modes = solve_modes(tissue, sines, 1e-2, mode_nodes(tissue));
   for (size_t i = 0; i < theta.size(); ++i)
     for (const bool below : {false, true}) {
       std::array<double, 2> share{};
@@ -85,7 +85,7 @@ void expect_energy_of_solver(const Tissue& tissue, double tolerance) {
     }
 }
 
-TEST(BodyModes, ModeZeroHoldsTheSolversEnergy) {
+TEST(LeafModes, ModeZeroHoldsTheSolversEnergy) {
   for (const Specimen& specimen : std::span(kSpecimens).first(2))
     for (const bool sieve : {false, true})
       for (const double nm : {455.0, 800.0}) {
@@ -104,7 +104,7 @@ Vec3d direction(double theta_deg, double phi, bool below) {
 // In the plane of incidence and out of it, both sides: unbiased estimates of so many walks each that their means are
 // normal (4000 are too few where hardly any light crosses). One limit for all of the differences and one for their
 // chi-square; each raises a false alarm at kFalseAlarm.
-TEST(BodyModes, AreTheWalksOwnF) {
+TEST(LeafModes, AreTheWalksOwnF) {
   const int samples = slow_tests() ? 1000000 : 16000;
   const std::array theta{30.0, 60.0, 80.0};
   const std::vector<double> phis = slow_tests() ? std::vector{0.0, 0.7, 1.3, 2.2, kPi} : std::vector{0.0, 1.3, kPi};
@@ -116,7 +116,7 @@ TEST(BodyModes, AreTheWalksOwnF) {
     for (const double nm : {455.0, 800.0}) {
       const TissueModel model(specimen.params);
       const Tissue tissue = model.at(nm);
-      const BodyModes modes = solve_modes(tissue, sines, 1e-6, mode_nodes(tissue) + 2);
+      const LeafModes modes = solve_modes(tissue, sines, 1e-6, mode_nodes(tissue) + 2);
       for (size_t i = 0; i < theta.size(); ++i)
         for (size_t o = slow_tests() ? 0 : 1; o < theta.size(); ++o)
           for (const double phi : phis)
@@ -124,7 +124,8 @@ TEST(BodyModes, AreTheWalksOwnF) {
               for (const bool crosses : {false, true}) {
                 const Vec3d wo = direction(theta[i], kPi, below), wi = direction(theta[o], phi, below != crosses);
                 Estimate walks;
-                for (int k = 0; k < samples; ++k) walks.add(estimate_body_f(tissue, wo, wi, Absorption::weighted, rng));
+                for (int k = 0; k < samples; ++k)
+                  walks.add(estimate_subsurface_f(tissue, wo, wi, Absorption::weighted, rng));
                 const double f = f_of(modes, tissue, wo, wi, i, o);
                 scores.push_back((walks.mean() - f) / walks.standard_error());
               }
@@ -147,8 +148,8 @@ Comparison compare(const Tissue& tissue, double tolerance, int nodes, int finer_
   const std::array theta{0.0, 20.0, 40.0, 60.0, 75.0, 85.0, 89.5};
   std::vector<double> sines;
   for (const double degrees : theta) sines.push_back(std::sin(radians(degrees)));
-  const BodyModes modes = solve_modes(tissue, sines, tolerance, nodes);
-  const BodyModes finer = solve_modes(tissue, sines, 1e-7, finer_nodes);
+  const LeafModes modes = solve_modes(tissue, sines, tolerance, nodes);
+  const LeafModes finer = solve_modes(tissue, sines, 1e-7, finer_nodes);
   Comparison result;
   for (size_t i = 0; i < theta.size(); ++i)
     for (size_t o = 0; o < theta.size(); ++o)
@@ -163,7 +164,7 @@ Comparison compare(const Tissue& tissue, double tolerance, int nodes, int finer_
   return result;
 }
 
-TEST(BodyModes, AreNearTheirAnswerAtTwiceTheNodes) {
+TEST(LeafModes, AreNearTheirAnswerAtTwiceTheNodes) {
   for (const Specimen& specimen : std::span(kSpecimens).first(2))
     for (const double nm : {455.0, 551.0, 800.0}) {
       const TissueModel model(specimen.params);
@@ -173,7 +174,7 @@ TEST(BodyModes, AreNearTheirAnswerAtTwiceTheNodes) {
     }
 }
 
-TEST(BodyModes, ConvergeAsStatedForOtherLobes) {
+TEST(LeafModes, ConvergeAsStatedForOtherLobes) {
   struct {
     double aspect, tolerance;  ///< of the largest pi f, or of 1
   } constexpr kStated[] = {{0, 3e-3}, {0.5, 1e-3}, {2.5, 3e-5}, {20, 3e-5}, {100, 1e-4}};
@@ -188,7 +189,7 @@ TEST(BodyModes, ConvergeAsStatedForOtherLobes) {
   }
 }
 
-TEST(BodyModes, AreAsManyAsTheAskedErrorTakes) {
+TEST(LeafModes, AreAsManyAsTheAskedErrorTakes) {
   const TissueModel model(find_specimen("soybean")->params);
   const Tissue tissue = model.at(800);
   const int nodes = mode_nodes(tissue);

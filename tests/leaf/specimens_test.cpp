@@ -43,14 +43,14 @@ TEST(Specimens, TheConventionsSayWhatTheyAre) {
 }
 
 /// Of R and T together at 8 degrees, over all that was measured.
-double rmse(const Specimen& specimen, const std::vector<LeafReading>& readings) {
+double rmse(const Specimen& specimen, const std::vector<LeafMeasurement>& measurements) {
   const TissueModel model(specimen.params);
   double sum = 0;
-  for (const LeafReading& reading : readings) {
-    const Shares s = solve(model.at(reading.lambda_nm), std::array{reading.theta_deg})[0];
-    sum += std::pow(s.surface + s.subsurface - *reading.r, 2) + std::pow(s.transmitted - *reading.t, 2);
+  for (const LeafMeasurement& measurement : measurements) {
+    const Shares s = solve(model.at(measurement.lambda_nm), std::array{measurement.theta_deg})[0];
+    sum += std::pow(s.surface + s.subsurface - *measurement.r, 2) + std::pow(s.transmitted - *measurement.t, 2);
   }
-  return std::sqrt(sum / static_cast<double>(2 * readings.size()));
+  return std::sqrt(sum / static_cast<double>(2 * measurements.size()));
 }
 
 TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
@@ -61,12 +61,12 @@ TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
     const size_t said = specimen.source.find("RMSE ");
     if (said == std::string_view::npos) continue;
     ++fitted;
-    const auto readings =
+    const auto measurements =
         name == "soybean-lopex"
-            ? read_measured_spectra(folder + "lopex93_soybean.csv", {}).readings
+            ? read_measured_spectra(folder + "lopex93_soybean.csv", {}).measurements
             : read_measured_spectra(folder + "leaf_spectra.csv", {.leaf = name.substr(0, name.find('-')) + "_0000"})
-                  .readings;
-    EXPECT_NEAR(rmse(specimen, readings), std::stod(std::string(specimen.source.substr(said + 5))), 2e-4) << name;
+                  .measurements;
+    EXPECT_NEAR(rmse(specimen, measurements), std::stod(std::string(specimen.source.substr(said + 5))), 2e-4) << name;
   }
   EXPECT_EQ(fitted, 7);
 }

@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(Dispersion, SpectralWalk,
                                           testing::Values(Absorption::analog, Absorption::weighted),
                                           testing::Values(35.0, 70.0, 115.0)));
 
-TEST(SpectralBodyF, HasTheMeanOfEachWavelengthsOwn) {
+TEST(SpectralSubsurfaceF, HasTheMeanOfEachWavelengthsOwn) {
   constexpr int kPairs = 5, kSamples = 30000;
   const double limit = test::z_limit(2 * 2 * kPairs * kLanes);
   const Vec3d wo = direction(40, 0.3);
@@ -164,10 +164,10 @@ TEST(SpectralBodyF, HasTheMeanOfEachWavelengthsOwn) {
         std::array<Estimate, kLanes> together, alone;
         RandomStream rng(3);
         for (int i = 0; i < kSamples; ++i) {
-          const LaneValues f = estimate_body_f(leaf.lanes(), rng.bits() % kLanes, wo, wi, absorption, rng);
+          const LaneValues f = estimate_subsurface_f(leaf.lanes(), rng.bits() % kLanes, wo, wi, absorption, rng);
           for (size_t lane = 0; lane < kLanes; ++lane) {
             together[lane].add(f[lane]);
-            alone[lane].add(estimate_body_f(leaf.tissue(lane), wo, wi, absorption, rng));
+            alone[lane].add(estimate_subsurface_f(leaf.tissue(lane), wo, wi, absorption, rng));
           }
         }
         for (size_t lane = 0; lane < kLanes; ++lane)

@@ -17,7 +17,7 @@ constexpr Interval kIndices{1.41, 1.54};
 
 double arriving(const SurfaceScaling& scaling, double exponent, double cosine, double index) {
   const auto n = static_cast<float>(index);
-  const SurfaceScaling::Place place = scaling.place(static_cast<float>(exponent));
+  const SurfaceScaling::Position place = scaling.position(static_cast<float>(exponent));
   return static_cast<double>(scaling.at(place, static_cast<float>(cosine), Float4{n, n, n, n})[0]);
 }
 

@@ -203,7 +203,7 @@ void expect_f_to_match_walks(const Tissue& tissue, double theta_deg, Absorption 
     const WalkEnd end = walk(tissue, wo, absorption, rng);
     if (end.weight > 0) walked[Cells::of(end.wi)].add(end.weight);
     const Vec3d wi = uniform_direction(rng);
-    const double f = surface_f(tissue, wo, wi) + estimate_body_f(tissue, wo, wi, absorption, rng);
+    const double f = surface_f(tissue, wo, wi) + estimate_subsurface_f(tissue, wo, wi, absorption, rng);
     integrated[Cells::of(wi)].add(f * std::abs(wi.z) * 4 * std::numbers::pi);
   }
   for (size_t cell = 0; cell < Cells::kCount; ++cell) {

@@ -49,15 +49,15 @@ class Radiometry : public ::testing::Test {
     const auto path = folder_.write("scene.pbrt", options + "WorldBegin\n" + world);
     return parse_scene(path, silent_log());
   }
-  BrfReading brf(const std::string& world, const BrfRequest& request, uint64_t samples, int threads = 2) const {
+  BrfMeasurement brf(const std::string& world, const BrfRequest& request, uint64_t samples, int threads = 2) const {
     Session session(silent_log(), {threads, {}, {}});
     const BrfMeter meter(session, description(world), request);
     RenderPart part = meter.scene().empty_part();
     session.render(meter.scene(), {0, samples}, part);
     return meter.read(part.film);
   }
-  FluxReading flux(const std::string& world, const FluxRequest& request, uint64_t paths, int threads = 2,
-                   const std::string& options = "") const {
+  FluxMeasurement flux(const std::string& world, const FluxRequest& request, uint64_t paths, int threads = 2,
+                       const std::string& options = "") const {
     Session session(silent_log(), {threads, {}, {}});
     FluxMeter meter(session, description(world, options), request);
     meter.trace(paths, session.pool());
@@ -108,13 +108,13 @@ TEST_F(Radiometry, TheIrradianceOfSunAndSkyIsTheClosedForm) {
 
 TEST_F(Radiometry, ALambertianPlaneHasItsReflectanceInEveryDirection) {
   for (const std::string& light : {kSun, kSky, kSun + kSky}) {
-    const BrfReading reading = brf(
+    const BrfMeasurement measurement = brf(
         light + soil(0.3),
         {.views = {{-60, 0}, {0, 0}, {30, 90}, {80, 10}}, .period = kPlot, .wavelengths = "bands,wavelengths=450,800"},
         64);
     for (size_t view = 0; view < 4; ++view)
       for (size_t band = 0; band < 2; ++band) {
-        const MeanError& v = reading.at(view, band);
+        const MeanError& v = measurement.at(view, band);
         EXPECT_NEAR(v.mean, 0.3, kZ * v.standard_error + 1e-4);  // the sky's irradiance is a sum
         EXPECT_LT(v.standard_error, 0.01);
       }
@@ -129,22 +129,22 @@ TEST_F(Radiometry, ANegativeZenithLooksFromTheSunsSide) {
       "Shape \"bilinearmesh\" \"point3 P\" [1 0 0  1 2 0  1 0 1  1 2 1]\n";
   for (const double azimuth : {0.0, 73.0, 200.0}) {
     const std::string turn = fmt::format("Rotate {} 0 0 1\n", azimuth);
-    const BrfReading reading = brf(
+    const BrfMeasurement measurement = brf(
         turn + kSun + wall,
         {.views = {{-60, 0}, {60, 0}}, .target = Target{-3, 3, -3, 3, 1}, .wavelengths = "bands,wavelengths=550"}, 64);
-    EXPECT_GT(reading.at(0, 0).mean, 20 * reading.at(1, 0).mean) << azimuth;
-    EXPECT_GT(reading.at(0, 0).mean, 0.01);
+    EXPECT_GT(measurement.at(0, 0).mean, 20 * measurement.at(1, 0).mean) << azimuth;
+    EXPECT_GT(measurement.at(0, 0).mean, 0.01);
   }
 }
 
 /// Leaves that absorb nothing over such a soil send everything back.
 TEST_F(Radiometry, NothingIsLostInThePuristCorner) {
   for (const double lai : {1.0, 2.0, 5.0}) {
-    const FluxReading reading = flux(kSun + soil(1) + canopy(lai, lambertian(0.5, 0.5)),
-                                     {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 20000);
-    EXPECT_NEAR(reading.reflected[0].mean, 1, 3 * reading.reflected[0].standard_error + 1e-5) << lai;
-    EXPECT_LT(reading.reflected[0].standard_error, 1e-3);
-    EXPECT_EQ(reading.transmitted[0].mean, 0);
+    const FluxMeasurement measurement = flux(kSun + soil(1) + canopy(lai, lambertian(0.5, 0.5)),
+                                             {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 20000);
+    EXPECT_NEAR(measurement.reflected[0].mean, 1, 3 * measurement.reflected[0].standard_error + 1e-5) << lai;
+    EXPECT_LT(measurement.reflected[0].standard_error, 1e-3);
+    EXPECT_EQ(measurement.transmitted[0].mean, 0);
   }
 }
 
@@ -152,41 +152,41 @@ TEST_F(Radiometry, NothingIsLostInThePuristCorner) {
 /// them, makes a binomial of it: exp(-x) (1 - x^2 / 2n).
 TEST_F(Radiometry, WhatReachesTheGroundUncollidedFollowsBeersLaw) {
   for (const double lai : {1.0, 3.0}) {
-    const FluxReading reading = flux(kSun + soil(0) + canopy(lai, lambertian(0, 0)),
-                                     {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 200000);
-    const auto ground = std::ranges::find(reading.materials, "soil", &FluxReading::OfMaterial::name);
-    ASSERT_NE(ground, reading.materials.end());
+    const FluxMeasurement measurement = flux(kSun + soil(0) + canopy(lai, lambertian(0, 0)),
+                                             {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 200000);
+    const auto ground = std::ranges::find(measurement.materials, "soil", &FluxMeasurement::OfMaterial::name);
+    ASSERT_NE(ground, measurement.materials.end());
     const double expected = std::exp(-lai / 2 / std::cos(std::numbers::pi / 6));
     // The leaves are one draw: the shares of gaps of plots so large vary by about 1 %.
     EXPECT_NEAR(ground->uncollided[0].mean, expected, 0.04 * expected) << lai;
     EXPECT_EQ(ground->absorbed[0].mean, ground->uncollided[0].mean);
-    EXPECT_NEAR(reading.sum[0].mean, 1, 1e-5);
+    EXPECT_NEAR(measurement.sum[0].mean, 1, 1e-5);
   }
 }
 
 /// A slab of horizontal leaves so thin that light meets it once: R and T of one layer.
 TEST_F(Radiometry, OneLeafOverNothingIsALeaf) {
-  const FluxReading reading =
+  const FluxMeasurement measurement =
       flux(kSky + lambertian(0.4, 0.25) + "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  2 0 0  0 2 0  2 2 0]\n",
            {.period = kPlot, .wavelengths = "bands,wavelengths=500,600,700,800,900"}, 50000);
   for (size_t band = 0; band < 5; ++band) {
-    EXPECT_NEAR(reading.reflected[band].mean, 0.4, kZ * reading.reflected[band].standard_error + 1e-4);
-    EXPECT_NEAR(reading.transmitted[band].mean, 0.25, kZ * reading.transmitted[band].standard_error + 1e-4);
-    EXPECT_NEAR(reading.materials[0].absorbed[band].mean, 0.35,
-                kZ * reading.materials[0].absorbed[band].standard_error + 1e-4);
-    EXPECT_NEAR(reading.sum[band].mean, 1, kZ * reading.sum[band].standard_error + 1e-4);
+    EXPECT_NEAR(measurement.reflected[band].mean, 0.4, kZ * measurement.reflected[band].standard_error + 1e-4);
+    EXPECT_NEAR(measurement.transmitted[band].mean, 0.25, kZ * measurement.transmitted[band].standard_error + 1e-4);
+    EXPECT_NEAR(measurement.materials[0].absorbed[band].mean, 0.35,
+                kZ * measurement.materials[0].absorbed[band].standard_error + 1e-4);
+    EXPECT_NEAR(measurement.sum[band].mean, 1, kZ * measurement.sum[band].standard_error + 1e-4);
   }
 }
 
 /// Two Lambertian sheets with light between them: the doubling equations, in closed form.
 TEST_F(Radiometry, TwoLayersAddUpAsTheDoublingEquationsSay) {
   constexpr double kR = 0.45, kT = 0.4, kSoil = 0.2;
-  const FluxReading reading = flux(
+  const FluxMeasurement measurement = flux(
       kSun + lambertian(kR, kT) + "Shape \"bilinearmesh\" \"point3 P\" [0 0 1  2 0 1  0 2 1  2 2 1]\n" + soil(kSoil),
       {.period = kPlot, .wavelengths = "bands,wavelengths=800"}, 200000);
   const double expected = kR + kT * kT * kSoil / (1 - kR * kSoil);
-  EXPECT_NEAR(reading.reflected[0].mean, expected, kZ * reading.reflected[0].standard_error);
-  EXPECT_NEAR(reading.sum[0].mean, 1, 3 * reading.sum[0].standard_error + 1e-4);
+  EXPECT_NEAR(measurement.reflected[0].mean, expected, kZ * measurement.reflected[0].standard_error);
+  EXPECT_NEAR(measurement.sum[0].mean, 1, 3 * measurement.sum[0].standard_error + 1e-4);
 }
 
 /// The albedo from below the light, and from what a sensor sees in directions that are even in their cosine's square.
@@ -198,7 +198,7 @@ TEST_F(Radiometry, TheAlbedoIsTheSameFromTheSunAndFromTheSensor) {
     for (int k = 0; k < kAzimuths; ++k)
       request.views.push_back(
           {std::asin(std::sqrt((i + 0.5) / kRings)) * 180 / std::numbers::pi, 360.0 * (k + 0.5) / kAzimuths});
-  const BrfReading seen = brf(world, request, 16);
+  const BrfMeasurement seen = brf(world, request, 16);
   double sum = 0, variance = 0;
   for (const MeanError& v : seen.values) sum += v.mean, variance += v.standard_error * v.standard_error;
   const double albedo = sum / double(seen.values.size()), error = std::sqrt(variance) / double(seen.values.size());
@@ -219,8 +219,8 @@ TEST_F(Radiometry, TheAlbedoOfRealLeavesIsTheSameBothWays) {
     for (int k = 0; k < kAzimuths; ++k)
       request.views.push_back(
           {std::asin(std::sqrt((i + 0.5) / kRings)) * 180 / std::numbers::pi, 360.0 * (k + 0.5) / kAzimuths});
-  const BrfReading seen = brf(world, request, 16);
-  const FluxReading sent = flux(world, {.period = kPlot, .wavelengths = "bands,wavelengths=550,800"}, 200000);
+  const BrfMeasurement seen = brf(world, request, 16);
+  const FluxMeasurement sent = flux(world, {.period = kPlot, .wavelengths = "bands,wavelengths=550,800"}, 200000);
   for (size_t band = 0; band < 2; ++band) {
     double sum = 0, variance = 0;
     for (size_t view = 0; view < request.views.size(); ++view)
@@ -233,16 +233,16 @@ TEST_F(Radiometry, TheAlbedoOfRealLeavesIsTheSameBothWays) {
 }
 
 TEST_F(Radiometry, WhatLeavesAbsorbAddsUpToTheWhole) {
-  const FluxReading reading =
+  const FluxMeasurement measurement =
       flux(kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2)),
            {.period = kPlot, .wavelengths = "bands,wavelengths=450,550,650,750,850", .by_instance = true}, 50000);
-  const auto leaf = std::ranges::find(reading.materials, "leaf", &FluxReading::OfMaterial::name);
-  ASSERT_NE(leaf, reading.materials.end());
+  const auto leaf = std::ranges::find(measurement.materials, "leaf", &FluxMeasurement::OfMaterial::name);
+  ASSERT_NE(leaf, measurement.materials.end());
   for (size_t band = 0; band < 5; ++band) {
     double sum = 0, variance = 0;
-    for (size_t i = band; i < reading.by_instance.size(); i += 5) {
-      sum += reading.by_instance[i].mean;
-      variance += std::pow(reading.by_instance[i].standard_error, 2);
+    for (size_t i = band; i < measurement.by_instance.size(); i += 5) {
+      sum += measurement.by_instance[i].mean;
+      variance += std::pow(measurement.by_instance[i].standard_error, 2);
     }
     EXPECT_NEAR(sum, leaf->absorbed[band].mean, 1e-6);
     EXPECT_LT(std::sqrt(variance), 0.01);
@@ -252,7 +252,7 @@ TEST_F(Radiometry, WhatLeavesAbsorbAddsUpToTheWhole) {
 TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
   const std::string world = kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2));
   const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .by_instance = true};
-  const FluxReading one = flux(world, request, 5000, 1), three = flux(world, request, 5000, 3);
+  const FluxMeasurement one = flux(world, request, 5000, 1), three = flux(world, request, 5000, 3);
   EXPECT_EQ(one.reflected[0].mean, three.reflected[0].mean);
   EXPECT_EQ(one.reflected[1].standard_error, three.reflected[1].standard_error);
   for (size_t i = 0; i < one.by_instance.size(); ++i) {
@@ -266,7 +266,7 @@ TEST_F(Radiometry, FiguresDoNotDependOnThreads) {
 TEST_F(Radiometry, AMeterGoesOnFromItsFileAsIfItHadNotBeenStopped) {
   const std::string world = kSun + kSky + soil(0.1) + canopy(1, lambertian(0.3, 0.2));
   const FluxRequest request{.period = kPlot, .wavelengths = "bands,wavelengths=450,850", .by_instance = true};
-  const FluxReading whole = flux(world, request, 5120);
+  const FluxMeasurement whole = flux(world, request, 5120);
   Session session(silent_log(), {2, {}, {}});
   const auto meter = [&](const FluxRequest& r) { return FluxMeter(session, description(world), r); };
   const auto file = folder_.name_of("flux.part");
@@ -305,14 +305,14 @@ TEST_F(Radiometry, TheVerdictKnowsWhatIsWithinTheLimit) {
   using Answer = BrfVerdict::Answer;
   const BrfRequest request{
       .views = {{-40, 0}, {0, 0}, {40, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=550,800"};
-  const BrfReading reference = brf(kSun + soil(0.3), request, 64), brighter = brf(kSun + soil(0.309), request, 64),
-                   little = brf(kSun + soil(0.303), request, 64);
+  const BrfMeasurement reference = brf(kSun + soil(0.3), request, 64), brighter = brf(kSun + soil(0.309), request, 64),
+                       little = brf(kSun + soil(0.303), request, 64);
   EXPECT_EQ(judge(reference, reference, 0.02).answer, Answer::enough);
   EXPECT_EQ(judge(reference, brighter, 0.02).answer, Answer::not_enough);
   EXPECT_EQ(judge(reference, little, 0.02).answer, Answer::enough);
   EXPECT_NEAR(judge(reference, little, 0.02).worst.mean, 0.01, 1e-5);
-  const BrfReading few = brf(kSun + soil(0.3) + canopy(1, lambertian(0.4, 0.4)), request, 2),
-                   other = brf(kSun + soil(0.3) + canopy(1, lambertian(0.41, 0.4)), request, 2);
+  const BrfMeasurement few = brf(kSun + soil(0.3) + canopy(1, lambertian(0.4, 0.4)), request, 2),
+                       other = brf(kSun + soil(0.3) + canopy(1, lambertian(0.41, 0.4)), request, 2);
   EXPECT_EQ(judge(few, other, 0.02).answer, Answer::unknown);
 }
 
@@ -335,7 +335,7 @@ TEST_F(Radiometry, WhatCannotBeMeasuredIsRefused) {
                 flux(kSun + soil(0.1), {.period = kPlot, .wavelengths = "bands,wavelengths=450", .by_instance = true},
                      1);
               }),
-              HasSubstr("no copies of objects"));
+              HasSubstr("no instances of objects"));
   EXPECT_THAT(error_of([&] {
                 brf(kSun + soil(0.1), {.views = {{95, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=450"}, 1);
               }),

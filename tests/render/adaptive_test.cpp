@@ -51,7 +51,7 @@ class Adaptive : public ::testing::Test {
   Session session_{silent_log(), {.threads = 2}};
 };
 
-/// Mean square of what two pictures differ by, over pixels and colours.
+/// Mean square of what two images differ by, over pixels and colours.
 double square_difference(const Film& a, const Film& b) {
   const Crop& c = a.settings().crop;
   double sum = 0;
@@ -61,7 +61,7 @@ double square_difference(const Film& a, const Film& b) {
   return sum / (3 * c.width() * c.height());
 }
 
-TEST_F(Adaptive, NoiseIsNoLessThanPicturesDifferBy) {
+TEST_F(Adaptive, NoiseIsNoLessThanImagesDifferBy) {
   for (const char* filter : {"gaussian", "mitchell", "box"}) {
     const LoadedScene one = load(true, 1, filter), two = load(true, 2, filter);
     for (const uint64_t samples : {32u, 64u, 256u}) {
@@ -72,7 +72,7 @@ TEST_F(Adaptive, NoiseIsNoLessThanPicturesDifferBy) {
       const double noise = square_difference(a.film, b.film) / 2;
       EXPECT_GT(noise, 0);
       for (const Film* film : {&a.film, &b.film}) {
-        const NoiseEstimate estimate = picture_noise(*film, noise_z());
+        const NoiseEstimate estimate = image_noise(*film, noise_z());
         EXPECT_GE(estimate.upper, noise) << filter << samples;
         EXPECT_GE(estimate.upper, estimate.mean_square);
         EXPECT_GE(estimate.mean_square, 0.8 * noise) << filter << samples;
@@ -88,7 +88,7 @@ TEST_F(Adaptive, NoiseComesDownToWhatIsAskedFor) {
   uint64_t before = 0;
   for (const double max_rms : {0.05, 0.02, 0.01}) {
     const RenderPart part = to_noise(scene, max_rms);
-    EXPECT_LE(picture_noise(part.film, noise_z()).upper_rms(), max_rms);
+    EXPECT_LE(image_noise(part.film, noise_z()).upper_rms(), max_rms);
     EXPECT_LE(std::sqrt(square_difference(part.film, reference.film)), max_rms);
     EXPECT_EQ(what_is_missing(part), "");
     EXPECT_GE(part.header.statistics.paths, before);
@@ -104,7 +104,7 @@ TEST_F(Adaptive, MostSamplesAreNotExceeded) {
   const LoadedScene scene = load(true);
   const RenderPart part = to_noise(scene, 1e-6, 96);
   EXPECT_EQ(sample_count(part.film).most, 96u);
-  EXPECT_GT(picture_noise(part.film, noise_z()).upper_rms(), 1e-6);
+  EXPECT_GT(image_noise(part.film, noise_z()).upper_rms(), 1e-6);
 }
 
 /// Ends a render after so many reports, and again and again, until there is no more to do. `on(part, control)` renders.
@@ -164,7 +164,7 @@ TEST_F(Adaptive, MergedPiecesGoOn) {
   EXPECT_EQ(what_is_missing(merged), "");
   session_.render_to(load(true), {.max_rms = 0.02}, merged);
   EXPECT_EQ(what_is_missing(merged), "");
-  EXPECT_LE(picture_noise(merged.film, noise_z()).upper_rms(), 0.02);
+  EXPECT_LE(image_noise(merged.film, noise_z()).upper_rms(), 0.02);
 }
 
 }  // namespace

@@ -38,9 +38,9 @@ class KeptLog final : public Log {
 class TestViewer final : public Viewer {
  public:
   explicit TestViewer(size_t most = SIZE_MAX) : most_(most) {}
-  void show(const Image& picture) override {
+  void show(const Image& image) override {
     if (shown.size() == most_) fail({}, "enough");
-    shown.push_back(picture);
+    shown.push_back(image);
   }
   void end(bool) override {}
   std::vector<Image> shown;
@@ -70,9 +70,9 @@ class StuckViewer final : public Viewer {
 };
 
 /// The same channels of the whole image.
-Image picture_of(const RenderPart& part) {
-  const Image whole = film_image(part.film, part.header.picture);
-  const std::vector<std::string> names = empty_picture(part.film, part.header.picture).channels;
+Image image_of(const RenderPart& part) {
+  const Image whole = film_image(part.film, part.header.image);
+  const std::vector<std::string> names = empty_image(part.film, part.header.image).channels;
   std::vector<size_t> channels;
   for (const std::string& name : names) channels.push_back(whole.channel(name).value());
   return whole.selected(channels, names);
@@ -101,11 +101,11 @@ TEST_F(LiveViews, ShowInTheEndWhatTheImageHas) {
     const LoadedScene scene = how.load(session_, scene_);
     RenderPart part = scene.empty_part();
     TestViewer viewer;
-    LiveView view(part.film, part.header.picture, viewer, log_);
+    LiveView view(part.film, part.header.image, viewer, log_);
     render(scene, part);
     view.finish(false);
     ASSERT_THAT(viewer.shown, ::testing::Not(IsEmpty()));
-    const Image expected = picture_of(part);
+    const Image expected = image_of(part);
     EXPECT_EQ(viewer.shown.back().channels, expected.channels);
     EXPECT_EQ(viewer.shown.back().pixels, expected.pixels) << how.wavelengths << ' ' << how.filter;
     EXPECT_EQ(std::ranges::count(expected.channels, "R"), how.wavelengths == "bands,wavelengths=600,650" ? 0 : 1);
@@ -118,11 +118,11 @@ TEST_F(LiveViews, ShowHalvesWhereTheFileHasThem) {
   RenderPart part = scene.empty_part();
   render(scene, part);
   TestViewer viewer;
-  LiveView(part.film, part.header.picture, viewer, log_).finish(true);
-  Image expected = picture_of(part);
+  LiveView(part.film, part.header.image, viewer, log_).finish(true);
+  Image expected = image_of(part);
   round_to_halves(expected.pixels);
   EXPECT_EQ(viewer.shown.back().pixels, expected.pixels);
-  EXPECT_NE(expected.pixels, picture_of(part).pixels);
+  EXPECT_NE(expected.pixels, image_of(part).pixels);
 }
 
 TEST_F(LiveViews, ChangeNothingInTheFilm) {
@@ -130,7 +130,7 @@ TEST_F(LiveViews, ChangeNothingInTheFilm) {
   RenderPart alone = scene.empty_part(), watched = scene.empty_part();
   render(scene, alone);
   TestViewer viewer;
-  LiveView view(watched.film, watched.header.picture, viewer, log_);
+  LiveView view(watched.film, watched.header.image, viewer, log_);
   render(scene, watched);
   EXPECT_EQ(watched.film, alone.film);
 }
@@ -146,7 +146,7 @@ LightSource "infinite" "spectrum L" [300 1 2500 1]
 )");
   const LoadedScene scene = SceneRender{.wavelengths = "smpte"}.load(session_, scene_file);
   RenderPart part = scene.empty_part();
-  Image picture = empty_picture(part.film, part.header.picture);
+  Image image = empty_image(part.film, part.header.image);
   std::atomic<bool> is_over = false;
   std::jthread renderer([&] {
     render(scene, part, 256);
@@ -156,9 +156,9 @@ LightSource "infinite" "spectrum L" [300 1 2500 1]
   bool is_last = false;
   do {
     is_last = is_over;
-    ASSERT_TRUE(renew_picture(part.film, part.header.picture, {}, picture));
-    for (size_t i = 0; i < picture.pixels.size(); i += 3)
-      if (const float red = picture.pixels[i]; red != 0) least = std::min(least, red), most = std::max(most, red);
+    ASSERT_TRUE(renew_image(part.film, part.header.image, {}, image));
+    for (size_t i = 0; i < image.pixels.size(); i += 3)
+      if (const float red = image.pixels[i]; red != 0) least = std::min(least, red), most = std::max(most, red);
   } while (!is_last);
   EXPECT_GT(least, 0);
   EXPECT_LT(most - least, 1e-4f * most);
@@ -168,7 +168,7 @@ TEST_F(LiveViews, OfAViewerThatFailsAreAWarningAndTheRenderGoesOn) {
   const LoadedScene scene = SceneRender{}.load(session_, scene_);
   RenderPart part = scene.empty_part();
   TestViewer viewer(0);
-  LiveView view(part.film, part.header.picture, viewer, log_);
+  LiveView view(part.film, part.header.image, viewer, log_);
   render(scene, part);
   view.finish(false);
   EXPECT_THAT(log_.warnings, ElementsAre(HasSubstr("display: enough; ")));
@@ -179,10 +179,10 @@ TEST_F(LiveViews, DoNotWaitForWhatIsStuck) {
   const LoadedScene scene = SceneRender{}.load(session_, scene_);
   RenderPart part = scene.empty_part();
   StuckViewer left;
-  { const LiveView view(part.film, part.header.picture, left, log_); }
+  { const LiveView view(part.film, part.header.image, left, log_); }
   EXPECT_THAT(log_.warnings, IsEmpty());
   StuckViewer finished;
-  LiveView(part.film, part.header.picture, finished, log_).finish(false);
+  LiveView(part.film, part.header.image, finished, log_).finish(false);
   EXPECT_THAT(log_.warnings, SizeIs(1));
 }
 
@@ -193,7 +193,7 @@ TEST_F(LiveViews, GoToTevAsItIsSpokenTo) {
     RenderPart part = scene.empty_part();
     {
       TevViewer viewer({"127.0.0.1", listener.port()}, "scene");
-      LiveView view(part.film, part.header.picture, viewer, log_);
+      LiveView view(part.film, part.header.image, viewer, log_);
       render(scene, part);
       view.finish(false);
     }
@@ -201,7 +201,7 @@ TEST_F(LiveViews, GoToTevAsItIsSpokenTo) {
     EXPECT_THAT(listener.faults(), IsEmpty());
     ASSERT_THAT(listener.images(), SizeIs(1));
     const auto& [name, image] = *listener.images().begin();
-    const Image expected = picture_of(part);
+    const Image expected = image_of(part);
     EXPECT_EQ(name, "scene");
     EXPECT_EQ(image.width, expected.width);
     EXPECT_EQ(image.height, expected.height);

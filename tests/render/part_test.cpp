@@ -46,7 +46,7 @@ class Parts : public ::testing::Test {
   RenderPart part(SampleRange samples, SceneRender how = {}) const { return how.part(scene_, samples); }
   /// The image's file.
   std::string image_of(const RenderPart& part) const {
-    ImageOutput(path("image.exr").string(), {}).write(part.film, finished_picture(part));
+    ImageOutput(path("image.exr").string(), {}).write(part.film, finished_image(part));
     return bytes_of(path("image.exr"));
   }
   /// What merging two parts is refused with.
@@ -59,8 +59,8 @@ class Parts : public ::testing::Test {
   fs::path scene_;
 };
 
-/// Pieces of the picture, all of it, without regard to tiles.
-std::vector<Crop> pieces_of_the_picture() { return {{0, 0, 13, 9}, {13, 0, 40, 9}, {0, 9, 21, 27}, {21, 9, 40, 27}}; }
+/// Pieces of the image, all of it, without regard to tiles.
+std::vector<Crop> pieces_of_the_image() { return {{0, 0, 13, 9}, {13, 0, 40, 9}, {0, 9, 21, 27}, {21, 9, 40, 27}}; }
 
 struct Case {
   std::string name, wavelengths;
@@ -96,13 +96,13 @@ TEST_F(Parts, RangesOfSamplesAddUpToTheWhole) {
   }
 }
 
-TEST_F(Parts, PiecesOfThePictureAddUpToTheWhole) {
+TEST_F(Parts, PiecesOfTheImageAddUpToTheWhole) {
   std::mt19937 random(2);
   for (const Case& c : cases()) {
     SceneRender how{.wavelengths = c.wavelengths, .channels = c.channels, .filter = c.filter};
     const RenderPart whole = part({0, 20}, how);
     std::vector<fs::path> files;
-    for (const Crop& pixels : pieces_of_the_picture())
+    for (const Crop& pixels : pieces_of_the_image())
       for (const auto& range : {SampleRange{0, 7}, {7, 20}}) {
         how.pixels = pixels;
         files.push_back(write(part(range, how), fmt::format("{}.part", files.size())));
@@ -176,7 +176,7 @@ TEST_F(Parts, HolesAreNamed) {
   parts.erase(parts.begin());
   EXPECT_THAT(missing(parts), HasSubstr("samples 0:6"));
   parts.clear();
-  for (const Crop& pixels : pieces_of_the_picture()) parts.push_back(part({0, 3}, {.pixels = pixels}));
+  for (const Crop& pixels : pieces_of_the_image()) parts.push_back(part({0, 3}, {.pixels = pixels}));
   EXPECT_EQ(missing(parts), "");
   parts.erase(parts.begin() + 1);
   EXPECT_THAT(missing(parts), HasSubstr("samples 0:3 of pixels 13,16,0,9"));
@@ -276,8 +276,8 @@ TEST_F(Parts, WhatIsNoneOrOfAnotherVersionIsRefused) {
     EXPECT_THAT(reading(text), HasSubstr("is no part of a render"));
   const auto bytes = encode_part(whole.header, whole.film);
   std::string other(bytes.begin(), bytes.end());
-  other[other.find('2')] = '3';
-  EXPECT_THAT(reading(other), AllOf(HasSubstr("another version"), HasSubstr("version 2")));
+  other[other.find('3')] = '2';
+  EXPECT_THAT(reading(other), AllOf(HasSubstr("another version"), HasSubstr("version 3")));
   EXPECT_THAT(error_of([this] { read_part(path("none.part")); }), HasSubstr("none.part"));
   EXPECT_THAT(error_of([this] { merge_parts({path("scene.pbrt")}); }), HasSubstr("no part of a render"));
 }

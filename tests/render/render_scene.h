@@ -45,7 +45,7 @@ struct SceneRender {
   std::string wavelengths = "hero";
   std::vector<std::string> channels = {};
   std::optional<Crop> pixels = {};
-  bool is_piece = true;  ///< where pixels are given: others are rendered elsewhere
+  bool is_part = true;  ///< where pixels are given: others are rendered elsewhere
   uint64_t seed = 1;
   int threads = 2;
   std::string swap = {};  ///< of "thing"
@@ -63,7 +63,7 @@ struct SceneRender {
     SceneDescription description = session.read(scene);
     apply_overrides(overrides, description, session.registry(), session.log());
     return session.load(std::move(description),
-                        {.pixels = pixels, .is_piece = is_piece, .channels = channels, .adaptive = adaptive});
+                        {.pixels = pixels, .is_part = is_part, .channels = channels, .adaptive = adaptive});
   }
   RenderPart part(const std::filesystem::path& scene, SampleRange samples) const {
     Session session(silent_log(), {.threads = threads});

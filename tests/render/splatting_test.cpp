@@ -283,7 +283,7 @@ TEST(Splatting, NoiseIsLessThanOfSamplesOfTheirOwn) {
   EXPECT_LT(factor("sinc"), 1.05);
 }
 
-/// The picture's noise as a field, of white noise in all samples.
+/// The image's noise as a field, of white noise in all samples.
 std::vector<float> noise_field(const Filter& filter, int size, uint64_t seed) {
   MadeUp made(filter, size, size);
   RandomStream random(hash_key(seed, 77));
@@ -354,7 +354,7 @@ TEST_F(SplattingRenders, ACropHasThePixelsOfTheWhole) {
     const RenderPart whole = how.part(scene_, {0, 7});
     for (const Crop& crop : {Crop{0, 0, 3, 2}, {7, 9, 30, 20}, {16, 16, 32, 27}, {39, 26, 40, 27}}) {
       SceneRender part_of_it = how;
-      part_of_it.pixels = crop, part_of_it.is_piece = false;
+      part_of_it.pixels = crop, part_of_it.is_part = false;
       const RenderPart part = part_of_it.part(scene_, {0, 7});
       for (int y = crop.y0; y < crop.y1; ++y)
         for (int x = crop.x0; x < crop.x1; ++x) {
@@ -386,16 +386,16 @@ TEST_F(SplattingRenders, PiecesOfAScenesCropAddUpToIt) {
   EXPECT_TRUE(lacks_neighbors(merge_parts({files[1], files[2]}).film));
 }
 
-/// The two ways blur alike: their pictures have the same mean, and hardly differ but by noise.
-TEST_F(SplattingRenders, BothWaysMakeOnePicture) {
+/// The two ways blur alike: their images have the same mean, and hardly differ but by noise.
+TEST_F(SplattingRenders, BothWaysMakeOneImage) {
   for (const char* filter : {"gaussian", "mitchell"}) {
-    const auto picture = [&](const std::string& more, uint64_t seed) {
+    const auto image = [&](const std::string& more, uint64_t seed) {
       return SceneRender{.seed = seed, .filter = filter + more}.part(scene_, {0, 512});
     };
     std::array<std::array<std::vector<float>, 4>, 3> colors;
-    const std::array<RenderPart, 4> parts{
-        picture(",reconstruction=splatting", 1), picture(",reconstruction=splatting", 2),
-        picture(",reconstruction=importance", 3), picture(",reconstruction=importance", 4)};
+    const std::array<RenderPart, 4> parts{image(",reconstruction=splatting", 1), image(",reconstruction=splatting", 2),
+                                          image(",reconstruction=importance", 3),
+                                          image(",reconstruction=importance", 4)};
     EXPECT_TRUE(parts[0].film.format().splatting.has_value());
     EXPECT_FALSE(parts[2].film.format().splatting.has_value());
     for (size_t i = 0; i < 4; ++i)
@@ -426,7 +426,7 @@ TEST_F(SplattingRenders, FilterOfTheCommandGoesBeforeTheScenes) {
               ::testing::HasSubstr("auto, splatting, importance"));
 }
 
-TEST_F(SplattingRenders, WhatIsNotTheSamePictureIsNotAddedUp) {
+TEST_F(SplattingRenders, WhatIsNotTheSameImageIsNotAddedUp) {
   const RenderPart shared = SceneRender{}.part(scene_, {0, 2}),
                    own = SceneRender{.filter = "gaussian,reconstruction=importance"}.part(scene_, {2, 4});
   const std::vector<std::filesystem::path> files{folder_.name_of("a.part"), folder_.name_of("b.part")};

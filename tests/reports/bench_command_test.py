@@ -59,9 +59,9 @@ class Compare(FolderTest):
         self.assertEqual(self.compare("--fail-on-regression", "5")[0], 2)
         self.assertEqual(self.compare("--fail-on-regression", "30")[0], 0)
 
-    def test_another_picture_ends_with_2_as_well(self):
-        self.a = self.file("a.json", runs.pictures(0.01))
-        self.b = self.file("b.json", runs.pictures(0.02))
+    def test_another_image_ends_with_2_as_well(self):
+        self.a = self.file("a.json", runs.images(0.01))
+        self.b = self.file("b.json", runs.images(0.02))
         code, out = self.compare("--fail-on-regression", "30")
         self.assertEqual(code, 2)
         self.assertIn("scene/soybean-front/abm rms_red: 0.01 ± 0.0001, now 0.02 ± 0.0001", out)
@@ -131,7 +131,7 @@ class Tables(FolderTest):
     def test_a_document_takes_the_figures_between_its_marks(self):
         page = self.folder / "benchmarks.md"
         page.write_text(f"before\n{tables.BEGIN}\nold\n{tables.END}\nafter\n", encoding="utf-8")
-        run = self.file("run.json", runs.pictures(0.01))
+        run = self.file("run.json", runs.images(0.01))
         with mock.patch.object(command, "DOCUMENT", page):
             self.assertEqual(self.run_bench("--write-docs", run)[0], 0)
         text = page.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What is called slower, faster or another picture, and how often wrongly."""
+"""What is called slower, faster or another image, and how often wrongly."""
 
 import math
 import unittest
@@ -107,28 +107,28 @@ class Changes(unittest.TestCase):
             Comparison(Run(runs.noisy(rng, ["x"])), Run(runs.noisy(rng, ["z"])))
 
 
-class Pictures(unittest.TestCase):
+class Images(unittest.TestCase):
     def marks(self, a, b):
         return {f.counter: f.mark for f in Comparison(Run(a), Run(b)).figures}
 
     def test_the_same_to_the_last_digit(self):
-        marks = self.marks(runs.pictures(0.01), runs.pictures(0.01))
+        marks = self.marks(runs.images(0.01), runs.images(0.01))
         self.assertEqual(set(marks.values()), {"same"})
         self.assertEqual(len(marks), 10)
 
     def test_other_noise_is_within_errors(self):
-        marks = self.marks(runs.pictures(0.01), runs.pictures(0.0101))
+        marks = self.marks(runs.images(0.01), runs.images(0.0101))
         self.assertEqual(marks["rms_red"], "within errors")
 
-    def test_another_picture_is_found(self):
-        a = runs.pictures(0.01)
-        marks = self.marks(a, runs.pictures(0.01, bias2_blue=0.012))
+    def test_another_image_is_found(self):
+        a = runs.images(0.01)
+        marks = self.marks(a, runs.images(0.01, bias2_blue=0.012))
         self.assertEqual([c for c, mark in marks.items() if mark == "changed"], ["bias2_blue"])
 
-    def test_pictures_that_change_from_round_to_round_are_told(self):
-        b = runs.pictures(0.01)
+    def test_images_that_change_from_round_to_round_are_told(self):
+        b = runs.images(0.01)
         b["benchmarks"][3]["rms_red"] += 1e-9
-        self.assertIn("differ from round to round", " ".join(warnings(Comparison(Run(runs.pictures(0.01)), Run(b)))))
+        self.assertIn("differ from round to round", " ".join(warnings(Comparison(Run(runs.images(0.01)), Run(b)))))
 
 
 class Warnings(unittest.TestCase):

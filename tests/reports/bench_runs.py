@@ -43,7 +43,7 @@ def apart(rng, names, slower=(), noise=0.02):
     return Run(noisy(rng, names, noise=noise)), Run(noisy(rng, names, noise=noise, slower=slower))
 
 
-def pictures(rms, error=1e-4, name="scene/soybean-front/abm", **more):
+def images(rms, error=1e-4, name="scene/soybean-front/abm", **more):
     counters = {f"{kind}_{c}{se}": error if se else rms for kind in ("rms", "bias2", "offset") for c in ("red", "green", "blue")
                 for se in ("", "_se")}
     counters |= {"variance": 1e-4, "variance_se": 1e-5, "speedup": 2.0, "speedup_equal_noise": 3.0, "efficiency": 1e9,

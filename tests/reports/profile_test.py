@@ -1,4 +1,4 @@
-"""What scripts/profile makes of stacks that perf sampled: whole ones of those that were cut off, modules, a table and a picture."""
+"""What scripts/profile makes of stacks that perf sampled: whole ones of those that were cut off, modules, a table and an image."""
 
 import os
 import pathlib
@@ -173,10 +173,10 @@ class FlameGraphTest(unittest.TestCase):
     def draw(self, ways, title="frond render a.pbrt", notes=("a note",)):
         return xml.etree.ElementTree.fromstring(flame_graph.svg(ways, title, list(notes)))
 
-    def frames(self, picture):
+    def frames(self, image):
         """By name: (x, y, width, label)."""
         result = {}
-        for group in picture.iter(f"{SVG}g"):
+        for group in image.iter(f"{SVG}g"):
             box, text = group.find(f"{SVG}rect"), group.find(f"{SVG}text")
             label = "" if text is None else text.text
             result[group.find(f"{SVG}title").text] = (float(box.get("x")), float(box.get("y")), float(box.get("width")), label)
@@ -192,17 +192,17 @@ class FlameGraphTest(unittest.TestCase):
         [second] = [frame for title, frame in frames.items() if title.startswith("a very")]
         self.assertAlmostEqual(second[0], x + 0.6 * whole, delta=0.02)
 
-    def test_nothing_leaves_the_picture_or_its_frame(self):
-        picture = self.draw(self.WAYS, "frond render " + "x" * 300, ["y" * 300, "z"])
-        width, height = float(picture.get("width")), float(picture.get("height"))
-        for box in picture.iter(f"{SVG}rect"):
+    def test_nothing_leaves_the_image_or_its_frame(self):
+        image = self.draw(self.WAYS, "frond render " + "x" * 300, ["y" * 300, "z"])
+        width, height = float(image.get("width")), float(image.get("height"))
+        for box in image.iter(f"{SVG}rect"):
             x, y = float(box.get("x", 0)), float(box.get("y", 0))
             self.assertLessEqual(x + float(box.get("width")), width)
             self.assertLessEqual(y + float(box.get("height")), height)
-        for text in picture.iter(f"{SVG}text"):
+        for text in image.iter(f"{SVG}text"):
             letter = flame_graph.LETTER * (16 / 12 if text.get("class") == "title" else 1)
             self.assertLessEqual(float(text.get("x")) + letter * len(text.text), width)
-        for x, _, wide, label in self.frames(picture).values():
+        for x, _, wide, label in self.frames(image).values():
             self.assertLessEqual(2 + flame_graph.LETTER * len(label), wide if label else 3, label)
 
     def test_what_is_too_narrow_is_left_out_and_too_narrow_for_letters_has_none(self):
@@ -220,7 +220,7 @@ class FlameGraphTest(unittest.TestCase):
         backwards = dict(reversed(self.WAYS.items()))
         self.assertEqual(flame_graph.svg(self.WAYS, "a", []), flame_graph.svg(backwards, "a", []))
 
-    def test_nothing_sampled_is_a_picture_without_frames(self):
+    def test_nothing_sampled_is_a_image_without_frames(self):
         self.assertEqual(self.frames(self.draw({})), {})
 
 

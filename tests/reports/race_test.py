@@ -1,4 +1,4 @@
-"""What scripts/race makes of pictures and scenes: statistics that are known, scenes read and written again, a page."""
+"""What scripts/race makes of images and scenes: statistics that are known, scenes read and written again, a page."""
 
 import pathlib
 import struct
@@ -6,22 +6,22 @@ import tempfile
 import unittest
 
 import numpy
-from race import page, pictures, scenes
+from race import luminance, page, scenes
 
 
 def noisy(mean, deviation, seed, count=4, size=68):
     return numpy.random.default_rng(seed).normal(mean, deviation, (count, size, size))
 
 
-class PicturesTest(unittest.TestCase):
+class ImagesTest(unittest.TestCase):
     def test_variance_is_that_of_a_pixel(self):
         # 64 x 64 pixels of 4 seeds: a relative standard error of sqrt(2 / 12288) = 0.013; 5 of them, false alarms 6e-7.
-        found = pictures.measure(noisy(1, 0.1, 1))
+        found = luminance.measure(noisy(1, 0.1, 1))
         self.assertAlmostEqual(found.variance, 0.01, delta=5 * 0.013 * 0.01)
         self.assertAlmostEqual(found.variance_error / 0.01, 0.013, delta=0.013)
 
     def test_a_shift_is_seen_in_the_mean_and_in_the_blocks(self):
-        found = pictures.difference(pictures.measure(noisy(1.01, 0.1, 2)), pictures.measure(noisy(1, 0.1, 3)))
+        found = luminance.difference(luminance.measure(noisy(1.01, 0.1, 2)), luminance.measure(noisy(1, 0.1, 3)))
         self.assertAlmostEqual(found.mean, 0.01, delta=5 * found.error)
         self.assertAlmostEqual(found.error, 0.1 * (2 / 4 / 64**2)**0.5, delta=0.4 * found.error)
         self.assertAlmostEqual(found.blocks, 0.01, delta=0.003)
@@ -29,7 +29,7 @@ class PicturesTest(unittest.TestCase):
     def test_light_in_another_place_is_seen_in_the_blocks_alone(self):
         a, b = noisy(1, 0.01, 4), noisy(1, 0.01, 5)
         a += numpy.where(numpy.arange(68) < 34, 0.1, -0.1)
-        found = pictures.difference(pictures.measure(a), pictures.measure(b))
+        found = luminance.difference(luminance.measure(a), luminance.measure(b))
         self.assertLess(abs(found.mean), 0.005)
         self.assertAlmostEqual(found.blocks, 0.1, delta=0.005)
 
@@ -37,7 +37,7 @@ class PicturesTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "a.pfm"
             path.write_bytes(b"PF\n2 2\n-1.0\n" + struct.pack("<12f", *[1] * 6, *[2] * 6))
-            self.assertEqual(pictures.read(path).round(5).ravel().tolist(), [2, 2, 1, 1])
+            self.assertEqual(luminance.read(path).round(5).ravel().tolist(), [2, 2, 1, 1])
 
 
 class ScenesTest(unittest.TestCase):
@@ -91,7 +91,7 @@ class PageTest(unittest.TestCase):
         ours, other = self.result("ours", [2, 4], 0.01), self.result("other", [1, 2], 0.02)
         self.assertEqual(page.efficiencies(other, ours), [1, 1])
 
-    def test_other_pictures_are_marked(self):
+    def test_other_images_are_marked(self):
         self.assertIn("!", page.mean(self.result("other", [1], 0.01, 0.01)))
         self.assertNotIn("!", page.mean(self.result("other", [1], 0.01, 0.0003)))
 

@@ -306,7 +306,7 @@ TEST(Portal, IsARectangle) {
         << points;
 }
 
-TEST(Projection, ThrowsItsPictureUprightAlongZ) {
+TEST(Projection, ThrowsItsImageUprightAlongZ) {
   const TestFolder folder("lights");
   write_image(folder.name_of("slide.exr"), marked(8, 4, 0.5f), {"linear sRGB", {}});
   const Loaded slide = with_light(fmt::format(
@@ -317,7 +317,7 @@ TEST(Projection, ThrowsItsPictureUprightAlongZ) {
     const auto s = light.sample(p, {}, lambda);
     return s ? s->radiance : SampledSpectrum();
   };
-  // At z = 1 the picture reaches from -2 to 2 and from -1 to 1; intensity over the squared distance arrives.
+  // At z = 1 the image reaches from -2 to 2 and from -1 to 1; intensity over the squared distance arrives.
   EXPECT_NEAR(relative_to_white(at({0.1f, 0.1f, 1}), lambda), 1.5 / 1.02, 0.01);
   EXPECT_NEAR(relative_to_white(at({1.9f, -0.9f, 1}), lambda), 1.5 / (1 + 1.9 * 1.9 + 0.81), 0.01);
   const SampledSpectrum red = at({-1.9f, 0.9f, 1});  // lanes are red, green and blue

@@ -1,4 +1,4 @@
-// Copies of objects: tables as files, and what rays meet in them, against the same surfaces written out.
+// Instances of objects: tables as files, and what rays meet in them, against the same surfaces written out.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -132,7 +132,7 @@ TEST_F(Instances, BadScenesAreRefusedWithTheirPlace) {
   EXPECT_THAT(error_of([&] {
                 scene(R"(ObjectBegin "a" Shape "instances" "string object" "a" "string filename" "t.npy" ObjectEnd)");
               }),
-              HasSubstr("object \"a\" holds a copy of itself"));
+              HasSubstr("object \"a\" holds an instance of itself"));
   EXPECT_THAT(error_of([&] { scene(leaf + R"(Shape "instances" "string object" "leaf" "string filename" "u.npy")"); }),
               HasSubstr("u.npy"));
   std::string deep = leaf;
@@ -142,7 +142,7 @@ TEST_F(Instances, BadScenesAreRefusedWithTheirPlace) {
   EXPECT_THAT(error_of([&] { scene(deep + "ObjectInstance \"o4\""); }), HasSubstr("nested 6 deep: 4 is the limit"));
 }
 
-/// A leaf that is no flat thing, and its copies written out in the world's own space.
+/// A leaf that is no flat thing, and its instances written out in the world's own space.
 std::string leaf_shapes(const std::string& transform = "") {
   return "AttributeBegin " + transform +
          R"( Shape "trianglemesh" "point3 P" [0 0 0  1 0 .2  1 1 0  0 1 .3] "integer indices" [0 1 2  0 2 3]
@@ -161,13 +161,13 @@ void for_each_ray(const Look& look) {
   }
 }
 
-/// Copies must be met where their surfaces, written out, are: hits and shadows alike.
-void expect_same(const Scene& copies, const Scene& written_out) {
+/// Instances must be met where their surfaces, written out, are: hits and shadows alike.
+void expect_same(const Scene& instances, const Scene& written_out) {
   int hits = 0, differ = 0;
   for_each_ray([&](const Ray& ray, uint64_t key) {
     SurfacePoint a, b;
-    const bool hit_a = copies.intersect(ray, key, a), hit_b = written_out.intersect(ray, key, b);
-    EXPECT_EQ(hit_a, copies.occluded(ray, key));
+    const bool hit_a = instances.intersect(ray, key, a), hit_b = written_out.intersect(ray, key, b);
+    EXPECT_EQ(hit_a, instances.occluded(ray, key));
     // A ray along an edge may be on either side of it, after one rounding or another.
     if (hit_a != hit_b) {
       ++differ;
@@ -234,13 +234,13 @@ void expect_same_in_packets(const Scene& scene) {
 TEST_F(Instances, CopiesAreMetWhereTheirSurfacesAre) {
   const std::vector<std::string> placed{"Translate 2 0 0 Rotate 40 1 2 3", "Translate -2 1 0 Scale 2 .5 1",
                                         "Rotate 200 3 1 0 Translate 0 -2 1"};
-  std::string copies = "ObjectBegin \"leaf\" " + leaf_shapes() + "ObjectEnd\n", flat;
+  std::string instances = "ObjectBegin \"leaf\" " + leaf_shapes() + "ObjectEnd\n", flat;
   for (const std::string& t : placed) {
-    copies += "AttributeBegin " + t + " ObjectInstance \"leaf\" AttributeEnd\n";
+    instances += "AttributeBegin " + t + " ObjectInstance \"leaf\" AttributeEnd\n";
     flat += leaf_shapes(t);
   }
-  expect_same(*scene(copies), *scene(flat));
-  expect_same_in_packets(*scene(copies));
+  expect_same(*scene(instances), *scene(flat));
+  expect_same_in_packets(*scene(instances));
   expect_same_in_packets(*scene(flat));
 }
 
@@ -264,7 +264,7 @@ TEST_F(Instances, TablesOfTablesAreMetWhereTheirSurfacesAre) {
   write_npy("shoot.npy", dict, shoot);
   write_npy("plant.npy", dict, plant);
   const std::string leaf = "ObjectBegin \"leaf\" " + leaf_shapes() + "ObjectEnd\n";
-  const auto copies = scene(leaf + R"(
+  const auto instances = scene(leaf + R"(
 ObjectBegin "shoot" Shape "instances" "string object" "leaf" "string filename" "shoot.npy" ObjectEnd
 Rotate 30 0 0 1 Shape "instances" "string object" "shoot" "string filename" "plant.npy")");
   // Column after column, as the format has matrices.
@@ -275,12 +275,12 @@ Rotate 30 0 0 1 Shape "instances" "string object" "shoot" "string filename" "pla
   std::string flat;
   for (const std::string& p : plants)
     for (const std::string& s : shoots) flat += leaf_shapes("Rotate 30 0 0 1 " + p + " " + s);
-  expect_same(*copies, *scene(flat));
-  expect_same_in_packets(*copies);
-  EXPECT_EQ(copies->geometry().instances(), 4u);
+  expect_same(*instances, *scene(flat));
+  expect_same_in_packets(*instances);
+  EXPECT_EQ(instances->geometry().instances(), 4u);
 }
 
-/// Which copy stands at each place of a row along x, as seen from above.
+/// Which instance stands at each place of a row along x, as seen from above.
 std::vector<uint64_t> ids_seen(const Scene& scene, int count) {
   std::vector<uint64_t> ids;
   for (int i = 0; i < count; ++i) {
@@ -339,7 +339,7 @@ TEST_F(Instances, AColumnThatNoTableHasIsAnError) {
       "Shape \"instances\" \"string object\" \"leaf\" \"string filename\" \"leaves.npy\"";
   EXPECT_THAT(
       error_of([&] { scene(texture + leaves); }),
-      HasSubstr("scene.pbrt:3:48: no table of copies has a column \"clorophyll\"; did you mean \"chlorophyll\"?"));
+      HasSubstr("scene.pbrt:3:48: no table of instances has a column \"clorophyll\"; did you mean \"chlorophyll\"?"));
   EXPECT_THAT(error_of([&] { scene(texture); }), HasSubstr("none has any numbers"));
 }
 

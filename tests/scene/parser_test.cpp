@@ -212,8 +212,8 @@ AttributeBegin Translate 5 0 0 ObjectInstance "leaf" AttributeEnd)");
   expect_near(s.objects[0].shapes[0].world_from_object.point({1, 0, 0}), {3, 0, 0});
   ASSERT_EQ(s.shapes.size(), 1u);
   EXPECT_EQ(s.shapes[0].material, 0u) << "ObjectEnd brings the state back";
-  EXPECT_EQ(s.copies.objects, (std::vector<uint32_t>{0, 0}));
-  EXPECT_EQ(s.copies.maps->at(1).rows, Transform::translate({6, 0, 0}).rows());
+  EXPECT_EQ(s.instances.objects, (std::vector<uint32_t>{0, 0}));
+  EXPECT_EQ(s.instances.maps->at(1).rows, Transform::translate({6, 0, 0}).rows());
 }
 
 TEST(Parser, AttributeGivesDefaultsThatPluginsMayIgnore) {

@@ -124,7 +124,7 @@ TEST(PbrtFormat, WhatCannotBeInvertedIsLeftOut) {
                                    log);
     EXPECT_EQ(scene.shapes.size(), 1u) << flat;
     EXPECT_THAT(scene.lights, IsEmpty());
-    EXPECT_THAT(scene.copies.objects, IsEmpty());
+    EXPECT_THAT(scene.instances.objects, IsEmpty());
     EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("cannot be inverted")));
   }
 }
@@ -310,7 +310,7 @@ TEST(PbrtFormat, VolpathSeesThroughInterfaces) {
   EXPECT_EQ(answer("Integrator \"path\"" + world).scene.shapes.size(), 2u);
 }
 
-TEST(PbrtFormat, WhatGivesAnotherPictureHasToBeLetPass) {
+TEST(PbrtFormat, WhatGivesAnotherImageHasToBeLetPass) {
   const std::string text =
       "Integrator \"bdpt\" Camera \"realistic\" \"string lensfile\" \"x.dat\" WorldBegin\n"
       "Material \"hair\" \"rgb color\" [.1 .2 .3]\nTexture \"t\" \"float\" \"ptex\" \"string filename\" \"x.ptx\"\n"

@@ -320,7 +320,7 @@ TEST_F(Shapes, CurvesInCopiesAreThoseWrittenOut) {
       "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [0 0 0  .3 0 1  -.4 .5 2  0 0 3] \"float width\" .3";
   const std::string placed = "Translate 1 2 3 Rotate 50 1 2 3 Scale 2 2 2 ";
   const auto alone = scene(placed + curve);
-  const auto copy = scene("ObjectBegin \"o\" " + curve + " ObjectEnd " + placed + "ObjectInstance \"o\"");
+  const auto instance = scene("ObjectBegin \"o\" " + curve + " ObjectEnd " + placed + "ObjectInstance \"o\"");
   RandomStream random(3);
   int met = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -328,7 +328,7 @@ TEST_F(Shapes, CurvesInCopiesAreThoseWrittenOut) {
     const Vec3 d = normalize(Vec3{1, 2, 5} + Vec3{random.uniform(), random.uniform(), random.uniform()} - o);
     SurfacePoint a, b;
     const bool hit = meet(*alone, o, d, a);
-    if (hit != meet(*copy, o, d, b)) continue;  // at the rim
+    if (hit != meet(*instance, o, d, b)) continue;  // at the rim
     if (!hit) continue;
     ++met;
     expect_near(a.hit.p, b.hit.p, 1e-3f);

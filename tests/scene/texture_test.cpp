@@ -37,7 +37,7 @@ void expect_changes_follow(const TextureMapping& mapping, const Vec3& p) {
   const Vec3 dx{kStep, 0, 0}, dy{0, kStep, -kStep};
   TexturePoint at{.uv = {}, .p = p};
   at.dp_dx = dx, at.dp_dy = dy;
-  const TexturePlace place = mapping.at(at);
+  const TextureCoordinates place = mapping.at(at);
   const auto beside = [&](const Vec3& step) { return mapping.at({.uv = {}, .p = p + step}).st - place.st; };
   EXPECT_NEAR(place.dst_dx.x, beside(dx).x, 5e-6);
   EXPECT_NEAR(place.dst_dx.y, beside(dx).y, 5e-6);
@@ -50,7 +50,7 @@ TEST(TextureMapping, ScalesBeforeItShifts) {
                                    number("float", "vscale", {-1}), number("float", "vdelta", {1})});
   TexturePoint at{.uv = {0.5f, 0.25f}};
   at.duv_dx = {0.1f, 0.2f};
-  const TexturePlace place = mapping.at(at);
+  const TextureCoordinates place = mapping.at(at);
   EXPECT_EQ(place.st, (Vec2{1.25f, 0.75f}));
   EXPECT_EQ(place.dst_dx, (Vec2{0.2f, -0.2f}));
 }
@@ -74,7 +74,7 @@ TEST(TextureMapping, HasNumbersOnTheAxisToo) {
   for (const char* name : {"cylindrical", "spherical"}) {
     TexturePoint at{.uv = {}, .p = {0, 0, 0}};
     at.dp_dx = {1, 1, 1};
-    const TexturePlace place = mapping_of({kind(name)}).at(at);
+    const TextureCoordinates place = mapping_of({kind(name)}).at(at);
     for (const Vec2 v : {place.st, place.dst_dx}) EXPECT_TRUE(std::isfinite(v.x) && std::isfinite(v.y)) << name;
   }
 }

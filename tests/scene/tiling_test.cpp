@@ -1,4 +1,4 @@
-// A scene with a period against copies of it written out side by side.
+// A scene with a period against instances of it written out side by side.
 
 #include <gtest/gtest.h>
 
@@ -34,16 +34,17 @@ Translate -2 .8 .6 Shape "sphere" "float radius" .4 ObjectEnd
 TEST(Tiling, IsMetWhereItsCopiesAre) {
   ThreadPool pool(2);
   const auto endless = scene("Option \"float period\" [2 1.5]\n", kObject + "ObjectInstance \"plot\"", pool);
-  std::string copies = kObject;
+  std::string instances = kObject;
   for (int i = -kAround; i <= kAround; ++i)
     for (int j = -kAround; j <= kAround; ++j)
-      copies += fmt::format("AttributeBegin Translate {} {} 0 ObjectInstance \"plot\" AttributeEnd\n", 2 * i, 1.5 * j);
-  const auto written_out = scene("", copies, pool);
+      instances +=
+          fmt::format("AttributeBegin Translate {} {} 0 ObjectInstance \"plot\" AttributeEnd\n", 2 * i, 1.5 * j);
+  const auto written_out = scene("", instances, pool);
   RandomStream random(5);
   const auto uniform = [&random](float a, float b) { return a + (b - a) * random.uniform(); };
   int hits = 0, differ = 0;
   for (int i = 0; i < 20000; ++i) {
-    // Not so flat that a ray comes to the end of the copies.
+    // Not so flat that a ray comes to the end of the instances.
     const Ray ray{
         {uniform(-2, 2), uniform(-2, 2), uniform(-1, 3)},
         normalize(Vec3{uniform(-1, 1), uniform(-1, 1), (random.uniform() < 0.5f ? 1 : -1) * uniform(0.3f, 1)})};
@@ -57,7 +58,7 @@ TEST(Tiling, IsMetWhereItsCopiesAre) {
     if (!hit_a) continue;
     ++hits;
     EXPECT_LT(length(a.hit.ng - b.hit.ng), 1e-3f);
-    EXPECT_EQ(a.instance_id, 1u) << "a copy of the scene is no copy in it";
+    EXPECT_EQ(a.instance_id, 1u) << "an instance of the scene is no instance in it";
   }
   EXPECT_GT(hits, 5000) << "the test has lost its power";
   EXPECT_LE(differ, 4) << "rays along an edge";

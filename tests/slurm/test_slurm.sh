@@ -1,5 +1,5 @@
 #!/bin/bash
-# Renders through a small Slurm cluster that loses processes, tasks and a node meanwhile: the picture must not show it.
+# Renders through a small Slurm cluster that loses processes, tasks and a node meanwhile: the image must not show it.
 #
 # FROND, SCENE, SPP and OPTIONS choose another program, scene, number of samples and options than the stand-in's. A task should then take
 # some seconds, or it is done before it is disturbed. Exits with 77 where Slurm is not installed.
@@ -11,7 +11,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 templates=$here/../../src/jobs/slurm
 # A cluster that this test itself runs on has no say in the test's jobs.
 unset "${!SLURM@}" "${!SBATCH@}"
-export SOURCE_DATE_EPOCH=0 # pictures are compared byte for byte
+export SOURCE_DATE_EPOCH=0 # images are compared byte for byte
 
 tmp=$(mktemp -d /tmp/frond-slurm.XXXXXX)
 cluster=$tmp/cluster
@@ -157,7 +157,7 @@ check "the merge runs once the tasks are done" soon 120 is "$rendered_merge" Job
 for index in 0 1 2 5; do check "task $index went on after 1 restart" is "${rendered}_$index" Restarts 1; done
 for index in 3 4; do check "task $index needed none" is "${rendered}_$index" Restarts 0; done
 "$frond" render "$scene" -o "$tmp/single.exr" --spp "$spp" "${options[@]}"
-check "the picture is that of a single run" cmp "$tmp/single.exr" "$tmp/$main/out.exr"
+check "the image is that of a single run" cmp "$tmp/single.exr" "$tmp/$main/out.exr"
 if [[ $frond == "$fake" ]]; then
   for index in 0 1 2 5; do
     check "task $index went on from its checkpoint" grep -q "checkpoint has samples" <(log_of "$main" "$index")

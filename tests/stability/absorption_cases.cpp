@@ -73,9 +73,9 @@ Cell instruments_lose_nothing(const Parameters& params) {
       Specimen specimen(material, all, 800);
       for (const double theta_deg : kAngles) {
         constexpr int64_t kRays = 10000;
-        const auto reading = measure_shares({specimen.material(), {theta_deg, 800}}, {kRays}, specimen.pool());
-        const Estimate &r = reading.reflectance, &t = reading.transmittance;
-        comparison.add("R + T", Estimate{r.mean + t.mean, reading.absorptance.variance}, 1, kRays);
+        const auto measurement = measure_shares({specimen.material(), {theta_deg, 800}}, {kRays}, specimen.pool());
+        const Estimate &r = measurement.reflectance, &t = measurement.transmittance;
+        comparison.add("R + T", Estimate{r.mean + t.mean, measurement.absorptance.variance}, 1, kRays);
       }
     }
   return comparison.cell();

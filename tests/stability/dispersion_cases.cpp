@@ -78,7 +78,7 @@ Cell compare_lanes_of_f(const std::array<Tissue, kLanes>& tissues, const std::ve
     for (int i = 0; i < kWalks; ++i) {
       const Vec3d wi = uniform_direction(rng);
       const auto f =
-          leaf::estimate_body_f(pointers_to(tissues), rng.bits() % kLanes, toward(theta), wi, absorption, rng);
+          leaf::estimate_subsurface_f(pointers_to(tissues), rng.bits() % kLanes, toward(theta), wi, absorption, rng);
       const double scale = 4 * std::numbers::pi * std::abs(wi.z);
       for (size_t lane = 0; lane < kLanes; ++lane) {
         above[lane].add(wi.z > 0 ? f[lane] * scale : 0);

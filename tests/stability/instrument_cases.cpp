@@ -45,14 +45,14 @@ void add_patches(Theme& theme, int thetas, int phis, const std::string& part) {
 Cell whole_sphere(double theta_deg, int thetas, int phis, const leaf::Shares& truth) {
   constexpr int64_t kRays = 50000;
   Specimen specimen("abm", {}, kNm);
-  const auto reading =
+  const auto measurement =
       measure_f({specimen.material(), {theta_deg, kNm}}, DetectorSphere(thetas, phis), kRays, specimen.pool());
   Estimate reflected, transmitted;
-  for (size_t i = 0; i < reading.sphere.size(); ++i) {
-    const Patch patch = reading.sphere.patch(i);
-    const Estimate f = reading.f(i);
+  for (size_t i = 0; i < measurement.sphere.size(); ++i) {
+    const Patch patch = measurement.sphere.patch(i);
+    const Estimate f = measurement.f(i);
     const double omega = patch.projected_solid_angle;
-    (reading.is_reflected(patch) ? reflected : transmitted) += Estimate{f.mean * omega, f.variance * omega * omega};
+    (measurement.is_reflected(patch) ? reflected : transmitted) += Estimate{f.mean * omega, f.variance * omega * omega};
   }
   Comparison comparison;
   comparison.add("R", reflected, truth.surface + truth.subsurface, kRays);
@@ -62,11 +62,11 @@ Cell whole_sphere(double theta_deg, int thetas, int phis, const leaf::Shares& tr
 
 Cell all_shares(const Beam& beam, const leaf::Shares& truth, int64_t rays) {
   Specimen specimen("abm", {}, beam.lambda_nm);
-  const auto reading = measure_shares({specimen.material(), beam}, {rays}, specimen.pool());
+  const auto measurement = measure_shares({specimen.material(), beam}, {rays}, specimen.pool());
   Comparison comparison;
-  comparison.add("R", reading.reflectance, truth.surface + truth.subsurface, rays);
-  comparison.add("T", reading.transmittance, truth.transmitted, rays);
-  comparison.add("A", reading.absorptance, 1 - truth.surface - truth.subsurface - truth.transmitted, rays);
+  comparison.add("R", measurement.reflectance, truth.surface + truth.subsurface, rays);
+  comparison.add("T", measurement.transmittance, truth.transmitted, rays);
+  comparison.add("A", measurement.absorptance, 1 - truth.surface - truth.subsurface - truth.transmitted, rays);
   return comparison.cell();
 }
 
@@ -86,12 +86,12 @@ void add_delta_lobe(Theme& theme) {
   const Parameters published{flag("surfacedirect", false), words("tablemethod", {"solve"})};
   const std::string part = "the material has a delta lobe";
   Specimen specimen("leaf_simplified", published, kNm);
-  const auto reading = measure_shares({specimen.material(), {30, kNm}}, {50000}, specimen.pool());
+  const auto measurement = measure_shares({specimen.material(), {30, kNm}}, {50000}, specimen.pool());
   const leaf::Shares truth = truth_of({30, kNm});
   Comparison comparison(1e-4);
-  comparison.add("Rs", reading.surface, truth.surface, 50000);
-  comparison.add("Rd", reading.subsurface, truth.subsurface, 50000);
-  comparison.add("T", reading.transmittance, truth.transmitted, 50000);
+  comparison.add("Rs", measurement.surface, truth.surface, 50000);
+  comparison.add("Rd", measurement.subsurface, truth.subsurface, 50000);
+  comparison.add("T", measurement.transmittance, truth.transmitted, 50000);
   theme
       .add("a delta lobe: leaf_simplified with \"surfacedirect\" false",
            "its share exact; its f " + expect_refusal(part))

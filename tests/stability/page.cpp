@@ -36,7 +36,7 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"weighted walk", "`leaf::walk`, weighted absorption"},
     {"batched walk", "`leaf::walk_batch`, single precision, analog and weighted"},
     {"spectral walk", "`leaf::walk` for four wavelengths at once"},
-    {"spectral f", "`leaf::estimate_body_f` for four wavelengths at once, integrated over all directions"},
+    {"spectral f", "`leaf::estimate_subsurface_f` for four wavelengths at once, integrated over all directions"},
     {"solver", "`leaf::solve`"},
     {"abm", "material `abm`: `sample`, `f` and `pdf`"},
     {"simplified", "material `leaf_simplified`, its table solved"},

@@ -133,7 +133,7 @@ Cell far_away(const Leaf& leaf, double place) {
 Theme scenes() {
   Theme theme{
       "Scenes",
-      "Means of pictures of 8 x 8 pixels at 608, 551 and 455 nm. A sheet of soybean leaf, tilted; \"no absorption\" "
+      "Means of images of 8 x 8 pixels at 608, 551 and 455 nm. A sheet of soybean leaf, tilted; \"no absorption\" "
       "is a mesophyll fraction of 0. The far scenes have a second sheet 512 units under the first and a sun."};
   for (const bool direct : {false, true})
     add_leaves(theme,

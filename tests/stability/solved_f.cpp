@@ -36,7 +36,7 @@ class TrueF {
     const double phi = wi.azimuth - wo.azimuth - std::numbers::pi;  // 0: straight on
     double sum = 0;
     int m = 0;
-    for (const leaf::BodyModes::Grid& h : modes_.series(wo.below, wo.below != wi.below))
+    for (const leaf::LeafModes::Grid& h : modes_.series(wo.below, wo.below != wi.below))
       sum += h[i * modes_.sines().size() + o] * std::cos(m++ * phi);
     const double body = leaf::passage(tissue_, cos_i, cos_o) * sum;
     return wo.below == wi.below ? body + surface(wo.vector(), wi.vector(), cos_i, cos_o) : body;
@@ -51,7 +51,7 @@ class TrueF {
   }
 
   const leaf::Tissue& tissue_;
-  leaf::BodyModes modes_;
+  leaf::LeafModes modes_;
 };
 
 }  // namespace

@@ -43,10 +43,10 @@ Cell measured(const Specimen& specimen, const Lit& lit) {
   Comparison comparison;
   for (size_t i = 0; i < lit.theta_deg.size(); ++i) {
     const Beam beam{lit.theta_deg[i], specimen.lambda_nm()};
-    const auto reading = measure_shares({specimen.material(), beam}, {kInstrumentRays}, specimen.pool());
-    comparison.add("Rs", reading.surface, lit.truth[i].surface, kInstrumentRays);
-    comparison.add("Rd", reading.subsurface, lit.truth[i].subsurface, kInstrumentRays);
-    comparison.add("T", reading.transmittance, lit.truth[i].transmitted, kInstrumentRays);
+    const auto measurement = measure_shares({specimen.material(), beam}, {kInstrumentRays}, specimen.pool());
+    comparison.add("Rs", measurement.surface, lit.truth[i].surface, kInstrumentRays);
+    comparison.add("Rd", measurement.subsurface, lit.truth[i].subsurface, kInstrumentRays);
+    comparison.add("T", measurement.transmittance, lit.truth[i].transmitted, kInstrumentRays);
   }
   return comparison.cell();
 }
@@ -160,9 +160,9 @@ MeasuredShares sample_many(const Bsdf& bsdf, const Vec3& wo, int samples) {
 }
 
 Shares integrate_shares(const Specimen& specimen, double theta_deg) {
-  const GoniophotometerReading reading =
+  const GoniophotometerMeasurement measurement =
       integrate_f({specimen.material(), {theta_deg, specimen.lambda_nm()}}, DetectorSphere(2, 1), specimen.pool());
-  return {0, reading.share(true).mean, reading.share(false).mean};
+  return {0, measurement.share(true).mean, measurement.share(false).mean};
 }
 
 Specimen solved_specimen(const LeafInScene& leaf) { return {"leaf_solved", words_of(leaf), leaf.lambda_nm}; }

@@ -59,7 +59,7 @@ Theme tails() {
       "Tails",
       "Weights of a million samples, f |cos| / pdf at 551 nm, of paths that arrive from everywhere alike. By "
       "\"light\" f grows like 1 / cos toward grazing views, and the square of a weight has no mean: the noise of "
-      "a picture in which leaves light each other does not settle (reciprocal_leaf.md)."};
+      "an image in which leaves light each other does not settle (reciprocal_leaf.md)."};
   for (const std::string specimen : {"soybean", "maize"})
     for (const std::string incident : {"traced", "light", "reciprocal"}) {
       const bool settles = incident != "light";

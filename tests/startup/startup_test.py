@@ -1,4 +1,4 @@
-"""Which shared libraries the program loads for what it does: OpenImageIO's, some 250, for pictures of 8 bits and for reading."""
+"""Which shared libraries the program loads for what it does: OpenImageIO's, some 250, for images of 8 bits and for reading."""
 
 import os
 import pathlib
@@ -47,7 +47,7 @@ class StartupTest(FrondTest):
             self.check_is_light(self.libraries("render", self.scene, *words, "--spp", 1, "-q", "--no-cache"))
         self.check_is_light(self.libraries("merge", part, "-o", self.folder / "b.exr"))
 
-    def test_pictures_of_8_bits_and_reading_load_the_rest(self):
+    def test_images_of_8_bits_and_reading_load_the_rest(self):
         png = self.libraries("render", self.scene, "-o", self.folder / "a.png", "--spp", 1, "-q", "--no-cache")
         self.assertTrue(any(name.startswith("libOpenImageIO") for name in png), png)
         self.write("textured.pbrt", 'WorldBegin\nTexture "t" "spectrum" "imagemap" "string filename" "a.png"\n'
@@ -76,15 +76,15 @@ class StartupTest(FrondTest):
         for words in (("hundred-leaves/scene.pbrt", "--swap", "*=leaf_solved"), ("soybean-front/scene.pbrt", "--swap", "*=abm"),
                       ("hundred-leaves/closed.pbrt", "--wavelengths", "smpte", "--max-rms", 0.2)):
             with self.subTest(words):
-                pictures = []
+                images = []
                 for program in ([FROND], [LOADER, "--glibc-hwcaps-mask", "none", FROND]):
-                    out = self.folder / "picture.exr"
+                    out = self.folder / "image.exr"
                     render = [*program, "render", SCENES / words[0], *words[1:], "--quick", "-q", "--no-cache", "-o", out]
                     process = self.start(list(map(str, render)))
                     _, errors = process.communicate()
                     self.assertEqual(process.returncode, 0, errors)
-                    pictures.append(re.sub(rb"capDate\0string\0.{23}", b"", out.read_bytes(), count=1, flags=re.DOTALL))
-                self.assertEqual(*pictures)
+                    images.append(re.sub(rb"capDate\0string\0.{23}", b"", out.read_bytes(), count=1, flags=re.DOTALL))
+                self.assertEqual(*images)
 
 
 if __name__ == "__main__":

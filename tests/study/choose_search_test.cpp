@@ -11,8 +11,8 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// Two questions of three options each, the last of which is the base. The first question's options are off by `far`,
-/// the second's by `near` (of each: the cheapest, the middle one), everywhere alike.
+/// Two open_choices of three options each, the last of which is the base. The first open_choice's options are off by
+/// `far`, the second's by `near` (of each: the cheapest, the middle one), everywhere alike.
 Screening screening(std::array<double, 2> far, std::array<double, 2> near, double cheap_noise = 1) {
   const std::vector<double> bias{far[0], far[1], near[0], near[1]};
   std::vector<std::vector<double>> products(4);
@@ -24,7 +24,7 @@ Screening screening(std::array<double, 2> far, std::array<double, 2> near, doubl
   return {std::move(singles), std::move(products), {noise, {}}};
 }
 
-TEST(Screening, BiasesAddUpAsPicturesDo) {
+TEST(Screening, BiasesAddUpAsImagesDo) {
   const Screening s = screening({0.03, 0.01}, {-0.04, 0.02});
   EXPECT_NEAR(s.bias({0, 0}), 0.01 * 0.01, 1e-15);
   EXPECT_NEAR(s.bias({1, 1}), 0.03 * 0.03, 1e-15);
@@ -77,7 +77,7 @@ TEST(PilotPixels, EveryPixelIsDrawnAlikeOften) {
   constexpr int kRuns = 4000;
   size_t drawn = 0;
   for (uint64_t seed = 0; seed < kRuns; ++seed)
-    for (const PixelPlace& p : pilot_pixels({10, 20, 17, 25}, 6, seed)) {
+    for (const PixelPosition& p : pilot_pixels({10, 20, 17, 25}, 6, seed)) {
       ASSERT_TRUE(p.x >= 10 && p.x < 17 && p.y >= 20 && p.y < 25);
       counts[{p.x, p.y}] += 1;
       ++drawn;

@@ -88,7 +88,7 @@ TEST_F(Choosing, TheSameCommandGivesTheSameFileOnAnyThreads) {
 
 TEST_F(Choosing, SaysWhenNothingMeetsTheRequest) {
   const Outcome o = render(two_leaves("\"float maxrms\" 1e-6", ""), {"--wavelengths", "smpte", "--spp", "4"});
-  EXPECT_THAT(o.err, HasSubstr("warning: no model but abm was shown to keep the picture's RMS error below 1e-06"));
+  EXPECT_THAT(o.err, HasSubstr("warning: no model but abm was shown to keep the image's RMS error below 1e-06"));
   EXPECT_EQ(header().at("frond:leaf:near"), "abm");
   EXPECT_THAT(header().at("frond:choice"), StartsWith("no model but abm"));
 }
@@ -136,7 +136,7 @@ TEST_F(Choosing, BadRequestsAreRefusedWithTheirPlace) {
   EXPECT_THAT(render(two_leaves("\"float rms\" 0.1", "")).err, HasSubstr("maxrms"));
 }
 
-TEST_F(Choosing, BandsAreNoPicture) {
+TEST_F(Choosing, BandsAreNoImage) {
   const Outcome o = render(two_leaves("", ""), {"--wavelengths", "bands,wavelengths=450,550", "--spp", "4"});
   EXPECT_EQ(o.code, 0);
   EXPECT_THAT(o.err, HasSubstr("bands are none"));
@@ -172,7 +172,7 @@ TEST_F(Choosing, WavelengthsAreAQuestionWhereNobodyNamesThem) {
     if (m.plugin.name == "leaf") m.plugin.params.push_back({"float", "maxrms", {}, {}, std::vector<double>{0.3}});
   const Choice choice = chosen_from(ladder, session, description);
   ASSERT_EQ(choice.answers.size(), 3u);
-  EXPECT_EQ(choice.answers[0].question, "wavelengths");
+  EXPECT_EQ(choice.answers[0].open_choice, "wavelengths");
   EXPECT_NE(choice.answers[0].chosen, "hero");
   EXPECT_EQ(choice.answers[1].chosen, "leaf_lambert");
 }
@@ -193,16 +193,16 @@ TEST_F(Choosing, TheAnswersAreWrittenIntoTheDescriptionAndTheRequest) {
   Session session(silent_log(), {.threads = 2, .cache = tables().name_of("")});
   const SceneDescription open = session.read(folder_.write("scene.pbrt", two_leaves("", "")));
   SceneDescription description = open;
-  PictureRequest request;
+  ImageRequest request;
   const auto chosen = choose_for(session, description, 4, request);
   ASSERT_TRUE(chosen);
   EXPECT_FALSE(choose_for(session, description, 4, request)) << "nothing is open any more";
   const Answer& first = chosen->choice.answers.front();
-  EXPECT_EQ(first.question, "wavelengths");
+  EXPECT_EQ(first.open_choice, "wavelengths");
   EXPECT_EQ(read_options(description).wavelengths, first.chosen);
   EXPECT_THAT(request.attributes, Contains(Key("frond:choice")));
-  EXPECT_EQ(session.load(description, request, chosen->scene.get()).picture().space,
-            session.load(open).picture().space);
+  EXPECT_EQ(session.load(description, request, chosen->scene.get()).image_format().space,
+            session.load(open).image_format().space);
   EXPECT_EQ(request.color_space, "linear sRGB");
   description = open;
   request.color_space = "ACEScg";

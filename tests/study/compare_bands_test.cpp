@@ -149,7 +149,7 @@ TEST_F(CompareBands, AreMeasuredOnceAllOfThemAreSeen) {
 /// Each film alone would fit.
 TEST_F(CompareBands, RefuseMoreThanTheMachineHolds) {
   const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)), bands = 301, bytes_a_band = 48;
-  const double size = std::sqrt(2 * 0.3 * memory / (bands * bytes_a_band));  // the picture is twice as wide as high
+  const double size = std::sqrt(2 * 0.3 * memory / (bands * bytes_a_band));  // the image is twice as wide as high
   const Outcome o =
       frond_command({"compare", folder_.write("scene.pbrt", kLeafScene).string(), "-o", folder_.name_of("report"),
                      "--no-cache", "--materials", "abm,leaf_lambert", "--wavelengths",

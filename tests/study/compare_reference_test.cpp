@@ -130,7 +130,7 @@ TEST(Study, ItsIdentityHangsOnWhatIsInTheFilesThatAreNamed) {
   }
 }
 
-TEST(Study, TakesTheWholePictureOrItsPartToSize) {
+TEST(Study, TakesTheWholeImageOrItsPartToSize) {
   const Setting s;
   EXPECT_EQ(s.study.film().width, 16);
   EXPECT_EQ(s.study.film().height, 8);

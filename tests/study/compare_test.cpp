@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/chart.h"
-#include "study/compare/picture.h"
+#include "study/compare/film_images.h"
 #include "system/child_process.h"
 #include "system/file_bytes.h"
 #include "tests/cli/command.h"
@@ -153,7 +153,7 @@ TEST_F(CompareCommand, AFolderThatCannotBeIsRefusedFirst) {
               0u);
 }
 
-/// In a real browser, where there is one: its script decodes every picture and draws.
+/// In a real browser, where there is one: its script decodes every image and draws.
 TEST_F(CompareCommand, TheReportRunsInABrowser) {
   const std::vector<std::string> browser{"chromium", "--headless=new", "--no-sandbox", "--disable-gpu"};
   const auto run = [&](const std::string& what, const std::string& url) {

@@ -12,13 +12,13 @@ namespace {
 using ::testing::HasSubstr;
 
 /// In every channel: noise of variance `variance` / samples, `seconds` for a sample.
-Subject subject(const std::string& label, double seconds, double variance, double bias) {
-  Subject s{.candidate = parse_candidate(label), .wavelengths = "smpte"};
+CandidateResult candidate(const std::string& label, double seconds, double variance, double bias) {
+  CandidateResult s{.candidate = parse_candidate(label), .wavelengths = "smpte"};
   for (uint64_t n = 1; n <= 16; n *= 2) {
-    Rung rung{.samples = n, .cost = {seconds * double(n), seconds * double(n), 0}};
+    CandidateRun run{.samples = n, .cost = {seconds * double(n), seconds * double(n), 0}};
     const double noise = variance / double(n);
-    for (auto& region : rung.errors) region.assign(5, {{noise + bias * bias, 0}, {}, {noise, 0}, {bias * bias, 0}, {}});
-    s.rungs.push_back(rung);
+    for (auto& region : run.errors) region.assign(5, {{noise + bias * bias, 0}, {}, {noise, 0}, {bias * bias, 0}, {}});
+    s.runs.push_back(run);
   }
   return s;
 }
@@ -27,7 +27,7 @@ Subject subject(const std::string& label, double seconds, double variance, doubl
 Comparison two() {
   Comparison c;
   c.width = c.height = 2;
-  c.subjects = {subject("slow", 2, 0.04, 0), subject("fast", 1, 0.02, 0.01)};
+  c.candidates = {candidate("slow", 2, 0.04, 0), candidate("fast", 1, 0.02, 0.01)};
   return c;
 }
 
@@ -53,15 +53,15 @@ TEST(Verdict, AnswersEachQuestion) {
 
 TEST(Verdict, SaysWhenNothingMeetsIt) {
   Comparison c = two();
-  c.subjects.erase(c.subjects.begin());
+  c.candidates.erase(c.candidates.begin());
   c.request.rms = {0.009};
   EXPECT_THAT(verdict(c), HasSubstr("None of the candidates meets an RMS of 0.009"));
 }
 
 TEST(Verdict, UncertainBiasIsHeldAgainstACandidate) {
   Comparison c = two();
-  c.subjects.erase(c.subjects.begin());
-  for (auto& region : c.subjects[0].rungs.back().errors)
+  c.candidates.erase(c.candidates.begin());
+  for (auto& region : c.candidates[0].runs.back().errors)
     for (RenderError& e : region) e.bias.standard_error = 0.0001;
   c.request.rms = {0.014};
   // Two bounds at 95 % together: 1 - sqrt(0.95) above each, 1.95 standard errors.
@@ -74,9 +74,9 @@ TEST(Verdict, UncertainBiasIsHeldAgainstACandidate) {
 
 TEST(Verdict, AFewPerCentChangeNoReign) {
   Comparison c;
-  c.subjects = {subject("a", 1, 0.02, 0), subject("b", 0.99, 0.0201, 0)};
-  for (Rung& rung : c.subjects[1].rungs)
-    if (rung.samples == 4) rung.cost.cpu_seconds *= 1.02;
+  c.candidates = {candidate("a", 1, 0.02, 0), candidate("b", 0.99, 0.0201, 0)};
+  for (CandidateRun& run : c.candidates[1].runs)
+    if (run.samples == 4) run.cost.cpu_seconds *= 1.02;
   EXPECT_EQ(cheapest_ranges(c).size(), 1u);
 }
 
@@ -84,7 +84,7 @@ TEST(Verdict, ReignsChangeWhereBiasIsReached) {
   const Comparison c = two();
   const auto all = cheapest_ranges(c);
   ASSERT_EQ(all.size(), 1u);  // the smallest RMS measured is 0.0366, where the fast one is ahead
-  EXPECT_EQ(all[0].subject, 1u);
+  EXPECT_EQ(all[0].candidate, 1u);
   EXPECT_THAT(verdict(c), HasSubstr("fast is the cheapest down to an RMS of 0.037"));
 }
 
@@ -108,7 +108,7 @@ TEST(SpeedUp, SaysWhereAnErrorIsNotReached) {
   c.request.target = {0.05, 0.009, 0.05};
   EXPECT_EQ(speed_ups(c, 1).equal_error->kind, Ratio::Kind::not_reached);
   c.request.target = {0.05, 0.05, 0.05};
-  std::swap(c.subjects[0], c.subjects[1]);
+  std::swap(c.candidates[0], c.candidates[1]);
   EXPECT_FALSE(speed_ups(c, 1).equal_error_at_bias);  // it has no bias
   c.request.target = {0.009, 0.05, 0.05};
   EXPECT_EQ(speed_ups(c, 1).equal_error->kind, Ratio::Kind::baseline_not_there);

@@ -25,7 +25,7 @@ Shape "trianglemesh" "point3 P" [-2 -.5 -2  2 -.5 -2  2 -.5 2  -2 -.5 2] "intege
 Material "diffusetransmission" "rgb reflectance" [.2 .5 .1]
 Shape "sphere" "float radius" .5
 """
-# Whose samples are taken: those around the picture reach into it.
+# Whose samples are taken: those around the image reach into it.
 PIXELS = 50 * 34
 THREADS = 2
 
@@ -33,7 +33,7 @@ THREADS = 2
 def part_header(path):
     """What a part says before its sums (docs/part_format.md)."""
     data = pathlib.Path(path).read_bytes()
-    magic = b"frond part 2\n"
+    magic = b"frond part 3\n"
     assert data.startswith(magic), f"{path} is no part"
     (size,) = struct.unpack_from("<Q", data, len(magic))
     return json.loads(data[len(magic) + 8 : len(magic) + 8 + size])
@@ -81,9 +81,9 @@ class FrondTest(unittest.TestCase):
 
     def samples_in(self, seconds):
         """How many samples per pixel a run of so many seconds gets to here and now, load and all."""
-        picture = self.folder / "calibration.exr"
-        out, _ = self.run_to_end(self.command(picture, "--spp", 1 << 24, "--time-limit", seconds, "--json", "-q"))
-        picture.unlink()
+        image = self.folder / "calibration.exr"
+        out, _ = self.run_to_end(self.command(image, "--spp", 1 << 24, "--time-limit", seconds, "--json", "-q"))
+        image.unlink()
         return max(64, json.loads(out)["samples_per_pixel"])
 
     def wait_for(self, condition, what, seconds=20):

@@ -1,4 +1,4 @@
-"""Two runs side by side: which benchmarks take longer or shorter, and whether any picture is another one."""
+"""Two runs side by side: which benchmarks take longer or shorter, and whether any image is another one."""
 
 import numpy
 import pandas
@@ -6,7 +6,7 @@ from scipy import special
 
 from .results import family
 
-# Chance that one or more of the benchmarks of two runs of the same program are marked; another such for the pictures.
+# Chance that one or more of the benchmarks of two runs of the same program are marked; another such for the images.
 FALSE_ALARMS = 0.05
 
 
@@ -84,7 +84,7 @@ class Comparison:
 
 
 def settled(rounds):
-    """Pictures are the same in every round: their figures are, too."""
+    """Images are the same in every round: their figures are, too."""
     return rounds.iloc[0]
 
 

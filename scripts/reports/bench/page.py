@@ -64,7 +64,7 @@ def time_table(comparison):
 
 
 def figure(change_of_figure, unit):
-    """A counter of the pictures' errors in one cell."""
+    """A counter of the images' errors in one cell."""
     a, b = (f"{x / unit:.3g}".replace("-", "−") for x in (change_of_figure.a, change_of_figure.b))
     if change_of_figure.mark == "same":
         return span(a, "same")

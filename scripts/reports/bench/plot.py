@@ -1,4 +1,4 @@
-"""Ratios with their intervals, as small pictures in the rows of a table."""
+"""Ratios with their intervals, as small images in the rows of a table."""
 
 import math
 

@@ -35,16 +35,16 @@ def verdict(comparison):
     found = [f"{count(len(changes), 'benchmarks')} {word}, by up to {change(changes[0].ratio).lstrip('+−')}"
              for changes, word in ((slower, "slower"), (faster, "faster")) if changes]
     times = "; ".join(found) if found else f"none of {count(len(comparison.times), 'benchmarks')} faster or slower"
-    return f"{times[0].upper()}{times[1:]}. {pictures(comparison)}" + (" Look at them first." if changed else "")
+    return f"{times[0].upper()}{times[1:]}. {images(comparison)}" + (" Look at them first." if changed else "")
 
 
-def pictures(comparison):
+def images(comparison):
     marks = [f.mark for f in comparison.figures]
     if not marks:
-        return "No pictures were compared."
+        return "No images were compared."
     if set(marks) == {"same"}:
-        return f"Pictures are the same: all {len(marks)} figures of their errors, to the last digit."
-    return (f"Figures of the pictures' errors: {marks.count('same')} the same to the last digit, "
+        return f"Images are the same: all {len(marks)} figures of their errors, to the last digit."
+    return (f"Figures of the images' errors: {marks.count('same')} the same to the last digit, "
             f"{marks.count('within errors')} within standard errors, {marks.count('changed')} changed.")
 
 
@@ -63,7 +63,7 @@ def summary(comparison):
             lines += ["", f"{word}, with 95 % intervals:"]
             lines += [f"  {change(c.ratio):>9}  {interval(c.low, c.high):22} {c.name}" for c in changes]
     if comparison.changed_figures():
-        lines += ["", "Other pictures:"]
+        lines += ["", "Other images:"]
         lines += [f"  {f.name} {f.counter}: {f.a:.4g} ± {f.a_se:.1g}, now {f.b:.4g} ± {f.b_se:.1g}"
                   for f in comparison.changed_figures()]
     return "\n".join(lines + ["", verdict(comparison)])

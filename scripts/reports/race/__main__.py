@@ -11,7 +11,7 @@ import numpy
 
 from tools import ROOT, machine
 
-from . import page, pictures, programs, scenes
+from . import luminance, page, programs, scenes
 
 DOCUMENT = ROOT / "docs" / "race.md"
 FIGURES = ROOT / "build" / "race" / "figures.json"
@@ -43,7 +43,7 @@ def arguments():
 
 
 def race(name, leaf, running, setting, folder):
-    """One kind of picture by all programs in turn: for each filter and program a dictionary of figures."""
+    """One kind of image by all programs in turn: for each filter and program a dictionary of figures."""
     results = []
     for reconstruction in setting.filters:
         costs, images, base = {}, {}, {}
@@ -52,10 +52,10 @@ def race(name, leaf, running, setting, folder):
             costs[program.name], images[program.name] = [], []
         for index in range(setting.rounds):
             for program in running if index % 2 == 0 else reversed(running):
-                out = folder / f"picture{program.suffix}"
+                out = folder / f"image{program.suffix}"
                 costs[program.name].append(program.render(reconstruction, setting.samples, index + 1, out))
-                images[program.name].append(pictures.read(out))
-        measured = {program.name: pictures.measure(images[program.name]) for program in running}
+                images[program.name].append(luminance.read(out))
+        measured = {program.name: luminance.measure(images[program.name]) for program in running}
         for program in running:
             first = next(p for p in running if p.spectral == program.spectral)
             results.append(figures(program, reconstruction, base[program.name], costs[program.name],
@@ -69,7 +69,7 @@ def figures(program, reconstruction, base, costs, own, reference, setting):
     pixels = setting.size**2
     us = (numpy.array(costs) - base) / (pixels * (setting.samples - 1)) * 1e6  # a path, by round: CPU, wall
     cpu, wall = program.before(reconstruction) + base - numpy.median(us, axis=0) * pixels / 1e6
-    beside = pictures.difference(own, reference)
+    beside = luminance.difference(own, reference)
     return {"program": program.name, "cpu": us[:, 0].tolist(), "wall": us[:, 1].tolist(), "set_up_cpu": cpu, "set_up_wall": wall,
             "mean": own.mean, "mean_error": own.mean_error,
             "variance": own.relative_variance, "variance_error": own.variance_error / own.mean**2,

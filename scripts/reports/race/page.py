@@ -19,7 +19,7 @@ Written by `scripts/race`: the same scenes by frond, Mitsuba 3 and pbrt-v4, in t
 - **The same**: meshes and instances, camera, lights, paths of up to {depth} scattering events, filter, samples a pixel, and
   low-discrepancy samplers: `paddedsobol` of frond and pbrt-v4, Mitsuba's `ldsampler`. Triangles are flat, since programs differ in
   what they make of vertices' normals; Mitsuba has lengths in centimetres, the others in metres. All materials are grey, light is
-  D65: so the picture is the same by three wavelengths, by colours and by spectra. Opaque leaves reflect {opaque} on both sides. The
+  D65: so the image is the same by three wavelengths, by colours and by spectra. Opaque leaves reflect {opaque} on both sides. The
   others reflect {reflectance} and transmit {transmittance}: `diffusetransmission` in frond and pbrt-v4. Mitsuba has none; it runs
   one of a page of Python (`scripts/reports/race/mitsuba_worker.py`), which its LLVM variants compile; scalar variants are left out.
   LLVM variants are left out where there are more than {most_traced} instances: they make code for each of them.
@@ -31,10 +31,10 @@ Written by `scripts/race`: the same scenes by frond, Mitsuba 3 and pbrt-v4, in t
   Mitsuba's LLVM variants that is compiling, in a folder without kernels of earlier runs. **All**: both together, of one render
   from nothing.
 - **Noise**: standard deviation of a pixel's luminance between the rounds' seeds, root mean square over pixels without the two
-  outermost, relative to the picture's mean, with the standard error of that.
+  outermost, relative to the image's mean, with the standard error of that.
 - **Efficiency**: 1 / (variance × CPU time), the group's frond = 1: median over the rounds (least to largest), with the times of
   the same round. Above 1 a program gets to an error sooner than frond.
-- **Mean**: of the picture, less that of the group's frond, with the standard error from the spread between seeds, block by block.
+- **Mean**: of the image, less that of the group's frond, with the standard error from the spread between seeds, block by block.
   **Blocks**: the same within blocks of 16 × 16 pixels, root mean square, less what noise makes of it: light in another place.
   Renders that differ by more than four standard errors and 0.1 % are marked **!**: their efficiency means little.
 

@@ -14,11 +14,11 @@ from tools import FROND, Use, run
 
 from . import scenes
 
-MOST_TRACED = 10_000  # instances for Mitsuba's LLVM variants: with 100,000 the first picture is not there after five minutes
+MOST_TRACED = 10_000  # instances for Mitsuba's LLVM variants: with 100,000 the first image is not there after five minutes
 
 
 class Command:
-    """A program that renders one picture and ends."""
+    """A program that renders one image and ends."""
 
     suffix = ".pfm"
 

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from tools import ROOT, program
 
 # Reflectance of what is no leaf; leaves: reflectance and transmittance. Grey, so that three wavelengths, colours and spectra
-# have the same picture.
+# have the same image.
 GREY = {"wall": 0.5, "petiole": 0.3, "backdrop": 0.1, "soil": 0.2}
 LEAVES = {"opaque": (0.5, 0), "leaf": (0.45, 0.4)}
 DEPTH = 16  # scattering events
@@ -202,7 +202,7 @@ def numbers(values):
 
 def without_normals(path, folder):
     """A copy of a mesh of ours whose triangles are flat: programs differ in what they do where the normals of the vertices and
-    that of the triangle see a direction on different sides, and so do their pictures."""
+    that of the triangle see a direction on different sides, and so do their images."""
     head, body = path.read_bytes().split(b"end_header\n", 1)
     lines = head.decode("ascii").splitlines()
     first = next(i for i, line in enumerate(lines) if line.startswith("element vertex"))

@@ -8,7 +8,7 @@
 
 namespace frond {
 
-/// How one method's picture differs from another's, pixel by pixel, in two independent pairs of renders: noise of the
+/// How one method's image differs from another's, pixel by pixel, in two independent pairs of renders: noise of the
 /// first says nothing of the second's. Within a pair the two renders may share their random numbers, which makes the
 /// difference less noisy where their paths are alike.
 struct PairedDifference {
@@ -19,7 +19,7 @@ struct PairedDifference {
 };
 
 /// Mean square over pixels and channels of the difference that stays however many samples are taken. The pixels are
-/// taken to be drawn at random from the picture, so that the spread among them is uncertainty too.
+/// taken to be drawn at random from the image, so that the spread among them is uncertainty too.
 Estimate mean_square(const PairedDifference& difference);
 
 /// Where such a mean square lies, at `z` as in `confidence_interval`. It is none below 0: what noise makes of it there

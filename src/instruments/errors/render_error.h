@@ -4,7 +4,7 @@
 
 namespace frond {
 
-/// Two independent renders of one picture in one channel, pixel by pixel.
+/// Two independent renders of one image in one channel, pixel by pixel.
 struct RenderPair {
   std::span<const float> first, second;
 };
@@ -14,7 +14,7 @@ struct RenderPair {
 /// of the pixels' squares, since their expectations differ and each is seen once.
 struct RenderError {
   MeanSquare total;            ///< of one render: bias and noise
-  MeanSquare clipped;          ///< the same after clipping every picture to [0, 1]
+  MeanSquare clipped;          ///< the same after clipping every image to [0, 1]
   MeanSquare noise;            ///< of one render, from how the two differ
   MeanSquare bias;             ///< what no number of samples takes away
   MeanSquare reference_noise;  ///< of the mean of the reference's two; not in the above

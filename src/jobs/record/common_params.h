@@ -43,8 +43,8 @@ inline constexpr JobParam kCsvParam("csv", ArgumentKind::text, "CSV file to writ
 inline constexpr JobParam kJsonParam("json", ArgumentKind::text, "JSON file to write; - is standard output.",
                                      {.type = "FILE", .path = PathUse::write});
 /// A chart: .svg or .png. `doc` says of what.
-constexpr JobParam chart_param(std::string_view name, std::string_view doc) {
-  return JobParam(name, ArgumentKind::text, doc, {.type = "CHART", .path = PathUse::write});
+constexpr JobParam chart_param(std::string_view name, std::string_view doc, std::string_view aliases = "") {
+  return JobParam(name, ArgumentKind::text, doc, {.type = "CHART", .aliases = aliases, .path = PathUse::write});
 }
 
 inline constexpr JobParam kMaterialParam("material", ArgumentKind::texts,

@@ -15,14 +15,14 @@ MaterialsUnderTest::MaterialsUnderTest(const JobRun& run)
                             run.context.options().cache);
   Arena arena;
   for (size_t i = 0; i < size(); ++i) {
-    const Exposure e = exposure(i);
+    const LitMaterial e = lit_material(i);
     arena.reset();
     bsdf_of(e.material, e.beam, arena);
     check_as_rendered(e);
   }
 }
 
-Exposure MaterialsUnderTest::exposure(size_t i) const {
+LitMaterial MaterialsUnderTest::lit_material(size_t i) const {
   const size_t wavelength = i % wavelengths_nm_.size(), angle = i / wavelengths_nm_.size() % angles_deg_.size();
   const MeasuredMaterial& m = material(i);
   return {m.at(wavelength),

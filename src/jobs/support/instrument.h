@@ -36,7 +36,7 @@ class MaterialsUnderTest {
   size_t per_material() const { return angles_deg_.size() * wavelengths_nm_.size(); }
 
   /// Of measurement i. Random numbers depend on material, angle and wavelength, not on i.
-  Exposure exposure(size_t i) const;
+  LitMaterial lit_material(size_t i) const;
   const MeasuredMaterial& material(size_t i) const { return materials_[i / per_material()]; }
 
   /// For the measurement's call of `shoot`: shows the progress, and throws Stopped where the front end asks for an end.

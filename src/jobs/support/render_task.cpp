@@ -90,7 +90,7 @@ void RenderTask::apply_arguments() {
   if (args.given("samples")) samples_ = range_of(args);
   const std::string channels = args.text("channels");
   request_ = {.pixels = film.crop,
-              .is_piece = args.given("part"),
+              .is_part = args.given("part"),
               .channels = channels.empty() ? std::vector<std::string>() : split(channels, ','),
               .color_space = args.text("color-space"),
               .adaptive = is_adaptive(),
@@ -114,7 +114,7 @@ void RenderTask::load(const ImageOutput* output) {
   if (args.given("max-rms") && args.given("spp") && samples_.count() < kLeastAdaptive)
     fail({}, "{}: at least {} samples per pixel are needed to estimate the noise, {} allows {}",
          args.spelled("max-rms"), kLeastAdaptive, args.spelled("spp"), samples_.count());
-  if (output) output->check(scene_->picture());
+  if (output) output->check(scene_->image_format());
 }
 
 RenderPart RenderTask::empty_part() const {

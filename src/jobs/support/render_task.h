@@ -49,7 +49,7 @@ class RenderTask {
   bool is_adaptive_;
   SceneDescription description_;
   std::string film_file_;
-  PictureRequest request_;
+  ImageRequest request_;
   std::optional<choose::Choice> choice_;
   std::shared_ptr<const Scene> pilot_;  ///< shares its geometry
   std::optional<LoadedScene> scene_;

@@ -25,14 +25,14 @@ RenderViews::RenderViews(const Arguments& args) : display_(display_of(args)) {
     fail({}, "{}: neither standard error nor standard output is a terminal to draw on", args.spelled("preview"));
 }
 
-void RenderViews::check(const PictureFormat& format) {
+void RenderViews::check(const ImageFormat& format) {
   if (!terminal_) return;
   const std::string space = format.space.empty() ? preview_space(format.bands) : format.space;
-  if (space.empty()) fail({}, "--preview: these bands do not cover the visible, and are no picture");
+  if (space.empty()) fail({}, "--preview: these bands do not cover the visible, and are no image");
   terminal_viewer_.emplace(terminal_, space, display_);
 }
 
-void RenderViews::begin(const Film& film, const PictureFormat& format, const std::string& output, const Log& log) {
+void RenderViews::begin(const Film& film, const ImageFormat& format, const std::string& output, const Log& log) {
   if (server_) {
     // The process tells a render from those before it, which the viewer keeps.
     const std::string name = std::filesystem::path(output).filename().string();

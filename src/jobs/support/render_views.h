@@ -21,12 +21,12 @@ class RenderViews {
   explicit RenderViews(const Arguments& args);
 
   /// Throws InputError for a preview of bands that have no colours, or by a display that does not go with them.
-  void check(const PictureFormat& format);
+  void check(const ImageFormat& format);
   /// `film` and `log` must outlive it; the log is called from other threads. `output`: where the film goes.
-  void begin(const Film& film, const PictureFormat& format, const std::string& output, const Log& log);
+  void begin(const Film& film, const ImageFormat& format, const std::string& output, const Log& log);
   /// The preview as it is in the end.
   void finish_preview();
-  /// The picture in the viewer as it is in the end, for which it is given a few seconds. `in_halves`: as the file has
+  /// The image in the viewer as it is in the end, for which it is given a few seconds. `in_halves`: as the file has
   /// it.
   void finish_display(bool in_halves);
 

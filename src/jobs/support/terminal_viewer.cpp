@@ -23,15 +23,15 @@ TerminalViewer::TerminalViewer(std::FILE* terminal, std::string space, DisplayCh
   colors_.check_display(space_, display_.display, display_.view);
 }
 
-void TerminalViewer::show(const Image& picture) {
+void TerminalViewer::show(const Image& image) {
   winsize size{};
   const bool is_known = ioctl(fileno(terminal_), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0;
   const int columns = is_known ? size.ws_col : 80, rows = is_known ? size.ws_row : 24;
   std::array<size_t, 3> rgb{};
   constexpr std::array kNames{"R", "G", "B"};
-  for (size_t c = 0; c < 3; ++c) rgb[c] = picture.channel(kNames[c]).value();
+  for (size_t c = 0; c < 3; ++c) rgb[c] = image.channel(kNames[c]).value();
   // What is above a terminal's first line cannot be drawn over; the last two are for how far the render is.
-  Image shown = fitted_image(picture.selected(rgb, {"R", "G", "B"}), columns, std::max(1, rows - 2));
+  Image shown = fitted_image(image.selected(rgb, {"R", "G", "B"}), columns, std::max(1, rows - 2));
   colors_.display(shown.pixels, space_, display_.display, display_.view);
   std::string text = lines_ > 0 ? fmt::format("\r\x1b[{}A", lines_) : "\r\x1b[K";
   if (columns != columns_ || rows != rows_) text += "\x1b[J";

@@ -11,13 +11,13 @@ namespace frond {
 /// Standard error where it is a terminal, or else standard output; nullptr where neither is.
 std::FILE* output_terminal();
 
-/// A picture on a terminal, drawn over and over in the same place.
+/// An image on a terminal, drawn over and over in the same place.
 class TerminalViewer final : public Viewer {
  public:
-  /// The picture's R, G and B, linear in `space`, go through this display.
+  /// The image's R, G and B, linear in `space`, go through this display.
   TerminalViewer(std::FILE* terminal, std::string space, DisplayChoice display);
 
-  void show(const Image& picture) override;
+  void show(const Image& image) override;
   void end(bool) override {}
 
  private:

@@ -132,7 +132,7 @@ struct Huber {
   }
 };
 
-/// Readings against the leaves of a space.
+/// Measurements against the leaves of a space.
 class Problem {
  public:
   using Scalar = double;
@@ -144,7 +144,7 @@ class Problem {
   Problem(const FitRequest& request, const LeafSpace& space, Grade grade, bool structure_is_free,
           const ThreadPool& pool)
       : request_(request), space_(space), grade_(grade), structure_is_free_(structure_is_free), pool_(pool) {
-    for (const LeafReading& r : request.readings) {
+    for (const LeafMeasurement& r : request.measurements) {
       const auto place = std::ranges::find(theta_deg_, r.theta_deg);
       angle_.push_back(static_cast<size_t>(place - theta_deg_.begin()));
       if (place == theta_deg_.end()) theta_deg_.push_back(r.theta_deg);
@@ -162,11 +162,11 @@ class Problem {
     const TissueParams p = space_.at(q);
     const OpticsSurface& surface = surface_of(p, grade_);
     Index row = 0;
-    for (size_t i = 0; i < request_.readings.size(); ++i) {
-      const LeafReading& reading = request_.readings[i];
-      const auto v = surface.at(angle_[i], reading.lambda_nm, depth_of(p, reading.lambda_nm));
-      if (reading.r) f[row++] = Huber::value(v.r - *reading.r);
-      if (reading.t) f[row++] = Huber::value(v.t - *reading.t);
+    for (size_t i = 0; i < request_.measurements.size(); ++i) {
+      const LeafMeasurement& measurement = request_.measurements[i];
+      const auto v = surface.at(angle_[i], measurement.lambda_nm, depth_of(p, measurement.lambda_nm));
+      if (measurement.r) f[row++] = Huber::value(v.r - *measurement.r);
+      if (measurement.t) f[row++] = Huber::value(v.t - *measurement.t);
     }
     for (Index i = 0; i < space_.count(); ++i)
       f[row++] = expectation() * (space_.log_at(i, q[i]) - std::log(space_.origin().*space_.variable(i).number));
@@ -201,21 +201,21 @@ class Problem {
       const TissueParams moved = space_.with(p, variable, p.*variable.number * std::exp(step));
       const OpticsSurface& other = variable.is_structure ? surface_of(moved, Grade::coarse) : surface;
       Index row = 0;
-      for (size_t i = 0; i < request_.readings.size(); ++i) {
-        const LeafReading& reading = request_.readings[i];
-        const double depth = depth_of(p, reading.lambda_nm);
-        const auto v = surface.at(angle_[i], reading.lambda_nm, depth);
+      for (size_t i = 0; i < request_.measurements.size(); ++i) {
+        const LeafMeasurement& measurement = request_.measurements[i];
+        const double depth = depth_of(p, measurement.lambda_nm);
+        const auto v = surface.at(angle_[i], measurement.lambda_nm, depth);
         double r, t;
         if (variable.is_structure) {
-          const auto here = coarse.at(angle_[i], reading.lambda_nm, depth),
-                     there = other.at(angle_[i], reading.lambda_nm, depth);
+          const auto here = coarse.at(angle_[i], measurement.lambda_nm, depth),
+                     there = other.at(angle_[i], measurement.lambda_nm, depth);
           r = (there.r - here.r) / step, t = (there.t - here.t) / step;
         } else {
-          const double slope = (depth_of(moved, reading.lambda_nm) - depth) / step;
+          const double slope = (depth_of(moved, measurement.lambda_nm) - depth) / step;
           r = v.r_slope * slope, t = v.t_slope * slope;
         }
-        if (reading.r) j(row++, c) = r * (of_residuals ? Huber::slope(v.r - *reading.r) : 1);
-        if (reading.t) j(row++, c) = t * (of_residuals ? Huber::slope(v.t - *reading.t) : 1);
+        if (measurement.r) j(row++, c) = r * (of_residuals ? Huber::slope(v.r - *measurement.r) : 1);
+        if (measurement.t) j(row++, c) = t * (of_residuals ? Huber::slope(v.t - *measurement.t) : 1);
       }
     }
   }
@@ -306,28 +306,28 @@ double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// R and T at the readings, solved anew.
-void solve_readings(const FitRequest& request, FitResult& result, const ThreadPool& pool) {
+/// R and T at the measurements, solved anew.
+void solve_measurements(const FitRequest& request, FitResult& result, const ThreadPool& pool) {
   constexpr int kNodes = 4;
   const TissueModel model(result.params);
-  result.fitted.resize(request.readings.size());
-  pool.for_each(static_cast<int64_t>(request.readings.size()), [&](int64_t index, int) {
+  result.fitted.resize(request.measurements.size());
+  pool.for_each(static_cast<int64_t>(request.measurements.size()), [&](int64_t index, int) {
     const auto i = static_cast<size_t>(index);
-    const LeafReading& reading = request.readings[i];
-    const Shares s = solve(model.at(reading.lambda_nm), std::array{reading.theta_deg}, kNodes)[0];
+    const LeafMeasurement& measurement = request.measurements[i];
+    const Shares s = solve(model.at(measurement.lambda_nm), std::array{measurement.theta_deg}, kNodes)[0];
     result.fitted[i] = {s.surface + s.subsurface, s.transmitted, false};
   });
 }
 
 void judge(const FitRequest& request, const Problem& problem, const LeafSpace& space, FitResult& result) {
   std::vector<double> r, t;
-  for (size_t i = 0; i < request.readings.size(); ++i) {
-    const LeafReading& reading = request.readings[i];
+  for (size_t i = 0; i < request.measurements.size(); ++i) {
+    const LeafMeasurement& measurement = request.measurements[i];
     FitResult::Fitted& fitted = result.fitted[i];
-    if (reading.r) r.push_back(fitted.r - *reading.r);
-    if (reading.t) t.push_back(fitted.t - *reading.t);
-    fitted.is_outlier = (reading.r && std::abs(fitted.r - *reading.r) > Huber::kFar) ||
-                        (reading.t && std::abs(fitted.t - *reading.t) > Huber::kFar);
+    if (measurement.r) r.push_back(fitted.r - *measurement.r);
+    if (measurement.t) t.push_back(fitted.t - *measurement.t);
+    fitted.is_outlier = (measurement.r && std::abs(fitted.r - *measurement.r) > Huber::kFar) ||
+                        (measurement.t && std::abs(fitted.t - *measurement.t) > Huber::kFar);
   }
   result.rmse_r = root_mean_square(r), result.rmse_t = root_mean_square(t);
   const double rho = (static_cast<double>(r.size()) * neighbours(r) + static_cast<double>(t.size()) * neighbours(t)) /
@@ -373,11 +373,11 @@ void judge(const FitRequest& request, const Problem& problem, const LeafSpace& s
 
 std::optional<double> rmse_between(const FitRequest& request, const FitResult& result, const Interval& nm) {
   std::vector<double> residuals;
-  for (size_t i = 0; i < request.readings.size(); ++i) {
-    const LeafReading& reading = request.readings[i];
-    if (!nm.contains(reading.lambda_nm)) continue;
-    if (reading.r) residuals.push_back(result.fitted[i].r - *reading.r);
-    if (reading.t) residuals.push_back(result.fitted[i].t - *reading.t);
+  for (size_t i = 0; i < request.measurements.size(); ++i) {
+    const LeafMeasurement& measurement = request.measurements[i];
+    if (!nm.contains(measurement.lambda_nm)) continue;
+    if (measurement.r) residuals.push_back(result.fitted[i].r - *measurement.r);
+    if (measurement.t) residuals.push_back(result.fitted[i].t - *measurement.t);
   }
   if (residuals.empty()) return {};
   return root_mean_square(residuals);
@@ -397,7 +397,7 @@ FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool) {
   search(problem, best.q, kFine, kDone);
   FitResult result;
   result.params = best.space->at(best.q), result.specimen = &best.space->specimen();
-  solve_readings(request, result, pool);
+  solve_measurements(request, result, pool);
   judge(request, problem, *best.space, result);
   return result;
 }

@@ -12,7 +12,7 @@
 namespace frond::leaf {
 
 /// What was measured of a leaf at one wavelength and angle: directional-hemispherical reflectance and transmittance.
-struct LeafReading {
+struct LeafMeasurement {
   double lambda_nm;            ///< within kConstantsRange_nm
   double theta_deg;            ///< in [0, 180]; above 90 the abaxial side is lit
   std::optional<double> r, t;  ///< one of them at least
@@ -42,7 +42,7 @@ inline constexpr FitVariable kFitVariables[] = {
 };
 
 struct FitRequest {
-  std::vector<LeafReading> readings;
+  std::vector<LeafMeasurement> measurements;
   std::optional<Structure> structure = {};  ///< none: the better one
   std::optional<bool> sieve = {};           ///< likewise
   /// Where the search begins, and what is not told by the data; of the structure that is tried where it is none.
@@ -78,18 +78,18 @@ struct FitResult {
     double r, t;
     bool is_outlier;  ///< further off than the rest can explain: it counts for less
   };
-  std::vector<Fitted> fitted;  ///< [reading], solved anew
+  std::vector<Fitted> fitted;  ///< [measurement], solved anew
   double rmse = 0, rmse_r = 0, rmse_t = 0;
 };
 
-/// Root mean square of what is left between the wavelengths, R and T together; none where there are no readings.
+/// Root mean square of what is left between the wavelengths, R and T together; none where there are no measurements.
 std::optional<double> rmse_between(const FitRequest& request, const FitResult& result, const Interval& nm);
 
-/// The leaf whose solved walk comes nearest to the readings, by Levenberg and Marquardt's method from several starts:
-/// least squares, but for readings that are far off, which count by their distance (Huber 1964). Its chemistry acts
-/// through one optical depth at each wavelength (OpticsSurface), so that derivatives are exact. Standard errors are
-/// those of the linearised problem, widened for residuals that go together along the spectrum. There are as many
-/// readings as free numbers at least. Deterministic.
+/// The leaf whose solved walk comes nearest to the measurements, by Levenberg and Marquardt's method from several
+/// starts: least squares, but for measurements that are far off, which count by their distance (Huber 1964). Its
+/// chemistry acts through one optical depth at each wavelength (OpticsSurface), so that derivatives are exact. Standard
+/// errors are those of the linearised problem, widened for residuals that go together along the spectrum. There are as
+/// many measurements as free numbers at least. Deterministic.
 FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool);
 
 }  // namespace frond::leaf

@@ -77,7 +77,7 @@ Column column_of(std::string_view name) {
 
 class Reader {
  public:
-  Reader(const std::string& name, const SpectraReading& how)
+  Reader(const std::string& name, const SpectraMeasurement& how)
       : how_(how), where_{std::make_shared<const std::string>(name), 0, 1} {}
 
   void line(std::string_view text) {
@@ -136,25 +136,25 @@ class Reader {
   void row(const std::vector<Field>& fields) {
     if (fields.size() != columns_.size())
       fail(where_, "{} fields, but the file has {} columns", fields.size(), columns_.size());
-    LeafReading reading{0, how_.theta_deg, {}, {}};
+    LeafMeasurement measurement{0, how_.theta_deg, {}, {}};
     bool is_below = false;
     for (size_t i = 0; i < fields.size(); ++i) {
       const auto& [text, where] = fields[i];
       switch (columns_[i]) {
         case Column::wavelength:
-          reading.lambda_nm = wavelength(fields[i]);
+          measurement.lambda_nm = wavelength(fields[i]);
           break;
         case Column::r:
-          reading.r = value(fields[i], "R");
+          measurement.r = value(fields[i], "R");
           break;
         case Column::t:
-          reading.t = value(fields[i], "T");
+          measurement.t = value(fields[i], "T");
           break;
         case Column::theta: {
           const auto theta = to_number(text, *separator_);
           if (!theta || !(*theta >= 0 && *theta <= 180))
             fail(where, "theta_deg is from 0 to 180 degrees, \"{}\" was given", text);
-          reading.theta_deg = *theta;
+          measurement.theta_deg = *theta;
           break;
         }
         case Column::side:
@@ -168,13 +168,13 @@ class Reader {
           break;
       }
     }
-    if (is_below && reading.theta_deg <= 90) reading.theta_deg = 180 - reading.theta_deg;
-    if (reading.theta_deg == 90) fail(where_, "light along the leaf, at 90 degrees, meets neither side");
-    if ((!reading.r && !reading.t) || !kConstantsRange_nm.contains(reading.lambda_nm)) {
+    if (is_below && measurement.theta_deg <= 90) measurement.theta_deg = 180 - measurement.theta_deg;
+    if (measurement.theta_deg == 90) fail(where_, "light along the leaf, at 90 degrees, meets neither side");
+    if ((!measurement.r && !measurement.t) || !kConstantsRange_nm.contains(measurement.lambda_nm)) {
       ++result_.left_out;
       return;
     }
-    result_.readings.push_back(reading);
+    result_.measurements.push_back(measurement);
     wheres_.push_back(where_);
   }
 
@@ -211,31 +211,31 @@ class Reader {
   void scale() {
     constexpr double kNoise = 0.05;
     result_.is_in_percent = largest_ > kPercent;
-    for (size_t i = 0; i < result_.readings.size(); ++i) {
-      LeafReading& reading = result_.readings[i];
-      for (const auto& [what, share] : {std::pair{"R", &reading.r}, {"T", &reading.t}}) {
+    for (size_t i = 0; i < result_.measurements.size(); ++i) {
+      LeafMeasurement& measurement = result_.measurements[i];
+      for (const auto& [what, share] : {std::pair{"R", &measurement.r}, {"T", &measurement.t}}) {
         if (!*share) continue;
         if (result_.is_in_percent) **share /= 100;
         if (**share < -kNoise) refuse_share(wheres_[i], what, fmt::format("{}", **share));
       }
-      const double sum = reading.r.value_or(0) + reading.t.value_or(0);
+      const double sum = measurement.r.value_or(0) + measurement.t.value_or(0);
       if (sum > 1 + kNoise) fail(wheres_[i], "R + T is {:.4g}: a leaf scatters 1 at most", sum);
     }
   }
 
-  const SpectraReading& how_;
+  const SpectraMeasurement& how_;
   Location where_, first_row_;
   std::optional<char> separator_;
   std::vector<Column> columns_;
   std::set<std::string> leaves_;
   double largest_ = 0;
   MeasuredSpectra result_;
-  std::vector<Location> wheres_;  ///< of the readings
+  std::vector<Location> wheres_;  ///< of the measurements
 };
 
 }  // namespace
 
-MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraReading& how) {
+MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how) {
   Reader reader(name, how);
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
@@ -247,7 +247,7 @@ MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string&
   return reader.finish();
 }
 
-MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraReading& how) {
+MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraMeasurement& how) {
   return parse_measured_spectra(read_file_bytes(path, {}, "measured spectra"), path.string(), how);
 }
 

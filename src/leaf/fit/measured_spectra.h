@@ -11,7 +11,7 @@
 namespace frond::leaf {
 
 /// How a file of measured spectra is read.
-struct SpectraReading {
+struct SpectraMeasurement {
   std::string leaf = {};               ///< whose rows count, where the file has several leaves; empty: it has one
   double theta_deg = 8;                ///< of incidence, where no column says it
   std::string leaf_option = "--leaf";  ///< how messages name the choice of a leaf
@@ -19,7 +19,7 @@ struct SpectraReading {
 
 /// A file of measured spectra.
 struct MeasuredSpectra {
-  std::vector<LeafReading> readings;
+  std::vector<LeafMeasurement> measurements;
   size_t left_out = 0;         ///< rows beyond kConstantsRange_nm, or without a number
   bool is_in_percent = false;  ///< so that all was divided by 100
 };
@@ -30,9 +30,9 @@ struct MeasuredSpectra {
 /// (material, sample); other columns are passed over. Without names: wavelength, R and, if there are three, T.
 /// Wavelengths below 100 are in micrometres, values above 1.5 in percent. Decimals may have a comma where fields are
 /// not separated by one. Throws InputError with `name`, line and column.
-MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraReading& how);
+MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how);
 
 /// The same of a file; InputError at `where` if it cannot be read.
-MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraReading& how);
+MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraMeasurement& how);
 
 }  // namespace frond::leaf

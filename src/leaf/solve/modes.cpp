@@ -74,8 +74,8 @@ VectorXd signs(std::span<const double> sines, size_t mode) {
   return result;
 }
 
-BodyModes::Grid row_by_row(const MatrixXd& matrix) {
-  BodyModes::Grid grid;
+LeafModes::Grid row_by_row(const MatrixXd& matrix) {
+  LeafModes::Grid grid;
   for (Index i = 0; i < matrix.rows(); ++i)
     for (Index j = 0; j < matrix.cols(); ++j) grid.push_back(matrix(i, j));
   return grid;
@@ -98,14 +98,14 @@ int mode_nodes(const Tissue& tissue) {
   return std::max(least < 1 ? 8 : 5, for_width);
 }
 
-BodyModes solve_modes(const Tissue& tissue, std::span<const double> sines, double tolerance, int nodes) {
+LeafModes solve_modes(const Tissue& tissue, std::span<const double> sines, double tolerance, int nodes) {
   const size_t most = most_modes(tissue.lobe(0, false, true)->exponent());
   const Chain chain(tissue, nodes, most);
   const double n = tissue.n_cuticle();
   const Port port(chain, inner_cosines(sines, n), most);
   const auto ways = static_cast<Index>(sines.size());
 
-  BodyModes result({sines.begin(), sines.end()});
+  LeafModes result({sines.begin(), sines.end()});
   std::array<bool, 2> open{true, true};  // whether light that returns, that crosses, has modes left
   for (size_t m = 0; m < most && (open[0] || open[1]); ++m) {
     const Sources exits = port.exits(m);

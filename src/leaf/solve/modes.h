@@ -17,13 +17,13 @@ inline constexpr int kModesVersion = 3;
 /// F_i, F_o: Fresnel's reflectances of the outer surface for the two directions outside; mu_o' = sqrt(1 - (sin theta_o
 /// / n)^2), the cosine inside; phi = 0: on straight ahead, pi: back. What is outside the sum holds all that is steep at
 /// grazing; h_m is smooth in both sines, even in each for even m and odd for odd m.
-class BodyModes {
+class LeafModes {
  public:
   /// Values of one mode: [index of the incident sine][index of the leaving sine].
   using Grid = std::vector<double>;
 
-  BodyModes() = default;
-  explicit BodyModes(std::vector<double> sines) : sines_(std::move(sines)) {}
+  LeafModes() = default;
+  explicit LeafModes(std::vector<double> sines) : sines_(std::move(sines)) {}
 
   const std::vector<double>& sines() const { return sines_; }
   /// Series for light that meets the leaf from below or above and leaves it on the same side or on the other.
@@ -38,7 +38,7 @@ class BodyModes {
 /// The walk's modes, by the chain of `solve` (leaf/solve/solver.h), as many as it takes to leave out less than
 /// `tolerance` of pi f, which is 1 for white paper. `sines` of angles outside, for both directions: between -n and n, n
 /// the cuticle's index. `nodes` per segment.
-BodyModes solve_modes(const Tissue& tissue, std::span<const double> sines, double tolerance, int nodes);
+LeafModes solve_modes(const Tissue& tissue, std::span<const double> sines, double tolerance, int nodes);
 
 /// Enough nodes for errors of pi f below 3e-5 where all lobes inside the leaf have exponents from 1 to 20 (the
 /// specimens' have 1 and 5), and below 1e-4 of its largest value up to 100; 1e-3 at 0.5; 3e-3 at 0, where the cut

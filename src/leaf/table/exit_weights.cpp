@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "leaf/solve/quadrature.h"
-#include "leaf/table/series_table.h"
+#include "leaf/table/series_lookup.h"
 #include "leaf/tissue/fresnel.h"
 
 namespace frond::leaf {

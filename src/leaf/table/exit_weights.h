@@ -5,7 +5,7 @@
 
 namespace frond::leaf {
 
-/// What stands between a series (BodyModes) and f, beside the shares that pass the surface.
+/// What stands between a series (LeafModes) and f, beside the shares that pass the surface.
 enum class Measure {
   over_inner_cosine,  ///< f = (1 - F_i) (1 - F_o) / mu_o' * series
   plain,              ///< f = (1 - F_i) (1 - F_o) * series

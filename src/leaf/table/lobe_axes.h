@@ -51,11 +51,11 @@ class ExponentAxis {
 
   const std::vector<double>& exponents() const { return exponents_; }
 
-  struct Place {
+  struct Position {
     size_t below = 0, above = 0;
     float t = 0;  ///< of the way from one to the other
   };
-  Place place(float exponent) const {
+  Position position(float exponent) const {
     const float last = static_cast<float>(exponents_.size() - 1);
     const float x = std::clamp((std::log1p(exponent) - first_) * per_step_, 0.f, last);
     const auto below = static_cast<size_t>(x);

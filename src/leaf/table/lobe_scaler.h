@@ -8,7 +8,7 @@ namespace frond::leaf {
 /// Makes a lobe p about the mirror direction, before its cut, the same both ways round, so that it reflects a share R
 /// of what comes along each direction:
 ///   f(i, o) = R(i) / I(i) p(i, o) R(o) / I(o),   I(i) = integral of p(i, o) R(o) / I(o) |cos theta_o| over o.
-/// A symmetric scaling, as of leaf/table/reciprocal_body.h. I is smooth in the cosine whatever R is, and bounded from
+/// A symmetric scaling, as of leaf/table/reciprocal_modes.h. I is smooth in the cosine whatever R is, and bounded from
 /// below: so are the weights of samples of the lobe.
 class LobeScaler {
  public:

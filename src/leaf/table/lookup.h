@@ -34,7 +34,7 @@ class TableLookup {
 
   /// cos_theta in [-1, 1], of the incident direction to the adaxial normal. Lanes not in use: undefined.
   SampledShares operator()(float cos_theta, const TableSelection& selection) const {
-    const auto [node, t] = place(cos_theta);
+    const auto [node, t] = position(cos_theta);
     if (selection.lane_count == 0) return mix(lanes_[node], lanes_[node + 1], t);
     return sum_columns(node, t, selection);
   }
@@ -42,11 +42,11 @@ class TableLookup {
   static constexpr size_t kCells = 128;
   static constexpr size_t kNodes = 2 * (kCells + 1);  ///< adaxial side, then abaxial, each from grazing to the normal
   /// Where a cosine in [-1, 1] lies.
-  struct Place {
+  struct Position {
     size_t node;  ///< the one below; the next is the one above
     float t;      ///< of the way between them
   };
-  static Place place(float cos_theta) {
+  static Position position(float cos_theta) {
     const float x = std::sqrt(std::min(std::abs(cos_theta), 1.f)) * kCells;
     const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
     return {(cos_theta < 0 ? kCells + 1 : 0) + cell, x - static_cast<float>(cell)};

@@ -21,18 +21,18 @@ void add_surface(PortableLeaf& leaf) {
   }
   const auto [least, most] = std::ranges::minmax_element(leaf.index);
   const SurfaceScaling scaling({leaf.exponent, leaf.exponent}, {double(*least), double(*most)});
-  const auto place = scaling.place(static_cast<float>(leaf.exponent));
+  const auto place = scaling.position(static_cast<float>(leaf.exponent));
   for (const float n : leaf.index)
     for (const double c : CosineNodes::cosines())
       leaf.surface.push_back(scaling.at(place, static_cast<float>(c), Float4{n, n, n, n})[0]);
 }
 
-void add_series(PortableLeaf& leaf, const BodySpectrum& spectrum) {
+void add_series(PortableLeaf& leaf, const ModeTable& spectrum) {
   const size_t places = leaf.side() * leaf.side();
   for (const bool from_below : {false, true})
     for (const bool crosses : {false, true}) {
       size_t& modes = leaf.modes[from_below][crosses];
-      for (const BodyModes& column : spectrum.modes) modes = std::max(modes, column.series(from_below, crosses).size());
+      for (const LeafModes& column : spectrum.modes) modes = std::max(modes, column.series(from_below, crosses).size());
       std::vector<float>& values = leaf.series[from_below][crosses];
       values.assign(spectrum.modes.size() * modes * places, 0);
       for (size_t c = 0; c < spectrum.modes.size(); ++c) {
@@ -43,7 +43,7 @@ void add_series(PortableLeaf& leaf, const BodySpectrum& spectrum) {
     }
 }
 
-void add_ways(PortableLeaf& leaf, const BodySpectrum& spectrum) {
+void add_ways(PortableLeaf& leaf, const ModeTable& spectrum) {
   const size_t side = leaf.side(), depths = std::max<size_t>(1, leaf.depths.size());
   const Measure measure = leaf.is_reciprocal ? Measure::plain : Measure::over_inner_cosine;
   for (size_t c = 0; c < spectrum.modes.size(); ++c) {
@@ -72,7 +72,7 @@ class Writer {
 
 }  // namespace
 
-PortableLeaf make_portable(const BodyRequest& request, const BodySpectrum& spectrum, double exponent) {
+PortableLeaf make_portable(const ModeTableRequest& request, const ModeTable& spectrum, double exponent) {
   PortableLeaf leaf;
   leaf.is_reciprocal = spectrum.is_reciprocal;
   leaf.cells = static_cast<size_t>(spectrum.cells);

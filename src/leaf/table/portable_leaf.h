@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "leaf/table/body_spectrum.h"
 #include "leaf/table/lobe_axes.h"
+#include "leaf/table/mode_table.h"
 
 namespace frond::leaf {
 
@@ -36,7 +36,7 @@ struct PortableLeaf {
 };
 
 /// `spectrum` is of `request`, whose wavelengths ascend; `exponent` of the surface's lobe.
-PortableLeaf make_portable(const BodyRequest& request, const BodySpectrum& spectrum, double exponent);
+PortableLeaf make_portable(const ModeTableRequest& request, const ModeTable& spectrum, double exponent);
 
 /// As a file holds it: docs/leaf_file.md.
 std::string portable_bytes(const PortableLeaf& leaf);

@@ -46,15 +46,15 @@ std::array<double, 2> means(const Value& value) {
 }
 
 /// d, and of Rd + T what leaves on the side of incidence.
-struct BodyFactors {
+struct SubsurfaceFactors {
   std::array<double, kNodes> d, back;
 };
 
 /// With the means over a side of d, d Rd and d T, d follows from Rd and T at each direction.
-BodyFactors body_factors(const Column& column) {
+SubsurfaceFactors subsurface_factors(const Column& column) {
   constexpr int kMostSteps = 500;
   constexpr double kDone = 1e-13;
-  BodyFactors factors;
+  SubsurfaceFactors factors;
   auto& [d, back] = factors;
   d.fill(1), back.fill(0);
   for (int step = 0; step < kMostSteps; ++step) {
@@ -82,7 +82,7 @@ BodyFactors body_factors(const Column& column) {
 /// s on one side.
 std::vector<double> surface_factors(LobeScaler& lobe, const Column& column, size_t first) {
   const auto reflectance = [&](double cos_theta) {
-    const auto [node, t] = TableLookup::place(static_cast<float>(cos_theta));
+    const auto [node, t] = TableLookup::position(static_cast<float>(cos_theta));
     return std::lerp(column[first + node].surface, column[first + node + 1].surface, static_cast<double>(t));
   };
   std::vector<double> factors = lobe(reflectance);
@@ -112,9 +112,9 @@ ReciprocalLookup::ReciprocalLookup(const TableLookup& shares, const Interval& ex
   std::vector<Column> columns(columns_);
   for (size_t c = 0; c < columns_; ++c) {
     for (size_t i = 0; i < kNodes; ++i) columns[c][i] = shares.shares(c, i);
-    const BodyFactors body = body_factors(columns[c]);
-    body_.insert(body_.end(), body.d.begin(), body.d.end());
-    back_.insert(back_.end(), body.back.begin(), body.back.end());
+    const SubsurfaceFactors subsurface = subsurface_factors(columns[c]);
+    subsurface_.insert(subsurface_.end(), subsurface.d.begin(), subsurface.d.end());
+    back_.insert(back_.end(), subsurface.back.begin(), subsurface.back.end());
   }
   for (const double exponent : axis_.exponents()) {
     LobeScaler lobe(exponent, node_cosines());
@@ -128,10 +128,10 @@ ReciprocalLookup::ReciprocalLookup(const TableLookup& shares, const Interval& ex
       }
   }
   if (columns_ != kLanes) return;
-  surface_lanes_ = by_lanes(surface_), body_lanes_ = by_lanes(body_), back_lanes_ = by_lanes(back_);
+  surface_lanes_ = by_lanes(surface_), subsurface_lanes_ = by_lanes(subsurface_), back_lanes_ = by_lanes(back_);
 }
 
-ReciprocalLookup::Factors ReciprocalLookup::sum_columns(size_t node, float t, const Place& exponent,
+ReciprocalLookup::Factors ReciprocalLookup::sum_columns(size_t node, float t, const Position& exponent,
                                                         const TableSelection& selection) const {
   Factors f;
   for (int lane = 0; lane < selection.lane_count; ++lane) {
@@ -141,7 +141,7 @@ ReciprocalLookup::Factors ReciprocalLookup::sum_columns(size_t node, float t, co
       const float below = between(surface_, exponent.below * columns_ + c, node, t),
                   above = between(surface_, exponent.above * columns_ + c, node, t);
       f.surface[lane] += at.weight[i] * (below + exponent.t * (above - below));
-      f.body[lane] += at.weight[i] * between(body_, c, node, t);
+      f.subsurface[lane] += at.weight[i] * between(subsurface_, c, node, t);
       f.back[lane] += at.weight[i] * between(back_, c, node, t);
     }
   }

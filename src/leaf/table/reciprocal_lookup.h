@@ -16,20 +16,20 @@ class ReciprocalLookup {
   ReciprocalLookup(const TableLookup& shares, const Interval& exponents);
 
   struct Factors {
-    SampledSpectrum surface, body;  ///< s and d by lane; lanes not in use: undefined
-    SampledSpectrum back;           ///< of Rd + T, what leaves on the side of incidence
+    SampledSpectrum surface, subsurface;  ///< s and d by lane; lanes not in use: undefined
+    SampledSpectrum back;                 ///< of Rd + T, what leaves on the side of incidence
   };
-  using Place = ExponentAxis::Place;
-  Place place(float exponent) const { return axis_.place(exponent); }
+  using Position = ExponentAxis::Position;
+  Position position(float exponent) const { return axis_.position(exponent); }
 
   /// cos_theta in [-1, 1], as in TableLookup, whose `select` makes the selection.
-  Factors operator()(float cos_theta, const Place& exponent, const TableSelection& selection) const {
-    const auto [node, t] = TableLookup::place(cos_theta);
+  Factors operator()(float cos_theta, const Position& exponent, const TableSelection& selection) const {
+    const auto [node, t] = TableLookup::position(cos_theta);
     if (selection.lane_count > 0) return sum_columns(node, t, exponent, selection);
     Factors f;
     f.surface.v = between(surface_lanes_, exponent.below, node, t);
     if (exponent.t > 0) f.surface.v += exponent.t * (between(surface_lanes_, exponent.above, node, t) - f.surface.v);
-    f.body.v = between(body_lanes_, 0, node, t);
+    f.subsurface.v = between(subsurface_lanes_, 0, node, t);
     f.back.v = between(back_lanes_, 0, node, t);
     return f;
   }
@@ -42,14 +42,14 @@ class ReciprocalLookup {
     const T* at = &values[row * kNodes + node];
     return (1 - t) * at[0] + t * at[1];
   }
-  Factors sum_columns(size_t node, float t, const Place& exponent, const TableSelection& selection) const;
+  Factors sum_columns(size_t node, float t, const Position& exponent, const TableSelection& selection) const;
 
   ExponentAxis axis_;
   size_t columns_ = 0;
-  std::vector<float> surface_;      ///< [exponent][column][node]
-  std::vector<float> body_, back_;  ///< [column][node]
+  std::vector<float> surface_;            ///< [exponent][column][node]
+  std::vector<float> subsurface_, back_;  ///< [column][node]
   // The same where lanes are columns, one by one: [exponent][node] and [node].
-  std::vector<Float4> surface_lanes_, body_lanes_, back_lanes_;
+  std::vector<Float4> surface_lanes_, subsurface_lanes_, back_lanes_;
 };
 
 }  // namespace frond::leaf

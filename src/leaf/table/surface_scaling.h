@@ -11,11 +11,11 @@ class SurfaceScaling {
   SurfaceScaling() = default;
   SurfaceScaling(const Interval& exponents, const Interval& indices);
 
-  using Place = ExponentAxis::Place;
-  Place place(float exponent) const { return axis_.place(exponent); }
+  using Position = ExponentAxis::Position;
+  Position position(float exponent) const { return axis_.position(exponent); }
 
   /// I of LobeScaler for a direction of this cosine to the normal, by lane.
-  Float4 at(const Place& exponent, float cosine, Float4 index) const {
+  Float4 at(const Position& exponent, float cosine, Float4 index) const {
     const CosineNodes nodes(std::min(cosine, 1.f));
     Float4 c = row(exponent.below, nodes);
     if (exponent.t > 0) c += exponent.t * (row(exponent.above, nodes) - c);

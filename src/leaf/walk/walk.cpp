@@ -33,8 +33,9 @@ End<K> walk_lanes(const std::array<const Tissue*, K>& tissues, size_t hero, cons
 }
 
 template <size_t K>
-std::array<double, K> estimate_body_f_lanes(const std::array<const Tissue*, K>& tissues, size_t hero, const Vec3d& wo,
-                                            const Vec3d& wi, Absorption absorption, RandomStream& rng) {
+std::array<double, K> estimate_subsurface_f_lanes(const std::array<const Tissue*, K>& tissues, size_t hero,
+                                                  const Vec3d& wo, const Vec3d& wi, Absorption absorption,
+                                                  RandomStream& rng) {
   const bool exits_up = wi.z > 0;
   const size_t exit_medium = exits_up ? 1 : 5;
   std::array<Vec3d, K> inner;
@@ -120,15 +121,15 @@ double surface_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi) {
          (lobe.kept(std::abs(wo.z)) * std::abs(wi.z));
 }
 
-double estimate_body_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, Absorption absorption,
-                       RandomStream& rng) {
-  return estimate_body_f_lanes<1>({&tissue}, 0, wo, wi, absorption, rng)[0];
+double estimate_subsurface_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, Absorption absorption,
+                             RandomStream& rng) {
+  return estimate_subsurface_f_lanes<1>({&tissue}, 0, wo, wi, absorption, rng)[0];
 }
 
-LaneValues estimate_body_f(std::span<const Tissue* const> tissues, size_t hero, const Vec3d& wo, const Vec3d& wi,
-                           Absorption absorption, RandomStream& rng) {
+LaneValues estimate_subsurface_f(std::span<const Tissue* const> tissues, size_t hero, const Vec3d& wo, const Vec3d& wi,
+                                 Absorption absorption, RandomStream& rng) {
   return with_lanes(tissues, [&](const auto& lanes) {
-    return in_lanes(estimate_body_f_lanes(lanes, hero, wo, wi, absorption, rng));
+    return in_lanes(estimate_subsurface_f_lanes(lanes, hero, wo, wi, absorption, rng));
   });
 }
 

@@ -63,12 +63,12 @@ double surface_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi);
 /// f of light that has been inside, 1/sr: an unbiased estimate by one walk. Light leaves unperturbed through the outer
 /// interface, but every direction inside an epidermis was drawn from a lobe: so the walk is connected to wi there, one
 /// event before it would leave.
-double estimate_body_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, Absorption absorption,
-                       RandomStream& rng);
+double estimate_subsurface_f(const Tissue& tissue, const Vec3d& wo, const Vec3d& wi, Absorption absorption,
+                             RandomStream& rng);
 
 /// The same at several wavelengths by one walk, as `walk` does it.
-LaneValues estimate_body_f(std::span<const Tissue* const> tissues, size_t hero, const Vec3d& wo, const Vec3d& wi,
-                           Absorption absorption, RandomStream& rng);
+LaneValues estimate_subsurface_f(std::span<const Tissue* const> tissues, size_t hero, const Vec3d& wo, const Vec3d& wi,
+                                 Absorption absorption, RandomStream& rng);
 
 /// Fresnel reflectance of the outer surface, the same on both sides.
 double surface_reflectance(const Tissue& tissue, double cos_theta);

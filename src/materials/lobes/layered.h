@@ -183,14 +183,14 @@ class LayeredBsdf final : public Bsdf {
   }
 
   /// Where a walk is: at height z over the base, on its way along w.
-  struct Place {
+  struct Walk {
     float z;
     Vec3 w;
     SampledSpectrum weight;
   };
 
   /// To the next event. True: it is in the medium, and the weight has its albedo.
-  bool advance(Place& at, RandomStream& rng) const {
+  bool advance(Walk& at, RandomStream& rng) const {
     const float end = at.w.z > 0 ? medium_.thickness : 0, way = std::abs(end - at.z);
     if (medium_.albedo.is_black()) {
       at.weight *= transmittance(way, at.w);
@@ -204,7 +204,7 @@ class LayeredBsdf final : public Bsdf {
   }
 
   /// Roulette of walks that carry little; false where one ends.
-  static bool survives(Place& at, int depth, RandomStream& rng) {
+  static bool survives(Walk& at, int depth, RandomStream& rng) {
     constexpr int kSafe = 4;
     constexpr float kLittle = 0.25f;
     const float most = at.weight.max();
@@ -229,7 +229,7 @@ class LayeredBsdf final : public Bsdf {
 
   /// What is scattered in the medium and comes to go along `up` by mirrors alone, which no direction drawn elsewhere
   /// can meet: first down to the base, or first up to the coat. At most so many events more.
-  SampledSpectrum by_mirrors(const Mirrors& between, const Place& at, const Vec3& up, int events) const {
+  SampledSpectrum by_mirrors(const Mirrors& between, const Walk& at, const Vec3& up, int events) const {
     constexpr float kNegligible = 1e-7f;
     const auto scattered = [&](const Vec3& w) { return detail::henyey_greenstein(dot(at.w, w), medium_.g); };
     SampledSpectrum first_down = between.base * (scattered({up.x, up.y, -up.z}) * transmittance(at.z, up));
@@ -260,7 +260,7 @@ class LayeredBsdf final : public Bsdf {
     const bool smooth = coat_.is_smooth();
     // Light from wi by the way out that was drawn, against a direction `w` drawn elsewhere.
     const auto against = [&](float pdf) { return smooth || !connects ? 1 : power_heuristic(out->pdf, pdf); };
-    const auto escaped = [&](const Place& at, float pdf, bool is_delta) -> SampledSpectrum {
+    const auto escaped = [&](const Walk& at, float pdf, bool is_delta) -> SampledSpectrum {
       if (smooth || !(at.w.z > 0)) return {};
       const auto pair = border.pair(-at.w, wi);
       if (pair.f == 0) return {};
@@ -272,7 +272,7 @@ class LayeredBsdf final : public Bsdf {
     const Mirrors between = mirrors ? mirrors_along(border, up) : Mirrors{};
 
     SampledSpectrum sum;
-    Place at{medium_.thickness, in->wi, coat.lanes * in->weight};
+    Walk at{medium_.thickness, in->wi, coat.lanes * in->weight};
     for (int depth = 0; depth < walks_.max_depth && survives(at, depth, rng); ++depth) {
       if (is_grazing(at.w)) break;
       if (advance(at, rng)) {
@@ -317,7 +317,7 @@ class LayeredBsdf final : public Bsdf {
     }
     const auto in = border.refract(wo, m);
     if (!in || is_grazing(in->wi)) return {};
-    Place at{medium_.thickness, in->wi, coat.lanes * (in->weight / (1 - reflected))};
+    Walk at{medium_.thickness, in->wi, coat.lanes * (in->weight / (1 - reflected))};
     bool is_delta = coat_.is_smooth();
     for (int depth = 0; survives(at, depth, rng); ++depth) {
       if (is_grazing(at.w)) return {};

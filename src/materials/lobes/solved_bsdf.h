@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "core/bsdf.h"
-#include "leaf/table/body_table.h"
+#include "leaf/table/mode_lookup.h"
 #include "leaf/table/surface_scaling.h"
 #include "materials/lobes/incident.h"
 #include "materials/lobes/surface_lobe.h"
@@ -12,13 +12,13 @@ namespace frond {
 
 /// A solved leaf where it was hit, at the wavelengths of the path. What is pointed to outlives the BSDF.
 struct SolvedHit {
-  const leaf::BodyTable* table;
-  const leaf::BodyTable::Selection* selection;
+  const leaf::ModeLookup* table;
+  const leaf::ModeLookup::Selection* selection;
   const leaf::Lobe* surface;
   SampledSpectrum active;  ///< 1 in active lanes, 0 elsewhere
   Incident incident;
   const leaf::SurfaceScaling* scaling = nullptr;  ///< of a reciprocal leaf, whose table is, too
-  leaf::SurfaceScaling::Place exponent = {};      ///< likewise: of the surface's lobe
+  leaf::SurfaceScaling::Position exponent = {};   ///< likewise: of the surface's lobe
 };
 
 /// A leaf by the solution of its walk: the surface's lobe, exactly, and the light that has been inside by its modes
@@ -152,10 +152,10 @@ class SolvedBsdf final : public Bsdf {
     const Incidence& a = incidence_at(wo);
     Incidence b;
     set(b, wi);
-    const Float4 body = a.enters * b.enters *
-                        hit_.table->mutual({wo.z < 0, a.sine, a.nodes}, {wi.z < 0, b.sine, b.nodes},
-                                           cos_phi(wo, wi, a.sine * b.sine), hit_.selection->columns);
-    return lobe == 0 ? body : body + a.surface * b.surface * lobe;
+    const Float4 subsurface = a.enters * b.enters *
+                              hit_.table->mutual({wo.z < 0, a.sine, a.nodes}, {wi.z < 0, b.sine, b.nodes},
+                                                 cos_phi(wo, wi, a.sine * b.sine), hit_.selection->columns);
+    return lobe == 0 ? subsurface : subsurface + a.surface * b.surface * lobe;
   }
 
   /// Of the azimuth from straight ahead; `sines`: their product.
@@ -167,12 +167,12 @@ class SolvedBsdf final : public Bsdf {
     if (is_reciprocal()) return reciprocal_f(wo, wi, lobe);
     const Vec3 &incident = from_light() ? wi : wo, &leaving = from_light() ? wo : wi;
     const Incidence& in = incidence_at(incident);
-    const Float4 body = body_f(in, incident, leaving);
-    if (lobe == 0) return body;
-    return body + in.reflectance * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
+    const Float4 subsurface = subsurface_f(in, incident, leaving);
+    if (lobe == 0) return subsurface;
+    return subsurface + in.reflectance * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
   }
 
-  Float4 body_f(const Incidence& in, const Vec3& incident, const Vec3& leaving) const {
+  Float4 subsurface_f(const Incidence& in, const Vec3& incident, const Vec3& leaving) const {
     const Float4 leaves = passage(leaving).over_cosine;
     const float sine_o = std::sqrt(sine2(leaving));
     return in.enters * leaves *
@@ -184,8 +184,8 @@ class SolvedBsdf final : public Bsdf {
     const Choice& choice = choice_at(wo);
     const float cosine = std::abs(wi.z) * kInvPi;
     if (!same_side(wo, wi)) return choice.transmitted * cosine;
-    const float body = choice.reflected * cosine;
-    return lobe == 0 ? body : body + choice.surface * lobe * surface_.made_good(wo.z);
+    const float subsurface = choice.reflected * cosine;
+    return lobe == 0 ? subsurface : subsurface + choice.surface * lobe * surface_.made_good(wo.z);
   }
 
   SolvedHit hit_;

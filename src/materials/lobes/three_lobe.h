@@ -17,7 +17,7 @@ struct LeafHit {
   const leaf::Lobe* surface;
   SampledSpectrum active;                              ///< 1 in active lanes, 0 elsewhere
   const leaf::ReciprocalLookup* reciprocal = nullptr;  ///< of a leaf that is
-  leaf::ReciprocalLookup::Place exponent = {};         ///< likewise: of the surface's lobe
+  leaf::ReciprocalLookup::Position exponent = {};      ///< likewise: of the surface's lobe
 };
 
 /// How a leaf is asked.
@@ -137,7 +137,7 @@ class ThreeLobeBsdf final : public Bsdf {
     Mutual m{cos_theta, (*hit_.table)(cos_theta, hit_.selection),
              (*hit_.reciprocal)(cos_theta, hit_.exponent, hit_.selection)};
     m.factors.surface *= hit_.active;
-    m.factors.body *= hit_.active;
+    m.factors.subsurface *= hit_.active;
     return m;
   }
   const Mutual& mutual_of(const Vec3& wo) const {
@@ -147,10 +147,10 @@ class ThreeLobeBsdf final : public Bsdf {
 
   SampledSpectrum reciprocal_f(const Vec3& wo, const Vec3& wi, float lobe) const {
     const Mutual &a = mutual_of(wo), b = mutual_at(wi.z);
-    const SampledSpectrum both = a.factors.body * b.factors.body * (kInvPi / 2);
+    const SampledSpectrum both = a.factors.subsurface * b.factors.subsurface * (kInvPi / 2);
     if (!same_side(wo, wi)) return both * (a.shares.transmitted + b.shares.transmitted);
-    const SampledSpectrum body = both * (a.shares.subsurface + b.shares.subsurface);
-    return lobe == 0 ? body : body + a.factors.surface * b.factors.surface * lobe;
+    const SampledSpectrum subsurface = both * (a.shares.subsurface + b.shares.subsurface);
+    return lobe == 0 ? subsurface : subsurface + a.factors.surface * b.factors.surface * lobe;
   }
 
   SampledSpectrum leaf_f(const Vec3& wo, const Vec3& wi, float lobe) const {
@@ -158,17 +158,17 @@ class ThreeLobeBsdf final : public Bsdf {
     const Vec3 &incident = from_light() ? wi : wo, &leaving = from_light() ? wo : wi;
     const leaf::SampledShares& shares = shares_at(incident.z);
     if (!same_side(wo, wi)) return shares.transmitted * kInvPi;
-    const SampledSpectrum body = shares.subsurface * kInvPi;
-    if (lobe == 0) return body;
-    return body + shares.surface * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
+    const SampledSpectrum subsurface = shares.subsurface * kInvPi;
+    if (lobe == 0) return subsurface;
+    return subsurface + shares.surface * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
   }
 
   float leaf_pdf(const Vec3& wo, const Vec3& wi, float lobe) const {
     const Choice& choice = choice_at(wo);
     const float cosine = std::abs(wi.z) * kInvPi;
     if (!same_side(wo, wi)) return choice.transmitted * cosine;
-    const float body = choice.subsurface * cosine;
-    return lobe == 0 ? body : body + choice.surface * lobe * surface_.made_good(wo.z);
+    const float subsurface = choice.subsurface * cosine;
+    return lobe == 0 ? subsurface : subsurface + choice.surface * lobe * surface_.made_good(wo.z);
   }
 
   /// Both on one side. Nothing where f is black.

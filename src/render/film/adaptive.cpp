@@ -61,7 +61,7 @@ std::vector<double> smoothed(const std::vector<TileNoise>& tiles, size_t columns
 double NoiseEstimate::rms() const { return std::sqrt(mean_square); }
 double NoiseEstimate::upper_rms() const { return std::sqrt(upper); }
 
-NoiseEstimate picture_noise(const Film& film, double z) {
+NoiseEstimate image_noise(const Film& film, double z) {
   const Crop& c = film.settings().crop;
   double sum = 0, squares = 0;
   for (int y = c.y0; y < c.y1; ++y)
@@ -85,7 +85,7 @@ SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples) {
   for (size_t i = 0; i < film.tiles(); ++i) tiles.push_back(noise_of(film, i));
   const std::vector<double> variance = smoothed(tiles, film.columns());
   // A little less noise than asked for, so that it is met when the bound is looked at.
-  const NoiseEstimate now = picture_noise(film, noise_z());
+  const NoiseEstimate now = image_noise(film, noise_z());
   const double sharpness = now.mean_square > 0 ? now.mean_square / now.upper : 1;
   const double goal = max_rms * max_rms * sharpness * pixels_of(film.settings().crop);
   const auto samples_at = [&](size_t i, double scale) {

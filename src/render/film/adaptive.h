@@ -4,7 +4,7 @@
 
 namespace frond {
 
-/// How much noise a picture has: the mean square over its pixels and colours, in the film's units.
+/// How much noise an image has: the mean square over its pixels and colours, in the film's units.
 struct NoiseEstimate {
   double mean_square = 0;
   double upper = 0;  ///< it is no more than that, with the confidence asked for
@@ -15,9 +15,9 @@ struct NoiseEstimate {
 
 /// Of a film that has blocks. `z`: standard errors up to the upper bound; a pixel's own estimate is taken to be
 /// uncertain by all of itself, and as many of them as share their samples to be wrong together.
-NoiseEstimate picture_noise(const Film& film, double z);
+NoiseEstimate image_noise(const Film& film, double z);
 
-/// Confidence that a picture's noise is no more than what was asked for, all looks at it together.
+/// Confidence that an image's noise is no more than what was asked for, all looks at it together.
 inline constexpr double kNoiseConfidence = 0.95;
 /// How often the noise may be looked at: each time the samples double at most, from 2 blocks to 2^30 samples.
 inline constexpr size_t kNoiseLooks = 26;
@@ -34,7 +34,7 @@ struct SamplePlan {
 inline constexpr uint64_t kLeastAdaptive = 2 * FilmTile::kBlock;
 SamplePlan first_plan(const Film& film);
 
-/// Where samples do most against the picture's noise: to bring it down to `max_rms`, tile t gets so many that the last
+/// Where samples do most against the image's noise: to bring it down to `max_rms`, tile t gets so many that the last
 /// ray in each takes as much of it away, n_t proportional to sqrt(variance / rays) (Neyman's allocation). At most twice
 /// of what it has, so that the next look sees what came of it, and the whole blocks of `most`. Tiles whose noise is not
 /// known well learn from their neighbours: half of it is the mean of the nine.

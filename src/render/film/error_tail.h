@@ -4,7 +4,7 @@
 
 namespace frond {
 
-/// How unevenly a picture's noise is spread: a picture of rare, bright samples has nearly all of its squared error in a
+/// How unevenly an image's noise is spread: an image of rare, bright samples has nearly all of its squared error in a
 /// few pixels, and more samples may make it worse before they make it better.
 struct ErrorTail {
   static constexpr double kWorst = 1e-3;  ///< share of the pixels

@@ -16,7 +16,7 @@ double variance_of_mean(double sum, double square, double n, double weight) {
   return spread * n / ((n - 1) * weight * weight);              // the mean divides by the weights
 }
 
-/// Samples that are shared may lie a little outside of the picture.
+/// Samples that are shared may lie a little outside of the image.
 int floor_to_tile(int pixel) {
   static_assert(Film::kTile == 16);
   return pixel >> 4;
@@ -312,7 +312,7 @@ uint64_t Film::not_finite() const {
 
 void check_memory(const FilmFormat& format, size_t films, const Location& where, std::string_view advice) {
   constexpr double kImageBytes = 64,
-                   kBandBytes = 48;  // of the picture that is made of a pixel in the end, and its file
+                   kBandBytes = 48;  // of the image that is made of a pixel in the end, and its file
   const Crop& crop = format.settings.crop;
   const double pixel = sizeof(FilmTile::Pixel) + kImageBytes +
                        double(format.bands) * (sizeof(FilmTile::BandSums) + kBandBytes) +

@@ -10,8 +10,8 @@
 
 namespace frond {
 
-/// The tiles of a picture's crop; of shared samples, also of the pixels around whose samples reach into it. Its tiles
-/// lie on a grid that begins at pixel (0, 0) of the whole picture, so that those of its parts match.
+/// The tiles of an image's crop; of shared samples, also of the pixels around whose samples reach into it. Its tiles
+/// lie on a grid that begins at pixel (0, 0) of the whole image, so that those of its parts match.
 class Film {
  public:
   static constexpr int kTile = 16;
@@ -36,7 +36,7 @@ class Film {
   /// Adds what another thread, or machine, has rendered of tile `i`. Thread-safe. False where there is some of it
   /// already.
   bool merge(size_t i, const FilmTile& part);
-  /// Holds off `merge` from all tiles that have a part in these pixels of the picture, while it lives: what is read of
+  /// Holds off `merge` from all tiles that have a part in these pixels of the image, while it lives: what is read of
   /// the pixels meanwhile is of whole items.
   using Hold = std::vector<std::unique_lock<std::mutex>>;
   [[nodiscard]] Hold hold(const Crop& pixels) const;
@@ -115,7 +115,7 @@ class Film {
   std::unique_ptr<std::array<std::mutex, kLocks>> locks_;  ///< of tiles in turn
 };
 
-/// Refuses, by InputError at `where`, so many films and the pictures that are made of them where this machine has not
+/// Refuses, by InputError at `where`, so many films and the images that are made of them where this machine has not
 /// the memory: Linux promises it, and ends the program when it comes to use it. `advice` ends the message.
 void check_memory(const FilmFormat& format, size_t films, const Location& where, std::string_view advice);
 

@@ -226,7 +226,7 @@ void FilmTile::add_bands(size_t at, const SensorResponse& sensor, const Double4&
   }
 }
 
-/// Calls each(index, column, row) for the pixels of the picture that a pixel's samples reach, counted from -reach.
+/// Calls each(index, column, row) for the pixels of the image that a pixel's samples reach, counted from -reach.
 template <class Each>
 void FilmTile::for_each_reached(int x, int y, const Each& each) {
   const int left = x - reach_x_, top = y - reach_y_;

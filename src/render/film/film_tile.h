@@ -21,7 +21,7 @@ struct FilmFormat {
   size_t bands = 0;           ///< of a sensor; 0: the film has three colours
   ChannelList channels = {};  ///< of what camera rays met first, summed up too
   bool blocks = false;  ///< how blocks of a pixel's samples differ is summed up too: whole blocks have to be rendered
-  /// Values are kept in units of 2^exponent: near the picture's typical value, of which samples may be 10^-13 to
+  /// Values are kept in units of 2^exponent: near the image's typical value, of which samples may be 10^-13 to
   /// 10^8. Brighter ones are cut off there, and counted; squares forget what is below 10^-6.
   int exponent = 0;
   Matrix3 color = Matrix3::diagonal({1, 1, 1});  ///< from a path's response to the film's colours
@@ -147,7 +147,7 @@ class FilmTile {
   const ExactSum<40>& mean_sum(int x, int y, size_t i) const { return mean_sums_[index(x, y) * mean_count_ + i]; }
   double id(int x, int y, size_t i) const { return ids_[index(x, y) * id_count_ + i]; }
   const BlockSums& blocks(int x, int y) const { return blocks_[index(x, y)]; }
-  /// Pixels of the picture that its samples reach; none where samples are not shared.
+  /// Pixels of the image that its samples reach; none where samples are not shared.
   const Crop& reached() const { return reached_; }
   const Splat& splat(int x, int y) const { return splats_[reached_index(x, y)]; }
   const std::vector<Splat>& splats() const { return splats_; }
@@ -182,7 +182,7 @@ class FilmTile {
   size_t band_count_, mean_count_, id_count_;
   bool has_blocks_;
   int reach_x_ = -1, reach_y_ = -1;  ///< of a sample; below 0: samples are not shared
-  int width_, height_;               ///< of the picture
+  int width_, height_;               ///< of the image
   uint64_t rays_ = 0;
   std::vector<Pixel> pixels_;
   std::vector<BandSums> bands_;            ///< [pixel][band]

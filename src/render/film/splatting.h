@@ -29,14 +29,14 @@ struct Splatting {
   /// Pixels that share the noise of one: the sum of the magnitudes of its correlation with all of them. Where pixels
   /// are summed up as if they were independent, variances are too small by this factor at most.
   double correlated_pixels = 1;
-  Crop sampled{};  ///< pixels whose samples are taken; of a whole picture more than the film's crop, by the reach
+  Crop sampled{};  ///< pixels whose samples are taken; of a whole image more than the film's crop, by the reach
 
   /// Of a weight's mean and mean square, for the pixel that lies so many pixels from a sample's own.
   double mean(int dx, int dy) const { return of(axes[0].mean, dx, 0) * of(axes[1].mean, dy, 1); }
   double square(int dx, int dy) const { return of(axes[0].square, dx, 0) * of(axes[1].square, dy, 1); }
   int reach_x() const { return axes[0].reach; }
   int reach_y() const { return axes[1].reach; }
-  /// Pixels whose samples reach some pixels of the picture, as far as they are taken.
+  /// Pixels whose samples reach some pixels of the image, as far as they are taken.
   Crop reaching(const Crop& pixels) const;
   bool operator==(const Splatting&) const = default;
 
@@ -165,7 +165,7 @@ class SplatSums {
 };
 
 /// Whether samples are to be shared: as the scene says, or else where that makes less noise than to draw each pixel's
-/// own from the filter, were all of a picture's samples independent and alike.
+/// own from the filter, were all of an image's samples independent and alike.
 bool splats(const Filter& filter);
 
 }  // namespace frond

@@ -32,18 +32,18 @@ class Identity {
   std::vector<Field> fields_;
 };
 
-/// What decides a picture's pixels beside its description.
-struct PictureFacts {
+/// What decides an image's pixels beside its description.
+struct ImageFacts {
   std::vector<std::filesystem::path> plugins;  ///< shared objects
   uint64_t seed;
   ParsedPlugin wavelengths;  ///< the description's, with its parameters
   FilmFormat format;
   std::string color_space;
-  std::string command;  ///< what asks for the picture
+  std::string command;  ///< what asks for the image
 };
 
-/// The identity of such a picture of the description. Reads every file that the description names, and frond's own
+/// The identity of such an image of the description. Reads every file that the description names, and frond's own
 /// code.
-Identity identity_of(const SceneDescription& description, const PictureFacts& facts);
+Identity identity_of(const SceneDescription& description, const ImageFacts& facts);
 
 }  // namespace frond

@@ -72,7 +72,7 @@ SampleCount sample_count(const Film& film) {
 
 std::string what_is_missing(const RenderPart& part) {
   const uint64_t most = sample_count(part.film).most;
-  std::string beside;  // shared samples of pixels outside of the picture
+  std::string beside;  // shared samples of pixels outside of the image
   for (size_t i = 0; i < part.film.tiles(); ++i) {
     const FilmTile& tile = part.film.tile(i);
     uint64_t end = part.header.adaptive ? 0 : most;
@@ -124,21 +124,21 @@ RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
   return whole;
 }
 
-PictureFormat finished_picture(const RenderPart& part) {
-  PictureFormat picture = part.header.picture;
+ImageFormat finished_image(const RenderPart& part) {
+  ImageFormat image = part.header.image;
   const SampleCount count = sample_count(part.film);
   const bool even = count.least == count.most;
-  picture.attributes["frond:samples"] =
+  image.attributes["frond:samples"] =
       even ? fmt::format("{}", count.most) : fmt::format("{} to {}", count.least, count.most);
   if (part.film.format().blocks)
-    picture.attributes["frond:noise_rms"] = fmt::format("{:.6f}", picture_noise(part.film, 0).rms());
-  if (part.header.command.empty()) return picture;
+    image.attributes["frond:noise_rms"] = fmt::format("{:.6f}", image_noise(part.film, 0).rms());
+  if (part.header.command.empty()) return image;
   std::string command = part.header.command;
   if (even) command += fmt::format(" --spp {}", count.most);
   if (const Crop& crop = part.film.settings().crop; crop != part.header.scene_crop)
     command += " --pixels " + text_of(scaled(crop, part.header.pixel_scale));
-  picture.attributes["frond:command"] = command;
-  return picture;
+  image.attributes["frond:command"] = command;
+  return image;
 }
 
 }  // namespace frond

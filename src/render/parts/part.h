@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "render/film/picture_format.h"
+#include "render/film/image_format.h"
 #include "render/film/statistics.h"
 #include "render/parts/identity.h"
 
@@ -12,7 +12,7 @@ namespace frond {
 /// What there is to know of a render beside its sums.
 struct PartHeader {
   Identity identity;
-  PictureFormat picture;
+  ImageFormat image;
   std::string command;   ///< the command line without samples and pixels, which follow from the film
   Crop scene_crop{};     ///< what the scene asks for
   int pixel_scale = 1;   ///< from the film's pixels to the command line's: 2 where --quick has halved them
@@ -40,7 +40,7 @@ SampleCount sample_count(const Film& film);
 /// before another's: then what is missing, for people. Else "".
 std::string what_is_missing(const RenderPart& part);
 
-/// Whether pixels at the crop's edges lack shared samples of those beside it, which other parts of the picture have.
+/// Whether pixels at the crop's edges lack shared samples of those beside it, which other parts of the image have.
 bool lacks_neighbors(const Film& film);
 
 /// Adds parts up; the film's crop is the rectangle around all of theirs. Throws InputError that names the two files and
@@ -48,6 +48,6 @@ bool lacks_neighbors(const Film& film);
 RenderPart merge_parts(const std::vector<std::filesystem::path>& files);
 
 /// The same with what is written down of it: its command line and its samples.
-PictureFormat finished_picture(const RenderPart& part);
+ImageFormat finished_image(const RenderPart& part);
 
 }  // namespace frond

@@ -49,7 +49,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "frond part 2\n", kEnd = "frond part end\n";
+constexpr std::string_view kMagic = "frond part 3\n", kEnd = "frond part end\n";
 
 [[noreturn]] void fail_to_read(const fs::path& path, std::string_view why) {
   fail({}, "\"{}\" {}: render it again", path.string(), why);
@@ -164,11 +164,11 @@ std::string header_text(const PartHeader& h, const FilmFormat& film) {
   for (const Identity::Field& f : h.identity.fields()) identity.push_back({f.name, f.value});
   const Json j{{"identity", identity},
                {"film", json_of(film)},
-               {"picture",
-                {{"space", h.picture.space},
-                 {"bands", json_of(h.picture.bands)},
-                 {"from_world", h.picture.from_world},
-                 {"attributes", h.picture.attributes}}},
+               {"image",
+                {{"space", h.image.space},
+                 {"bands", json_of(h.image.bands)},
+                 {"from_world", h.image.from_world},
+                 {"attributes", h.image.attributes}}},
                {"command", h.command},
                {"scene_crop", json_of(h.scene_crop)},
                {"pixel_scale", h.pixel_scale},
@@ -183,11 +183,11 @@ std::string header_text(const PartHeader& h, const FilmFormat& film) {
 PartHeader header_of(const Json& j) {
   PartHeader h;
   for (const Json& field : j.at("identity")) h.identity.add(field.at(0), field.at(1));
-  const Json& picture = j.at("picture");
-  h.picture.space = picture.at("space");
-  h.picture.bands = bands_of(picture.at("bands"));
-  h.picture.from_world = picture.at("from_world").get<decltype(h.picture.from_world)>();
-  h.picture.attributes = picture.at("attributes").get<std::map<std::string, std::string>>();
+  const Json& image = j.at("image");
+  h.image.space = image.at("space");
+  h.image.bands = bands_of(image.at("bands"));
+  h.image.from_world = image.at("from_world").get<decltype(h.image.from_world)>();
+  h.image.attributes = image.at("attributes").get<std::map<std::string, std::string>>();
   h.command = j.at("command");
   h.scene_crop = crop_of(j.at("scene_crop"));
   h.pixel_scale = j.at("pixel_scale");
@@ -307,7 +307,7 @@ uint64_t take_number(std::string_view& bytes) {
 uint64_t take_header_size(std::string_view& bytes, const fs::path& path) {
   if (!bytes.starts_with(kMagic.substr(0, 11))) fail({}, "\"{}\" is no part of a render", path.string());
   if (!bytes.starts_with(kMagic))
-    fail({}, "\"{}\" is a part in another version of the format: this frond reads version 2", path.string());
+    fail({}, "\"{}\" is a part in another version of the format: this frond reads version 3", path.string());
   bytes.remove_prefix(kMagic.size());
   if (bytes.size() < sizeof(uint64_t)) fail_to_read(path, "is cut short");
   return take_number(bytes);

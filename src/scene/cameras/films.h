@@ -20,7 +20,7 @@ Crop crop_of_fractions(std::span<const double> window, int width, int height);
 /// As far as it lies on the film.
 Crop crop_of_pixels(std::span<const int> bounds, int width, int height);
 
-/// The same picture at half the resolution; the crop keeps a pixel at least.
+/// The same image at half the resolution; the crop keeps a pixel at least.
 FilmSettings halved(FilmSettings settings);
 
 }  // namespace frond

@@ -45,17 +45,17 @@ struct LightDescription {
 };
 
 /// ObjectInstance by ObjectInstance: there may be very many.
-struct CopyList {
+struct InstanceList {
   std::shared_ptr<std::vector<AffineMap>> maps = std::make_shared<std::vector<AffineMap>>();
   std::vector<uint32_t> objects = {};  ///< in SceneDescription::objects
 };
 
-/// ObjectBegin ... ObjectEnd. A point of a shape lands in the world by its own transform, then by the copy's.
+/// ObjectBegin ... ObjectEnd. A point of a shape lands in the world by its own transform, then by the instance's.
 struct ObjectDescription {
   std::string name;
   Location where;
   std::vector<ShapeDescription> shapes;
-  CopyList copies;
+  InstanceList instances;
 };
 
 /// What a scene file says but for the shapes, which may be large, and what overrides have made of it
@@ -101,7 +101,7 @@ struct SceneSettings {
 struct SceneDescription : SceneSettings {
   std::vector<ShapeDescription> shapes;
   std::vector<ObjectDescription> objects;
-  CopyList copies;
+  InstanceList instances;
 };
 
 }  // namespace frond

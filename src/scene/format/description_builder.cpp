@@ -179,7 +179,7 @@ void DescriptionBuilder::set_transform(const Transform& transform, std::string_v
   state_.transform = transform;
   if (was_valid && !transform.is_valid())
     log_.warn(where,
-              fmt::format("after this {} the transform cannot be inverted: shapes, lights and copies under it are "
+              fmt::format("after this {} the transform cannot be inverted: shapes, lights and instances under it are "
                           "left out",
                           directive));
 }
@@ -354,11 +354,11 @@ void DescriptionBuilder::object_instance(const std::string& name, const Location
   if (!state_.transform.is_valid()) return;
   const AffineMap map{state_.transform.rows()};
   if (const std::string problem = problem_of(map); !problem.empty())
-    fail(where, "this copy is not possible: {}", problem);
+    fail(where, "this instance is not possible: {}", problem);
   const auto object = uint32_t(object_called(name, where).index);
-  CopyList& copies = state_.open_object ? scene_.objects[*state_.open_object].copies : scene_.copies;
-  copies.maps->push_back(map);
-  copies.objects.push_back(object);
+  InstanceList& list = state_.open_object ? scene_.objects[*state_.open_object].instances : scene_.instances;
+  list.maps->push_back(map);
+  list.objects.push_back(object);
 }
 
 }  // namespace frond

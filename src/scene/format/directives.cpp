@@ -17,13 +17,13 @@ struct Directive {
 
   Token quoted() const { return read_quoted(context.tokens, name); }
   std::string text(const Token& token) const { return context.tokens.text_of(token); }
-  Location place(const Token& token) const { return context.tokens.where(token); }
+  Location location(const Token& token) const { return context.tokens.where(token); }
   DescriptionBuilder& scene() { return context.scene; }
 
   /// A plugin's quoted name and its parameters.
   ParsedPlugin plugin() {
     const Token token = quoted();
-    return {text(token), place(token), parameters()};
+    return {text(token), location(token), parameters()};
   }
   /// What is given twice counts as it is given last, as in pbrt.
   std::vector<ParsedParam> parameters() {
@@ -46,7 +46,7 @@ struct Directive {
   }
   void bracket(Kind kind) {
     const Token token = context.tokens.next();
-    if (token.kind != kind) fail(place(token), "{} takes 16 numbers in brackets, {} was given", name, token.shown());
+    if (token.kind != kind) fail(location(token), "{} takes 16 numbers in brackets, {} was given", name, token.shown());
   }
   std::string usage(size_t count) const { return fmt::format("{} takes {} numbers", name, count); }
 };
@@ -97,7 +97,7 @@ Transform matrix(Directive& d) {
 
 void texture(Directive d) {
   const Token name = d.quoted(), value = d.quoted();
-  d.scene().texture({d.text(name), d.place(name)}, {d.text(value), d.place(value)}, d.plugin());
+  d.scene().texture({d.text(name), d.location(name)}, {d.text(value), d.location(value)}, d.plugin());
 }
 
 void make_named_material(Directive d) {
@@ -108,7 +108,7 @@ void make_named_material(Directive d) {
 
 void attribute(Directive d) {
   const Token target = d.quoted();
-  d.scene().attribute(d.text(target), d.place(target), d.parameters());
+  d.scene().attribute(d.text(target), d.location(target), d.parameters());
 }
 
 void option(Directive d) { d.scene().option(d.context.parameters.read_option(d.context.tokens)); }
@@ -131,7 +131,7 @@ void active_transform(Directive d) {
   const Token which = d.context.tokens.next();
   if (which.text == "All") return d.scene().activate_transforms(true);
   if (which.kind != Kind::word || (which.text != "StartTime" && which.text != "EndTime"))
-    fail(d.place(which), "ActiveTransform takes StartTime, EndTime or All, {} was given", which.shown());
+    fail(d.location(which), "ActiveTransform takes StartTime, EndTime or All, {} was given", which.shown());
   d.context.unsupported.handle("motion", d.where, d.name, "leaves all as it is at the start", d.context.log);
   d.scene().activate_transforms(which.text == "StartTime");
 }
@@ -145,7 +145,7 @@ void option_plugin(Directive d) {
 template <void (DescriptionBuilder::*act)(const std::string&, const Location&)>
 void with_name(Directive d) {
   const Token name = d.quoted();
-  (d.scene().*act)(d.text(name), d.place(name));
+  (d.scene().*act)(d.text(name), d.location(name));
 }
 template <void (DescriptionBuilder::*act)(ParsedPlugin)>
 void with_plugin(Directive d) {

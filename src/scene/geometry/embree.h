@@ -19,9 +19,9 @@
 
 namespace frond::embree {
 
-/// A row of some copies of objects.
-struct Copy {
-  const void* copies;
+/// A row of some instances of objects.
+struct Instance {
+  const void* set;
   uint32_t row;
 };
 
@@ -29,8 +29,8 @@ struct Copy {
 struct Lane {
   uint64_t key;
   Vec3 p;  ///< where the analytic shape that last reported a hit was met, in its object's space
-  /// Copies, from outside in, of the nearest hit so far. How many the hit is in its instID[0] says (level_of).
-  std::array<Copy, InstanceRows::kMost> hit;
+  /// Instances, from outside in, of the nearest hit so far. How many the hit is in its instID[0] says (level_of).
+  std::array<Instance, InstanceRows::kMost> hit;
 };
 
 /// A query's context: Embree's own first, so that a filter function gets ours by a cast.
@@ -43,20 +43,20 @@ struct Query {
   explicit Query(Lane* of) : lane(of) { rtcInitIntersectContext(&base); }
 #endif
   Lane* lane;  ///< as many as the query has rays
-  /// The copies, from outside in, that traversal is in.
-  std::array<Copy, InstanceRows::kMost> inside;
+  /// The instances, from outside in, that traversal is in.
+  std::array<Instance, InstanceRows::kMost> inside;
   uint32_t depth = 0;
 
-  void enter(const Copy& copy) {
-    inside[depth] = copy;
+  void enter(const Instance& instance) {
+    inside[depth] = instance;
     base.instID[0] = ++depth;
   }
   void leave() { base.instID[0] = --depth == 0 ? RTC_INVALID_GEOMETRY_ID : depth; }
-  /// A key of the copy that traversal is in.
-  uint64_t place() const {
-    uint64_t place = RTC_INVALID_GEOMETRY_ID;
-    for (uint32_t i = 0; i < depth; ++i) place = hash_key(place, inside[i].row);
-    return place;
+  /// A key of the instance that traversal is in.
+  uint64_t instance_key() const {
+    uint64_t key = RTC_INVALID_GEOMETRY_ID;
+    for (uint32_t i = 0; i < depth; ++i) key = hash_key(key, inside[i].row);
+    return key;
   }
 };
 

@@ -23,7 +23,7 @@ bool passes(const Surface& surface, const Target& target, const TexturePoint& at
   const float alpha = surface.alpha->evaluate(at);
   if (alpha >= 1) return false;
   RandomStream random(
-      hash_key(lane.key, (uint64_t(target.geometry) << 32) | target.primitive, query.place(), uint64_t(layer)));
+      hash_key(lane.key, (uint64_t(target.geometry) << 32) | target.primitive, query.instance_key(), uint64_t(layer)));
   return random.uniform() >= alpha;
 }
 

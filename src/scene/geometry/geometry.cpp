@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/error.h"
-#include "scene/geometry/embree_copies.h"
+#include "scene/geometry/embree_instances.h"
 #include "scene/geometry/embree_surfaces.h"
 #include "scene/geometry/outline.h"
 #include "scene/geometry/triangle.h"
@@ -91,7 +91,7 @@ SurfaceDerivatives derivatives_of(const Surface& surface, const RTCHit& at, cons
       ->derivatives({lane.p, {at.Ng_x, at.Ng_y, at.Ng_z}, {at.u, at.v}, 0, at.primID});
 }
 
-/// Out of an object into the space where a copy of it stands. Normals grow in length with what they are of.
+/// Out of an object into the space where an instance of it stands. Normals grow in length with what they are of.
 void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDerivatives& d) {
   d.dpdu = map.vector(d.dpdu), d.dpdv = map.vector(d.dpdv);
   d.dndu = inverse.normal_out(d.dndu), d.dndv = inverse.normal_out(d.dndv);
@@ -102,11 +102,11 @@ void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDeriv
                                        uint32_t level, Hit& hit) {
   SurfaceDerivatives d = derivatives_of(surface, at, lane);
   for (uint32_t i = level; i-- > 0;) {
-    const auto& copies = *static_cast<const GeometryCopies*>(lane.hit[i].copies);
+    const auto& set = *static_cast<const GeometryInstances*>(lane.hit[i].set);
     const uint32_t row = lane.hit[i].row;
     AffineMap::Inverse made;
-    place(copies.instances.table->map(row), copies.inverse(row, made), d);
-    if (copies.instances.is_placed) place(copies.instances.placement, copies.from_placement, d);
+    place(set.instances.table->map(row), set.inverse(row, made), d);
+    if (set.instances.is_placed) place(set.instances.placement, set.from_placement, d);
   }
   hit.derivatives = d;
   hit.shading = Frame::along(hit.shading.z, d.dpdu);
@@ -118,7 +118,7 @@ Vec3 of_moderate_length(const Vec3& n) {
   return square > 1e-16f && square < 1e16f ? n : normalize_any(n);
 }
 
-/// Out of an object into the space where a copy of it stands. `ns` is nullptr where it is that of the hit.
+/// Out of an object into the space where an instance of it stands. `ns` is nullptr where it is that of the hit.
 void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Vec3* ns) {
   hit.p = map.point(hit.p);
   hit.extent = map.largest_stretch() * hit.extent + largest_coordinate(map.translation());
@@ -141,7 +141,7 @@ Geometry::Geometry(std::vector<ObjectParts> objects, ObjectParts world, int thre
   }
   world_ = build(std::move(world), 1);
   if (world_->depth > InstanceRows::kMost)
-    fail({}, "copies of objects are nested {} deep: {} is the limit", world_->depth, InstanceRows::kMost);
+    fail({}, "instances of objects are nested {} deep: {} is the limit", world_->depth, InstanceRows::kMost);
 }
 
 Geometry::~Geometry() = default;
@@ -164,7 +164,7 @@ std::unique_ptr<GeometryObject> Geometry::build(ObjectParts parts, uint64_t firs
   object->bounds = widened(bounds_of(scene));
   object->outline = outline_of(object->parts, bounds_of(scene));
   const auto& surfaces = object->parts.surfaces;
-  if (object->copies.empty() && surfaces.size() == 1)
+  if (object->instances.empty() && surfaces.size() == 1)
     if (const auto* shape = std::get_if<AnalyticShapePtr>(&surfaces[0].geometry); shape && (*shape)->count() == 1)
       object->only_primitive = &surfaces[0];
   return object;
@@ -179,27 +179,27 @@ void Geometry::attach(GeometryObject& object) {
   for (const Surface& surface : object.parts.surfaces) add(embree::new_geometry(device_.get(), surface));
   if (object.parts.instances.empty()) return;
   for (const Instances& instances : object.parts.instances) {
-    GeometryCopies copies{.instances = instances, .objects = {}, .first_id = object.ids};
-    for (const uint32_t place : instances.objects) copies.objects.push_back(objects_[place].get());
+    GeometryInstances set{.instances = instances, .objects = {}, .first_id = object.ids};
+    for (const uint32_t place : instances.objects) set.objects.push_back(objects_[place].get());
     const size_t rows = instances.table->size();
-    if (rows <= GeometryCopies::kMostKept) {
-      copies.inverses.reserve(rows);
-      for (size_t row = 0; row < rows; ++row) copies.inverses.push_back(instances.table->map(row).inverse());
+    if (rows <= GeometryInstances::kMostKept) {
+      set.inverses.reserve(rows);
+      for (size_t row = 0; row < rows; ++row) set.inverses.push_back(instances.table->map(row).inverse());
     }
-    if (instances.is_placed) copies.from_placement = instances.placement.inverse();
-    const auto as_many = [&](const GeometryObject* o) { return o->ids == copies.objects.front()->ids; };
-    if (rows == 0 || std::ranges::all_of(copies.objects, as_many)) {
-      object.ids += rows == 0 ? 0 : rows * copies.objects.front()->ids;
+    if (instances.is_placed) set.from_placement = instances.placement.inverse();
+    const auto as_many = [&](const GeometryObject* o) { return o->ids == set.objects.front()->ids; };
+    if (rows == 0 || std::ranges::all_of(set.objects, as_many)) {
+      object.ids += rows == 0 ? 0 : rows * set.objects.front()->ids;
     } else {
       for (size_t row = 0; row < rows; ++row) {
-        copies.ids.push_back(object.ids);
-        object.ids += copies.object(row).ids;
+        set.ids.push_back(object.ids);
+        object.ids += set.object(row).ids;
       }
     }
-    for (const GeometryObject* o : copies.objects) object.depth = std::max(object.depth, o->depth + 1);
-    object.copies.push_back(std::move(copies));
+    for (const GeometryObject* o : set.objects) object.depth = std::max(object.depth, o->depth + 1);
+    object.instances.push_back(std::move(set));
   }
-  for (const GeometryCopies& copies : object.copies) add(embree::new_geometry(device_.get(), copies));
+  for (const GeometryInstances& set : object.instances) add(embree::new_geometry(device_.get(), set));
 }
 
 std::vector<InstanceColumn> Geometry::columns() const {
@@ -281,22 +281,22 @@ void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& r
   hit.at.instance = {};
   met.instance = 0;
   for (uint32_t i = 0; i < level; ++i) {
-    const auto& copies = *static_cast<const GeometryCopies*>(lane.hit[i].copies);
+    const auto& set = *static_cast<const GeometryInstances*>(lane.hit[i].set);
     const uint32_t row = lane.hit[i].row;
-    const InstanceTable& table = *copies.instances.table;
-    object = &copies.object(row);
-    met.instance += copies.ids.empty() ? copies.first_id + row * object->ids : copies.ids[row];
+    const InstanceTable& table = *set.instances.table;
+    object = &set.object(row);
+    met.instance += set.ids.empty() ? set.first_id + row * object->ids : set.ids[row];
     if (!table.columns().empty()) hit.at.instance.add(table.columns(), table.bytes(row));
   }
   const Surface& surface = object->parts.surfaces[at.geomID];
   Vec3 own_normal;
   Vec3* const ns = fill(surface, at, lane, hit, own_normal) ? &own_normal : nullptr;
   for (uint32_t i = level; i-- > 0;) {
-    const auto& copies = *static_cast<const GeometryCopies*>(lane.hit[i].copies);
+    const auto& set = *static_cast<const GeometryInstances*>(lane.hit[i].set);
     const uint32_t row = lane.hit[i].row;
     AffineMap::Inverse made;
-    place(copies.instances.table->map(row), copies.inverse(row, made), hit, ns);
-    if (copies.instances.is_placed) place(copies.instances.placement, copies.from_placement, hit, ns);
+    place(set.instances.table->map(row), set.inverse(row, made), hit, ns);
+    if (set.instances.is_placed) place(set.instances.placement, set.from_placement, hit, ns);
   }
   set_frame(hit, ns, ray.d);
   if (detailed.contains(surface.material)) set_derivatives(surface, at, lane, level, hit);
@@ -328,6 +328,6 @@ Bounds Geometry::bounds() const { return bounds_of(world_->scene.get()); }
 
 const std::vector<Surface>& Geometry::surfaces() const { return world_->parts.surfaces; }
 
-uint64_t Geometry::instances() const { return world_->copies.empty() ? 0 : world_->ids - 1; }
+uint64_t Geometry::instances() const { return world_->instances.empty() ? 0 : world_->ids - 1; }
 
 }  // namespace frond

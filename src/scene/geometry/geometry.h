@@ -36,7 +36,7 @@ struct Surface {
   std::shared_ptr<const FloatTexture> alpha;  ///< null: opaque
 };
 
-/// Copies of objects: one for each row of the table.
+/// Instances of objects: one for each row of the table.
 struct Instances {
   std::shared_ptr<const InstanceTable> table;
   std::vector<uint32_t> objects;  ///< by row; a single one: the same for all
@@ -44,7 +44,7 @@ struct Instances {
   bool is_placed = false;         ///< false: `placement` is the identity
 };
 
-/// What stands together, and is placed as one: surfaces, and copies of other objects.
+/// What stands together, and is placed as one: surfaces, and instances of other objects.
 struct ObjectParts {
   std::vector<Surface> surfaces;
   std::vector<Instances> instances;
@@ -56,22 +56,22 @@ struct GeometryHit {
   uint32_t material = 0;            ///< as of a Surface
   std::optional<uint32_t> surface;  ///< of Geometry::surfaces, where the shape stands for itself
   uint32_t primitive = 0;           ///< of the surface
-  uint64_t instance = 0;            ///< the copy, counted from 1; 0: the shape stands for itself
+  uint64_t instance = 0;            ///< the instance, counted from 1; 0: the shape stands for itself
 };
 
 struct GeometryObject;
 
-/// Materials, by their places, whose hits need derivatives; nullptr: none.
+/// Materials, by their index, whose hits need derivatives; nullptr: none.
 struct DetailedMaterials {
   const uint8_t* flags = nullptr;
   bool contains(uint32_t material) const { return flags && flags[material] != 0; }
 };
 
-/// Ray queries over surfaces and copies of objects, by Embree. It knows no material and no light: scenes that differ in
-/// those share one.
+/// Ray queries over surfaces and instances of objects, by Embree. It knows no material and no light: scenes that differ
+/// in those share one.
 class Geometry {
  public:
-  /// Objects may hold copies of objects before them. Throws InputError when Embree cannot build, or they are nested
+  /// Objects may hold instances of objects before them. Throws InputError when Embree cannot build, or they are nested
   /// more than InstanceRows::kMost deep.
   Geometry(std::vector<ObjectParts> objects, ObjectParts world, int threads);
   ~Geometry();

@@ -6,22 +6,22 @@
 namespace frond {
 namespace {
 
-/// Goes through all copies, and those in them.
+/// Goes through all instances, and those in them.
 class Areas {
  public:
   explicit Areas(std::vector<float>& areas) : areas_(areas) {}
 
-  /// `first`: the number of the object's own surfaces; those of copies in it count from there.
+  /// `first`: the number of the object's own surfaces; those of instances in it count from there.
   void visit(const GeometryObject& object, const Transform& to_world, uint64_t first) {
     if (first > 0)
       for (const Surface& s : object.parts.surfaces) areas_[first - 1] += float(area(s, to_world));
-    for (const GeometryCopies& copies : object.copies) {
-      const Instances& set = copies.instances;
-      const Transform placed = set.is_placed ? to_world * transform_of(set.placement) : to_world;
-      for (size_t row = 0; row < set.table->size(); ++row) {
-        const GeometryObject& copied = copies.object(row);
-        const uint64_t id = copies.ids.empty() ? copies.first_id + row * copied.ids : copies.ids[row];
-        visit(copied, placed * transform_of(set.table->map(row)), first + id);
+    for (const GeometryInstances& set : object.instances) {
+      const auto& [table, objects, placement, is_placed] = set.instances;
+      const Transform placed = is_placed ? to_world * transform_of(placement) : to_world;
+      for (size_t row = 0; row < table->size(); ++row) {
+        const GeometryObject& instanced = set.object(row);
+        const uint64_t id = set.ids.empty() ? set.first_id + row * instanced.ids : set.ids[row];
+        visit(instanced, placed * transform_of(table->map(row)), first + id);
       }
     }
   }

@@ -7,14 +7,14 @@
 
 namespace frond {
 
-/// Copies of objects, as their callbacks need them.
-struct GeometryCopies {
-  /// Inverse maps are kept of so many copies at most: 64 MB.
+/// Instances of objects, as their callbacks need them.
+struct GeometryInstances {
+  /// Inverse maps are kept of so many instances at most: 64 MB.
   static constexpr size_t kMostKept = 1 << 20;
 
   const Instances& instances;
   std::vector<const GeometryObject*> objects;  ///< by row; a single one: the same for all
-  uint64_t first_id = 0;           ///< of what the first row holds, in the object that these copies are part of
+  uint64_t first_id = 0;           ///< of what the first row holds, in the object that these instances are part of
   std::vector<uint64_t> ids = {};  ///< by row, from first_id; empty: all rows hold as many
   std::vector<AffineMap::Inverse> inverses = {};  ///< of the table's maps; empty: they are made when they are needed
   AffineMap::Inverse from_placement = {};         ///< where there is one
@@ -29,13 +29,14 @@ struct GeometryCopies {
 /// What stands together, as Embree and we know it.
 struct GeometryObject {
   ObjectParts parts;
-  std::vector<GeometryCopies> copies = {};
+  std::vector<GeometryInstances> instances = {};
   embree::Scene scene = {};
   Bounds bounds = {};              ///< a little wider than it is
   std::vector<Vec3> outline = {};  ///< it lies within the hull of these points
-  /// How many ids a copy of it takes: one for each copy in it that holds no others, and one for its own surfaces.
+  /// How many ids an instance of it takes: one for each instance in it that holds no others, and one for its own
+  /// surfaces.
   uint64_t ids = 1;
-  uint32_t depth = 0;  ///< of copies in it
+  uint32_t depth = 0;  ///< of instances in it
   /// All that it is, where that is one analytic primitive: then nothing has to be traversed.
   const Surface* only_primitive = nullptr;
 };

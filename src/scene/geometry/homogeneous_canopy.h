@@ -29,7 +29,7 @@ struct HomogeneousCanopy {
   uint64_t count = 0;                      ///< of leaves, in place of what the leaf area index asks for
   const LeafAngles* angles = nullptr;      ///< azimuths are even
   double leaf_area = 3.14159265358979323;  ///< of the object that is copied, at scale 1: that of a unit disk
-  double scale = 0.05;                     ///< of each copy
+  double scale = 0.05;                     ///< of each instance
   std::array<double, 2> size = {10, 10};   ///< of the plot, along x and y
   std::array<double, 2> heights = {0, 1};  ///< of the leaves' middles
   double ball = 0;                         ///< radius of a ball around the origin, in place of the plot; 0: the plot

@@ -11,8 +11,8 @@
 
 namespace frond {
 
-/// Copies of objects, a row for each: an affine map, and numbers that textures may ask for. Rows are those of a file,
-/// mapped into memory, or the table's own.
+/// Instances of objects, a row for each: an affine map, and numbers that textures may ask for. Rows are those of a
+/// file, mapped into memory, or the table's own.
 class InstanceTable {
  public:
   explicit InstanceTable(std::shared_ptr<const std::vector<AffineMap>> maps);

@@ -13,15 +13,15 @@ class Tiling {
   /// `period`: along x and y, above 0. `bounds`: of the scene; they may be larger than a period.
   Tiling(Vec2 period, const Bounds& bounds);
 
-  /// A copy of the scene: where it has been moved to, and where a ray goes there.
-  struct Copy {
+  /// The scene, repeated in a cell: where it has been moved to, and where a ray goes there.
+  struct Repeat {
     Vec3 shift;
-    Ray ray;         ///< in the copy's own space, from where it enters the copy's cell to where it leaves it
+    Ray ray;         ///< in the space of the repeat, from where it enters its cell to where it leaves it
     float distance;  ///< along the ray, of where it enters
   };
-  /// Calls `meets(copy)` for those that reach into the cells that a ray passes, cell by cell from the nearest, until a
-  /// cell had one for which it returned true; then so does this. A ray that has passed kMostCells in vain has left the
-  /// scene.
+  /// Calls `meets(repeat)` for those that reach into the cells that a ray passes, cell by cell from the nearest, until
+  /// a cell had one for which it returned true; then so does this. A ray that has passed kMostCells in vain has left
+  /// the scene.
   template <class Meets>
   bool march(const Ray& ray, const Meets& meets) const;
 
@@ -31,7 +31,7 @@ class Tiling {
   /// Along x or y.
   struct Axis {
     double period, least;
-    int overlap;  ///< how many copies before a cell's own reach into it
+    int overlap;  ///< how many repeats before a cell's own reach into it
 
     /// A whole number, maybe a very large one.
     double cell(double x) const { return std::floor((x - least) / period); }
@@ -70,7 +70,7 @@ bool Tiling::march(const Ray& ray, const Meets& meets) const {
         const Vec3d shift{(i - a) * x_.period, (j - b) * y_.period, 0};
         const Ray there{to_float(o + d * enter - shift), ray.d,
                         float(std::min(exit + slack, double(ray.t_max)) - enter)};
-        met |= meets(Copy{to_float(shift), there, float(enter)});
+        met |= meets(Repeat{to_float(shift), there, float(enter)});
       }
     if (met) return true;
     t = std::max(t, exit);

@@ -40,7 +40,7 @@ class ImagePointLight : public Light {
   Vec3 position_;
 };
 
-/// A slide before a point: its image falls along +z, upright, x to the right of the picture.
+/// A slide before a point: its image falls along +z, upright, x to the right of the image.
 class ProjectionLight final : public ImagePointLight {
  public:
   ProjectionLight(const Params& p, const Transform& world_from_light)
@@ -59,7 +59,7 @@ class ProjectionLight final : public ImagePointLight {
   double power(float) const override { return double(scale_) * flux_; }
   std::optional<LightBounds> bounds() const override {
     LightBounds bounds = *ImagePointLight::bounds();
-    // It faces all of its picture; the reach leaves room for rounding at the rim.
+    // It faces all of its image; the reach leaves room for rounding at the rim.
     bounds.axis = axis_, bounds.cos_spread = std::max(-1.f, cos_corner_), bounds.cos_reach = 1 - 0x1p-10f;
     return bounds;
   }
@@ -88,7 +88,7 @@ class ProjectionLight final : public ImagePointLight {
   }
 
   LightImage image_;
-  float half_width_ = 0, half_height_ = 0;  ///< of the picture at z = 1
+  float half_width_ = 0, half_height_ = 0;  ///< of the image at z = 1
   double flux_ = 0;
   float scale_ = 0, cos_corner_ = 0;
   Vec3 axis_;
@@ -135,14 +135,14 @@ class GoniometricLight final : public ImagePointLight {
 
 constexpr Param kProjection[] = {{.name = "filename",
                                   .kind = ParamKind::string,
-                                  .doc = "The picture; its longer side reaches beyond \"fov\".",
+                                  .doc = "The image; its longer side reaches beyond \"fov\".",
                                   .required = true},
                                  {.name = "fov",
                                   .kind = ParamKind::real,
                                   .default_value = 90.0,
                                   .unit = "degrees",
                                   .range = {1e-3, 179.999},
-                                  .doc = "Angle of the picture along its shorter side."},
+                                  .doc = "Angle of the image along its shorter side."},
                                  kLightPower,
                                  kLightScale};
 constexpr Param kGoniometric[] = {
@@ -160,7 +160,7 @@ constexpr Param kGoniometric[] = {
 }  // namespace
 
 extern const LightInfo projection_light{
-    {"light", "projection", "A picture that is thrown along +z.", "pbrt-v4", kProjection}, make_light<ProjectionLight>};
+    {"light", "projection", "An image that is thrown along +z.", "pbrt-v4", kProjection}, make_light<ProjectionLight>};
 extern const LightInfo goniometric_light{
     {"light", "goniometric", "A point whose light an image distributes.", "pbrt-v4", kGoniometric},
     make_light<GoniometricLight>};

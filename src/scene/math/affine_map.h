@@ -11,7 +11,7 @@
 
 namespace frond {
 
-/// What places a copy of an object: as a Transform, without its inverse, for there may be very many of them.
+/// What places an instance of an object: as a Transform, without its inverse, for there may be very many of them.
 struct AffineMap {
   Transform::Rows rows;
 

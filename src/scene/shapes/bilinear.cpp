@@ -202,7 +202,7 @@ constexpr Param kBilinear[] = {
     {.name = "faceIndices", .kind = ParamKind::integer, .doc = "pbrt-v4's numbers of faces: not used.", .list = true},
     {.name = "emissionfilename",
      .kind = ParamKind::string,
-     .doc = "pbrt-v4's picture to sample emission by: not used, as emission is the same without."},
+     .doc = "pbrt-v4's image to sample emission by: not used, as emission is the same without."},
     kAlphaParam};
 
 MadeShape make_bilinear(const Params& p, const ShapePlacement& placement) {

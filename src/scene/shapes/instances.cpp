@@ -1,6 +1,6 @@
 #include "core/shape.h"
 
-// Copies of an object by the million.
+// Instances of an object by the million.
 
 namespace frond {
 namespace {
@@ -11,17 +11,17 @@ constexpr Param kInstances[] = {{.name = "object",
                                  .required = true},
                                 {.name = "filename",
                                  .kind = ParamKind::string,
-                                 .doc = "Table of the copies: a NumPy file (.npy), a row for each, of \"transform\" "
+                                 .doc = "Table of the instances: a NumPy file (.npy), a row for each, of \"transform\" "
                                         "(the three rows of a matrix) and any other numbers, all of them float32.",
                                  .required = true}};
 
 MadeShape make_instances(const Params& p, const ShapePlacement&) {
-  return ObjectCopies{.object = p.string("object"), .table = p.file("filename")};
+  return ObjectInstances{.object = p.string("object"), .table = p.file("filename")};
 }
 
 }  // namespace
 
 extern const ShapeInfo instances_shape{
-    {"shape", "instances", "Copies of an object, a row of a table for each.", "", kInstances}, make_instances};
+    {"shape", "instances", "Instances of an object, a row of a table for each.", "", kInstances}, make_instances};
 
 }  // namespace frond

@@ -32,7 +32,7 @@ bool is_linear(const std::array<T, 4>& q, float slack) {
     return length(twist) <= slack * std::max(length(sides), length(q[3] - q[1]));
 }
 
-/// A parallelogram with everything on it linear: two triangles make the same picture as a patch, and faster.
+/// A parallelogram with everything on it linear: two triangles make the same image as a patch, and faster.
 bool is_flat(const TriangleMesh& mesh, const std::array<uint32_t, 4>& quad) {
   const auto four = [&quad](const auto& values) {
     return std::array{values[quad[0]], values[quad[1]], values[quad[2]], values[quad[3]]};

@@ -75,9 +75,9 @@ struct MeshLayout {
 };
 
 template <class Source>
-class BodyReader {
+class ModeTableReader {
  public:
-  BodyReader(Source& source, const PlyHeader& header, const MeshLayout& layout, PlyMesh& result)
+  ModeTableReader(Source& source, const PlyHeader& header, const MeshLayout& layout, PlyMesh& result)
       : source_(source), header_(header), layout_(layout), result_(result), mesh_(result.mesh) {}
 
   void read() {
@@ -202,7 +202,7 @@ PlyMesh read_ply_text(std::string_view bytes, const std::string& name) {
   const Location end{file, header.lines, 1};
   const MeshLayout layout(element_called(header, "vertex", end), element_called(header, "face", end));
   PlyMesh result;
-  const auto read_from = [&](auto source) { BodyReader(source, header, layout, result).read(); };
+  const auto read_from = [&](auto source) { ModeTableReader(source, header, layout, result).read(); };
   if (header.format == PlyFormat::ascii)
     read_from(ply::AsciiSource(bytes, header, file));
   else

@@ -47,7 +47,7 @@ ColorEncoding parse_encoding(const Params& p) {
        text);
 }
 
-/// Of files of this name, whatever the scene says, as in pbrt-v4: pictures of floats are linear, those of bytes but PNG
+/// Of files of this name, whatever the scene says, as in pbrt-v4: images of floats are linear, those of bytes but PNG
 /// are for a display. Nothing for others.
 std::optional<ColorEncoding> fixed_encoding(std::string_view extension) {
   constexpr std::string_view kOfFloats[] = {".exr", ".hdr", ".pfm"},

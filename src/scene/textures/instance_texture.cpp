@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "core/texture.h"
 
-// A texture that follows the numbers of copies of an object.
+// A texture that follows the numbers of instances of an object.
 
 namespace frond {
 namespace {
@@ -41,7 +41,7 @@ constexpr Param kInstanceTexture[] = {
      .required = true},
     {.name = "default",
      .kind = ParamKind::real,
-     .doc = "Value where a surface is no copy with such a number; the least of \"range\" by default."}};
+     .doc = "Value where a surface is no instance with such a number; the least of \"range\" by default."}};
 
 std::unique_ptr<FloatTexture> make_instance_texture(const Params& p, const TexturePlacement&) {
   return std::make_unique<InstanceTexture>(p);
@@ -50,7 +50,8 @@ std::unique_ptr<FloatTexture> make_instance_texture(const Params& p, const Textu
 }  // namespace
 
 extern const FloatTextureInfo instance_float_texture{
-    {"float texture", "instance", "A number of the table that a copy of an object comes from.", "", kInstanceTexture},
+    {"float texture", "instance", "A number of the table that an instance of an object comes from.", "",
+     kInstanceTexture},
     make_instance_texture};
 
 }  // namespace frond

@@ -129,7 +129,7 @@ Float4 MipMap::bilinear(const Level& level, Vec2 st) const {
   return (1 - fy) * above + fy * below;
 }
 
-Float4 MipMap::at(const TexturePlace& place) const {
+Float4 MipMap::at(const TextureCoordinates& place) const {
   Vec2 st{place.st.x, 1 - place.st.y};
   if (options_.wrap == Wrap::repeat) {
     st = {st.x - std::floor(st.x), st.y - std::floor(st.y)};
@@ -142,7 +142,7 @@ Float4 MipMap::at(const TexturePlace& place) const {
 }
 
 /// The level is that whose texels are half as wide as the footprint: pbrt 4th ed., 10.4.3.
-Float4 MipMap::filtered(const TexturePlace& place) const {
+Float4 MipMap::filtered(const TextureCoordinates& place) const {
   if (options_.filter == Filter::ewa) return of_ellipse(place);
   const float texels = 2 * std::max(larger_part(place.dst_dx), larger_part(place.dst_dy)) * size_;
   const float level = texels > 1 ? std::log2(texels) : 0;
@@ -160,7 +160,7 @@ Float4 MipMap::filtered(const TexturePlace& place) const {
 
 /// Over the ellipse that the footprint is in texture space, between the two levels on which it is about a texel wide,
 /// and no longer than the anisotropy allows: Heckbert 1989, pbrt 4th ed., 10.4.4.
-Float4 MipMap::of_ellipse(const TexturePlace& place) const {
+Float4 MipMap::of_ellipse(const TextureCoordinates& place) const {
   const float along_x = length_of(place.dst_dx), along_y = length_of(place.dst_dy);
   const float length = std::max(along_x, along_y), narrow = std::min(along_x, along_y);
   if (!(narrow > 0) || !std::isfinite(length)) return bilinear(levels_[0], place.st);

@@ -34,7 +34,7 @@ class MipMap {
   MipMap(const Image& image, const ColorEncoding& encoding, bool eight_bit, const Options& options);
 
   /// Linear values; v runs up, the image's rows run down.
-  Float4 at(const TexturePlace& place) const;
+  Float4 at(const TextureCoordinates& place) const;
   int channels() const { return channels_; }
   /// Calls use(values) for each texel of the image.
   template <class Use>
@@ -53,9 +53,9 @@ class MipMap {
   Float4 value(const Level& level, size_t index) const;
   Float4 texel(const Level& level, int x, int y) const;
   Float4 bilinear(const Level& level, Vec2 st) const;
-  Float4 filtered(const TexturePlace& place) const;
+  Float4 filtered(const TextureCoordinates& place) const;
   Float4 ellipse(size_t level, Vec2 st, Vec2 p, Vec2 q) const;
-  Float4 of_ellipse(const TexturePlace& place) const;
+  Float4 of_ellipse(const TextureCoordinates& place) const;
 
   Options options_;
   int channels_ = 1;

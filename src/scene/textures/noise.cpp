@@ -40,7 +40,7 @@ float smooth_step(float x, float from, float to) {
 }
 
 /// Octaves that the footprint leaves.
-float octaves_left(const SolidPlace& at, int octaves) {
+float octaves_left(const SolidCoordinates& at, int octaves) {
   const float square = std::max(dot(at.dp_dx, at.dp_dx), dot(at.dp_dy, at.dp_dy));
   return std::clamp(-1 - std::log2(square) / 2, 0.f, float(octaves));
 }
@@ -67,7 +67,7 @@ namespace {
 
 /// `value` of the noise of each octave; `absent` in place of what the footprint leaves out.
 template <class Value>
-float sum_of_octaves(const SolidPlace& at, float gain, int octaves, float absent, const Value& value) {
+float sum_of_octaves(const SolidCoordinates& at, float gain, int octaves, float absent, const Value& value) {
   const float left = octaves_left(at, octaves);
   const int last = int(left);  // which fades away
   float sum = 0, weight = 1, frequency = 1;
@@ -81,11 +81,11 @@ float sum_of_octaves(const SolidPlace& at, float gain, int octaves, float absent
 
 }  // namespace
 
-float fractal_noise(const SolidPlace& at, float gain, int octaves) {
+float fractal_noise(const SolidCoordinates& at, float gain, int octaves) {
   return sum_of_octaves(at, gain, octaves, 0, [](float noise) { return noise; });
 }
 
-float turbulence(const SolidPlace& at, float gain, int octaves) {
+float turbulence(const SolidCoordinates& at, float gain, int octaves) {
   constexpr float kMean = 0.2f;
   return sum_of_octaves(at, gain, octaves, kMean, [](float noise) { return std::abs(noise); });
 }

@@ -70,11 +70,11 @@ class Checkerboard {
   bool needs_details() const { return true; }
   float of_second(const TexturePoint& point) const {
     if (is_solid_) {
-      const SolidPlace at = solid_.at(point);
+      const SolidCoordinates at = solid_.at(point);
       const auto sign = [&](float Vec3::*axis) { return averaged(at.p.*axis, at.dp_dx.*axis, at.dp_dy.*axis); };
       return share(sign(&Vec3::x) * sign(&Vec3::y) * sign(&Vec3::z));
     }
-    const TexturePlace at = mapping_.at(point);
+    const TextureCoordinates at = mapping_.at(point);
     return share(averaged(at.st.x, at.dst_dx.x, at.dst_dy.x) * averaged(at.st.y, at.dst_dx.y, at.dst_dy.y));
   }
 
@@ -246,7 +246,7 @@ class Windy final : public FloatTexture {
  public:
   Windy(const Params&, const TexturePlacement& placement) : mapping_(placement) {}
   float evaluate(const TexturePoint& point) const override {
-    const SolidPlace at = mapping_.at(point);
+    const SolidCoordinates at = mapping_.at(point);
     constexpr float kGusts = 0.1f;
     const float wind = fractal_noise({kGusts * at.p, kGusts * at.dp_dx, kGusts * at.dp_dy}, kGain, kGustOctaves);
     return std::abs(wind) * fractal_noise(at, kGain, kWaveOctaves);
@@ -274,7 +274,7 @@ class Marble final : public SpectrumTexture {
         variation_(float(p.real("variation"))),
         table_(ReflectanceTable::srgb()) {}
   SampledSpectrum evaluate(const TexturePoint& point, const SampledWavelengths& lambda) const override {
-    SolidPlace at = mapping_.at(point);
+    SolidCoordinates at = mapping_.at(point);
     at = {scale_ * at.p, scale_ * at.dp_dx, scale_ * at.dp_dy};
     const float layer = at.p.y + variation_ * fractal_noise(at, octaves_.gain, octaves_.count);
     return table_.sample(color(0.5f + 0.5f * std::sin(layer)), lambda);

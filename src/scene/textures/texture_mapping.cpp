@@ -13,7 +13,7 @@ TextureMapping::TextureMapping(const Params& p, const TexturePlacement& placemen
   kind_ = Kind(std::ranges::find(kMappings, p.string("mapping")) - std::begin(kMappings));
 }
 
-TexturePlace TextureMapping::of_point(const TexturePoint& point) const {
+TextureCoordinates TextureMapping::of_point(const TexturePoint& point) const {
   const Vec3 p = texture_from_world_.point(point.p);
   Vec2 st;
   Vec3 ds, dt;  // gradients

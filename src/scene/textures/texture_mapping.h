@@ -9,7 +9,7 @@
 namespace frond {
 
 /// Where a point lies in a texture of two dimensions, and how that changes over the footprint.
-struct TexturePlace {
+struct TextureCoordinates {
   Vec2 st, dst_dx, dst_dy;
 };
 
@@ -20,11 +20,11 @@ class TextureMapping {
   TextureMapping(const Params& p, const TexturePlacement& placement);
   /// Reads the point; (u, v) alone takes none, but for filters.
   bool needs_point() const { return kind_ != Kind::uv; }
-  TexturePlace at(const TexturePoint& point) const;
+  TextureCoordinates at(const TexturePoint& point) const;
 
  private:
   enum class Kind : uint8_t { uv, planar, spherical, cylindrical };
-  TexturePlace of_point(const TexturePoint& point) const;
+  TextureCoordinates of_point(const TexturePoint& point) const;
 
   Kind kind_ = Kind::uv;
   Vec2 scale_, delta_;
@@ -32,14 +32,14 @@ class TextureMapping {
   Transform texture_from_world_;
 };
 
-inline TexturePlace TextureMapping::at(const TexturePoint& p) const {
+inline TextureCoordinates TextureMapping::at(const TexturePoint& p) const {
   if (kind_ != Kind::uv) return of_point(p);
   const auto scaled = [this](Vec2 v) { return Vec2{scale_.x * v.x, scale_.y * v.y}; };
   return {scaled(p.uv) + delta_, scaled(p.duv_dx), scaled(p.duv_dy)};
 }
 
 /// A point and the footprint around it, in the texture's space.
-struct SolidPlace {
+struct SolidCoordinates {
   Vec3 p, dp_dx, dp_dy;
 };
 
@@ -48,7 +48,7 @@ class SolidMapping {
  public:
   explicit SolidMapping(const TexturePlacement& placement)
       : texture_from_world_(placement.world_from_texture.inverse()) {}
-  SolidPlace at(const TexturePoint& p) const {
+  SolidCoordinates at(const TexturePoint& p) const {
     const Transform& t = texture_from_world_;
     return {t.point(p.p), t.vector(p.dp_dx), t.vector(p.dp_dy)};
   }

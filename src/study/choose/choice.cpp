@@ -15,8 +15,8 @@ namespace {
 
 /// Samples a pixel, in each of two renders.
 constexpr uint64_t kFirstSamples = 8, kMostScreening = 64, kMostSamples = 4096;
-/// Every power of two between the two: how often the same question may be put to more samples. What the data say tells
-/// which of these looks are taken, never where they lie.
+/// Every power of two between the two: how often the same open_choice may be put to more samples. What the data say
+/// tells which of these looks are taken, never where they lie.
 constexpr size_t kLooks = 10;
 static_assert(kFirstSamples << (kLooks - 1) == kMostSamples);
 /// A pilot may trace that part of the final render's paths for what it compares, and this many at least.
@@ -41,24 +41,24 @@ struct Bounds {
   RmsBounds rms() const { return {root(square.low), root(square.high)}; }
 };
 
-size_t count_combinations(const std::vector<OpenChoice>& questions) {
+size_t count_combinations(const std::vector<OpenChoice>& open_choices) {
   double product = 1;
-  for (const OpenChoice& q : questions) product *= double(q.options.size());
+  for (const OpenChoice& q : open_choices) product *= double(q.options.size());
   return size_t(std::min(product, 1e15));
 }
 
 /// Asks a pilot until it knows.
 class Chooser {
  public:
-  explicit Chooser(Pilot& pilot) : pilot_(pilot), questions_(pilot.questions()), reference_(pilot.reference()) {
+  explicit Chooser(Pilot& pilot) : pilot_(pilot), open_choices_(pilot.open_choices()), reference_(pilot.reference()) {
     choice_.rms = 1;
-    for (const OpenChoice& q : questions_) {
+    for (const OpenChoice& q : open_choices_) {
       base_.push_back(q.base());
       if (q.is_leaf()) choice_.rms = std::min(choice_.rms, q.rms);
     }
     // Every combination against the reference and every single answer against the base, each at every look, from
     // above and from below: whatever the pilot comes to compare is among them.
-    choice_.comparisons = size_t{2} * 2 * kLooks * count_combinations(questions_);
+    choice_.comparisons = size_t{2} * 2 * kLooks * count_combinations(open_choices_);
     z_ = normal_upper_quantile(sidak_level(1 - kConfidence, choice_.comparisons));
     choice_.samples = pilot.scene_samples();
     weights_ = weights();
@@ -82,16 +82,16 @@ class Chooser {
     return {interval, e.mean, interval.high - e.mean};
   }
 
-  Configuration single(size_t question, size_t option) const {
+  Configuration single(size_t open_choice, size_t option) const {
     Configuration answers = base_;
-    answers[question] = option;
+    answers[open_choice] = option;
     return answers;
   }
 
   /// Renders every single answer until its bias is known well enough to choose by.
   void screen() {
     std::vector<Configuration> singles;
-    for (size_t q = 0; q < questions_.size(); ++q)
+    for (size_t q = 0; q < open_choices_.size(); ++q)
       for (size_t option = 0; option < base_[q]; ++option) singles.push_back(single(q, option));
     for (samples_ = kFirstSamples;; samples_ *= 2) {
       pilot_.render(base_, samples_);
@@ -109,17 +109,17 @@ class Chooser {
   /// Shares of the leaves that are seen; a leaf that only light sees has none.
   std::vector<double> weights() const {
     std::vector<double> result;
-    for (const OpenChoice& q : questions_) result.push_back(q.is_leaf() ? pilot_.share(q) : 0);
+    for (const OpenChoice& q : open_choices_) result.push_back(q.is_leaf() ? pilot_.share(q) : 0);
     const double sum = std::accumulate(result.begin(), result.end(), 0.0);
     for (double& w : result) w = sum > 0 ? w / sum : 1 / double(result.size());
     return result;
   }
 
   /// Of one answer, as a factor to the base's.
-  double price(size_t question, size_t option) const {
-    const auto& options = questions_[question].options;
-    const double weight = questions_[question].is_leaf() ? weights_[question] : 1;
-    return 1 + weight * (options[option].price / options[base_[question]].price - 1);
+  double price(size_t open_choice, size_t option) const {
+    const auto& options = open_choices_[open_choice].options;
+    const double weight = open_choices_[open_choice].is_leaf() ? weights_[open_choice] : 1;
+    return 1 + weight * (options[option].price / options[base_[open_choice]].price - 1);
   }
 
   double price(const Configuration& answers) const {
@@ -130,10 +130,10 @@ class Chooser {
 
   /// What was found of single answers is kept for the report.
   Screening screening() {
-    ByOption<Screening::Single> singles(questions_.size());
+    ByOption<Screening::Single> singles(open_choices_.size());
     std::vector<PairedDifference> differences;
-    findings_.resize(questions_.size());
-    for (size_t q = 0; q < questions_.size(); ++q) {
+    findings_.resize(open_choices_.size());
+    for (size_t q = 0; q < open_choices_.size(); ++q) {
       for (size_t option = 0; option < base_[q]; ++option) {
         const OptionResult& found = findings_[q].emplace_back(finding(q, option));
         singles[q].push_back({found.price, found.noise, differences.size()});
@@ -148,29 +148,29 @@ class Chooser {
     return {std::move(singles), std::move(products), {pilot_.noise(base_), {}}};
   }
 
-  OptionResult finding(size_t question, size_t option) const {
-    const Configuration answers = single(question, option);
+  OptionResult finding(size_t open_choice, size_t option) const {
+    const Configuration answers = single(open_choice, option);
     const Bounds b = bounds(answers, base_);
     const double noise = pilot_.noise(answers).back().noise.value, base = pilot_.noise(base_).back().noise.value;
-    return {questions_[question].options[option].name,
-            price(question, option),
+    return {open_choices_[open_choice].options[option].name,
+            price(open_choice, option),
             base > 0 ? noise / base : 1,
             root(b.estimate),
             b.rms(),
             pilot_.cpu_us_per_path(answers)};
   }
 
-  /// The cheapest first; where that is not shown to meet the request, with a better answer to the question that spoils
-  /// it most.
+  /// The cheapest first; where that is not shown to meet the request, with a better answer to the open_choice that
+  /// spoils it most.
   Configuration search() {
     const Screening guess = screening();
-    Configuration floor(questions_.size(), 0);
+    Configuration floor(open_choices_.size(), 0);
     for (;;) {
       const Configuration answers = guess.cheapest(floor, choice_.rms);
       if (answers == reference_) return reference_without_bias();
       if (meets_request(answers)) return answers;
       const size_t worst = guess.worst(answers);
-      if (worst == questions_.size()) break;
+      if (worst == open_choices_.size()) break;
       floor[worst] = answers[worst] + 1;
     }
     choice_.ground = Choice::Ground::nothing_meets;
@@ -209,7 +209,7 @@ class Chooser {
 
   std::vector<std::string> names_of(const Configuration& answers) const {
     std::vector<std::string> names;
-    for (size_t q = 0; q < answers.size(); ++q) names.push_back(questions_[q].options[answers[q]].name);
+    for (size_t q = 0; q < answers.size(); ++q) names.push_back(open_choices_[q].options[answers[q]].name);
     return names;
   }
 
@@ -232,14 +232,14 @@ class Chooser {
   }
 
   void describe(const Configuration& chosen) {
-    for (size_t q = 0; q < questions_.size(); ++q) {
-      const OpenChoice& question = questions_[q];
-      choice_.answers.push_back({question.name, question.is_leaf(), question.options[chosen[q]].name,
-                                 pilot_.share(question), question.options[base_[q]].name, findings_[q],
-                                 question.refused});
+    for (size_t q = 0; q < open_choices_.size(); ++q) {
+      const OpenChoice& open_choice = open_choices_[q];
+      choice_.answers.push_back({open_choice.name, open_choice.is_leaf(), open_choice.options[chosen[q]].name,
+                                 pilot_.share(open_choice), open_choice.options[base_[q]].name, findings_[q],
+                                 open_choice.refused});
     }
     pilot_.render(reference_, samples_);
-    choice_.reference = questions_.back().options.back().name;
+    choice_.reference = open_choices_.back().options.back().name;
     choice_.noise = priced_noise(chosen), choice_.reference_noise = priced_noise(reference_);
     choice_.pilot_samples = samples_;
     choice_.pilot = pilot_.cost();
@@ -252,7 +252,7 @@ class Chooser {
   }
 
   Pilot& pilot_;
-  const std::vector<OpenChoice>& questions_;
+  const std::vector<OpenChoice>& open_choices_;
   Configuration reference_, base_;
   std::vector<double> weights_;
   ByOption<OptionResult> findings_;
@@ -288,21 +288,20 @@ double Choice::reference_samples_needed() const { return reference_effort().samp
 
 double Choice::time_saved() const { return reference_effort().seconds / effort().seconds; }
 
-std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& ladder, const Log& log) {
-  if (!has_open_leaf(subject.description)) return {};
-  Pilot pilot(subject, ladder);
+std::optional<Chosen> choose_models(const ChoiceTask& task, const Ladder& ladder, const Log& log) {
+  if (!has_open_leaf(task.description)) return {};
+  Pilot pilot(task, ladder);
   if (!pilot.has_colors()) {
-    log.warn({},
-             "a leaf's model is chosen by pictures of colours, and bands are none: leaves without \"model\" are abm");
+    log.warn({}, "a leaf's model is chosen by images of colours, and bands are none: leaves without \"model\" are abm");
     return {};
   }
   Chooser chooser(pilot);
-  put_answers(pilot.questions(), chooser.run(), subject.session.registry(), subject.description);
+  put_answers(pilot.open_choices(), chooser.run(), task.session.registry(), task.description);
   return Chosen{chooser.choice(), pilot.scene()};
 }
 
 std::optional<Chosen> choose_for(Session& session, SceneDescription& description, uint64_t samples,
-                                 PictureRequest& request) {
+                                 ImageRequest& request) {
   const Log& log = session.log();
   auto chosen = choose_models({session, description, samples}, standard_ladder(session.registry()), log);
   if (!chosen) return {};

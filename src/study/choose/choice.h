@@ -10,12 +10,12 @@ namespace frond::choose {
 /// That all bounds of a choice hold together.
 inline constexpr double kConfidence = 0.95;
 
-/// The RMS that a picture's bias may have, by a pilot.
+/// The RMS that an image's bias may have, by a pilot.
 struct RmsBounds {
   double low = 0, high = 0;
 };
 
-/// What a pilot found of one answer to one question, with the base answer to all others.
+/// What a pilot found of one answer to one open_choice, with the base answer to all others.
 struct OptionResult {
   std::string name;
   double price = 1, noise = 1;  ///< as in Screening::Single
@@ -24,9 +24,9 @@ struct OptionResult {
   double cpu_us_per_path = 0;   ///< as it happened; nothing hangs on it
 };
 
-/// The answer to one question, and why.
+/// The answer to one open_choice, and why.
 struct Answer {
-  std::string question;
+  std::string open_choice;
   bool is_leaf = true;
   std::string chosen;
   double share = 0;  ///< of the pixels, that see this leaf first
@@ -37,7 +37,7 @@ struct Answer {
 
 /// Answers that were measured against the reference, because they seemed to be the cheapest that would do.
 struct Trial {
-  std::vector<std::string> answers;  ///< in the order of the questions
+  std::vector<std::string> answers;  ///< in the order of the open_choices
   RmsBounds bias;
   uint64_t samples = 0;  ///< a pixel of the pilot, in each of two renders
 };
@@ -85,12 +85,12 @@ struct Chosen {
 
 /// Writes into the description the cheapest answers to what it leaves open that meet its leaves' "maxrms", the smallest
 /// of them. Nothing where no leaf is open, or where wavelengths have no colours (with a warning). Throws InputError.
-std::optional<Chosen> choose_models(const ChoiceTask& subject, const Ladder& ladder, const Log& log);
+std::optional<Chosen> choose_models(const ChoiceTask& task, const Ladder& ladder, const Log& log);
 
-/// The same by the standard ladder, for a picture of so many samples a pixel (0: the scene's). Tells the session's log,
+/// The same by the standard ladder, for an image of so many samples a pixel (0: the scene's). Tells the session's log,
 /// and writes into the request what the header is to say, and the colour space, which the choice of wavelengths shall
 /// not change.
 std::optional<Chosen> choose_for(Session& session, SceneDescription& description, uint64_t samples,
-                                 PictureRequest& request);
+                                 ImageRequest& request);
 
 }  // namespace frond::choose

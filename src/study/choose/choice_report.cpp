@@ -14,8 +14,9 @@ std::string bias_text(const OptionResult& f, const Answer& answer, double rms) {
 }
 
 std::string answer_text(const Answer& a, double rms) {
-  std::string text = a.is_leaf ? fmt::format("  {}, seen first by {:.1f} % of the pixels\n", a.question, 100 * a.share)
-                               : fmt::format("  {}\n", a.question);
+  std::string text = a.is_leaf
+                         ? fmt::format("  {}, seen first by {:.1f} % of the pixels\n", a.open_choice, 100 * a.share)
+                         : fmt::format("  {}\n", a.open_choice);
   for (const OptionResult& f : a.findings)
     text += fmt::format("  {} {:<17}{:>8.2f}{:>8.2f}   {}\n", f.name == a.chosen ? '*' : ' ', f.name, f.price, f.noise,
                         bias_text(f, a, rms));
@@ -49,7 +50,7 @@ std::string samples_text(const Choice& c) {
 }
 
 nlohmann::ordered_json to_json(const Answer& a) {
-  nlohmann::ordered_json j{{"name", a.question}, {"chosen", a.chosen}};
+  nlohmann::ordered_json j{{"name", a.open_choice}, {"chosen", a.chosen}};
   if (a.is_leaf) j["share"] = a.share;
   for (const OptionResult& f : a.findings)
     j["options"].push_back({{"name", f.name},
@@ -78,14 +79,14 @@ std::string choice_sentence(const Choice& c) {
   if (c.ground == Choice::Ground::nothing_meets) return fmt::format("By frond render's pilot {}.", choice_warning(c));
   std::string text = fmt::format("Leaf by leaf, by frond render's pilot, this is enough for an RMS of {:g}: ", c.rms);
   for (size_t i = 0; i < c.answers.size(); ++i)
-    text += fmt::format("{}{} for {}", i > 0 ? ", " : "", c.answers[i].chosen, c.answers[i].question);
+    text += fmt::format("{}{} for {}", i > 0 ? ", " : "", c.answers[i].chosen, c.answers[i].open_choice);
   return text + fmt::format("; an RMS of {:.2g} at most, with {:.0f} % confidence.", c.bias.high, 100 * kConfidence);
 }
 
 std::string choice_warning(const Choice& c) {
   if (c.ground == Choice::Ground::met) return "";
   return fmt::format(
-      "no model but {} was shown to keep the picture's RMS error below {:g}: the best may have {:.2g}{}", c.reference,
+      "no model but {} was shown to keep the image's RMS error below {:g}: the best may have {:.2g}{}", c.reference,
       c.rms, c.trials.back().bias.high,
       c.out_of_samples ? fmt::format(", as far as a pilot of 2 x {} samples can tell", c.pilot_samples) : "");
 }
@@ -96,7 +97,7 @@ std::map<std::string, std::string> choice_attributes(const Choice& c) {
     const OptionResult* chosen = nullptr;
     for (const OptionResult& f : a.findings)
       if (f.name == a.chosen) chosen = &f;
-    attributes[a.is_leaf ? "frond:leaf:" + a.question : "frond:chosen_wavelengths"] =
+    attributes[a.is_leaf ? "frond:leaf:" + a.open_choice : "frond:chosen_wavelengths"] =
         chosen && a.chosen != a.base ? fmt::format("{}, alone an RMS of {:.5f} at most", a.chosen, chosen->bias.high)
                                      : a.chosen;
   }

@@ -12,8 +12,8 @@ namespace frond::choose {
 struct ModelOption {
   std::string name;
   PluginText plugin;
-  /// CPU time of a sample, relative to the first rung's. A constant, measured beforehand (docs/choosing.md): what a run
-  /// measures varies, and the same command has to give the same picture.
+  /// CPU time of a sample, relative to the first option's. A constant, measured beforehand (docs/choosing.md): what a
+  /// run measures varies, and the same command has to give the same image.
   double price;
 };
 

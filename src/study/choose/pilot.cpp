@@ -48,23 +48,23 @@ struct Pilot::Render {
   std::vector<ConvergencePoint> noise = {};
 };
 
-Pilot::Pilot(const ChoiceTask& subject, const Ladder& ladder)
-    : subject_(subject),
-      film_(subject.session.film(subject.description)),
+Pilot::Pilot(const ChoiceTask& task, const Ladder& ladder)
+    : task_(task),
+      film_(task.session.film(task.description)),
       start_cpu_seconds_(cpu_seconds()),
-      variant_{subject.description, {}, {}, {}} {
-  Session& session = subject.session;
+      variant_{task.description, {}, {}, {}} {
+  Session& session = task.session;
   const Registry& registry = session.registry();
-  SceneDescription& description = subject.description;
+  SceneDescription& description = task.description;
   if (!names_wavelengths(description)) {
-    questions_.push_back({"wavelengths", {}, 0, ladder.wavelengths});
-    put_answers(questions_, reference(), registry, description);
+    open_choices_.push_back({"wavelengths", {}, 0, ladder.wavelengths});
+    put_answers(open_choices_, reference(), registry, description);
   }
-  scene_ = std::make_shared<const Scene>(description, registry, session.pool(), quiet_, session.cache(), subject.other,
+  scene_ = std::make_shared<const Scene>(description, registry, session.pool(), quiet_, session.cache(), task.other,
                                          &shared_);
   exponent_ = film_exponent(*scene_);
   const auto leaves = open_leaves(description, registry, scene_->wavelengths(), ladder);
-  questions_.insert(questions_.end(), leaves.begin(), leaves.end());
+  open_choices_.insert(open_choices_.end(), leaves.begin(), leaves.end());
   pixels_ = pilot_pixels(film_.crop, kPixels, hash_key(scene_->seed(), uint64_t{kPixelSeed}));
 }
 
@@ -73,19 +73,19 @@ Pilot::~Pilot() = default;
 bool Pilot::has_colors() const { return scene_->wavelengths().bands().empty(); }
 
 uint64_t Pilot::scene_samples() const {
-  return subject_.samples > 0 ? subject_.samples : uint64_t(scene_->samples_per_pixel());
+  return task_.samples > 0 ? task_.samples : uint64_t(scene_->samples_per_pixel());
 }
 
 Configuration Pilot::reference() const {
   Configuration answers;
-  for (const OpenChoice& q : questions_) answers.push_back(q.reference());
+  for (const OpenChoice& q : open_choices_) answers.push_back(q.reference());
   return answers;
 }
 
 Pilot::Render Pilot::make(const Configuration& answers) {
-  Session& session = subject_.session;
-  variant_.materials = subject_.description.materials;
-  put_answers(questions_, answers, session.registry(), variant_);
+  Session& session = task_.session;
+  variant_.materials = task_.description.materials;
+  put_answers(open_choices_, answers, session.registry(), variant_);
   auto scene = std::make_unique<Scene>(variant_, session.registry(), session.pool(), quiet_, session.cache(),
                                        scene_.get(), &shared_);
   const auto seed = [this](SeedUse use) { return hash_key(scene_->seed(), uint64_t{use}); };
@@ -100,14 +100,14 @@ void Pilot::render(const Configuration& answers, uint64_t samples) {
   Render& r = found->second;
   while (r.films.samples() < samples) {
     const uint64_t next = std::min(samples, std::bit_floor(r.films.samples()) * 2 + (r.films.samples() == 0));
-    r.films.advance_to(next, *r.scene, subject_.session.pool(), nullptr);
-    r.noise.push_back({double(next), 0, noise_of(pictures(r))});
+    r.films.advance_to(next, *r.scene, task_.session.pool(), nullptr);
+    r.noise.push_back({double(next), 0, noise_of(images(r))});
   }
 }
 
 const Pilot::Render& Pilot::rendered(const Configuration& answers) const { return renders_.at(answers); }
 
-Pilot::Halves Pilot::pictures(const Render& render) const {
+Pilot::Halves Pilot::images(const Render& render) const {
   Halves halves;
   for (size_t i = 0; i < 2; ++i) {
     for (int x = 0; x < int(pixels_.size()); ++x)
@@ -118,8 +118,8 @@ Pilot::Halves Pilot::pictures(const Render& render) const {
 }
 
 PairedDifference Pilot::difference(const Configuration& answers, const Configuration& from) const {
-  PairedDifference d{pictures(rendered(answers)), 3};
-  const Halves other = pictures(rendered(from));
+  PairedDifference d{images(rendered(answers)), 3};
+  const Halves other = images(rendered(from));
   for (size_t i = 0; i < 2; ++i) std::ranges::transform(d.half[i], other[i], d.half[i].begin(), std::minus<>());
   return d;
 }
@@ -133,11 +133,11 @@ double Pilot::cpu_us_per_path(const Configuration& answers) const {
   return r.films.cost().cpu_seconds * 1e6 / (double(r.films.samples()) * double(pixels_.size()));
 }
 
-double Pilot::share(const OpenChoice& question) const {
+double Pilot::share(const OpenChoice& open_choice) const {
   const Scene& scene = *scene_;
   std::unordered_set<const Material*> asked;
-  for (const size_t place : question.materials) asked.insert(scene.material(place));
-  const auto sees = [&](const PixelPlace& p) {
+  for (const size_t place : open_choice.materials) asked.insert(scene.material(place));
+  const auto sees = [&](const PixelPosition& p) {
     SurfacePoint point;
     const Ray ray = scene.camera().ray({float(p.x) + 0.5f, float(p.y) + 0.5f}, {0.5f, 0.5f});
     return scene.intersect(ray, hash_key(scene.seed(), p.x, p.y), point) && asked.contains(point.material);

@@ -7,7 +7,7 @@
 #include "instruments/errors/paired_difference.h"
 #include "render/session.h"
 #include "spectra/color/color_management.h"
-#include "study/choose/question.h"
+#include "study/choose/open_choice.h"
 #include "study/paired_films.h"
 
 namespace frond::choose {
@@ -27,15 +27,15 @@ struct PilotCost {
   double cpu_seconds = 0;  ///< tables and all
 };
 
-/// Renders some pixels of the picture with any answers to the questions. All renders share their random numbers: where
-/// two do not differ they are the same, noise and all. What they say depends on the subject and its seed alone.
+/// Renders some pixels of the image with any answers to the open_choices. All renders share their random numbers: where
+/// two do not differ they are the same, noise and all. What they say depends on the task and its seed alone.
 class Pilot {
  public:
-  /// Also finds the questions. Throws InputError.
-  Pilot(const ChoiceTask& subject, const Ladder& ladder);
+  /// Also finds the open_choices. Throws InputError.
+  Pilot(const ChoiceTask& task, const Ladder& ladder);
   ~Pilot();
 
-  const std::vector<OpenChoice>& questions() const { return questions_; }
+  const std::vector<OpenChoice>& open_choices() const { return open_choices_; }
   /// Wavelengths that have no colours cannot be compared.
   bool has_colors() const;
   const FilmSettings& film() const { return film_; }
@@ -43,7 +43,7 @@ class Pilot {
   const std::shared_ptr<const Scene>& scene() const { return scene_; }
   /// A pixel, of the render that the choice is for.
   uint64_t scene_samples() const;
-  /// The last option of every question.
+  /// The last option of every open_choice.
   Configuration reference() const;
 
   /// Up to so many samples a pixel in each of two renders.
@@ -54,8 +54,8 @@ class Pilot {
   const std::vector<ConvergencePoint>& noise(const Configuration& answers) const;
   double cpu_us_per_path(const Configuration& answers) const;
 
-  /// Share of the pixels whose middle sees one of the question's materials first.
-  double share(const OpenChoice& question) const;
+  /// Share of the pixels whose middle sees one of the open_choice's materials first.
+  double share(const OpenChoice& open_choice) const;
   PilotCost cost() const;
 
  private:
@@ -64,20 +64,20 @@ class Pilot {
 
   Render make(const Configuration& answers);
   const Render& rendered(const Configuration& answers) const;
-  Halves pictures(const Render& render) const;
+  Halves images(const Render& render) const;
 
-  ChoiceTask subject_;
+  ChoiceTask task_;
   FilmSettings film_;
   double start_cpu_seconds_;
-  SceneDescription variant_;         ///< the subject's without its shapes, as it was rendered last
+  SceneDescription variant_;         ///< the task's without its shapes, as it was rendered last
   const Log& quiet_ = silent_log();  ///< what there is to say the final render says
   SharedWork shared_;
   ColorManager colors_;
   std::shared_ptr<const Scene>
       scene_;         ///< with the wavelengths that count as right; the renders share what stands in it
   int exponent_ = 0;  ///< its films': those of leaves that do not differ have the same bits
-  std::vector<OpenChoice> questions_;
-  std::vector<PixelPlace> pixels_;
+  std::vector<OpenChoice> open_choices_;
+  std::vector<PixelPosition> pixels_;
   std::map<Configuration, Render> renders_;
 };
 

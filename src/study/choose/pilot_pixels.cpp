@@ -7,8 +7,8 @@
 namespace frond::choose {
 namespace {
 
-std::vector<PixelPlace> all_pixels(const Crop& crop) {
-  std::vector<PixelPlace> pixels;
+std::vector<PixelPosition> all_pixels(const Crop& crop) {
+  std::vector<PixelPosition> pixels;
   for (int y = crop.y0; y < crop.y1; ++y)
     for (int x = crop.x0; x < crop.x1; ++x) pixels.push_back({x, y});
   return pixels;
@@ -16,12 +16,12 @@ std::vector<PixelPlace> all_pixels(const Crop& crop) {
 
 }  // namespace
 
-std::vector<PixelPlace> pilot_pixels(const Crop& crop, size_t count, uint64_t seed) {
+std::vector<PixelPosition> pilot_pixels(const Crop& crop, size_t count, uint64_t seed) {
   const double width = crop.width(), height = crop.height();
   if (width * height <= double(count)) return all_pixels(crop);
   const int columns = std::max(1, int(std::lround(std::sqrt(double(count) * width / height))));
   const int rows = std::max(1, int(double(count) / columns));
-  std::vector<PixelPlace> pixels;
+  std::vector<PixelPosition> pixels;
   RandomStream random(seed);
   const auto inside = [&random](int cell, int cells, double size) {
     return std::min(int((cell + random.uniform_double()) / cells * size), int(size) - 1);

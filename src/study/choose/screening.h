@@ -3,15 +3,15 @@
 #include <vector>
 
 #include "instruments/errors/convergence.h"
-#include "study/choose/question.h"
+#include "study/choose/open_choice.h"
 
 namespace frond::choose {
 
-/// What changing one answer alone does: questions before options.
+/// What changing one answer alone does: open_choices before options.
 template <class T>
 using ByOption = std::vector<std::vector<T>>;
 
-/// What any answers would do to the picture, to first order: biases of single answers, as pictures, add up, and so do
+/// What any answers would do to the image, to first order: biases of single answers, as images, add up, and so do
 /// changes of the noise's variance. That is a guess, to be measured before it is believed.
 class Screening {
  public:
@@ -22,7 +22,7 @@ class Screening {
     bool is_base = false;
   };
 
-  /// `singles` holds options from the cheapest to the base of every question. `products[i][j]`: mean product of the
+  /// `singles` holds options from the cheapest to the base of every open_choice. `products[i][j]`: mean product of the
   /// biases of two singles. `base`: how its noise falls; seconds are of no concern.
   Screening(ByOption<Single> singles, std::vector<std::vector<double>> products, Convergence base)
       : singles_(std::move(singles)), products_(std::move(products)), base_(std::move(base)) {}
@@ -39,7 +39,7 @@ class Screening {
   Configuration base() const;
   /// No answers below `floor`. Found by changing one answer at a time from the base as long as that helps.
   Configuration cheapest(const Configuration& floor, double rms) const;
-  /// The question, of those whose answer is not the base's, whose answer adds most to the bias.
+  /// The open_choice, of those whose answer is not the base's, whose answer adds most to the bias.
   size_t worst(const Configuration& answers) const;
 
  private:

@@ -67,7 +67,7 @@ class White {
 };
 
 /// As the eye sees them, where they cover what it sees; else three of them as red, green and blue.
-void choose_picture(ChannelList& list) {
+void choose_image(ChannelList& list) {
   const size_t count = list.bands.size();
   const auto xyz = xyz_of_bands(list.bands);
   list.shown.assign(count, Triple{});
@@ -97,7 +97,7 @@ ChannelList bands_of(const Scene& scene) {
     if (!(list.white.back() > 0))
       fail({}, "the scene's lights give no light at {}: there is nothing to compare", name_of(band));
   }
-  choose_picture(list);
+  choose_image(list);
   return list;
 }
 

@@ -20,11 +20,11 @@ inline constexpr size_t kFirst = 1;
 /// colours.
 struct ChannelList {
   std::vector<std::string> names = {};
-  std::vector<Triple> shown = {};  ///< of each channel of the film: what it adds to a picture's linear SMPTE-C
+  std::vector<Triple> shown = {};  ///< of each channel of the film: what it adds to an image's linear SMPTE-C
   std::vector<Band> bands = {};    ///< empty: red, green and blue
   std::vector<double> white = {};  ///< of each band: what the film holds where errors count 1
   std::string unit = {};           ///< of errors
-  std::string how_shown = {};      ///< of bands: how a picture is made of them
+  std::string how_shown = {};      ///< of bands: how an image is made of them
 
   size_t film_channels() const { return shown.size(); }
   bool are_bands() const { return !bands.empty(); }

@@ -9,8 +9,8 @@
 #include "study/compare/channels.h"
 #include "study/compare/cutoff.h"
 #include "study/compare/error_unit.h"
+#include "study/compare/film_images.h"
 #include "study/compare/paired_render.h"
-#include "study/compare/picture.h"
 
 namespace frond::compare {
 
@@ -21,11 +21,11 @@ inline constexpr std::array<const char*, kRegions> kRegionNames{"all", "leaf"};
 /// By region and place in a ChannelList.
 using ErrorTable = std::array<std::vector<RenderError>, kRegions>;
 
-/// By region and the channels of a picture (those of a ChannelList from kFirst on). Of a region without pixels: none.
+/// By region and the channels of an image (those of a ChannelList from kFirst on). Of a region without pixels: none.
 using MeanTable = std::array<std::vector<double>, kRegions>;
 
 /// One candidate after so many samples a pixel.
-struct Rung {
+struct CandidateRun {
   uint64_t samples = 0;
   RenderCost cost;  ///< of one render
   ErrorTable errors = {};
@@ -41,15 +41,15 @@ struct PaperTiming {
 };
 
 /// What was measured of one candidate.
-struct Subject {
+struct CandidateResult {
   Candidate candidate;
   std::string wavelengths;
   double setup_cpu_seconds = 0;
-  std::vector<Rung> rungs = {};
+  std::vector<CandidateRun> runs = {};
   std::optional<PaperTiming> paper = {};
-  Image early = {}, late = {};  ///< as shown: one render at `Comparison::early_samples`; both after the last rung
+  Image early = {}, late = {};  ///< as shown: one render at `Comparison::early_samples`; both after the last run
 
-  /// Bias is that of the last rung, where noise hides the least of it.
+  /// Bias is that of the last run, where noise hides the least of it.
   Convergence convergence(Region region, size_t channel = kTogether) const;
 };
 
@@ -61,7 +61,7 @@ struct Reference {
   std::array<std::vector<MeanSquare>, kRegions> noise = {};  ///< of the mean of the two, by place in the ChannelList
   MeanTable mean = {};              ///< in the ChannelList's unit, where errors are relative to it; else empty
   std::optional<double> flip = {};  ///< between the two: twice the noise of what candidates are compared with
-  Image picture = {};               ///< as shown
+  Image image = {};                 ///< as shown
 };
 
 /// What the user wants to know.
@@ -76,7 +76,7 @@ struct Request {
 
 /// Everything that a report tells.
 struct Comparison {
-  double exposure_stops = 0;  ///< by which pictures and FLIP are brightened
+  double exposure_stops = 0;  ///< by which images and FLIP are brightened
   std::string scene, command, machine;
   int width = 0, height = 0;
   ChannelList channels;
@@ -84,17 +84,17 @@ struct Comparison {
   std::vector<std::string> leaves;
   Request request;
   Reference reference;
-  std::vector<Subject> subjects;
+  std::vector<CandidateResult> candidates;
   uint64_t early_samples = 0;
   std::string leaf_by_leaf;  ///< a sentence on what is enough for `Request::rms` of each leaf alone; empty: not asked
   double wall_seconds = 0, cpu_seconds = 0;
 };
 
-inline Convergence Subject::convergence(Region region, size_t channel) const {
+inline Convergence CandidateResult::convergence(Region region, size_t channel) const {
   std::vector<ConvergencePoint> points;
-  for (const Rung& r : rungs)
+  for (const CandidateRun& r : runs)
     points.push_back({double(r.samples), r.cost.cpu_seconds, r.errors[region][channel].noise});
-  return {std::move(points), rungs.back().errors[region][channel].bias};
+  return {std::move(points), runs.back().errors[region][channel].bias};
 }
 
 }  // namespace frond::compare

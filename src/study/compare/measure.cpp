@@ -6,8 +6,8 @@
 #include "core/log.h"
 #include "core/random.h"
 #include "instruments/errors/flip.h"
+#include "study/compare/film_images.h"
 #include "study/compare/paper_manner.h"
-#include "study/compare/picture.h"
 #include "study/compare/reference_store.h"
 
 namespace frond::compare {
@@ -21,12 +21,12 @@ PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use
   return {study, candidate, hash_key(base, uint64_t{use}), hash_key(base, uint64_t{use} + 1), pairs};
 }
 
-/// The two renders of a method as pictures.
-using PicturePair = std::array<Image, 2>;
+/// The two renders of a method as images.
+using ImagePair = std::array<Image, 2>;
 
 /// What relative errors are relative to. Throws InputError for what nothing can be relative to: a mean that is not
 /// above 0.
-MeanTable means_of(const PicturePair& reference, const ChannelList& channels, std::span<const float> leaf) {
+MeanTable means_of(const ImagePair& reference, const ChannelList& channels, std::span<const float> leaf) {
   MeanTable means;
   const std::array<std::span<const float>, kRegions> uses{std::span<const float>{}, leaf};
   for (size_t region = 0; region < kRegions; ++region) {
@@ -43,7 +43,7 @@ MeanTable means_of(const PicturePair& reference, const ChannelList& channels, st
 }
 
 /// Over the reference's means, where there are any.
-ErrorTable errors_of(const PicturePair& renders, const PicturePair& reference, size_t film_channels,
+ErrorTable errors_of(const ImagePair& renders, const ImagePair& reference, size_t film_channels,
                      std::span<const float> leaf, const MeanTable& means) {
   ErrorTable errors{std::vector<RenderError>(kFirst), std::vector<RenderError>(kFirst)};
   for (size_t c = 0; c < renders[0].channels.size(); ++c) {
@@ -66,19 +66,19 @@ class Bench {
  public:
   Bench(const PairedRender& reference, const Request& request)
       : channels_(channels_of(reference.scene())),
-        reference_(pictures(reference)),
+        reference_(images(reference)),
         leaf_(leaf_mask(reference.film(0))),
         error_unit_(request.error_unit()),
         means_(error_unit_.is_relative() ? means_of(reference_, channels_, leaf_) : MeanTable{}),
         exposure_stops_(request.exposure_stops.value_or(fitting_exposure(shown_mean(reference_)))),
         display_(display(shown_mean(reference_))) {}
 
-  Rung rung(const PairedRender& render) const {
-    const PicturePair pair = pictures(render);
+  CandidateRun run(const PairedRender& render) const {
+    const ImagePair pair = images(render);
     return {render.samples(), render.cost(), errors(pair), flip(display_, pair[0])};
   }
-  Image shown_first(const PairedRender& render) const { return shown(pictures(render)[0], channels_); }
-  Image shown_mean(const PairedRender& render) const { return shown_mean(pictures(render)); }
+  Image shown_first(const PairedRender& render) const { return shown(images(render)[0], channels_); }
+  Image shown_mean(const PairedRender& render) const { return shown_mean(images(render)); }
 
   Reference described(const Candidate& candidate, const PairedRender& render) const {
     Reference r{.candidate = candidate, .samples = render.samples(), .cost = render.cost()};
@@ -87,7 +87,7 @@ class Bench {
       for (const RenderError& e : table[region]) r.noise[region].push_back(e.reference_noise);
     r.mean = means_;
     r.flip = flip(display(shown(reference_[0], channels_)), reference_[1]);
-    r.picture = shown_mean(reference_);
+    r.image = shown_mean(reference_);
     return r;
   }
   const ChannelList& channels() const { return channels_; }
@@ -95,24 +95,24 @@ class Bench {
   double exposure_stops() const { return exposure_stops_; }
 
  private:
-  PicturePair pictures(const PairedRender& render) const {
-    return {picture_of(render.film(0), render.scene(), channels_, colors_),
-            picture_of(render.film(1), render.scene(), channels_, colors_)};
+  ImagePair images(const PairedRender& render) const {
+    return {image_of(render.film(0), render.scene(), channels_, colors_),
+            image_of(render.film(1), render.scene(), channels_, colors_)};
   }
-  Image shown_mean(const PicturePair& pair) const { return shown(mean_of(pair[0], pair[1]), channels_); }
-  ErrorTable errors(const PicturePair& pictures) const {
-    return errors_of(pictures, reference_, channels_.film_channels(), leaf_, means_);
+  Image shown_mean(const ImagePair& pair) const { return shown(mean_of(pair[0], pair[1]), channels_); }
+  ErrorTable errors(const ImagePair& images) const {
+    return errors_of(images, reference_, channels_.film_channels(), leaf_, means_);
   }
   Image display(const Image& shown) const { return display_image(shown, exposure_stops_, colors_); }
   /// The eye has no say in bands.
-  std::optional<double> flip(const Image& reference, const Image& picture) const {
+  std::optional<double> flip(const Image& reference, const Image& image) const {
     if (channels_.are_bands()) return {};
-    return mean_flip(reference, display(shown(picture, channels_)));
+    return mean_flip(reference, display(shown(image, channels_)));
   }
 
   ColorManager colors_;
   ChannelList channels_;
-  PicturePair reference_;
+  ImagePair reference_;
   std::vector<float> leaf_;
   ErrorUnit error_unit_;
   MeanTable means_;
@@ -135,7 +135,7 @@ uint64_t render_reference(PairedRender& render, const ReferenceStore& store, con
 }
 
 /// With fewer samples there are bands that no path has carried.
-uint64_t first_rung(const Scene& scene) { return std::bit_ceil(samples_for_all_channels(scene)); }
+uint64_t first_samples(const Scene& scene) { return std::bit_ceil(samples_for_all_channels(scene)); }
 
 void check_channels(const PairedRender& render, const Candidate& candidate, const PairedRender& reference) {
   if (same_channels(channels_of(render.scene()), channels_of(reference.scene()))) return;
@@ -149,7 +149,7 @@ void check_request(const Request& request, const Plan& plan, const Scene& scene)
   if (request.target && !scene.wavelengths().bands().empty())
     fail({}, "--target is an RMS of red, green and blue, wavelengths \"{}\" give bands: --rms is of all channels",
          scene.wavelengths_name());
-  if (const uint64_t first = first_rung(scene); std::min(plan.top_samples, plan.reference_samples) < first)
+  if (const uint64_t first = first_samples(scene); std::min(plan.top_samples, plan.reference_samples) < first)
     fail({}, "wavelengths \"{}\" show each band once in {} samples: --spp and --reference-spp are that at least",
          scene.wavelengths_name(), first);
 }
@@ -170,37 +170,37 @@ void warn_of_lost_samples(const PairedRender& render, const Candidate& candidate
                              candidate.label, count));
 }
 
-/// Doublings, and the last rung that was asked for.
+/// Doublings, and the last run that was asked for.
 std::vector<uint64_t> ladder(uint64_t first, uint64_t top) {
-  std::vector<uint64_t> rungs;
-  for (uint64_t samples = first; samples < top; samples *= 2) rungs.push_back(samples);
-  rungs.push_back(top);
-  return rungs;
+  std::vector<uint64_t> runs;
+  for (uint64_t samples = first; samples < top; samples *= 2) runs.push_back(samples);
+  runs.push_back(top);
+  return runs;
 }
 
 void step_to(uint64_t samples, PairedRender& render, const Plan& plan, const Bench& bench, const ThreadPool& pool,
-             const Log& log, Subject& subject) {
+             const Log& log, CandidateResult& measured) {
   render.advance_to(samples, pool, plan.progress);
-  subject.rungs.push_back(bench.rung(render));
-  const Rung& r = subject.rungs.back();
-  log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {}{}", subject.candidate.label, samples,
+  measured.runs.push_back(bench.run(render));
+  const CandidateRun& r = measured.runs.back();
+  log.info(fmt::format("{}: {} samples, {:.3g} s of CPU, RMS {}{}", measured.candidate.label, samples,
                        r.cost.cpu_seconds, bench.error_unit().fixed(r.errors[kAll][kTogether].total.root(), 5),
                        r.flip ? fmt::format(", FLIP {:.4f}", *r.flip) : ""));
 }
 
 void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& bench, const ThreadPool& pool,
            const Log& log, Comparison& result) {
-  const auto rungs = ladder(first_rung(renders.front().scene()), plan.top_samples);
-  // An early picture has about a sixteenth of the samples of the last.
-  result.early_samples = rungs[rungs.size() > 5 ? rungs.size() - 5 : 0];
-  for (const uint64_t samples : rungs)
+  const auto runs = ladder(first_samples(renders.front().scene()), plan.top_samples);
+  // An early image has about a sixteenth of the samples of the last.
+  result.early_samples = runs[runs.size() > 5 ? runs.size() - 5 : 0];
+  for (const uint64_t samples : runs)
     for (size_t i = 0; i < renders.size(); ++i) {
-      Subject& subject = result.subjects[i];
-      step_to(samples, renders[i], plan, bench, pool, log, subject);
-      if (samples == result.early_samples) subject.early = bench.shown_first(renders[i]);
+      CandidateResult& measured = result.candidates[i];
+      step_to(samples, renders[i], plan, bench, pool, log, measured);
+      if (samples == result.early_samples) measured.early = bench.shown_first(renders[i]);
     }
   for (size_t i = 0; i < renders.size(); ++i) {
-    result.subjects[i].late = bench.shown_mean(renders[i]);
+    result.candidates[i].late = bench.shown_mean(renders[i]);
     warn_of_lost_samples(renders[i], plan.candidates[i], log);
   }
 }
@@ -212,9 +212,9 @@ void time_in_the_papers_manner(const Study& study, const Plan& plan, Comparison&
   const uint64_t samples = std::min(kTimingSamples, plan.top_samples);
   const PaperManner manner(study, plan.candidates.front(), kPilotFactor * samples);
   std::vector<std::pair<PaperTiming*, PairedRender>> renders;
-  for (Subject& subject : result.subjects)
-    if ((subject.paper = manner.of(subject.candidate)))
-      renders.emplace_back(&*subject.paper, pair_of(study, subject.paper->candidate, kTimingSeed));
+  for (CandidateResult& measured : result.candidates)
+    if ((measured.paper = manner.of(measured.candidate)))
+      renders.emplace_back(&*measured.paper, pair_of(study, measured.paper->candidate, kTimingSeed));
   for (uint64_t n = 1; n <= samples; ++n)
     for (auto& [timing, render] : renders) render.advance_to(n, study.session().pool(), {});
   for (auto& [timing, render] : renders) timing->cpu_seconds_per_sample = render.cost().cpu_seconds / double(samples);
@@ -239,15 +239,15 @@ Comparison measure(const Study& study, const Plan& plan, const Request& request)
   result.exposure_stops = bench.exposure_stops();
   result.reference = bench.described(plan.reference, reference_render);
   result.reference.cached_samples = cached;
-  result.width = result.reference.picture.width, result.height = result.reference.picture.height;
+  result.width = result.reference.image.width, result.height = result.reference.image.height;
   result.foliar_ratio = reference_render.film(0).foliar_ratio();
   log.info(fmt::format("reference {}: 2 x {} samples ({} from the cache), its own noise RMS {}, taken out below",
                        plan.reference.text, result.reference.samples, cached,
                        bench.error_unit().fixed(result.reference.noise[kAll][kTogether].root(), 5)));
   for (size_t i = 0; i < renders.size(); ++i)
-    result.subjects.push_back({.candidate = plan.candidates[i],
-                               .wavelengths = renders[i].scene().wavelengths_name(),
-                               .setup_cpu_seconds = renders[i].setup_cpu_seconds()});
+    result.candidates.push_back({.candidate = plan.candidates[i],
+                                 .wavelengths = renders[i].scene().wavelengths_name(),
+                                 .setup_cpu_seconds = renders[i].setup_cpu_seconds()});
   climb(renders, plan, bench, pool, log, result);
   time_in_the_papers_manner(study, plan, result);
   return result;

@@ -15,7 +15,7 @@ struct Plan {
   Progress* progress = nullptr;       ///< may be nullptr
 };
 
-/// Renders the reference, then every candidate up the ladder, rung by rung so that whatever else the machine does falls
+/// Renders the reference, then every candidate up the ladder, run by run so that whatever else the machine does falls
 /// on all alike. Throws InputError, before anything is rendered, for a candidate that the scene cannot take.
 Comparison measure(const Study& study, const Plan& plan, const Request& request);
 

@@ -6,7 +6,7 @@ namespace frond::compare {
 namespace {
 
 /// Until every channel's error is down to its own figure.
-std::optional<Effort> until_all(const Subject& s, const std::array<double, 3>& target) {
+std::optional<Effort> until_all(const CandidateResult& s, const std::array<double, 3>& target) {
   Effort all{0, 0, true};
   for (size_t c = 0; c < 3; ++c) {
     const auto effort = s.convergence(kAll, kFirst + c).until_rms(target[c]);
@@ -25,7 +25,7 @@ Ratio ratio(const std::optional<Effort>& baseline, const std::optional<Effort>& 
           baseline->seconds / candidate->seconds};
 }
 
-std::optional<Ratio> at_bias(const Subject& baseline, const Subject& candidate) {
+std::optional<Ratio> at_bias(const CandidateResult& baseline, const CandidateResult& candidate) {
   const Convergence own = candidate.convergence(kAll);
   if (!own.until_plateau()) return {};
   const double rms = 1.5 * own.bias().root();
@@ -34,9 +34,9 @@ std::optional<Ratio> at_bias(const Subject& baseline, const Subject& candidate) 
 
 }  // namespace
 
-SpeedUps speed_ups(const Comparison& comparison, size_t subject) {
-  const Subject &baseline = comparison.subjects.front(), &candidate = comparison.subjects[subject];
-  const Rung &b = baseline.rungs.back(), &c = candidate.rungs.back();
+SpeedUps speed_ups(const Comparison& comparison, size_t index) {
+  const CandidateResult &baseline = comparison.candidates.front(), &candidate = comparison.candidates[index];
+  const CandidateRun &b = baseline.runs.back(), &c = candidate.runs.back();
   SpeedUps s{};
   s.equal_samples = b.cost.cpu_seconds / c.cost.cpu_seconds;
   const double noise_ratio = b.errors[kAll][kTogether].noise.value / c.errors[kAll][kTogether].noise.value;

@@ -8,7 +8,7 @@ namespace frond::compare {
 struct Ratio {
   enum class Kind : uint8_t {
     measured,
-    extrapolated,       ///< one of the two was taken beyond its last rung
+    extrapolated,       ///< one of the two was taken beyond its last run
     not_reached,        ///< the candidate's bias lies above the error
     baseline_not_there  ///< the baseline's does
   };
@@ -25,6 +25,6 @@ struct SpeedUps {
   double equal_noise;                        ///< (d) at the same variance
 };
 
-SpeedUps speed_ups(const Comparison& comparison, size_t subject);
+SpeedUps speed_ups(const Comparison& comparison, size_t index);
 
 }  // namespace frond::compare

@@ -10,7 +10,7 @@
 namespace frond::compare {
 namespace {
 
-/// The same picture, or the same part of it, with `size` pixels along the longer side.
+/// The same image, or the same part of it, with `size` pixels along the longer side.
 void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
   const double scale = double(size) / std::max(s.crop.width(), s.crop.height());
   const auto scaled = [scale](int pixels) { return std::max(1.0, std::round(pixels * scale)); };

@@ -8,13 +8,13 @@
 
 namespace frond::compare {
 
-/// What decides the pictures beside the candidates.
+/// What decides the images beside the candidates.
 struct StudyOptions {
   std::string scene = {}, wavelengths = {};  ///< wavelengths: a PluginText; empty: the scene's
   std::vector<std::string> leaves = {};      ///< names of the materials that candidates replace; empty: every leaf
   Unsupported unsupported = {};
   std::optional<uint64_t> seed = {};  ///< 0 by default
-  int size = 256;                     ///< pixels of the picture's longer side
+  int size = 256;                     ///< pixels of the image's longer side
 };
 
 /// One scene, in which one leaf model stands for another.

@@ -17,9 +17,9 @@
       values[i] = halves[bytes.charCodeAt(2 * i) | bytes.charCodeAt(2 * i + 1) << 8];
     return values;
   }
-  const pictures = data.pictures.map(p => ({ name: p.name, rgb: decode(p.rgb) }));
+  const images = data.images.map(p => ({ name: p.name, rgb: decode(p.rgb) }));
 
-  const state = { a: 0, b: Math.min(1, pictures.length - 1), mode: 'wipe', wipe: 0.5, showB: false,
+  const state = { a: 0, b: Math.min(1, images.length - 1), mode: 'wipe', wipe: 0.5, showB: false,
     exposure: data.exposure, zoom: 1, zoomIsChosen: false, scale: 0, scaleIsChosen: false };
 
   // Linear SMPTE-C to the codes of an sRGB display (IEC 61966-2-1).
@@ -28,8 +28,8 @@
     const x = Math.min(1, Math.max(0, v));
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
   }
-  function shown(picture) {
-    const out = new ImageData(width, height), gain = 2 ** state.exposure, p = picture.rgb;
+  function shown(image) {
+    const out = new ImageData(width, height), gain = 2 ** state.exposure, p = image.rgb;
     for (let i = 0; i < width * height; ++i) {
       for (let c = 0; c < 3; ++c)
         out.data[4 * i + c] = code(gain * (m[3 * c] * p[3 * i] + m[3 * c + 1] * p[3 * i + 1] + m[3 * c + 2] * p[3 * i + 2]));
@@ -84,7 +84,7 @@
     context.fillStyle = '#fff';
     context.fillText(text, left + 6, 22);
   }
-  const kGap = 8;  // between two pictures side by side
+  const kGap = 8;  // between two images side by side
   const painters = {
     wipe(a, b, w, h) {
       const x = Math.round(state.wipe * w);
@@ -115,7 +115,7 @@
   function paint() {
     const w = width * state.zoom, h = height * state.zoom;
     view.width = state.mode === 'side' ? 2 * w + kGap : w, view.height = h;
-    painters[state.mode](pictures[state.a], pictures[state.b], w, h);
+    painters[state.mode](images[state.a], images[state.b], w, h);
     $('difference-legend').classList.toggle('shown', state.mode === 'difference');
     $('exposure-value').textContent = (state.exposure > 0 ? '+' : '') + state.exposure + ' stops';
     $('zoom-value').textContent = state.zoom + '×';
@@ -130,7 +130,7 @@
   }
 
   for (const id of ['a', 'b']) {
-    pictures.forEach((p, i) => $(id).add(new Option(p.name, i)));
+    images.forEach((p, i) => $(id).add(new Option(p.name, i)));
     $(id).value = state[id];
     $(id).onchange = e => { state[id] = +e.target.value; paint(); };
   }
@@ -154,7 +154,7 @@
   const numbers = (p, i) => [0, 1, 2].map(c => p.rgb[3 * i + c].toFixed(4)).join('  ');
   function read(x, y) {
     if (x < 0 || y < 0 || x >= width || y >= height) return;
-    const a = pictures[state.a], b = pictures[state.b], i = y * width + x;
+    const a = images[state.a], b = images[state.b], i = y * width + x;
     const gap = luminance(a.rgb, i) - luminance(b.rgb, i);
     $('readout').textContent = `Pixel ${x}, ${y}: luminance A minus B ${gap.toFixed(4)}\n` +
       `A  ${numbers(a, i)}    ${a.name}\nB  ${numbers(b, i)}    ${b.name}`;
@@ -175,11 +175,11 @@
   // A link may open the report in a certain way: #mode=difference&a=0&b=3&zoom=2
   for (const [key, value] of new URLSearchParams(location.hash.slice(1))) {
     if (key === 'mode' && value in painters) state.mode = value;
-    if (['a', 'b'].includes(key) && +value in pictures) state[key] = +value, $(key).value = value;
+    if (['a', 'b'].includes(key) && +value in images) state[key] = +value, $(key).value = value;
     if (['zoom', 'exposure', 'scale'].includes(key) && Number.isFinite(+value))
       state[key] = +value, state[key + 'IsChosen'] = true, $(key).value = value;
   }
   choose(state.mode);
   read(width >> 1, height >> 1);
-  document.body.dataset.ready = pictures.length;
+  document.body.dataset.ready = images.length;
 })();

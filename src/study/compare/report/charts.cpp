@@ -15,11 +15,11 @@ Series candidate_series(size_t candidate, std::string label) {
 }
 
 /// Seconds and error as the axis has it, with its interval; none where a logarithmic axis cannot show it.
-std::vector<ChartPoint> points_of(const Subject& subject, Measure measure, const ErrorUnit& unit) {
+std::vector<ChartPoint> points_of(const CandidateResult& measured, Measure measure, const ErrorUnit& unit) {
   std::vector<ChartPoint> points;
-  for (const Rung& rung : subject.rungs) {
-    const MeanSquare& e = rung.errors[measure == Measure::rms_leaf ? kLeaf : kAll][kTogether].total;
-    ChartPoint p{rung.cost.cpu_seconds, rung.flip.value_or(0)};
+  for (const CandidateRun& run : measured.runs) {
+    const MeanSquare& e = run.errors[measure == Measure::rms_leaf ? kLeaf : kAll][kTogether].total;
+    ChartPoint p{run.cost.cpu_seconds, run.flip.value_or(0)};
     if (measure != Measure::flip)
       p.y = unit.on_axis(e.root()), p.bar = {unit.on_axis(e.root_at(-kZ95)), unit.on_axis(e.root_at(kZ95))};
     if (p.x > 0 && p.y > 0) points.push_back(p);
@@ -37,9 +37,9 @@ Series frontier(const std::vector<Series>& curves) {
 }
 
 /// The level of the bias, from where noise has fallen to it; none where there is no bias.
-std::optional<ChartPoint> plateau_of(const Subject& subject, Measure measure) {
+std::optional<ChartPoint> plateau_of(const CandidateResult& measured, Measure measure) {
   if (measure == Measure::flip) return {};
-  const Convergence c = subject.convergence(measure == Measure::rms_leaf ? kLeaf : kAll);
+  const Convergence c = measured.convergence(measure == Measure::rms_leaf ? kLeaf : kAll);
   if (const auto effort = c.until_plateau()) return ChartPoint{effort->seconds, c.bias().root()};
   return {};
 }
@@ -62,7 +62,7 @@ std::string rms_caption(const Comparison& c) {
       "the reference converges to: its noise, {}, is taken out. A cross and the dotted line after it: from there "
       "on noise is below the candidate’s bias, and more samples help little. A curve without one has no bias that "
       "could be told from none.",
-      c.subjects.front().rungs.front().samples, c.subjects.front().rungs.back().samples,
+      c.candidates.front().runs.front().samples, c.candidates.front().runs.back().samples,
       c.request.error_unit().rounded(c.reference.noise[kAll][kTogether].root()));
 }
 
@@ -83,11 +83,11 @@ std::optional<Chart> curves_chart(const Comparison& c, Measure measure) {
   const ErrorUnit unit = c.request.error_unit();
   Range x, y;
   std::vector<Series> curves, plateaus;
-  for (size_t i = 0; i < c.subjects.size(); ++i) {
-    Series& s = curves.emplace_back(candidate_series(i, c.subjects[i].candidate.label));
-    s.points = points_of(c.subjects[i], measure, unit);
+  for (size_t i = 0; i < c.candidates.size(); ++i) {
+    Series& s = curves.emplace_back(candidate_series(i, c.candidates[i].candidate.label));
+    s.points = points_of(c.candidates[i], measure, unit);
     for (const ChartPoint& p : s.points) x.include(p.x), y.include(p.y);
-    auto plateau = plateau_of(c.subjects[i], measure);
+    auto plateau = plateau_of(c.candidates[i], measure);
     if (!plateau) continue;
     s.label += fmt::format(": bias {}, noise below it from {} s", unit.rounded(plateau->y), figures(plateau->x, 2));
     plateau->y = unit.on_axis(plateau->y);
@@ -112,13 +112,13 @@ std::optional<Chart> bands_chart(const Comparison& c) {
   const auto& bands = c.channels.bands;
   std::vector<Series> series;
   Range y;
-  for (size_t i = 0; i < c.subjects.size(); ++i) {
+  for (size_t i = 0; i < c.candidates.size(); ++i) {
     // Keeps candidates' bars off each other.
-    const double aside = step_nm * 0.5 * ((double(i) + 0.5) / double(c.subjects.size()) - 0.5);
+    const double aside = step_nm * 0.5 * ((double(i) + 0.5) / double(c.candidates.size()) - 0.5);
     Series noise = line("", kSeriesColors[i], 2, Dash::dotted),
-           bias = candidate_series(i, c.subjects[i].candidate.label);
+           bias = candidate_series(i, c.candidates[i].candidate.label);
     for (size_t b = 0; b < bands.size(); ++b) {
-      const RenderError& e = c.subjects[i].rungs.back().errors[kAll][kFirst + b];
+      const RenderError& e = c.candidates[i].runs.back().errors[kAll][kFirst + b];
       noise.points.push_back({bands[b].nm, unit.on_axis(e.noise.root())});
       bias.points.push_back(bias_point(bands[b].nm + aside, e.bias, unit));
       for (const double v : {noise.points.back().y, bias.points.back().bar.low, bias.points.back().bar.high})
@@ -130,7 +130,7 @@ std::optional<Chart> bands_chart(const Comparison& c) {
   y = Range{std::max(y.low, y.high / 1e4), y.high}.widened();
   series.push_back(
       marks("bars: intervals of 95 %; without a mark the bias is not told from none", "#000000", Mark::bar, 5));
-  const uint64_t samples = c.subjects[0].rungs.back().samples;
+  const uint64_t samples = c.candidates[0].runs.back().samples;
   series.push_back(line(fmt::format("noise of one render of {} samples", samples), "#000000", 2, Dash::dotted));
   const Range nm{bands.front().nm - step_nm, bands.back().nm + step_nm};
   const std::string error = fmt::format("bias and noise ({})", unit.of_axis(c.channels));

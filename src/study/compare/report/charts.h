@@ -16,7 +16,7 @@ enum class Measure : uint8_t { rms_all, rms_leaf, flip };
 /// an error that a logarithmic axis can show.
 std::optional<Chart> curves_chart(const Comparison& comparison, Measure measure);
 
-/// Bias with 95 % intervals, and noise of one render after the last rung, against the bands' wavelengths, over all
+/// Bias with 95 % intervals, and noise of one render after the last run, against the bands' wavelengths, over all
 /// pixels. None where no band has any. For comparisons of bands.
 std::optional<Chart> bands_chart(const Comparison& comparison);
 

@@ -30,8 +30,8 @@ void add_ratio(Table& table, const std::string& name, const std::optional<Ratio>
 
 Table comparison_table(const Comparison& c) {
   Table table{"comparison"};
-  for (const Subject& s : c.subjects)
-    for (const Rung& r : s.rungs)
+  for (const CandidateResult& s : c.candidates)
+    for (const CandidateRun& r : s.runs)
       for (size_t region = 0; region < kRegions; ++region)
         for (size_t k = 0; k < c.channels.names.size(); ++k) {
           const RenderError& e = r.errors[region][k];
@@ -54,8 +54,8 @@ Table comparison_table(const Comparison& c) {
 
 Table candidate_table(const Comparison& c) {
   Table table{"candidates"};
-  for (size_t i = 0; i < c.subjects.size(); ++i) {
-    const Subject& s = c.subjects[i];
+  for (size_t i = 0; i < c.candidates.size(); ++i) {
+    const CandidateResult& s = c.candidates[i];
     table.add("label", s.candidate.label);
     table.add("candidate", s.candidate.text);
     table.add("wavelengths", s.wavelengths);
@@ -84,7 +84,7 @@ Table candidate_table(const Comparison& c) {
 Table effort_table(const Comparison& c) {
   Table table{"meets_rms"};
   for (const double rms : c.request.rms)
-    for (const Subject& s : c.subjects) {
+    for (const CandidateResult& s : c.candidates) {
       table.add("rms", rms);
       table.add("candidate", s.candidate.label);
       add_effort(table, "", s.convergence(kAll).until_rms(rms, simultaneous_z(c)));
@@ -142,7 +142,7 @@ ComparisonData data_of(const Comparison& c) {
        "One render of so many samples per pixel: its time, and how far it is from what the reference converges to.",
        fmt::format("Unit: {}; {}: root of the mean square of all the film's channels; leaf: pixels that see a leaf.",
                    c.request.error_unit().of_data(c.channels), c.channels.names[kTogether]),
-       fmt::format("rms = bias and noise; rms_clipped: of pictures clipped to [0, 1]; _low, _high: 95 % intervals; "
+       fmt::format("rms = bias and noise; rms_clipped: of images clipped to [0, 1]; _low, _high: 95 % intervals; "
                    "flip: mean FLIP{}.",
                    c.channels.are_bands() ? ", none of bands" : "")}};
 }

@@ -42,8 +42,8 @@ std::string figures(const std::filesystem::path& folder, const std::vector<Repor
   return html;
 }
 
-nlohmann::ordered_json picture_json(const std::string& name, const Image& picture) {
-  return {{"name", name}, {"rgb", half_floats(picture.pixels)}};
+nlohmann::ordered_json image_json(const std::string& name, const Image& image) {
+  return {{"name", name}, {"rgb", half_floats(image.pixels)}};
 }
 
 std::vector<double> srgb_from_smpte() {
@@ -56,14 +56,13 @@ std::vector<double> srgb_from_smpte() {
 std::string viewer_data(const Comparison& c) {
   nlohmann::ordered_json json{
       {"width", c.width}, {"height", c.height}, {"exposure", c.exposure_stops}, {"srgb_from_smpte", srgb_from_smpte()}};
-  json["pictures"].push_back(
-      picture_json(fmt::format("reference: {}, {} samples", c.reference.candidate.label, 2 * c.reference.samples),
-                   c.reference.picture));
-  for (const Subject& s : c.subjects) {
-    const uint64_t top = s.rungs.back().samples;
-    json["pictures"].push_back(picture_json(fmt::format("{}, {} samples", s.candidate.label, 2 * top), s.late));
-    json["pictures"].push_back(
-        picture_json(fmt::format("{}, {} samples", s.candidate.label, c.early_samples), s.early));
+  json["images"].push_back(
+      image_json(fmt::format("reference: {}, {} samples", c.reference.candidate.label, 2 * c.reference.samples),
+                 c.reference.image));
+  for (const CandidateResult& s : c.candidates) {
+    const uint64_t top = s.runs.back().samples;
+    json["images"].push_back(image_json(fmt::format("{}, {} samples", s.candidate.label, 2 * top), s.late));
+    json["images"].push_back(image_json(fmt::format("{}, {} samples", s.candidate.label, c.early_samples), s.early));
   }
   std::string text = json.dump();
   for (size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.replace(at, 2, "<\\/");
@@ -82,7 +81,7 @@ std::string setting(const Comparison& c) {
 
 std::string values_note(const ChannelList& channels) {
   if (channels.are_bands())
-    return html_text(fmt::format("Pictures of {} bands: {}. Values are those of the pictures.", channels.bands.size(),
+    return html_text(fmt::format("Images of {} bands: {}. Values are those of the images.", channels.bands.size(),
                                  channels.how_shown));
   return "Values are linear SMPTE-C; 1 is a white diffuse surface in the light.";
 }
@@ -101,7 +100,7 @@ std::string provenance(const Comparison& c) {
       fmt::format("{}: {} of 2 × {} samples from the cache", c.reference.candidate.text, 2 * c.reference.cached_samples,
                   c.reference.samples),
       false);
-  for (const Subject& s : c.subjects) {
+  for (const CandidateResult& s : c.candidates) {
     add(s.candidate.label, fmt::format("{} with wavelengths {}", s.candidate.text, s.wavelengths), true);
     if (s.paper) add(s.candidate.label + " (b)", s.paper->candidate.text, true);
   }

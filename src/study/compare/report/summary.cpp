@@ -7,11 +7,11 @@ namespace frond::compare {
 std::string summary_text(const Comparison& c) {
   const ErrorUnit unit = c.request.error_unit();
   const auto fixed = [&unit](double error) { return unit.fixed(error, 5); };
-  const std::string noise = fmt::format("noise of {}", c.subjects.front().rungs.back().samples);
+  const std::string noise = fmt::format("noise of {}", c.candidates.front().runs.back().samples);
   Table table{"summary"};
-  for (size_t i = 0; i < c.subjects.size(); ++i) {
-    const Subject& s = c.subjects[i];
-    const Rung& r = s.rungs.back();
+  for (size_t i = 0; i < c.candidates.size(); ++i) {
+    const CandidateResult& s = c.candidates[i];
+    const CandidateRun& r = s.runs.back();
     const RenderError& e = r.errors[kAll][kTogether];
     const SpeedUps v = speed_ups(c, i);
     const bool told = v.equal_error_at_bias && v.equal_error_at_bias->value > 0;

@@ -19,12 +19,12 @@ std::string ratio_text(const std::optional<Ratio>& r) {
   return ratio_text(r->value) + (r->kind == Ratio::Kind::extrapolated ? " (extrapolated)" : "");
 }
 
-std::string plateau_text(const Subject& s) {
+std::string plateau_text(const CandidateResult& s) {
   const auto plateau = s.convergence(kAll).until_plateau();
   return plateau ? fmt::format("{} s, {:.0f} samples", figures(plateau->seconds, 3), plateau->samples) : "none found";
 }
 
-std::string cutoff_text(const Subject& s) {
+std::string cutoff_text(const CandidateResult& s) {
   const CutoffFit& end = s.paper->end;
   const std::string text = fmt::format("{:.2g} for {}", end.cutoff, s.candidate.label);
   return end.equal ? text : fmt::format("{} (which leaves {:.1e}: none leaves the same)", text, end.left.value);
@@ -33,10 +33,10 @@ std::string cutoff_text(const Subject& s) {
 /// What stands behind (b); nothing where the scene's integrator cannot render so.
 std::string paper_note(const Comparison& c) {
   std::vector<std::string> cutoffs;
-  for (const Subject& s : c.subjects)
+  for (const CandidateResult& s : c.candidates)
     if (s.paper) cutoffs.push_back(cutoff_text(s));
-  if (cutoffs.empty() || !c.subjects.front().paper) return "";
-  const PaperTiming& baseline = *c.subjects.front().paper;
+  if (cutoffs.empty() || !c.candidates.front().paper) return "";
+  const PaperTiming& baseline = *c.candidates.front().paper;
   return fmt::format(
       "(b): light sampling does not see the surface lobe, and a path ends when the luminance of its attenuation falls "
       "below a cutoff, such that at tree depth {:.1f} all leave the same ratio of rays unshot to shot, {:.1e}: {}. ",
@@ -45,10 +45,10 @@ std::string paper_note(const Comparison& c) {
 
 std::string speed_table(const Comparison& c) {
   Table table{"Speed"};
-  for (size_t i = 0; i < c.subjects.size(); ++i) {
-    const Subject& s = c.subjects[i];
+  for (size_t i = 0; i < c.candidates.size(); ++i) {
+    const CandidateResult& s = c.candidates[i];
     const SpeedUps v = speed_ups(c, i);
-    const Rung& r = s.rungs.back();
+    const CandidateRun& r = s.runs.back();
     table.add("candidate", s.candidate.label);
     table.add("CPU s\nper sample", fmt::format("{:.3g}", r.cost.cpu_seconds / double(r.samples)));
     table.add("CPU s to\nmake ready", fmt::format("{:.2g}", s.setup_cpu_seconds));
@@ -68,24 +68,24 @@ std::string speed_table(const Comparison& c) {
       fmt::format("Speed-up: CPU time of {} over the candidate’s. {}(c): until all three channels are down to {}; and "
                   "until the RMS of all is 1.5 times the candidate’s bias. (d): at the same variance. Tables from the "
                   "cache cost little to make ready.",
-                  c.subjects.front().candidate.label, paper_note(c), target));
+                  c.candidates.front().candidate.label, paper_note(c), target));
 }
 
 constexpr const char* kTable2Note =
     "As Table 2 of Baranoski and Rokne, who give for their simplified model 0.009 0.009 0.012 and 5.14× (front lit), "
-    "0.011 0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS of clipped pictures, "
+    "0.011 0.014 0.010 and 4.47× (back lit), 0.020 0.016 0.012 and 9.77× (ambient light). RMS of clipped images, "
     "linear SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are "
     "defined under the table of speed-ups.";
 
 /// Of absolute errors of colours, as the paper's are.
 std::string table_2(const Comparison& c) {
   if (c.channels.are_bands() || c.request.relative) return "";
-  Table table{
-      fmt::format("Table 2: RMS error of {} samples per pixel, and speed-up", c.subjects.front().rungs.back().samples)};
-  for (size_t i = 0; i < c.subjects.size(); ++i) {
-    const auto& e = c.subjects[i].rungs.back().errors[kAll];
+  Table table{fmt::format("Table 2: RMS error of {} samples per pixel, and speed-up",
+                          c.candidates.front().runs.back().samples)};
+  for (size_t i = 0; i < c.candidates.size(); ++i) {
+    const auto& e = c.candidates[i].runs.back().errors[kAll];
     const SpeedUps v = speed_ups(c, i);
-    table.add("candidate", c.subjects[i].candidate.label);
+    table.add("candidate", c.candidates[i].candidate.label);
     for (size_t k = kFirst; k < c.channels.luminance(); ++k)
       table.add("RMS\n" + c.channels.names[k], fmt::format("{:.4f}", e[k].clipped.root()));
     table.add("(a) equal\nsamples", ratio_text(v.equal_samples));
@@ -100,7 +100,7 @@ std::string offer_table(const Comparison& c, double rms, const char* note) {
   const ErrorUnit unit = c.request.error_unit();
   Table table{fmt::format("{} of {}", unit.is_relative() ? "A relative RMS" : "An RMS", unit.as_asked(rms))};
   for (const CandidateCost& o : candidate_costs(c, rms, simultaneous_z(c))) {
-    table.add("candidate", c.subjects[o.subject].candidate.label);
+    table.add("candidate", c.candidates[o.candidate].candidate.label);
     table.add("samples per pixel", o.effort  ? fmt::format("{:.0f}", std::ceil(o.effort->samples))
                                    : o.never ? "never"
                                              : "not known");
@@ -131,7 +131,7 @@ std::string error_note(const Comparison& c) {
     return fmt::format("{} The reference’s noise is taken out. Bias is what no number of samples takes away.",
                        kRelativeExplained);
   return fmt::format(
-      "{} The paper’s RMS is that of clipped pictures, of two renders that are both noisy; here the reference’s noise "
+      "{} The paper’s RMS is that of clipped images, of two renders that are both noisy; here the reference’s noise "
       "is "
       "taken out. Bias is what no number of samples takes away.",
       c.channels.are_bands() ? "Radiance over that of a white diffuse surface of luminance 1 in the light of the scene."
@@ -141,9 +141,9 @@ std::string error_note(const Comparison& c) {
 std::string error_table(const Comparison& c, Region region) {
   const ErrorUnit unit = c.request.error_unit();
   Table table{fmt::format("Error of one render of {} samples per pixel, {} pixels",
-                          c.subjects.front().rungs.back().samples, region == kAll ? "all" : "leaf")};
-  for (const Subject& s : c.subjects) {
-    const auto& e = s.rungs.back().errors[region];
+                          c.candidates.front().runs.back().samples, region == kAll ? "all" : "leaf")};
+  for (const CandidateResult& s : c.candidates) {
+    const auto& e = s.runs.back().errors[region];
     const auto fixed = [&](const MeanSquare& m, double z = 0) { return unit.fixed(m.root_at(z), kDecimals); };
     const auto triple = [&](MeanSquare RenderError::*value, double z = 0) {  // red, green and blue
       return fmt::format("{} {} {}", fixed(e[kFirst].*value, z), fixed(e[kFirst + 1].*value, z),
@@ -165,7 +165,7 @@ std::string error_table(const Comparison& c, Region region) {
     table.add("bias ≤ (95 %)\nR G B", triple(&RenderError::bias, kZ95));
     table.add("bias\nluminance", bounded(unit, e[c.channels.luminance()].bias));
     table.add("RMS\nluminance", fixed(e[c.channels.luminance()].total));
-    if (region == kAll) table.add("FLIP", fmt::format("{:.4f}", s.rungs.back().flip.value_or(0)));
+    if (region == kAll) table.add("FLIP", fmt::format("{:.4f}", s.runs.back().flip.value_or(0)));
   }
   return to_html(table, error_note(c));
 }
@@ -175,9 +175,9 @@ std::string band_table(const Comparison& c) {
   if (!c.channels.are_bands()) return "";
   Table table{"Bias over all pixels",
               {{"band", std::vector(c.channels.names.begin() + kFirst, c.channels.names.end())}}};
-  for (const Subject& s : c.subjects) {
+  for (const CandidateResult& s : c.candidates) {
     std::vector<std::string> texts;
-    for (const RenderError& e : std::span(s.rungs.back().errors[kAll]).subspan(kFirst, c.channels.bands.size()))
+    for (const RenderError& e : std::span(s.runs.back().errors[kAll]).subspan(kFirst, c.channels.bands.size()))
       texts.push_back(bounded(c.request.error_unit(), e.bias));
     table.columns.push_back({s.candidate.label, texts});
   }

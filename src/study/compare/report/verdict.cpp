@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRisk = 0.05;
 
-const std::string& label(const Comparison& c, size_t subject) { return c.subjects[subject].candidate.label; }
+const std::string& label(const Comparison& c, size_t candidate) { return c.candidates[candidate].candidate.label; }
 
 double cost_of(const CandidateCost& offer) {
   return offer.effort ? offer.effort->seconds : std::numeric_limits<double>::infinity();
@@ -24,9 +24,9 @@ std::string effort_text(const Effort& e) {
 }
 
 /// Times of one program differ by some per cent: who is as cheap as the best as far as can be told need not give way.
-bool holds(const std::vector<CandidateCost>& all, size_t subject) {
+bool holds(const std::vector<CandidateCost>& all, size_t candidate) {
   constexpr double kMargin = 1.05;
-  const auto own = std::ranges::find(all, subject, &CandidateCost::subject);
+  const auto own = std::ranges::find(all, candidate, &CandidateCost::candidate);
   return cost_of(*own) <= kMargin * cost_of(all.front());
 }
 
@@ -36,17 +36,17 @@ std::string answer(const Comparison& c, double rms) {
   const auto all = candidate_costs(c, rms, z);
   const CandidateCost& best = all.front();
   if (!best.effort) {
-    const auto most = [z](const Subject& s) { return s.convergence(kAll).bias().root_at(z); };
-    const auto least = std::ranges::min_element(c.subjects, {}, most);
+    const auto most = [z](const CandidateResult& s) { return s.convergence(kAll).bias().root_at(z); };
+    const auto least = std::ranges::min_element(c.candidates, {}, most);
     return fmt::format(
         "None of the candidates meets {} of {} with 95 % confidence: the bias of {}, the least, may be up to {}.",
         unit.rms(), unit.as_asked(rms), least->candidate.label, unit.rounded(most(*least)));
   }
-  std::string text = fmt::format("{} is enough for {} of {}, with 95 % confidence: {}", label(c, best.subject),
+  std::string text = fmt::format("{} is enough for {} of {}, with 95 % confidence: {}", label(c, best.candidate),
                                  unit.rms(), unit.as_asked(rms), effort_text(*best.effort));
   for (const CandidateCost& other : all) {
-    if (other.subject == best.subject) continue;
-    text += "; " + label(c, other.subject);
+    if (other.candidate == best.candidate) continue;
+    text += "; " + label(c, other.candidate);
     text += other.effort  ? fmt::format(" takes {} s", figures(other.effort->seconds, 3))
             : other.never ? " never gets there"
                           : " may not get there: its bias is not known that well";
@@ -58,7 +58,7 @@ std::string overview(const Comparison& c) {
   const ErrorUnit unit = c.request.error_unit();
   std::string text;
   for (const CheapestRange& reign : cheapest_ranges(c)) {
-    const Subject& s = c.subjects[reign.subject];
+    const CandidateResult& s = c.candidates[reign.candidate];
     const auto effort = s.convergence(kAll).until_rms(reign.rms_to);
     const std::string price = effort ? fmt::format(" ({})", effort_text(*effort)) : "";
     text += text.empty()
@@ -73,21 +73,23 @@ std::string overview(const Comparison& c) {
 
 std::vector<CandidateCost> candidate_costs(const Comparison& c, double rms, double z) {
   std::vector<CandidateCost> all;
-  for (size_t i = 0; i < c.subjects.size(); ++i) {
-    const Convergence convergence = c.subjects[i].convergence(kAll);
+  for (size_t i = 0; i < c.candidates.size(); ++i) {
+    const Convergence convergence = c.candidates[i].convergence(kAll);
     all.push_back({i, convergence.until_rms(rms, z), convergence.bias().root_at(-z) > rms});
   }
   std::ranges::stable_sort(all, {}, cost_of);
   return all;
 }
 
-double simultaneous_z(const Comparison& c) { return normal_upper_quantile(sidak_level(kRisk, 2 * c.subjects.size())); }
+double simultaneous_z(const Comparison& c) {
+  return normal_upper_quantile(sidak_level(kRisk, 2 * c.candidates.size()));
+}
 
 std::vector<CheapestRange> cheapest_ranges(const Comparison& c) {
   double largest = std::numeric_limits<double>::infinity(), smallest = largest;
-  for (const Subject& s : c.subjects) {
-    largest = std::min(largest, s.rungs.front().errors[kAll][kTogether].total.root());
-    smallest = std::min(smallest, s.rungs.back().errors[kAll][kTogether].total.root());
+  for (const CandidateResult& s : c.candidates) {
+    largest = std::min(largest, s.runs.front().errors[kAll][kTogether].total.root());
+    smallest = std::min(smallest, s.runs.back().errors[kAll][kTogether].total.root());
   }
   std::vector<CheapestRange> result;
   if (!(smallest > 0)) return result;
@@ -96,7 +98,7 @@ std::vector<CheapestRange> cheapest_ranges(const Comparison& c) {
     const double rms = largest * std::pow(smallest / largest, double(i) / kSteps);
     const auto all = candidate_costs(c, rms, 0);
     if (!all.front().effort) break;
-    if (result.empty() || !holds(all, result.back().subject)) result.push_back({all.front().subject, rms, rms});
+    if (result.empty() || !holds(all, result.back().candidate)) result.push_back({all.front().candidate, rms, rms});
     result.back().rms_to = rms;
   }
   return result;

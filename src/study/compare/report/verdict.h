@@ -6,7 +6,7 @@ namespace frond::compare {
 
 /// One candidate against an error that is asked for.
 struct CandidateCost {
-  size_t subject;
+  size_t candidate;
   std::optional<Effort> effort;  ///< nothing: its bias alone may be too large
   bool never;                    ///< its bias is too large, as sure as the effort would be enough
 };
@@ -21,7 +21,7 @@ double simultaneous_z(const Comparison& comparison);
 
 /// From `rms_from` down to `rms_to` no candidate is cheaper by 5 %.
 struct CheapestRange {
-  size_t subject;
+  size_t candidate;
   double rms_from, rms_to;
 };
 

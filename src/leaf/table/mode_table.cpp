@@ -1,4 +1,4 @@
-#include "leaf/table/body_spectrum.h"
+#include "leaf/table/mode_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,14 +20,14 @@ double cosine(double sine) { return std::sqrt(std::max(0.0, 1 - sine * sine)); }
 constexpr double kMiddle = 3.0 / 128;
 
 /// Of pi f, summed over the modes.
-double interpolation_error(const std::vector<BodyModes::Grid>& series, const std::vector<double>& sines,
+double interpolation_error(const std::vector<LeafModes::Grid>& series, const std::vector<double>& sines,
                            const Tissue& tissue) {
   const size_t count = sines.size();
   double largest = 0;
   for (size_t i = 2; i + 2 < count; ++i)
     for (size_t o = 2; o + 2 < count; ++o) {
       double sum = 0;
-      for (const BodyModes::Grid& h : series)
+      for (const LeafModes::Grid& h : series)
         sum += std::abs(fourth_difference([&](size_t k) { return h[k * count + o]; }, i)) +
                std::abs(fourth_difference([&](size_t k) { return h[i * count + k]; }, o));
       largest = std::max(largest, sum * passage(tissue, cosine(sines[i]), cosine(sines[o])));
@@ -35,7 +35,7 @@ double interpolation_error(const std::vector<BodyModes::Grid>& series, const std
   return largest * kMiddle * std::numbers::pi;
 }
 
-double interpolation_error(const BodyModes& modes, const Tissue& tissue) {
+double interpolation_error(const LeafModes& modes, const Tissue& tissue) {
   double largest = 0;
   for (const bool from_below : {false, true})
     for (const bool crosses : {false, true})
@@ -44,7 +44,7 @@ double interpolation_error(const BodyModes& modes, const Tissue& tissue) {
 }
 
 /// The leaf in each column of the spectrum.
-std::vector<Tissue> tissues_of(const BodyRequest& request, const TissueModel& model) {
+std::vector<Tissue> tissues_of(const ModeTableRequest& request, const TissueModel& model) {
   std::vector<Tissue> tissues;
   for (const double nm : request.wavelengths_nm) {
     if (request.depths.empty()) tissues.push_back(model.at(nm));
@@ -53,7 +53,7 @@ std::vector<Tissue> tissues_of(const BodyRequest& request, const TissueModel& mo
   return tissues;
 }
 
-BodyModes solve(const BodyRequest& request, const Tissue& tissue, int cells) {
+LeafModes solve(const ModeTableRequest& request, const Tissue& tissue, int cells) {
   const int nodes = request.nodes > 0 ? request.nodes : mode_nodes(tissue);
   return solve_modes(tissue, grid_sines(cells), request.tolerance, nodes);
 }
@@ -66,7 +66,7 @@ int cells_for(double tolerance, int cells, double error) {
 }
 
 /// By the leaf that absorbs least: there f is largest.
-int first_guess(const BodyRequest& request, const std::vector<Tissue>& tissues) {
+int first_guess(const ModeTableRequest& request, const std::vector<Tissue>& tissues) {
   constexpr int kCells = 8;
   const Tissue& tissue = *std::ranges::min_element(tissues, {}, [](const Tissue& t) { return t.optical_depth[2]; });
   return cells_for(request.tolerance, kCells, interpolation_error(solve(request, tissue, kCells), tissue));
@@ -80,10 +80,10 @@ std::vector<double> grid_sines(int cells) {
   return sines;
 }
 
-BodySpectrum make_body_spectrum(const BodyRequest& request, const ThreadPool& pool) {
+ModeTable make_mode_table(const ModeTableRequest& request, const ThreadPool& pool) {
   const TissueModel model(request.params);
   const std::vector<Tissue> tissues = tissues_of(request, model);
-  BodySpectrum spectrum{.cells = first_guess(request, tissues)};
+  ModeTable spectrum{.cells = first_guess(request, tissues)};
   for (const Tissue& tissue : tissues) spectrum.index.push_back(tissue.n_cuticle());
   spectrum.modes.resize(tissues.size());
   std::vector<double> errors(tissues.size());

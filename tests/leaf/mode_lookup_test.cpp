@@ -1,4 +1,4 @@
-#include "leaf/table/body_table.h"
+#include "leaf/table/mode_lookup.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "leaf/solve/quadrature.h"
 #include "leaf/solve/solver.h"
-#include "leaf/table/body_file.h"
+#include "leaf/table/mode_table_file.h"
 #include "leaf/tissue/specimens.h"
 
 namespace frond::leaf {
@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-BodyRequest request_of(std::string_view specimen, double tolerance, std::vector<double> wavelengths = {608, 551, 455}) {
+ModeTableRequest request_of(std::string_view specimen, double tolerance,
+                            std::vector<double> wavelengths = {608, 551, 455}) {
   return {.params = find_specimen(specimen)->params, .wavelengths_nm = std::move(wavelengths), .tolerance = tolerance};
 }
 
@@ -35,11 +36,11 @@ double cosine(double sine) { return std::sqrt(1 - sine * sine); }
 
 /// Largest difference of pi f between what a table gives and modes solved at the same directions, at random sines and
 /// azimuths.
-double largest_error(const BodyTable& table, const Tissue& tissue, const BodyTable::Selection& selection, int lane) {
+double largest_error(const ModeLookup& table, const Tissue& tissue, const ModeLookup::Selection& selection, int lane) {
   RandomStream rng(3);
   std::vector<double> sines;
   for (int i = 0; i < 24; ++i) sines.push_back(std::sqrt(rng.uniform_double()) * 0.9999);
-  const BodyModes exact = solve_modes(tissue, sines, 1e-7, mode_nodes(tissue));
+  const LeafModes exact = solve_modes(tissue, sines, 1e-7, mode_nodes(tissue));
   double largest = 0;
   for (size_t i = 0; i < sines.size(); ++i)
     for (size_t o = 0; o < sines.size(); ++o)
@@ -47,7 +48,7 @@ double largest_error(const BodyTable& table, const Tissue& tissue, const BodyTab
         for (const bool crosses : {false, true}) {
           const double phi = kPi * rng.uniform_double();
           double sum = 0, m = 0;
-          for (const BodyModes::Grid& h : exact.series(below, crosses))
+          for (const LeafModes::Grid& h : exact.series(below, crosses))
             sum += h[i * sines.size() + o] * std::cos(m++ * phi);
           const auto node = [&](size_t k) { return table.nodes(static_cast<float>(sines[k])); };
           const float looked_up = table.series(below, crosses, node(i), node(o), static_cast<float>(std::cos(phi)),
@@ -58,14 +59,14 @@ double largest_error(const BodyTable& table, const Tissue& tissue, const BodyTab
   return largest;
 }
 
-TEST(BodyTable, StaysWithinItsTolerance) {
+TEST(ModeLookup, StaysWithinItsTolerance) {
   const ThreadPool pool(2);
   for (const Specimen& specimen : std::span(kSpecimens).first(2))
     for (const double tolerance : {1e-2, 5e-4, 1e-4}) {
-      const BodyRequest request = request_of(specimen.name, tolerance);
-      const BodySpectrum spectrum = make_body_spectrum(request, pool);
+      const ModeTableRequest request = request_of(specimen.name, tolerance);
+      const ModeTable spectrum = make_mode_table(request, pool);
       EXPECT_LT(spectrum.error, tolerance);
-      const BodyTable table(request, spectrum, false);
+      const ModeLookup table(request, spectrum, false);
       const auto selection = table.select(lanes_of(request.wavelengths_nm));
       const TissueModel model(request.params);
       for (size_t lane = 0; lane < request.wavelengths_nm.size(); ++lane)
@@ -75,24 +76,24 @@ TEST(BodyTable, StaysWithinItsTolerance) {
     }
 }
 
-TEST(BodySpectrum, LeavesHalfOfItsToleranceToMissingModesAtEveryWavelength) {
-  const BodyRequest request = request_of("soybean", 5e-4, {551, 800, 1450, 1940, 2500});
-  EXPECT_LE(make_body_spectrum(request, ThreadPool(2)).error, request.tolerance / 2);
+TEST(ModeTable, LeavesHalfOfItsToleranceToMissingModesAtEveryWavelength) {
+  const ModeTableRequest request = request_of("soybean", 5e-4, {551, 800, 1450, 1940, 2500});
+  EXPECT_LE(make_mode_table(request, ThreadPool(2)).error, request.tolerance / 2);
 }
 
-TEST(BodyTable, IsSmall) {
+TEST(ModeLookup, IsSmall) {
   const ThreadPool pool(2);
-  const BodyRequest request = request_of("soybean", 5e-4);
-  EXPECT_LT(BodyTable(request, make_body_spectrum(request, pool), false).bytes(), size_t{64 * 1024});
+  const ModeTableRequest request = request_of("soybean", 5e-4);
+  EXPECT_LT(ModeLookup(request, make_mode_table(request, pool), false).bytes(), size_t{64 * 1024});
 }
 
 /// At mean angles, the whole of what is looked up is the solver's.
-TEST(BodyTable, HoldsTheSolversEnergy) {
+TEST(ModeLookup, HoldsTheSolversEnergy) {
   constexpr double kTolerance = 5e-4;
   const ThreadPool pool(2);
   for (const Specimen& specimen : std::span(kSpecimens).first(2)) {
-    const BodyRequest request = request_of(specimen.name, kTolerance, {455, 800});
-    const BodyTable table(request, make_body_spectrum(request, pool), false);
+    const ModeTableRequest request = request_of(specimen.name, kTolerance, {455, 800});
+    const ModeLookup table(request, make_mode_table(request, pool), false);
     const auto selection = table.select(lanes_of(request.wavelengths_nm));
     const TissueModel model(request.params);
     for (const double theta : {0.0, 17.0, 33.0, 51.0, 70.0, 82.0, 89.0})
@@ -103,8 +104,8 @@ TEST(BodyTable, HoldsTheSolversEnergy) {
           const auto nodes = table.nodes(static_cast<float>(std::sin(theta * kPi / 180)));
           Float4 light{};
           light[lane] = static_cast<float>(1 - expected.surface);
-          const BodyTable::Ways ways = table.ways(below, nodes, light, selection.columns);
-          const BodyTable::Ways other = table.ways(!below, nodes, light, selection.columns);
+          const ModeLookup::Ways ways = table.ways(below, nodes, light, selection.columns);
+          const ModeLookup::Ways other = table.ways(!below, nodes, light, selection.columns);
           EXPECT_NEAR(static_cast<double>(ways.back), expected.subsurface, kTolerance / 4) << theta;
           EXPECT_NEAR(static_cast<double>(ways.across), expected.transmitted, kTolerance / 4) << theta;
           EXPECT_EQ(other.across_to, ways.across);
@@ -112,12 +113,12 @@ TEST(BodyTable, HoldsTheSolversEnergy) {
   }
 }
 
-TEST(BodyTable, LiesBetweenWavelengths) {
+TEST(ModeLookup, LiesBetweenWavelengths) {
   const ThreadPool pool(2);
   std::vector<double> grid;
   for (double nm = 540; nm <= 560; nm += 2.5) grid.push_back(nm);
-  const BodyRequest request = request_of("soybean", 1e-3, grid);
-  const BodyTable table(request, make_body_spectrum(request, pool), true);
+  const ModeTableRequest request = request_of("soybean", 1e-3, grid);
+  const ModeLookup table(request, make_mode_table(request, pool), true);
   const std::vector<double> wanted{541.2, 550, 553.7, 559.9};
   const auto selection = table.select(lanes_of(wanted));
   const TissueModel model(request.params);
@@ -129,14 +130,14 @@ TEST(BodyTable, LiesBetweenWavelengths) {
 }
 
 /// 189 wavelengths as mixtures of a few functions, at wavelengths all over the spectrum.
-TEST(BodyTable, IsSmallAndRightOverTheSpectrum) {
+TEST(ModeLookup, IsSmallAndRightOverTheSpectrum) {
   constexpr double kTolerance = 1e-3;
   const ThreadPool pool(2);
   std::vector<double> grid;
   for (double nm = 360; nm <= 830; nm += 2.5) grid.push_back(nm);
   for (const Specimen& specimen : std::span(kSpecimens).first(2)) {
-    const BodyRequest request = request_of(specimen.name, kTolerance, grid);
-    const BodyTable table(request, make_body_spectrum(request, pool), true);
+    const ModeTableRequest request = request_of(specimen.name, kTolerance, grid);
+    const ModeLookup table(request, make_mode_table(request, pool), true);
     EXPECT_LT(table.bytes(), size_t{256 * 1024});
     const std::vector<double> wanted{362.5, 450, 550, 675};
     const auto selection = table.select(lanes_of(wanted));
@@ -147,21 +148,21 @@ TEST(BodyTable, IsSmallAndRightOverTheSpectrum) {
   }
 }
 
-TEST(BodyTable, LiesBetweenDepths) {
+TEST(ModeLookup, LiesBetweenDepths) {
   const ThreadPool pool(2);
-  BodyRequest request = request_of("soybean", 5e-4, {608, 551});
+  ModeTableRequest request = request_of("soybean", 5e-4, {608, 551});
   request.depths = DepthAxis(0.1, 0.4, 0.1);
-  const BodyTable table(request, make_body_spectrum(request, pool), false);
+  const ModeLookup table(request, make_mode_table(request, pool), false);
   const auto selection = table.select(lanes_of(request.wavelengths_nm), {0.17, 0.323});
   const TissueModel model(request.params);
   EXPECT_LT(largest_error(table, model.at(608, 0.17, model.lobes()), selection, 0), 1e-3);
   EXPECT_LT(largest_error(table, model.at(551, 0.323, model.lobes()), selection, 1), 1e-3);
 }
 
-TEST(BodyTable, NeverGivesLessThanNothing) {
+TEST(ModeLookup, NeverGivesLessThanNothing) {
   const ThreadPool pool(2);
-  const BodyRequest request = request_of("soybean", 0.1);
-  const BodyTable table(request, make_body_spectrum(request, pool), false);
+  const ModeTableRequest request = request_of("soybean", 0.1);
+  const ModeLookup table(request, make_mode_table(request, pool), false);
   const auto selection = table.select(lanes_of(request.wavelengths_nm));
   for (float a = 0; a <= 1; a += 0.1f)
     for (float b = 0; b <= 1; b += 0.1f)
@@ -173,10 +174,10 @@ TEST(BodyTable, NeverGivesLessThanNothing) {
           }
 }
 
-TEST(BodySpectrum, DoesNotDependOnThreads) {
-  const BodyRequest request = request_of("soybean", 1e-2, {455, 551, 680});
-  EXPECT_EQ(to_text(request, make_body_spectrum(request, ThreadPool(1)), ""),
-            to_text(request, make_body_spectrum(request, ThreadPool(3)), ""));
+TEST(ModeTable, DoesNotDependOnThreads) {
+  const ModeTableRequest request = request_of("soybean", 1e-2, {455, 551, 680});
+  EXPECT_EQ(to_text(request, make_mode_table(request, ThreadPool(1)), ""),
+            to_text(request, make_mode_table(request, ThreadPool(3)), ""));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace frond {
 
 /// What is exported: a material without a scene, whose f is exact and has no delta lobe, with air on both of its sides.
-struct ExportSubject {
+struct ExportMaterial {
   std::string label;  ///< the material's text
   /// The material, prepared for one to four wavelengths (nm). Throws InputError where its data do not reach them.
   std::function<std::shared_ptr<const Material>(const std::vector<double>&)> prepare;
@@ -21,12 +21,12 @@ struct ExportSubject {
   const Log& log;
 };
 
-/// f of a subject at one to four wavelengths, as a renderer sees it.
+/// f of a material at one to four wavelengths, as a renderer sees it.
 class ExportedBsdf {
  public:
   /// Throws InputError, which says what would be lost, for a material that is a random estimate, has a delta lobe or
   /// refracts light into another medium.
-  ExportedBsdf(const ExportSubject& subject, std::vector<double> wavelengths_nm);
+  ExportedBsdf(const ExportMaterial& material, std::vector<double> wavelengths_nm);
 
   const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
   const Material& material() const { return *material_; }

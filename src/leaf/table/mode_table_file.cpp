@@ -1,4 +1,4 @@
-#include "leaf/table/body_file.h"
+#include "leaf/table/mode_table_file.h"
 
 #include <fmt/ranges.h>
 
@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include "leaf/table/body_table.h"
+#include "leaf/table/mode_lookup.h"
 #include "system/file_bytes.h"
 
 namespace frond::leaf {
@@ -101,8 +101,8 @@ size_t count_in(const Word& word, std::string_view what, size_t high) {
 }
 
 /// One mode, of which the file has the sines from 0 on; the node at a negative one is its mirror image.
-BodyModes::Grid read_mode(Lines& lines, size_t mode, size_t side) {
-  BodyModes::Grid grid(side * side);
+LeafModes::Grid read_mode(Lines& lines, size_t mode, size_t side) {
+  LeafModes::Grid grid(side * side);
   const double mirror = mode % 2 == 1 ? -1 : 1;
   for (size_t i = 1; i < side; ++i) {
     const auto row =
@@ -120,14 +120,14 @@ BodyModes::Grid read_mode(Lines& lines, size_t mode, size_t side) {
   return grid;
 }
 
-BodyColumn read_column(Lines& lines, BodySpectrum& spectrum) {
+ModeTableColumn read_column(Lines& lines, ModeTable& spectrum) {
   const auto head = lines.take(6, "wavelength_nm NM index N depth D");
   expect(head[0], "wavelength_nm"), expect(head[2], "index"), expect(head[4], "depth");
   constexpr double kMost = 1e30;
-  const BodyColumn column{number_in(head[1], "wavelength_nm", 1, 1e6), number_in(head[5], "depth", 0, kMost),
-                          head[0].where};
+  const ModeTableColumn column{number_in(head[1], "wavelength_nm", 1, 1e6), number_in(head[5], "depth", 0, kMost),
+                               head[0].where};
   spectrum.index.push_back(number_in(head[3], "index", 1.001, 10));
-  BodyModes modes(grid_sines(spectrum.cells));
+  LeafModes modes(grid_sines(spectrum.cells));
   for (const bool below : {false, true})
     for (const bool crosses : {false, true}) {
       const auto line = lines.take(4, fmt::format("{} {} modes M", kSides[below], kWays[crosses]));
@@ -142,11 +142,11 @@ BodyColumn read_column(Lines& lines, BodySpectrum& spectrum) {
 
 /// Of the light that has passed the surface no more may leave again than there was, but for what interpolation and the
 /// rule by which it is added up make of it.
-void check_energy(const BodyFile& file, size_t column) {
-  const BodySpectrum& all = file.spectrum;
-  const BodySpectrum alone{all.cells, {all.index[column]}, {all.modes[column]}};
+void check_energy(const ModeTableFile& file, size_t column) {
+  const ModeTable& all = file.spectrum;
+  const ModeTable alone{all.cells, {all.index[column]}, {all.modes[column]}};
   const double lambda_nm = file.columns[column].lambda_nm;
-  const BodyTable table({.params = {}, .wavelengths_nm = {lambda_nm}, .tolerance = 0}, alone, false);
+  const ModeLookup table({.params = {}, .wavelengths_nm = {lambda_nm}, .tolerance = 0}, alone, false);
   TableSelection first;
   first.lane_count = first.columns_per_lane = 1;
   first.lanes[0].weight[0] = 1;
@@ -154,7 +154,7 @@ void check_energy(const BodyFile& file, size_t column) {
   for (const bool below : {false, true})
     for (int i = 0; i <= all.cells; ++i) {
       const double sine = static_cast<double>(i) / all.cells;
-      const BodyTable::Ways ways =
+      const ModeLookup::Ways ways =
           table.ways(below, table.nodes(static_cast<float>(sine)), SampledSpectrum(1).v, first);
       const double sum = static_cast<double>(ways.back + ways.across);
       if (sum > 1 + kRule + 2 * all.error)
@@ -164,40 +164,40 @@ void check_energy(const BodyFile& file, size_t column) {
     }
 }
 
-void write_series(std::string& text, const BodyModes& modes, bool below, bool crosses) {
+void write_series(std::string& text, const LeafModes& modes, bool below, bool crosses) {
   const size_t side = modes.sines().size();
   const auto& series = modes.series(below, crosses);
   fmt::format_to(std::back_inserter(text), "{} {} modes {}\n", kSides[below], kWays[crosses], series.size());
-  for (const BodyModes::Grid& h : series)
+  for (const LeafModes::Grid& h : series)
     for (size_t i = 1; i < side; ++i)
       fmt::format_to(std::back_inserter(text), "{}\n",
                      fmt::join(h.begin() + ptrdiff_t(i * side + 1), h.begin() + ptrdiff_t((i + 1) * side), " "));
 }
 
-BodyModes::Grid blend(const BodyModes::Grid& a, const BodyModes::Grid& b, double t) {
+LeafModes::Grid blend(const LeafModes::Grid& a, const LeafModes::Grid& b, double t) {
   const size_t size = std::max(a.size(), b.size());  // of modes that one of them does not have: 0
-  BodyModes::Grid result(size);
+  LeafModes::Grid result(size);
   for (size_t i = 0; i < size; ++i) result[i] = (1 - t) * (a.empty() ? 0 : a[i]) + t * (b.empty() ? 0 : b[i]);
   return result;
 }
 
-BodyModes blend(const BodyModes& a, const BodyModes& b, double t) {
+LeafModes blend(const LeafModes& a, const LeafModes& b, double t) {
   if (t == 0 || t == 1) return t == 0 ? a : b;  // without modes that are nothing
-  BodyModes result(a.sines());
+  LeafModes result(a.sines());
   for (const bool below : {false, true})
     for (const bool crosses : {false, true}) {
       const auto &x = a.series(below, crosses), &y = b.series(below, crosses);
       for (size_t m = 0; m < std::max(x.size(), y.size()); ++m)
         result.series(below, crosses)
-            .push_back(blend(m < x.size() ? x[m] : BodyModes::Grid(), m < y.size() ? y[m] : BodyModes::Grid(), t));
+            .push_back(blend(m < x.size() ? x[m] : LeafModes::Grid(), m < y.size() ? y[m] : LeafModes::Grid(), t));
     }
   return result;
 }
 
 /// By wavelength, and by depth within it.
-std::vector<BodyColumn> columns_of(const BodyRequest& request) {
+std::vector<ModeTableColumn> columns_of(const ModeTableRequest& request) {
   const TissueModel model(request.params);
-  std::vector<BodyColumn> columns;
+  std::vector<ModeTableColumn> columns;
   for (const double nm : request.wavelengths_nm) {
     if (request.depths.empty()) columns.push_back({nm, model.at(nm).optical_depth[2], {}});
     for (const double depth : request.depths.depths()) columns.push_back({nm, depth, {}});
@@ -206,7 +206,7 @@ std::vector<BodyColumn> columns_of(const BodyRequest& request) {
 }
 
 /// A render's leaf has one column for each.
-void check_wavelengths(const BodyFile& file) {
+void check_wavelengths(const ModeTableFile& file) {
   for (size_t i = 0; i < file.columns.size(); ++i)
     for (size_t j = 0; j < i; ++j)
       if (file.columns[i].lambda_nm == file.columns[j].lambda_nm)
@@ -216,14 +216,14 @@ void check_wavelengths(const BodyFile& file) {
 
 }  // namespace
 
-std::vector<double> BodyFile::wavelengths_nm() const {
+std::vector<double> ModeTableFile::wavelengths_nm() const {
   std::vector<double> nm;
-  for (const BodyColumn& column : columns) nm.push_back(column.lambda_nm);
+  for (const ModeTableColumn& column : columns) nm.push_back(column.lambda_nm);
   return nm;
 }
 
-std::string to_text(const BodyRequest& request, const BodySpectrum& spectrum, std::string_view header) {
-  const std::vector<BodyColumn> columns = columns_of(request);
+std::string to_text(const ModeTableRequest& request, const ModeTable& spectrum, std::string_view header) {
+  const std::vector<ModeTableColumn> columns = columns_of(request);
   std::string text = fmt::format("{}cells {}\nerror {}\n", header, spectrum.cells, spectrum.error);
   for (size_t c = 0; c < columns.size(); ++c) {
     fmt::format_to(std::back_inserter(text), "wavelength_nm {} index {} depth {}\n", columns[c].lambda_nm,
@@ -234,11 +234,11 @@ std::string to_text(const BodyRequest& request, const BodySpectrum& spectrum, st
   return text;
 }
 
-BodyFile parse_body_file(std::string_view text, const std::string& name) {
+ModeTableFile parse_mode_table_file(std::string_view text, const std::string& name) {
   const Location start{std::make_shared<const std::string>(name), 1, 1};
   if (text.find('\0') != text.npos) fail(start, "this is no text: a leaf's modes are a text file");
   Lines lines(text, name);
-  BodyFile file;
+  ModeTableFile file;
   const auto cells = lines.take(2, "cells N");
   expect(cells[0], "cells");
   file.spectrum.cells = static_cast<int>(count_in(cells[1], "cells", kMostCells));
@@ -252,18 +252,18 @@ BodyFile parse_body_file(std::string_view text, const std::string& name) {
   return file;
 }
 
-BodyFile read_body_file(const std::filesystem::path& path, const Location& where) {
-  BodyFile file = parse_body_file(read_file_bytes(path, where, "leaf modes"), path.string());
+ModeTableFile read_mode_table_file(const std::filesystem::path& path, const Location& where) {
+  ModeTableFile file = parse_mode_table_file(read_file_bytes(path, where, "leaf modes"), path.string());
   check_wavelengths(file);
   return file;
 }
 
-BodySpectrum at_wavelengths(const BodyFile& file, const std::vector<double>& wavelengths_nm) {
+ModeTable at_wavelengths(const ModeTableFile& file, const std::vector<double>& wavelengths_nm) {
   std::vector<size_t> order(file.columns.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const auto nm = [&file](size_t i) { return file.columns[i].lambda_nm; };
   std::ranges::sort(order, {}, nm);
-  BodySpectrum result{.cells = file.spectrum.cells, .error = file.spectrum.error};
+  ModeTable result{.cells = file.spectrum.cells, .error = file.spectrum.error};
   for (const double wanted : wavelengths_nm) {
     const auto after = std::ranges::upper_bound(order, wanted, {}, nm);
     const size_t above = std::min(static_cast<size_t>(after - order.begin()), order.size() - 1);

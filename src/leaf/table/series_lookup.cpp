@@ -1,4 +1,4 @@
-#include "leaf/table/series_table.h"
+#include "leaf/table/series_lookup.h"
 
 #include <algorithm>
 #include <cassert>
@@ -9,20 +9,20 @@
 namespace frond::leaf {
 namespace {
 
-size_t longest_series(const std::vector<BodyModes>& modes, bool from_below, bool crosses) {
+size_t longest_series(const std::vector<LeafModes>& modes, bool from_below, bool crosses) {
   size_t longest = 0;
-  for (const BodyModes& m : modes) longest = std::max(longest, m.series(from_below, crosses).size());
+  for (const LeafModes& m : modes) longest = std::max(longest, m.series(from_below, crosses).size());
   return longest;
 }
 
 /// All modes of each column in a row: [mode][place].
-std::vector<std::vector<double>> rows_of(const BodySpectrum& spectrum, bool from_below, bool crosses, size_t modes,
+std::vector<std::vector<double>> rows_of(const ModeTable& spectrum, bool from_below, bool crosses, size_t modes,
                                          size_t places) {
   std::vector<std::vector<double>> rows;
-  for (const BodyModes& column : spectrum.modes) {
+  for (const LeafModes& column : spectrum.modes) {
     std::vector<double>& row = rows.emplace_back(modes * places, 0.0);
     auto to = row.begin();
-    for (const BodyModes::Grid& h : column.series(from_below, crosses)) to = std::ranges::copy(h, to).out;
+    for (const LeafModes::Grid& h : column.series(from_below, crosses)) to = std::ranges::copy(h, to).out;
   }
   return rows;
 }
@@ -40,7 +40,7 @@ double largest_sum(const std::vector<double>& row, size_t places) {
 
 }  // namespace
 
-SeriesTable::SeriesTable(const BodySpectrum& spectrum, bool from_below, bool crosses, double tolerance)
+SeriesLookup::SeriesLookup(const ModeTable& spectrum, bool from_below, bool crosses, double tolerance)
     : cells_(static_cast<size_t>(spectrum.cells)), modes_(longest_series(spectrum.modes, from_below, crosses)) {
   assert(modes_ <= kMostModes);
   const ReducedBasis basis = reduce_basis(
@@ -52,7 +52,7 @@ SeriesTable::SeriesTable(const BodySpectrum& spectrum, bool from_below, bool cro
   set_values(basis);
 }
 
-void SeriesTable::set_weights(const ReducedBasis& basis) {
+void SeriesLookup::set_weights(const ReducedBasis& basis) {
   weights_.resize(basis.weights.size() * blocks_);
   for (size_t c = 0; c < basis.weights.size(); ++c)
     for (size_t k = 0; k < basis.functions.size(); ++k)
@@ -60,7 +60,7 @@ void SeriesTable::set_weights(const ReducedBasis& basis) {
 }
 
 /// Of pi f, at each place: what a mode of the block's functions adds in the column where it adds most.
-std::vector<double> SeriesTable::size_of(const ReducedBasis& basis, size_t block, size_t mode) const {
+std::vector<double> SeriesLookup::size_of(const ReducedBasis& basis, size_t block, size_t mode) const {
   const size_t first = 4 * block, end = std::min(first + 4, basis.functions.size());
   std::vector<double> sizes(places(), 0.0);
   for (const std::vector<double>& weights : basis.weights)
@@ -73,7 +73,7 @@ std::vector<double> SeriesTable::size_of(const ReducedBasis& basis, size_t block
 }
 
 /// Of what it adds in a cell: the cubics' weights have a sum of absolute values of 25/16 at most.
-double SeriesTable::around(const std::vector<double>& size, size_t incident, size_t leaving) const {
+double SeriesLookup::around(const std::vector<double>& size, size_t incident, size_t leaving) const {
   double largest = 0;
   for (size_t i = incident; i < incident + 4; ++i)
     for (size_t o = leaving; o < leaving + 4; ++o) largest = std::max(largest, size[i * side() + o]);
@@ -81,7 +81,7 @@ double SeriesTable::around(const std::vector<double>& size, size_t incident, siz
 }
 
 /// In each cell as many modes as it takes to leave out less than the tolerance in all blocks together; one at least.
-void SeriesTable::set_needed(const ReducedBasis& basis, double tolerance) {
+void SeriesLookup::set_needed(const ReducedBasis& basis, double tolerance) {
   needed_.resize(cells_ * cells_ * blocks_);
   for (size_t b = 0; b < blocks_; ++b) {
     std::vector<std::vector<double>> sizes;
@@ -101,7 +101,7 @@ void SeriesTable::set_needed(const ReducedBasis& basis, double tolerance) {
   }
 }
 
-void SeriesTable::set_values(const ReducedBasis& basis) {
+void SeriesLookup::set_values(const ReducedBasis& basis) {
   values_.resize(places() * terms_);
   for (size_t i = 0; i < places(); ++i)
     for (size_t k = 0, before = 0; k < basis.functions.size(); ++k) {

@@ -1,4 +1,4 @@
-#include "leaf/table/body_file.h"
+#include "leaf/table/mode_table_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "core/log.h"
-#include "leaf/table/body_cache.h"
+#include "leaf/table/mode_table_cache.h"
 #include "leaf/tissue/specimens.h"
 #include "tests/support/input_error.h"
 
@@ -18,11 +18,11 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 namespace fs = std::filesystem;
 
-BodyRequest request_of(std::string_view specimen, std::vector<double> wavelengths) {
+ModeTableRequest request_of(std::string_view specimen, std::vector<double> wavelengths) {
   return {.params = find_specimen(specimen)->params, .wavelengths_nm = std::move(wavelengths), .tolerance = 1e-2};
 }
 
-void expect_same(const BodySpectrum& a, const BodySpectrum& b) {
+void expect_same(const ModeTable& a, const ModeTable& b) {
   EXPECT_EQ(a.cells, b.cells);
   EXPECT_EQ(a.index, b.index);
   EXPECT_EQ(a.error, b.error);
@@ -33,21 +33,21 @@ void expect_same(const BodySpectrum& a, const BodySpectrum& b) {
         EXPECT_EQ(a.modes[c].series(below, crosses), b.modes[c].series(below, crosses)) << c;
 }
 
-TEST(BodyFile, ComesBackToTheBit) {
+TEST(ModeTableFile, ComesBackToTheBit) {
   for (const char* specimen : {"soybean", "maize"}) {
-    const BodyRequest request = request_of(specimen, {608, 455});
-    const BodySpectrum made = make_body_spectrum(request, ThreadPool(2));
-    const BodyFile read = parse_body_file(to_text(request, made, describe(request)), "test");
+    const ModeTableRequest request = request_of(specimen, {608, 455});
+    const ModeTable made = make_mode_table(request, ThreadPool(2));
+    const ModeTableFile read = parse_mode_table_file(to_text(request, made, describe(request)), "test");
     EXPECT_EQ(read.wavelengths_nm(), request.wavelengths_nm);
     expect_same(read.spectrum, made);
   }
 }
 
-TEST(BodyFile, KeepsDepths) {
-  BodyRequest request = request_of("soybean", {608, 455});
+TEST(ModeTableFile, KeepsDepths) {
+  ModeTableRequest request = request_of("soybean", {608, 455});
   request.depths = DepthAxis(0.1, 0.3, 0.5);
-  const BodySpectrum made = make_body_spectrum(request, ThreadPool(2));
-  const BodyFile read = parse_body_file(to_text(request, made, ""), "test");
+  const ModeTable made = make_mode_table(request, ThreadPool(2));
+  const ModeTableFile read = parse_mode_table_file(to_text(request, made, ""), "test");
   ASSERT_EQ(read.columns.size(), 2 * request.depths.depths().size());
   EXPECT_EQ(read.columns[1].depth, request.depths.depths()[1]);
   expect_same(read.spectrum, made);
@@ -71,9 +71,9 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text.replace(place, what.size(), by);
 }
 
-TEST(BodyFile, NamesWhatIsWrongAndWhere) {
+TEST(ModeTableFile, NamesWhatIsWrongAndWhere) {
   const std::string sound = plain_leaf();
-  EXPECT_EQ(error_of([&] { parse_body_file(sound, "leaf.modes"); }), "");
+  EXPECT_EQ(error_of([&] { parse_mode_table_file(sound, "leaf.modes"); }), "");
   struct {
     std::string what, by, message;
   } const kCases[] = {
@@ -92,38 +92,37 @@ TEST(BodyFile, NamesWhatIsWrongAndWhere) {
   };
   for (const auto& [what, by, message] : kCases) {
     const std::string text = replaced(sound, what, by);
-    EXPECT_THAT(error_of([&] { parse_body_file(text, "leaf.modes"); }), HasSubstr(message));
+    EXPECT_THAT(error_of([&] { parse_mode_table_file(text, "leaf.modes"); }), HasSubstr(message));
   }
-  EXPECT_THAT(error_of([&] { parse_body_file(sound.substr(0, sound.size() - 15), "leaf.modes"); }),
+  EXPECT_THAT(error_of([&] { parse_mode_table_file(sound.substr(0, sound.size() - 15), "leaf.modes"); }),
               HasSubstr("the file ends where the 3 numbers of mode 0"));
-  EXPECT_THAT(error_of([&] { parse_body_file("", "leaf.modes"); }), HasSubstr("the file ends where cells N should"));
-  EXPECT_THAT(error_of([&] { parse_body_file(sound + "0.02\n", "leaf.modes"); }),
+  EXPECT_THAT(error_of([&] { parse_mode_table_file("", "leaf.modes"); }),
+              HasSubstr("the file ends where cells N should"));
+  EXPECT_THAT(error_of([&] { parse_mode_table_file(sound + "0.02\n", "leaf.modes"); }),
               HasSubstr(":22:1: 1 word in place of"));
-  EXPECT_THAT(error_of([&] { parse_body_file(std::string("\0", 1), "leaf.modes"); }), HasSubstr("no text"));
+  EXPECT_THAT(error_of([&] { parse_mode_table_file(std::string("\0", 1), "leaf.modes"); }), HasSubstr("no text"));
 }
 
-TEST(BodyFile, IsRefusedWhereItCannotBeReadOrSaysThingsTwice) {
+TEST(ModeTableFile, IsRefusedWhereItCannotBeReadOrSaysThingsTwice) {
   const TestFolder folder("body_file");
-  EXPECT_THAT(error_of([&] { read_body_file(folder.name_of(""), {}); }), HasSubstr("it is a folder"));
-  EXPECT_THAT(error_of([&] { read_body_file(folder.name_of("none"), {}); }), HasSubstr("No such file"));
-  EXPECT_EQ(error_of([] { read_body_file("/dev/zero", {}); }),
+  EXPECT_THAT(error_of([&] { read_mode_table_file(folder.name_of(""), {}); }), HasSubstr("it is a folder"));
+  EXPECT_THAT(error_of([&] { read_mode_table_file(folder.name_of("none"), {}); }), HasSubstr("No such file"));
+  EXPECT_EQ(error_of([] { read_mode_table_file("/dev/zero", {}); }),
             "cannot read leaf modes \"/dev/zero\": it is no regular file");
   const std::string sound = plain_leaf();
   const fs::path twice = folder.write("twice", sound + sound.substr(sound.find("wavelength_nm")));
-  EXPECT_THAT(error_of([&] { read_body_file(twice, {}); }),
+  EXPECT_THAT(error_of([&] { read_mode_table_file(twice, {}); }),
               HasSubstr("twice:22:1: 551 nm comes twice, the first time in line 5"));
 }
 
-TEST(BodyFile, IsTheCacheToo) {
+TEST(ModeTableFile, IsTheCacheToo) {
   const TestFolder folder("body_cache");
-  const BodyRequest request = request_of("soybean", {551});
-  const auto get = [&] {
-    return cached_body_spectrum(request, "test", ThreadPool(1), silent_log(), folder.name_of(""));
-  };
-  const BodySpectrum made = get();
+  const ModeTableRequest request = request_of("soybean", {551});
+  const auto get = [&] { return cached_mode_table(request, "test", ThreadPool(1), silent_log(), folder.name_of("")); };
+  const ModeTable made = get();
   const std::vector<fs::path> files(fs::directory_iterator(folder.name_of("")), fs::directory_iterator());
   ASSERT_THAT(files, SizeIs(1));
-  expect_same(read_body_file(files[0], {}).spectrum, made);
+  expect_same(read_mode_table_file(files[0], {}).spectrum, made);
   expect_same(get(), made);
   const auto text = [&] {
     std::ifstream in(files[0]);
@@ -137,12 +136,12 @@ TEST(BodyFile, IsTheCacheToo) {
   }
 }
 
-TEST(BodyFile, LiesBetweenItsWavelengths) {
-  const BodyRequest request = request_of("soybean", {608, 455});
-  const BodyFile file{{{608, 0, {}}, {455, 0, {}}}, make_body_spectrum(request, ThreadPool(2))};
-  const BodySpectrum between = at_wavelengths(file, {400, 493.25, 608});
+TEST(ModeTableFile, LiesBetweenItsWavelengths) {
+  const ModeTableRequest request = request_of("soybean", {608, 455});
+  const ModeTableFile file{{{608, 0, {}}, {455, 0, {}}}, make_mode_table(request, ThreadPool(2))};
+  const ModeTable between = at_wavelengths(file, {400, 493.25, 608});
   expect_same(at_wavelengths(file, {608, 455}), file.spectrum);
-  const auto value = [](const BodySpectrum& s, size_t c) { return s.modes[c].series(false, false)[0][7]; };
+  const auto value = [](const ModeTable& s, size_t c) { return s.modes[c].series(false, false)[0][7]; };
   EXPECT_EQ(value(between, 0), value(file.spectrum, 1));
   EXPECT_NEAR(value(between, 1), 0.75 * value(file.spectrum, 1) + 0.25 * value(file.spectrum, 0), 1e-15);
   EXPECT_NEAR(between.index[1], 0.75 * file.spectrum.index[1] + 0.25 * file.spectrum.index[0], 1e-15);

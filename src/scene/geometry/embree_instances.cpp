@@ -1,4 +1,4 @@
-#include "scene/geometry/embree_copies.h"
+#include "scene/geometry/embree_instances.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@ namespace {
 
 Float4 to_float4(const Vec3& v) { return Float4{v.x, v.y, v.z, 0}; }
 
-/// Whether a ray passes a box. Copies' boxes in the world are wider than those in their own space: most of the rays
+/// Whether a ray passes a box. Instances' boxes in the world are wider than those in their own space: most of the rays
 /// that pass the one miss the other.
 bool passes(Float4 origin, Float4 direction, float t_max, const Bounds& box) {
   const Float4 inverse = 1 / direction;
@@ -66,57 +66,57 @@ bool passes(const RTCRay8& rays, const Bounds& box, const int* valid, int* passi
   return any != 0;
 }
 
-/// What Embree asks of copies of objects: the ray is taken into the object's space, and the search goes on there.
+/// What Embree asks of instances of objects: the ray is taken into the object's space, and the search goes on there.
 struct Callbacks {
   /// False where the ray misses the object's box.
-  static bool to_object(const embree::Copy& copy, const RTCRay& ray, RTCRay& inner) {
-    const GeometryCopies& copies = *static_cast<const GeometryCopies*>(copy.copies);
+  static bool to_object(const embree::Instance& instance, const RTCRay& ray, RTCRay& inner) {
+    const GeometryInstances& set = *static_cast<const GeometryInstances*>(instance.set);
     Float4 origin = embree::origin(ray), direction = embree::direction(ray);
-    if (copies.instances.is_placed) {
-      origin = copies.from_placement.point(origin);
-      direction = copies.from_placement.vector(direction);
+    if (set.instances.is_placed) {
+      origin = set.from_placement.point(origin);
+      direction = set.from_placement.vector(direction);
     }
     AffineMap::Inverse made;
-    const AffineMap::Inverse& map = copies.inverse(copy.row, made);
+    const AffineMap::Inverse& map = set.inverse(instance.row, made);
     inner = embree::from_vectors(map.point(origin), map.vector(direction), ray.tfar);
-    return passes(embree::origin(inner), embree::direction(inner), ray.tfar, copies.object(copy.row).bounds);
+    return passes(embree::origin(inner), embree::direction(inner), ray.tfar, set.object(instance.row).bounds);
   }
 
   static void intersect(const RTCIntersectFunctionNArguments* args) {
-    const auto& copies = *static_cast<const GeometryCopies*>(args->geometryUserPtr);
+    const auto& set = *static_cast<const GeometryInstances*>(args->geometryUserPtr);
     auto& query = *reinterpret_cast<embree::Query*>(args->context);
-    const embree::Copy copy{&copies, args->primID};
+    const embree::Instance instance{&set, args->primID};
     if (args->N == RayPacket::kWidth) {
-      intersect(copy, args->valid, *reinterpret_cast<RTCRayHit8*>(args->rayhit), query);
+      intersect(instance, args->valid, *reinterpret_cast<RTCRayHit8*>(args->rayhit), query);
     } else if (args->valid[0]) {
-      intersect(copy, *reinterpret_cast<RTCRayHit*>(args->rayhit), query);
+      intersect(instance, *reinterpret_cast<RTCRayHit*>(args->rayhit), query);
     }
   }
 
   static void occluded(const RTCOccludedFunctionNArguments* args) {
-    const auto& copies = *static_cast<const GeometryCopies*>(args->geometryUserPtr);
+    const auto& set = *static_cast<const GeometryInstances*>(args->geometryUserPtr);
     auto& query = *reinterpret_cast<embree::Query*>(args->context);
-    const embree::Copy copy{&copies, args->primID};
+    const embree::Instance instance{&set, args->primID};
     if (args->N == RayPacket::kWidth) {
-      occluded(copy, args->valid, *reinterpret_cast<RTCRay8*>(args->ray), query);
+      occluded(instance, args->valid, *reinterpret_cast<RTCRay8*>(args->ray), query);
     } else if (args->valid[0]) {
-      occluded(copy, *reinterpret_cast<RTCRay*>(args->ray), query);
+      occluded(instance, *reinterpret_cast<RTCRay*>(args->ray), query);
     }
   }
 
-  static void intersect(const embree::Copy& copy, RTCRayHit& ray, embree::Query& query) {
-    const auto& copies = *static_cast<const GeometryCopies*>(copy.copies);
+  static void intersect(const embree::Instance& instance, RTCRayHit& ray, embree::Query& query) {
+    const auto& set = *static_cast<const GeometryInstances*>(instance.set);
     RTCRayHit nested;
-    if (!to_object(copy, ray.ray, nested.ray)) return;
-    const GeometryObject& object = copies.object(copy.row);
+    if (!to_object(instance, ray.ray, nested.ray)) return;
+    const GeometryObject& object = set.object(instance.row);
     const uint32_t level = query.depth;
-    query.enter(copy);
+    query.enter(instance);
     if (object.only_primitive) {
       constexpr embree::Target kOnly{0, 0};
       const Ray inner = embree::to_ray(nested.ray);
       if (const auto point = embree::meet(*object.only_primitive, kOnly, inner, query, *query.lane)) {
         embree::report(*point, kOnly, reinterpret_cast<RTCRayHitN*>(&ray), 1, 0, query);
-        query.lane->hit[level] = copy;
+        query.lane->hit[level] = instance;
       }
     } else {
       nested.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -124,18 +124,18 @@ struct Callbacks {
       if (nested.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
         ray.ray.tfar = nested.ray.tfar;
         ray.hit = nested.hit;
-        query.lane->hit[level] = copy;
+        query.lane->hit[level] = instance;
       }
     }
     query.leave();
   }
 
-  static void occluded(const embree::Copy& copy, RTCRay& ray, embree::Query& query) {
-    const auto& copies = *static_cast<const GeometryCopies*>(copy.copies);
+  static void occluded(const embree::Instance& instance, RTCRay& ray, embree::Query& query) {
+    const auto& set = *static_cast<const GeometryInstances*>(instance.set);
     RTCRay nested;
-    if (!to_object(copy, ray, nested)) return;
-    const GeometryObject& object = copies.object(copy.row);
-    query.enter(copy);
+    if (!to_object(instance, ray, nested)) return;
+    const GeometryObject& object = set.object(instance.row);
+    query.enter(instance);
     if (object.only_primitive) {
       if (embree::meet(*object.only_primitive, {0, 0}, embree::to_ray(nested), query, *query.lane))
         ray.tfar = -INFINITY;
@@ -147,56 +147,59 @@ struct Callbacks {
   }
 
   /// The rays of a packet in the object's space, and which of them pass its box. False where none does.
-  static bool to_object(const embree::Copy& copy, const int* valid, const RTCRay8& rays, RTCRay8& inner, int* passing) {
-    const GeometryCopies& copies = *static_cast<const GeometryCopies*>(copy.copies);
+  static bool to_object(const embree::Instance& instance, const int* valid, const RTCRay8& rays, RTCRay8& inner,
+                        int* passing) {
+    const GeometryInstances& set = *static_cast<const GeometryInstances*>(instance.set);
     AffineMap::Inverse made;
-    const AffineMap::Inverse& map = copies.inverse(copy.row, made);
-    if (copies.instances.is_placed) {
-      transform(copies.from_placement, rays, inner);
+    const AffineMap::Inverse& map = set.inverse(instance.row, made);
+    if (set.instances.is_placed) {
+      transform(set.from_placement, rays, inner);
       transform(map, inner, inner);
     } else {
       transform(map, rays, inner);
     }
-    return passes(inner, copies.object(copy.row).bounds, valid, passing);
+    return passes(inner, set.object(instance.row).bounds, valid, passing);
   }
 
-  static void intersect(const embree::Copy& copy, const int* valid, RTCRayHit8& rays, embree::Query& query) {
+  static void intersect(const embree::Instance& instance, const int* valid, RTCRayHit8& rays, embree::Query& query) {
     RTCRayHit8 inner;
     alignas(32) std::array<int, RayPacket::kWidth> passing;
-    if (!to_object(copy, valid, rays.ray, inner.ray, passing.data())) return;
+    if (!to_object(instance, valid, rays.ray, inner.ray, passing.data())) return;
     std::ranges::fill(inner.hit.geomID, RTC_INVALID_GEOMETRY_ID);
     const uint32_t level = query.depth;
-    query.enter(copy);
-    embree::intersect(passing.data(), static_cast<const GeometryCopies*>(copy.copies)->object(copy.row).scene.get(),
-                      inner, query);
+    query.enter(instance);
+    embree::intersect(passing.data(),
+                      static_cast<const GeometryInstances*>(instance.set)->object(instance.row).scene.get(), inner,
+                      query);
     query.leave();
     for (unsigned i = 0; i < RayPacket::kWidth; ++i) {
       if (!passing[i] || inner.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
       rays.ray.tfar[i] = inner.ray.tfar[i];
       const RTCHit at = rtcGetHitFromHitN(reinterpret_cast<RTCHitN*>(&inner.hit), RayPacket::kWidth, i);
       rtcCopyHitToHitN(reinterpret_cast<RTCHitN*>(&rays.hit), &at, RayPacket::kWidth, i);
-      query.lane[i].hit[level] = copy;
+      query.lane[i].hit[level] = instance;
     }
   }
 
-  static void occluded(const embree::Copy& copy, const int* valid, RTCRay8& rays, embree::Query& query) {
+  static void occluded(const embree::Instance& instance, const int* valid, RTCRay8& rays, embree::Query& query) {
     RTCRay8 inner;
     alignas(32) std::array<int, RayPacket::kWidth> passing;
-    if (!to_object(copy, valid, rays, inner, passing.data())) return;
-    query.enter(copy);
-    embree::occluded(passing.data(), static_cast<const GeometryCopies*>(copy.copies)->object(copy.row).scene.get(),
-                     inner, query);
+    if (!to_object(instance, valid, rays, inner, passing.data())) return;
+    query.enter(instance);
+    embree::occluded(passing.data(),
+                     static_cast<const GeometryInstances*>(instance.set)->object(instance.row).scene.get(), inner,
+                     query);
     query.leave();
     for (unsigned i = 0; i < RayPacket::kWidth; ++i)
       if (passing[i] && inner.tfar[i] < 0) rays.tfar[i] = -INFINITY;
   }
 
   static void bounds(const RTCBoundsFunctionArguments* args) {
-    const auto& copies = *static_cast<const GeometryCopies*>(args->geometryUserPtr);
-    const Instances& i = copies.instances;
+    const auto& set = *static_cast<const GeometryInstances*>(args->geometryUserPtr);
+    const Instances& i = set.instances;
     const AffineMap map = i.table->map(args->primID);
     Bounds b;
-    for (const Vec3& corner : copies.object(args->primID).outline) {
+    for (const Vec3& corner : set.object(args->primID).outline) {
       const Vec3 p = map.point(corner);
       b.add(i.is_placed ? i.placement.point(p) : p);
     }
@@ -207,13 +210,13 @@ struct Callbacks {
 
 }  // namespace
 
-RTCGeometry embree::new_geometry(RTCDevice device, const GeometryCopies& copies) {
+RTCGeometry embree::new_geometry(RTCDevice device, const GeometryInstances& set) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(copies.instances.table->size()));
+  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(set.instances.table->size()));
   rtcSetGeometryBoundsFunction(geometry, Callbacks::bounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry, Callbacks::intersect);
   rtcSetGeometryOccludedFunction(geometry, Callbacks::occluded);
-  rtcSetGeometryUserData(geometry, const_cast<GeometryCopies*>(&copies));
+  rtcSetGeometryUserData(geometry, const_cast<GeometryInstances*>(&set));
   rtcCommitGeometry(geometry);
   return geometry;
 }

@@ -1,4 +1,4 @@
-#include "exports/subject.h"
+#include "exports/exported_bsdf.h"
 
 #include "core/bsdf.h"
 #include "instruments/beam.h"
@@ -27,10 +27,10 @@ void check(const Bsdf& bsdf, const std::string& label) {
 
 }  // namespace
 
-ExportedBsdf::ExportedBsdf(const ExportSubject& subject, std::vector<double> wavelengths_nm)
-    : wavelengths_nm_(std::move(wavelengths_nm)), material_(subject.prepare(wavelengths_nm_)) {
+ExportedBsdf::ExportedBsdf(const ExportMaterial& material, std::vector<double> wavelengths_nm)
+    : wavelengths_nm_(std::move(wavelengths_nm)), material_(material.prepare(wavelengths_nm_)) {
   Arena arena;
-  check(evaluated(*material_, wavelengths_nm_, arena), subject.label);
+  check(evaluated(*material_, wavelengths_nm_, arena), material.label);
 }
 
 ExportedBsdf::At::At(const ExportedBsdf& bsdf) : bsdf_(evaluated(*bsdf.material_, bsdf.wavelengths_nm_, arena_)) {}

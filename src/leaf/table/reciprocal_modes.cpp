@@ -1,4 +1,4 @@
-#include "leaf/table/reciprocal_body.h"
+#include "leaf/table/reciprocal_modes.h"
 
 #include <Eigen/Core>
 
@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Grid = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-/// Light that comes in on one side and leaves on one, as in BodyModes.
+/// Light that comes in on one side and leaves on one, as in LeafModes.
 struct Route {
   bool from_below, crosses;
   Route back() const { return {from_below != crosses, crosses}; }
@@ -28,13 +28,13 @@ VectorXd inner_cosines(const std::vector<double>& sines, double index) {
   return mu;
 }
 
-Grid grid(const BodyModes& modes, const Route& route, size_t mode) {
+Grid grid(const LeafModes& modes, const Route& route, size_t mode) {
   const auto side = static_cast<Index>(modes.sines().size());
   return {modes.series(route.from_below, route.crosses)[mode].data(), side, side};
 }
 
 /// f / ((1 - F_i) (1 - F_o)) of one mode, the mean of both ways round: rows are directions where the route begins.
-MatrixXd both_ways(const BodyModes& modes, const VectorXd& inner, const Route& route, size_t mode) {
+MatrixXd both_ways(const LeafModes& modes, const VectorXd& inner, const Route& route, size_t mode) {
   const auto over = inner.cwiseInverse().asDiagonal();
   const MatrixXd there = grid(modes, route, mode) * over, back = grid(modes, route.back(), mode) * over;
   return (there + back.transpose()) / 2;
@@ -45,7 +45,7 @@ VectorXd as_vector(const std::vector<double>& v) {
 }
 
 /// Share that comes out again of light that has come in, by direction: those above the leaf, then those below.
-VectorXd outgoing(const BodyModes& modes, double index, size_t cells) {
+VectorXd outgoing(const LeafModes& modes, double index, size_t cells) {
   const VectorXd weight = as_vector(exit_weights(index, cells, Measure::over_inner_cosine));
   VectorXd share(2 * weight.size());
   share << (grid(modes, kAbove, 0) + grid(modes, kThrough, 0)) * weight,
@@ -71,14 +71,14 @@ std::optional<VectorXd> scaling(const MatrixXd& k, const VectorXd& share) {
   return {};
 }
 
-BodyModes::Grid row_by_row(const MatrixXd& matrix) {
-  BodyModes::Grid values(static_cast<size_t>(matrix.size()));
+LeafModes::Grid row_by_row(const MatrixXd& matrix) {
+  LeafModes::Grid values(static_cast<size_t>(matrix.size()));
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(values.data(), matrix.rows(),
                                                                                      matrix.cols()) = matrix;
   return values;
 }
 
-std::optional<BodyModes> make_reciprocal(const BodyModes& modes, double index, size_t cells) {
+std::optional<LeafModes> make_reciprocal(const LeafModes& modes, double index, size_t cells) {
   const VectorXd inner = inner_cosines(modes.sines(), index);
   const VectorXd weight = as_vector(exit_weights(index, cells, Measure::plain));
   const Index side = weight.size();
@@ -87,7 +87,7 @@ std::optional<BodyModes> make_reciprocal(const BodyModes& modes, double index, s
   k << both_ways(modes, inner, kAbove, 0), through, through.transpose(), both_ways(modes, inner, kBelow, 0);
   const auto d = scaling(k * weight.replicate(2, 1).asDiagonal(), outgoing(modes, index, cells));
   if (!d) return {};
-  BodyModes result(modes.sines());
+  LeafModes result(modes.sines());
   const auto scaled = [&](const Route& route, size_t mode) -> MatrixXd {
     const auto of = [&](bool below) { return d->segment(below ? side : 0, side); };
     return of(route.from_below).asDiagonal() * both_ways(modes, inner, route, mode) *
@@ -101,8 +101,8 @@ std::optional<BodyModes> make_reciprocal(const BodyModes& modes, double index, s
 
 }  // namespace
 
-std::optional<BodySpectrum> make_reciprocal(const BodySpectrum& spectrum) {
-  BodySpectrum result{.cells = spectrum.cells, .index = spectrum.index, .error = spectrum.error, .is_reciprocal = true};
+std::optional<ModeTable> make_reciprocal(const ModeTable& spectrum) {
+  ModeTable result{.cells = spectrum.cells, .index = spectrum.index, .error = spectrum.error, .is_reciprocal = true};
   for (size_t c = 0; c < spectrum.modes.size(); ++c) {
     auto modes = make_reciprocal(spectrum.modes[c], spectrum.index[c], static_cast<size_t>(spectrum.cells));
     if (!modes) return {};

@@ -1,4 +1,4 @@
-#include "leaf/table/body_table.h"
+#include "leaf/table/mode_lookup.h"
 
 #include <algorithm>
 #include <numeric>
@@ -8,24 +8,24 @@
 namespace frond::leaf {
 namespace {
 
-/// Share of the tolerance that the functions of SeriesTable may leave out, and their small terms once more.
+/// Share of the tolerance that the functions of SeriesLookup may leave out, and their small terms once more.
 constexpr double kTableShare = 1.0 / 8;
 
 }  // namespace
 
-BodyTable::BodyTable(const BodyRequest& request, const BodySpectrum& spectrum, bool lanes_vary)
+ModeLookup::ModeLookup(const ModeTableRequest& request, const ModeTable& spectrum, bool lanes_vary)
     : cells_(static_cast<size_t>(spectrum.cells)),
       index_(spectrum.index.begin(), spectrum.index.end()),
       depths_(request.depths) {
   if (lanes_vary) wavelengths_ = WavelengthAxis(request.wavelengths_nm);
   for (const bool from_below : {false, true})
     for (const bool crosses : {false, true})
-      series_[from_below][crosses] = SeriesTable(spectrum, from_below, crosses, kTableShare * request.tolerance);
+      series_[from_below][crosses] = SeriesLookup(spectrum, from_below, crosses, kTableShare * request.tolerance);
   add_ways(spectrum);
 }
 
 /// By mode 0, interpolated as a look-up does.
-void BodyTable::add_ways(const BodySpectrum& spectrum) {
+void ModeLookup::add_ways(const ModeTable& spectrum) {
   const size_t side = cells_ + 3;
   const Measure measure = spectrum.is_reciprocal ? Measure::plain : Measure::over_inner_cosine;
   for (size_t c = 0; c < index_.size(); ++c) {
@@ -40,30 +40,30 @@ void BodyTable::add_ways(const BodySpectrum& spectrum) {
   }
 }
 
-Interval BodyTable::indices() const {
+Interval ModeLookup::indices() const {
   const auto [least, most] = std::ranges::minmax_element(index_);
   return {double(*least), double(*most)};
 }
 
-size_t BodyTable::bytes() const {
+size_t ModeLookup::bytes() const {
   size_t sum = 0;
   for (const bool below : {false, true}) {
     sum += ways_[below].size() * sizeof(Float4);
-    for (const SeriesTable& table : series_[below]) sum += table.bytes();
+    for (const SeriesLookup& table : series_[below]) sum += table.bytes();
   }
   return sum;
 }
 
-BodyTable::Selection BodyTable::select(const SampledWavelengths& lambda) const {
+ModeLookup::Selection ModeLookup::select(const SampledWavelengths& lambda) const {
   return with_index(select_columns(wavelengths_, lambda));
 }
 
-BodyTable::Selection BodyTable::select(const SampledWavelengths& lambda,
-                                       const std::array<double, kLanes>& optical_depth) const {
+ModeLookup::Selection ModeLookup::select(const SampledWavelengths& lambda,
+                                         const std::array<double, kLanes>& optical_depth) const {
   return with_index(select_columns(wavelengths_, depths_, lambda, optical_depth));
 }
 
-BodyTable::Selection BodyTable::with_index(const TableSelection& columns) const {
+ModeLookup::Selection ModeLookup::with_index(const TableSelection& columns) const {
   Selection selection{columns, SampledSpectrum(index_[0])};
   for (size_t l = 0; l < static_cast<size_t>(columns.lane_count); ++l) {
     float index = 0;
@@ -74,8 +74,8 @@ BodyTable::Selection BodyTable::with_index(const TableSelection& columns) const 
   return selection;
 }
 
-BodyTable::Ways BodyTable::ways(bool from_below, const Nodes& incident, Float4 light,
-                                const TableSelection& columns) const {
+ModeLookup::Ways ModeLookup::ways(bool from_below, const Nodes& incident, Float4 light,
+                                  const TableSelection& columns) const {
   Float4 sum{};
   for (size_t l = 0; l < static_cast<size_t>(columns.lane_count); ++l)
     for (size_t c = 0; c < static_cast<size_t>(columns.columns_per_lane); ++c) {

@@ -6,7 +6,7 @@
 
 #include "core/float4.h"
 #include "leaf/solve/reduced_basis.h"
-#include "leaf/table/body_spectrum.h"
+#include "leaf/table/mode_table.h"
 
 namespace frond::leaf {
 
@@ -27,15 +27,15 @@ struct SineNodes {
   }
 };
 
-/// The series of a BodySpectrum for one side lit and one way out, as a render looks them up. All columns are mixtures
+/// The series of a ModeTable for one side lit and one way out, as a render looks them up. All columns are mixtures
 /// of a few functions of direction, four of which share a register: what a look-up costs hardly depends on the number
 /// of columns and lanes, and the table stays in the processor's nearest cache.
-class SeriesTable {
+class SeriesLookup {
  public:
-  SeriesTable() = default;
+  SeriesLookup() = default;
   /// What is left out of the columns by the functions, and of the functions where a term of theirs is small, is at most
   /// `tolerance` of pi f each.
-  SeriesTable(const BodySpectrum& spectrum, bool from_below, bool crosses, double tolerance);
+  SeriesLookup(const ModeTable& spectrum, bool from_below, bool crosses, double tolerance);
 
   /// In the lanes that look at `columns`; not below 0.
   Float4 at(const SineNodes& incident, const SineNodes& leaving, float cos_phi, const TableSelection& columns) const {

@@ -3,17 +3,17 @@
 #include <array>
 #include <vector>
 
-#include "leaf/table/series_table.h"
+#include "leaf/table/series_lookup.h"
 
 namespace frond::leaf {
 
-/// A BodySpectrum as a render looks it up: by the cubics through the four neighbours in both sines, linearly between
+/// A ModeTable as a render looks it up: by the cubics through the four neighbours in both sines, linearly between
 /// wavelengths.
-class BodyTable {
+class ModeLookup {
  public:
   /// The lanes of paths are the request's wavelengths, one by one; else (`lanes_vary`) they lie anywhere among them,
   /// and these ascend and are two at least.
-  BodyTable(const BodyRequest& request, const BodySpectrum& spectrum, bool lanes_vary);
+  ModeLookup(const ModeTableRequest& request, const ModeTable& spectrum, bool lanes_vary);
 
   /// What the lanes of a path look at.
   struct Selection {
@@ -30,10 +30,10 @@ class BodyTable {
   /// Around a sine in [0, 1].
   Nodes nodes(float sine) const { return {sine, static_cast<int>(cells_)}; }
 
-  /// The sum over modes of BodyModes, lane by lane. Where interpolation and missing modes leave less than nothing: 0.
+  /// The sum over modes of LeafModes, lane by lane. Where interpolation and missing modes leave less than nothing: 0.
   Float4 series(bool from_below, bool crosses, const Nodes& incident, const Nodes& leaving, float cos_phi,
                 const TableSelection& columns) const {
-    const SeriesTable& table = series_[from_below][crosses];
+    const SeriesLookup& table = series_[from_below][crosses];
     return lanes_are_columns() ? table.at(incident, leaving, cos_phi) : table.at(incident, leaving, cos_phi, columns);
   }
 
@@ -63,14 +63,14 @@ class BodyTable {
   size_t bytes() const;
 
  private:
-  void add_ways(const BodySpectrum& spectrum);
+  void add_ways(const ModeTable& spectrum);
   Selection with_index(const TableSelection& columns) const;
 
   size_t cells_;
   std::vector<float> index_;    ///< of the cuticle, by column
   WavelengthAxis wavelengths_;  ///< empty: lanes are wavelengths
   DepthAxis depths_;            ///< empty: the depth does not vary
-  std::array<std::array<SeriesTable, 2>, 2> series_;
+  std::array<std::array<SeriesLookup, 2>, 2> series_;
   std::array<std::vector<Float4>, 2> ways_;  ///< [column][incident node]: as Ways has them
 };
 

@@ -8,16 +8,16 @@
 namespace frond::compare {
 
 /// A film's means: every channel of `list` but that of all together, in its unit.
-Image picture_of(const Film& film, const Scene& scene, const ChannelList& list, const ColorManager& colors);
+Image image_of(const Film& film, const Scene& scene, const ChannelList& list, const ColorManager& colors);
 
-/// What people see of such a picture: red, green and blue of linear SMPTE-C.
-Image shown(const Image& picture, const ChannelList& list);
+/// What people see of such an image: red, green and blue of linear SMPTE-C.
+Image shown(const Image& image, const ChannelList& list);
 
 /// Half and half.
 Image mean_of(const Image& a, const Image& b);
 
 /// Whole stops by which a display has to brighten it for people to see much: the brightest tenth, as far as it is lit,
-/// comes to lie above 0.3. 0 for a black picture.
+/// comes to lie above 0.3. 0 for a black image.
 double fitting_exposure(const Image& shown);
 
 /// What people see, as a display shows it after brightening by so many stops.

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "leaf/table/body_spectrum.h"
+#include "leaf/table/mode_table.h"
 
 namespace frond::leaf {
 
@@ -14,7 +14,7 @@ namespace frond::leaf {
 ///
 /// None where a column has none, as only a file's can: one that scatters light from some directions and less than
 /// none from others.
-std::optional<BodySpectrum> make_reciprocal(const BodySpectrum& spectrum);
+std::optional<ModeTable> make_reciprocal(const ModeTable& spectrum);
 
 /// A table's tolerance is divided by it where the leaf is to be reciprocal: then the light that it scatters is the
 /// walk's to 1e-4 between the nodes as well.

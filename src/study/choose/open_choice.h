@@ -13,7 +13,7 @@ struct Refusal {
 /// Something that a scene leaves open: the model of a leaf, or the wavelengths.
 struct OpenChoice {
   std::string name;                  ///< of the leaf's material; "wavelengths"
-  std::vector<size_t> materials;     ///< by their places in the description; none: the question is of wavelengths
+  std::vector<size_t> materials;     ///< by their index in the description; none: the open_choice is of wavelengths
   double rms = 0;                    ///< what the leaf asks for
   std::vector<ModelOption> options;  ///< the last one counts as right
   std::vector<Refusal> refused = {};
@@ -24,7 +24,7 @@ struct OpenChoice {
   size_t base() const { return is_leaf() && options.size() > 1 ? options.size() - 2 : reference(); }
 };
 
-/// An answer to each question: the place of an option.
+/// An answer to each open_choice: the place of an option.
 using Configuration = std::vector<size_t>;
 
 bool has_open_leaf(const SceneSettings& description);
@@ -36,9 +36,9 @@ bool names_wavelengths(const SceneSettings& description);
 std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Registry& registry,
                                     const WavelengthStrategy& wavelengths, const Ladder& ladder);
 
-/// Writes these answers into the description's leaves, as it had them when the questions were found, and into its
+/// Writes these answers into the description's leaves, as it had them when the open_choices were found, and into its
 /// option of wavelengths.
-void put_answers(const std::vector<OpenChoice>& questions, const Configuration& answers, const Registry& registry,
+void put_answers(const std::vector<OpenChoice>& open_choices, const Configuration& answers, const Registry& registry,
                  SceneSettings& description);
 
 }  // namespace frond::choose

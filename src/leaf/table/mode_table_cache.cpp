@@ -1,4 +1,4 @@
-#include "leaf/table/body_cache.h"
+#include "leaf/table/mode_table_cache.h"
 
 #include <fmt/ranges.h>
 
@@ -7,8 +7,8 @@
 
 #include "core/log.h"
 #include "leaf/solve/solver.h"
-#include "leaf/table/body_file.h"
 #include "leaf/table/cache_file.h"
+#include "leaf/table/mode_table_file.h"
 #include "leaf/table/table_cache.h"
 #include "leaf/tissue/constants.h"
 #include "system/cache_limit.h"
@@ -17,10 +17,10 @@ namespace frond::leaf {
 namespace {
 
 /// What `to_text` wrote under the same header; none if it is anything else.
-std::optional<BodySpectrum> parse(std::string_view text, std::string_view header, const BodyRequest& request) {
+std::optional<ModeTable> parse(std::string_view text, std::string_view header, const ModeTableRequest& request) {
   if (!text.starts_with(header)) return {};
   try {
-    BodyFile file = parse_body_file(text, "");
+    ModeTableFile file = parse_mode_table_file(text, "");
     const size_t columns = request.wavelengths_nm.size() * std::max<size_t>(1, request.depths.depths().size());
     if (file.columns.size() == columns) return std::move(file.spectrum);
   } catch (const InputError&) {  // no more than damaged
@@ -30,13 +30,13 @@ std::optional<BodySpectrum> parse(std::string_view text, std::string_view header
 
 }  // namespace
 
-std::string summary(const BodyRequest& request, std::string_view name, const BodySpectrum& spectrum) {
+std::string summary(const ModeTableRequest& request, std::string_view name, const ModeTable& spectrum) {
   const std::string depths = request.depths.empty() ? "" : fmt::format(" x {} depths", request.depths.depths().size());
   return fmt::format("mode table: {}, {} wavelengths{} x {} cells, BSDF error <= {:.1e} of white", name,
                      request.wavelengths_nm.size(), depths, spectrum.cells, spectrum.error + request.tolerance / 2);
 }
 
-std::string describe(const BodyRequest& request) {
+std::string describe(const ModeTableRequest& request) {
   std::string text =
       fmt::format("# leaf modes (docs/table_format.md)\n{}# solver {}, modes {}, constants {:016x}, tolerance {}\n",
                   describe(request.params), kSolverVersion, kModesVersion, constants_hash(), request.tolerance);
@@ -46,8 +46,8 @@ std::string describe(const BodyRequest& request) {
   return text;
 }
 
-BodySpectrum cached_body_spectrum(const BodyRequest& request, std::string_view name, const ThreadPool& pool,
-                                  const Log& log, const std::filesystem::path& cache_dir) {
+ModeTable cached_mode_table(const ModeTableRequest& request, std::string_view name, const ThreadPool& pool,
+                            const Log& log, const std::filesystem::path& cache_dir) {
   const std::string header = describe(request);
   const auto path = cache_path(cache_dir, header, "modes");
   if (const auto text = read_cached(path, log)) {
@@ -59,7 +59,7 @@ BodySpectrum cached_body_spectrum(const BodyRequest& request, std::string_view n
     log.warn({}, fmt::format("{} is damaged, its modes are made anew", path.string()));
   }
   const auto start = std::chrono::steady_clock::now();
-  BodySpectrum spectrum = make_body_spectrum(request, pool);
+  ModeTable spectrum = make_mode_table(request, pool);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   log.info(summary(request, name, spectrum) + fmt::format(", {:.2g} s", seconds.count()));
   if (!path.empty()) write_cached(path, with_checksum(to_text(request, spectrum, header)), log);

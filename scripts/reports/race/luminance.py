@@ -1,4 +1,4 @@
-"""Pictures as arrays of luminance, and what can be said of several that differ in their seeds alone."""
+"""Images as arrays of luminance, and what can be said of several that differ in their seeds alone."""
 
 import dataclasses
 
@@ -19,10 +19,10 @@ def read(path):
 
 @dataclasses.dataclass
 class Statistics:
-    """Of the pictures of several seeds; blocks are some pixels each."""
+    """Of the images of several seeds; blocks are some pixels each."""
     mean: float
     mean_error: float  # standard error, from the spread of each block between seeds
-    variance: float  # of one picture's pixel, mean over pixels
+    variance: float  # of one image's pixel, mean over pixels
     variance_error: float  # standard error, from the spread over blocks
     block_means: numpy.ndarray
     block_variances: numpy.ndarray  # of these means, over seeds
@@ -32,11 +32,11 @@ class Statistics:
         return self.variance / self.mean**2
 
 
-def measure(pictures):
-    pictures = numpy.asarray(pictures, float)
-    seeds, *size = pictures.shape
+def measure(images):
+    images = numpy.asarray(images, float)
+    seeds, *size = images.shape
     down, across = ((pixels - 2 * BORDER) // BLOCK for pixels in size)
-    blocks = pictures[:, BORDER:BORDER + down * BLOCK, BORDER:BORDER + across * BLOCK].reshape(seeds, down, BLOCK, across, BLOCK)
+    blocks = images[:, BORDER:BORDER + down * BLOCK, BORDER:BORDER + across * BLOCK].reshape(seeds, down, BLOCK, across, BLOCK)
     means = blocks.mean(axis=(2, 4))
     mean_variances, variances = means.var(axis=0, ddof=1) / seeds, blocks.var(axis=0, ddof=1).mean(axis=(1, 3))
     return Statistics(means.mean(), numpy.sqrt(mean_variances.sum()) / mean_variances.size, variances.mean(),
@@ -45,7 +45,7 @@ def measure(pictures):
 
 @dataclasses.dataclass
 class Difference:
-    """Of two programs' pictures, relative to the mean of the second."""
+    """Of two programs' images, relative to the mean of the second."""
     mean: float
     error: float  # standard error of that
     blocks: float  # RMS over blocks of 16 x 16 pixels, less what noise makes

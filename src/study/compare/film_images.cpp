@@ -1,4 +1,4 @@
-#include "study/compare/picture.h"
+#include "study/compare/film_images.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,46 +16,46 @@ void for_each_pixel(const Film& film, const Each& each) {
     for (int x = crop.x0; x < crop.x1; ++x) each(x, y);
 }
 
-Image picture_of_colors(const Film& film, std::string_view film_space, const ColorManager& colors) {
+Image image_of_colors(const Film& film, std::string_view film_space, const ColorManager& colors) {
   std::vector<float> rgb;
   for_each_pixel(film, [&](int x, int y) {
     for (const double v : film.mean(x, y)) rgb.push_back(float(v));
   });
   colors.convert(rgb, film_space, kErrorSpace);
   const Crop& crop = film.settings().crop;
-  Image picture(crop.width(), crop.height(), {"R", "G", "B", "Y"});
-  auto to = picture.pixels.begin();
+  Image image(crop.width(), crop.height(), {"R", "G", "B", "Y"});
+  auto to = image.pixels.begin();
   for (auto from = rgb.begin(); from != rgb.end(); from += 3) {
     to = std::copy_n(from, 3, to);
     *to++ = smpte_luminance(from[0], from[1], from[2]);
   }
-  return picture;
+  return image;
 }
 
-Image picture_of_bands(const Film& film, const ChannelList& list) {
+Image image_of_bands(const Film& film, const ChannelList& list) {
   const Crop& crop = film.settings().crop;
-  Image picture(crop.width(), crop.height(), {list.names.begin() + kFirst, list.names.end()});
-  auto to = picture.pixels.begin();
+  Image image(crop.width(), crop.height(), {list.names.begin() + kFirst, list.names.end()});
+  auto to = image.pixels.begin();
   for_each_pixel(film, [&](int x, int y) {
     for (size_t b = 0; b < list.bands.size(); ++b) *to++ = float(film.band_mean(x, y, b).mean / list.white[b]);
   });
-  return picture;
+  return image;
 }
 
 }  // namespace
 
-Image picture_of(const Film& film, const Scene& scene, const ChannelList& list, const ColorManager& colors) {
-  return list.are_bands() ? picture_of_bands(film, list)
-                          : picture_of_colors(film, scene.wavelengths().film_space(), colors);
+Image image_of(const Film& film, const Scene& scene, const ChannelList& list, const ColorManager& colors) {
+  return list.are_bands() ? image_of_bands(film, list)
+                          : image_of_colors(film, scene.wavelengths().film_space(), colors);
 }
 
-Image shown(const Image& picture, const ChannelList& list) {
-  const size_t pixels = size_t(picture.width) * size_t(picture.height), channels = picture.channels.size();
-  Image rgb(picture.width, picture.height, {"R", "G", "B"});
+Image shown(const Image& image, const ChannelList& list) {
+  const size_t pixels = size_t(image.width) * size_t(image.height), channels = image.channels.size();
+  Image rgb(image.width, image.height, {"R", "G", "B"});
   for (size_t c = 0; c < list.film_channels(); ++c)
     for (size_t k = 0; k < 3; ++k)
       if (const auto share = float(list.shown[c][k]); share != 0)
-        for (size_t i = 0; i < pixels; ++i) rgb.pixels[3 * i + k] += share * picture.pixels[channels * i + c];
+        for (size_t i = 0; i < pixels; ++i) rgb.pixels[3 * i + k] += share * image.pixels[channels * i + c];
   return rgb;
 }
 

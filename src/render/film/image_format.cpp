@@ -1,4 +1,4 @@
-#include "render/film/picture_format.h"
+#include "render/film/image_format.h"
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace {
 /// Values of an image, pixel by pixel, in the order of its channels.
 class PixelWriter {
  public:
-  PixelWriter(const Film& film, const PictureFormat& format)
+  PixelWriter(const Film& film, const ImageFormat& format)
       : film_(film), format_(format), largest_(film.settings().largest_value()) {
     if (!format.space.empty()) {
       names_ = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "leaf"};
@@ -29,7 +29,7 @@ class PixelWriter {
   }
   const std::vector<std::string>& names() const { return names_; }
   /// Of what is seen.
-  std::vector<std::string> picture_names() const {
+  std::vector<std::string> image_names() const {
     if (!format_.space.empty()) return {names_.begin(), names_.begin() + 3};
     std::vector<std::string> names(names_.begin(), names_.begin() + ptrdiff_t(format_.bands.size()));
     if (!preview_.empty()) names.insert(names.end(), {"R", "G", "B"});
@@ -44,7 +44,7 @@ class PixelWriter {
       write_colors(x, y);
     write_channels(x, y);
   }
-  void write_picture(int x, int y, float* to) {
+  void write_image(int x, int y, float* to) {
     to_ = to;
     if (!format_.space.empty()) return put(film_.mean(x, y));
     Triple xyz{};
@@ -121,7 +121,7 @@ class PixelWriter {
   }
 
   const Film& film_;
-  const PictureFormat& format_;
+  const ImageFormat& format_;
   double largest_;
   std::vector<std::string> names_;
   std::vector<Triple> preview_;
@@ -130,7 +130,7 @@ class PixelWriter {
 
 }  // namespace
 
-Image film_image(const Film& film, const PictureFormat& format) {
+Image film_image(const Film& film, const ImageFormat& format) {
   PixelWriter writer(film, format);
   const Crop& crop = film.settings().crop;
   Image image(crop.width(), crop.height(), writer.names());
@@ -139,21 +139,21 @@ Image film_image(const Film& film, const PictureFormat& format) {
   return image;
 }
 
-Image empty_picture(const Film& film, const PictureFormat& format) {
+Image empty_image(const Film& film, const ImageFormat& format) {
   const Crop& crop = film.settings().crop;
-  return {crop.width(), crop.height(), PixelWriter(film, format).picture_names()};
+  return {crop.width(), crop.height(), PixelWriter(film, format).image_names()};
 }
 
-bool renew_picture(const Film& film, const PictureFormat& format, const std::stop_token& stop, Image& picture) {
+bool renew_image(const Film& film, const ImageFormat& format, const std::stop_token& stop, Image& image) {
   PixelWriter writer(film, format);
   const Crop& crop = film.settings().crop;
   for (size_t i = 0; i < film.tiles(); ++i) {
     if (stop.stop_requested()) return false;
     const Crop pixels = intersection(film.tile_pixels(i), crop);
-    if (pixels.width() <= 0 || pixels.height() <= 0) continue;  // others reach into the picture
+    if (pixels.width() <= 0 || pixels.height() <= 0) continue;  // others reach into the image
     const Film::Hold hold = film.hold(pixels);
     for (int y = pixels.y0; y < pixels.y1; ++y)
-      for (int x = pixels.x0; x < pixels.x1; ++x) writer.write_picture(x, y, &picture.at(x - crop.x0, y - crop.y0, 0));
+      for (int x = pixels.x0; x < pixels.x1; ++x) writer.write_image(x, y, &image.at(x - crop.x0, y - crop.y0, 0));
   }
   return true;
 }

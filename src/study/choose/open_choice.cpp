@@ -1,4 +1,4 @@
-#include "study/choose/question.h"
+#include "study/choose/open_choice.h"
 
 #include <algorithm>
 
@@ -30,27 +30,27 @@ const ModelOption* right_for(const ParsedPlugin& leaf, const Registry& registry,
   const ParsedParam* incident = find_param(leaf.params, "incident");
   const auto* words = incident ? std::get_if<std::vector<std::string>>(&incident->values) : nullptr;
   if (!words || words->size() != 1) return &models.back();
-  const auto right = std::ranges::find_if(models.rbegin(), models.rend(), [&](const ModelOption& rung) {
-    return takes(registry, rung.name, "incident", words->front());
+  const auto right = std::ranges::find_if(models.rbegin(), models.rend(), [&](const ModelOption& option) {
+    return takes(registry, option.name, "incident", words->front());
   });
   return right == models.rend() ? &models.back() : &*right;
 }
 
-/// With the rungs that the leaf can take. Leaves the description as it is.
-void add_options(OpenChoice& question, SceneSettings& description, const Registry& registry,
+/// With the options that the leaf can take. Leaves the description as it is.
+void add_options(OpenChoice& open_choice, SceneSettings& description, const Registry& registry,
                  const WavelengthStrategy& wavelengths, const std::vector<ModelOption>& models) {
-  const size_t place = question.materials.front();
+  const size_t place = open_choice.materials.front();
   ParsedPlugin& plugin = description.materials[place].plugin;
   const ParsedPlugin open = plugin;
   const ModelOption* right = right_for(open, registry, models);
-  for (const ModelOption& rung : models) {
-    swap_material(plugin, rung.plugin, registry, silent_log());
+  for (const ModelOption& option : models) {
+    swap_material(plugin, option.plugin, registry, silent_log());
     try {
       SceneResolver(description, registry, wavelengths).material(place);
-      question.options.push_back(rung);
+      open_choice.options.push_back(option);
     } catch (const InputError& error) {
-      if (&rung == right) throw;
-      question.refused.push_back({rung.name, error.what()});
+      if (&option == right) throw;
+      open_choice.refused.push_back({option.name, error.what()});
     }
     plugin = open;
   }
@@ -80,18 +80,18 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
     }
     const Params params(registry.materials.get("leaf", m.plugin.where), split_bend(m.plugin, false), resolver);
     const std::string name = m.name.empty() ? fmt::format("leaf in line {}", m.plugin.where.line) : m.name;
-    OpenChoice& question = leaves.emplace_back(OpenChoice{name, {i}, params.real("maxrms"), {}});
-    add_options(question, tried, registry, wavelengths, ladder.models);
+    OpenChoice& open_choice = leaves.emplace_back(OpenChoice{name, {i}, params.real("maxrms"), {}});
+    add_options(open_choice, tried, registry, wavelengths, ladder.models);
   }
   return leaves;
 }
 
-void put_answers(const std::vector<OpenChoice>& questions, const Configuration& answers, const Registry& registry,
+void put_answers(const std::vector<OpenChoice>& open_choices, const Configuration& answers, const Registry& registry,
                  SceneSettings& description) {
-  for (size_t q = 0; q < questions.size(); ++q) {
-    const ModelOption& answer = questions[q].options[answers[q]];
-    if (!questions[q].is_leaf()) set_wavelengths(description, answer.name);
-    for (const size_t place : questions[q].materials)
+  for (size_t q = 0; q < open_choices.size(); ++q) {
+    const ModelOption& answer = open_choices[q].options[answers[q]];
+    if (!open_choices[q].is_leaf()) set_wavelengths(description, answer.name);
+    for (const size_t place : open_choices[q].materials)
       swap_material(description.materials[place].plugin, answer.plugin, registry, silent_log());
   }
 }
