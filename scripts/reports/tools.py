@@ -39,6 +39,25 @@ def write(path, text):
     print(f"Written: {path}")
 
 
+def section_marks(name):
+    return f"<!-- {name}: written by scripts/{name} -->\n", f"<!-- end of {name} -->\n"
+
+
+def with_section(page, name, text):
+    """The page's text with another section of this name: what lies between its two marks."""
+    begin, end = section_marks(name)
+    if page.count(begin) != 1 or page.count(end) != 1:
+        raise SystemExit(f"the page has no section {begin.strip()} ... {end.strip()}")
+    before, rest = page.split(begin)
+    return f"{before}{begin}\n{text.strip()}\n\n{end}{rest.split(end)[1]}"
+
+
+def write_section(path, name, text):
+    """Writes the section `name` of a page, which keeps its other text. A page that does not exist has this section alone."""
+    empty = "\n".join(section_marks(name))
+    write(path, with_section(path.read_text(encoding="utf-8") if path.exists() else empty, name, text))
+
+
 def run(*words, **more):
     """Standard output of a command; its errors stop the report."""
     done = subprocess.run([str(w) for w in words], capture_output=True, **{"text": True, **more}, check=False)

@@ -11,6 +11,7 @@ import unittest
 from unittest import mock
 
 import bench_runs as runs
+import tools
 from bench import __main__ as command
 from bench import results, session, tables
 
@@ -130,7 +131,8 @@ class Tables(FolderTest):
 
     def test_a_document_takes_the_figures_between_its_marks(self):
         page = self.folder / "benchmarks.md"
-        page.write_text(f"before\n{tables.BEGIN}\nold\n{tables.END}\nafter\n", encoding="utf-8")
+        begin, end = tools.section_marks("bench")
+        page.write_text(f"before\n{begin}old\n{end}after\n", encoding="utf-8")
         run = self.file("run.json", runs.images(0.01))
         with mock.patch.object(command, "DOCUMENT", page):
             self.assertEqual(self.run_bench("--write-docs", run)[0], 0)

@@ -6,7 +6,7 @@ import json
 import pathlib
 import sys
 
-from tools import ROOT, write
+from tools import ROOT, write, write_section
 
 from . import page, results, session, tables, text
 from .comparison import Comparison
@@ -68,7 +68,7 @@ def main():
         return compare(*map(results.read, options.compare), options.output or session.WORKTREES / "page.html",
                        options.fail_on_regression)
     if options.write_docs:
-        write(DOCUMENT, tables.put_into(DOCUMENT.read_text(encoding="utf-8"), results.read(options.write_docs)))
+        write_section(DOCUMENT, "bench", tables.section(results.read(options.write_docs)))
         return 0
     return run_one(options)
 

@@ -10,7 +10,6 @@ from tools import table
 from .comparison import settled
 
 Z95 = 1.96
-BEGIN, END = "<!-- figures: scripts/bench --write-docs -->", "<!-- end of figures -->"
 
 
 def mean_and_reach(rounds, further=0.0):
@@ -95,11 +94,10 @@ def figures(run):
     return "\n".join(part for part in (scenes(run), calls(run)) if part)
 
 
-def put_into(page, run):
-    """The page with this run's figures between its two marks."""
-    before, rest = page.split(BEGIN)
+def section(run):
+    """What the page of measured speed says of a run."""
     context = run.context
     made = (f"{context['machine']}; {context['compiler']}, `{context['compiler_flags'].strip()}`; frond "
             f"{context['frond_version']}, {context['date'][:10]}; {context['rounds']} rounds of {context['repetitions']} "
             f"repetitions; the machine's load was up to {max(context['load_avg']):.0f}.")
-    return f"{before}{BEGIN}\n\n{made}\n\n{figures(run)}\n{END}{rest.split(END)[1]}"
+    return f"{made}\n\n{figures(run)}"
