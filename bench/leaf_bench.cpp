@@ -7,21 +7,21 @@
 #include "leaf/walk/batch_walk.h"
 #include "tests/leaf/plain_walk.h"
 
-/// Walks by method, and tables by method. Names and arguments stay from release to release, so that JSON output
-/// compares (CONTRIBUTING.md).
+/// Random walks and leaf tables by method. Names and arguments do not change between releases, so that JSON files can
+/// be compared (CONTRIBUTING.md).
 namespace frond::leaf {
 namespace {
 
 constexpr int kWalks = 20000;
 
-/// All that a method may want; it makes kWalks.
+/// Input of a method, which makes kWalks walks.
 struct WalkTask {
   const Tissue& tissue;
   Vec3d wo;
   Absorption absorption;
 };
 
-/// The plain loop that the tests compare with. Analog alone.
+/// The simple loop that the tests use as a reference; analog only.
 void walk_plainly(const WalkTask& task) {
   test::PlainWalk walk(task.tissue, 1);
   for (int i = 0; i < kWalks; ++i) benchmark::DoNotOptimize(walk(task.wo));
@@ -63,7 +63,7 @@ void add_walks(const Specimen& specimen, Absorption absorption) {
              [kernel](const WalkTask& task) { walk_in_batches(*kernel, task); });
 }
 
-/// Monte Carlo with a hundredth of the paper's rays for each degree: its full table takes a hundred times as long.
+/// Rays per degree: a hundredth of the paper's, whose table takes a hundred times as long.
 constexpr int kTableRays = 10000;
 
 void add_table(const Specimen& specimen, TableMethod method, const std::string& label, std::vector<double> nm) {

@@ -12,7 +12,7 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 
 }  // namespace
 
-/// Google Benchmark's own main, and beside its figures what they were made with.
+/// Google Benchmark's main; adds frond's version, compiler, flags and machine to the context.
 int main(int argc, char** argv) {
   benchmark::AddCustomContext("frond_version", FROND_VERSION);
   benchmark::AddCustomContext("compiler", kCompiler);

@@ -9,8 +9,8 @@
 #include "render/plugins.h"
 #include "tests/laws/setup.h"
 
-/// What a call of a BSDF costs, for every material at its defaults, those of FROND_PLUGIN_PATH included. Names and
-/// arguments stay from release to release.
+/// Times of BSDF calls for every material with its defaults, including those of FROND_PLUGIN_PATH. Names and arguments
+/// do not change between releases.
 namespace frond {
 namespace {
 
@@ -25,7 +25,7 @@ ParsedParam word(const std::string& name, const std::string& value) {
   return p;
 }
 
-/// Defaults, stand-ins for what has none, and tables that are solved: walks would take minutes.
+/// A material with its defaults, substitutes for parameters without one, and solved tables (walks would take minutes).
 std::unique_ptr<Material> make(const MaterialInfo& info, const Preparation& preparation) {
   PlainResolver resolver([](const std::string& name) -> std::shared_ptr<Material> {
     PlainResolver nothing([](const std::string&) { return nullptr; });
@@ -38,7 +38,7 @@ std::unique_ptr<Material> make(const MaterialInfo& info, const Preparation& prep
   return made;
 }
 
-/// A BSDF at one hit of a material that is ready.
+/// A BSDF at one hit of a prepared material.
 class Ready {
  public:
   Ready(const MaterialInfo& info, std::vector<float> nm)
@@ -63,7 +63,7 @@ class Ready {
   const Bsdf* bsdf_ = nullptr;
 };
 
-/// call(bsdf, wo, draw, rng) is what is measured.
+/// Adds a benchmark that times call(bsdf, wo, draw, rng).
 template <class Call>
 void add(const MaterialInfo& info, const std::string& operation, const Call& call) {
   const auto run = [&info, call](benchmark::State& state) {
@@ -79,7 +79,7 @@ void add(const MaterialInfo& info, const std::string& operation, const Call& cal
       ->ArgsProduct({{0, 45, 80}, {1, 3, 4}});
 }
 
-/// `sample` for paths that arrive from everywhere, each from another direction.
+/// Adds a benchmark of `sample` with a new direction of arrival, uniform over the sphere, in each call.
 void add_sample_from_everywhere(const MaterialInfo& info) {
   const auto run = [&info](benchmark::State& state) {
     const Bsdf& bsdf = Ready::get(info, state.range(0)).bsdf();
@@ -97,7 +97,7 @@ void add_sample_from_everywhere(const MaterialInfo& info) {
       ->Arg(4);
 }
 
-/// A material that is ready for paths with wavelengths of their own.
+/// A material prepared for paths that choose their own wavelengths.
 class ReadyForEach {
  public:
   explicit ReadyForEach(const MaterialInfo& info) : setup_(wavelengths_), material_(make(info, setup_.preparation)) {}
@@ -118,8 +118,8 @@ class ReadyForEach {
   std::unique_ptr<Material> material_;
 };
 
-/// What a path pays at a hit: the BSDF is made, with what it looks up, and sampled. Four wavelengths, anew for each
-/// path.
+/// Adds a benchmark of a hit: making the BSDF with its look-ups, and one sample, for four wavelengths chosen anew in
+/// each call.
 void add_hit(const MaterialInfo& info) {
   const auto run = [&info](benchmark::State& state) {
     const Vec3 wo = viewer_at(static_cast<double>(state.range(0)));

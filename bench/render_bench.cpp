@@ -16,14 +16,14 @@
 namespace frond {
 namespace {
 
-/// Keeps every ray that passes, for a replay without anything around it.
+/// Records every ray, for a replay through Embree alone.
 class RecordingWorld final : public World {
  public:
   struct Record {
     Ray ray;
     bool shadow;
   };
-  /// With the packet's rays, which it only points to.
+  /// Stores the rays of a packet, because the packet has only pointers.
   struct PacketRecord {
     PacketRecord(const RayPacket& packet, bool is_shadow) : lanes(packet.lanes), shadow(is_shadow) {
       std::copy_n(packet.rays, RayPacket::kWidth, rays.begin());
@@ -71,7 +71,7 @@ class RecordingWorld final : public World {
   mutable std::vector<PacketRecord> packets_;
 };
 
-/// One scene, loaded once for all the benchmarks on it, on one thread.
+/// A scene, loaded once for its benchmarks, with one thread.
 struct LoadedScene {
   explicit LoadedScene(const std::string& file, std::vector<MaterialSwap> swaps = {})
       : pool(1),
@@ -89,7 +89,7 @@ struct LoadedScene {
     return {world,          scene.camera(),  scene.integrator(), scene.wavelengths(),
             scene.filter(), scene.sampler(), scene.seed()};
   }
-  /// What a render's film is like.
+  /// An empty film for a render.
   Film film() const { return Film({.settings = film_settings, .exponent = film_exponent(job(scene), film_settings)}); }
 
   const Log& log = silent_log();
@@ -100,10 +100,10 @@ struct LoadedScene {
   FilmSettings film_settings;
 };
 
-/// The solved table costs no walks at load, and the render the same.
+/// leaf_simplified with a solved table, which needs no walks at load and does not change the time of the render.
 const std::vector<MaterialSwap> kSolved{{"leaf", {"leaf_simplified", {{"tablemethod", "solve"}}}}};
 
-/// CPU time for each camera path, with the rays that it takes.
+/// CPU time and number of rays per camera path.
 void render_paths(benchmark::State& state, const std::string& file, const std::vector<MaterialSwap>& swaps) {
   const LoadedScene loaded(file, swaps);
   RenderStatistics total;
@@ -117,10 +117,10 @@ void render_paths(benchmark::State& state, const std::string& file, const std::v
   state.counters["rays_per_path"] = double(total.rays) / double(total.paths);
 }
 
-/// The render's own rays, one by one and in packets as it traces them, through Embree alone: what share of the render's
-/// CPU time is ray tracing.
+/// Traces the rays of a render, single ones and packets, through Embree alone: the share of ray tracing in the render's
+/// CPU time.
 void replay_rays(benchmark::State& state, const std::string& file) {
-  const WorkPlan plan{{160, 160, 352, 352}, {0, 16}};  // enough rays, and they fit into memory
+  const WorkPlan plan{{160, 160, 352, 352}, {0, 16}};  // enough rays that fit into memory
   const LoadedScene loaded(file, kSolved);
   const RecordingWorld recorder(loaded.scene);
   Film film = loaded.film();

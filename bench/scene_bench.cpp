@@ -3,8 +3,8 @@
 #include "bench/scene_study.h"
 #include "render/render_loop.h"
 
-/// The leaf models in whole scenes: what a sample costs, and how far off the image is that it goes into
-/// (docs/benchmarks.md says what each counter means). Names stay from release to release.
+/// Leaf models in whole scenes: CPU time of a sample and error of the image. docs/performance.md defines the counters.
+/// Names do not change between releases.
 namespace frond {
 namespace {
 
@@ -17,12 +17,12 @@ SceneStudy& study_of(const std::string& scene) {
   return *study;
 }
 
-/// A render on one thread that goes on by one sample for each pixel at a time.
+/// A render on one thread that adds one sample per pixel at a time.
 class Meter {
  public:
   Meter(SceneStudy& study, const std::string& material)
       : scene_(study.scene(material)), film_({.settings = study.film()}), pool_(1) {
-    add_sample();  // whose memory is new
+    add_sample();  // allocates memory; not counted
     paths_ = cpu_seconds_ = 0;
   }
 
@@ -43,13 +43,13 @@ class Meter {
   double paths_ = 0, cpu_seconds_ = 0;
 };
 
-/// With the standard error beside it.
+/// Sets a counter and its standard error.
 void tell(benchmark::State& state, const std::string& name, double value, double standard_error) {
   state.counters[name] = value;
   state.counters[name + "_se"] = standard_error;
 }
 
-/// Variance times time of a pixel's samples: what it takes to be done with the noise.
+/// Variance × CPU time of a pixel's samples: the inverse of efficiency.
 double effort(const Accuracy& accuracy, const Meter& meter) {
   return accuracy.noise.value * double(SceneStudy::kSamples) * meter.seconds_per_path();
 }
@@ -66,8 +66,8 @@ void tell_errors(benchmark::State& state, const Accuracy& accuracy) {
   tell(state, "variance", accuracy.noise.value, accuracy.noise.standard_error);
 }
 
-/// Both render a sample in turn, each as often the first as the second: whatever else the machine does falls on both.
-/// The baseline's is not timed.
+/// Renders samples of both in turn, each as often the first as the second, so that other load affects both equally.
+/// Google Benchmark times only `own`.
 void render_in_turn(benchmark::State& state, Meter& own, Meter& baseline) {
   bool first = true;
   for (auto _ : state) {
@@ -82,19 +82,19 @@ void render_in_turn(benchmark::State& state, Meter& own, Meter& baseline) {
   }
 }
 
-struct Subject {
+struct Candidate {
   std::string material;
-  bool is_leaf;  ///< stands for a leaf, so that its error means something
+  bool is_leaf;  ///< a leaf model, whose error is measured
 };
 
-void measure(benchmark::State& state, const std::string& scene, const Subject& subject) {
+void measure(benchmark::State& state, const std::string& scene, const Candidate& candidate) {
   SceneStudy& study = study_of(scene);
-  Meter own(study, subject.material), baseline(study, kBaseline);
+  Meter own(study, candidate.material), baseline(study, kBaseline);
   render_in_turn(state, own, baseline);
   state.counters["us_per_path"] = own.seconds_per_path() * 1e6;
   state.counters["speedup"] = baseline.seconds_per_path() / own.seconds_per_path();
-  if (!subject.is_leaf) return;
-  const Accuracy& accuracy = study.accuracy(subject.material);
+  if (!candidate.is_leaf) return;
+  const Accuracy& accuracy = study.accuracy(candidate.material);
   tell_errors(state, accuracy);
   const double own_effort = effort(accuracy, own);
   state.counters["efficiency"] = 1 / own_effort;
@@ -103,10 +103,11 @@ void measure(benchmark::State& state, const std::string& scene, const Subject& s
 
 [[maybe_unused]] const bool kAdded = [] {
   for (const char* scene : {"soybean-front", "soybean-back", "soybean-ambient", "hundred-leaves"})
-    for (const Subject& subject : {Subject{"abm", true}, Subject{"leaf_simplified", true}, Subject{"leaf_solved", true},
-                                   Subject{"leaf_lambert", true}, Subject{"diffusetransmission", false}}) {
-      const std::string name = "scene/" + std::string(scene) + "/" + subject.material;
-      benchmark::RegisterBenchmark(name.c_str(), measure, std::string(scene), subject)->Unit(benchmark::kMillisecond);
+    for (const Candidate& candidate :
+         {Candidate{"abm", true}, Candidate{"leaf_simplified", true}, Candidate{"leaf_solved", true},
+          Candidate{"leaf_lambert", true}, Candidate{"diffusetransmission", false}}) {
+      const std::string name = "scene/" + std::string(scene) + "/" + candidate.material;
+      benchmark::RegisterBenchmark(name.c_str(), measure, std::string(scene), candidate)->Unit(benchmark::kMillisecond);
     }
   return true;
 }();

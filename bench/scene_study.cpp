@@ -27,7 +27,7 @@ std::array<Image, 2> images_of(const PairedRender& render, const ColorManager& c
           compare::image_of(render.film(1), scene, channels, colors)};
 }
 
-/// The difference's variance is that of the mean of two renders and of that of the reference's two.
+/// The variance of the difference is the sum of those of the means of two renders and of two reference renders.
 Estimate offset_of(const RenderPair& renders, const RenderPair& reference, const RenderError& error) {
   const double pixels = double(renders.first.size());
   return {image_error(renders.first, renders.second, reference.first, reference.second).mean_difference,
@@ -38,7 +38,7 @@ std::array<std::vector<float>, 2> planes_of(const std::array<Image, 2>& pair, si
   return {pair[0].plane(c), pair[1].plane(c)};
 }
 
-/// Of one channel, mean of the repeats.
+/// Accuracy of one channel, mean of the repeats.
 ChannelAccuracy accuracy_of(std::span<const std::array<Image, 2>> candidate,
                             std::span<const std::array<Image, 2>> reference, size_t c) {
   std::vector<RenderError> errors;

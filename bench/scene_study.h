@@ -12,39 +12,40 @@
 
 namespace frond {
 
-/// How far one render is from what the reference converges to, in one channel.
+/// Error of one render relative to the expectation of the reference, in one channel.
 struct ChannelAccuracy {
   RenderError error;
-  Estimate offset;  ///< mean over the pixels of render minus reference: a change of brightness shows here first
+  Estimate
+      offset;  ///< mean over the pixels of render minus reference; the first counter to show a change of brightness
 };
 
 struct Accuracy {
   std::array<ChannelAccuracy, 3> channels;  ///< red, green and blue of linear SMPTE-C
-  MeanSquare noise;                         ///< mean of the three
+  MeanSquare noise;                         ///< mean of the three channels
 };
 
-/// A scene at a small size and at the wavelengths 608, 551 and 455 nm, in which one leaf model stands for another. What
-/// it is asked for is made once.
+/// A small render of a scene at 608, 551 and 455 nm with a chosen leaf model. Scenes, references and accuracies are
+/// computed once.
 class SceneStudy {
  public:
-  static constexpr int kPixels = 64;                              ///< of the image's longer side
-  static constexpr uint64_t kSamples = 32;                        ///< of each pixel, where errors are told
-  static constexpr const char* kReference = "abm,mode=weighted";  ///< the analog walk's expectation, with less noise
+  static constexpr int kPixels = 64;                              ///< along the image's longer side
+  static constexpr uint64_t kSamples = 32;                        ///< per pixel, for errors
+  static constexpr const char* kReference = "abm,mode=weighted";  ///< expectation of the analog walk, less noise
   static constexpr uint64_t kReferenceSamples = 4 * kSamples;
-  static constexpr size_t kRepeats = 4;  ///< of two renders of each, so that few bright pixels do not decide
+  static constexpr size_t kRepeats = 4;  ///< of two renders each, so that a few bright pixels do not decide the result
 
-  /// `name`: of a folder in scenes/.
+  /// `name`: a folder in scenes/.
   explicit SceneStudy(const std::string& name);
 
-  /// `material` in place of every leaf.
+  /// The scene with `material` for every leaf.
   const Scene& scene(const std::string& material);
   const FilmSettings& film() const { return study_.film(); }
-  /// After `kSamples` samples a pixel. Films are kept in the folder FROND_BENCH_CACHE, if that is set, for other
-  /// processes of this program.
+  /// Accuracy after `kSamples` samples per pixel. Films are stored in the folder FROND_BENCH_CACHE, if it is set, for
+  /// other processes of this program.
   const Accuracy& accuracy(const std::string& material);
 
  private:
-  /// No candidate shares a seed with the reference.
+  /// Candidates and the reference have different seeds.
   enum SeedUse : uint64_t { kCandidateSeed = 1, kReferenceSeed = 3 };
   using Images = std::array<Image, 2>;
 

@@ -1,4 +1,4 @@
-"""Reads a part of a render, as frond render --part and --checkpoint write them: docs/part_format.md.
+"""Reads a part, as frond render --part and --checkpoint write it (format: docs/many_machines.md).
 
   python3 read_part.py leaf.part             # identity, film and coverage
   python3 read_part.py leaf.part --pixels    # then "x y R G B samples", the mean colour of each pixel
@@ -39,11 +39,11 @@ def hash_bytes(data):
 
 
 def split(data):
-    """The header, and the tiles' records one after the other."""
+    """The header, and the records of the tiles, one after the other."""
     if not data.startswith(MAGIC):
-        raise SystemExit("no part of a render, or of another version of the format")
+        raise SystemExit("not a part, or a part in another version of the format")
     if not data.endswith(END):
-        raise SystemExit("the part is cut short")
+        raise SystemExit("the part is incomplete")
     (size,) = struct.unpack_from("<Q", data, len(MAGIC))
     begin = len(MAGIC) + 8
     text = data[begin : begin + size]
@@ -63,7 +63,7 @@ def tiles_of(pixels):
 
 
 class Pixel:
-    """Sums over a pixel's samples; integers, with the units of docs/part_format.md."""
+    """Sums over a pixel's samples; integers, with the units of docs/many_machines.md."""
 
     def __init__(self, record):
         self.sum = [int.from_bytes(record[16 * c : 16 * c + 16], "little", signed=True) for c in range(3)]
@@ -81,7 +81,7 @@ def integer(record, at):
 
 
 class Splat:
-    """What the samples of a tile give to a pixel that they reach, each times its weight."""
+    """Contribution of a tile's samples to a pixel that they reach, each times its weight."""
 
     def __init__(self, record):
         self.sum = [integer(record, 16 * c) for c in range(3)]
@@ -89,15 +89,15 @@ class Splat:
 
 
 def samples_of_pixel(tile):
-    """Mean over a tile's pixels."""
+    """Number of samples per pixel, as a mean over a tile's pixels."""
     (x0, y0, x1, y1), coverage = tile["rectangle"], tile["coverage"]
     taken = sum((item[2] - item[0]) * (item[3] - item[1]) * (item[5] - item[4]) for item in coverage)
     return taken / ((x1 - x0) * (y1 - y0))
 
 
 def read(path):
-    """The header, and for each tile its rectangle, its coverage, its pixels by (x, y), and where samples are shared what
-    they give to pixels, by (x, y) too."""
+    """The header, and for each tile its rectangle, its coverage, its pixels by (x, y) and, if samples are shared, its splats
+    by (x, y)."""
     with open(path, "rb") as file:
         header, data = split(file.read())
     film = header["film"]
@@ -114,17 +114,17 @@ def read(path):
         coverage = [ITEM.unpack_from(data, at + ITEM.size * i) for i in range(items)]
         at += ITEM.size * items
         x0, y0, x1, y1 = rectangle
-        places = [(x, y) for y in range(y0, y1) for x in range(x0, x1)]
-        pixels = {place: Pixel(data[at + PIXEL_BYTES * i : at + PIXEL_BYTES * (i + 1)]) for i, place in enumerate(places)}
-        at += len(places) * of_pixel
+        positions = [(x, y) for y in range(y0, y1) for x in range(x0, x1)]
+        pixels = {position: Pixel(data[at + PIXEL_BYTES * i : at + PIXEL_BYTES * (i + 1)]) for i, position in enumerate(positions)}
+        at += len(positions) * of_pixel
         splats = {}
         if splatting:
             columns = range(max(x0 - reach[0], 0), min(x1 + reach[0], film["width"]))
             rows = range(max(y0 - reach[1], 0), min(y1 + reach[1], film["height"]))
-            places = [(x, y) for y in rows for x in columns]
-            for i, place in enumerate(places):
-                splats[place] = Splat(data[at + SPLAT_BYTES * i : at + SPLAT_BYTES * (i + 1)])
-            at += len(places) * of_splat
+            positions = [(x, y) for y in rows for x in columns]
+            for i, position in enumerate(positions):
+                splats[position] = Splat(data[at + SPLAT_BYTES * i : at + SPLAT_BYTES * (i + 1)])
+            at += len(positions) * of_splat
         at += 8  # rays
         tiles.append({"rectangle": rectangle, "coverage": coverage, "pixels": pixels, "splats": splats})
     if at != len(data):
@@ -132,9 +132,9 @@ def read(path):
     return header, tiles
 
 
-def expected_weight(splatting, tiles, place):
-    """What the samples that were taken weigh in a pixel, were they spread evenly: means of weights, by distance."""
-    x, y = place
+def expected_weight(splatting, tiles, position):
+    """Expected sum of weights in a pixel, for samples that are evenly distributed in their pixels."""
+    x, y = position
     (reach_x, mean_x), (reach_y, mean_y) = ((axis["reach"], axis["mean"]) for axis in splatting["axes"])
     weight = 0.0
     for tile in tiles:
@@ -147,14 +147,14 @@ def expected_weight(splatting, tiles, place):
 
 
 def mean_colors(header, tiles):
-    """The mean colour of each pixel of the crop, by (x, y), and its own samples."""
+    """The mean colour of each pixel of the crop and its number of samples, by (x, y)."""
     film = header["film"]
     x0, y0, x1, y1 = film["crop"]
     means = {}
     if not film["splatting"]:
         for tile in tiles:
-            for place, pixel in tile["pixels"].items():
-                means[place] = pixel.mean(film["exponent"]), pixel.samples
+            for position, pixel in tile["pixels"].items():
+                means[position] = pixel.mean(film["exponent"]), pixel.samples
         return means
     gathered = {(x, y): [0.0] * 4 for y in range(y0, y1) for x in range(x0, x1)}
     samples = {}
@@ -162,19 +162,19 @@ def mean_colors(header, tiles):
         count = samples_of_pixel(tile)
         if count == 0:
             continue
-        samples.update((place, pixel.samples) for place, pixel in tile["pixels"].items())
-        for place, splat in tile["splats"].items():
-            if place in gathered:
-                sums = gathered[place]
+        samples.update((position, pixel.samples) for position, pixel in tile["pixels"].items())
+        for position, splat in tile["splats"].items():
+            if position in gathered:
+                sums = gathered[position]
                 for c in range(3):
                     sums[c] += splat.sum[c] / 2**60 / count
                 sums[3] += splat.weight / 2**30 / count
-    for place, (*sums, weight) in gathered.items():
+    for position, (*sums, weight) in gathered.items():
         if film["splatting"]["has_negative_weights"]:
-            expected = expected_weight(film["splatting"], tiles, place)
+            expected = expected_weight(film["splatting"], tiles, position)
             weight = weight if weight >= expected / 4 else max(expected, 0.0)
         scale = 2.0 ** film["exponent"] / weight if weight > 0 else 0.0
-        means[place] = [s * scale for s in sums], samples.get(place, 0)
+        means[position] = [s * scale for s in sums], samples.get(position, 0)
     return means
 
 
@@ -186,7 +186,7 @@ def print_summary(header, tiles):
     print("film: {} x {}, crop {}, {}".format(film["width"], film["height"], film["crop"],
                                               f"{film['bands']} bands" if film["bands"] else header["image"]["space"]))
     print("coverage:")
-    covered = {}  # rectangles that have the same samples
+    covered = {}  # number of pixels, by range of samples
     for tile in tiles:
         for x0, y0, x1, y1, first, end in tile["coverage"]:
             covered[first, end] = covered.get((first, end), 0) + (x1 - x0) * (y1 - y0)

@@ -1,4 +1,4 @@
-"""The solved leaf once more, from docs/solved_leaf.md alone, in plain Python: some modes of both kinds of leaf.
+"""A second solver of leaf_solved in plain Python, written from docs/leaf_models.md alone: some modes of both kinds of leaf.
 
     solved_leaf.py FROND    builds them for soybean and maize at 551 nm and compares them with those of `frond table
                             leaf_solved`

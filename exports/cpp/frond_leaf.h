@@ -7,7 +7,7 @@
 //
 // Directions are unit vectors that point away from the surface, z along its normal, which is the leaf's adaxial side. Of a
 // leaf that is not reciprocal `incident` is the direction that the model calls so: toward the light for energy that is kept,
-// toward the camera as published. The file: docs/leaf_file.md; the formulae: docs/solved_leaf.md, docs/reciprocal_leaf.md.
+// toward the camera as published. File format: docs/file_formats.md; formulas: docs/leaf_models.md.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class Leaf {
   /// The same from memory; `name` is what errors call it.
   Leaf(const std::string& bytes, const std::string& name) {
     Reader in{bytes, name, 8};
-    if (bytes.compare(0, 8, "FRONDLF1") != 0) throw std::runtime_error(name + ": no leaf of frond");
+    if (bytes.compare(0, 8, "FRONDLF1") != 0) throw std::runtime_error(name + ": not a .leaf file of frond");
     if (bytes.size() < 60 || checksum(bytes) != stored_checksum(bytes)) throw std::runtime_error(name + ": damaged");
     reciprocal_ = in.whole() != 0;
     cells_ = in.whole();
@@ -157,7 +157,7 @@ class Leaf {
       return values;
     }
     const char* take(size_t size) {
-      if (at + size > bytes.size()) throw std::runtime_error(name + ": cut short");
+      if (at + size > bytes.size()) throw std::runtime_error(name + ": the file is truncated");
       at += size;
       return bytes.data() + at - size;
     }

@@ -1,4 +1,4 @@
-"""BSDFs one by one: those of materials, and prototypes in Python."""
+"""BSDFs of materials, leaf tables, and BSDFs written in Python."""
 
 import math
 
@@ -7,18 +7,18 @@ from ._measure import _numbers, _session_of, material_text
 
 
 class FlatBsdf:
-    """The BSDF of a material on a flat specimen, at one to four wavelengths.
+    """The BSDF of a material on a flat surface, at one to four wavelengths in nm.
 
-    Directions are arrays `[n][3]` of unit vectors that point away from the surface, z along its normal, on a leaf's
-    adaxial side; `wo` goes toward where a path came from, `wi` toward where light comes from.
+    Directions are arrays `[n][3]` of unit vectors that point away from the surface. The z axis is the surface normal, on
+    the adaxial side of a leaf. `wo` points back along the camera path, `wi` toward the light. Arrays are broadcast.
     """
 
     def __init__(self, material, wavelengths, *, session=None):
         self.wavelengths = _numbers(wavelengths)
         self._bsdf = _frond.FlatBsdf(_session_of(session), material_text(material), self.wavelengths)
 
-    is_stochastic = property(lambda self: self._bsdf.is_stochastic, doc="f is a random estimate.")
-    is_reciprocal = property(lambda self: self._bsdf.is_reciprocal, doc="The material claims f(a, b) = f(b, a).")
+    is_stochastic = property(lambda self: self._bsdf.is_stochastic, doc="True if `f` is a random estimate.")
+    is_reciprocal = property(lambda self: self._bsdf.is_reciprocal, doc="True if the material claims f(a, b) = f(b, a).")
 
     @staticmethod
     def _directions(*directions):
@@ -28,63 +28,65 @@ class FlatBsdf:
         return [numpy.ascontiguousarray(numpy.broadcast_to(a, shape)) for a in arrays]
 
     def f(self, wo, wi, *, seed=0):
-        """In 1/sr, without cosine: `[n][wavelength]`."""
+        """Returns the BSDF value in 1/sr, without the cosine: float32 `[n][wavelength]`."""
         return self._bsdf.f(*self._directions(wo, wi), seed)
 
     def pdf(self, wo, wi):
-        """Density of `sample` in 1/sr: `[n]`."""
+        """Returns the probability density of `sample` in 1/sr: float32 `[n]`."""
         return self._bsdf.pdf(*self._directions(wo, wi))
 
     def sample(self, wo, *, seed=0):
-        """A direction for each wo: wi `[n][3]`, its weight f |cos| / pdf `[n][wavelength]`, pdf `[n]`, which is 0 where there
-        is none."""
+        """Samples a direction for each wo. Returns (wi `[n][3]`, weights f |cos| / pdf `[n][wavelength]`, pdf `[n]` in 1/sr);
+        pdf is 0 where nothing is scattered."""
         return self._bsdf.sample(*self._directions(wo), seed)
 
 
 def bsdf(material, wavelengths=(608, 551, 455), *, session=None):
-    """The BSDF of a material as text, "leaf_solved,specimen=maize", at one to four wavelengths."""
+    """Returns the FlatBsdf of a material, as text ("leaf_solved,specimen=maize"), at one to four wavelengths in nm."""
     return FlatBsdf(material, wavelengths, session=session)
 
 
 class LeafTable(dict):
-    """The solved leaf as arrays by name (docs/leaf_file.md): "wavelength_nm", "depth", "index", "surface", and series such as
-    "adaxial_reflected" `[column][mode][incident sine][leaving sine]`."""
+    """The mode table of a `leaf_solved` as a dictionary of arrays (docs/file_formats.md): "wavelength_nm", "depth", "index",
+    "surface", and Fourier modes such as "adaxial_reflected" `[column][mode][incident sine][leaving sine]`."""
 
     def save(self, path):
-        """As a file for other programs: exports/cpp/frond_leaf.h reads it."""
+        """Writes a .leaf file, which exports/cpp/frond_leaf.h reads."""
         with open(path, "wb") as file:
             file.write(self["bytes"])
 
 
 def leaf_table(material, wavelengths, *, tolerance=5e-4, depths=None, session=None):
-    """All that `leaf_solved` looks up. material: text, "leaf_solved,specimen=maize,incident=reciprocal". depths: (least,
-    most) optical depth of the mesophyll that the table is to reach over, where chemistry varies."""
+    """Returns the LeafTable of a `leaf_solved`. material: text, "leaf_solved,specimen=maize,incident=reciprocal". wavelengths:
+    in nm. tolerance: largest error of pi f. depths: (least, most) optical depth of the mesophyll, for leaves whose chemistry
+    varies. Raises InputError."""
     return LeafTable(_frond.leaf_table(_session_of(session), material_text(material), sorted(_numbers(wavelengths)), tolerance, depths))
 
 
 class Bsdf:
-    """A BSDF in Python, for prototypes: `f` is what it needs, and with its own `sample` and `pdf` it has less noise.
-    `frond.conform` holds it to the laws, `frond.register_material` makes it a material.
+    """Base class of BSDFs written in Python. A subclass defines `f`; its own `sample` and `pdf` reduce noise.
+    `frond.conform` tests it, `frond.register_material` makes it a material.
 
-    Directions are tuples, unit, away from the surface, z along its normal; nm are the wavelengths of a path, at most
-    four, and values are one number for all of them or one for each.
+    Directions are tuples (x, y, z), unit vectors that point away from the surface, z along its normal. nm: the one to four
+    wavelengths of a path. Values are one number for all wavelengths, or one for each.
     """
 
-    flags = ("reflection", "transmission", "diffuse")  #: what it does, of those and "glossy"
+    flags = ("reflection", "transmission", "diffuse")  #: of "reflection", "transmission", "diffuse", "glossy"
     reciprocal = False  #: claims f(a, b) = f(b, a)
 
     def f(self, wo, wi, nm):
-        """In 1/sr, without cosine."""
+        """Returns the BSDF value in 1/sr, without the cosine."""
         raise NotImplementedError
 
     def _share_of_side(self, wo, wi):
-        """Of `sample`, that goes to the side of wi."""
+        """Probability that `sample` chooses the side of wi."""
         sides = [side for side in ("reflection", "transmission") if side in self.flags]
         side = "reflection" if wo[2] * wi[2] > 0 else "transmission"
         return (side in sides) / len(sides)
 
     def sample(self, wo, uc, u, nm):
-        """(wi, f, pdf), or None; from numbers uc and u[0], u[1] in [0, 1). By default cosines on either side."""
+        """Samples a direction with the uniform numbers uc, u[0], u[1] in [0, 1). Returns (wi, f, pdf) or None. By default the
+        density is proportional to the cosine, on each side that `flags` names."""
         both = "reflection" in self.flags and "transmission" in self.flags
         reflects = uc < 0.5 if both else "reflection" in self.flags
         radius, phi = math.sqrt(u[0]), 2 * math.pi * u[1]
@@ -95,7 +97,7 @@ class Bsdf:
         return (wi, self.f(wo, wi, nm), pdf) if pdf > 0 else None
 
     def pdf(self, wo, wi, nm):
-        """Density of `sample`, 1/sr."""
+        """Returns the probability density of `sample` in 1/sr."""
         if wo[2] == 0:
             return 0.0
         return self._share_of_side(wo, wi) * abs(wi[2]) / math.pi

@@ -1,4 +1,4 @@
-"""What is wrong with the input, as an exception."""
+"""The exception for bad input."""
 
 import re
 
@@ -6,10 +6,10 @@ _PLACE = re.compile(r"^(?P<file>.*?):(?P<line>\d+):(?P<column>\d+): (?P<message>
 
 
 class InputError(ValueError):
-    """Bad input: what was wrong, where, and what would have been right.
+    """Bad input. The text says what is wrong, where, and how to fix it.
 
-    `file`, `line` and `column` are of the first problem, None where it has no place in a file; `problems` are all of
-    them, as text.
+    `file`, `line` and `column` locate the first problem; they are None if it is not in a file. `problems` is the list of all
+    problems, as text.
     """
 
     def __init__(self, message, file=None, line=None, column=None, problems=()):

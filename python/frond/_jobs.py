@@ -1,4 +1,4 @@
-"""The jobs of frond as functions: signatures, docstrings and checks follow from the records that the command line has."""
+"""The jobs of frond as functions. Their signatures, docstrings and checks are made from the records of the command line."""
 
 import inspect
 import keyword
@@ -14,9 +14,9 @@ _ANNOTATIONS = {"flag": "bool", "count": "int", "seed": "int", "real": "float", 
 
 
 def _text(value):
-    """A value as text, in the grammar of the command line. Numbers keep all their digits."""
+    """Returns a value as text, in the grammar of the command line. Numbers keep all digits."""
     if hasattr(value, "item") and getattr(value, "ndim", 0) == 0:
-        value = value.item()  # of NumPy
+        value = value.item()  # a NumPy scalar
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (str, os.PathLike)):
@@ -29,7 +29,7 @@ def _text(value):
 
 
 def words(param, value):
-    """The texts that a parameter is set by: one, or for a parameter that may be given again any number."""
+    """Returns the list of texts for a parameter: one text, or any number for a repeatable parameter."""
     if param["kind"] != "texts":
         return [_text(value)]
     if isinstance(value, (str, os.PathLike)):
@@ -47,7 +47,7 @@ def python_name(name):
 
 
 def arguments(params, given):
-    """{name: texts} of the keywords that are given, for the records `params`."""
+    """Returns {name: texts} of the given keywords, for the records `params`."""
     found = {}
     for param in params:
         value = given.get(python_name(param["name"]))
@@ -57,7 +57,7 @@ def arguments(params, given):
 
 
 def by_alias(params, given):
-    """The same keywords with the records' own names in place of their aliases."""
+    """Returns the keywords with aliases replaced by the names of the records. Raises TypeError if both are given."""
     names = {python_name(alias): python_name(p["name"]) for p in params for alias in p["aliases"].split(",") if len(alias) > 1}
     found = {}
     for name, value in given.items():
@@ -78,7 +78,7 @@ def _default(param):
 
 
 def _doc(text):
-    """Options spelled as keywords."""
+    """Spells the options in a help text as Python keywords."""
     return re.sub(r"--([a-z][a-z-]*)", lambda match: python_name(match[1]), text)
 
 
@@ -87,7 +87,7 @@ def _signature(job):
     for i, param in enumerate(job["params"]):
         kind = kinds.POSITIONAL_OR_KEYWORD if i < 3 else kinds.KEYWORD_ONLY
         parameters.append(kinds(python_name(param["name"]), kind, default=_default(param), annotation=_ANNOTATIONS[param["kind"]]))
-    # What has no default comes first, or is given by its name.
+    # Python requires parameters without a default before those with one.
     seen_default = False
     for i, parameter in enumerate(parameters[:3]):
         seen_default = seen_default or parameter.default is not kinds.empty
@@ -105,9 +105,10 @@ def _docstring(job):
 
 
 class Result:
-    """What a job found: `tables` by name, single values as `facts`, `notes` and the `text` for a terminal.
+    """The result of a job: `tables` {name: table}, single values `facts` {name: value}, `notes` (a list of texts), the `text`
+    that the command prints, and its exit `code`.
 
-    A table is a pandas.DataFrame where pandas is installed, else a dictionary of columns. `table` is the first one.
+    A table is a pandas.DataFrame if pandas is installed, else a dictionary of columns. `table` is the first table.
     """
 
     def __init__(self, found):
@@ -136,7 +137,7 @@ def _table(columns):
 
 
 def run(name, /, *, progress=None, session=None, **given):
-    """Runs a job by its name, with the keywords of its function; returns a `Result`."""
+    """Runs the job `name` with the keywords of its function and returns a `Result`. Raises InputError."""
     job = JOBS[name]
     given = by_alias(job["params"], given)
     known = {python_name(p["name"]) for p in job["params"]}

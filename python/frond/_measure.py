@@ -1,4 +1,4 @@
-"""Jobs whose results have a form of their own in Python: fits, distributions of f, verdicts of laws; and measured spectra."""
+"""Jobs whose results Python returns as arrays or objects: instruments, radiometry, conformance and fits."""
 
 import inspect
 import os
@@ -9,7 +9,7 @@ from ._session import default_session
 
 
 def material_text(material):
-    """"leaf_solved,specimen=maize"; also from a list of its parts."""
+    """Returns a material as text, "leaf_solved,specimen=maize"; a list of its words is joined by commas."""
     return material if isinstance(material, str) else ",".join(str(part) for part in material)
 
 
@@ -22,12 +22,12 @@ def _session_of(session):
 
 
 def names(kind="material", *, session=None):
-    """What scenes can name of a kind ("material", "integrator", "light", ...): {name: one line}."""
+    """Returns {name: description} of the plug-ins of a kind ("material", "light", "integrator", ...)."""
     return (session or default_session()).names(kind)
 
 
 def _with_keywords_of(name):
-    """Adds the job's keywords to the signature of a function that passes them on, and its documentation."""
+    """Decorator: adds the keywords and the documentation of a job to a function that passes them on."""
     def decorate(function):
         job, kinds = FUNCTIONS[name], inspect.Parameter
         own = [p for p in inspect.signature(function).parameters.values() if p.kind is not kinds.VAR_KEYWORD]
@@ -40,7 +40,7 @@ def _with_keywords_of(name):
 
 
 def _of_table(name):
-    """The job `name` with its first table as result."""
+    """Returns a function that runs the job `name` and returns its first table."""
     job = FUNCTIONS[name]
 
     def call(*args, **kwargs):
@@ -62,8 +62,9 @@ def spectrophotometer(material, wavelengths, angles=8, **options):
 
 @_with_keywords_of("flux")
 def flux(scene, wavelengths=None, *, by_instance=False, **options):
-    """The job's table of shares of the light. by_instance: with it a dictionary of what each instance absorbs: arrays
-    "absorbed", "absorbed_se" `[instance][wavelength]`, "areas" and "wavelengths_nm"."""
+    """Returns the table of reflected, transmitted and absorbed shares of the incident light. With by_instance=True also a
+    dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][wavelength]`, "areas" `[instance]`, and
+    "wavelengths_nm"."""
     result = FUNCTIONS["flux"](scene, wavelengths, by="instance" if by_instance else None, **options)
     if not by_instance:
         return result.table
@@ -78,9 +79,9 @@ def flux(scene, wavelengths=None, *, by_instance=False, **options):
 
 @_with_keywords_of("goniophotometer")
 def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **options):
-    """f in 1/sr over the whole sphere: a dictionary with arrays "f" and "f_se" `[angle][wavelength][theta][phi]`, the
-    patches' centres "theta_o_deg" and "phi_o_deg" and "projected_solid_angle_sr" `[theta][phi]`, "theta_i_deg" and
-    "wavelength_nm"."""
+    """Returns f over the whole sphere of directions as a dictionary of arrays: "f" and "f_se" (standard error) in 1/sr
+    `[angle][wavelength][theta][phi]`; the centres "theta_o_deg", "phi_o_deg" and the "projected_solid_angle_sr" of the
+    detector's patches `[theta][phi]`; "theta_i_deg" and "wavelength_nm". patches: (number in theta, number in phi)."""
     import numpy
     nm, theta = _numbers(wavelengths), _numbers(angles)
     counts = tuple(patches)
@@ -95,8 +96,8 @@ def goniophotometer(material, wavelengths, angles=8, *, patches=(20, 40), **opti
 
 @_with_keywords_of("conform")
 def conform(material, *, session=None, **options):
-    """Whether a BSDF obeys the laws of scattering: a material as text, or an object of `frond.Bsdf`. A dictionary:
-    `["laws"]` has the verdicts by law, `["findings"]` a table, `all_hold` whether none is broken."""
+    """Tests whether a BSDF obeys the laws of scattering. material: text, or an object of `frond.Bsdf`. Returns a dictionary:
+    "laws" {law: verdict}, "findings" a table, "all_hold" True if no law is broken."""
     if not isinstance(material, (str, list, tuple)):
         name = f"{type(material).__name__}-{id(material):x}"
         if name not in names(session=session):
@@ -109,38 +110,38 @@ def conform(material, *, session=None, **options):
 
 
 def register_material(name, bsdf, *, session=None):
-    """Makes an object of `frond.Bsdf` a material that scenes of the session can name. Renders of it use one core: each
-    call goes to Python."""
+    """Registers an object of `frond.Bsdf` as a material that scenes of the session name by `name`. Its renders use one
+    core, because each call needs Python's lock."""
     _frond.register_material(_session_of(session), name, (type(bsdf).__doc__ or name).strip().split("\n")[0], bsdf)
 
 
 class Fit:
-    """A leaf that was fitted to measured spectra."""
+    """A leaf fitted to measured spectra; `fit` returns it."""
 
     def __init__(self, result):
         self.result = result
         leaf = result.columns["leaf"]
-        self.leaf = dict(zip(leaf["name"], (float(v) for v in leaf["value"])))  #: its parameters, as a material takes them
+        self.leaf = dict(zip(leaf["name"], (float(v) for v in leaf["value"])))  #: {parameter: value}, as a material takes them
 
-    rmse = property(lambda self: self.result.facts["rmse"], doc="Of R and T together.")
+    rmse = property(lambda self: self.result.facts["rmse"], doc="Root mean square error of R and T together.")
     numbers = property(lambda self: self.result.tables["numbers"],
-                       doc="A table of what was fitted: value, relative_standard_error, identified.")
-    spectra = property(lambda self: self.result.tables["spectra"], doc="Measured and fitted spectra: a table.")
+                       doc="Table of the fitted parameters: value, relative_standard_error, identified.")
+    spectra = property(lambda self: self.result.tables["spectra"], doc="Table of the measured and the fitted spectra.")
 
     @property
     def parameters(self):
-        """The leaf's parameters as a dictionary, for Mitsuba's frond_leaf."""
+        """{parameter: value} for Mitsuba's `frond_leaf`."""
         return {"specimen": self.result.facts["specimen"], **self.leaf, "sieve": self.result.facts["sieve"]}
 
     @property
     def material(self):
-        """The leaf's parts of a material in text: ["specimen=soybean", "thickness=0.00017", ...]; `swap` and the
-        instruments take "leaf_solved," and these with commas between."""
+        """Parameters as text: ["specimen=soybean", "thickness=0.00017", ...]. Joined by commas behind "leaf_solved," they
+        are a material for `swap` and the instruments."""
         parts = [f"specimen={self.result.facts['specimen']}"] + [f"{name}={value!r}" for name, value in self.leaf.items()]
         return parts + (["sieve=true"] if self.result.facts["sieve"] else [])
 
     def scene(self, material="leaf"):
-        """A Material line of a scene file."""
+        """Returns the `Material` line of a scene file."""
         of_leaf = self.result.facts["scene"]
         return of_leaf.replace(of_leaf.split('"')[1].join('""'), f'"{material}"', 1)
 
@@ -149,7 +150,7 @@ class Fit:
 
 
 def _csv(wavelengths, R, T):
-    """Columns as the CSV text that the job reads."""
+    """Returns the columns as CSV text for the job `fit`."""
     count = len(wavelengths)
     columns = {"wavelength_nm": wavelengths, "R": R, "T": T}
     columns = {name: list(values) for name, values in columns.items() if values is not None}
@@ -163,8 +164,12 @@ def _csv(wavelengths, R, T):
 
 @_with_keywords_of("fit")
 def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
-    """The leaf whose solved BSDF comes nearest to measured reflectance and transmittance: arrays of `wavelengths` (nm) and
-    `R`, `T` (shares of the light; either may be missing), or a file by `path`. sieve: also True or False. fix: {"chlorophylla": 3.9}."""
+    """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit.
+
+    wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing. path: a file, in place of
+    these arrays. sieve: True or False, absorption with sieve and detour effects; by default
+    whichever fits better. fix: {"chlorophylla": 3.9}.
+    Raises ValueError or InputError."""
     if (path is None) == (wavelengths is None):
         raise ValueError("fit takes measurements, or the path of a file with them")
     source = {"file": os.fspath(path)} if path is not None else {"data": _csv(wavelengths, R, T)}
@@ -174,7 +179,8 @@ def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
 
 
 def read_spectra(path, *, leaf="", angle=8.0):
-    """Measured spectra as the job fit reads them: a table of wavelength_nm, theta_deg, R and T."""
+    """Reads a file of measured spectra as the job `fit` does. Returns a table of wavelength_nm, theta_deg, R and T. leaf: the
+    leaf to read if the file has several. angle: of incidence, in degrees, if the file does not say it. Raises InputError."""
     rows = _frond.read_spectra(os.fspath(path), leaf, angle)
     columns = list(zip(*rows)) or [(), (), (), ()]
     return _table(dict(zip(("wavelength_nm", "theta_deg", "R", "T"), map(list, columns))))

@@ -1,4 +1,4 @@
-"""Scenes and their images."""
+"""Sessions, scenes, and the images rendered from them."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from . import _frond
 
 
 def _show(progress):
-    """What is called with the share that is done: nothing, a function, or with True a line on standard error."""
+    """Returns the progress callback: None, the given function, or for True one that writes a line to standard error."""
     if progress is not True:
         return progress or None
     import sys
@@ -22,10 +22,10 @@ def _show(progress):
 
 
 class Session:
-    """Plugins, threads and the cache of tables: what renders have in common.
+    """Threads, plug-ins and the cache of leaf tables, shared by scenes. Several sessions may exist at once.
 
-    threads: 0 for all. cache: True for ~/.cache/frond, False for none, or a folder. plugins: shared objects beside those
-    of FROND_PLUGIN_PATH. Several may live side by side.
+    threads: number of threads, 0 for one per core. cache: True for ~/.cache/frond, False for none, or a folder. plugins:
+    paths of shared objects, in addition to those in FROND_PLUGIN_PATH. Raises InputError if a plug-in cannot be loaded.
     """
 
     def __init__(self, threads=0, cache=True, plugins=()):
@@ -34,18 +34,19 @@ class Session:
 
     @property
     def threads(self):
+        """Number of threads."""
         return self._session.threads
 
     def names(self, kind="material"):
-        """What scenes can name: {name: what it is}."""
+        """Returns {name: description} of the plug-ins of a kind ("material", "light", "integrator", ...)."""
         return dict(self._session.names(kind))
 
     def load(self, path, **over):
-        """A scene from a file; `over` as of the function `load`."""
+        """Returns the Scene of a file. Keywords: those of the function `load`."""
         return self._scene(os.fspath(path), None, **over)
 
     def loads(self, text, folder=".", **over):
-        """A scene from a string; files that it names are found from `folder`."""
+        """Returns the Scene of a string. Relative file names in it start at `folder`."""
         return self._scene(os.path.join(os.fspath(folder), "<string>"), text, **over)
 
     def _scene(self, path, text, *, adaptive=False, **over):
@@ -60,7 +61,7 @@ class Session:
         return Scene(scene, over["spp"])
 
 
-#: What of the job `render` is said to `Scene.render` and `Image.save`.
+#: Parameters of the job `render` that belong to `Scene.render` and `Image.save`, not to loading.
 _NOT_OF_LOADING = {"scene", "output", "part", "samples", "checkpoint", "resume", "time-limit", "pilot", "preview",
                    "display", "view", "display-server", "json"}
 _default = None
@@ -68,7 +69,7 @@ _default_lock = threading.Lock()
 
 
 def default_session():
-    """The session of functions that are given none."""
+    """Returns the session that functions without `session` use. It is made at the first call."""
     global _default
     with _default_lock:
         if _default is None:
@@ -77,46 +78,58 @@ def default_session():
 
 
 def load(path, *, session=None, **over):
-    """A scene from a pbrt-v4 file. Keywords are those of `frond.render` that shape the image:
+    """Reads a pbrt-v4 scene file and returns a Scene that is ready to render.
 
-    swap: another material: "leaf_solved" in place of every leaf, or {"name": "plugin,parameter=value", ...}.
-    wavelengths: a strategy ("smpte", "hero"), or numbers in nm, which are bands. integrator, filter:
-    "plugin,parameter=value". channels: beside colour ("normal", "depth", ...). color_space: of the image. seed: of all
-    random numbers. pixels: (x0, x1, y0, y1), a crop. samples (or spp): of each pixel, in place of the scene's. quick: half
-    the resolution, a sixteenth of the samples. max_rms, or adaptive: to render until the noise is small enough.
+    The keywords override the file, as the options of `frond render` do:
+
+    swap: material that replaces every leaf ("leaf_solved"), or {"name": "plugin,parameter=value", ...}.
+    wavelengths: a strategy ("smpte", "hero"), or a list of bands in nm.
+    integrator, filter: "plugin,parameter=value".
+    channels: additional channels ("normal", "depth", ...).
+    color_space: colour space of R, G and B.
+    seed: seed of all random numbers.
+    pixels: crop window (x0, x1, y0, y1) in pixels.
+    samples, spp: samples per pixel.
+    quick: True for half the resolution and a sixteenth of the samples.
+    adaptive: True to allow `max_rms` in `Scene.render`.
+
+    Raises InputError with file, line and column if the scene is wrong.
     """
     return (session or default_session()).load(path, **over)
 
 
 def loads(text, folder=".", *, session=None, **over):
-    """A scene from a string, as `load`; files that it names are found from `folder`."""
+    """Returns the Scene of a string. Relative file names in it start at `folder`. Keywords: those of `load`."""
     return (session or default_session()).loads(text, folder, **over)
 
 
 def read_image(path):
-    """An image file: (channels' names, float32 array `[row][column][channel]`)."""
+    """Reads an image file. Returns (names of the channels, float32 array `[row][column][channel]`). Raises InputError."""
     return _frond.read_image(os.fspath(path))
 
 
 class Scene:
-    """A scene that is loaded: `render` it, any number of times."""
+    """A loaded scene, made by `load`. It can be rendered any number of times."""
 
     def __init__(self, scene, samples=0):
         self._scene, self._asked = scene, samples
 
-    width = property(lambda self: self._scene.width, doc="Of the film, in pixels.")
-    height = property(lambda self: self._scene.height, doc="Of the film, in pixels.")
-    samples = property(lambda self: self._asked or self._scene.samples, doc="Number of samples per pixel that is asked for.")
-    materials = property(lambda self: self._scene.materials, doc="(name, plugin) of each, in the file's order.")
+    width = property(lambda self: self._scene.width, doc="Width of the film in pixels.")
+    height = property(lambda self: self._scene.height, doc="Height of the film in pixels.")
+    samples = property(lambda self: self._asked or self._scene.samples, doc="Requested samples per pixel.")
+    materials = property(lambda self: self._scene.materials, doc="List of (name, plug-in), in the order of the file.")
 
     @property
     def choice(self):
-        """What was chosen for an open leaf ("leaf"), or None."""
+        """Models selected for open leaves (`Material "leaf"`) with the errors of the pilot, as a dictionary, or None."""
         return json.loads(self._scene.choice) if self._scene.choice else None
 
     def render(self, samples=None, *, max_rms=None, time_limit=None, progress=None):
-        """An image. samples: of each pixel. max_rms: until the noise is that small (of a scene that was loaded as
-        adaptive). time_limit: seconds. progress: a function of the share that is done, or True for a line of text.
+        """Renders and returns an Image.
+
+        samples: samples per pixel, by default those of the scene. max_rms: RMS noise at which to stop (the scene must have
+        been loaded with adaptive=True). time_limit: seconds. progress: a function that is called with the fraction done, in
+        [0, 1], or True for a line on standard error. Raises KeyboardInterrupt when it is interrupted.
         """
         image = Image(self._scene.image(), self)
         image.render_more(samples or self.samples, max_rms=max_rms, time_limit=time_limit, progress=progress)
@@ -124,14 +137,14 @@ class Scene:
 
 
 class Image:
-    """What has been rendered, channel by channel: `image["R"]`, `image.array`, `image.rgb`."""
+    """A rendered image: `image["R"]` is a channel `[row][column]`; `image.array` and `image.rgb` are several."""
 
     def __init__(self, image, scene):
         self._rendered, self._scene, self._image = image, scene, None
 
     def render_more(self, samples=None, *, max_rms=None, time_limit=None, progress=None):
-        """Until each pixel has `samples`, those that it has included: the image is the same as if it had been
-        rendered at once."""
+        """Adds samples until each pixel has `samples` in total. The result equals a single render with that number.
+        Keywords: those of `Scene.render`. Raises ValueError if max_rms is given for a scene that is not adaptive."""
         if max_rms is not None and not self._scene._scene.is_adaptive:
             raise ValueError("max_rms is for scenes that are loaded with adaptive=True")
         self._image = None
@@ -144,12 +157,12 @@ class Image:
 
     @property
     def channels(self):
-        """Names, in the array's order."""
+        """Names of the channels, in the order of `array`."""
         return self._load()[0]
 
     @property
     def array(self):
-        """float32, `[row][column][channel]`, rows from the top."""
+        """All channels: float32 `[row][column][channel]`, rows from the top."""
         return self._load()[1]
 
     def __getitem__(self, channel):
@@ -164,26 +177,27 @@ class Image:
 
     @property
     def rgb(self):
-        """Linear colours of `color_space`, `[row][column][3]`."""
+        """Linear R, G, B in `color_space`: float32 `[row][column][3]`."""
         return self._several("RGB")
 
     @property
     def variance(self):
-        """Of the mean of each pixel's samples, in the colours' order."""
+        """Variance of each pixel's value: float32 `[row][column][colour]`, colours in the order of `channels`."""
         names = [name for name in self.channels if name.startswith("variance.")]
         return self._several(names)
 
-    color_space = property(lambda self: self._rendered.color_space, doc="Of R, G, B; empty where channels are bands.")
-    statistics = property(lambda self: self._rendered.statistics(), doc="Paths, rays, and seconds that it took.")
-    attributes = property(lambda self: self._rendered.attributes(), doc="What the header of its file says.")
-    samples = property(lambda self: self._rendered.samples(), doc="Of a pixel: least and most.")
+    color_space = property(lambda self: self._rendered.color_space, doc="Colour space of R, G and B; empty if the channels are bands.")
+    statistics = property(lambda self: self._rendered.statistics(), doc="Dictionary: paths, rays, CPU seconds and wall-clock seconds of the render.")
+    attributes = property(lambda self: self._rendered.attributes(), doc="Dictionary of the attributes that `save` writes into the file's header.")
+    samples = property(lambda self: self._rendered.samples(), doc="(least, most) samples of a pixel.")
 
     def save(self, path):
-        """As EXR, all channels; as PNG or JPEG, colours for a display. Whole or not at all."""
+        """Writes the image: all channels to .exr, colours for a display to .png or .jpg. A failed write leaves no file.
+        Raises InputError."""
         self._rendered.save(os.fspath(path))
 
     def save_part(self, path):
-        """As a part that `frond merge` adds others to, and that can go on."""
+        """Writes a part, which `frond merge` combines with other parts and `frond render --resume` continues."""
         self._rendered.save_part(os.fspath(path))
 
     def __repr__(self):
@@ -192,7 +206,7 @@ class Image:
         return f"<frond.Image {self._scene.width} x {self._scene.height}, {count} samples a pixel>"
 
     def _repr_png_(self):
-        """For notebooks: colours as a display shows them."""
+        """PNG for notebooks; None if the channels are bands."""
         import tempfile
         if not self.color_space:
             return None

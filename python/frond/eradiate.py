@@ -1,4 +1,4 @@
-"""Leaves of Eradiate's canopies by frond: the solved leaf in place of `bilambertian`.
+"""Eradiate canopies with frond's leaf_solved in place of `bilambertian` leaves.
 
     import eradiate
     eradiate.set_mode("mono")
@@ -7,8 +7,8 @@
     cloud = FrondLeafCloud.cuboid(n_leaves=400, leaf_radius=0.1, l_horizontal=3.0, l_vertical=1.0)
     cloud.leaf = {"specimen": "maize"}
 
-`leaf` has the parameters of `leaf_solved`; its convention is "reciprocal" where it says nothing. Spectra of reflectance and
-transmittance, which a LeafCloud takes, have no effect. The leaf's reflectance follows the experiment's wavelengths.
+`leaf` holds the parameters of `leaf_solved`; `incident` is "reciprocal" by default. The reflectance and transmittance spectra of
+a LeafCloud have no effect: the leaf is evaluated at the wavelengths of the experiment.
 """
 
 import attrs
@@ -23,7 +23,7 @@ def _nm(ctx):
 
 @attrs.define(eq=False, slots=False)
 class FrondLeafCloud(LeafCloud):
-    """A LeafCloud of solved leaves: `leaf` goes to the class itself, or is set on what other constructors make."""
+    """A LeafCloud whose leaves are leaf_solved. Pass `leaf` to this class, or set it after a named constructor."""
 
     leaf: dict = attrs.field(factory=dict, kw_only=True)
 

@@ -1,5 +1,5 @@
-"""The solved leaf in Mitsuba 3: a BSDF `frond_leaf`, compiled in JIT variants, and called in scalar ones, one direction at
-a time, as Eradiate needs it (frond.eradiate).
+"""The BSDF plug-in `frond_leaf` for Mitsuba 3: frond's leaf_solved. JIT variants evaluate it as compiled kernels; scalar
+variants call frond for one direction at a time, as Eradiate requires (frond.eradiate).
 
     import mitsuba as mi
     mi.set_variant("llvm_ad_rgb")
@@ -8,12 +8,12 @@ a time, as Eradiate needs it (frond.eradiate).
     leaf = {"type": "frond_leaf", "specimen": "soybean", "incident": "reciprocal"}
 
 Parameters are those of `leaf_solved` (frond describe leaf_solved): specimen, thickness, chlorophylla, ..., incident,
-tolerance. Chemistry, thickness and mesophyllfraction may be textures; then, or with `differentiable`, the leaf is looked
-up over its optical depth, of which f has derivatives: `params["leaf.chlorophylla"]`. In rgb variants R, G and B are 608,
-551 and 455 nm, or the three of `wavelengths`; in mono variants one wavelength is needed; in spectral ones any from 360 to
-830 nm are looked up. Surfaces are leaves on both sides: no `twosided` is needed.
+tolerance. The concentrations, thickness and mesophyllfraction may be textures. With a texture, or with `differentiable`, the
+mode table has an axis of optical depth, and f has derivatives: `params["leaf.chlorophylla"]`. In rgb variants R, G and B are
+608, 551 and 455 nm, or the three numbers of `wavelengths`; mono variants require one wavelength; spectral variants use 360 to
+830 nm. Both sides of a surface are leaf: `twosided` is not needed.
 
-A variant must be set before this is imported; after another is set, call `register`.
+Set a variant before importing this module, and call `register` after setting another one.
 """
 
 import mitsuba as mi
@@ -23,7 +23,7 @@ import numpy
 from . import _frond
 from ._session import default_session
 
-#: What acts through the optical depth, and may be a texture.
+#: Concentrations, which change the optical depth; each may be a texture.
 CHEMISTRY = ("chlorophylla", "chlorophyllb", "carotenoids", "protein", "cellulose", "lignin", "otherabsorption")
 _GEOMETRY = ("thickness", "mesophyllfraction")
 _NUMBERS = CHEMISTRY + _GEOMETRY + ("cuticleaspect", "epidermisaspect", "spongyaspect", "palisadeaspect")
@@ -34,7 +34,7 @@ _COSINE_CELLS = 64
 
 
 def _lagrange(t):
-    """Weights of the cubic through -1, 0, 1, 2."""
+    """Returns Lagrange's four weights for cubic interpolation at t in [0, 1] between nodes -1, 0, 1, 2."""
     t2, t3 = t * t, t * t * t
     return ((-2 * t + 3 * t2 - t3) / 6, 1 + (-3 * t - 6 * t2 + 3 * t3) / 6, (6 * t + 3 * t2 - 3 * t3) / 6, (t3 - t) / 6)
 
@@ -44,7 +44,7 @@ def _pop(props, name, default=None):
 
 
 def _make(variant):
-    """The class for the variant that is set."""
+    """Returns the BSDF class for the current variant."""
     Float, UInt32, Vector3f = mi.Float, mi.UInt32, mi.Vector3f
     spectral, lanes = mi.is_spectral, len(dr.zeros(mi.UnpolarizedSpectrum))
 
@@ -56,7 +56,7 @@ def _make(variant):
                 if name in props:
                     words.append(f"{name}={props[name]}")
             self.incident = _pop(props, "incident", "traced")
-            # With incident "light" the model's own f is asked the other way round.
+            # Incident "light" is "traced" with the two directions exchanged.
             table_words = [w if w != "incident=light" else "incident=traced" for w in words]
             self.numbers, self.textures = {}, {}
             for name in _NUMBERS:
@@ -100,7 +100,7 @@ def _make(variant):
             if given is None and lanes == 3:
                 return numpy.array(_RGB_NM)
             if given is None:
-                raise ValueError('frond_leaf: "wavelengths" says what a mono variant sees, as in "551"')
+                raise ValueError('frond_leaf: mono variants require "wavelengths", for example "551"')
             nm = numpy.array([float(x) for x in str(given).replace(",", " ").split()])
             if len(nm) != lanes:
                 raise ValueError(f"frond_leaf: {lanes} wavelengths are needed in variant {variant}, {len(nm)} were given")
@@ -108,7 +108,7 @@ def _make(variant):
 
         @staticmethod
         def _most_of(texture):
-            """Twice the most that a texture gives now: an optimiser may go on from there."""
+            """Returns twice the largest value of a texture, so that an optimiser may increase it."""
             values = mi.traverse(texture)
             for name in ("data", "value"):
                 if name in values:
@@ -116,7 +116,7 @@ def _make(variant):
             return 2 * float(texture.max())
 
         def _depth_range(self, chemistry):
-            """All depths that textures can give, and twice that of what is to be differentiated."""
+            """Returns the range of optical depths of the table: what textures can produce, twice as much if differentiable."""
             most = {n: self._most_of(t) for n, t in self.textures.items()}
             amount = {n: most.get(n, 2 * max(a, 1e-3)) for n, a in chemistry["amount"].items()}
             amount["water"] = 1.0
@@ -127,7 +127,7 @@ def _make(variant):
             return (0.0, max(float(absorption * length), 1e-3))
 
         def _take(self, table):
-            """The table on the device: for each side and way `[column]`[incident][leaving]`[mode]`, modes padded."""
+            """Uploads the mode table: `[column][incident][leaving][mode]` for each lit side and exit side, modes padded."""
             self.reciprocal, self.cells, self.exponent = table["reciprocal"], int(table["cells"]), float(table["exponent"])
             side = self.side = self.cells + 3
             names = [f"{s}_{w}" for s in ("adaxial", "abaxial") for w in ("reflected", "transmitted")]
@@ -145,10 +145,10 @@ def _make(variant):
             self.wavelengths = numpy.array(table["wavelength_nm"])
             self.depths = numpy.array(table["depth"])
 
-        # What the lanes look at: (column, weight) of each, and the wavelength's row.
+        # Columns of the table for each lane: (column, weight), and the row of its wavelength.
 
         def _rows(self, si):
-            """By lane: [(row of wavelength, weight)]."""
+            """Returns for each lane the list of (row of the wavelength, weight)."""
             if not spectral:
                 return [[(UInt32(self.column_of_lane[lane]), Float(1))] for lane in range(lanes)]
             rows = []
@@ -167,7 +167,7 @@ def _make(variant):
             return values
 
         def _select(self, si, active):
-            """By lane: columns with weights, and the index of refraction."""
+            """Returns for each lane the (column, weight) pairs, and the refractive index."""
             rows = self._rows(si)
             selection, index, scaling_rows = [], [], []
             values = self._amounts(si, active) if self.over_depth else None
@@ -207,7 +207,7 @@ def _make(variant):
             return below, _lagrange(x - Float(below))
 
         def _series(self, column, place, incident, leaving, cosines, active):
-            """Sum over modes at a column; `place` counts sides and ways."""
+            """Returns the Fourier sum over the modes of a column; `place` numbers the pairs of lit and exit side."""
             (first_i, w_i), (first_o, w_o) = incident, leaving
             at = ((place * self.columns + column) * self.side + first_i) * self.side + first_o
             total = Float(0)
@@ -228,7 +228,7 @@ def _make(variant):
             return values
 
         def _at_cosine(self, cosine, row, active):
-            """What the surface's lobe is divided by."""
+            """Returns the divisor of the surface lobe."""
             x = dr.sqrt(dr.minimum(cosine, 1)) * _COSINE_CELLS
             below = UInt32(dr.clip(dr.floor(x) - 1, 0, _COSINE_CELLS - 3))
             w = _lagrange(x - Float(below) - 1)
@@ -237,7 +237,7 @@ def _make(variant):
 
         @staticmethod
         def _passage(cosine, n):
-            """1 - F, and the same over the cosine inside."""
+            """Returns 1 - F (F: Fresnel reflectance), and the same over the refracted cosine."""
             n2 = n * n
             q = dr.sqrt(n2 - (1 - dr.minimum(cosine * cosine, 1)))
             s, p = cosine + q, n2 * cosine + q
@@ -260,7 +260,7 @@ def _make(variant):
             return sine_i, sine_o, cosines[:self.modes]
 
         def _f(self, si, first, second, selected, active):
-            """f, by lane; `first` is the direction that the model calls incident."""
+            """Returns f in 1/sr for each lane; `first` is the direction that the model calls incident."""
             selection, index, rows = selected
             sine_i, sine_o, cosines = self._geometry(first, second)
             crosses = first.z * second.z < 0
@@ -297,7 +297,7 @@ def _make(variant):
             return pick(a, b), pick(b, a)
 
         def _choice(self, si, selected, active):
-            """Probabilities of surface, reflection and transmission, toward which directions are drawn."""
+            """Returns the probabilities with which `sample` chooses surface lobe, diffuse reflection and transmission."""
             selection, index, _ = selected
             cosine = dr.abs(si.wi.z)
             sine = dr.sqrt(dr.clip(si.wi.x * si.wi.x + si.wi.y * si.wi.y, 0, 1))
@@ -324,7 +324,7 @@ def _make(variant):
         def _density(self, si, wo, choice):
             reflects = si.wi.z * wo.z > 0
             mirror = Vector3f(-si.wi.x, -si.wi.y, si.wi.z)
-            # What would go below the plane is turned up again.
+            # Directions below the surface are mirrored to the upper side.
             lobe = self._lobe(dr.dot(mirror, wo)) + self._lobe(dr.dot(mirror, Vector3f(wo.x, wo.y, -wo.z)))
             cosine = dr.abs(wo.z) / dr.pi
             return dr.select(reflects, choice[0] * lobe + choice[1] * cosine, choice[2] * cosine)
@@ -359,7 +359,7 @@ def _make(variant):
             by_surface = sample1 < choice[0]
             reflects = sample1 < choice[0] + choice[1]
             side = dr.sign(si.wi.z)
-            # The surface's lobe about the mirror direction, and a cosine lobe.
+            # Density of the surface lobe about the mirror direction, and of a cosine lobe.
             cos_alpha = dr.power(1 - sample2.x, 1 / (self.exponent + 1))
             sin_alpha = dr.sqrt(dr.maximum(0, 1 - cos_alpha * cos_alpha))
             sin_phi, cos_phi = dr.sincos(2 * dr.pi * sample2.y)
@@ -400,7 +400,7 @@ def _make(variant):
 
 
 def _make_scalar(variant):
-    """For scalar variants: each call goes to frond."""
+    """The BSDF for scalar variants: each call evaluates frond's BSDF."""
     lanes = 1 if "mono" in variant else 3
 
     class FrondLeaf(mi.BSDF):
@@ -411,8 +411,8 @@ def _make_scalar(variant):
             if "sieve" in props:
                 self.words.append(f"sieve={'true' if props['sieve'] else 'false'}")
             if lanes == 1 and "wavelengths" not in props and "wavelength" not in props:
-                raise ValueError('frond_leaf: "wavelength" says what a mono variant sees')
-            # A uniform spectrum of that value can be changed by its parameter, as Eradiate does.
+                raise ValueError('frond_leaf: mono variants require "wavelength"')
+            # Eradiate changes the wavelength through the parameter of a uniform spectrum.
             given = _pop(props, "wavelength", _pop(props, "wavelengths", ",".join(map(str, _RGB_NM))))
             self.wavelength = given if isinstance(given, mi.Texture) else None
             if self.wavelength is not None:
@@ -489,12 +489,12 @@ _registered = {}
 
 
 def register():
-    """Makes `frond_leaf` known to the variant that is set."""
+    """Registers `frond_leaf` with the current variant."""
     variant = mi.variant()
     if variant is None:
         raise RuntimeError("set a variant first: mitsuba.set_variant(\"llvm_ad_rgb\")")
     if "polarized" in variant:
-        raise RuntimeError("frond_leaf knows no polarisation")
+        raise RuntimeError("frond_leaf does not support polarized variants")
     if variant.startswith("scalar_spectral"):
         raise RuntimeError(f"frond_leaf is for JIT variants, scalar_mono and scalar_rgb, not for {variant}")
     if variant not in _registered:

@@ -2,7 +2,7 @@
 #include "instruments/given_wavelengths.h"
 #include "leaf/fit/measured_spectra.h"
 #include "leaf/tissue/constants.h"
-#include "materials/portable_leaf.h"
+#include "materials/leaf_file.h"
 #include "render/material_words.h"
 #include "render/refusing_log.h"
 #include "scene/resolver.h"
@@ -25,23 +25,23 @@ LeafParams leaf_of(SessionHandle& owner, const std::string& material) {
 nb::dict leaf_table(const std::shared_ptr<SessionHandle>& owner, const std::string& material,
                     const std::vector<double>& wavelengths_nm, double tolerance,
                     const std::optional<std::pair<double, double>>& depths) {
-  leaf::PortableLeaf table;
+  leaf::LeafFile table;
   {
     const nb::gil_scoped_release release;
-    PortableLeafRequest request{.wavelengths_nm = wavelengths_nm, .tolerance = tolerance};
+    LeafFileRequest request{.wavelengths_nm = wavelengths_nm, .tolerance = tolerance};
     if (depths) request.depths = {depths->first, depths->second};
-    table = make_portable_leaf(leaf_of(*owner, material), std::move(request), owner->session().pool(),
-                               owner->session().log(), owner->context.options().cache);
+    table = make_leaf_file(leaf_of(*owner, material), std::move(request), owner->session().pool(),
+                           owner->session().log(), owner->context.options().cache);
   }
   nb::dict d;
-  const std::string bytes = leaf::portable_bytes(table);
+  const std::string bytes = leaf::leaf_file_bytes(table);
   d["bytes"] = nb::bytes(bytes.data(), bytes.size());
   d["reciprocal"] = table.is_reciprocal, d["cells"] = table.cells, d["exponent"] = table.exponent;
   const size_t side = table.side(), columns = table.columns();
   d["wavelength_nm"] = to_array(table.wavelengths_nm, {table.wavelengths_nm.size()});
   d["depth"] = to_array(table.depths, {table.depths.size()});
   d["index"] = to_array(table.index, {table.index.size()});
-  constexpr size_t kCosines = leaf::PortableLeaf::kCosineCells + 1;
+  constexpr size_t kCosines = leaf::LeafFile::kCosineCells + 1;
   d["surface"] = to_array(table.surface, {table.surface.size() / kCosines, kCosines});
   const char* sides[] = {"adaxial", "abaxial"};
   const char* crossing[] = {"reflected", "transmitted"};

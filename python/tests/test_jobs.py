@@ -219,7 +219,7 @@ def test_what_decides_changes_the_identity(part_of_scene, name):
     assert render(f"{name}.part", "-q", option(name, DECIDING[name])).returncode == 0
     merged = frond_command("merge", "base.part", f"{name}.part", "-o", "merged.exr", cwd=folder)
     assert merged.returncode == 1
-    assert "these are no parts of one render" in merged.stderr
+    assert "these are not parts of the same render" in merged.stderr
 
 
 @pytest.mark.parametrize("name", list(INDIFFERENT))
@@ -298,7 +298,7 @@ def test_a_keyword_and_its_alias_are_not_both_given():
 def test_commands_are_functions(scene_text, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("scene.pbrt").write_text(scene_text)
-    assert frond.check("scene.pbrt").text == "scene.pbrt: nothing is wrong\n"
+    assert frond.check("scene.pbrt").text == "scene.pbrt: no errors\n"
     assert "thickness" in frond.describe(name="abm").text and "leaf_solved" in frond.list().text
     for part, samples in (("a.part", "0:2"), ("b.part", "2:4")):
         frond.render("scene.pbrt", part=part, samples=samples, seed=1)

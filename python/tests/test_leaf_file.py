@@ -90,7 +90,7 @@ def test_a_damaged_file_is_refused(program, tmp_path):
     path = tmp_path / "d.leaf"
     frond.leaf_table("leaf_solved", [551]).save(path)
     whole = path.read_bytes()
-    for bad, message in ((whole[:-100], "damaged"), (whole[:500] + b"x" + whole[501:], "damaged"), (b"no leaf", "no leaf of frond")):
+    for bad, message in ((whole[:-100], "damaged"), (whole[:500] + b"x" + whole[501:], "damaged"), (b"no leaf", "not a .leaf file")):
         path.write_bytes(bad)
         found = subprocess.run([program, path, "551", "8"], capture_output=True, text=True)
         assert found.returncode == 1 and message in found.stderr

@@ -80,7 +80,7 @@ def test_a_bsdf_in_python_is_a_material(scene_text):
     of_ours = scene_text.replace('"leaf_solved"', '"diffuse" "spectrum reflectance" [ 300 1 900 1 ]')
     expected = frond.loads(of_ours, session=session, wavelengths=[551, 800]).render(4)
     assert numpy.allclose(image.array[:, :, :2], expected.array[:, :, :2], rtol=1e-4)  # an even light: without noise
-    with pytest.raises(frond.InputError, match='there is a material "white" already'):
+    with pytest.raises(frond.InputError, match='material "white" already exists'):
         frond.register_material("white", White(), session=session)
     with pytest.raises(ValueError, match="a BSDF is asked at 2 wavelengths, and gave 3 values"):
         frond.loads(text.replace('"white"', '"three"'), session=session, wavelengths=[551, 800]).render(1)

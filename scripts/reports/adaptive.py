@@ -1,4 +1,4 @@
-"""docs/adaptive.md: error against time of even and of adaptive samples."""
+"""Noise target in docs/rendering.md: noise against CPU time of uniform and of adaptive sampling."""
 
 import pathlib
 import tempfile
@@ -7,17 +7,17 @@ import numpy
 
 import charts
 import frond
-from tools import ROOT, arguments, machine, program_json, rms, table, write
+from tools import ROOT, arguments, machine, program_json, rms, table, write_section
 
 SCENES = ["soybean-front", "soybean-back", "soybean-ambient", "hundred-leaves"]
-EVEN = [32, 64, 128, 256]
+UNIFORM = [32, 64, 128, 256]
 REFERENCE = 512
 SEEDS = (1, 2)
 REFERENCE_SEEDS = (11, 12)
 
 
 class Pair:
-    """Two renders with seeds of their own: their mean cost, and by how they differ their noise."""
+    """Two renders with different seeds: their mean cost, and their noise from the difference between them."""
 
     def __init__(self, scene, folder, name, seeds, samples=None, max_rms=None):
         self.images, costs = [], []
@@ -37,63 +37,54 @@ class Pair:
         return numpy.sqrt(2) * noise, bias
 
 
-def cost_at(noise, costs, asked):
-    """What even samples take to this noise: a power law between two of them, or beyond the last two."""
-    i = min(numpy.count_nonzero(asked < numpy.array(noise[1:])), len(noise) - 2)
+def cost_at(noise, costs, wanted):
+    """Cost of uniform sampling at the noise `wanted`: a power law between two measurements, or through the last two."""
+    i = min(numpy.count_nonzero(wanted < numpy.array(noise[1:])), len(noise) - 2)
     power = numpy.log(costs[i + 1] / costs[i]) / numpy.log(noise[i + 1] / noise[i])
-    return costs[i] * (asked / noise[i]) ** power
+    return costs[i] * (wanted / noise[i]) ** power
 
 
 def measure(scene, folder, scale):
-    """Even samples as (noise, CPU time), and a row for each request."""
+    """Uniform sampling as (noise, CPU time), and a row for each request."""
     reference = Pair(scene, folder, "reference", REFERENCE_SEEDS, REFERENCE // scale)
-    pairs = [Pair(scene, folder, f"even{samples}", SEEDS, samples // scale) for samples in EVEN]
+    pairs = [Pair(scene, folder, f"uniform{samples}", SEEDS, samples // scale) for samples in UNIFORM]
     noise, adaptive = [pair.against(reference)[0] for pair in pairs], []
-    for asked in noise[1:3]:
-        asked = float(f"{asked:.2g}")
-        pair = Pair(scene, folder, f"adaptive{asked}", SEEDS, max_rms=asked)
+    for request in noise[1:3]:
+        request = float(f"{request:.2g}")
+        pair = Pair(scene, folder, f"adaptive{request}", SEEDS, max_rms=request)
         found, bias = pair.against(reference)
-        of_even = [getattr(pair, key) / cost_at(noise, [getattr(p, key) for p in pairs], found) for key in ("cpu", "work")]
-        adaptive.append((asked, found, bias, pair.cpu, *of_even))
+        relative = [getattr(pair, key) / cost_at(noise, [getattr(p, key) for p in pairs], found) for key in ("cpu", "work")]
+        adaptive.append((request, found, bias, pair.cpu, *relative))
     return (noise, [pair.cpu for pair in pairs]), adaptive
 
 
 def draw(path, results):
     of, panels = charts.figure(1000, 780, 2, 2)
     for panel, (scene, ((noise, cpu), adaptive)) in zip(panels.flat, results.items()):
-        panel.loglog(cpu, noise, "o-", label="even")
+        panel.loglog(cpu, noise, "o-", label="uniform")
         panel.loglog([a[3] for a in adaptive], [a[1] for a in adaptive], "s-", label="adaptive")
         panel.set(title=scene, xlabel="CPU time, s", ylabel="RMS noise")
     charts.legend(of, panels[0, 0], 2)
     charts.save(of, path)
 
 
-PAGE = """# Adaptive sampling
+SECTION = """## Noise target: measurements
 
-Written by `scripts/adaptive`. {machine}
+Measured on {machine}.
+Images of 256 × 256 pixels, `leaf_simplified`, wavelengths `smpte`, two renders of each setting. Uniform sampling takes the same
+number of samples in every pixel.
 
-`frond render --max-rms 0.001` renders until the noise of the image, the RMS over its pixels and linear colours, is below
-0.001 with 95 % confidence, and puts samples where they do most against it: tile by tile, n proportional to the root of
-variance over rays (`src/render/film/adaptive.h`). Noise is estimated from how blocks of 16 samples differ, which are spread evenly by
-themselves; that larger sets are spread more evenly still it does not see, so that what comes is better than what was asked
-for.
-
-256 × 256 pixels, leaf_simplified, wavelengths smpte, two renders of each. **RMS**: their noise, by how they differ. **Bias**:
-upper 95 % bound of what does not go away, against a reference of 2 × {reference} even samples. **CPU time** and **work** (rays
-and paths, which no other program on the machine disturbs): over that of even samples for the same RMS.
+- **requested**: the value of `--max-rms`. **RMS**: noise of one render, from the difference between the two renders.
+- **bias at most**: upper 95 % bound of the error that no number of samples removes, measured against a reference of
+  2 × {reference} samples in every pixel.
+- **CPU time**: of one render. **CPU time, relative** and **work, relative** (rays and paths, a count that other programs on the
+  machine do not disturb): divided by the CPU time and work of uniform sampling at the same RMS.
 
 {table}
-![Error against time of even and adaptive samples](images/adaptive.svg)
+![Noise against CPU time of uniform and adaptive sampling](images/adaptive.svg)
 
-Where noise is the same everywhere there is little to win: in ambient light every pixel has about as much, and of the hundred
-leaves the sky, which has none, costs next to nothing with even samples either.
-
-## What can go wrong
-
-- A tile gets fewer samples where the first ones happened to be alike. What a pixel's own samples decide is small, since its
-  tile has 256 and half of what counts is that of the nine tiles around it; the bias above bounds what is left of it.
-- Noise that the first 32 samples of a tile do not meet is not known to anyone: a light that only one path in thousands finds
-  leaves an image that looks finished. More samples by `--spp` show it.
+Adaptive sampling gains little in two of the scenes. In ambient light every pixel has about the same noise. Among the hundred leaves
+the sky has no noise, but its samples cost almost nothing under uniform sampling either.
 """
 
 
@@ -105,10 +96,11 @@ def main():
             results[scene] = measure(scene, pathlib.Path(folder), 16 if options.quick else 1)
             print(scene, results[scene][1], flush=True)
     draw(options.docs / "images" / "adaptive.svg", results)
-    body = [[scene, f"{asked:g}", f"{found:.5f}", f"{bias:.5f}", f"{cpu:.1f} s", f"{of_cpu:.2f}", f"{of_work:.2f}"]
-            for scene, (_, adaptive) in results.items() for asked, found, bias, cpu, of_cpu, of_work in adaptive]
-    head = ["scene", "asked", "RMS", "bias at most", "CPU time", "of even samples'", "work"]
-    write(options.docs / "adaptive.md", PAGE.format(machine=machine(), reference=REFERENCE, table=table(head, body)))
+    body = [[scene, f"{request:g}", f"{found:.5f}", f"{bias:.5f}", f"{cpu:.1f} s", f"{of_cpu:.2f}", f"{of_work:.2f}"]
+            for scene, (_, adaptive) in results.items() for request, found, bias, cpu, of_cpu, of_work in adaptive]
+    head = ["scene", "requested", "RMS", "bias at most", "CPU time", "CPU time, relative", "work, relative"]
+    write_section(options.docs / "rendering.md", "adaptive",
+                  SECTION.format(machine=machine(), reference=REFERENCE, table=table(head, body)))
 
 
 if __name__ == "__main__":

@@ -1,9 +1,10 @@
-"""docs/canopy.md: canopies against a reference, and which leaf model is enough in one."""
+"""docs/radiometry.md: canopies against a reference, and which leaf model is enough in one."""
 
 import itertools
 import pathlib
 import shutil
 import tempfile
+import textwrap
 import time
 
 import numpy
@@ -11,7 +12,7 @@ import pandas
 
 import charts
 import frond
-from tools import FROND, ROOT, arguments, machine, program, program_csv, rms, run, table, write
+from tools import FROND, ROOT, arguments, machine, program, program_csv, rms, run, table, write_section
 
 MODELS = ["leaf_lambert", "leaf_simplified", "leaf_solved"]
 REFERENCE = "leaf_solved"
@@ -40,26 +41,27 @@ Shape "instances" "string object" "leaf" "string filename" "leaves.npy"
 
 
 def het01(folder, asked):
-    """Figures of the 76 angles against the reference, in words."""
+    """Compares the BRF of the 76 angles with the reference; returns a paragraph."""
     run("env", f"FROND={FROND}", ROOT / "scenes/canopy/make", folder)
     shutil.copy(ROOT / "scenes/canopy/het01.pbrt", folder)
     start = time.process_time()
     ours = frond.brf(folder / "het01.pbrt", [800], zenith=range(-75, 76, 2), rms=asked)
     cpu = time.process_time() - start
-    both = ours.merge(pandas.read_csv(ROOT / "tests/reference/het01_brfpp.csv", comment="#"), left_on="zenith_deg", right_on="vza_deg",
-                      suffixes=("", "_reference"), validate="one_to_one")
+    reference = pandas.read_csv(ROOT / "tests/reference/het01_brfpp.csv", comment="#")
+    both = ours.merge(reference, left_on="zenith_deg", right_on="vza_deg", suffixes=("", "_reference"), validate="one_to_one")
     assert len(both) == len(ours)
     relative, error = both.brf / both.brf_reference - 1, both.brf_se / both.brf_reference
     z = (both.brf - both.brf_reference) / numpy.hypot(both.brf_se, both.brf_se_reference)
     off, worst = ((abs(relative) > 0.005) & (abs(z) > 3)).sum(), abs(z).idxmax()
-    return (f"{len(both)} angles in {cpu:.0f} s of CPU time. Mean difference {100 * relative.mean():+.2f} ± "
-            f"{100 * rms(error) / len(both)**0.5:.2f} %; RMS {100 * rms(relative):.2f} %, where standard errors are "
-            f"{100 * rms(error):.2f} %; furthest {z[worst]:+.1f} standard errors, at {both.zenith_deg[worst]:g}°. "
-            f"{'No angle is' if not off else str(off) + ' angles are'} further off than 0.5 % and 3 standard errors.")
+    return textwrap.fill(
+        f"{len(both)} angles in {cpu:.0f} s of CPU time. Mean difference {100 * relative.mean():+.2f} ± "
+        f"{100 * rms(error) / len(both)**0.5:.2f} %; RMS difference {100 * rms(relative):.2f} %, with an RMS standard error of "
+        f"{100 * rms(error):.2f} %; largest difference {z[worst]:+.1f} standard errors, at {both.zenith_deg[worst]:g}°. Angles "
+        f"that differ by more than both 0.5 % and 3 standard errors: {off or 'none'}.", 130, break_on_hyphens=False)
 
 
 class Canopy:
-    """A homogeneous canopy, and what models make of it: `brf` and `brf_se` by zenith angle and band, and `par`, the share of
+    """A homogeneous canopy, measured with each leaf model: `brf` and `brf_se` by zenith angle and band, and `par`, the share of
     photons that leaves absorb, with its standard error."""
 
     def __init__(self, folder, angles, index, sun, asked, paths):
@@ -73,17 +75,18 @@ class Canopy:
             found = frond.brf(scene, BANDS, zenith=ZENITH, rms=asked, swap={"leaf": model})
             found = found.pivot(index="zenith_deg", columns="wavelength_nm", values=["brf", "brf_se"])
             self.brf[model], self.brf_se[model] = found["brf"], found["brf_se"]
-            # The sum over photons of 400 to 700 nm is the program's.
+            # frond flux integrates the photons over 400 to 700 nm.
             flux = program_csv("flux", scene, "--wavelengths", "400:700:20", "--paths", paths, "--swap", f"leaf={model}", "--csv",
                                "-", "-q").set_index(["quantity", "material", "wavelength_nm"])
             self.par[model] = flux.loc[("absorbed", "leaf", "PAR"), ["share", "share_se"]].to_numpy(float)
 
     def difference(self, model):
-        """Of the BRF, relative to the reference; and its standard error."""
+        """Returns the difference of the BRF relative to the reference, and its standard error."""
         ratio = self.brf[model] / self.brf[REFERENCE]
         return ratio - 1, ratio * numpy.hypot(self.brf_se[model] / self.brf[model], self.brf_se[REFERENCE] / self.brf[REFERENCE])
 
     def par_difference(self, model):
+        """Returns the difference of the absorbed photons relative to the reference, and its standard error."""
         (mean, error), (reference, of_reference) = self.par[model], self.par[REFERENCE]
         return mean / reference - 1, numpy.hypot(error / mean, of_reference / reference)
 
@@ -92,7 +95,8 @@ class Canopy:
 
 
 def chart(path, canopies):
-    """Differences against the zenith angle: a panel for each band, a curve for each model and leaf angle distribution."""
+    """Relative difference of the BRF against the view zenith angle: a panel for each band, a curve for each model and leaf angle
+    distribution. The legend stands below the panels, where it covers no curve."""
     of, panels = charts.figure(1200, 800, 2, 3, sharex=True)
     for panel, band in zip(panels.flat, BANDS):
         for canopy, model in itertools.product([c for c in canopies if c.index == 3 and c.sun == 45], SIMPLER):
@@ -101,48 +105,50 @@ def chart(path, canopies):
                            markersize=2.5, linestyle="-" if model == "leaf_lambert" else "--", label=f"{canopy.angles}, {model}")
         panel.axhline(0, color="#000000", linewidth=1)
         panel.set(title=f"{band} nm", xticks=range(-60, 61, 30))
-    panels[1, 1].set_xlabel("zenith angle of the view (degrees)")
+    for panel in panels[-1]:
+        panel.set_xlabel("view zenith angle (degrees)")
     for row in panels:
-        row[0].set_ylabel("BRF over leaf_solved, %")
+        row[0].set_ylabel("BRF difference from leaf_solved (%)")
     charts.legend(of, panels[0, 0], 3)
     charts.save(of, path)
 
 
-PAGE = """# Which leaf is enough in a canopy
+SECTION = """## Measurements
 
-Written by `scripts/canopy`. {machine}
+Machine: {machine}.
 
-## RAMI HET01
+### RAMI HET01 against Eradiate's reference
 
-15 balls of 10 m, each of 49,999 leaves, over soil, in the near infrared (`scenes/canopy/het01.pbrt`; the leaves are thrown anew,
-from the published description), against the reference of Eradiate's regression suite (`tests/reference/het01_brfpp.csv`).
+The scene (`scenes/canopy/het01.pbrt`) has 15 balls of radius 10 m with 49,999 leaves each, over soil, in the near infrared. The
+positions of the leaves are drawn anew from the published description. The reference is from Eradiate's regression suite
+(`tests/reference/het01_brfpp.csv`).
+
 {het01}
 
-## Leaf models in homogeneous canopies
+### Accuracy of leaf models in homogeneous canopies
 
-Disks of 5 cm at random, soybean leaves over soil, under the sun alone; views of the principal plane from −60 to 60°, negative
-ones from the sun's side. Differences of the BRF from that with `leaf_solved`, the walk's exact BSDF: what a Lambertian leaf of
-the same reflectance and transmittance gets wrong (`leaf_lambert`), and three lobes scaled by a table (`leaf_simplified`).
-Standard errors are about {noise:.1f} % of a difference. All leaves are reciprocal
-([conventions](conventions.md)).
+The canopies are soybean leaves, disks of radius 5 cm at random positions, over soil, lit by the sun alone. The views lie in the
+principal plane, from −60 to 60°; negative angles are on the sun's side. The differences are relative to the BRF with `leaf_solved`,
+the BSDF that the random walk converges to. They are the errors of a Lambertian leaf of the same reflectance and transmittance
+(`leaf_lambert`) and of three lobes scaled by a table (`leaf_simplified`). The standard error of a difference is about
+{noise:.1f} %. All leaves are reciprocal ([conventions](conventions.md)).
 
-![Differences of the BRF by band and direction](images/canopy.svg)
+![BRF differences from leaf_solved against view zenith angle, for six bands](images/canopy.svg)
 
-*Leaf area index 3, the sun at 45°. Solid: leaf_lambert, dashed: leaf_simplified; blue: spherical leaf angles, vermilion:
-planophile, green: erectophile. Bars: standard errors.*
+*Leaf area index 3, sun zenith angle 45°. Solid: `leaf_lambert`; dashed: `leaf_simplified`. Blue: spherical leaf angles; vermilion:
+planophile; green: erectophile. Bars: standard errors.*
 
 {extremes}
-*Least and largest difference over the directions, %, over leaf area indices 1, 3 and 5 and the sun at 20, 45 and 70°.*
-
-### Absorbed light
-
-Photons that leaves absorb, 400 to 700 nm, of those that fall in (fAPAR, direct light):
-
-{par}
-### What to take
+*Smallest and largest difference in %, over all directions, leaf area indices 1, 3 and 5, and sun zenith angles of 20, 45 and 70°.*
 
 {verdict}
-"""
+
+### Absorbed light by leaf model
+
+fAPAR: photons from 400 to 700 nm that the leaves absorb, as a share of the incident photons, under direct light. The columns of the
+models are differences relative to `leaf_solved`.
+
+{par}"""
 
 
 def extremes_table(canopies):
@@ -164,23 +170,25 @@ def par_table(canopies):
 
 
 def verdict(canopies):
-    """For each model, in how many canopies it is enough in every band and direction, and in the infrared alone."""
+    """For each model: the largest errors, and in how many canopies it is accurate enough in every band and direction, and at 800 nm
+    alone."""
     lines = []
     for model in SIMPLER:
-        # Not clearly beyond: less three standard errors.
+        # Accurate enough: the difference less three standard errors is within the limit.
         enough = [abs(mean) - 3 * error <= ENOUGH for mean, error in (c.difference(model) for c in canopies)]
         worst, (zenith, band), canopy = max(((off := abs(c.difference(model)[0]).stack()).max(), off.idxmax(), c.name())
                                             for c in canopies)
         par = max(abs(c.par_difference(model)[0]) for c in canopies)
-        lines.append(f"- `{model}`: BRF off by {100 * worst:.0f} % at most ({canopy}, {band:g} nm, view "
-                     f"{zenith:g}°); within {100 * ENOUGH:.0f} % in every view, to three standard errors, in "
-                     f"{sum(e.all(axis=None) for e in enough)} of {len(canopies)} canopies over all bands, in "
-                     f"{sum(e[800].all() for e in enough)} at 800 nm alone; absorbed photons off by {100 * par:.1f} % at most.")
+        lines.append(textwrap.fill(
+            f"- `{model}`: the largest BRF error is {100 * worst:.0f} % ({canopy}, {band:g} nm, view {zenith:g}°). Every view "
+            f"is within {100 * ENOUGH:.0f} %, to three standard errors, in {sum(e.all(axis=None) for e in enough)} of "
+            f"{len(canopies)} canopies over all bands and in {sum(e[800].all() for e in enough)} at 800 nm alone. The largest "
+            f"error of the absorbed photons is {100 * par:.1f} %.", 130, subsequent_indent="  ", break_on_hyphens=False))
     return "\n".join(lines)
 
 
 def main():
-    options = arguments("canopy", ("--only", dict(choices=["het01", "study"], help="one of both, printed; no page is written")),
+    options = arguments("canopy", ("--only", dict(choices=["het01", "study"], help="print this part alone; write no page")),
                         ("--rms", dict(type=float, help="relative standard error of the BRFs")))
     asked, paths = options.rms or (0.1 if options.quick else RMS), "1e4" if options.quick else "2e5"
     with tempfile.TemporaryDirectory(prefix="frond_canopy.") as name:
@@ -200,8 +208,9 @@ def main():
     if options.only:
         return
     chart(options.docs / "images" / "canopy.svg", canopies)
-    write(options.docs / "canopy.md", PAGE.format(machine=machine(), het01=het, noise=noise, extremes=extremes_table(canopies),
-                                                  par=par_table(canopies), verdict=verdict(canopies)))
+    write_section(options.docs / "radiometry.md", "canopy",
+                  SECTION.format(machine=machine(), het01=het, noise=noise, extremes=extremes_table(canopies),
+                                 par=par_table(canopies), verdict=verdict(canopies)))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Whether what frond render chooses is right, on scenes that it was not designed on: docs/choosing_measured.md."""
+"""Measurements in docs/selection.md: errors and costs of the selected models, in scenes that were not used to design it."""
 
 import argparse
 import pathlib
@@ -7,7 +7,7 @@ import tempfile
 import numpy
 
 import frond
-from tools import ROOT, arguments, machine, program_json, sized, table, write
+from tools import ROOT, arguments, machine, program_json, sized, table, write_section
 
 SCENES = {
     "near and far": "choosing/near-and-far.pbrt",
@@ -17,21 +17,27 @@ SCENES = {
     "hundred leaves": "hundred-leaves/scene.pbrt",
     "shade": "choosing/shade.pbrt",
 }
-TEXTURED = ["spotted"]  # which leaf_lambert does not take
+TEXTURED = ["spotted"]  # leaf_lambert has no textures
 REQUESTS = [0.02, 0.01, 0.005, 0.002, 0.001]
-# One for each scene at full size: so small that models differ, so large that abm's image can be waited for.
-FULL_SIZE_REQUESTS = {"near and far": 0.005, "maize": 0.01, "dark": 0.002, "spotted": 0.005, "hundred leaves": 0.002, "shade": 0.005}
+# One for each scene at full size: small enough that models differ, large enough for a short render of abm.
+FULL_SIZE_REQUESTS = {"near and far": 0.005, "maize": 0.01, "dark": 0.002, "spotted": 0.005, "hundred leaves": 0.002,
+                      "shade": 0.005}
 RESOLUTION = 96
 RESOLUTIONS = [64, 128, 256, 512]
 MOST_ABM_SAMPLES = 4096
 CHANNELS = ("red", "green", "blue")
-# Nobody who is judged shares a seed with the judge.
+# No pilot or candidate has a seed of the reference.
 REFERENCE_SEEDS, CANDIDATE_SEEDS, CHOICE_SEEDS, FULL_SEEDS = (901, 902), (903, 904), range(1, 100), range(1001, 1100)
 ABM = {"swap": "leaf,model=abm", "wavelengths": "hero"}
 
+ERROR_HEAD = ("scene", "requested", "selected", "pilot's bound", "measured bias", "samples needed", "RMS with these samples",
+              "pilot, CPU s")
+FULL_SIZE_HEAD = ("scene", "requested", "selected", "samples", "RMS (95 %)", "pilots, CPU s", "render, CPU s", "`abm`: samples",
+                  "RMS", "CPU s", "`abm` / selected")
+
 
 class Render:
-    """Two renders with seeds of their own."""
+    """Two renders with different seeds."""
 
     def __init__(self, scene, models, samples, seeds, folder, name):
         self.images = [folder / f"{name}-{seed}.exr" for seed in seeds]
@@ -39,23 +45,23 @@ class Render:
 
 
 def render(scene, models, samples, seed, image):
-    """Its CPU seconds."""
+    """Writes the image; the CPU seconds."""
     rendered = frond.load(scene, seed=seed, **models).render(samples)
     rendered.save(image)
     return rendered.statistics["cpu_seconds"]
 
 
 class Error:
-    """Mean squares over all pixels and channels of how one render differs from the reference."""
+    """Mean square errors against the reference, over all pixels and channels."""
 
     def __init__(self, render, reference):
         j = program_json("difference", *render.images, *reference.images, "--json")
-        # The error of the bias is too large, as channels are alike.
+        # Channels are correlated: their mean standard error is an upper bound for that of their mean.
         self.bias, self.bias_error = (mean_of(j, key) for key in ("bias_squared", "bias_squared_error"))
         self.noise, self.reference_noise = (mean_of(j, f"noise_{which}", 2) for which in "ab")
 
     def bounds(self, noise=0):
-        """Of the RMS of the bias alone, 95 %; or with noise."""
+        """95 % interval of the RMS: of the bias alone, or with this variance of the noise."""
         return [root(noise + self.bias + z * self.bias_error) for z in (-1.96, 1.96)]
 
 
@@ -68,12 +74,12 @@ def root(square):
 
 
 def choose(scene, request, seed, samples=0):
-    """What the pilot says to a request, for a render of so many samples or of the scene's own."""
+    """The pilot's selection for a request, for a render of `samples` samples per pixel (0: the scene's own)."""
     return frond.load(scene, swap=f"leaf,model=auto,maxrms={request}", seed=seed, samples=samples).choice
 
 
 def models_of(choice):
-    """What was chosen, as scenes are loaded with it."""
+    """The selection as parameters of frond.load."""
     names = {leaf["name"]: leaf["chosen"] for leaf in choice["leaves"]}
     return {"swap": {"leaf" if name.startswith("leaf in line") else name: f"leaf,model={model}" for name, model in names.items()},
             "wavelengths": choice["wavelengths"][0]["chosen"]}
@@ -86,12 +92,12 @@ def name_of(choice):
 
 
 def samples_for(request):
-    """What somebody would ask for who wants noise of this size, about."""
+    """A number of samples per pixel that gives noise of about this size."""
     return round(min(2048, max(64, 0.002 / request**2)))
 
 
 class Bench:
-    """One scene, its reference, and everything that was ever chosen for it."""
+    """One scene, its reference, and the errors of all selections for it."""
 
     def __init__(self, path, options, folder):
         self.scene = sized(ROOT / "scenes" / path, folder, RESOLUTION)
@@ -99,8 +105,8 @@ class Bench:
         self.reference = Render(self.scene, ABM, options.reference_samples, REFERENCE_SEEDS, folder, "reference")
         self.errors = {}
 
-    def judged(self, choice):
-        """The error of what was chosen, measured once."""
+    def error_of(self, choice):
+        """Error of the selected models, measured once."""
         models = models_of(choice)
         if str(models) not in self.errors:
             found = Render(self.scene, models, self.options.candidate_samples, CANDIDATE_SEEDS, self.folder, "candidate")
@@ -108,8 +114,8 @@ class Bench:
         return self.errors[str(models)]
 
     def full_render(self, choice, seed):
-        """RMS of a render with the samples that were said to be needed, against what the reference converges to: its own noise
-        is taken out. Nothing where they are too many."""
+        """RMS error of a render with the number of samples that the pilot reported to be needed. The reference's noise is
+        subtracted. None if there are too many samples."""
         samples, image = int(choice["samples_needed"]), self.folder / "full.exr"
         if samples > self.options.most_full_samples:
             return None
@@ -119,23 +125,23 @@ class Bench:
 
 
 class Case:
-    """What one request brought on one scene."""
+    """One request on one scene."""
 
     def __init__(self, scene, bench, request, options):
         self.scene, self.request = scene, request
         choices = [choose(bench.scene, request, seed, samples_for(request)) for seed in list(CHOICE_SEEDS)[:options.seeds]]
-        self.verdicts = [self.verdict(c, bench) for c in choices]
+        self.outcomes = [self.outcome(c, bench) for c in choices]
         self.names = sorted({name_of(c) for c in choices})
         choice = choices[0]
-        self.choice, self.name, self.error = choice, name_of(choice), bench.judged(choice)
+        self.choice, self.name, self.error = choice, name_of(choice), bench.error_of(choice)
         self.pilot = numpy.mean([c["pilot"]["cpu_seconds"] for c in choices])
         full = [bench.full_render(c, seed) for c, seed in zip(choices, FULL_SEEDS)]
         self.full = [rms for rms in full if rms is not None]
-        print(scene, request, self.name, self.verdicts, self.error.bounds(), self.full, flush=True)
+        print(scene, request, self.name, self.outcomes, self.error.bounds(), self.full, flush=True)
 
-    def verdict(self, choice, bench):
-        low, high = bench.judged(choice).bounds()
-        return "missed" if low > self.request else "met" if high <= self.request else "open"
+    def outcome(self, choice, bench):
+        low, high = bench.error_of(choice).bounds()
+        return "missed" if low > self.request else "met" if high <= self.request else "unclear"
 
     def row(self):
         low, high = self.error.bounds()
@@ -147,7 +153,7 @@ class Case:
 
 
 def by_resolution(path, samples, folder):
-    """The RMS by which leaf_lambert differs from leaf_solved, at every resolution, with as many samples in all."""
+    """RMS difference between leaf_lambert and leaf_solved at every resolution, with equal numbers of samples per image."""
     values = []
     for size in RESOLUTIONS:
         spp = max(4, samples * RESOLUTION**2 // size**2)
@@ -159,20 +165,20 @@ def by_resolution(path, samples, folder):
 
 
 class FullSize:
-    """One request on one scene, from the first pilot to the image."""
+    """One request on one scene at full size, from the first pilot to the image."""
 
     def __init__(self, name, path, request, size, folder):
         self.name, self.request = name, request
         scene = sized(ROOT / "scenes" / path, folder, size)
         seed = CHOICE_SEEDS[0]
-        # As somebody would go about it: ask, read how many samples it takes, ask again for a render of so many.
+        # As a user would: run the pilot, read the number of samples that is needed, and run it again for this number.
         first = choose(scene, request, seed)
         choice = choose(scene, request, seed, int(first["samples_needed"]))
         self.chosen = name_of(choice)
         self.pilots = sum(c["pilot"]["cpu_seconds"] for c in (first, choice))
         self.samples, self.abm_samples = int(choice["samples_needed"]), int(choice["reference_samples_needed"])
         if self.abm_samples > MOST_ABM_SAMPLES:
-            raise SystemExit(f"{path} at {request}: abm takes {self.abm_samples} samples, too many to render here")
+            raise SystemExit(f"{path} at {request}: abm needs {self.abm_samples} samples, too many to render here")
         chosen = Render(scene, models_of(choice), self.samples, FULL_SEEDS[:2], folder, "chosen")
         abm = Render(scene, ABM, self.abm_samples, REFERENCE_SEEDS, folder, "abm")
         error = Error(chosen, abm)
@@ -190,79 +196,83 @@ class FullSize:
                 f"{self.faster():.1f}")
 
 
-def full_size_text(cases, size):
-    faster = sorted(c.faster() for c in cases)
-    exceeded = [c for c in cases if c.high > c.request]
-    whole = sum(c.abm_seconds for c in cases) / sum(c.pilots + c.seconds for c in cases)
-    head = ("scene", "asked", "chosen", "samples", "RMS (95 %)", "pilots, CPU s", "render, CPU s", "`abm`: samples", "RMS",
-            "CPU s", "`abm` / chosen")
-    return f"""## Time, at full size
+SECTION = """## Measurements
 
-One request on each scene at {size} x {size} pixels. The pilot was asked first for the scene's own 64 samples per pixel, then
-once more for as many as it had said to be needed; what that chose was rendered with the samples that it named, and so was
-`abm` by weighted walks (with hero wavelengths, which count as right) with those that the pilot named for it. Both were rendered
-twice, with seeds that the pilot had not: that is what RMS is measured by, bias and noise together, that of `abm` being noise.
-CPU times are of one render; the last column is that of `abm` over that of both pilots and the render together.
+None of these scenes was used to design the selection, except the first, whose early runs showed that samples were counted wrongly.
+The scenes are two leaves close to the camera and far away, maize lit from behind, dark leaves in a strong light, a leaf with a map
+of its chlorophyll, leaves in the shade of others (`scenes/choosing`), and `scenes/hundred-leaves`.
+Machine: {machine}.
 
-{table(head, [c.row() for c in cases])}
-`abm` took {faster[0]:.1f} to {faster[-1]:.1f} times the CPU time, {whole:.1f} times in all scenes together. The upper end of the
-interval lies above what was asked for in {len(exceeded)} of {len(cases)} renders. Numbers of samples are powers of two, for both, so
-that a single ratio is good to a factor of two; an RMS far below the request is what that leaves.
+### Errors of the selected models
+
+Images of {resolution} x {resolution} pixels, {seeds} seeds for every request. The pilot may use a quarter of the paths of the
+render: {samples} samples per pixel for the requests from {first:g} to {last:g}.
+
+A check then renders the selected models twice with {candidate_samples} samples per pixel at all pixels, and `abm` with weighted
+walks twice with {reference_samples}, with seeds that no pilot had.
+
+- **pilot's bound**: upper bound of the bias, as the pilot reports it.
+- **measured bias**: RMS over all pixels and channels that remains with any number of samples, as a 95 % interval of the check.
+- **RMS with these samples**: error, noise included, of one render per seed with the number of samples that the pilot reported to be
+  needed, if it is {most_full_samples} or less.
+
+{errors}
+**{missed} of {choices} selections missed the request**: the lower bound of their measured bias is above it. The specified rate is
+at most 1 in 20. {met} selections met the request at the upper bound as well; for {unclear} the check was inconclusive. In {unmet}
+of {cases} rows no model cheaper than `abm` could be shown to meet the request, and `abm` was selected: these rows prove nothing.
+Of {full} renders with the number of samples that was reported to be needed, {exceeded} had an RMS above the request; the largest
+was {largest:.2f} times the request.
+
+The pilot took {least:.1f} to {most:.1f} s of CPU time, {median:.1f} in the median, which is more than it saves in most images of
+this small size.
+
+### Time at full size
+
+One request on each scene at {size} x {size} pixels. A first pilot was run for the scene's own 64 samples per pixel, and a second
+one for the number of samples that the first reported to be needed. The models that the second selected were rendered with the
+number of samples that it reported. `abm` with weighted walks and hero wavelengths (the reference) was rendered with the number
+that the pilot reported for it. Both were rendered twice, with seeds that the pilots did not use.
+
+- **RMS**: bias and noise together, from these renders; for `abm` it is noise alone.
+- **CPU s**: of one render. **`abm` / selected**: CPU time of `abm` divided by the CPU time of both pilots and the render together.
+
+{full_size}
+`abm` took {least_faster:.1f} to {most_faster:.1f} times the CPU time, {whole:.1f} times over all scenes together. The upper end of
+the interval is above the request in {full_exceeded} of {full_cases} renders. Numbers of samples are powers of two for both, so
+that a single ratio is accurate to a factor of two, and the RMS may be far below the request.
+
+### Resolution
+
+RMS difference between `leaf_lambert` and `leaf_solved` if the whole image is rendered at a lower resolution:
+
+{resolutions}
+At a low resolution, differences whose sign varies over the image cancel, most of all with glints, and the RMS is too small. The
+pilot therefore renders pixels of the full image.
 """
 
 
-def page(cases, resolutions, large, options):
-    verdicts = [v for c in cases for v in c.verdicts]
-    missed = sum(v == "missed" for v in verdicts)
-    unmet = [c for c in cases if not c.choice["met"]]
+def section(cases, resolutions, large, options):
+    outcomes = [o for c in cases for o in c.outcomes]
     full = [rms / c.request for c in cases for rms in c.full]
-    exceeded = sum(ratio > 1 for ratio in full)
     pilots = sorted(c.pilot for c in cases)
+    faster = sorted(c.faster() for c in large)
     sizes = [(name, *(f"{v:.5f}" for v in values), f"{values[-1] / values[0]:.2f}") for name, values in resolutions.items()]
-    head = ("scene", "asked", "chosen", "pilot's bound", "measured bias", "samples needed", "RMS with these", "pilot, CPU s")
-    return f"""# Choosing leaf models: what was measured
-
-Written by `scripts/choosing`; what the words mean stands in [choosing.md](choosing.md). None of these scenes was used to design
-the choice, but the first, whose early runs showed that samples were counted wrongly: two leaves close by and far away, maize
-lit from behind, dark leaves under a strong light, a leaf with a map of its chlorophyll, leaves in the shade of others
-(`scenes/choosing`), and `scenes/hundred-leaves`.
-
-## Right or wrong
-
-{RESOLUTION} x {RESOLUTION} pixels, {options.seeds} seeds for every request. The pilot may use a quarter of the paths of the
-render: {', '.join(str(samples_for(r)) for r in REQUESTS)} samples per pixel for the requests from {REQUESTS[0]:g} to {REQUESTS[-1]:g}.
-
-The judge renders what was chosen anew, twice {options.candidate_samples} samples per pixel at all pixels, and `abm` by weighted
-walks, twice {options.reference_samples}, with seeds that no pilot had. *Measured bias* is what these tell of the RMS over all
-pixels and channels that stays however many samples are taken, between bounds of 95 %. *RMS with these* is the error, noise and
-all, of a render for each seed with the number of samples that the choice said to be needed, where that is
-{options.most_full_samples} or less.
-
-{table(head, [c.row() for c in cases])}
-**{missed} of {len(verdicts)} choices were missed**: their measured bias lies above what was asked for, at its lower bound. The
-choice promises that this happens to 1 in 20 at most. {sum(v == "met" for v in verdicts)} were met at the upper bound as well,
-the judge could not tell of {sum(v == "open" for v in verdicts)}. In {len(unmet)} of {len(cases)} rows nothing cheaper than `abm`
-could be shown to be good enough, and `abm` was taken: they prove nothing. Of {len(full)} renders with the number of samples that
-was said to be needed, {exceeded} had an RMS above what was asked for, {max(full):.2f} times at most.
-
-The pilot took {pilots[0]:.1f} to {pilots[-1]:.1f} s of CPU time, {pilots[len(pilots) // 2]:.1f} in the middle, which is more than
-it saves in most images as small as these.
-
-{full_size_text(large, options.full_size)}
-## Resolution
-
-The RMS by which `leaf_lambert` differs from `leaf_solved`, when the whole image is rendered small:
-
-{table(("scene", *(f"{s} x {s}" for s in RESOLUTIONS), "largest over smallest"), sizes)}
-A small image hides what differs in sign from place to place, most of all where there are glints, and says too little. The pilot
-renders pixels of the full image instead.
-
-Machine: {machine()}.
-"""
+    return SECTION.format(
+        machine=machine(), resolution=RESOLUTION, seeds=options.seeds, samples=", ".join(str(samples_for(r)) for r in REQUESTS),
+        first=REQUESTS[0], last=REQUESTS[-1], candidate_samples=options.candidate_samples,
+        reference_samples=options.reference_samples, most_full_samples=options.most_full_samples,
+        errors=table(ERROR_HEAD, [c.row() for c in cases]),
+        missed=outcomes.count("missed"), choices=len(outcomes), met=outcomes.count("met"), unclear=outcomes.count("unclear"),
+        unmet=sum(not c.choice["met"] for c in cases), cases=len(cases), full=len(full), exceeded=sum(ratio > 1 for ratio in full),
+        largest=max(full), least=pilots[0], most=pilots[-1], median=pilots[len(pilots) // 2], size=options.full_size,
+        full_size=table(FULL_SIZE_HEAD, [c.row() for c in large]), least_faster=faster[0], most_faster=faster[-1],
+        whole=sum(c.abm_seconds for c in large) / sum(c.pilots + c.seconds for c in large),
+        full_exceeded=sum(c.high > c.request for c in large), full_cases=len(large),
+        resolutions=table(("scene", *(f"{s} x {s}" for s in RESOLUTIONS), "largest over smallest"), sizes))
 
 
 def main():
-    quick = (asked := arguments("choosing")).quick
+    quick = (command := arguments("choosing")).quick
     options = argparse.Namespace(seeds=3, reference_samples=192, candidate_samples=128, most_full_samples=256, full_size=512)
     if quick:
         options = argparse.Namespace(seeds=1, reference_samples=64, candidate_samples=32, most_full_samples=16, full_size=64)
@@ -275,7 +285,7 @@ def main():
             bench = Bench(path, options, folder)
             cases += [Case(name, bench, request, options) for request in REQUESTS]
             large.append(FullSize(name, path, FULL_SIZE_REQUESTS[name], options.full_size, folder))
-    write(asked.docs / "choosing_measured.md", page(cases, resolutions, large, options))
+    write_section(command.docs / "selection.md", "choosing", section(cases, resolutions, large, options))
 
 
 if __name__ == "__main__":

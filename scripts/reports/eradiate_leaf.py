@@ -1,4 +1,5 @@
-"""One canopy in Eradiate, of frond's leaf, beside frond brf: docs/eradiate.md. Run by the Python of build/eradiate-venv."""
+"""Compares Eradiate with `frond_leaf` to `frond brf` in one canopy: the section "eradiate" of docs/other_renderers.md. Run by the
+Python of build/eradiate-venv."""
 
 import time
 
@@ -12,47 +13,28 @@ from eradiate import unit_registry as ureg
 import charts
 import frond
 from frond.eradiate import FrondLeafCloud
-from tools import ROOT, arguments, machine, table, write
+from tools import ROOT, arguments, machine, table, write_section
 
 FOLDER = ROOT / "build" / "eradiate"
 RGB = [551.0, 800.0]
 ZENITH = [-60.0, -40.0, -20.0, 0.0, 20.0, 40.0, 60.0]
 LEAVES, RADIUS, SIDE, HEIGHT = 400, 0.12, 3.0, 1.0
 SUN = 30.0
-TARGET = 0.8  # half of the square that is seen
+TARGET = 0.8  # half the side of the measured square
 SAMPLES = 24_000
 
-PAGE = """# Leaves in Eradiate
+SECTION = """### Agreement of Eradiate with `frond brf`
 
-`frond.eradiate.FrondLeafCloud` is Eradiate's `LeafCloud` with the solved leaf on its disks in place of `bilambertian`. `leaf` has
-the parameters of `leaf_solved`; leaves are reciprocal where it does not say another convention.
+Measured by `scripts/eradiate` on {machine}; Eradiate {version}, frond {frond_version}.
 
-```
-pip install . "eradiate[kernel]"       # an environment of its own: Eradiate brings its own Mitsuba
-```
-
-```python
-import eradiate
-eradiate.set_mode("mono")
-from frond.eradiate import FrondLeafCloud
-
-cloud = FrondLeafCloud(id="leaves", leaf_positions=positions, leaf_orientations=normals, leaf_radii=radii,
-                       leaf={{"specimen": "soybean", "chlorophylla": 3.0}})
-cloud = FrondLeafCloud.cuboid(n_leaves=400, leaf_radius=0.1, l_horizontal=3.0, l_vertical=1.0)    # or by other constructors;
-cloud.leaf = {{"specimen": "maize"}}                                                              # then the leaf afterwards
-```
-
-Reflectance follows the wavelengths of the experiment. Eradiate's modes are scalar variants of Mitsuba: each event calls frond
-from Python, under Python's lock. That costs {ours:.1f} times what `bilambertian` does in the canopy below.
-
-## One canopy
-
-Written by `scripts/eradiate`: {machine}; Eradiate {version}, frond {frond_version}. {leaves} disks of {radius} m at random in {side} x {side} x {height} m, over nothing, sun
-at {sun}° from the zenith, views in its plane; what is seen is a square of {seen} m at the top. Soybean, reciprocal. BRF by both, {samples} paths a
-direction and wavelength in Eradiate, frond to {asked:g} %:
+The canopy has {leaves} disks with a radius of {radius} m at random positions in a box of {side} x {side} x {height} m, without a ground.
+The leaves are soybean, reciprocal. The sun is at {sun}° from the zenith, and the views lie in the principal plane; negative
+zenith angles are opposite to the sun. The measured area is a square of {seen} m at the top. Eradiate traces {samples} paths per
+direction and wavelength; `frond brf` renders to a noise of {asked:g} %.
 
 {rows}
-Standard errors of Eradiate's figures are estimated from {batches} runs; the differences have a chi-square of {chi2:.1f} for {count}.
+The standard errors of Eradiate's BRF are estimated from {batches} runs. The differences have a chi-square of {chi2:.1f} with
+{count} degrees of freedom. The run takes {ours:.1f} times the CPU time of the same run with `bilambertian` leaves.
 
 ![BRF of the canopy](images/eradiate/brf.svg)
 """
@@ -121,7 +103,7 @@ def main():
     _, _, plain = by_eradiate(positions, normals, "bilambertian", 1, samples // batches)
     zenith, brf = runs[0][0], numpy.array([r[1] for r in runs])
     mean, error = brf.mean(axis=0), brf.std(axis=0, ddof=1) / numpy.sqrt(batches)
-    ours = frond.brf(frond_scene(positions, normals), RGB, zenith=-zenith,  # negative: from the sun's side
+    ours = frond.brf(frond_scene(positions, normals), RGB, zenith=-zenith,  # frond brf counts zenith angles on the sun's side as negative
                      target=(-TARGET, TARGET, -TARGET, TARGET, HEIGHT), rms=asked)
     found, found_error = (numpy.reshape(ours[name], mean.shape) for name in ("brf", "brf_se"))
     z = (mean - found) / numpy.hypot(error, found_error)
@@ -135,7 +117,7 @@ def main():
     charts.save(of, options.docs / "images" / "eradiate" / "brf.svg")
     rows = [[f"{zenith[v]:g}°", f"{RGB[w]:g}", f"{mean[v, w]:.5f} ± {error[v, w]:.5f}", f"{found[v, w]:.5f} ± {found_error[v, w]:.5f}",
              f"{100 * (mean[v, w] / found[v, w] - 1):+.2f} %"] for v, w in numpy.ndindex(mean.shape)]
-    write(options.docs / "eradiate.md", PAGE.format(
+    write_section(options.docs / "other_renderers.md", "eradiate", SECTION.format(
         machine=machine(), version=eradiate.__version__, frond_version=frond.__version__, leaves=LEAVES, radius=RADIUS,
         side=SIDE, height=HEIGHT, sun=SUN, seen=2 * TARGET, samples=f"{samples:,}", asked=100 * asked, batches=batches,
         rows=table(["zenith", "nm", "Eradiate", "frond", "difference"], rows), ours=numpy.median([r[2] for r in runs]) / plain,

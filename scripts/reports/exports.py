@@ -1,4 +1,5 @@
-"""What the formats of frond export keep of a leaf, read by the programs that they are for: docs/exports.md."""
+"""Errors of the files that `frond export` writes, as read by the programs that they are for: the section "exports" of
+docs/other_renderers.md."""
 
 import json
 import os
@@ -11,26 +12,26 @@ import pandas
 from scipy.interpolate import RegularGridInterpolator
 
 import frond
-from tools import ROOT, arguments, machine, program, run, table, write
+from tools import ROOT, arguments, machine, program, run, table, write_section
 
 PYTHON = ROOT / "build" / "exports" / "bin" / "python"
 LEAF = "leaf_solved"
 ANGLES = (8, 45, 70)
 NM = (608, 551, 455)  # red, green and blue of the OSL shader
 STEP = 5  # degrees between the directions that are compared
-STEEP = 60  # degrees from the normal: beyond, f rises toward grazing
+STEEP = 60  # degrees from the normal; beyond this angle f rises toward grazing
 LIGHTS = [(nm, front, angle) for nm in NM for front in (True, False) for angle in ANGLES]
 
-# LBNL/Klems Full: where rings begin and end, and how many patches each has.
+# LBNL/Klems Full: limits of the rings in degrees, and the number of patches in each ring.
 RING_ENDS = numpy.array([0, 5, 15, 25, 35, 45, 55, 65, 75, 90])
 RING_PATCHES = numpy.array([1, 8, 16, 20, 24, 24, 24, 16, 12])
-# Primaries and white of Radiance's colours (color.h), of sRGB.
+# Chromaticities of the primaries and the white of Radiance's colours (color.h) and of sRGB.
 RADIANCE_PRIMARIES = ((0.640, 0.330), (0.290, 0.600), (0.150, 0.060), (1 / 3, 1 / 3))
 SRGB_PRIMARIES = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290))
 
 
 class Reference:
-    """f of the leaf by the goniophotometer, mean over 5 x 5 degrees, R and T by the spectrophotometer."""
+    """The leaf's f from the goniophotometer (means over 5 x 5 degrees); R and T from the spectrophotometer."""
 
     def __init__(self, rays):
         material, angles = f"{LEAF} incident=reciprocal", [*ANGLES, *(180 - a for a in ANGLES)]
@@ -44,7 +45,7 @@ class Reference:
         return self.of_angle.loc[(nm, angle if front else 180 - angle), ["R", "T"]].to_numpy(float)
 
     def rms(self, light, of, most=90):
-        """Of pi times the difference, by projected solid angle, over views up to an angle: reflected and transmitted."""
+        """RMS of pi times the error of f, weighted by projected solid angle, over views up to an angle: reflected, transmitted."""
         nm, front, angle = light
         f = self.found["f"][list(self.found["theta_i_deg"]).index(angle if front else 180 - angle), NM.index(nm)]
         theta, phi, weight = (self.found[name] for name in ("theta_o_deg", "phi_o_deg", "projected_solid_angle_sr"))
@@ -58,7 +59,7 @@ class Reference:
 
 
 class Klems:
-    """A file of one wavelength each, read as Radiance does: the value of the pair of patches that two directions lie in."""
+    """A file for each wavelength, read as Radiance reads it: the value of the pair of patches that contain the two directions."""
 
     def __init__(self, folder):
         self.values = {}
@@ -68,7 +69,7 @@ class Klems:
             for block in path.read_text().split("<WavelengthDataDirection>")[1:]:
                 kind, side = block.split("<", 1)[0].split()
                 data = block.split("<ScatteringData>")[1].split("<")[0].replace(",", " ").split()
-                # The back of the file is the front of the surface.
+                # The file's back is the surface's front.
                 self.values[nm, side == "Back", kind == "Reflection"] = numpy.array(data, float).reshape(145, 145)
 
     @staticmethod
@@ -78,7 +79,7 @@ class Klems:
         return numpy.cumsum([0, *RING_PATCHES])[ring] + numpy.rint(phi / 360 * phis).astype(int) % phis
 
     def of_light(self, light, reflected):
-        # Light comes from the other side of the axis than its patch's own direction.
+        # The light's azimuth is opposite to that of its patch.
         return self.values[light[0], light[1], reflected][:, self.patch(light[2], 180)]
 
     def f(self, light, reflected, theta, phi):
@@ -91,7 +92,7 @@ class Klems:
 
 
 class Table:
-    """The default table, linear between its numbers and constant beyond them."""
+    """The default table, with linear interpolation between nodes and constant extrapolation."""
 
     def __init__(self, folder):
         path = folder / "t.csv"
@@ -118,7 +119,7 @@ class Table:
 
 
 class Cycles:
-    """The shader, rendered by Blender's Cycles."""
+    """The shader, rendered by Cycles of Blender."""
 
     def __init__(self, folder, rays, samples):
         shader = folder / "leaf.osl"
@@ -133,17 +134,17 @@ class Cycles:
         for (front, angle, seen), found in zip(views, answers[len(sides):]):
             colors = numpy.full((90 // STEP, 360 // STEP, 3), numpy.nan)
             for theta, phi, color in found:
-                colors[self.place(theta, phi)] = color
+                colors[self.index(theta, phi)] = color
             self.values[front, angle, seen == front] = colors
         self.version = run(PYTHON, "-c", "import bpy; print(bpy.app.version_string)").split()[-1]
 
     @staticmethod
-    def place(theta, phi):
-        """In the array: middles of the patches."""
+    def index(theta, phi):
+        """Array indices of the patches with these centres."""
         return numpy.asarray(theta // STEP, int), numpy.asarray(numpy.rint(phi) % 360 // STEP, int)
 
     def f(self, light, reflected, theta, phi):
-        return self.values[light[1], light[2], reflected][self.place(theta, phi)][..., NM.index(light[0])]
+        return self.values[light[1], light[2], reflected][self.index(theta, phi)][..., NM.index(light[0])]
 
     def of(self, light, name):
         return self.of_light[light[1:]][name][NM.index(light[0])]
@@ -153,7 +154,7 @@ class Cycles:
 
 
 def comparison(reference, of):
-    """A row for each light; and the largest errors."""
+    """A table with a row for each light, and a sentence with the largest errors."""
     body, errors = [], []
     for light in LIGHTS:
         shares, true = of.shares(light), reference.shares(light)
@@ -163,22 +164,22 @@ def comparison(reference, of):
         body.append([light[0], "front" if light[1] else "back", f"{light[2]}°", *(f"{x:.4f}" for x in numbers)])
     text = table(["nm", "side", "angle", "R", "R of the export", "T", "T of the export", "RMS π Δf, reflected", "transmitted"], body)
     r, t, reflected, transmitted, steep = numpy.max(errors, axis=0)
-    return text, (f"Largest errors: R {r:.4f}, T {t:.4f}; RMS of π Δf {reflected:.4f} reflected, {transmitted:.4f} transmitted; over "
-                  f"views up to {STEEP}° from the normal {steep:.4f}.\n")
+    return text, (f"Largest errors: R {r:.4f}, T {t:.4f}; RMS of π Δf {reflected:.4f} reflected, {transmitted:.4f} transmitted, "
+                  f"{steep:.4f} for views up to {STEEP}° from the normal.\n")
 
 
 def xyz_over_white(primaries, rgb):
-    """X, Y and Z over those of (1, 1, 1), of a space with these primaries and this white."""
+    """X, Y and Z relative to those of (1, 1, 1), in the colour space with these primaries and white."""
     *columns, white = ((x / y, 1, (1 - x - y) / y) for x, y in primaries)
     matrix = numpy.transpose(columns)
     return rgb * numpy.linalg.solve(matrix, white) @ matrix.T / white
 
 
 class Scene:
-    """A leaf that fills the image, under parallel light, by rtrace and by frond."""
+    """A leaf that fills the image, under parallel light, rendered by rtrace and by frond."""
 
-    SIZE, FOV, LIGHT, VIEW = 48, 40, 40, 30  # pixels; degrees, the latter two from the normal, on both sides of it
-    TIMES = 32  # that rtrace follows each ray: what it makes of one is random
+    SIZE, FOV, LIGHT, VIEW = 48, 40, 40, 30  # pixels; degrees; LIGHT and VIEW from the normal, in opposite azimuths
+    TIMES = 32  # number of times that rtrace traces each ray, because its estimate for one ray is random
 
     def __init__(self, folder, material, samples):
         self.folder, self.material = folder, material
@@ -227,7 +228,7 @@ Shape "trianglemesh" "point3 P" [-90 -90 0  90 -90 0  90 90 0  -90 90 0] "intege
         return xyz_over_white(SRGB_PRIMARIES, scene.render(self.samples).rgb.reshape(-1, 3).astype(float))
 
     def comparison(self):
-        """A table, and by how much the means of X, Y and Z differ at most, in per cent."""
+        """A table, and the largest differences of the means of X, Y and Z in per cent."""
         body, worst = [], []
         ends = lambda xyz: "{:.4f} to {:.4f}".format(*numpy.sort(xyz[:, 1])[[len(xyz) // 20, -1 - len(xyz) // 20]])
         for lit in (True, False):
@@ -245,112 +246,71 @@ def has(module):
     return PYTHON.exists() and subprocess.run([PYTHON, "-c", f"import {module}"], capture_output=True, check=False).returncode == 0
 
 
-INTRODUCTION = """# Exports
+SECTION = """### Errors of exported files
 
-Written by `scripts/exports`. {machine}
+Measured by `scripts/exports` on {machine}.
 
-```
-frond export NAME[,parameter=value...] --format radiance|csv|npz|netcdf|osl -o FILE
-```
+The material is the reciprocal `{leaf}` (soybean). R and T are compared with `frond spectrophotometer --rays {rays}` (standard
+errors up to {se:.5f}). f is compared with `frond goniophotometer --integrate` with patches of {step}° by {step}°: "RMS π Δf" is the RMS
+difference of π f over all directions of a side, weighted by projected solid angle. For a white Lambertian reflector, π f is 1.
 
-writes a material's BSDF for other programs. The material is named as for the [instruments](instruments.md). What is exported is
-f as a renderer sees it: light from one direction, seen from another. Leaves are `reciprocal` where nothing is said of their
-`incident`, as in `frond brf`: other programs follow light from either end ([reciprocal_leaf.md](reciprocal_leaf.md)).
+#### Errors of Klems patches
 
-Refused with a reason: materials whose f is a random estimate (`abm`; `leaf_solved` is its mean), that have a delta lobe, or that
-refract light into another medium; wavelengths that the material's data do not reach; options that a format does not look at.
-Files are written whole or not at all; `-` is standard output for formats that are text.
+R and T of an export are those of the patch that contains the angle of incidence, with light from the whole patch. 8° is in the
+ring from 5 to 15°, 70° in the ring from 65 to 75°, and 45° is the lower edge of the ring from 45 to 55°.
 
-| format | for | keeps | error below |
-|---|---|---|---|
-| `radiance` | Radiance, WINDOW | f averaged over 145 × 145 pairs of patches, both sides | [patches](#klems-patches-for-radiance) |
-| `csv`, `npz`, `netcdf` | everybody | R, T, and f at single directions, exactly | [between directions](#tables) |
-| `osl` | Blender's Cycles | R and T by angle and side; f as three lobes | [lobes](#an-osl-shader-for-cycles) |
+{klems}
+{radiance}
+#### Errors of tables
 
-Errors are those of `{leaf}` (soybean): R and T beside `frond spectrophotometer --rays {rays}` (standard errors up to {se:.5f}), f
-beside `frond goniophotometer --integrate` with patches of {step}° by {step}°: the RMS of π Δf over all directions of a side, by
-projected solid angle; white paper has π f = 1.
+The values at the nodes are frond's own. The errors below are those of the default table ({megabytes:.1f} MB of CSV for three
+wavelengths), read with linear interpolation in θi, θo and φo. Beyond the last angle its values are used.
 
-"""
+{values}
+#### Errors of the OSL shader
 
-RADIANCE = """## Klems patches for Radiance
+{cycles}"""
 
-`--format radiance` writes XML as WINDOW 6 has it (LBNL/Klems Full), transmission and reflection from both sides. A value
-is f averaged over both patches with respect to projected solid angle: by Gauss's rules of rising order until two agree within
-2·10⁻⁵ and 2·10⁻⁴ of themselves, in π f; the file says by how much the last two differ at most.
-
-- Light: by default 380 to 780 nm in steps of 10, or `--wavelengths`; linear in between, and the nearest beyond. Radiance's reader
-  takes the blocks `Visible` (Y), `CIE-X` and `CIE-Z`: each is weighed by D65 and the CIE 1931 function, and divided by what
-  white would have, so that grey stays grey. One wavelength alone makes one block, `Visible`.
-- Sides: frond's front (adaxial side, +z) is the front of a Radiance surface, whose normal goes by the right-hand rule. WINDOW
-  calls that side back. Of a material that is not the same all around, frond's x and y are Radiance's with the up vector
-  `0 1 0` and the surface's normal along z.
-- Solar blocks, which WINDOW wants for heat, are not written.
-- A lobe that is narrower than a patch is spread over it: that is the format's error, and it goes for the direction of light
-  as well. A warning tells where a lobe was too narrow to be integrated.
+RADIANCE = """Radiance's `checkBSDF` reports on the file with colour, which `wrapBSDF` reads as well (`tests/exports/readers_test.py`):
 
 ```
-frond export leaf_solved,specimen=soybean --format radiance -o leaf.xml
+{report}
 ```
 
-and in the scene
+**The same scene in both renderers.** A leaf fills an image of {size} × {size} pixels. Parallel D65 light of irradiance 1 arrives at
+{light}° from the normal; a perspective camera with a field of view of {fov}° is at {view}° from the normal, in the opposite azimuth.
+The table has X, Y and Z relative to those of white, as means over the image: first `frond render` ({spp} samples per
+pixel), then Radiance (`rtrace -ab 0`, {times} rays per pixel). The means of Y differ by up to {y:.1f} %, those of X and Z by up to
+{xyz:.1f} %. With `diffusetransmission` in place of the leaf, whose f the patches represent exactly, they differ by up to
+{diffuse_y:.1f} and {diffuse_xyz:.1f} %.
 
-```
-void BSDF leaf
-6 0 leaf.xml 0 1 0 .
-0
-0
-```
+{images}"""
 
-An R or T of the export is that of the patch which the angle lies in, light from all over it: 8° is in the ring from 5 to 15, 70° in
-that from 65 to 75, 45° at the lower edge of that from 45 to 55.
+CYCLES = """Rendered by Cycles of Blender {version}. R and T are the leaf's radiance under a hemisphere of radiance 1 ({paths}
+paths), f is its radiance under parallel light. Under a full sphere of radiance 1 (a furnace), R + T is off by up to {furnace:.4f}.
 
-"""
+{body}
+{errors}"""
 
-TABLES = """## Tables
 
-`--format csv`, `npz` and `netcdf` hold the same numbers: R and T over (wavelength, side, θi), and f over (wavelength, side, θi,
-θo, φo, kind), kind being reflected or transmitted. `--wavelengths` has to be given; `--angles` (θi) and `--view-angles` (θo)
-are every 5° up to 85° by default, `--view-azimuths` every 15° all around.
+def radiance_text(folder, spp):
+    if not has("pyradiance"):
+        return "Radiance (pyradiance) could not be installed: no image was rendered.\n"
+    scene = Scene(folder, (LEAF, "incident=reciprocal"), spp)
+    images, worst = scene.comparison()
+    _, diffuse = Scene(folder, ("diffusetransmission",), spp).comparison()
+    return RADIANCE.format(report=scene.report[scene.report.index("Type:"):].strip(), size=Scene.SIZE, light=Scene.LIGHT,
+                           fov=Scene.FOV, view=Scene.VIEW, spp=spp, times=Scene.TIMES, y=worst[1], xyz=max(worst),
+                           diffuse_y=diffuse[1], diffuse_xyz=max(diffuse), images=images)
 
-| axis | unit | |
-|---|---|---|
-| `wavelength` | nm | |
-| `side` | | front (adaxial, +z) or back: where the light is |
-| `theta_i`, `theta_o` | degree | from the normal, each on its own side |
-| `phi_o` | degree | from the light's azimuth to the viewer's: the mirror direction is at 180 |
-| `kind` | | reflected, transmitted |
-| `R`, `T` | 1 | shares of the light, integrated to 10⁻⁴ of themselves |
-| `f` | 1/sr | at single directions, as 32-bit floats |
 
-- `csv`: long form, a line for each number; `quantity` is R, T, f_r or f_t.
-- `npz`: `numpy.load("leaf.npz")["f_per_sr"]`; `axes` names the axes of it. Not compressed; the same input makes the same bytes.
-- `netcdf`: classic, with attributes of the CF conventions (`units`, `long_name`, `flag_meanings`), which scipy, xarray and
-  ncdump read. Debian's libnetcdf-dev has to be there when frond is built, else the format is refused; the library is opened
-  when it is asked for.
-
-At their nodes the numbers are frond's own. Read with linear interpolation in θi, θo and φo, and the last angle beyond it, the
-default table ({megabytes:.1f} MB of CSV for three wavelengths) gives
-
-"""
-
-OSL = """## An OSL shader for Cycles
-
-`--format osl` writes a shader `frond_leaf` of three lobes, as `leaf_simplified` has them: Cycles' `phong_ramp` for the surface,
-`diffuse` for what comes back out of the leaf and `translucent` for what crosses it, weighed by tables of Rs, Rd and T over the
-viewing angle (every 2.5°) and the side. Red, green and blue are 608, 551 and 455 nm, or three `--wavelengths` in that order, and
-go into the renderer's own colours as they are.
-
-- R and T are f integrated to 10⁻⁴ of themselves; the share of Rs in R is estimated by rays (`--rays`, 10⁶ each by default). A material
-  that does not tell its surface from its body has no surface lobe, and a warning says so.
-- The lobe's exponent follows from the surface's rays at normal incidence. Cycles weighs its lobe by the cosine with the
-  normal besides, frond does not; the table divides by what Cycles' lobe alone sends on, so that Rs stays Rs.
-- A closure's weight knows the viewer's angle and not the light's: R and T are kept, f is not reciprocal, and `incident=light` is
-  refused.
-- In Blender: render engine Cycles, Open Shading Language on, a Script node with the file, its BSDF to the material's Surface. The
-  front is the side of the face's normal.
-
-"""
+def cycles_text(folder, reference, rays, samples):
+    if not has("bpy"):
+        return "Blender (bpy) could not be installed: the shader was not rendered.\n"
+    cycles = Cycles(folder, rays, samples)
+    body, errors = comparison(reference, cycles)
+    furnace = max(abs(cycles.of(light, "furnace") - sum(reference.shares(light))) for light in LIGHTS)
+    return CYCLES.format(version=cycles.version, paths=64 * samples, furnace=furnace, body=body, errors=errors)
 
 
 def main():
@@ -359,42 +319,12 @@ def main():
     reference = Reference(rays)
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        text = INTRODUCTION.format(machine=machine(), leaf=LEAF, rays=rays, step=STEP, se=reference.error)
-        text += RADIANCE + "\n".join(comparison(reference, Klems(folder)))
-        if has("pyradiance"):
-            scene = Scene(folder, (LEAF, "incident=reciprocal"), spp)
-            images, worst = scene.comparison()
-            _, of_paper = Scene(folder, ("diffusetransmission",), spp).comparison()
-            text += f"""
-`checkBSDF` of Radiance says of the file with colour, which `wrapBSDF` reads too (`tests/exports/readers_test.py`)
-
-```
-{scene.report[scene.report.index("Type:"):].strip()}
-```
-
-**A scene**: a leaf that fills an image of {Scene.SIZE} × {Scene.SIZE} pixels, parallel light of D65 of irradiance 1 across it at
-{Scene.LIGHT}° from the normal, a perspective camera of {Scene.FOV}° at {Scene.VIEW}° on the other side of the normal. X, Y and Z over those of white, mean
-over the image: `frond render` ({spp} samples a pixel), Radiance (`rtrace -ab 0`, {Scene.TIMES} rays a
-pixel). Means of Y differ by up to {worst[1]:.1f} %, of X and Z by up to {max(worst):.1f} %; of a `diffusetransmission` in place of the
-leaf, whose f patches do not change, by up to {of_paper[1]:.1f} and {max(of_paper):.1f} %:
-
-{images}"""
-        else:
-            text += "\nRadiance (pyradiance) could not be installed: no image was rendered.\n"
         values = Table(folder)
-        text += "\n" + TABLES.format(megabytes=values.bytes / 1e6) + "\n".join(comparison(reference, values)) + "\n" + OSL
-        if has("bpy"):
-            cycles = Cycles(folder, rays, samples)
-            body, errors = comparison(reference, cycles)
-            furnace = max(abs(cycles.of(light, "furnace") - sum(reference.shares(light))) for light in LIGHTS)
-            text += f"""Rendered by Cycles of Blender {cycles.version}: R and T are what the sheet shows under half a sky of radiance 1 ({64 * samples}
-paths), f what it shows under parallel light. In a furnace, under a whole sky, R + T is off by up to {furnace:.4f}.
-
-{body}
-{errors}"""
-        else:
-            text += "Blender (bpy) could not be installed: the shader was not rendered.\n"
-    write(options.docs / "exports.md", text)
+        text = SECTION.format(
+            machine=machine(), leaf=LEAF, rays=rays, step=STEP, se=reference.error, megabytes=values.bytes / 1e6,
+            klems="\n".join(comparison(reference, Klems(folder))), radiance=radiance_text(folder, spp),
+            values="\n".join(comparison(reference, values)), cycles=cycles_text(folder, reference, rays, samples))
+    write_section(options.docs / "other_renderers.md", "exports", text)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""docs/filters.md: error against time of samples that pixels share and of samples of their own, at equal blur."""
+"""Pixel filters in docs/rendering.md: noise against CPU time of splatting and of importance sampling, at equal blur."""
 
 import itertools
 import pathlib
@@ -10,12 +10,12 @@ import pandas
 
 import charts
 import frond
-from tools import ROOT, arguments, machine, table, write
+from tools import ROOT, arguments, machine, table, write_section
 
 SCENES = ["hundred-leaves", "soybean-front", "soybean-back", "soybean-ambient"]
 SAMPLES = [4, 16, 64]
 SEEDS = (1, 2)
-# The Gaussian of sigma 0.5 that ends at 1.5 pixels has a standard deviation of 0.479; so has a box of this radius.
+# The Gaussian of sigma 0.5, cut at 1.5 pixels, has a standard deviation of 0.479 pixels; a box of this radius has the same.
 BOX = "box,xradius=0.8297,yradius=0.8297"
 FILTERS = {
     "box of one pixel": "box",
@@ -35,7 +35,7 @@ LINES = {
 
 
 def measure(scene, samples):
-    """A row for each filter. Filters take turns, so that whatever else the machine does falls on all of them."""
+    """A row for each filter. Filters alternate, so that other load on the machine disturbs all of them alike."""
     renders = {name: [] for name in FILTERS}
     for turn, seed in enumerate(SEEDS):
         for name in list(FILTERS)[::1 if turn % 2 == 0 else -1]:
@@ -50,7 +50,7 @@ def measure(scene, samples):
         relative = squares[lit] / means[lit] ** 2
         rows.append({"scene": scene, "samples": samples, "filter": name, "rms": squares.mean() ** 0.5,
                      "relative": relative.mean() ** 0.5,
-                     # The median of one squared difference is 0.455 of its mean, were it normal.
+                     # The median of a squared normal variable is 0.455 of its mean.
                      "median": (numpy.median(relative) / 0.455) ** 0.5,
                      "cpu": numpy.mean([image.statistics["cpu_seconds"] for image in images]),
                      "paths": images[0].statistics["paths"]})
@@ -68,53 +68,23 @@ def draw(path, results):
     charts.save(of, path)
 
 
-PAGE = """# Filters
+SECTION = """## Pixel filters: measurements
 
-Written by `scripts/filters`. {machine}
+![Noise against CPU time of pixel filters](images/filters.svg)
 
-A `PixelFilter` that is wider than a pixel can be had in two ways. **Importance sampling**, as in pbrt-v4: a pixel draws its
-samples from its filter, and no other pixel has them. **Splatting**, as in Mitsuba: samples lie evenly in their pixels, and each
-counts in all pixels that the filter reaches, by its weight; a pixel is sum(w L) / sum(w). Both give the same image with the same
-blur, and splatting uses each sample several times: with the Gaussian, pbrt-v4's default and ours, a pixel has the noise of three
-times the samples, for up to a tenth more time (`sinc`, whose samples reach 81 pixels, a third). That is what frond does unless a scene or a command says
-otherwise:
+Measured on {machine}.
+{size}, `leaf_solved`, wavelengths `smpte`, two renders of each setting, in alternating order.
+`box` (splatting and importance) has a radius of 0.830 pixels, which blurs as much as the Gaussian (standard
+deviation 0.479 pixels). The box of one pixel blurs less.
 
-```
-PixelFilter "gaussian" "string reconstruction" "importance"
-frond render scene.pbrt --filter gaussian,reconstruction=importance -o leaf.exr
-frond render scene.pbrt --filter box -o leaf.exr
-```
-
-`auto`, the default, is splatting where that makes less noise, were all samples of an image alike: for `gaussian`, `mitchell`,
-`triangle` and `sinc` with their usual parameters and for a `box` wider than a pixel; not for a box of one pixel, which is the
-same in both ways, nor for a filter much narrower than its radius, or with one above 8.5 pixels.
-
-![Error against CPU time of filters of one blur](images/filters.svg)
-
-{size}, leaf_solved, wavelengths smpte, two renders of each, in turn. The boxes beside that of one pixel have
-a radius of 0.830, which blurs as much as the Gaussian (a standard deviation of 0.479 pixels). **RMS**: noise over pixels and
-linear colours. **Relative**: the same of noise over the pixel's own mean, where that is above a thousandth of the image's, and
-its **median** over pixels and colours. **Efficiency**: 1 / (variance × CPU time), over that of importance samples from the same
-filter, and over that of the box of one pixel, which blurs less; by relative errors too.
+- **RMS**: noise over pixels and linear colours. **relative**: RMS of the noise divided by the pixel's own mean, over pixels whose
+  mean is above a thousandth of the image's mean. **median**: median of this relative noise over pixels and colours.
+- **efficiency**: 1 / (variance × CPU time), divided by the efficiency of importance sampling with the same filter, and by the
+  efficiency of the box of one pixel. **by relative noise**: the same ratio with the variance of the relative noise.
 
 {table}
-## What to know
-
-- **Pixels share noise.** That of a pixel and its neighbours hangs together: it looks softer, and whoever sums pixels up as
-  independent takes a variance that is too small, with the Gaussian by a factor of {correlated:.2f} at most. The EXR says so,
-  `frond:correlated_pixels`; `frond difference` reads it, and `--max-rms` knows it. `frond compare`, whose intervals are those of
-  independent pixels, importance-samples always, and so does the pilot that chooses a leaf's model; so its errors and costs are those of such
-  renders, and of all its candidates alike. Radiometers (`frond brf`) have pixels that are apart, and a box.
-- **`variance.R`** and the others follow from how the samples of a pixel and of its neighbours differ, and are as much an upper bound
-  with low-discrepancy samples as they are without splatting.
-- **Channels** of what camera rays meet first, `leaf` and `samples` are of the pixel's own samples: those of a box. Edges are
-  sharper in them than in the colours.
-- **Crops** have the pixels of the whole image, to the bit: samples of the pixels around that reach them are taken too. `frond
-  render --part` leaves those to the other parts.
-- **Weights** may be negative (`mitchell`, `sinc`). A pixel's sum of weights is near its mean when its neighbours have samples; where
-  it falls below a quarter of that, in images of one sample a pixel, the mean stands in for it.
-- **Memory**: the film takes 128 bytes a pixel, and for shared samples 64 more for each pixel that a tile's samples reach: 209 bytes
-  a pixel with the Gaussian, 228 with `mitchell` and `triangle`, 272 with `sinc`.
+**Correlated noise.** With splatting the noise of neighbouring pixels is correlated, and the image looks softer. The variance of a
+sum over pixels is too small if the pixels are taken for independent: with the Gaussian by a factor of {correlated:.2f} at most.
 """
 
 
@@ -136,10 +106,11 @@ def main():
                     (IMPORTANCE.get(m.filter), "box of one pixel") for kind in ("efficiency", "by_relative")]
             body.append([scene, samples, m.filter, f"{1e6 * m.cpu / m.paths:.2f}", f"{1e3 * m.rms:.3f}",
                          f"{100 * m.relative:.1f} %", f"{100 * m.median:.2f} %", *over])
-    head = ["scene", "samples", "filter", "µs a path", "RMS · 10³", "relative", "median", "efficiency over importance",
-            "by relative errors", "over the box", "by relative errors"]
-    write(options.docs / "filters.md", PAGE.format(machine=machine(), size="`--quick`, 256 × 256 pixels", table=table(head, body),
-                                                   correlated=correlated))
+    head = ["scene", "samples", "filter", "µs per path", "RMS · 10³", "relative", "median", "efficiency over importance",
+            "by relative noise", "efficiency over the box of one pixel", "by relative noise"]
+    write_section(options.docs / "rendering.md", "filters",
+                  SECTION.format(machine=machine(), size="`--quick`, 256 × 256 pixels", table=table(head, body),
+                                 correlated=correlated))
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
-"""Draws ways through a program as a flame graph: SVG that needs no script and no other file."""
+"""Draws call stacks as a flame graph: a self-contained SVG file without scripts."""
 
 import collections
 from html import escape
 
-WIDTH, MARGIN, ROW, LETTER = 1200, 12, 18, 7.23  # of DejaVu Sans Mono at 12 pixels
-LEAST = 0.8  # pixels of a frame that is drawn
-# Light, for black letters; names and the legend say the same.
+WIDTH, MARGIN, ROW, LETTER = 1200, 12, 18, 7.23  # LETTER: width of a letter of DejaVu Sans Mono at 12 pixels
+LEAST = 0.8  # width in pixels of the narrowest frame that is drawn
+# Colours of modules, light enough for black text.
 COLORS = {
     "integrators": "#f6b26b", "scene": "#a9d08e", "materials": "#ffd966", "leaf": "#d6e39a", "render": "#9fc5e8",
     "spectra": "#d5b8ea", "core": "#e8c7a0", "Embree": "#8fd0c8", "libm": "#f2a6bd", "dynamic linking": "#f28b82",
@@ -16,7 +16,7 @@ OTHER = "#ececec"
 
 
 def clipped(text, width):
-    """As many letters as fit."""
+    """The text, shortened to the width."""
     fitting = int((width - 4) / LETTER)
     if len(text) <= fitting:
         return text
@@ -24,7 +24,7 @@ def clipped(text, width):
 
 
 def boxes(ways, scale, x=0.0, depth=0):
-    """(x, width, depth, frame, count), the most frequent to the left."""
+    """Generates (x, width, depth, frame, count), the most frequent frame at the left."""
     below = collections.defaultdict(collections.Counter)
     for way, count in ways.items():
         if way:
@@ -38,7 +38,7 @@ def boxes(ways, scale, x=0.0, depth=0):
 
 
 def legend(modules, top):
-    """Modules in lines that fit; and the height that takes."""
+    """The legend of the modules in lines, and its height."""
     parts, x, y = [], MARGIN, top
     for module in modules:
         width = 18 + (len(module) + 2) * LETTER
@@ -51,7 +51,7 @@ def legend(modules, top):
 
 
 def svg(ways, title, notes):
-    """`ways`: counts by tuples of (name, module), outermost first. The program's begin is above."""
+    """`ways`: counts by tuples of (name, module), outermost frame first. The program's start is at the top."""
     total = sum(ways.values())
     drawn = list(boxes(ways, (WIDTH - 2 * MARGIN) / max(total, 1)))
     count = collections.Counter({module: 0 for *_, (_, module), _ in drawn})

@@ -1,7 +1,7 @@
-"""What a render in parts costs beside its paths: scripts/many_machines, docs/many_machines.md.
+"""Costs of a render in parts, without its paths: tables of docs/many_machines.md (scripts/many_machines).
 
-CPU time, user and system together, as the kernel counts it for each process: other programs on the machine disturb it
-less than the clock."""
+Times are CPU time, user and system together, as the kernel counts it for each process: other programs on the machine disturb it
+less than wall-clock time."""
 
 import json
 import os
@@ -16,9 +16,9 @@ from tools import FROND, ROOT, Use, arguments, machine, run, sized, table
 SCENE = ROOT / "scenes" / "hundred-leaves" / "scene.pbrt"
 WIDTH, HEIGHT = 1920, 1080
 PARTS = (1, 2, 4, 8)
-SAMPLES = 4  # of a part
+SAMPLES = 4  # per pixel of a part
 
-# The image of the calculation.
+# The image of the extrapolation.
 LARGE_WIDTH, LARGE_HEIGHT, LARGE_SAMPLES, NODES = 3840, 2160, 4096, 1000
 
 
@@ -47,7 +47,7 @@ def start_and_load(folder, scene):
 
 
 def bytes_a_pixel(folder):
-    """Of parts of more and more samples, of a small image of the same view."""
+    """By samples per pixel: bytes per pixel of a part, of a small image of the same view."""
     width, height = 160, 90
     scene, sizes = sized(SCENE, folder, width, height), {}
     for samples in (4, 64, 1024, 4096):
@@ -58,7 +58,7 @@ def bytes_a_pixel(folder):
 
 
 def render_parts(folder, scene, count):
-    """Parts by samples, the CPU time of a path, and the memory of the largest render."""
+    """Parts of samples, the CPU time of a path, and the most memory of a render."""
     parts = [folder / f"samples_{i}.part" for i in range(count)]
     uses = [use("render", scene, "--samples", f"{SAMPLES * i}:{SAMPLES * (i + 1)}", "--part", part, "-q", "--json", "--cache",
                 folder / "cache") for i, part in enumerate(parts)]
@@ -67,7 +67,7 @@ def render_parts(folder, scene, count):
 
 
 def render_strips(folder, scene, width, height):
-    """The first of those parts once more, in strips of whole tiles."""
+    """The samples of the first of those parts again, as parts of pixels: strips of whole tiles."""
     strips = []
     for top in range(0, height, 144):
         strips.append(folder / f"rows_{top}.part")
@@ -77,7 +77,7 @@ def render_strips(folder, scene, width, height):
 
 
 def merged(folder, parts):
-    """The file that they make."""
+    """Bytes of the image that `frond merge` writes."""
     use("merge", *parts, "-o", folder / "same.exr", "-q")
     return (folder / "same.exr").read_bytes()
 
@@ -93,7 +93,7 @@ def merges(folder, parts, counts):
 
 
 def libraries():
-    """Shared libraries that the program loads, and their bytes."""
+    """Number of shared libraries that the program loads, and their bytes."""
     words = [line.split() for line in run("ldd", FROND).splitlines()]
     files = {pathlib.Path(w[2]).resolve() for w in words if len(w) > 2 and w[1] == "=>" and w[2].startswith("/")}
     return len(files), sum(f.stat().st_size for f in files)
@@ -123,7 +123,7 @@ def main():
         part_bytes = mean(p.stat().st_size for p in parts)
         strips = render_strips(folder, scene, width, height)
         if merged(folder, parts[:1]) != merged(folder, strips) or merged(folder, parts) != merged(folder, parts[::-1]):
-            raise SystemExit("parts of the same samples make other images")
+            raise SystemExit("parts of the same samples give different images")
         by_parts = merges(folder, parts, counts)
         strips_cpu = median_cpu("merge", *strips, "-o", folder / "strips.exr", "-q", runs=3)
         image_bytes = (folder / "strips.exr").stat().st_size
@@ -137,22 +137,23 @@ def main():
     count, bytes_on_disk = libraries()
     print(f"The program loads {count} shared libraries of {size(bytes_on_disk)}.\n")
     print(f"A path takes {path_seconds * 1e6:.2f} µs of CPU.\n")
-    print(table(["samples of a pixel", "part, bytes a pixel"], [[f"{n:,}", f"{b:.1f}"] for n, b in sizes.items()]))
-    print(f"{width} × {height} pixels, {SAMPLES} samples a part, {size(part_bytes)} each; the image has {size(image_bytes)}:\n")
+    print(table(["samples per pixel", "part, bytes per pixel"], [[f"{n:,}", f"{b:.1f}"] for n, b in sizes.items()]))
+    print(f"{width} × {height} pixels, {SAMPLES} samples per part, {size(part_bytes)} each; the image has {size(image_bytes)}:\n")
     print(table(["parts", "merged into an image, CPU s", "into a part, CPU s", "most memory, MB"],
                 [[n, f"{i:.2f}", f"{p:.2f}", f"{m:.0f}"] for n, (i, p, m) in by_parts.items()]))
     of_image, of_part, memory = zip(*by_parts.values())
-    # Least squares: what each part takes, and what the whole takes beside.
+    # Least squares: cost of each part, and fixed cost.
     (each, beside), (_, beside_part) = (numpy.polyfit(counts, seconds, 1) / megapixels for seconds in (of_image, of_part))
-    print(f"A further part takes {each:.3f} CPU s a megapixel, what comes once {beside:.2f} for an image and {beside_part:.2f} for a "
-          f"part. The same {SAMPLES} samples in {len(strips)} strips of its pixels take {strips_cpu:.2f} CPU s.\n")
+    print(f"Each further part takes {each:.3f} CPU s per megapixel. The fixed cost per megapixel is {beside:.2f} CPU s\n"
+          f"for an image and {beside_part:.2f} for a part. The same {SAMPLES} samples in {len(strips)} strips of its pixels take\n"
+          f"{strips_cpu:.2f} CPU s.\n")
 
     print_calculation(start["load"], path_seconds, sizes, part_bytes / megapixels, each, beside, beside_part, start["megabytes"],
                       (max(memory) - start["megabytes"]) / megapixels, (render_memory - start["megabytes"]) / megapixels)
 
 
 def print_calculation(load, path, sizes, part_bytes, each, image, part, least_memory, merge_memory, render_memory):
-    """From figures a megapixel to those of the large image."""
+    """Extrapolates figures per megapixel to the large image."""
     large = LARGE_WIDTH * LARGE_HEIGHT / 1e6
     seconds = large * 1e6 * LARGE_SAMPLES * path
 
@@ -160,7 +161,7 @@ def print_calculation(load, path, sizes, part_bytes, each, image, part, least_me
         return size((least_memory + of_megapixel * megapixels) * 1.048576e6)
 
     def by_samples(tasks):
-        """A part has all pixels, and few samples of each."""
+        """A part has few samples of all pixels."""
         samples = LARGE_SAMPLES / tasks
         nearest = min(sizes, key=lambda n: abs(n - samples))
         bytes_each = part_bytes * large * sizes[nearest] / sizes[SAMPLES]
@@ -176,7 +177,7 @@ def print_calculation(load, path, sizes, part_bytes, each, image, part, least_me
                 hours(large * (each + image)), "", memory(render_memory, large / tasks)]
 
     names = ["paths of one task, CPU time", "start and load of one task", "one part", "all parts", "merge, CPU time",
-             "the same in two steps, the first of which many do at once", "memory of one task"]
+             "merge in two steps, the first in parallel, CPU time", "memory of one task"]
     columns = [by_samples(NODES), by_samples(64), by_pixels(NODES)]
     print(f"{LARGE_WIDTH} × {LARGE_HEIGHT}, {LARGE_SAMPLES:,} samples: {hours(seconds)} of CPU time for paths, "
           f"{memory(merge_memory, large)} of memory for the merge.\n")

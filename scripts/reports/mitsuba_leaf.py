@@ -1,4 +1,5 @@
-"""The leaf in Mitsuba 3 beside ours: docs/mitsuba.md. Run by the Python of build/python-venv."""
+"""Compares `frond_leaf` in Mitsuba 3 with frond: the section "mitsuba" of docs/other_renderers.md. Run by the Python of
+build/python-venv."""
 
 import json
 import time
@@ -14,77 +15,38 @@ import frond
 import frond.mitsuba
 
 from race import mitsuba_worker, scenes
-from tools import ROOT, arguments, machine, rms, table, write
+from tools import ROOT, arguments, machine, rms, table, write_section
 
 RGB_NM = [608, 551, 455]
 ANGLES = [8, 45, 70]
 SIZE, SAMPLES = 256, 256
 FOLDER = ROOT / "build" / "mitsuba"
 
-PAGE = """# The leaf in Mitsuba 3
+SECTION = """### Agreement of Mitsuba with frond
 
-`frond_leaf` is `leaf_solved` as a BSDF of Mitsuba: in JIT variants the same table, looked up by code that Dr.Jit compiles; in
-`scalar_mono` and `scalar_rgb` each direction is a call of frond from Python, which is slow, and what [Eradiate](eradiate.md) takes.
+Measured by `scripts/mitsuba` on {machine}; Mitsuba {version}, `llvm_ad_rgb`, frond {frond_version}.
 
-```
-pip install . mitsuba          # frond's source tree; Mitsuba's LLVM variants need libllvm 19 on Debian 12
-```
-
-```python
-import mitsuba as mi
-mi.set_variant("llvm_ad_rgb")
-import frond.mitsuba
-
-leaf = {{"type": "frond_leaf", "specimen": "soybean", "incident": "reciprocal"}}
-```
-
-Parameters are those of `leaf_solved` ([plugins.md](plugins.md)): `specimen`, `incident`, `tolerance`, and the leaf's numbers.
-`chlorophylla` and the others of its chemistry, `thickness` and `mesophyllfraction` may be textures, and are differentiable then, or
-where `differentiable` is true. In rgb variants red, green and blue are 608, 551 and 455 nm, or the three of `wavelengths`
-("670, 551, 800"); mono variants need one; spectral ones take any from 360 to 830 nm. A leaf has two sides of its own: no
-`twosided` around it.
-
-A leaf that was fitted to a measured spectrum: `{{"type": "frond_leaf", **frond.fit(path="leaf.csv").parameters}}`.
-
-Written by `scripts/mitsuba`: {machine}; Mitsuba {version}, `llvm_ad_rgb`, frond {frond_version}.
-
-## How close it is
-
-**f**, {pairs:,} random pairs of directions on both sides, no flatter than 89.4°: root mean square and largest of π times the
-difference from `leaf_solved`, which is 1 for white paper.
+**f** at {pairs:,} random pairs of directions on both sides, at most 89.4° from the normal. The table has the RMS and the largest
+difference of π f from `leaf_solved`. For a white Lambertian reflector, π f is 1.
 
 {f_table}
-**R and T** by 10⁶ samples of the plug-in (traced) less those of frond's goniophotometer, which integrates f: at 8, 45 and 70°, both
-sides, {rgb} nm. Root mean square {share_rms:.1e}, where the standard errors of the samples are {share_error:.1e}; furthest
-{share_z:.1f} standard errors of {shares}.
+**R and T** at 8, 45 and 70°, both sides, {rgb} nm: the plug-in's estimates from 10⁶ samples (`traced`) less those of
+frond's goniophotometer, which integrates f. The RMS difference is {share_rms:.1e}; the RMS standard error of the estimates is
+{share_error:.1e}. The largest of the {shares} differences is {share_z:.1f} standard errors.
 
-**Images** of a hundred leaves ([the race's scenes](race.md), {size} x {size} pixels, {samples} samples a pixel, 16 scattering events, box filter):
-means over all pixels; errors follow from two renders each. Leaves of soybean, reciprocal; and the race's diffuse ones, where the
-leaf is nobody's and the programs differ by what else they do:
+**Images** of a hundred leaves ([scenes](performance.md): {size} x {size} pixels, {samples} samples per pixel, 16 scattering events, box
+filter). The table has the means over all pixels, with standard errors from two renders by each program. Rows with a colour are for
+reciprocal soybean leaves. Rows `diffuse` are for Lambertian surfaces: they show how the programs differ without frond's leaf model.
 
 {image_table}
 ![A hundred leaves in Mitsuba, and in frond](images/mitsuba/hundred-leaves.png)
 
-## What it costs
+### Speed of Mitsuba and frond
 
-CPU time a path, one plane of leaf under an even sky, camera rays and one scattering event, medians of {rounds} renders; compiling is
-not in it.
+CPU time per path for a plane of leaf under a uniform sky: camera rays and one scattering event, median of {rounds} renders, without
+compilation. `leaf, over depth` has `differentiable` set.
 
-{cost_table}
-## Derivatives
-
-`params = mi.traverse(scene)` has the leaf's numbers. They act through the optical depth of the mesophyll, over which the table stands
-in steps of 0.15 of its logarithm, linear between: derivatives are those of that interpolant. Against finite differences of the
-plug-in and of frond's own leaf: `python/tests/test_mitsuba.py`. `python/examples/chlorophyll_map.ipynb` finds a map of chlorophyll again in an image.
-
-Aspect ratios of cells, `incident` and `specimen` are fixed when the leaf is loaded: other numbers take another table.
-
-## What it cannot do
-
-- `scalar_spectral`, and textures and derivatives in scalar variants. Polarised ones: the model knows no polarisation.
-- `cuticleaspect` by a texture.
-- With `incident` "light" weights have no bound along a leaf, as in frond ([conventions.md](conventions.md)).
-"""
+{cost_table}"""
 
 
 def random_pairs(count):
@@ -110,7 +72,7 @@ def differences_of_f(pairs):
 
 
 def differences_of_shares(count):
-    """R and T by samples less those integrated by frond, and their standard errors."""
+    """R and T estimated from samples less R and T integrated by frond, and the standard errors."""
     bsdf = mi.load_dict({"type": "frond_leaf"})
     found, errors = [], []
     angles = ANGLES + [180 - a for a in ANGLES]
@@ -151,10 +113,10 @@ def images(image, samples):
             for pair in (in_mitsuba, in_frond):
                 a, b = (p[:, :, lane].astype(numpy.float64) for p in pair)
                 means.append(((a + b) / 2).mean())
-                # Pixels are independent, and each pair tells its variance.
+                # Pixels are independent; the difference of the two renders estimates each pixel's variance.
                 errors.append(numpy.sqrt(((a - b) ** 2 / 4).sum()) / a.size)
             error = numpy.hypot(*errors)
-            if lane == 1 or leaf:  # the diffuse ones are grey
+            if lane == 1 or leaf:  # the diffuse leaves are grey
                 rows.append([name, color if leaf else "diffuse", f"{means[0]:.6f}", f"{means[1]:.6f}", f"{means[0] - means[1]:+.6f} ± {error:.6f}"])
         if leaf:
             shown.append([sum(pair) / 2 for pair in (in_mitsuba, in_frond)])
@@ -190,7 +152,7 @@ Shape "bilinearmesh" "point3 P" [ -2 -2 1  2 -2 1  -2 2 1  2 2 1 ]
     for label, theirs, ours in kinds:
         loaded = scene(theirs)
         times = []
-        for seed in range(rounds + 1):  # the first compiles
+        for seed in range(rounds + 1):  # the first render compiles
             start = time.process_time()
             numpy.array(mi.render(loaded, spp=samples, seed=seed))
             times.append(time.process_time() - start)
@@ -219,7 +181,7 @@ def main():
     print(image_table)
     cost_table = costs(rounds, size, of_pixel)
     print(cost_table)
-    write(options.docs / "mitsuba.md", PAGE.format(
+    write_section(options.docs / "other_renderers.md", "mitsuba", SECTION.format(
         machine=machine(), version=mi.__version__, frond_version=frond.__version__, pairs=pairs, f_table=f_table,
         rgb=", ".join(map(str, RGB_NM)), size=SIZE, samples=2 * samples, image_table=image_table, rounds=rounds,
         cost_table=cost_table, **figures))

@@ -1,4 +1,4 @@
-"""Writes docs/paper.md: the experiments of Baranoski and Rokne's paper, their figures beside ours."""
+"""Writes docs/paper.md: the experiments of Baranoski and Rokne's paper, with their figures and frond's."""
 
 import argparse
 import pathlib
@@ -27,13 +27,13 @@ def rendered(runs, images, measured):
 
 ![Three sets of images, each with both models](images/paper/figures-5-7.jpg)
 
-{samples} samples per pixel, {pixels:,} pixels; left the ABM, right the simplified model. The plants, the light and
-the view are ours: the paper does not describe its own. What is matched is what it states: a soybean leaf, which side is lit,
-ambient light alone in the third set, and the foliar ratio, the share of pixels that see a leaf. Images are raised by
+{samples} samples per pixel, {pixels:,} pixels; the ABM at the left, the simplified model at the right. The plants, the light and
+the view are frond's, because the paper does not describe its own. They match what the paper states: a soybean leaf, the side that
+is lit, ambient light alone in the third set, and the foliar ratio. The images are shown with an exposure of
 {', '.join(str(s.stops) for s in SETS)} stops.
 
-{table(("set", "light", "foliar ratio, paper", "ours", "CPU, `abm`", "CPU, `leaf_simplified`"), body)}
-The paper gives one time, 95 minutes of CPU on an SGI R10000 for its Figure 7b; it does not say at how many pixels.
+{table(("set", "light", "foliar ratio, paper", "frond", "CPU, `abm`", "CPU, `leaf_simplified`"), body)}
+The paper gives one time: 95 minutes of CPU on an SGI R10000 for its Figure 7b. It does not state the number of pixels.
 """
 
 
@@ -43,24 +43,24 @@ def leaf_table(runs, tables):
     return f"""
 ## The table of reflectances and transmittances
 
-The paper samples it: 10⁶ rays at each degree from 0° to 180°, three wavelengths, 14.5 kB. Sampled with
-{runs.setting.table_rays:,} rays it takes {sampled['cpu_seconds']:.2g} s of CPU here; solved, as for this page,
-{solved['cpu_seconds']:.2g} s. The two are {rms(apart):.1e} apart (RMS of Rs, Rd and T; {apart.max():.1e} at most), which is the noise of
-sampling. A render holds 12.4 kB of it: 258 angles, even in the root of the cosine, of 48 bytes. What sampling, solving and
-coarser steps cost in accuracy: [validation.md](validation.md#the-table-solved-against-sampled),
-[table_format.md](table_format.md).
+The paper samples the leaf table with 10⁶ rays at each degree from 0° to 180° at three wavelengths; it has 14.5 kB. Here, sampling
+with {runs.setting.table_rays:,} rays takes {sampled['cpu_seconds']:.2g} s of CPU time, and solving, as for this page,
+{solved['cpu_seconds']:.2g} s. The two tables differ by {rms(apart):.1e} (RMS of Rs, Rd and T; at most {apart.max():.1e}), which is
+the noise of sampling. A render holds 12.4 kB of it: 258 angles of 48 bytes, uniform in the square root of the cosine.
+[Validation](validation.md#the-table-solved-against-sampled) has the errors of sampling and solving, [file
+formats](file_formats.md) those of coarser steps.
 """
 
 
 ELSEWHERE = """
-## Elsewhere
+## Other experiments
 
-| in the paper | ours |
+| in the paper | here |
 |---|---|
-| Figures 1 and 4: BDF curves at 30° and 45° | [validation.md](validation.md#figures-1-and-4-of-the-paper-the-bdf-in-the-plane-of-incidence) |
-| Figure 2: absorption of chlorophyll | from the authors' later publications, and what it makes of a leaf: [validation.md](validation.md#spectra-400-to-2500-nm) |
-| Table 1: chromaticities and dominant wavelengths | [conventions.md](conventions.md), what 455 nm costs: [wavelengths.md](wavelengths.md) |
-| future work: Meyer's choice of wavelengths | [wavelengths.md](wavelengths.md) |
+| Figures 1 and 4: BDF curves at 30° and 45° | [validation](validation.md#figures-1-and-4-of-the-paper-the-bdf-in-the-plane-of-incidence) |
+| Figure 2: absorption of chlorophyll | data of the authors' later publications, and the spectra that follow: [validation](validation.md#spectra-400-to-2500-nm) |
+| Table 1: chromaticities and dominant wavelengths | [conventions](conventions.md), also for the error of 455 nm |
+| future work: Meyer's choice of wavelengths | [conventions](conventions.md) |
 """
 
 
@@ -70,11 +70,20 @@ def page(runs, images, measured, tables, command):
                sum(r["cpu_seconds"] for halves in m["images"].values() for r in halves) for m in measured.values())
     return f"""# The paper's experiments
 
-G. V. G. Baranoski and J. G. Rokne, "A Simplified Model for Light Interaction with Plant Tissue": what it evaluates, its
-figures beside ours. "The ABM" is `abm`, the random walk, analog as published; "the simplified model" is `leaf_simplified`,
-with a solved table. 1 is a white diffuse surface in the light.
+For readers who compare frond with the publication of its leaf models: G. V. G. Baranoski and J. G. Rokne, "A Simplified Model for
+Light Interaction with Plant Tissue". The page repeats the paper's experiments and gives its figures and frond's.
 
-Made by `{command}` from what it measured, in {used / 60:.0f} minutes of CPU, on {machine()}.
+```sh
+scripts/paper --quick
+```
+
+With `--quick` the script takes few samples and writes into `build/paper`. Without it, the script writes this page; `--continue`
+resumes an interrupted run.
+
+"The ABM" is `abm`, the random walk, analog as published. "The simplified model" is `leaf_simplified` with a solved table. A
+value of 1 is a white diffuse surface in the light.
+
+Written by `{command}` in {used / 60:.0f} minutes of CPU time: {machine()}.
 {goals(measured)}
 {rendered(runs, images, measured)}
 {convergence(runs, images, measured)}
@@ -82,18 +91,18 @@ Made by `{command}` from what it measured, in {used / 60:.0f} minutes of CPU, on
 {leaf_table(runs, tables)}
 {differences(measured)}
 {ELSEWHERE}
-The comparisons were made by
+The comparisons were made with these commands:
 
 ```
 {commands}
 ```
 
-and the same for the other scenes, with their own `--target`.
+The other scenes use the same commands with their own `--target`.
 """
 
 
 def measure(runs):
-    """{set: what was measured of it}, one experiment after the other."""
+    """{set: its measurements}, one experiment after the other."""
     measured = {s.name: {"comparison": runs.comparison(s), "manner": runs.manner(s)} for s in SETS}
     for s in SETS:
         measured[s.name]["ends"] = curves_of(runs, s, measured[s.name]["manner"])
@@ -106,9 +115,9 @@ def measure(runs):
 def main():
     parser = argparse.ArgumentParser(prog="scripts/paper", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="few samples, into build/paper")
-    parser.add_argument("--smoke", metavar="FOLDER", help="hardly any samples, into a folder: a test that all of it runs")
-    parser.add_argument("--continue", dest="keep", action="store_true", help="keep what an earlier run has measured")
-    parser.add_argument("--threads", type=int, help="all by default")
+    parser.add_argument("--smoke", metavar="FOLDER", help="very few samples, into a folder: tests that the script runs")
+    parser.add_argument("--continue", dest="keep", action="store_true", help="keep the measurements of an earlier run")
+    parser.add_argument("--threads", type=int, help="number of threads; default: all")
     options = parser.parse_args()
     setting = SMOKE if options.smoke else QUICK if options.quick else FULL
     scratch = pathlib.Path(options.smoke) if options.smoke else ROOT / "build" / "paper" / ("quick" if options.quick else "full")

@@ -1,4 +1,4 @@
-"""Figures 8 to 10 of the paper: how the trees of both models thin out with depth. By itself it checks the two ratios."""
+"""Figures 8 to 10 of the paper: the share of paths that continue, by depth. Run as a program, it checks the two ratios."""
 
 import math
 
@@ -12,7 +12,7 @@ PAPER_RATIO = 1e-4  # of unshot to shot rays, at which the paper's trees end
 
 
 class Ends:
-    """Paths by the number of scattering events that they had come through when they ended."""
+    """Numbers of paths by the number of their scattering events when they ended."""
 
     def __init__(self, escaped, absorbed):
         ends = numpy.zeros((2, max(len(escaped), len(absorbed))))
@@ -22,18 +22,18 @@ class Ends:
 
     @staticmethod
     def of(report):
-        """From what `frond render --json` prints."""
+        """From the output of `frond render --json`."""
         return Ends(report["paths_escaped_by_depth"], report["paths_absorbed_by_depth"])
 
     def paths(self):
         return int(self.alive(0))
 
     def alive(self, events):
-        """Rays that go on after so many events."""
+        """Number of rays that continue after `events` events."""
         return self.going[min(events, len(self.going) - 1)]
 
     def shot(self, events):
-        """Rays shot before the last of so many events: one of each path that was alive after 0, 1 ... events - 1."""
+        """Number of rays shot before event `events`: one for each path that continued after 0, 1 ... events - 1 events."""
         return sum(self.alive(i) for i in range(events))
 
     def unshot_ratio(self, events):
@@ -44,8 +44,8 @@ class Ends:
         return self.absorbed[:events].sum() / self.paths()
 
     def ratio_between(self, depth):
-        """The first ratio at a depth between two whole ones, its logarithm taken as linear, and its standard error of
-        counting. Where no ray is left half a one is taken. As src/study/compare/cutoff.cpp does."""
+        """The first ratio at a depth between two whole ones, by linear interpolation of its logarithm, and its standard error of
+        counting. Half a ray is added to each count, as in src/study/compare/cutoff.cpp."""
         whole = math.floor(depth)
         t = depth - whole
         a, b = (self.alive(d) + 0.5 for d in (whole, whole + 1))
@@ -53,7 +53,7 @@ class Ends:
         return ratio, ratio * math.sqrt(((1 - t) ** 2 + 2 * t * (1 - t)) / a + t**2 / b)
 
     def depth(self):
-        """Where the first ratio has fallen to PAPER_RATIO, between two whole depths as above."""
+        """Depth at which the first ratio is PAPER_RATIO, interpolated as above."""
         last = next(d for d in range(1, len(self.going))
                     if self.alive(d) == 0 or (self.alive(d) + 0.5) / self.shot(d) < PAPER_RATIO)
         if last == 1:
@@ -62,7 +62,7 @@ class Ends:
         return last - 1 + min(1, (before - math.log(PAPER_RATIO)) / (before - after))
 
 
-# Title, model, cutoff (None: solved for the set), and its colour, mark and line.
+# Title, model, cutoff (None: solved for the set), and colour, marker and line style.
 CURVES = (
     ("abm, cutoff 0.01", "abm", 0.01, (0, "o", "-")),
     ("abm, no cutoff", "abm", 0, (0, "D", ":")),
@@ -110,7 +110,7 @@ def depth_rows(measured):
 
 
 def depths(measured):
-    """Of both models with the paper's cutoff, set by set."""
+    """Text with the depths of both models with the paper's cutoff, for each set."""
     words = []
     for s in SETS:
         walk, _, simple, _ = (curve[2].depth() for curve in measured[s.name]["ends"])
@@ -119,7 +119,7 @@ def depths(measured):
 
 
 def at_first_event(measured):
-    """Paths of leaf_simplified, front lit, that end at their first event with the paper's cutoff and with the solved one."""
+    """Shares of front lit leaf_simplified paths that end at their first event, with the paper's and the solved cutoff."""
     return [f"{100 * measured['front']['ends'][i][2].ended(1):.0f} %" for i in (2, 3)]
 
 
@@ -131,39 +131,40 @@ def convergence(runs, images, measured):
 
 ![Unshot rays over shot rays, and paths absorbed or cut off, against tree depth](images/paper/convergence.svg)
 
-Depth d is that after d scattering events. *Unshot over shot*, above: the rays that go on after d events, over all rays shot
-until then, that is the camera rays and those that went on after 1, 2 ... d - 1 events. *Absorbed or cut off*, below: paths
-that ended so at one of the first d events, over all paths. The rest left the scene. The luminance of the attenuation
-(eq. 4) is compared with the cutoff after each event; light sampling has no part in either ratio. The paper ends its trees
-where the first ratio is 10⁻⁴ (the grey line) and chooses the cutoff of the simplified model so that the ratio is the ABM's;
-how is not said. Here the ABM's trees, with the paper's 0.01, end where 10⁻⁴ is left, at a depth interpolated between two
-whole ones, and the cutoff of the simplified model is solved so that the same is left at that depth
-([compare.md](compare.md#speed-up)): a pilot's answer, whose ratio the table checks with more samples. The paper has 0.01 for
-it. {paths:,} paths a curve; ± is the standard error of counting.
+Depth d means after d scattering events. *Unshot over shot* (top): rays that continue after d events divided by all rays shot
+before, which are the camera rays and those that continued after 1, 2 ... d - 1 events. *Absorbed or cut off* (bottom): paths that
+ended so at one of the first d events divided by all paths. All other ended paths left the scene. The luminance of the attenuation
+(eq. 4) is compared with the cutoff after each event; light sampling affects neither ratio.
 
-{table(("set", "model", "cutoff", "depth where 10⁻⁴ is left", "unshot / shot at the depth of (b)", "absorbed or cut off by then"),
-       depth_rows(measured))}
-The paper finds that the simplified model converges faster in all three sets. Here 10⁻⁴ is left, with `abm` and with
-`leaf_simplified`, both cut off at 0.01, at these depths: {depths(measured)}.
-The shapes differ more than the depths.
-`abm` kills a path at a leaf, with the probability that all three wavelengths are absorbed, so its curve falls from the first
-event on. `leaf_simplified` kills none: it attenuates a path, goes on with it after the first event whatever the leaf, and
-cuts it off later, once the product of two or three reflectances is below the cutoff. Which is down to 10⁻⁴ first
-hangs on where rays go. Where most leave the scene after one or two leaves, as in the back lit set, the walk, which sends on
-fewer, is ahead. An `abm` that is never cut off goes on longer where a leaf stands before a wall or over soil: a ray that
-only a dull surface attenuates never ends but by a leaf or by leaving, and that is where the simplified model converges
-faster.
+The paper ends its trees where the first ratio is 10⁻⁴ (the grey line). It chooses the cutoff of the simplified model so that the
+ratio equals that of the ABM, and does not state how. Here the ABM has the paper's cutoff of 0.01, and its trees end at the depth
+where the ratio is 10⁻⁴, interpolated between two whole depths. The cutoff of the simplified model is solved so that its ratio at
+this depth is the same ([compare](compare.md)). The solution comes from a short render; the table checks its ratio with more
+samples. The paper has 0.01 for this cutoff too. Each curve has {paths:,} paths; ± is the standard error of counting.
 
-The ratio does not fall evenly with the cutoff: it jumps where many paths have the same attenuation, so that two cutoffs may
-leave the same. Our wall behind the front lit leaves reflects 0.015. A cutoff above that ends every path that meets the wall
-first, and (b) would then gain by the wall, not by the leaf: of all paths {' with 0.01, '.join(at_first_event(measured))} with the
-solved cutoff end at their first event. The paper's scenes have not been published, and whether its ABM was cut off at other
-surfaces is not said.
+{table(("set", "model", "cutoff", "depth where the ratio is 10⁻⁴", "unshot / shot at the depth of (b)",
+        "absorbed or cut off at this depth"), depth_rows(measured))}
+The paper finds that the simplified model converges faster in all three sets. Here the ratio is 10⁻⁴ at these depths with `abm` and
+with `leaf_simplified`, both with a cutoff of 0.01: {depths(measured)}. The shapes of the curves differ more than the depths. `abm`
+ends a path at a leaf with the probability that all three wavelengths are absorbed, so that its curve falls from the first event
+on. `leaf_simplified` ends no path at a leaf. It attenuates the path and continues it after the first event on any leaf; the path
+is cut off later, when the product of two or three reflectances is below the cutoff.
+
+The scene decides which model reaches 10⁻⁴ at the smaller depth. Where most paths leave the scene after one or two leaves, as in
+the back lit set, the walk reaches it first, because it continues fewer paths. `abm` without a cutoff continues paths longer where
+a leaf is in front of a wall or over soil: a diffuse surface only attenuates a ray, which ends only at a leaf or outside the scene.
+There the simplified model converges faster.
+
+The ratio is not a smooth function of the cutoff. It jumps where many paths have the same attenuation, so that two cutoffs may give
+the same ratio. The wall behind the front lit leaves reflects 0.015. A cutoff above this value would end every path that meets the
+wall first, and (b) would then measure the wall instead of the leaf. Of all paths, {' with 0.01, '.join(at_first_event(measured))}
+with the solved cutoff end at their first event. The paper's scenes are not published, and it does not state whether its ABM was
+cut off at other surfaces.
 """
 
 
 def check():
-    """100 paths: 60 go on after one event, 30 after two, none after three."""
+    """Checks `Ends` with 100 paths: 60 continue after one event, 30 after two, none after three."""
     ends = Ends([25, 30], [15, 0, 30])
     assert [ends.alive(d) for d in range(5)] == [100, 60, 30, 0, 0]
     assert (ends.unshot_ratio(1), ends.unshot_ratio(2)) == (0.6, 30 / 160)

@@ -1,4 +1,4 @@
-"""The renders behind docs/paper.md, each kept as a file so that a run that was broken off can go on."""
+"""The renders of docs/paper.md, each kept as a file so that an interrupted run can continue."""
 
 import dataclasses
 import io
@@ -14,7 +14,7 @@ from tools import ROOT, frond_table, program, program_json
 
 @dataclasses.dataclass(frozen=True)
 class Set:
-    """One of the paper's three settings and what Table 2 says of it."""
+    """One of the paper's three settings and its row of Table 2."""
 
     name: str
     title: str
@@ -24,7 +24,7 @@ class Set:
     foliar_percent: float
     rms: tuple  # red, green, blue
     speed_up: float
-    stops: int  # by which our images are raised; leaves are dark where white in the light is 1
+    stops: int  # exposure of the shown images; leaves are dark where a white surface in the light is 1
 
     def scene(self):
         return ROOT / "scenes" / f"soybean-{self.name}" / "scene.pbrt"
@@ -46,13 +46,13 @@ def candidate(comparison, label):
 
 
 def last_errors(comparison, label):
-    """By channel, of all pixels, on the last rung, whose rows come last."""
+    """Errors by channel, over all pixels, at the largest number of samples, whose rows are the last ones."""
     return {r["channel"]: r for r in comparison["comparison"] if r["candidate"] == label and r["region"] == "all"}
 
 
 @dataclasses.dataclass(frozen=True)
 class Setting:
-    """How much is rendered: arguments of frond compare and of frond render, and samples per pixel."""
+    """Amount of work: arguments of frond compare and of frond render, and samples per pixel."""
 
     compare: tuple
     manner: tuple
@@ -65,7 +65,7 @@ class Setting:
 
 FULL = Setting((), ("--spp", 8, "--reference-spp", 1), ("--quick",), 200, (), 8, 10**6)
 QUICK = Setting(("--quick",), ("--size", 128, "--spp", 8, "--reference-spp", 1), ("--quick",), 8, ("--quick",), 4, 10**4)
-# Says nothing about leaves, but goes through everything.
+# Tests that everything runs; the results are meaningless.
 SMOKE = Setting(("--size", 16, "--spp", 2, "--reference-spp", 2), ("--size", 16, "--spp", 2, "--reference-spp", 1), ("--pixels", "240,272,240,272"), 1,
                 ("--pixels", "192,320,192,320"), 1, 100)
 
@@ -77,7 +77,7 @@ class Runs:
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def kept(self, name, measure):
-        """The JSON of that name, measured unless a run before this one left it."""
+        """The JSON of this name; it is measured unless an earlier run has stored it."""
         path = self.folder / f"{name}.json"
         if not (self.keep and path.exists()):
             print(name, flush=True)
@@ -85,7 +85,7 @@ class Runs:
         return json.loads(path.read_text())
 
     def table(self, method):
-        """The paper's table of soybean, every degree from 0 to 180 at its three wavelengths: the shares and the CPU time."""
+        """Shares and CPU time of the paper's soybean table: every degree from 0 to 180 at three wavelengths."""
 
         def measure():
             rays = ["--rays", self.setting.table_rays] if method == "montecarlo" else []
@@ -108,12 +108,12 @@ class Runs:
         return self.compared("comparison", s, CANDIDATES, self.setting.compare)
 
     def manner(self, s):
-        """In the paper's manner, which takes few samples to time; a comparison of its own for the candidate that has more
-        noise than all the others together."""
+        """By the paper's method, which needs few samples for its times. A separate comparison, because one candidate has more
+        noise than all others together."""
         return self.compared("manner", s, CANDIDATES + [PUBLISHED], self.setting.manner)
 
     def ends(self, s, model, cutoff):
-        """How paths end that are cut off at that attenuation; 0: never."""
+        """Report of a render whose paths are cut off at this attenuation; 0: never."""
         integrator = f"path,termination=attenuation,cutoff={cutoff:.3g},maxdepth=63"
         name = f"ends-{s.name}-{model}-{cutoff:.3g}"
         return self.kept(name, lambda: program(
@@ -124,10 +124,10 @@ class Runs:
         return self.folder / f"{s.name}-{model}-{half}.exr"
 
     def images(self, s):
-        """What the two halves of each model's image report, {model: [first, second]}; their mean is the image."""
+        """Reports of the two halves of each model's image, {model: [first, second]}; the image is their mean."""
         reports = {model: [] for model in MODELS}
         for half in (1, 2):
-            for model in MODELS:  # in turn: whatever else the machine does falls on both
+            for model in MODELS:  # in turn, so that other load affects both equally
                 reports[model].append(self.kept(f"{s.name}-{model}-{half}", lambda: program(
                     "render", s.scene(), "--wavelengths", "smpte", "--swap", f"leaf={model}", "--spp",
                     self.setting.image_samples, "--seed", half, *self.setting.image, *self.threads, "-o",
@@ -135,7 +135,7 @@ class Runs:
         return reports
 
     def difference(self, s):
-        """Of the two models' images, noise and bias told apart."""
+        """Noise and bias of the difference of the two models' images."""
         halves = [self.half(s, model, half) for model in MODELS for half in (1, 2)]
         return program_json("difference", *halves, "--json")
 

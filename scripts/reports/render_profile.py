@@ -1,4 +1,4 @@
-"""scripts/profile"""
+"""scripts/profile: samples a render with perf and writes a flame graph, a table by module and the stacks."""
 
 import argparse
 import pathlib
@@ -10,17 +10,17 @@ import flame_graph
 import stacks
 import tools
 
-FREQUENCY = 199  # samples of a CPU second; no divisor of what programs do in time
+FREQUENCY = 199  # samples per CPU second; divides no periodic event of a render
 STACK_BYTES = 32768
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="scripts/profile", description="Where the CPU time of a render goes.",
+    parser = argparse.ArgumentParser(prog="scripts/profile", description="Profile the CPU time of a render.",
                                      allow_abbrev=False)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=tools.ROOT / "build" / "profile", metavar="FOLDER")
-    parser.add_argument("--frequency", type=int, default=FREQUENCY, metavar="HZ", help="samples of a CPU second")
+    parser.add_argument("--frequency", type=int, default=FREQUENCY, metavar="HZ", help=f"samples per CPU second; default: {FREQUENCY}")
     parser.add_argument("scene", metavar="SCENE.pbrt")
-    parser.add_argument("options", nargs=argparse.REMAINDER, help="of frond render")
+    parser.add_argument("options", nargs=argparse.REMAINDER, help="options of frond render")
     options = parser.parse_args()
     if not 1 <= options.frequency <= 10000:
         parser.error("--frequency: 1 to 10000")
@@ -28,7 +28,7 @@ def arguments():
 
 
 def perf_refused(message):
-    """Ends with what may help."""
+    """Exits with perf's message and the setting that allows sampling."""
     setting = pathlib.Path("/proc/sys/kernel/perf_event_paranoid")
     level = setting.read_text(encoding="ascii").strip() if setting.exists() else "missing"
     raise SystemExit(f"{message.strip()}\nscripts/profile: perf cannot sample here (kernel.perf_event_paranoid is {level}). "
@@ -37,7 +37,7 @@ def perf_refused(message):
 
 
 def record(command, data, frequency):
-    """CPU time by the kernel's clock: counters of the processor are missing on many virtual machines."""
+    """Samples by the kernel's clock of CPU time, because many virtual machines have no cycle counters."""
     perf = ["perf", "record", "--quiet", "-e", "cpu-clock", "-F", str(frequency), "--call-graph", f"dwarf,{STACK_BYTES}",
             "-o", str(data), "--", *command]
     try:
@@ -84,16 +84,16 @@ def main():
         text = tools.run("perf", "script", "-i", data, "--no-demangle", "--no-inline", "-F", "comm,ip,sym,dso")
     sampled = stacks.parse(text)
     if not sampled:
-        raise SystemExit("scripts/profile: the render was over before it was sampled once; give it more --spp")
+        raise SystemExit("scripts/profile: the render ended before the first sample; use a larger --spp")
     whole, cut, lost = stacks.graft(sampled)
     ways = stacks.fold(stacks.join_threads(whole), stacks.Modules.of_build(tools.BUILD))
     (folder / "stacks.txt").write_text(
         "".join(f"{';'.join(name for name, _ in way)} {count}\n" for way, count in sorted(ways.items())), encoding="utf-8")
     title = shlex.join(["frond", "render", options.scene, *extra])
     seconds = len(sampled) / options.frequency
-    notes = [f"{len(sampled)} samples, {options.frequency} a second: {seconds:.2f} s of CPU time, all threads",
+    notes = [f"{len(sampled)} samples, {options.frequency} per second: {seconds:.2f} s of CPU time, all threads",
              tools.machine(),
-             f"Stacks cut off at {STACK_BYTES // 1024} kB: {cut}, of which {lost} found no other that came the same way"]
+             f"Stacks cut off at {STACK_BYTES // 1024} kB: {cut}, of which {lost} match no complete stack"]
     (folder / "profile.svg").write_text(flame_graph.svg(ways, title, notes), encoding="utf-8")
     report = table(ways, options.frequency, [title, *notes])
     (folder / "profile.txt").write_text(report, encoding="utf-8")

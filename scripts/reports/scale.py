@@ -1,4 +1,4 @@
-"""docs/scale.md: canopies of ever more leaves."""
+"""Writes the section "scale" of docs/performance.md: load time, memory and CPU time of canopies of 1,000 to 100,000,000 leaves."""
 
 import json
 import math
@@ -11,13 +11,12 @@ import time
 import pandas
 
 import charts
-from tools import FROND, arguments, machine, program, table, write
+from tools import FROND, arguments, machine, program, table, write_section
 
 LAI, RADIUS, HEIGHT = 3, 0.05, 2
 SIZES = [1e3, 1e4, 1e5, 1e6, 1e7, 1e8]
-PLANT = 10_000  # leaves of an object, where objects hold leaves and tables hold objects
+PLANT = 10_000  # leaves of a plot, for two levels
 PIXELS, SAMPLES = 64, 256
-ROW_BYTES = 48
 
 SCENE = """Option "float period" [{side} {side}]
 Camera "distant" "float zenith" [40] "float azimuth" [30] "float target" [0 {side} 0 {side} {top}]
@@ -51,7 +50,7 @@ def one_level(folder, leaves):
 
 
 def two_levels(folder, leaves):
-    """Plots of PLANT leaves, each of four kinds and turned by quarters, side by side."""
+    """Adjacent plots of PLANT leaves, of four kinds."""
     count = round(math.sqrt(leaves / PLANT))
     side = side_of(PLANT)
     world = ""
@@ -67,7 +66,7 @@ def two_levels(folder, leaves):
 
 
 def measure(make, leaves):
-    """What a render of a canopy takes: to load, in memory, for a path."""
+    """Load time, peak memory and CPU time per path of a render of a canopy."""
     with tempfile.TemporaryDirectory(prefix="frond_scale.", dir=os.environ.get("TMPDIR")) as name:
         folder = pathlib.Path(name)
         world = make(folder, leaves)
@@ -89,7 +88,7 @@ def measure(make, leaves):
 
 
 def watch(pid, peak):
-    """Largest memory so far: what belongs to the program alone, and with the files that it has mapped."""
+    """Updates the peak memory of a process: private memory, and with its mapped files."""
     try:
         status = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
     except (FileNotFoundError, ProcessLookupError):
@@ -100,30 +99,19 @@ def watch(pid, peak):
             peak[field] = max(peak[field], int(value.split()[0]))
 
 
-PAGE = """# A hundred million leaves
+SECTION = """### Canopies of up to {most} leaves
 
-Written by `scripts/scale`. {machine}
-
-Disks of {radius} m, each by itself, at a leaf area index of {lai}, in a layer of {height} m that is repeated periodically; the more
-leaves, the larger the plot. **One level**: every leaf is a row of one table, {row} bytes in a file that is mapped into memory.
-**Two levels**: four plots of {plant} leaves, and a table of plots. **Load**: reading, checking the rows and building, wall
-time. **Memory**: the largest that the program had for itself, less what it has for a scene of one leaf, a leaf; with the
-mapped file's rows beside it. **Path**: CPU time of a path from a distant sensor through the canopy in the near infrared, with
-{rays:.1f} rays.
+{machine}. The paths of the largest canopy take {rays:.1f} rays each.
 
 {table}
-![What a leaf takes](images/scale.svg)
-
-Embree 3's own instances take 351 bytes each, and twice as much while they are built. Here a table is one geometry, whose rows
-are taken into the leaf's space when a ray comes by; a leaf of a single analytic surface is then met without another search.
-Boxes are drawn around the points of each instance, not around the corners of the object's box, and a ray that passes an instance's box
-in the world is tried against the object's own before it goes in.
+![Load time, memory per leaf and CPU time per path against the number of leaves](images/scale.svg)
 """
 
 
 def draw(path, points):
     of, [row] = charts.figure(1200, 440, 1, 3)
-    for panel, (title, key) in zip(row, (("load, s", "load"), ("bytes a leaf, for itself", "bytes"), ("µs of CPU a path", "us"))):
+    shown = (("load time, s", "load"), ("private bytes per leaf", "bytes"), ("CPU time per path, µs", "us"))
+    for panel, (title, key) in zip(row, shown):
         for color, (name, of_kind) in zip(charts.COLORS[1:], points.groupby("kind", sort=False)):
             panel.plot(of_kind.leaves, of_kind[key], "o-", color=color, label=name)
         panel.set(xlabel="leaves", ylabel=title, xscale="log", yscale="log" if key == "load" else "linear", xlim=(7e2, 1.4e8))
@@ -134,8 +122,8 @@ def draw(path, points):
 
 
 def main():
-    options = arguments("scale", ("--most", dict(type=float, help="leaves of the largest canopy: 1e8")),
-                        ("--no-docs", dict(action="store_true", help="print the figures, write no page")))
+    options = arguments("scale", ("--most", dict(type=float, help="number of leaves of the largest canopy; default: 1e8")),
+                        ("--no-docs", dict(action="store_true", help="print the figures and write no page")))
     most = options.most or (1e5 if options.quick else 1e8)
     base, points = measure(one_level, 1), []
     for name, make, least in (("one level", one_level, 1e3), ("two levels", two_levels, 4e4)):
@@ -146,7 +134,7 @@ def main():
     if options.no_docs:
         return
     points = pandas.DataFrame(points)
-    # Of small canopies it is lost in what the program has anyway.
+    # In small canopies the memory of leaves is negligible beside that of the program.
     large = points.leaves >= 1e5
     points["bytes"] = ((points.memory - base["memory"]) / points.leaves).where(large)
     points["with_file"] = ((points.mapped - base["mapped"]) / points.leaves).where(large)
@@ -154,10 +142,10 @@ def main():
     shown = lambda value: "" if math.isnan(value) else f"{value:.0f}"
     body = [[p.kind, f"{int(p.leaves):,}", f"{p.load:.2f} s", f"{p.memory / 1e9:.2f} GB", shown(p.bytes), shown(p.with_file),
              f"{p.us:.1f} µs"] for p in points.itertuples()]
-    head = ["", "leaves", "load", "memory", "bytes a leaf", "with the file", "path"]
+    head = ["", "leaves", "load", "memory", "bytes per leaf", "with the file", "path"]
     rays = points[points.kind == "one level"].rays.iloc[-1]
-    write(options.docs / "scale.md", PAGE.format(machine=machine(), lai=LAI, radius=RADIUS, height=HEIGHT, row=ROW_BYTES,
-                                                 plant=f"{PLANT:,}", rays=rays, table=table(head, body)))
+    text = SECTION.format(most=f"{int(points.leaves.max()):,}", machine=machine(), rays=rays, table=table(head, body))
+    write_section(options.docs / "performance.md", "scale", text)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Stacks that perf sampled: whose code they are in, and how often."""
+"""Call stacks sampled by perf: their modules and counts."""
 
 import collections
 import pathlib
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import tools
 
-# Not ours: by the name of the file that holds the code, first match.
+# Modules outside frond, by the name of the file that contains the code; first match.
 STRANGERS = [
     (r"libembree|libtbb", "Embree"),  # Embree builds its trees on TBB's threads
     (r"libm\.|libmvec\.", "libm"),
@@ -20,9 +20,9 @@ STRANGERS = [
 ]
 OURS = re.compile(r"^(libfrond.*\.so.*|frond(_bench)?)$")
 OTHERS = "other libraries"
-NO_MODULE = "frond"  # code of ours that no module is known of
+NO_MODULE = "frond"  # code of frond without a known module
 CUT = "cut off"
-# Where a program and its threads begin.
+# Outermost functions of a program and of its threads.
 PROGRAM = re.compile(r"^(_start|_dl_start_user)$")
 THREAD = re.compile(r"^(__)?clone3?$|^start_thread$|^ret_from_fork")
 BLOCK = 1024  # bytes of code without symbols that count as one function
@@ -30,13 +30,13 @@ BLOCK = 1024  # bytes of code without symbols that count as one function
 
 @dataclass(frozen=True)
 class Frame:
-    symbol: str  # as the linker knows it; empty: unknown
-    file: str  # the name of the file that holds its code
-    block: int = 0  # where in it, if the symbol is unknown
+    symbol: str  # the linker's symbol; empty: unknown
+    file: str  # name of the file that contains its code
+    block: int = 0  # position in the file in units of BLOCK, if the symbol is unknown
 
 
 def parse(text):
-    """Of `perf script -F comm,ip,sym,dso`: stacks, outermost frame first."""
+    """Stacks from the output of `perf script -F comm,ip,sym,dso`, outermost frame first."""
     stacks = []
     for block in text.split("\n\n"):
         frames = []
@@ -53,7 +53,7 @@ def parse(text):
 
 
 def ways_to(stacks):
-    """By frame: how stacks came to it, and how often."""
+    """For each frame: the stacks of its callers and their counts."""
     ways = collections.defaultdict(collections.Counter)
     for stack in stacks:
         seen = set()
@@ -65,7 +65,7 @@ def ways_to(stacks):
 
 
 def joined(stack, ways, fits=lambda frame: True):
-    """The stack from its first frame on that others have, below the way by which most of them came; None: they have none."""
+    """The stack from its first frame that other stacks have, below the most frequent callers of this frame; None: no such frame."""
     for i, frame in enumerate(stack):
         if frame in ways and fits(frame):
             [(way, _)] = ways[frame].most_common(1)
@@ -78,10 +78,10 @@ def is_whole(stack):
 
 
 def graft(stacks):
-    """perf copies so many bytes of each stack, and deeper ones lack their outer frames. They get those of whole stacks that
-    came through the same function, or one frame that says so. Also: how many were cut off, and how many stayed so."""
+    """Completes stacks that perf has cut off with the outer frames of complete stacks through the same function, or with one
+    frame CUT. Returns the stacks, the number of stacks that were cut off, and the number of those that were not completed."""
     cut = sum(not is_whole(stack) for stack in stacks)
-    for _ in range(2):  # what has become whole leads others on
+    for _ in range(2):  # a completed stack may complete others
         ways = ways_to(filter(is_whole, stacks))
         stacks = [stack if is_whole(stack) else joined(stack, ways) or stack for stack in stacks]
     lost = sum(not is_whole(stack) for stack in stacks)
@@ -89,15 +89,15 @@ def graft(stacks):
 
 
 def join_threads(stacks):
-    """Puts what threads do below the call that they do it for: where the main thread does the same."""
+    """Moves the stacks of threads below the call that they work for, where the main thread makes the same call."""
     ways = ways_to(stack for stack in stacks if PROGRAM.match(stack[0].symbol))
     ours = lambda frame: OURS.match(frame.file)
     return [THREAD.match(stack[0].symbol) and joined(stack, ways, ours) or stack for stack in stacks]
 
 
 class Modules:
-    """Which module  a symbol is compiled in: where the object files of one module alone have it. What several have
-    (templates, inline functions) belongs to whoever calls it."""
+    """The module of a symbol, if the object files of exactly one module contain it. A symbol of several modules (templates,
+    inline functions) belongs to its caller."""
 
     def __init__(self, modules_of_symbol):
         self.modules = {symbol: next(iter(modules)) for symbol, modules in modules_of_symbol.items() if len(modules) == 1}
@@ -115,7 +115,7 @@ class Modules:
         return cls(modules)
 
     def of_stack(self, stack):
-        """A module, or what stands in for one, for each frame."""
+        """A module, or a library's name, for each frame."""
         result = []
         for frame in stack:
             stranger = next((name for pattern, name in STRANGERS if re.search(pattern, frame.file)), None)
@@ -133,14 +133,14 @@ class Modules:
 
 
 def readable(symbols):
-    """Names for people by symbol, by binutils' c++filt."""
+    """Demangled names by symbol, from binutils' c++filt."""
     symbols = sorted(symbols)
     done = subprocess.run(["c++filt"], input="\n".join(symbols), capture_output=True, text=True, check=True)
     return dict(zip(symbols, map(short, done.stdout.splitlines())))
 
 
 def short(name):
-    """A function without its arguments, its namespaces and what its template is made for."""
+    """A function name without arguments, namespaces and template arguments."""
     wrapped = re.match(r"std::_Function_handler<.*?\), (.*)>::_M_invoke\(", name)
     name = wrapped[1] if wrapped else name
     name = re.sub(r"\[(clone|abi:)[^\]]*\]", "", name)
@@ -155,8 +155,8 @@ def short(name):
 
 
 def fold(stacks, modules):
-    """Counts of ways through the program: tuples of (name, module). Neighbours of one name become one frame: code without symbols
-    has the name of its file, Embree's libraries that of Embree, and what the kernel does inside is not asked."""
+    """Counts of stacks as tuples of (name, module). Adjacent frames of the same name become one: code without symbols has the
+    name of its file, Embree's libraries have the name Embree, and all functions of the kernel have the name kernel."""
     names = readable({frame.symbol for stack in stacks for frame in stack if frame.symbol not in ("", CUT)}) | {CUT: CUT}
     ways = collections.Counter()
     for stack in stacks:
@@ -170,7 +170,7 @@ def fold(stacks, modules):
 
 
 def shares(ways):
-    """By module: samples in it, and samples in it or in what it calls."""
+    """By module: samples in it, and samples in it or its callees."""
     itself, below = collections.Counter(), collections.Counter()
     for way, count in ways.items():
         itself[way[-1][1]] += count

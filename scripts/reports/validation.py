@@ -1,4 +1,4 @@
-"""Writes docs/validation.md: how right the leaf models are, all of it measured."""
+"""Writes docs/validation.md: measured accuracy of the leaf models."""
 
 import argparse
 
@@ -14,14 +14,25 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/validation")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", metavar="PART", nargs="+", choices=[part.__name__ for part in PARTS], default=[],
-                        help="measure these parts anew and leave the others as they are")
+                        help="measure these parts again and keep the others")
     options = parser.parse_args()
     report = Report(options.quick)
     if not options.only:
         report.add(f"""
 # Validation
 
-Made by `scripts/validation`{' --quick' if report.quick else ''} from what it measured, on {machine()}.
+For readers who need to know how accurate frond's leaf models are: against measured leaves, against the published figures, and
+against each other.
+
+```sh
+scripts/validation --quick
+```
+
+With `--quick` the script traces a hundredth of the rays and writes into `build/validation_report`. Without it, the script writes
+this page; `--only PART` measures single parts again. [The paper's experiments](paper.md) repeat the errors and speed-ups of the
+publication; [Limits of the methods](stability.md) has cases with extreme parameters.
+
+Written by `scripts/validation`{' --quick' if report.quick else ''}: {machine()}.
 """)
     for part in PARTS:
         if options.only and part.__name__ not in options.only:

@@ -1,5 +1,4 @@
-"""f of the leaf models in the plane of incidence, against walks, and how far it is from reciprocal: parts of
-docs/validation.md."""
+"""Parts of docs/validation.md: f of the leaf models in the plane of incidence, the solution against walks, reciprocity."""
 
 import pathlib
 import tempfile
@@ -18,9 +17,9 @@ def figures(report):
     report.add(f"""
 ## Figures 1 and 4 of the paper: the BDF in the plane of incidence
 
-Both models for soybean by the goniophotometer, {rays} rays a curve, detectors of 9° by 9°: 20 in the polar angle and 40
-in azimuth, as in the paper. Above 90° light has gone through the leaf. Bars: one standard error, mostly smaller than
-the lines.
+Both models for soybean, measured by the goniophotometer with {rays} rays per curve and detectors of 9° by 9°: 20 in the polar angle
+and 40 in azimuth, as in the paper. Angles above 90° are transmitted light. Bars are one standard error, mostly smaller than the
+lines.
 """)
     materials = {name: frond.goniophotometer(f"{name} specimen=soybean", RGB, (30, 45), rays=int(float(rays)))
                  for name in ("abm", "leaf_simplified")}
@@ -73,38 +72,39 @@ CHART_ANGLES = {"adaxial": (0, 30, 45, 60, 80), "abaxial": (180, 150, 135, 120, 
 
 def solution(report):
     rays = report.rays(1e8)
-    # The test's own figures.
+    # The test records these figures.
     cases = report.cases_of("test_instruments", "*SolvedLeafAgainst*", FROND_SLOW_TESTS=1, FROND_PATCH_RAYS=rays)
     squares, freedom, default = (sum(float(c[k]) for c in cases) for k in ("chi_square", "freedom", "default_chi_square"))
     worst, default_worst = (max(float(c[k]) for c in cases) for k in ("largest", "default_largest"))
     report.add(f"""
 ## The solution against walks
 
-`leaf_solved` is what `abm` converges to (docs/solved_leaf.md). Here f is integrated over each of 20 x 40 patches and set
-beside the rays that the goniophotometer of `abm` catches there, analog and in single precision: nothing is left but the
-noise of the walks, whose variance the solution tells too. At 30, 60 and 80° on both sides, four wavelengths, both leaves,
-{rays} rays each, and ten times as many at one setting of each leaf. The solution is at a tolerance of 1e-5.
+[`leaf_solved`](leaf_models.md) is the BSDF that `abm` converges to. Here its f is integrated over each of 20 x 40 patches and
+compared with the rays that the goniophotometer of `abm` (analog, single precision) counts in the patch. The only difference should
+be the noise of the walks, whose variance follows from the solution too. Light comes from 30, 60 and 80° on both sides, at four
+wavelengths, on both leaves, with {rays} rays each and ten times as many in one case of each leaf. The tolerance of the solution is
+1e-5.
 
-Counts are multinomial: one chi-square a run, over the patches (pooled until they expect 5 rays) and the rays that were
-absorbed, and the patch that is furthest off, by its exact binomial chance as standard errors of a normal variable. With
-other seeds a sound program would have a chi-square beyond the test's limit in 1 % of 48 runs, and a patch of
-{len(cases) - 2} x 800 beyond 5.2 standard errors in 0.8 %. L2: relative difference of f over the sphere, and what the walks'
-noise alone makes of it. What the solution or the walk's single precision had wrong would grow with the rays.
+Counts are multinomial. Each run has one chi-square over the patches (pooled until 5 rays are expected) and the absorbed rays.
+"Furthest patch" is the patch with the smallest exact binomial probability, expressed as standard errors of a normal variable. With
+other seeds a correct program would have a chi-square beyond the test's limit in 1 % of 48 runs, and one of {len(cases) - 2} x 800
+patches beyond 5.2 standard errors in 0.8 %. L2 is the relative difference of f over the sphere; "of noise" is the value that the
+noise of the walks alone gives. An error of the solution or of the walk's single precision would grow with the number of rays.
 
 All {len(cases)} runs together: chi-square {squares:.0f} of {freedom:.0f} ({(squares - freedom) / (2 * freedom)**0.5:+.1f} standard
-deviations), the furthest patch {worst:.1f} standard errors off. The table of the default tolerance, 5e-4:
-{default:.0f} ({(default - freedom) / (2 * freedom)**0.5:+.1f}) and {default_worst:.1f}.
+deviations), furthest patch {worst:.1f} standard errors. With the default tolerance of 5e-4: {default:.0f}
+({(default - freedom) / (2 * freedom)**0.5:+.1f}) and {default_worst:.1f}.
 """)
     report.add(table(["leaf", "light at", "nm", "rays", "degrees of freedom", "chi-square", "p", "furthest patch", "L2",
-                      "of noise", "chi-square of the default table"],
+                      "of noise", "chi-square, default tolerance"],
                      [[c["leaf"], c["theta_deg"] + "°", c["nm"], c["rays"], c["freedom"], f"{float(c['chi_square']):.0f}",
                        f"{float(c['p']):.2g}", f"{float(c['largest']):.1f}", f"{100 * float(c['l2']):.2f} %",
                        f"{100 * float(c['l2_noise']):.2f} %", f"{float(c['default_chi_square']):.0f}"] for c in cases]))
     chart_rays = report.rays(1e6)
     report.add(f"""
-In the plane of incidence: lines are `leaf_solved`, integrated over the patches, points `abm` by {chart_rays} rays. Bars are
-one standard error; below each panel stand the differences in standard errors. These are estimated from the rays caught,
-and come out too small where those are few: the largest differences are negative.
+The charts show the plane of incidence: lines are `leaf_solved`, integrated over the patches; points are `abm` with {chart_rays}
+rays. Bars are one standard error; below each panel are the differences in standard errors. Standard errors are estimated from the
+counted rays and are too small if these are few: the largest differences are negative.
 """)
     for leaf in LEAVES:
         for side, angles in CHART_ANGLES.items():
@@ -112,7 +112,7 @@ and come out too small where those are few: the largest differences are negative
 
 
 class Patches:
-    """f for light at some angles, by patches of a sphere; by default of 5 by 10 degrees."""
+    """f for light at some angles, as means over patches of the sphere; by default of 5 by 10 degrees."""
 
     def __init__(self, material, nm, angles, patches=(36, 36), **options):
         self.angles, self.step = list(angles), (180 // patches[0], 360 // patches[1])
@@ -126,7 +126,7 @@ class Patches:
         return self.values[self.at(theta_i, theta_o)][phi // self.step[1]]
 
     def mean(self, theta_i, theta_o):
-        """Over azimuth, and its standard error."""
+        """Mean over azimuth and its standard error."""
         error = self.errors[self.at(theta_i, theta_o)]
         return self.values[self.at(theta_i, theta_o)].mean(), numpy.linalg.norm(error) / len(error)
 
@@ -151,14 +151,14 @@ def reciprocity(report):
     report.add(f"""
 ## Reciprocity
 
-Neither leaf model is reciprocal, and [reciprocal_leaf.md](reciprocal_leaf.md) has what can be done about it: light that goes from a to b and light that goes from b to a are not scattered alike.
-The table has f(a to b) / f(b to a) at 800 nm for light that the model calls incident at {a}° and leaves at {b}° from the
-normal, on the adaxial side or (transmission) the abaxial one. 1 would be reciprocal. Means over azimuth are those of rings
-5° wide, computed from f, for `abm` by its solution, and beside it as rays measure them ({rays} of them). In the plane of
-incidence f is that of patches 1° by 5°.
+`abm`, `leaf_solved` and `leaf_simplified` are not reciprocal: f for light from a to b differs from f for light from b to a. [Leaf
+models](leaf_models.md) describes the reciprocal alternative. The table has f(a to b) / f(b to a) at 800 nm for light that is
+incident at {a}° and leaves at {b}° from the normal, on the adaxial side or (transmission) on the abaxial side. A reciprocal model
+has the value 1. Means over azimuth are means of rings 5° wide, computed from f (for `abm`, from its solution) and measured with
+{rays} rays. In the plane of incidence f is the mean of patches of 1° by 5°.
 """)
-    report.add(table(["material", "", "mean over azimuth, computed", "by rays", "in the plane, straight on",
-                      "in the plane, back"], body))
+    report.add(table(["material", "", "mean over azimuth, computed", "measured", "in the plane, forward",
+                      "in the plane, backward"], body))
     defect_chart(report)
     lossless(report)
     images(report)
@@ -177,7 +177,7 @@ def defect_rows(material, closed_form, a, b, rays):
 
 
 def defect_chart(report):
-    """Against both angles: how far f is from its reverse."""
+    """Chart of f(a to b) / f(b to a) against both angles."""
     angles = [2.5 + 5 * k for k in range(18)]
     of, panels = charts.figure(1200, 780, 2, 3, sharex=True, sharey=True)
     sides = {"reflected, adaxial side": lambda x: (x, x), "reflected, abaxial side": lambda x: (180 - x, 180 - x),
@@ -195,27 +195,28 @@ def defect_chart(report):
     panels[1, 1].set_xlabel("b (° from the normal)")
     charts.legend(of, panels[0, 0], 4)
     report.add("""
-The same against both angles, as means over azimuth, computed at 800 nm. Surface and body together:
+The same ratio against both angles, as means over azimuth, computed at 800 nm, for surface reflection and subsurface scattering
+together:
 """)
     report.chart("reciprocity", "f(a to b) / f(b to a) by both angles", of)
 
 
 def lossless(report):
-    """What a leaf that absorbs nothing sends back of light from one direction, as a render shows it."""
+    """Share of light from one direction that a leaf without absorption scatters, as a render shows it."""
     angles, body = (5, 30, 60, 75, 85), []
     leaf = "specimen=soybean mesophyllfraction=0"
     for incident in ("traced", "light"):
         r = measurements(f"abm {leaf} incident={incident}", angles, 551, report.rays(1e7), rendered=True)
-        body.append(["`abm`, by rays", incident] + [f"{x.R + x['T']:.4f} ± {x.A_se:.4f}" for _, x in r.iterrows()])
+        body.append(["`abm`, measured", incident] + [f"{x.R + x['T']:.4f} ± {x.A_se:.4f}" for _, x in r.iterrows()])
     for material in ("leaf_solved", "leaf_simplified"):
         for incident in ("traced", "light", "reciprocal"):
             found = frond.goniophotometer(f"{material} {leaf} incident={incident}", 551, angles, rendered=True, integrate=True)
             sums = (found["f"][:, 0] * found["projected_solid_angle_sr"]).sum(axis=(1, 2))
             body.append([f"`{material}`, integrated", incident] + [f"{x:.4f}" for x in sums])
     report.add("""
-A leaf that absorbs nothing, lit by distant light and looked at from all around, should give back all of it. What a
-render shows of it (light along wi, detectors along wo; `frond spectrophotometer --rendered`, and `frond goniophotometer
---rendered --integrate` where f is no random estimate):
+A leaf without absorption, lit by distant light and observed from all directions, should scatter all of the light. The table has
+the share that a render shows (light along wi, detectors along wo). The commands are `frond spectrophotometer --rendered` and, for
+models whose f is not a random estimate, `frond goniophotometer --rendered --integrate`.
 """)
     report.add(table(["material", "`incident`"] + [f"light at {a}°" for a in angles], body))
 
@@ -234,7 +235,7 @@ def images(report):
         body.append([scene] + [f"{d['leaf_mean_difference_' + c]:+.4f}" for c in ("red", "green", "blue")] +
                     [f"{d['leaf_bias_' + c]:.4f}" for c in ("red", "green", "blue")])
     report.add(f"""
-The same in the images: `incident` "traced" minus "light" on leaf pixels of the three scenes, for `leaf_simplified` at
-{2 * spp} samples per pixel; white in the light is 1.
+The same in images: `incident` "traced" minus "light" on leaf pixels of the three scenes, for `leaf_simplified` with
+{2 * spp} samples per pixel; a white diffuse surface in the light is 1.
 """)
     report.add(table(["scene", "mean, red", "green", "blue", "RMS without noise, red", "green", "blue"], body))

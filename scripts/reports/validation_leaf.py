@@ -1,4 +1,4 @@
-"""Spectra, tables and walks of the leaf models, and what they get wrong: parts of docs/validation.md."""
+"""Parts of docs/validation.md: spectra, tables and walks of the leaf models, and their known errors."""
 
 import io
 
@@ -27,10 +27,10 @@ def spectra(report):
     report.add("""
 ## Spectra, 400 to 2500 nm
 
-Reflectance R and transmittance T at 8° from the normal, solved at every 10 nm with the optical constants of Baranoski
-(2006). R is drawn from below, T from above: what lies between the curves is absorbed. Grey: the mean and the range of
-five soybean leaves (LOPEX93, Hosgood et al. 1994), which have their own thickness and chemistry; no parameter of the
-model was fitted to them. "Sieve" is the later form of Beer's law (Baranoski and Eng 2007).
+Reflectance R and transmittance T at 8° from the normal, solved every 10 nm with the optical constants of Baranoski (2006). R is
+drawn from below and T from above; the part between the curves is absorbed. Grey: mean and range of five soybean leaves (LOPEX93,
+Hosgood et al. 1994), which have their own thickness and chemistry; no parameter of the model was fitted to them. "Sieve" is the
+later form of Beer's law (Baranoski and Eng 2007).
 """)
     lopex = measured_leaf()
     figures = []
@@ -46,7 +46,7 @@ model was fitted to them. "Sieve" is the later form of Beer's law (Baranoski and
                 for low, high in ((400, 700), (700, 1300), (1300, 2500)):
                     cells += [f"{rms(off[name].loc[low:high] - off[f'{name}_mean'].loc[low:high]):.3f}" for name in "RT"]
                 figures.append(cells)
-    report.add("RMS difference from the measured soybean leaves, by band:\n")
+    report.add("RMS difference from the measured soybean leaves in three wavelength ranges (nm):\n")
     report.add(table(["leaf", "side", "sieve", "R 400-700", "T 400-700", "R 700-1300", "T 700-1300", "R 1300-2500",
                       "T 1300-2500"], figures))
 
@@ -74,7 +74,7 @@ TABLE_ANGLES = "0:90:15,105:180:15"
 
 
 def timed_table(leaf, *options):
-    """Rd and T of a table, and the CPU time that it took without starting the program."""
+    """Rd and T of a table, and its CPU time without the start of the program."""
     text, seconds, _ = frond_table("--specimen", leaf, "--wavelengths", "608,551,455", "--angles", TABLE_ANGLES, "--threads", "1",
                                    *options)
     return pandas.read_csv(io.StringIO(text), comment="#").set_index(["theta_deg", "wavelength_nm"])[["Rd", "T"]], seconds
@@ -84,8 +84,8 @@ def tables(report):
     report.add("""
 ## The table: solved against sampled
 
-Rd and T by both methods, at 13 angles of incidence on both sides and 608, 551 and 455 nm. The reference is the
-solution with 40 nodes a segment. Monte Carlo is the paper's: analog walks, here by the batched kernel.
+Rd and T of the leaf table by both methods, at 13 angles of incidence on both sides and 608, 551 and 455 nm. The reference is the
+solution with 40 nodes per segment. Monte Carlo is the paper's method: analog walks, here with the batched kernel.
 """)
     body, (of, [[panel]]) = [], charts.figure(900, 580)
     for color, leaf in zip(charts.COLORS[1:], LEAVES):
@@ -104,11 +104,11 @@ solution with 40 nodes a segment. Monte Carlo is the paper's: analog walks, here
     panel.set(title="Table of 13 angles, three wavelengths", xlabel="CPU time (s)", ylabel="RMS error of Rd and T", ylim=(1e-11, 0.1))
     charts.legend(of, panel, 4)
     report.chart("table-error", "Error of the table against CPU time", of)
-    report.add(table(["leaf", "method", "CPU s", "RMS error", "largest"], body))
+    report.add(table(["leaf", "method", "CPU time, s", "RMS error", "largest error"], body))
 
 
 class Modes:
-    """What `frond table leaf_solved` writes: cells and, by wavelength, index and modes `[side][way][m][sin i][sin o]`."""
+    """A mode table of `frond table leaf_solved`: cells and, by wavelength, index and modes `[side][way][m][sin i][sin o]`."""
 
     def __init__(self, leaf, nm, *options):
         text, self.seconds, said = frond_table("leaf_solved", f"specimen={leaf}", "--wavelengths", nm, "--threads", 1, *options)
@@ -124,12 +124,12 @@ class Modes:
             self.columns.append((index, series))
 
     def counts(self):
-        """Most modes that light takes that comes back, and that crosses."""
+        """Largest numbers of modes of reflected and of transmitted light."""
         return [max(len(series[k]) for _, series in self.columns for k in ways) for ways in ((0, 2), (1, 3))]
 
 
 def passage(sine, index):
-    """1 - F and the cosine inside, of directions outside."""
+    """1 - F and the cosine inside, for directions outside."""
     mu, inside = numpy.sqrt(1 - sine**2), numpy.sqrt(1 - (sine / index) ** 2)
     s, p = (mu - index * inside) / (mu + index * inside), (index * mu - inside) / (index * mu + inside)
     return 1 - (s * s + p * p) / 2, inside
@@ -176,18 +176,19 @@ def modes(report):
             tolerance_body.append([leaf, f"{tolerance:g}", table_of.cells, f"{back}, {across}", f"{table_of.seconds:.2g}",
                                    table_of.kilobytes, f"{abs(off).max():.1e}", f"{rms(off):.1e}"])
     report.add("""
-## The table of modes: error against nodes, cells, modes and time
+## The mode table: error against nodes, cells and time
 
-Of `leaf_solved` (docs/solved_leaf.md); errors are of pi f, which is 1 for white paper; times are CPU times of one core. By
-the solver's nodes a segment (`frond table leaf_solved --nodes`), the largest difference from 24 nodes over all angles and
-azimuths, and the time for one wavelength at a tolerance of 1e-5; five nodes are the default here:
+The mode table of [`leaf_solved`](leaf_models.md). Errors are those of pi f, which is 1 for white paper; times are CPU times on one
+core. The following table has, by the solver's nodes per segment (`frond table leaf_solved --nodes`), the largest difference from 24
+nodes over all angles and azimuths, and the time for one wavelength at a tolerance of 1e-5. The default is five nodes.
 """)
     report.add(table(["leaf, nm", "3 nodes", "4", "5", "6", "8", "12"], nodes_body))
     report.add(f"""
-By `"float tolerance"`, at 608, 551 and 455 nm, the difference from a tolerance of 1e-5 over patches of 2° by 10° all around,
-light at every {step}° on both sides; modes are those of light that comes back and of light that crosses:
+The following table has, by `"float tolerance"` and at 608, 551 and 455 nm, the difference from a tolerance of 1e-5 over patches of
+2° by 10° on the whole sphere, with light at every {step}° on both sides. Modes are the numbers of Fourier terms of reflected and of
+transmitted light.
 """)
-    report.add(table(["leaf", "tolerance", "cells", "modes", "CPU s", "kB in a render", "largest error", "RMS error"],
+    report.add(table(["leaf", "tolerance", "cells", "modes", "CPU time, s", "kB in a render", "largest error", "RMS error"],
                      tolerance_body))
 
 
@@ -206,18 +207,19 @@ def walks(report):
         z = (a - b) / numpy.hypot(a_se, b_se)
         body.append([f"{leaf}: weighted against analog absorption, R and T", f"{rays} rays each", z.size, f"{(z**2).sum():.0f}",
                      f"{abs(z).max():.1f}"])
-    # The test's own figures, with more rays.
+    # The test records these figures, here with more rays.
     body += [[f"{case['leaf']}: hero walks, {case['absorption']}, light at {case['theta_deg']}°", f"{float(case['rays']):.0e} rays each",
               case["comparisons"], f"{float(case['chi_square']):.0f}", f"{float(case['largest']):.1f}"]
              for case in report.cases_of("test_leaf", "*SpectralWalk.Fills*", FROND_HERO_RAYS="1e5" if report.quick else "3e6")]
     report.add("""
 ## Walks against walks
 
-Each row compares two ways to the same figures: the sum of squared differences in standard errors should be near the
-number of comparisons (its own standard deviation is the root of twice that number).
+Each row compares two methods for the same quantities. The sum of the squared differences in standard errors (chi-square) should be
+near the number of comparisons; its own standard deviation is the square root of twice that number.
 
-Hero wavelengths: four wavelengths whose indices differ far more than any leaf's (cuticle 1.3 to 1.7) on one walk, in
-detectors all over the sphere, against walks of one wavelength; "wide" is soybean with lobes of exponent 0.
+Hero wavelengths: one walk carries four wavelengths whose refractive indices differ much more than those of leaves (cuticle 1.3 to
+1.7). Its counts in detectors on the whole sphere are compared with walks of one wavelength; "wide" is soybean with lobes of
+exponent 0.
 """)
     report.add(table(["comparison", "effort", "comparisons", "chi-square", "largest, in standard errors"], body))
 
@@ -234,16 +236,16 @@ def f_against_sample(report):
     report.add(f"""
 ## `f` against `sample`
 
-The laws of `frond conform`, {samples} samples for each direction of incidence (0, 30, 60, 80, 89° on both sides), at
-608, 551 and 455 nm. *Unbiasedness*: in every bin of the sphere the mean weight of `sample` is the integral of `f` times
-the cosine. *Sampling*: directions are distributed as `pdf`. *Energy*: no more comes out than went in. The p-value is
-the smallest of so many tests: about one over their number is what chance gives.
+The laws of `frond conform`, with {samples} samples for each direction of incidence (0, 30, 60, 80, 89° on both sides), at 608, 551
+and 455 nm. *Unbiasedness*: in every bin of the sphere the mean weight of `sample` equals the integral of `f` times the cosine.
+*Sampling*: directions are distributed as `pdf`. *Energy*: no more light leaves than arrives. The table has the smallest p-value of
+all tests; chance gives about 1 / (number of tests).
 """)
-    report.add(table(["material", "law", "tests", "smallest p", ""], body))
+    report.add(table(["material", "law", "tests", "smallest p", "verdict"], body))
 
 
 def black_leaf(*numbers):
-    """R of both sides of a soybean whose mesophyll takes all light, at 450 nm: (adaxial, abaxial)."""
+    """R of both sides of a soybean leaf with an opaque mesophyll at 450 nm: (adaxial, abaxial)."""
     found = program_csv("table", "--specimen", "soybean", "otherabsorption=1e5", *numbers, "--wavelengths", "450", "--angles",
                         "8,172", "-q", "-o", "-").set_index("theta_deg")
     return (found.Rs + found.Rd)[[8, 172]].to_numpy()
@@ -254,26 +256,25 @@ def weaknesses(report):
     plain, sieve = spectrum("soybean", False), spectrum("soybean", True)
     black = black_leaf()
     report.add(f"""
-## What the models get wrong
+## Known errors of the models
 
-- **Blue from below.** The abaxial side reflects {plain.R[172, 450]:.3f} at 450 nm; the measured adaxial sides
-  {lopex.R_mean[450]:.3f} (LOPEX93 has no abaxial ones). A ray that enters from below meets
-  the air space behind the epidermis, which reflects it before any pigment does, whatever the wavelength: a soybean
-  whose mesophyll takes all light still reflects {black[1]:.3f} from below, and {black[0]:.3f} from above. Of the
-  parameters only `epidermisaspect` moves that: {black_leaf('spongyaspect=20')[1]:.3f} with `spongyaspect` 20,
-  {black_leaf('epidermisaspect=20')[1]:.3f} with `epidermisaspect` 20, {black_leaf('epidermisaspect=1')[1]:.3f} with 1.
-  The model has no abaxial side that is dark in the blue as the measured adaxial one is; the order of its tissues, which
-  is the authors', is the reason. Maize has mesophyll on both sides of its air space, and is dark from below.
-- **No sieve effect, no detours in plain Beer's law.** Pigments stand in chloroplasts, not spread evenly, and light goes
-  round about between cells. The switch puts cos(cos θ) in place of cos θ: a formula that fits, not a path length. Steep
-  ways then absorb more and flat ones less. For soybean lit from above it comes nearer to the measured leaves at most
-  wavelengths: R at 800 nm is {plain.R[8, 800]:.3f} without and {sieve.R[8, 800]:.3f} with it (measured
-  {lopex.R_mean[800]:.3f}), T at 680 nm {plain['T'][8, 680]:.3f} and {sieve['T'][8, 680]:.3f}
-  ({lopex.T_mean[680]:.3f}). The green peak stays too low: R at 550 nm {plain.R[8, 550]:.3f} and
-  {sieve.R[8, 550]:.3f} ({lopex.R_mean[550]:.3f}).
-- **One tissue.** No veins, no hairs, no wax bloom; the leaf is the same from place to place unless textures say so.
-- **leaf_simplified** has the walk's R and T at every angle, but a cosine's shape for all that has been inside: the walk's
-  leans forward and falls off toward grazing, as Figures 1 and 4 show.
-- **Polarisation** is left out: Fresnel's formulas are for unpolarised light at every interface.
-- **Neither is reciprocal**, see above.
+- **Blue light on the abaxial side.** The abaxial side reflects {plain.R[172, 450]:.3f} at 450 nm; the measured adaxial sides
+  reflect {lopex.R_mean[450]:.3f} (LOPEX93 has no abaxial measurements). A ray that enters from below meets the air space behind
+  the epidermis, which reflects it before any pigment absorbs it, at every wavelength: a soybean leaf with an opaque mesophyll
+  still reflects {black[1]:.3f} from below and {black[0]:.3f} from above. Of the parameters only `epidermisaspect` changes this:
+  the value is {black_leaf('spongyaspect=20')[1]:.3f} with `spongyaspect` 20, {black_leaf('epidermisaspect=20')[1]:.3f} with
+  `epidermisaspect` 20 and {black_leaf('epidermisaspect=1')[1]:.3f} with 1. No parameters make the abaxial side as dark in the blue
+  as the measured adaxial side. The cause is the order of the tissues, which is that of the models' authors. Maize has mesophyll on
+  both sides of its air space and is dark from below.
+- **No sieve effect and no detours in the plain form of Beer's law.** Pigments are concentrated in chloroplasts, and light is
+  deflected between cells. The parameter `sieve` replaces cos θ by cos(cos θ), which is a fitted formula and not a path length.
+  Steep paths then absorb more and flat ones less. For soybean lit from above it is closer to the measured leaves at most
+  wavelengths: R at 800 nm is {plain.R[8, 800]:.3f} without and {sieve.R[8, 800]:.3f} with it (measured {lopex.R_mean[800]:.3f}); T
+  at 680 nm is {plain['T'][8, 680]:.3f} and {sieve['T'][8, 680]:.3f} ({lopex.T_mean[680]:.3f}). The green peak stays too low: R at
+  550 nm is {plain.R[8, 550]:.3f} and {sieve.R[8, 550]:.3f} ({lopex.R_mean[550]:.3f}).
+- **Homogeneous tissue.** The models have no veins, hairs or wax bloom. A leaf is uniform unless textures vary its parameters.
+- **Shape of `leaf_simplified`.** The model has the walk's R and T at every angle, but scatters subsurface light with a cosine lobe.
+  The walk scatters more light forward and less toward grazing angles, as Figures 1 and 4 show.
+- **No polarisation.** Fresnel's formulas are for unpolarised light at every interface.
+- **No reciprocity**, see [above](#reciprocity).
 """)

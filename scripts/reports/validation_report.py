@@ -1,4 +1,4 @@
-"""The page that docs/validation.md grows into, and what its pieces share."""
+"""Collects the sections of docs/validation.md; shared by all parts."""
 
 import json
 import re
@@ -29,7 +29,7 @@ class Report:
         self.add(f"![{title}](images/validation/{name}.svg)")
 
     def cases_of(self, test, pattern, **environment):
-        """What a test of the project records."""
+        """The test cases, with the properties that they record."""
         path = self.folder / f"{test}.json"
         run("env", *(f"{key}={value}" for key, value in environment.items()), BUILD / "tests" / test, f"--gtest_filter={pattern}",
             f"--gtest_output=json:{path}")
@@ -38,7 +38,7 @@ class Report:
         return [case for suite in suites for case in suite["testsuite"]]
 
     def write(self, renewed):
-        """`renewed`: what was measured takes the place of sections of the same title in the page that there is."""
+        """Writes the page. `renewed`: replaces only the sections of the existing page with the same titles."""
         path = self.folder / "validation.md"
         text = "\n".join(self.parts)
         if renewed:
@@ -46,7 +46,7 @@ class Report:
             for section in filter(None, re.split(r"^(?=## )", text, flags=re.M)):
                 title = section.split("\n", 1)[0]
                 if title not in sections:
-                    raise SystemExit(f"{path} has no section {title!r}: measure all of it")
+                    raise SystemExit(f"{path} has no section {title!r}: run without --only")
                 sections[title] = section.rstrip("\n") + "\n\n"
             text = "".join(sections.values()).rstrip("\n") + "\n"
         write(path, text)

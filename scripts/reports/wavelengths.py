@@ -1,4 +1,4 @@
-"""The colour error of wavelength strategies on the leaf scenes against time: docs/wavelengths.md."""
+"""Measures the colour error of the wavelength strategies in the leaf scenes: the section of docs/conventions.md on it."""
 
 import pathlib
 import tempfile
@@ -8,7 +8,7 @@ import numpy
 import charts
 import color
 import frond
-from tools import ROOT, arguments, machine, program, sized, table, write
+from tools import ROOT, arguments, machine, program, sized, table, write_section
 
 SCENES = {"front": "front lit", "back": "back lit", "ambient": "ambient light"}
 RESOLUTION = 128
@@ -23,14 +23,14 @@ STRATEGIES = {
 
 
 class Render:
-    """XYZ of each pixel, which of them are leaves, and the CPU time."""
+    """One render: XYZ of each pixel, a mask of the leaf pixels, and the CPU time in seconds."""
 
     def __init__(self, scene, wavelengths, space, samples, seed, folder):
         image = frond.load(scene, wavelengths=wavelengths, seed=seed).render(samples)
         self.seconds, self.leaf = image.statistics["cpu_seconds"], image["leaf"] > 0.5
         if image.color_space:
             rgb = image.rgb
-        else:  # bands: colours are what frond convert makes of them
+        else:  # bands: frond convert computes the colours
             image.save(folder / "render.exr")
             program("convert", folder / "render.exr", "-o", folder / "rgb.exr")
             names, pixels = frond.read_image(folder / "rgb.exr")
@@ -39,7 +39,7 @@ class Render:
 
 
 class Reference:
-    """Two halves with seeds of their own: their mean is the reference, their difference its noise."""
+    """The reference: the mean of two renders with different seeds; their difference gives its noise."""
 
     def __init__(self, scene, samples, folder):
         halves = [Render(scene, REFERENCE, "linear sRGB", samples, seed, folder) for seed in (101, 102)]
@@ -48,7 +48,7 @@ class Reference:
         self.noise = color.delta_e(*(color.lab(half.xyz[self.leaf]) for half in halves)).mean() / 2
 
     def errors(self, render):
-        """Mean over the leaf pixels, what 95 % of them are below, and that of their mean colour, in which little noise is left."""
+        """Colour errors of a render: mean and 95 % quantile over the leaf pixels, and the error of their mean colour."""
         leaf = self.leaf
         each = color.delta_e(color.lab(render.xyz[leaf]), color.lab(self.xyz[leaf]))
         of_mean = color.delta_e(color.lab(render.xyz[render.leaf].mean(axis=0)), color.lab(self.xyz[leaf].mean(axis=0)))
@@ -59,7 +59,7 @@ def measure(name, ladder, reference_samples, folder):
     scene = sized(ROOT / f"scenes/soybean-{name}/scene.pbrt", folder, RESOLUTION)
     reference, curves = Reference(scene, reference_samples, folder), {}
     for strategy, (space, _) in STRATEGIES.items():
-        frond.load(scene, wavelengths=strategy).render(1)  # makes the tables
+        frond.load(scene, wavelengths=strategy).render(1)  # fills the cache of leaf tables, which is not timed
         curves[strategy] = [reference.errors(Render(scene, strategy, space, samples, 1, folder)) for samples in ladder]
         print(name, strategy, curves[strategy][-1], flush=True)
     return reference, curves
@@ -87,25 +87,25 @@ def page(results, ladder, reference_samples):
                          f"{last['mean']:.2f}", f"{last['p95']:.2f}", f"{last['leaf']:.2f}"))
     noises = ", ".join(f"{reference.noise:.2f} ({SCENES[s]})" for s, (reference, _) in results.items())
     blue = max(abs(curves["smpte,blue=464.7"][-1]["leaf"] - curves["smpte"][-1]["leaf"]) for _, curves in results.values())
-    return f"""# Wavelengths: colour error against time
+    return f"""## Colour error of the wavelength strategies
 
-Written by `scripts/wavelengths`. The three soybean scenes at {RESOLUTION} x {RESOLUTION} pixels, their leaves as they are
-(`leaf_simplified`), rendered with each wavelength strategy at {', '.join(map(str, ladder))} samples per pixel, against a
-reference with a band at every nanometre from 360 to 830 nm (`{REFERENCE}`, two halves of
-{reference_samples} samples per pixel). The colour error is CIEDE2000 where a white in the light is the white of CIELAB, over
-the pixels of which more than half is leaf. It holds noise as well as what a strategy gets wrong; the reference's own noise is
-about {noises}. Time is CPU time of the render; tables of leaves are not counted.
+`scripts/wavelengths` renders the three soybean scenes at {RESOLUTION} × {RESOLUTION} pixels with each wavelength strategy, at
+{', '.join(map(str, ladder))} samples per pixel; the leaves keep the scenes' model, `leaf_simplified`. The reference has one band at
+every nanometre from 360 to 830 nm (`{REFERENCE}`); it is the mean of two renders of
+{reference_samples} samples per pixel. The colour error is CIEDE2000, averaged over the pixels of which more than half is leaf; the
+white point of CIELAB is the colour of a white surface in the light. The error includes noise. The noise of the reference is about
+{noises}. Time is the CPU time of the render, without the computation of leaf tables.
 
 ![Colour error against CPU time](images/wavelengths.svg)
 
-At {ladder[-1]} samples per pixel; the last column is the error of the mean colour of all leaf pixels, where hardly any noise is
-left: what the strategy gets wrong.
+At {ladder[-1]} samples per pixel (mean: mean error of the leaf pixels; 95 %: the error that 95 % of them are below; mean leaf:
+error of the mean colour of all leaf pixels, which has little noise and so shows the bias of the strategy):
 
-{table(("scene", "strategy", "wavelengths a path", "CPU s", "mean", "95 % below", "mean leaf"), body)}
-A few fixed wavelengths stand for a spectrum: `smpte` and `meyer` keep an error however long they render; `hero` has noise
-alone. `smpte,blue=464.7` takes the dominant wavelength of the blue primary by CIE 1931 data in place of the paper's 455 nm:
-on these leaves that moves the mean colour's error by {blue:.2f} at most.
-`meyer,white=D65` scales the published quadrature so that D65 keeps its own colour.
+{table(("scene", "strategy", "wavelengths per path", "CPU s", "mean", "95 %", "mean leaf"), body)}
+`smpte` and `meyer` represent a spectrum by a few fixed wavelengths and keep a bias at any number of samples; `hero` has noise
+only. `smpte,blue=464.7` uses the blue primary's dominant wavelength by CIE 1931 data in place of the paper's 455 nm: on these
+leaves that changes the error of the mean colour by {blue:.2f} at most. `meyer,white=D65` scales the published quadrature so that
+D65 keeps its own colour.
 
 Machine: {machine()}.
 """
@@ -118,7 +118,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         results = {s: measure(s, ladder, reference_samples, pathlib.Path(name)) for s in SCENES}
     chart(options.docs / "images" / "wavelengths.svg", results)
-    write(options.docs / "wavelengths.md", page(results, ladder, reference_samples))
+    write_section(options.docs / "conventions.md", "wavelengths", page(results, ladder, reference_samples))
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ constexpr const char* kExamples =
     "frond COMMAND --help prints the options of a command.\n"
     "frond SCENE.pbrt is short for frond render SCENE.pbrt.";
 
-/// Columns of the terminal that help is printed to, or those of a page.
+/// Returns the width of help in columns: the terminal's, or 100 if the output is not a terminal.
 size_t help_width() {
   constexpr size_t kPage = 100, kLeast = 50;
   winsize size{};
@@ -31,7 +31,7 @@ size_t help_width() {
                                                                            : kPage;
 }
 
-/// `head`, then the words of `text` from `column` on, in lines that end before the width.
+/// Returns `head` followed by `text` as a block that begins at `column`. Lines are wrapped at help_width().
 std::string hanging(std::string head, const std::string& text, size_t column) {
   const size_t width = help_width();
   const std::string indent(column, ' ');
@@ -54,6 +54,7 @@ std::string hanging(std::string head, const std::string& text, size_t column) {
   return result + head + '\n';
 }
 
+/// Formats help from the records of jobs. CLI11's own formatter does not wrap lines.
 class HelpFormatter final : public CLI::Formatter {
  public:
   HelpFormatter() { label("Positionals", "Arguments"); }
@@ -86,7 +87,7 @@ class HelpFormatter final : public CLI::Formatter {
   }
 };
 
-/// Values are read by Arguments: CLI11 collects their words.
+/// Adds an option that only collects words. Arguments parses and checks them, for the command line as for Python.
 CLI::Option* add_option(CLI::App& app, const JobParam& p) {
   const std::string names = p.positional ? std::string(p.name) : fmt::format("{}", fmt::join(option_names(p), ","));
   const std::string doc = documented(p);
@@ -104,6 +105,7 @@ CLI::Option* add_option(CLI::App& app, const JobParam& p) {
   return option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(p.positional);
 }
 
+/// Whether the parameter belongs to the job itself and not to its session or to the job that it extends.
 bool is_own(const JobInfo& job, const JobParam& p) {
   return std::ranges::any_of(job.params, [&p](const JobParam& own) { return &own == &p; });
 }
@@ -112,13 +114,14 @@ bool is_of_session(const JobInfo& job, const JobParam& p) {
   return std::ranges::any_of(session_params(job.session), [&p](const JobParam& own) { return &own == &p; });
 }
 
-/// A job as a subcommand.
+/// A job as a subcommand of CLI11.
 struct Command {
   const JobInfo* job;
   CLI::App* app;
   std::vector<std::pair<const JobParam*, CLI::Option*>> options;
 };
 
+/// Passes the words of the command line to the job's records. Throws InputError for an invalid value.
 Arguments arguments_of(const Command& command) {
   Arguments args(params_of(*command.job), command_spelling);
   for (const auto& [param, option] : command.options) {
@@ -130,7 +133,7 @@ Arguments arguments_of(const Command& command) {
   return args;
 }
 
-/// The options of pbrt-v4 that frond has no use for. They are not in --help, but in --help-pbrt and the man page.
+/// Adds the options of pbrt-v4 without a function in frond. They appear in --help-pbrt and the man page, not in --help.
 void add_pbrt_options(CLI::App& render) {
   for (const PbrtOption& o : kPbrtOptions) {
     CLI::Option* option = o.value[0] == '\0' ? render.add_flag(o.name)
@@ -138,11 +141,11 @@ void add_pbrt_options(CLI::App& render) {
     option->group("");  // not in --help
   }
   render.get_option("--render-coord-sys")->check(CLI::IsMember({"camera", "cameraworld", "world"}));
-  const std::string doc(kHelpPbrtParam.doc);  // CLI11 writes to what is no constant
+  const std::string doc(kHelpPbrtParam.doc);  // CLI11 modifies an lvalue that is not const
   render.add_flag(command_spelling(kHelpPbrtParam.name), doc);
 }
 
-/// Adds a subcommand for each job, made from its record. Help is wrapped at the width of the terminal.
+/// Adds a subcommand for each job, made from its record.
 std::vector<Command> add_commands(CLI::App& app) {
   app.formatter(std::make_shared<HelpFormatter>());
   std::vector<Command> commands;
@@ -166,6 +169,7 @@ std::vector<Command> add_commands(CLI::App& app) {
 
 bool is_option(std::string_view word) { return word.starts_with("--") && word.size() > 2; }
 
+/// Returns the error for an unknown command, with the nearest name.
 std::string unknown_command(const std::string& word, const CLI::App& app) {
   std::vector<std::string_view> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -173,7 +177,7 @@ std::string unknown_command(const std::string& word, const CLI::App& app) {
   return fmt::format("there is no command \"{}\"{}", word, suggestion(word, names));
 }
 
-/// `word` without its "=value".
+/// Returns the error for an unknown option. `word` is the option without "=value".
 std::string unknown_option(std::string_view word, const std::string& command_name, const CLI::App& command) {
   std::vector<std::string_view> names;
   for (const CLI::Option* option : command.get_options())
@@ -184,14 +188,14 @@ std::string unknown_option(std::string_view word, const std::string& command_nam
       match.empty() ? command_name + " --help prints what it has" : fmt::format("did you mean --{}?", match));
 }
 
+/// Returns the error for the first unknown long option; "" if there is none.
 std::string unknown_option_of(const CLI::App& command, const std::string& name) {
   for (const std::string& word : command.remaining())
     if (is_option(word)) return unknown_option(std::string_view(word).substr(0, word.find('=')), name, command);
   return "";
 }
 
-/// After a parse that failed: which command or long option nothing is called by, and what may have been meant; "" where
-/// that is not what went wrong.
+/// Returns the error of a failed parse if it is an unknown command or long option, with a suggestion; otherwise "".
 std::string mistyped(const CLI::App& app) {
   const auto words = app.remaining();
   const auto commands = app.get_subcommands();
@@ -200,8 +204,8 @@ std::string mistyped(const CLI::App& app) {
   return commands.empty() ? "" : unknown_option_of(*commands[0], app.get_name() + " " + commands[0]->get_name());
 }
 
-/// Also prints help, which CLI11 takes for an error. An unknown word is reported first: CLI11 would report what that
-/// word was meant to be as missing.
+/// Prints the error and returns the exit code. Help is an error for CLI11, with code 0. An unknown word is reported
+/// first; CLI11 would report a missing parameter instead.
 int refuse(const CLI::App& app, const CLI::ParseError& error) {
   const std::string message = error.get_exit_code() == 0 ? "" : mistyped(app);
   if (message.empty()) return app.exit(error) == 0 ? 0 : 1;
@@ -218,6 +222,7 @@ std::vector<std::string> long_names(const CLI::App& command) {
 
 }  // namespace
 
+/// pbrt's spelling is translated before CLI11 parses the words.
 std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const* argv) {
   CLI::App app{"frond: a spectral path tracer for plant leaves.", "frond"};
   app.set_version_flag("--version", "frond " FROND_VERSION);
@@ -226,7 +231,7 @@ std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const*
   const std::vector<Command> commands = add_commands(app);
   const CLI::App& render = *app.get_subcommand("render");
   std::vector<std::string> words = with_pbrt_spelling({argv + 1, argv + argc}, long_names(render));
-  std::ranges::reverse(words);  // CLI11 takes them from the end
+  std::ranges::reverse(words);  // CLI11 reads the words from the end
   try {
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {

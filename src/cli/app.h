@@ -8,15 +8,15 @@
 
 namespace frond {
 
-/// A command line as the records of jobs read it.
+/// A parsed command line: a job and its arguments.
 struct ParsedCommand {
   const JobInfo* job;
   Arguments arguments;
-  std::vector<const PbrtOption*> pbrt_options;  ///< of `frond render`: those of pbrt-v4 that frond has no use for
+  std::vector<const PbrtOption*> pbrt_options;  ///< given to `frond render`, without a function in frond
   bool asks_for_pbrt_help = false;              ///< --help-pbrt
 };
 
-/// The one place that knows CLI11. A number is the program's exit code: help, the version, or what is wrong has been
+/// Parses a command line; the only user of CLI11. Returns an exit code if help, the version or an error has been
 /// printed. Throws InputError for a value that a job's record refuses.
 std::variant<ParsedCommand, int> parse_command_line(int argc, const char* const* argv);
 

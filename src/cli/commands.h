@@ -2,9 +2,9 @@
 
 namespace frond {
 
-/// Runs the frond command. Returns the program's exit code: 0 done; 1 bad use or bad input, with a message on standard
-/// error; 2 `conform` found a law broken; 75 another frond works on the same part; 130 and 143 stopped by SIGINT or
-/// SIGTERM, with the partial result kept.
+/// Runs the frond command. Returns the program's exit code: 0 success; 1 wrong usage or input, with a message on
+/// standard error; 2 `conform` found a broken law; 75 another frond process has locked the same part; 130 and 143
+/// stopped by SIGINT or SIGTERM, with the partial result saved.
 int run(int argc, const char* const* argv);
 
 }  // namespace frond

@@ -7,15 +7,16 @@
 namespace frond {
 namespace {
 
-std::atomic<int> caught = 0;  // a handler may do no more than set it
+std::atomic<int> caught = 0;  // a signal handler may only set a lock-free atomic
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void remember(int signal) { caught = signal; }
 
+/// Installs a handler. SA_RESTART continues interrupted system calls, so that writes are not cut off.
 void set_handler(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
-  // A second SIGINT, of someone who will not wait, has its way; batch systems send SIGTERM twice.
+  // A second SIGINT ends the program at once. A second SIGTERM does not, because batch systems send SIGTERM twice.
   action.sa_flags = SA_RESTART | (signal == SIGINT ? static_cast<int>(SA_RESETHAND) : 0);
   sigaction(signal, &action, nullptr);
 }
@@ -25,6 +26,7 @@ void set_handler(int signal, void (*handler)(int)) {
 Interrupt::Interrupt() {
   caught = 0;
   for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, remember);
+  // The stop is requested from a thread, because request_stop() is not safe in a signal handler.
   watcher_ = std::jthread([this](const std::stop_token& end) {
     while (!end.stop_requested() && caught == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (caught != 0) stop_.request_stop();
@@ -32,7 +34,7 @@ Interrupt::Interrupt() {
 }
 
 Interrupt::~Interrupt() {
-  if (caught != 0) return;  // the program ends, and says so by its own exit code
+  if (caught != 0) return;  // the program ends with the signal's exit code
   for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, SIG_DFL);
 }
 

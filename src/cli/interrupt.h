@@ -5,8 +5,8 @@
 
 namespace frond {
 
-/// While it lives, the first SIGINT or SIGTERM asks for a stop instead of ending the program; a second SIGINT ends it,
-/// a second SIGTERM does not, then or later.
+/// Turns the first SIGINT or SIGTERM into a stop request for the duration of its life. A second SIGINT ends the
+/// program; a second SIGTERM is ignored, even after destruction.
 class Interrupt {
  public:
   Interrupt();
@@ -14,8 +14,9 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
+  /// Token that is stopped by the signal.
   std::stop_token token() const { return stop_.get_token(); }
-  /// Which one came; 0: none.
+  /// Returns the signal received; 0: none.
   int signal() const;
 
  private:

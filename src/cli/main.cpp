@@ -3,6 +3,6 @@
 #include "cli/commands.h"
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows past its limit is a message, not the end
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit becomes a write error instead of ending the program
   return frond::run(argc, argv);
 }

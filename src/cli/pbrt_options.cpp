@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kIgnore = "--ignore-unsupported";
 
+/// Whether the word is a list of kinds for --ignore-unsupported, and not the next argument.
 bool are_kinds(const std::string& word) {
   try {
     (void)Unsupported(word);
@@ -23,7 +24,7 @@ bool are_kinds(const std::string& word) {
   }
 }
 
-/// Case, dashes and underscores do not count, as in pbrt-v4.
+/// Removes dashes and underscores and ignores case, as pbrt-v4 does.
 std::string normalized(std::string_view name) {
   std::string result;
   for (const char c : name)
@@ -31,7 +32,7 @@ std::string normalized(std::string_view name) {
   return result;
 }
 
-/// "-NThreads=2" as "--nthreads=2"; any other word as it is.
+/// Returns an option in frond's spelling: "-NThreads=2" becomes "--nthreads=2". Other words are returned unchanged.
 std::string with_our_name(const std::string& word, const std::vector<std::string>& names) {
   const std::string_view all = word;
   const size_t name_end = std::min(all.find('='), all.size());
@@ -66,6 +67,7 @@ bool is_scene_name(const std::string& word) {
   return word.ends_with(".pbrt") || word.ends_with(".pbrt.gz") || word == "-";
 }
 
+/// Options are translated only if a scene file is given without a command, as pbrt is called.
 std::vector<std::string> with_pbrt_spelling(std::vector<std::string> words, const std::vector<std::string>& names) {
   if (!words.empty() && (words[0].starts_with('-') || is_scene_name(words[0])) &&
       std::ranges::any_of(words, is_scene_name)) {

@@ -7,18 +7,18 @@
 
 namespace frond {
 
-/// A line for each option of pbrt-v4 that frond has no use for: what --help-pbrt prints.
+/// Returns the text of --help-pbrt: one line for each option of pbrt-v4 without a function in frond.
 std::string pbrt_options_text();
-/// Warnings about those of them that have no effect. Throws InputError for one that is refused, with what frond has
-/// instead.
+/// Returns warnings for the given options that are ignored. Throws InputError for an option that is refused; the
+/// message names frond's equivalent.
 std::vector<std::string> pbrt_warnings(const std::vector<const PbrtOption*>& given);
 
-/// The command line in frond's spelling: `frond SCENE.pbrt` with options of pbrt-v4 (`-spp`, `--NThreads`) becomes
-/// `frond render`; a word after --ignore-unsupported belongs to it if it lists kinds. `names`: the long options of
-/// render.
+/// Returns the command line in frond's spelling: `frond SCENE.pbrt` with options of pbrt-v4 (`-spp`, `--NThreads`)
+/// becomes `frond render`. A word after --ignore-unsupported becomes its value if it is a list of kinds. `names` are
+/// the long options of render.
 std::vector<std::string> with_pbrt_spelling(std::vector<std::string> words, const std::vector<std::string>& names);
 
-/// Whether a word is called as scene files are.
+/// Whether the word is a scene file's name: *.pbrt, *.pbrt.gz, or - for standard input.
 bool is_scene_name(const std::string& word);
 
 }  // namespace frond

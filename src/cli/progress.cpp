@@ -8,6 +8,7 @@
 namespace frond {
 namespace {
 
+/// Limits the rate of output.
 constexpr double kSecondsBetweenLines = 0.2;
 
 }  // namespace
@@ -16,6 +17,7 @@ TerminalLine::TerminalLine(bool quiet) : active_(!quiet && isatty(STDERR_FILENO)
 
 TerminalLine::~TerminalLine() { clear(); }
 
+/// \x1b[K erases the line from the cursor on.
 void TerminalLine::clear() {
   if (active_ && last_shown_ >= 0) fmt::print(stderr, "\r\x1b[K");
   last_shown_ = -1;
@@ -32,6 +34,7 @@ void TerminalLine::show(const std::string& text) {
   std::fflush(stderr);
 }
 
+/// "samples" are paths; the remaining time assumes a constant rate.
 void ProgressLine::update(double fraction, const RenderStatistics& s) {
   if (!line_.is_due(s.wall_seconds)) return;
   const double left = fraction > 0 ? s.wall_seconds * (1 - fraction) / fraction : 0;

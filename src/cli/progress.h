@@ -6,8 +6,8 @@
 
 namespace frond {
 
-/// A line on a terminal's standard error that is written over and over, and gone at the end; nothing when it is piped
-/// or `quiet`.
+/// A status line on standard error, overwritten in place and erased at the end. Nothing is written if standard error is
+/// not a terminal or if `quiet`.
 class TerminalLine {
  public:
   explicit TerminalLine(bool quiet);
@@ -15,7 +15,7 @@ class TerminalLine {
   TerminalLine(const TerminalLine&) = delete;
   TerminalLine& operator=(const TerminalLine&) = delete;
 
-  /// Whether it is time for a new text, `seconds` after the start.
+  /// Whether 0.2 s have passed since the last text. `seconds`: time since the start.
   bool is_due(double seconds);
   void show(const std::string& text);
   void clear();
@@ -25,7 +25,7 @@ class TerminalLine {
   double last_shown_ = -1;
 };
 
-/// How far a render is.
+/// Progress of a render: percentage, rates, remaining time.
 class ProgressLine final : public Progress {
  public:
   explicit ProgressLine(bool quiet) : line_(quiet) {}

@@ -15,19 +15,22 @@
 namespace frond {
 namespace {
 
+/// Exit code when another process holds the lock of a part.
 constexpr int kTryAgainLater = 75;  // EX_TEMPFAIL of sysexits.h
 
+/// Stop signals are handled only if there is a file to save the partial result to.
 bool asks_for_parts(const Arguments& args) {
   return (args.declares("checkpoint") && args.given("checkpoint")) || (args.declares("resume") && args.flag("resume"));
 }
 
-/// Data goes to standard output in place of text.
+/// Whether a file is written to standard output, which then replaces the text.
 bool writes_to_standard_output(const Arguments& args) {
   return std::ranges::any_of(args.params(), [&args](const JobParam* p) {
     return p->path == PathUse::write && args.given(p->name) && args.words(p->name).front() == "-";
   });
 }
 
+/// Runs the job and prints its result. Returns the exit code.
 int execute(const ParsedCommand& command) {
   const Arguments& args = command.arguments;
   const bool quiet = args.flag("quiet");
@@ -48,6 +51,7 @@ int execute(const ParsedCommand& command) {
 
 }  // namespace
 
+/// Errors are printed with the prefix "frond: "; of many errors at once, the first 20.
 int run(int argc, const char* const* argv) {
   try {
     const auto parsed = parse_command_line(argc, argv);

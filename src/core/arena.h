@@ -10,10 +10,12 @@
 
 namespace frond {
 
-/// Bump allocator for the BSDFs of one path vertex: nothing is freed, `reset` starts again. It grows to what the
-/// scene's most demanding hit takes and stays there: from then on there is no heap in the loop.
+/// Bump allocator for the BSDFs of one path vertex, as pbrt's ScratchBuffer. `reset` reuses its memory. It grows to the
+/// size that the largest hit needs; from then on the render loop allocates nothing on the heap. Not thread-safe: each
+/// thread has its own.
 class Arena {
  public:
+  /// Constructs a T that lives until `reset`; its destructor is not run.
   template <class T, class... Args>
   T* make(Args&&... args) {
     static_assert(std::is_trivially_destructible_v<T>, "an arena never runs destructors");
@@ -26,11 +28,12 @@ class Arena {
     used_ = start + sizeof(T);
     return ::new (static_cast<void*>(block_->bytes + start)) T{std::forward<Args>(args)...};
   }
+  /// Invalidates all objects of the arena and keeps its memory.
   void reset() {
     block_ = blocks_.front().get();
     used_ = 0;
   }
-  /// Bytes that it has taken from the heap.
+  /// Bytes allocated on the heap.
   size_t capacity() const {
     size_t sum = 0;
     for (const auto& block : blocks_) sum += block->size;

@@ -6,8 +6,8 @@
 namespace frond {
 namespace {
 
-/// Draws as a path that arrives along `incident` would. Where the model's incident direction is wi, the pair is turned
-/// round for its value: the directions are then only an importance sampling of where the light goes.
+/// Samples a direction with wo = `incident`. If the model's incident direction is wi, `f` is evaluated with the two
+/// directions exchanged, and `sample` serves only as importance sampling.
 Scattered scatter_one(const Bsdf& bsdf, bool from_light, const Vec3& incident, RandomStream& rng) {
   const float uc = rng.uniform(), u = rng.uniform(), v = rng.uniform();
   const auto s = bsdf.sample(incident, uc, {u, v}, rng);

@@ -10,7 +10,7 @@
 
 namespace frond {
 
-/// What a BSDF's lobes do, and which lobe a sample came from.
+/// Flags of a BSDF's lobes, and of the lobe that a sample came from.
 enum class Lobes : uint8_t {
   none = 0,
   reflection = 1,
@@ -19,71 +19,83 @@ enum class Lobes : uint8_t {
   glossy = 8,
   specular = 16,     ///< delta lobes
   stochastic = 32,   ///< f and sample are unbiased estimates that use their random stream
-  surface = 64,      ///< light that never entered the body (Rs of a leaf)
-  from_light = 128,  ///< f is not reciprocal, and the direction that its model calls incident is wi, not wo
+  surface = 64,      ///< reflection at the surface, without entering the body (Rs of a leaf)
+  from_light = 128,  ///< f is not reciprocal, and the incident direction of its model is wi, not wo
 };
 constexpr Lobes operator|(Lobes a, Lobes b) { return Lobes(uint8_t(a) | uint8_t(b)); }
 constexpr Lobes operator&(Lobes a, Lobes b) { return Lobes(uint8_t(a) & uint8_t(b)); }
 constexpr bool any(Lobes a) { return a != Lobes::none; }
 
+/// Direction sampled from a BSDF, as pbrt's BSDFSample.
 struct BsdfSample {
-  SampledSpectrum f;  ///< 1/sr, without cosine; the path's weight is f |cos theta_i| / pdf
+  SampledSpectrum f;  ///< 1/sr, without cosine; the throughput is multiplied by f |cos theta_i| / pdf
   Vec3 wi;            ///< local frame, unit
   float pdf = 0;      ///< 1/sr, positive
   Lobes flags = Lobes::none;
-  /// True where f / pdf is the right weight but `pdf` is not the density of wi: MIS must ask `pdf()` instead.
+  /// True if f / pdf is the correct weight but `pdf` is not the density of wi (pbrt's pdfIsProportional): multiple
+  /// importance sampling must then call Bsdf::pdf.
   bool pdf_is_approximate = false;
-  /// Of light that was refracted: the index of refraction on the side of wi over that on the side of wo. Its radiance
-  /// has changed by the square of that, which says nothing of how much the path matters. Where lanes differ, of one.
+  /// For refracted light: index of refraction on the side of wi over that on the side of wo, of one lane if lanes
+  /// differ. Russian roulette multiplies the throughput by eta^2, which removes the change of radiance by refraction.
   float eta = 1;
 };
 
-/// What became of a ray of light at a surface.
+/// A ray of light after one scattering at a surface.
 struct Scattered {
-  Vec3 direction;            ///< the way it leaves, unit; undefined where all of it was absorbed
-  Lobes lobe = Lobes::none;  ///< as of a BsdfSample
-  SampledSpectrum weight;    ///< share of the ray that leaves, lane by lane
+  Vec3 direction;            ///< direction in which it leaves, unit; undefined if it was absorbed
+  Lobes lobe = Lobes::none;  ///< flags of the lobe that scattered it
+  SampledSpectrum weight;    ///< share of the power that leaves, for each lane; 0 if it was absorbed
 };
 
-/// Scattering at one point of a surface.
+/// BSDF at one point of a surface. This comment defines the convention; other pages refer to it.
 ///
-/// Convention, stated here and nowhere else. Directions are unit vectors in a local frame whose z is the shading normal
-/// (on a leaf: the adaxial side); both point away from the surface: `wo` toward where the path came from, `wi` toward
-/// where light comes from. `f` has no cosine in it and is in 1/sr; densities are per solid angle. Radiance along wo is
-/// the integral of f(wo, wi) L(wi) |cos theta_i| over the sphere. A delta lobe contributes 0 to `f` and `pdf`, and
-/// `sample` returns it with pdf = its probability and f = weight * pdf / |cos theta_i|. Directions with cos theta = 0
-/// scatter nothing. Lanes that are not active hold 0.
+/// Directions. All are unit vectors in a local frame whose z axis is the shading normal (on a leaf the adaxial side).
+/// Both point away from the surface: `wo` to the previous vertex of the path, `wi` to where light comes from.
+/// Directions with cos theta = 0 scatter nothing.
 ///
-/// `f` is of radiance, which refraction changes: into a side of index n_i it carries the factor (n_o / n_i)^2, lane by
-/// lane. Power it keeps, and it is reciprocal as n_i^2 f(wo, wi) = n_o^2 f(wi, wo).
+/// Values. `f` is in 1/sr and contains no cosine; densities are per solid angle. The radiance along wo is the integral
+/// of f(wo, wi) L(wi) |cos theta_i| over the sphere. Lanes that are not active hold 0.
 ///
-/// A BSDF may be stochastic: then `f` and the weight of `sample` are unbiased estimates that draw from `rng`, a stream
-/// of their own for each call, never derived from directions. `uc` and `u` in [0, 1) are the sampler's low-discrepancy
-/// numbers for the first try of `sample`; redraws use `rng`.
+/// Delta lobes. `f` and `pdf` leave them out. `sample` returns them with pdf = the probability of the lobe and
+/// f = weight * pdf / |cos theta_i|.
+///
+/// Refraction. `f` applies to radiance: if wi lies on a side with another index of refraction, `f` contains the factor
+/// (n_o / n_i)^2, lane by lane. Power is conserved, and reciprocity reads n_i^2 f(wo, wi) = n_o^2 f(wi, wo).
+///
+/// Random numbers. `uc` and `u` in [0, 1) are sample values for the first attempt of `sample`; further attempts draw
+/// from `rng`. A stochastic BSDF returns unbiased estimates from `f` and `sample`, with random numbers from `rng`. The
+/// caller passes a new stream to each call, with a key that does not depend on directions.
 class Bsdf {
  public:
+  /// Union of the flags of all lobes.
   virtual Lobes flags() const = 0;
+  /// Value of the BSDF without its delta lobes, 1/sr.
   virtual SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const = 0;
+  /// Samples wi; empty if the light is absorbed or the sample fails.
   virtual std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const = 0;
-  /// Density of `sample`, or an approximation of it that is positive wherever f is; used to weight both strategies.
+  /// Density of `sample` per solid angle, or an approximation that is positive wherever f is. Both sides of multiple
+  /// importance sampling use it, so that the weights add up to 1 also if it is approximate.
   virtual float pdf(const Vec3& wo, const Vec3& wi) const = 0;
 
-  /// Index of refraction on the side of -z over that on the side of +z, lane by lane, where light is refracted; 1 in
-  /// lanes that are not active.
+  /// Index of refraction on the side of -z over that on the side of +z, lane by lane; 1 if light is not refracted, and
+  /// in lanes that are not active.
   virtual SampledSpectrum index_ratio() const { return SampledSpectrum(1); }
 
-  /// For virtual instruments: sends light in from the direction `incident`, which is what the BSDF's model calls so
-  /// whichever of wo and wi that is, and tells what becomes of each ray. Means of the weights are reflectance and
-  /// transmittance for that incidence. A BSDF `from_light` whose pdf is approximate must have its own.
+  /// For virtual instruments: scatters light that arrives from the direction `incident` and writes one result for each
+  /// of `rays`. `incident` is the incident direction of the BSDF's model: wi with the flag `from_light`, else wo. The
+  /// means of the weights are reflectance and transmittance at that incidence. A BSDF with the flag `from_light` and an
+  /// approximate pdf must override it.
   virtual void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const;
 
  protected:
   ~Bsdf() = default;  // lives in an arena and is never deleted
 };
 
+/// True if both directions lie on the same side of the surface.
 inline bool same_side(const Vec3& a, const Vec3& b) { return a.z * b.z > 0; }
 
-/// (n_i / n_o)^2, lane by lane: power over radiance of what goes from the side of wo to that of wi.
+/// Factor that converts `f`, which applies to radiance, to transport of power: (n_i / n_o)^2, lane by lane, if wo and
+/// wi lie on different sides, else 1.
 inline SampledSpectrum power_of_radiance(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
   if (wo.z * wi.z >= 0) return SampledSpectrum(1);
   const SampledSpectrum ratio = bsdf.index_ratio();

@@ -10,7 +10,7 @@
 #define FROND_STANDARD_LIBRARY "libstdc++"
 #endif
 
-/// Of this shared object's own section, which the linker bounds. Null where no header has left anything in it.
+/// Begin and end of the section `frond_headers` of this shared object, defined by the linker; null if it is empty.
 extern "C" {
 [[gnu::weak, gnu::visibility("hidden")]] extern const char __start_frond_headers[];
 [[gnu::weak, gnu::visibility("hidden")]] extern const char __stop_frond_headers[];
@@ -18,9 +18,10 @@ extern "C" {
 
 namespace frond {
 
-/// What a shared object was compiled from. The contracts are C++: two sides understand each other if they were compiled
-/// from the same headers and with the same standard library. Each header of `frond::plugin`, and each that is
-/// installed, leaves "PATH HASH" in the section `frond_headers` of what includes it (cmake/FrondHeaders.cmake).
+/// Headers and standard library that a shared object was compiled with. Interfaces are C++ classes: a plug-in is binary
+/// compatible only with a frond compiled with the same headers and the same standard library. Each header of
+/// `frond::plugin`, and each installed header, adds its path and a hash of its code to the section `frond_headers` of a
+/// shared object that includes it (cmake/FrondHeaders.cmake).
 struct BuildRecord {
   const char* standard_library = FROND_STANDARD_LIBRARY;
   const char* headers = __start_frond_headers;

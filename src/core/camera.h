@@ -6,23 +6,28 @@
 
 namespace frond {
 
-/// Rays from film points.
+/// Camera: generates rays for points of the film. Thread-safe.
 class Camera {
  public:
   virtual ~Camera() = default;
-  /// World-space ray, unit direction, through the film at `film` (pixels, y down); `lens` in [0, 1)^2.
+  /// Ray in world space, with unit direction, through the point `film` (in pixels, y down), for a uniform sample `lens`
+  /// of the lens in [0, 1)^2.
   virtual Ray ray(Vec2 film, Vec2 lens) const = 0;
+  /// True if `ray` depends on `lens`.
   virtual bool uses_lens() const = 0;
-  /// What its pixels see has nothing to do with what their neighbours do: a filter must not mix them.
+  /// True if neighbouring pixels are unrelated views, such as a list of view directions: a filter must not mix them.
   virtual bool pixels_are_apart() const { return false; }
 };
 
+/// Placement and resolution of a camera.
 struct CameraPlacement {
   Transform world_from_camera;
   int width, height;  ///< full resolution, pixels
 };
 
+/// Plug-in record of a camera.
 struct CameraInfo : PluginInfo {
+  /// Returns a camera, not null. Throws InputError.
   std::unique_ptr<Camera> (*make)(const Params&, const CameraPlacement&);
 };
 

@@ -37,7 +37,7 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
   std::string_view best;
-  constexpr size_t kShort = 3;  // of whose letters one may be wrong: with two, nearly any other word is near
+  constexpr size_t kShort = 3;  // within two edits of a word this short lies nearly any other word: only one is allowed
   size_t best_distance = (word.size() <= kShort ? 1 : std::max<size_t>(2, word.size() / 3)) + 1;
   for (const std::string_view candidate : candidates) {
     const size_t distance = edit_distance(word, candidate);

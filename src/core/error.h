@@ -11,30 +11,33 @@
 
 namespace frond {
 
-/// A place in an input file, counted from 1; line 0: the "file" is a command line's option. No file: prints nothing.
+/// Position in an input file; line and column count from 1. With line 0, `file` names a command-line option instead.
 struct Location {
   std::shared_ptr<const std::string> file;
   int line = 0, column = 0;
 
+  /// Returns `file:line:column: `, `file: ` at line 0, or an empty string if there is no file.
   std::string text() const;
 };
 
-/// Bad input: what was wrong, where, and what would have been right. Thrown while reading and setting up only, never in
-/// the render loop. `what()` reads "file:line:column: message".
+/// Error in the user's input. The message says what is wrong, where, and what is allowed. It is thrown while a scene is
+/// read and set up, never in the render loop. `what()` returns `file:line:column: message`.
 class InputError : public std::runtime_error {
  public:
   InputError(const Location& where, const std::string& message);
 };
 
+/// Throws an InputError with a message formatted by fmt.
 template <class... Args>
 [[noreturn]] void fail(const Location& where, fmt::format_string<Args...> format, Args&&... args) {
   throw InputError(where, fmt::format(format, std::forward<Args>(args)...));
 }
 
-/// The candidate nearest to `word` by edit distance, or empty when none is near enough to be meant.
+/// Returns the candidate with the smallest edit distance to `word`, or an empty string if that distance is above a
+/// third of the length of `word` (above 1 for words of up to three letters, above 2 for words of up to eight).
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
 
-/// `; did you mean "x"?`, or a list of what there is when nothing is near: the end of an error message.
+/// Returns the end of an error message: `; did you mean X?` if a candidate is near, else the list of all candidates.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
 
 }  // namespace frond

@@ -8,32 +8,33 @@
 
 namespace frond {
 
-/// A rectangle of pixels.
+/// Rectangle of pixels: x0 <= x < x1, y0 <= y < y1.
 struct Crop {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< pixels; the end is not in it
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
   friend bool operator==(const Crop&, const Crop&) = default;
 };
 
-/// What the scene says of the image. A crop holds one pixel at least, and lies on the film.
+/// Settings of the film. The crop contains at least one pixel and lies inside the film.
 struct FilmSettings {
   int width = 0, height = 0;  ///< full resolution, pixels
   Crop crop = {};
   std::string filename = "frond.exr";
   bool half = false;    ///< EXR with 16-bit floats
-  double exposure = 1;  ///< factor from radiance to film
-  /// Of a sample's response, which is scaled down to it; infinity: not at all.
+  double exposure = 1;  ///< factor from radiance to film values
+  /// Largest component of a sample's response; a larger response is scaled down to it (pbrt's maxcomponentvalue).
   double max_component = std::numeric_limits<double>::infinity();
 
-  std::vector<std::string> channels = {};  ///< beside colour: names of render/film/channels.h
-  bool features_in_camera_space = false;   ///< normals and positions; else in world space
+  std::vector<std::string> channels = {};  ///< additional channels: names of render/film/channels.h
+  bool features_in_camera_space = false;   ///< space of normals and positions: camera space, else world space
 
-  /// That a channel of an EXR can have.
+  /// Largest finite value of a channel of the EXR file.
   double largest_value() const { return half ? 65504 : double(std::numeric_limits<float>::max()); }
 };
 
-/// A film is its settings: accumulators and files are the renderer's own (render/film/).
+/// Plug-in record of a film. `make` returns settings only, and throws InputError; the renderer accumulates samples and
+/// writes files (render/film/).
 struct FilmInfo : PluginInfo {
   FilmSettings (*make)(const Params&);
 };

@@ -7,35 +7,39 @@
 
 namespace frond {
 
-/// How pixels are made of samples that a filter weighs.
+/// How pixel values are reconstructed from samples.
 enum class Reconstruction : uint8_t {
-  importance,  ///< a pixel's samples lie where its filter is, and no other pixel has them
-  splatting    ///< a pixel's samples lie in it, and every pixel within the filter's reach has them, by their weights
+  importance,  ///< the filter is importance-sampled (filter importance sampling); a sample counts in one pixel
+  splatting    ///< samples are uniform in the pixel; a sample counts in all pixels within the filter's radius
 };
 
-/// Pixel filter.
+/// Pixel filter, as pbrt's Filter. Thread-safe.
 class Filter {
  public:
-  /// Importance sampling: where in the plane a pixel's sample falls, and its weight.
+  /// Position and weight of an importance sample of the filter.
   struct Sample {
     Vec2 offset;   ///< pixels from the pixel's centre
     float weight;  ///< filter / density, mean 1; negative in the negative lobes of a filter that has some
   };
   virtual ~Filter() = default;
+  /// Returns the importance sample for a uniform `u` in [0, 1)^2.
   virtual Sample sample(Vec2 u) const = 0;
-  /// Whether all samples fall into the pixel itself.
+  /// True if all samples lie inside the pixel (radius of at most 0.5).
   virtual bool stays_in_pixel() const { return false; }
 
-  /// Of a filter that is the product of a function along x and one along y: half its width and height, pixels. 0 where
-  /// it is none: it is always importance-sampled.
+  /// Radius in x and y of a separable filter, in pixels; 0 if the filter is not separable, and then it is always
+  /// importance-sampled.
   virtual Vec2 radius() const { return {}; }
-  /// These functions at offsets from the pixel's centre, pixels, in any unit; 0 beyond the radius.
+  /// The two factors of a separable filter, f_x(offset.x) and f_y(offset.y), up to a constant; `offset` is from the
+  /// pixel's centre, in pixels. They are 0 beyond the radius.
   virtual Vec2 along(Vec2 /*offset*/) const { return {}; }
-  /// What the scene says; nothing: what makes less noise.
+  /// Reconstruction that the scene file states; if it is empty, the renderer selects the one with less noise.
   virtual std::optional<Reconstruction> reconstruction() const { return {}; }
 };
 
+/// Plug-in record of a filter.
 struct FilterInfo : PluginInfo {
+  /// Returns a filter, not null. Throws InputError.
   std::unique_ptr<Filter> (*make)(const Params&);
 };
 

@@ -8,17 +8,19 @@
 
 namespace frond {
 
-/// Four floats in one register, by the compilers' own vector type: for the few loops that are worth it. + - * / and
-/// comparisons are the language's.
+/// Four floats in one SIMD register (vector extension of GCC and Clang). + - * / and comparisons are built in and work
+/// lane by lane.
 using Float4 = float __attribute__((vector_size(16)));
 
-/// Four doubles, in as many registers as they take.
+/// Four doubles, in one or two SIMD registers.
 using Double4 = double __attribute__((vector_size(32)));
 
+/// Lane-wise maximum.
 inline Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
+/// Sum of the four lanes.
 inline float sum(Float4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
 
-/// In all lanes.
+/// True if a and b are equal in all lanes.
 inline bool are_equal(Float4 a, Float4 b) {
 #if defined(__SSE2__)
   return _mm_movemask_ps(_mm_cmpneq_ps(a, b)) == 0;
@@ -27,6 +29,7 @@ inline bool are_equal(Float4 a, Float4 b) {
 #endif
 }
 
+/// Lane-wise square root.
 inline Float4 square_root(Float4 x) {
 #if defined(__SSE2__)
   return _mm_sqrt_ps(x);

@@ -9,23 +9,24 @@
 
 namespace frond {
 
-/// Pixels in memory: rows from the top, channels next to each other.
+/// Image in memory: rows from top to bottom, the channels of a pixel next to each other.
 struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;
   std::vector<float> pixels;
 
   Image() = default;
-  /// Black.
+  /// Image of zeros.
   Image(int w, int h, std::vector<std::string> names);
 
+  /// Index of a channel; empty if there is none of this name.
   std::optional<size_t> channel(std::string_view name) const;
   const float& at(int x, int y, size_t channel) const { return pixels[index(x, y, channel)]; }
   float& at(int x, int y, size_t channel) { return pixels[index(x, y, channel)]; }
 
-  /// One channel's values, pixel by pixel.
+  /// Values of one channel, row by row.
   std::vector<float> plane(size_t channel) const;
-  /// An image of some of the channels, each as often as it is there, under other names.
+  /// Image whose channel i is channel `which[i]` of this one, named `names[i]`; a channel can occur several times.
   Image selected(std::span<const size_t> which, std::vector<std::string> names) const;
 
  private:

@@ -9,70 +9,71 @@
 
 namespace frond {
 
-/// What a camera ray met first.
+/// First surface that a camera ray meets.
 struct FirstHit {
-  bool is_hit = false;  ///< false: nothing, no leaf, and the rest means nothing
+  bool is_hit = false;  ///< false if the ray meets no surface; then the other members have no meaning
   bool is_leaf = false;
-  uint32_t material = 0;  ///< as of a SurfacePoint
-  uint64_t instance = 0;  ///< as of a SurfacePoint
-  Vec3 p, n;              ///< world space; the shading normal, unit
-  /// The path's weight after it was scattered there: an unbiased estimate of the albedo, all that the surface gives
-  /// back of light from -direction of the camera ray, on both sides.
+  uint32_t material = 0;  ///< SurfacePoint::material_id
+  uint64_t instance = 0;  ///< SurfacePoint::instance_id
+  Vec3 p, n;              ///< position and shading normal, unit, in world space
+  /// Throughput of the path after its scattering there: an unbiased estimate of the directional albedo, the sum of
+  /// reflectance and transmittance, for wo = -direction of the camera ray.
   SampledSpectrum albedo;
 };
 
+/// Result of one path.
 struct PathResult {
   SampledSpectrum radiance;
   FirstHit first;
-  int scatterings = 0;   ///< how often the path was scattered
-  bool escaped = false;  ///< it left the scene; else it was absorbed or cut off
+  int scatterings = 0;   ///< number of scatterings
+  bool escaped = false;  ///< the path left the scene; otherwise it was absorbed or terminated
 };
 
-/// Samples of one pixel that are traced together. Sample indices of a bundle begin at a multiple of `kMost`.
+/// Samples of one pixel that are traced together. The first sample index of a bundle is a multiple of `kMost`.
 struct PathBundle {
   static constexpr int kMost = 16;
   static_assert(kMost % RayPacket::kWidth == 0);
 
   const Sampler& sampler;
-  uint32_t dimension = 0;  ///< of the sampler, that no number has been taken from yet
-  PixelSamples samples{};  ///< kMost of them
-  uint32_t lanes = 0;      ///< those that have a camera ray, by bit
-  uint32_t wanted = 0;     ///< those whose results are asked for: some of `lanes`
+  uint32_t dimension = 0;  ///< first unused dimension of the sampler
+  PixelSamples samples{};  ///< kMost samples
+  uint32_t lanes = 0;      ///< bit i is set if sample i has a camera ray
+  uint32_t wanted = 0;     ///< bit i is set if the result of sample i is needed; a subset of `lanes`
   std::array<Ray, kMost> rays{};
   std::array<SampledWavelengths, kMost> lambda{};
-  std::array<uint64_t, kMost> keys{};  ///< of the paths' random streams: sample_key
+  std::array<uint64_t, kMost> keys{};  ///< keys of the paths' random streams (sample_key)
   std::array<PathResult, kMost> results{};
-  uint64_t traced = 0;  ///< rays that were traced for the results, shadow rays included
+  uint64_t traced = 0;  ///< number of rays traced, including shadow rays
 };
 
-/// What one thread traces paths with.
+/// Traces paths in one thread.
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  /// Sets the results that are wanted: unbiased estimates of the radiance that arrives along the rays. Changes nothing
-  /// else of the bundle but `traced`.
+  /// Sets `results` of the wanted samples to unbiased estimates of the radiance along their rays, and adds to `traced`.
+  /// It changes no other member of the bundle.
   virtual void trace(PathBundle& bundle) = 0;
 };
 
-/// Radiance along camera rays.
+/// Integrator: estimates the radiance along camera rays.
 class Integrator {
  public:
   virtual ~Integrator() = default;
   /// Called once, before the first path.
   virtual void prepare(const World&) {}
-  /// For one thread; the world and the integrator outlive it. Thread-safe.
+  /// Returns a tracer for one thread, not null. The world and the integrator outlive it. Thread-safe.
   virtual std::unique_ptr<Tracer> tracer(const World& world) const = 0;
 };
 
-/// What a path is traced with by itself.
+/// State of a path in an OnePathIntegrator.
 struct PathContext {
   SampleNumbers sampler;
-  uint64_t key;  ///< of this path's random streams: sample_key
-  Arena& arena;
-  uint64_t rays = 0;  ///< traced so far, shadow rays included
+  uint64_t key;       ///< key of the path's random streams (sample_key)
+  Arena& arena;       ///< for BSDFs; the integrator resets it
+  uint64_t rays = 0;  ///< number of rays traced so far, including shadow rays
 };
 
-/// An integrator that knows one path at a time.
+/// Base class of integrators that trace one path at a time; the simplest way to write an integrator.
 class OnePathIntegrator : public Integrator {
  public:
   /// Unbiased estimate of the radiance that arrives along `ray`. Thread-safe.
@@ -81,7 +82,9 @@ class OnePathIntegrator : public Integrator {
   std::unique_ptr<Tracer> tracer(const World& world) const final;
 };
 
+/// Plug-in record of an integrator.
 struct IntegratorInfo : PluginInfo {
+  /// Returns an integrator, not null. Throws InputError.
   std::unique_ptr<Integrator> (*make)(const Params&);
 };
 

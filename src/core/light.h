@@ -10,48 +10,50 @@
 
 namespace frond {
 
+/// Sample of the light that arrives at a point, as pbrt's LightLiSample.
 struct LightSample {
-  SampledSpectrum radiance;  ///< W/(m^2 sr nm) before film scaling; for a delta light: irradiance over cosine
+  SampledSpectrum radiance;  ///< W/(m^2 sr nm) before film scaling; of a delta light: irradiance at normal incidence
   Vec3 wi;                   ///< from the point toward the light, unit
   float distance = 0;        ///< infinity for lights outside the scene
   float pdf = 0;             ///< per solid angle at the point; 1 for a delta light
 };
 
-/// Where a light is, and where it shines.
+/// Bounds of a light's position and of the directions into which it emits, as pbrt's LightBounds.
 struct LightBounds {
-  Vec3 min, max;
-  Vec3 axis{0, 0, 1};      ///< unit: about the middle of the directions that it faces
-  float cos_spread = -1;   ///< it faces directions up to this angle from the axis: -1 for all
-  float cos_reach = 0;     ///< and shines up to this angle from a direction that it faces, most along it
-  bool two_sided = false;  ///< the same the other way round
+  Vec3 min, max;           ///< bounding box of its points, world space
+  Vec3 axis{0, 0, 1};      ///< axis of a cone around its normals, unit
+  float cos_spread = -1;   ///< cosine of the largest angle between a normal and the axis (pbrt's cosTheta_o)
+  float cos_reach = 0;     ///< cosine of the largest angle between emission and a normal (pbrt's cosTheta_e)
+  bool two_sided = false;  ///< it emits equally into the opposite directions
 };
 
-/// Something that lights points of the scene.
+/// Light source. Thread-safe once the scene is set up.
 class Light {
  public:
   virtual ~Light() = default;
+  /// Samples the light that arrives at `p`, in world space, for a uniform `u` in [0, 1)^2; empty if none arrives.
   virtual std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const = 0;
-  /// Samples of a light may compete with scattered rays that meet it, and then leave out what those find as well: the
-  /// share of its power that is left in. 0: it is left to scattered rays.
+  /// Share of the light's power that `sample_competing` covers. With 0 the light is found by scattered rays alone.
   virtual double competing_share() const { return 1; }
-  /// The same as `sample`, but for what is left out.
+  /// Like `sample`, for multiple importance sampling with scattered rays: its density may leave out light that these
+  /// find as well (MIS compensation, Karlik et al. 2019).
   virtual std::optional<LightSample> sample_competing(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const {
     return sample(p, u, lambda);
   }
-  /// Light through a point or from one direction: no ray meets it by chance.
+  /// True for light through a point or from a single direction, which no scattered ray meets.
   virtual bool is_delta() const = 0;
-  /// From outside the scene: the same at all of its points.
+  /// True for light from outside the scene.
   virtual bool is_distant() const { return false; }
-  /// Photometric power up to a factor common to all lights of a scene of the given radius: how often to choose it.
+  /// Photometric power, up to a factor common to all lights, in a scene with this radius; for choosing among lights.
   virtual double power(float scene_radius) const = 0;
-  /// To choose by what reaches a point. Nothing: from everywhere, or it is not known.
+  /// Bounds for choosing lights by their contribution at a point; empty if the light has none.
   virtual std::optional<LightBounds> bounds() const { return {}; }
-  /// Spectrum of what it gives off, up to a factor; of an image's, that of its white.
+  /// Emission spectrum up to a factor; for a light with an image, the spectrum of its white.
   virtual const Spectrum& emission() const = 0;
-  /// Wavelengths (nm) for which the emission is known.
+  /// Wavelengths (nm) for which there are emission data.
   Interval range_nm() const { return emission().range_nm(); }
 
-  /// Place in the scene's list of lights.
+  /// Index in World::lights.
   int index() const { return index_; }
   void set_index(int index) { index_ = index; }
 
@@ -59,74 +61,81 @@ class Light {
   int index_ = 0;
 };
 
+/// Plug-in record of a light.
 struct LightInfo : PluginInfo {
+  /// Returns a light, not null. Throws InputError.
   std::unique_ptr<Light> (*make)(const Params&, const Transform& world_from_light);
 };
 
+/// `make` of a light class T with a constructor T(const Params&, const Transform&).
 template <class T>
 std::unique_ptr<Light> make_light(const Params& p, const Transform& world_from_light) {
   return std::make_unique<T>(p, world_from_light);
 }
 
-/// A point of a surface that gives off light.
+/// Point of an emitting surface.
 struct EmittingPoint {
   Vec3 p;   ///< world space
   Vec3 ng;  ///< geometric normal, unit, on the front
-  Vec2 uv;  ///< of the surface
+  Vec2 uv;  ///< texture coordinates
 };
 
-/// Light given off by a surface of the scene.
+/// Light emitted by a surface of the scene.
 class AreaLight : public Light {
  public:
-  /// Radiance that leaves the point along `w`.
+  /// Radiance emitted at the point in the direction `w`.
   virtual SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const = 0;
-  /// Density of `sample` at `from`, per solid angle at that point, for a point of the surface.
+  /// Density, per solid angle at `from`, with which `sample` chooses the point `at` of the surface.
   virtual float pdf(const Vec3& from, const EmittingPoint& at) const = 0;
 };
 
-/// Points over the area of a shape that gives off light, or of one of its faces, in world space.
+/// Surface of an area light: a shape or one of its faces, in world space. The renderer implements it.
 class EmittingSurface {
  public:
   virtual ~EmittingSurface() = default;
+  /// Sampled point of the surface.
   struct Sample {
     ShapePoint point;
     Vec2 uv;
-    float weight;  ///< 1 / area over the density: 1 where points are evenly spread over the area
+    float weight;  ///< 1 / (area * density of the point per area); 1 if points are uniform over the area
   };
+  /// Samples a point for a uniform `u` in [0, 1)^2.
   virtual Sample sample(Vec2 u) const = 0;
-  /// Of one side.
+  /// Area of one side.
   virtual double area() const = 0;
-  /// Of its points and normals; one-sided.
+  /// Bounds of its points and normals; one-sided.
   virtual LightBounds bounds() const = 0;
-  /// Whether rays can meet it. With an alpha of 0 they never do: all of its light comes from samples, as in pbrt-v4.
+  /// True if rays can hit it. They cannot if alpha is 0: then all of its light comes from samples, as in pbrt-v4.
   virtual bool is_met() const = 0;
-  /// Share of the light that alpha leaves of what is met or sampled there.
+  /// Factor by which alpha scales the light of a point that is hit or sampled.
   virtual float opacity(const EmittingPoint& at) const = 0;
 };
 
-/// An AreaLightSource: what it says of any number of surfaces, which share its spectrum and image.
+/// Emission of an AreaLightSource directive; all surfaces that it applies to share its spectrum and image.
 class AreaEmission {
  public:
   virtual ~AreaEmission() = default;
-  /// Each face of a shape is a light of its own, as in pbrt-v4 where a total is stated.
+  /// True if each face of a shape becomes a light, as in pbrt-v4 if a total power is stated; else each shape does.
   virtual bool is_by_face() const = 0;
-  /// Not null. The surface has an area above 0.
+  /// Returns the light of a surface, not null. The area of the surface is above 0.
   virtual std::unique_ptr<AreaLight> over(std::unique_ptr<const EmittingSurface> surface) const = 0;
 };
 
+/// Plug-in record of an area light.
 struct AreaLightInfo : PluginInfo {
+  /// Returns an emission, not null. Throws InputError.
   std::unique_ptr<AreaEmission> (*make)(const Params&);
 };
 
-/// Light from outside the scene, met by every ray that leaves it.
+/// Light that surrounds the scene; every ray that leaves the scene meets it.
 class EnvironmentLight : public Light {
  public:
   bool is_distant() const override { return true; }
-  /// What arrives at `from` from the direction.
+  /// Radiance that arrives at `from` from `direction`, a unit vector toward the light.
   virtual SampledSpectrum radiance(const Vec3& from, const Vec3& direction, const SampledWavelengths& lambda) const = 0;
-  /// Density of `sample` there, per solid angle.
+  /// Density of `sample` at `from` for `direction`, per solid angle.
   virtual float pdf(const Vec3& from, const Vec3& direction) const = 0;
-  /// That of `sample_competing`.
+  /// Density of `sample_competing`, per solid angle.
   virtual float competing_pdf(const Vec3& from, const Vec3& direction) const { return pdf(from, direction); }
 };
 

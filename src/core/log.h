@@ -4,16 +4,16 @@
 
 namespace frond {
 
-/// Where messages to the user go. Called from one thread at a time.
+/// Receiver of messages to the user. Callers use it from one thread at a time.
 class Log {
  public:
   virtual ~Log() = default;
   virtual void info(std::string_view message) const = 0;
-  /// `where` may be empty: then the message stands alone.
+  /// Reports a warning about the input at `where`, which may be empty.
   virtual void warn(const Location& where, std::string_view message) const = 0;
 };
 
-/// Standard error, or nothing when quiet. Messages of several threads stay whole.
+/// Log that prints to standard error, or nothing if `quiet`. Thread-safe: each message is printed in one call.
 class ConsoleLog final : public Log {
  public:
   explicit ConsoleLog(bool quiet = false) : quiet_(quiet) {}
@@ -24,7 +24,7 @@ class ConsoleLog final : public Log {
   bool quiet_;
 };
 
-/// Says nothing to anyone.
+/// Returns a log that discards all messages.
 const Log& silent_log();
 
 }  // namespace frond

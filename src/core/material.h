@@ -14,61 +14,67 @@
 
 namespace frond {
 
-/// How a surface's point and its shading normal change with (u, v).
+/// Partial derivatives of a surface's position and shading normal with respect to the texture coordinates (u, v).
 struct SurfaceDerivatives {
   Vec3 dpdu{}, dpdv{}, dndu{}, dndv{};
 };
 
-/// What a material may know of the surface point that it is asked for.
+/// Point of a surface at which a material is evaluated; positions and directions are in world space.
 struct Hit {
-  Vec3 p;           ///< world space
-  Vec3 ng;          ///< geometric normal, unit, on the surface's front (a leaf's adaxial side) whichever side was hit
-  Frame shading;    ///< z: shading normal, in the hemisphere of ng
-  TexturePoint at;  ///< what textures need
+  Vec3 p;
+  Vec3 ng;          ///< geometric normal, unit, on the front (a leaf's adaxial side) whichever side was hit
+  Frame shading;    ///< z is the shading normal, in the hemisphere of ng
+  TexturePoint at;  ///< argument for textures
   float extent =
-      0;  ///< largest coordinate that went into `p`: its rounding error is some units of this one's last place
-  /// World space; set where the material needs details. There shading.x points along dpdu.
+      0;  ///< largest coordinate that entered the computation of `p`; its float spacing bounds the error of `p`
+  /// Set only for a material whose `needs_details` is true; then shading.x points along dpdu.
   SurfaceDerivatives derivatives{};
 };
 
-/// What a material gets to make itself ready once the scene is known, before the first path.
+/// Arguments of Material::prepare.
 struct Preparation {
   const WavelengthStrategy& wavelengths;
   ThreadPool& pool;
   const Log& log;
-  std::filesystem::path cache_dir;  ///< empty: keep nothing on disk
-  SharedWork* shared = nullptr;     ///< what the scene's materials may have in common; nullptr: each works alone
+  std::filesystem::path cache_dir;  ///< folder for tables on disk; empty: store nothing on disk
+  SharedWork* shared = nullptr;     ///< results shared by the scene's materials; nullptr: nothing is shared
 
-  /// As SharedWork::get.
+  /// See SharedWork::get; calls `make` if nothing is shared.
   template <class T, class Make>
   std::shared_ptr<const T> share(const std::string& key, const Make& make) const {
     return shared ? shared->get<T>(key, make) : std::make_shared<const T>(make());
   }
 };
 
-/// Textures and parameters in, a BSDF for one hit out.
+/// Material: evaluates its textures at a surface point and makes a BSDF.
 class Material {
  public:
   virtual ~Material() = default;
-  /// Heavy work that depends on the wavelengths (tables) belongs here. Throws InputError.
+  /// Called after the scene is read and before the first path. Computes tables that depend on the wavelengths, and
+  /// checks that the material's data cover them (check_range). Throws InputError.
   virtual void prepare(const Preparation&) {}
-  /// Thread-safe. The BSDF lives until the arena is reset; nullptr: the surface is not there, and rays go straight on.
-  /// Shadow rays stop at it all the same, as in pbrt-v4: what lies behind is lit by scattered rays alone.
+  /// Returns the BSDF at a hit, allocated in `arena`; it is valid until the arena is reset. With nullptr, as for pbrt's
+  /// interface material, a ray continues without scattering; shadow rays are blocked all the same, as in pbrt-v4, so
+  /// that only scattered rays light what lies behind. Thread-safe.
   virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
-  /// Claims f(a, b) = f(b, a), as Bsdf says where light is refracted, and the laws hold it to that.
+  /// True if all BSDFs of the material are reciprocal, as class Bsdf defines it; the laws test this.
   virtual bool is_reciprocal() const { return false; }
-  /// What it lets through may have been refracted: its BSDFs have an index_ratio other than 1.
+  /// True if its BSDFs can have an index_ratio other than 1.
   virtual bool refracts() const { return false; }
-  /// Reads derivatives of the hit, or the direction of its shading.x. Textures say for themselves what they need.
+  /// True if the material reads `derivatives` or the direction of shading.x of a hit. Its textures report their needs
+  /// separately.
   virtual bool needs_details() const { return false; }
-  /// Counts as foliage in the foliar ratio.
+  /// True if hits of the material count in the foliar ratio.
   virtual bool is_leaf() const { return false; }
 };
 
+/// Plug-in record of a material.
 struct MaterialInfo : PluginInfo {
+  /// Returns a material, not null. Throws InputError.
   std::unique_ptr<Material> (*make)(const Params&);
 };
 
+/// `make` of a material class T with a constructor T(const Params&).
 template <class T>
 std::unique_ptr<Material> make_material(const Params& p) {
   return std::make_unique<T>(p);

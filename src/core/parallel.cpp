@@ -31,7 +31,7 @@ void ThreadPool::for_each(int64_t count, const std::function<void(int64_t, int)>
     try {
       for (int worker = 1; worker < threads_ && worker < count; ++worker) helpers.emplace_back(work, worker);
     } catch (const std::system_error&) {
-      // No more threads are to be had: those that are there do the work.
+      // The system refuses more threads: the existing ones do the work.
     }
     work(0);
   }

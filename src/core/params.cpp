@@ -12,7 +12,7 @@
 namespace frond {
 namespace {
 
-/// How the scene's types of a kind read, how many numbers make one value.
+/// Types that a scene file can give for a kind, and how many numbers make one value; 0: any number.
 struct KindTraits {
   std::vector<std::string_view> types;
   size_t arity;
@@ -88,7 +88,7 @@ const T& value_by_default(const PluginInfo& info, const Param& declared) {
   fail_without_value(info, declared);
 }
 
-/// Of a default that is there, what a parameter of the kind takes; empty where it is that.
+/// Type of default that the parameter's kind requires; empty if the given default has it. There must be a default.
 std::string_view wrong_default(const Param& declared) {
   const Default& value = declared.default_value;
   const bool is_number = default_number(value).has_value(),
@@ -119,14 +119,14 @@ std::string_view wrong_default(const Param& declared) {
   return "of a known kind";
 }
 
-/// Numbers of a default; none of what is no number.
+/// Numbers of a default; empty for other types.
 std::vector<double> numbers_of(const Default& value) {
   if (const auto x = default_number(value)) return {*x};
   if (const auto* triple = std::get_if<std::array<double, 3>>(&value)) return {triple->begin(), triple->end()};
   return {};
 }
 
-/// Of a declaration by itself; empty where there is none.
+/// First error of a single declaration; empty if there is none.
 std::string problem_of(const Param& p) {
   if (p.name.empty()) return "a parameter has no name";
   if (!(p.range.min <= p.range.max))
@@ -362,7 +362,7 @@ std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, co
   const std::string message = fmt::format(
       "texture \"{}\" has values from {:.3g} to {:.3g}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
       values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);
-  // What has a unit is physics, and most likely in another one.
+  // With a unit, values out of range are most likely given in another unit: that is an error.
   if (!declared.unit.empty() || values.max < range.min || values.min > range.max || !(values.min <= values.max))
     fail(where, "{}", message);
   if (texture->is_range_tight()) resolver.warn(where, message + ": they are clamped");

@@ -12,16 +12,17 @@
 
 namespace frond {
 
-/// What every plugin says of itself. Each kind adds how it is made.
+/// Record of a plug-in. The record of each kind (MaterialInfo, LightInfo, ...) adds a function `make`.
 struct PluginInfo {
   std::string_view kind;    ///< "material", "light", ...
-  std::string_view name;    ///< as scene files call it
-  std::string_view doc;     ///< one line
-  std::string_view source;  ///< where the model comes from
+  std::string_view name;    ///< name in scene files
+  std::string_view doc;     ///< one line of documentation
+  std::string_view source;  ///< publication or program that the model comes from
   std::span<const Param> params;
 };
 
-/// What a plugin makes by `make()`, whose errors get a place. Throws InputError, also where a pointer is null.
+/// Returns the result of `make()`. InputError and std::bad_alloc pass through; any other exception, and a null pointer
+/// as result, become an InputError at `where`.
 template <class Make>
 auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
   const auto attempt = [&] {
@@ -37,11 +38,11 @@ auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
   };
   auto made = attempt();
   if constexpr (std::is_constructible_v<bool, decltype(made)>)
-    if (!made) fail(where, "{} \"{}\" has a defect: it has made nothing", info.kind, info.name);
+    if (!made) fail(where, "{} \"{}\" has a defect: make() returned nothing", info.kind, info.name);
   return made;
 }
 
-/// The plugins of one kind.
+/// Table of the plug-ins of one kind. Their records must outlive it.
 template <class Info>
 class PluginTable {
  public:
@@ -57,12 +58,13 @@ class PluginTable {
     for (const Info* info : infos_) names.push_back(info->name);
     return names;
   }
+  /// Plug-in of this name, or nullptr.
   const Info* find(std::string_view name) const {
     for (const Info* info : infos_)
       if (info->name == name) return info;
     return nullptr;
   }
-  /// Throws InputError that names the nearest one.
+  /// Plug-in of this name. Throws an InputError that suggests the nearest name.
   const Info& get(std::string_view name, const Location& where) const {
     if (const Info* info = find(name)) return *info;
     fail(where, "unknown {} \"{}\"{}", kind_, name, suggestion(name, names()));

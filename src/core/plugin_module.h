@@ -17,14 +17,15 @@
 
 namespace frond {
 
-/// Changes with the place or meaning of `interface_version` and `build` below: every frond must be able to read them.
+/// Version of the first two members of PluginModule, by which frond decides whether it can load a shared object. It
+/// changes if their position or meaning changes.
 inline constexpr uint32_t kPluginInterface = 2;
 
-/// What a shared object offers, by the same records as the built-in tables. They must live as long as the library,
-/// which is never unloaded.
+/// Plug-ins of a shared object, with the same records as the built-in ones. The records must have static storage
+/// duration; frond never unloads a shared object. Leave the first two members at their defaults.
 struct PluginModule {
   uint32_t interface_version = kPluginInterface;
-  BuildRecord build = {};  ///< leave both as they are
+  BuildRecord build = {};
   std::span<const MaterialInfo* const> materials = {};
   std::span<const IntegratorInfo* const> integrators = {};
   std::span<const WavelengthsInfo* const> wavelengths = {};
@@ -41,5 +42,6 @@ struct PluginModule {
 
 }  // namespace frond
 
-/// The one function that a shared object defines for `frond --plugin`. It is called once, after loading.
+/// Function that a shared object must define for `frond --plugin`. It is called once, after loading, and returns a
+/// module with static storage duration.
 extern "C" [[gnu::visibility("default")]] const frond::PluginModule* frond_plugin();

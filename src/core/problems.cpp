@@ -27,7 +27,7 @@ std::string InputErrors::text(std::string_view prefix, size_t most) const {
 void Problems::add(const InputError& error) {
   if (const auto* several = dynamic_cast<const InputErrors*>(&error)) {
     for (const std::string& message : several->messages()) add(InputError({}, message));
-    count_ += several->count() - several->messages().size();  // of those that were not kept
+    count_ += several->count() - several->messages().size();  // errors whose messages were not stored
     return;
   }
   if (!empty() && dynamic_cast<const Consequence*>(&error)) return;

@@ -7,14 +7,14 @@
 
 namespace frond {
 
-/// Several errors at once, each with its place. `what()` has the first of them, a line each.
+/// Several input errors, each with its location. `what()` returns the first 20 of them, one per line.
 class InputErrors : public InputError {
  public:
-  /// `messages` are those that were kept of `count`.
+  /// `messages` holds the first of `count` errors; the others were not stored.
   InputErrors(std::vector<std::string> messages, size_t count);
   const std::vector<std::string>& messages() const { return messages_; }
   size_t count() const { return count_; }
-  /// The first of them, and how many there are beside, a line each behind `prefix`.
+  /// Returns up to `most` messages and a line with the number of the others; each line begins with `prefix`.
   std::string text(std::string_view prefix, size_t most) const;
 
  private:
@@ -22,18 +22,19 @@ class InputErrors : public InputError {
   size_t count_;
 };
 
-/// An error that may only follow from another one: a name that is unknown because what makes it could not be read.
+/// Error that an earlier error may have caused: a name that is unknown because its definition could not be read.
+/// Problems drops it if it has already collected an error.
 class Consequence : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// Errors that are collected, so that all of a scene's are reported in one run.
+/// Collector of input errors, so that one run reports all errors of a scene. Not thread-safe.
 class Problems {
  public:
-  /// Each message once.
+  /// Adds an error, or all errors of an InputErrors. A message that is already present is not added again.
   void add(const InputError& error);
-  /// Goes on after an InputError, which it keeps. Says whether there was none.
+  /// Calls `act` and returns true; if it throws an InputError, adds that error and returns false.
   template <class Act>
   bool attempt(Act&& act) {
     try {
@@ -47,7 +48,7 @@ class Problems {
   bool empty() const { return count_ == 0; }
   const std::vector<std::string>& messages() const { return messages_; }
   size_t count() const { return count_; }
-  /// Throws what was collected: InputErrors, or the one error as it was.
+  /// Throws InputErrors if there are several errors, an InputError if there is one, nothing if there is none.
   void check() const;
 
  private:

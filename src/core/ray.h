@@ -6,7 +6,7 @@
 
 namespace frond {
 
-/// Half-line from `o` along `d`; hits lie at o + t d, 0 < t < t_max. `d` need not be unit.
+/// Ray from `o` along `d`; intersections lie at o + t d with 0 < t < t_max. `d` need not be normalized.
 struct Ray {
   Vec3 o, d;
   float t_max = std::numeric_limits<float>::infinity();

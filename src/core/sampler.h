@@ -10,28 +10,28 @@
 
 namespace frond {
 
-/// Some samples of one pixel, one after the other.
+/// Samples `first` to `first + count - 1` of the pixel (x, y).
 struct PixelSamples {
   int x, y;
   uint64_t first;
   uint32_t count = 1;
 };
 
-/// Numbers in [0, 1) for the dimensions of a pixel's samples. A number depends on seed, pixel, 64-bit sample index and
-/// dimension alone. Thread-safe.
+/// Generator of sample values in [0, 1), as pbrt's Sampler. A value depends only on the seed, the pixel, the 64-bit
+/// sample index and the dimension. Thread-safe.
 class Sampler {
  public:
   virtual ~Sampler() = default;
-  /// One number for each of the samples, into `u`.
+  /// Writes one value for each of `samples` to `u`.
   virtual void get1d(const PixelSamples& samples, uint32_t dimension, float* u) const = 0;
-  /// The same of a pair, which is one dimension of its own.
+  /// Writes one pair for each of `samples` to `u`. A pair takes one dimension; get1d must not use the same dimension.
   virtual void get2d(const PixelSamples& samples, uint32_t dimension, Vec2* u) const = 0;
-  /// Samples per pixel that the scene asks for.
+  /// Number of samples per pixel that the scene file states.
   virtual int samples_per_pixel() const = 0;
   virtual uint64_t seed() const = 0;
 };
 
-/// The numbers of one sample, one dimension after the other.
+/// Sample values of one sample of one pixel; each call uses the next dimension.
 class SampleNumbers {
  public:
   SampleNumbers(const Sampler& sampler, int x, int y, uint64_t index, uint32_t first_dimension = 0)
@@ -53,12 +53,13 @@ class SampleNumbers {
   uint32_t dimension_;
 };
 
+/// Plug-in record of a sampler.
 struct SamplerInfo : PluginInfo {
-  /// `seed` goes before the sampler's own parameter.
+  /// Returns a sampler, not null. `seed`, if given, overrides the seed of the sampler's parameters.
   std::unique_ptr<Sampler> (*make)(const Params&, std::optional<uint64_t> seed);
 };
 
-/// Key of one sample of one pixel: the root of its random streams.
+/// Key of one sample of one pixel, from which the keys of its random streams are derived.
 constexpr uint64_t sample_key(uint64_t seed, int x, int y, uint64_t sample_index) {
   return hash_key(seed, (uint64_t(uint32_t(x)) << 32) | uint32_t(y), sample_index);
 }

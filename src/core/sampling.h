@@ -7,7 +7,7 @@
 
 namespace frond {
 
-/// Sine and cosine of an angle within pi / 4 of 0, by their series; to 7e-8.
+/// Sine and cosine of an angle in [-pi / 4, pi / 4] by their Taylor series; absolute error at most 7e-8.
 struct SineCosine {
   float sine, cosine;
 
@@ -18,7 +18,7 @@ struct SineCosine {
   }
 };
 
-/// Unit square to unit disk, area preserving (Shirley and Chiu 1997).
+/// Uniform point of the unit disk: the concentric, area-preserving map of the unit square (Shirley and Chiu 1997).
 inline Vec2 sample_disk(Vec2 u) {
   const float x = 2 * u.x - 1, y = 2 * u.y - 1;
   if (x == 0 && y == 0) return {};
@@ -28,13 +28,14 @@ inline Vec2 sample_disk(Vec2 u) {
   return {r * (wide ? of.cosine : of.sine), r * (wide ? of.sine : of.cosine)};
 }
 
-/// Direction with density cos(theta) / pi about +z.
+/// Unit vector in the hemisphere around +z with density cos(theta) / pi per solid angle.
 inline Vec3 sample_cosine_hemisphere(Vec2 u) {
   const Vec2 d = sample_disk(u);
   return {d.x, d.y, std::sqrt(std::max(0.f, 1 - d.x * d.x - d.y * d.y))};
 }
 
-/// Weight of a strategy of density `a` against one of density `b`, one sample each (Veach and Guibas 1995).
+/// MIS weight, by the power heuristic with exponent 2, of a sample from density `a` beside one sample from density `b`
+/// (Veach and Guibas 1995): a^2 / (a^2 + b^2); 1 if `a` is infinite, 0 if it is 0.
 inline float power_heuristic(float a, float b) {
   if (std::isinf(a)) return 1;
   if (!(a > 0)) return 0;

@@ -16,20 +16,21 @@
 
 namespace frond {
 
-/// Triangles over shared vertices, in the scene's space. Every index is below p.size(); `n` and `uv` are empty or as
-/// long as `p`. Triangles wind counter-clockwise about the front: `orient_mesh` turns them so.
+/// Triangle mesh with shared vertices, in scene space. Every index is below p.size(); `n` and `uv` are empty or as long
+/// as `p`. Seen from the front, triangles are counter-clockwise; `orient_mesh` ensures this.
 struct TriangleMesh {
-  std::vector<Vec3> p;   ///< vertices
-  std::vector<Vec3> n;   ///< shading normals, any length
-  std::vector<Vec2> uv;  ///< texture coordinates
-  std::vector<std::array<uint32_t, 3>> triangles;
-  /// Triangles whose second and third corners have changed places, so that they wind about the front; empty: none, or
-  /// it does not matter, as there are texture coordinates.
+  std::vector<Vec3> p;                             ///< vertices
+  std::vector<Vec3> n;                             ///< shading normals, any length
+  std::vector<Vec2> uv;                            ///< texture coordinates
+  std::vector<std::array<uint32_t, 3>> triangles;  ///< indices of vertices
+  /// For each triangle, whether orient_mesh exchanged its second and third vertex. It is empty if no triangle was
+  /// exchanged or if the mesh has texture coordinates.
   std::vector<bool> turned = {};
-  /// From this triangle on they are halves of quadrilaterals, two by two: corners 0 1 2 and 0 2 3.
+  /// Triangles from this index on are halves of quadrilaterals, in pairs: vertices 0 1 2 and 0 2 3.
   size_t halves_from = SIZE_MAX;
 };
 
+/// Axis-aligned bounding box; empty by default.
 struct Bounds {
   Vec3 min{INFINITY, INFINITY, INFINITY}, max{-INFINITY, -INFINITY, -INFINITY};
   void add(const Vec3& p) {
@@ -37,7 +38,7 @@ struct Bounds {
     max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
   }
   bool is_empty() const { return !(min.x <= max.x); }
-  /// Eight points, or none where it is empty.
+  /// Its eight corners; none if the box is empty.
   std::vector<Vec3> corners() const {
     std::vector<Vec3> points;
     if (is_empty()) return points;
@@ -48,39 +49,43 @@ struct Bounds {
   }
 };
 
-/// A point of a surface.
+/// Point of a surface.
 struct ShapePoint {
-  Vec3 p, ng;   ///< the geometric normal is unit, on the front
-  Vec2 at;      ///< where on the primitive that is, by its own parameters
-  float t = 0;  ///< along the ray that met it
-  unsigned primitive = 0;
-  double area = 0;  ///< of a sampled point: what it stands for, the reciprocal of its density over the area
+  Vec3 p, ng;              ///< position, and geometric normal, unit, on the front
+  Vec2 at;                 ///< surface parameters of the point, as the shape defines them
+  float t = 0;             ///< ray parameter of an intersection
+  unsigned primitive = 0;  ///< index of the primitive
+  double area = 0;         ///< of a sampled point: 1 / (its density per area)
 };
 
-/// A surface with its own intersection routine, in the space that its transform leads to; one or more primitives.
+/// Surface with an intersection routine in C++: one or more primitives, in the space to which ShapePlacement::to_scene
+/// maps. Thread-safe.
 class AnalyticShape {
  public:
   virtual ~AnalyticShape() = default;
+  /// Number of primitives.
   virtual unsigned count() const { return 1; }
+  /// Bounding box of a primitive.
   virtual Bounds bounds(unsigned primitive) const = 0;
-  /// Points around a primitive: it lies within their convex hull. The corners of its bounds, or some that lie closer.
+  /// Points whose convex hull contains the primitive: the corners of its bounds, or closer points.
   virtual std::vector<Vec3> outline(unsigned primitive) const { return bounds(primitive).corners(); }
-  /// The nearest point with t_min < t < ray.t_max.
+  /// Nearest intersection with t_min < t < ray.t_max; empty if there is none.
   virtual std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray, float t_min) const = 0;
-  /// Texture coordinates of a point, by its own parameters.
+  /// Texture coordinates at the surface parameters `at`.
   virtual Vec2 uv(unsigned /*primitive*/, Vec2 at) const { return at; }
-  /// By texture coordinates.
+  /// Derivatives with respect to the texture coordinates.
   virtual SurfaceDerivatives derivatives(const ShapePoint& point) const = 0;
-  /// Shaded with the geometric normal, and left by rays from where they met it: the next two are not asked for.
+  /// True if the shape has neither shading normals nor a clearance; then the next two functions are not called.
   bool is_plain() const { return is_plain_; }
-  /// Shading normal, of any length; 0: it is the geometric one.
+  /// Shading normal, of any length; 0 if it is the geometric normal.
   virtual Vec3 shading_normal(unsigned /*primitive*/, Vec2 /*at*/) const { return {}; }
-  /// How far off along the normal rays start that leave it, if that is farther than rounding asks for.
+  /// Distance along the normal from the point to the origin of rays that leave it, if rounding errors need less.
   virtual float clearance(const ShapePoint& /*point*/) const { return 0; }
-  /// A point of the primitive, nearly evenly over its area: the point's `area` says how nearly.
+  /// Samples a point of the primitive, nearly uniformly over its area, for `u` in [0, 1)^2; sets the point's `area`.
   virtual ShapePoint sample(unsigned primitive, Vec2 u) const = 0;
+  /// Area of one side of a primitive.
   virtual double area(unsigned primitive) const = 0;
-  /// Why it cannot be sampled; empty where it can.
+  /// Reason why the shape cannot be sampled as a light; empty if it can.
   virtual std::string_view cannot_emit() const { return {}; }
 
  protected:
@@ -93,24 +98,25 @@ class AnalyticShape {
 using MeshPtr = std::shared_ptr<const TriangleMesh>;
 using AnalyticShapePtr = std::shared_ptr<const AnalyticShape>;
 
-/// A surface: triangles for Embree's own routines, or one with its own.
+/// A surface: triangles, which Embree intersects, or an analytic shape.
 using ShapeGeometry = std::variant<MeshPtr, AnalyticShapePtr>;
 
-/// Instances of an object of the scene.
+/// Instances of an object of the scene, placed by a table.
 struct ObjectInstances {
-  std::string object;
-  std::filesystem::path table;  ///< of an InstanceTable
+  std::string object;           ///< name of the object
+  std::filesystem::path table;  ///< file of an InstanceTable
 };
 
-/// What a shape plugin makes: a surface, or several.
+/// Result of a shape plug-in: one or more surfaces, or instances of an object.
 using MadeShape = std::variant<std::vector<ShapeGeometry>, ObjectInstances>;
 
+/// Placement of a shape by its directive.
 struct ShapePlacement {
-  Transform to_scene;        ///< from the shape's space to that of the scene, or of the object it is defined in
-  bool reverse_orientation;  ///< of the directive: front and back swapped
+  Transform to_scene;        ///< from the shape's space to that of the scene, or of the object that contains it
+  bool reverse_orientation;  ///< ReverseOrientation: front and back are exchanged
 };
 
-/// A mesh's normals into the scene's space, unit, on the side that ReverseOrientation makes the front.
+/// Transforms a mesh's normals to scene space, normalizes them and flips them if ReverseOrientation is set.
 inline void place_normals(std::vector<Vec3>& normals, const ShapePlacement& placement) {
   for (Vec3& n : normals) {
     const Vec3 m = normalize_any(placement.to_scene.normal(normalize_any(n)));
@@ -118,9 +124,10 @@ inline void place_normals(std::vector<Vec3>& normals, const ShapePlacement& plac
   }
 }
 
-/// Turns triangles so that they wind counter-clockwise about the front, which is what decides the side of a surface. As
-/// in pbrt: the normals say which side that is where a mesh has them, winding and handedness where not, or where they
-/// are 0 or lie in the face. Positions and normals are in the scene's space already.
+/// Reorders the vertices of triangles so that they are counter-clockwise seen from the front. As in pbrt, the front is
+/// the side of the vertex normals; without them, or if they are 0 or lie in the plane of the triangle, it follows from
+/// the order of vertices, the handedness of the transformation and ReverseOrientation. Positions and normals must be in
+/// scene space.
 inline void orient_mesh(TriangleMesh& mesh, const ShapePlacement& placement) {
   const bool flip_winding = placement.reverse_orientation != placement.to_scene.swaps_handedness();
   for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -136,11 +143,13 @@ inline void orient_mesh(TriangleMesh& mesh, const ShapePlacement& placement) {
   }
 }
 
+/// Plug-in record of a shape. `make` throws InputError.
 struct ShapeInfo : PluginInfo {
   MadeShape (*make)(const Params&, const ShapePlacement&);
 };
 
-/// Declared beside its own by a shape that can be partly transparent, as all of frond's are; the renderer reads it.
+/// Parameter that a shape adds to its own if it can be partly transparent; the renderer reads it. All built-in shapes
+/// have it.
 inline constexpr Param kAlphaParam{.name = "alpha",
                                    .kind = ParamKind::float_texture,
                                    .default_value = 1.0,

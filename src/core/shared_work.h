@@ -6,10 +6,11 @@
 
 namespace frond {
 
-/// Results that several plugins of a scene need alike: made once, kept as long as somebody holds them.
+/// Cache of results that several plug-ins of a scene need. A result lives as long as one of them holds it.
 class SharedWork {
  public:
-  /// `key` says all that the result depends on, its kind included; make() returns the T. Not for several threads.
+  /// Returns the result for `key`, calling make() if there is none. `key` must state the type T and everything that the
+  /// result depends on. Not thread-safe.
   template <class T, class Make>
   std::shared_ptr<const T> get(const std::string& key, const Make& make) {
     std::weak_ptr<const void>& known = known_[key];

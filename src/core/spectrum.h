@@ -10,11 +10,11 @@
 
 namespace frond {
 
-/// Wavelengths that one path carries at most.
+/// Largest number of wavelengths that one path carries.
 inline constexpr int kLanes = 4;
 
-/// A quantity at the wavelengths of one path, lane by lane. Unused lanes hold 0. One register, so that functions hand
-/// it on in one.
+/// Values of a spectral quantity at the wavelengths of one path, one for each lane. Unused lanes hold 0. It is one SIMD
+/// register, so that functions pass it in a register.
 struct SampledSpectrum {
   Float4 v{};
 
@@ -33,25 +33,28 @@ struct SampledSpectrum {
   friend SampledSpectrum operator*(float s, SampledSpectrum a) { return a *= s; }
   friend bool operator==(const SampledSpectrum& a, const SampledSpectrum& b) { return are_equal(a.v, b.v); }
 
+  /// Largest lane.
   float max() const { return std::max({v[0], v[1], v[2], v[3]}); }
   bool is_black() const { return are_equal(v, Float4{}); }
 };
 
+/// Closed interval [min, max].
 struct Interval {
   double min, max;
   constexpr bool contains(double x) const { return x >= min && x <= max; }  // false for NaN
 };
 
-/// The wavelengths (nm) of one path. A lane takes part while it is active: lanes beyond the strategy's count never are,
-/// and the integrator retires a lane whose throughput has fallen to zero, so that nobody works for it.
+/// Wavelengths of one path, one for each lane. BSDFs and textures need only compute active lanes. Lanes from `count` on
+/// are never active; the integrator deactivates a lane whose throughput has become 0.
 struct SampledWavelengths {
   std::array<float, kLanes> nm{};
-  std::array<float, kLanes> pdf{};  ///< density per nm; 1 for wavelengths that are fixed or a band's
+  std::array<float, kLanes> pdf{};  ///< probability density per nm; 1 if the wavelengths are fixed or a band's
   std::array<bool, kLanes> active{};
-  int count = 0;                        ///< lanes in use
-  std::array<uint16_t, kLanes> band{};  ///< of the strategy, where it has bands
+  int count = 0;                        ///< number of lanes in use
+  std::array<uint16_t, kLanes> band{};  ///< index of each lane's band, if the strategy has bands
 
   bool is_active(int lane) const { return active[static_cast<size_t>(lane)]; }
+  /// Deactivates the lanes in which `throughput` is 0.
   void retire_black_lanes(const SampledSpectrum& throughput) {
     for (size_t i = 0; i < kLanes; ++i) active[i] = active[i] && throughput.v[i] != 0;
   }
@@ -62,21 +65,24 @@ inline float mean(const SampledSpectrum& s, const SampledWavelengths& lambda) {
   return (s.v[0] + s.v[1] + s.v[2] + s.v[3]) / static_cast<float>(lambda.count);
 }
 
-/// A function of wavelength, in whatever unit its user says. Total: outside `range_nm` the nearest end holds, and
-/// whoever sets up a render refuses wavelengths outside the range before the first path (check_range).
+/// Function of wavelength; its user defines the unit. Outside `range_nm` the value at the nearest end is returned; a
+/// material or light rejects a render with wavelengths outside the range before the first path (check_range).
+/// Thread-safe.
 class Spectrum {
  public:
   virtual ~Spectrum() = default;
+  /// Value at the wavelength `lambda_nm`.
   virtual float at(float lambda_nm) const = 0;
-  /// Wavelengths (nm) for which the data stand.
+  /// Wavelengths (nm) for which there are data.
   virtual Interval range_nm() const = 0;
+  /// Upper bound of the values.
   virtual float max_value() const = 0;
 
-  /// At the wavelengths of a path. What is asked for at every hit does it in one call.
+  /// Values at the wavelengths of a path. Classes evaluated at every hit override it: one virtual call, not four.
   virtual SampledSpectrum sample(const SampledWavelengths& lambda) const { return sample_by(*this, lambda); }
 
  protected:
-  /// By `at` of the class that is named, without a call where that is final.
+  /// Calls `at` of class T for each lane; if T is final, the calls are not virtual.
   template <class T>
   static SampledSpectrum sample_by(const T& spectrum, const SampledWavelengths& lambda) {
     SampledSpectrum s;

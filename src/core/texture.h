@@ -11,21 +11,22 @@
 
 namespace frond {
 
-/// A column of numbers (32-bit floats) in a table of instances.
+/// Column of 32-bit floats in an instance table.
 struct InstanceColumn {
   std::string name;
-  size_t offset;   ///< bytes from the beginning of a row
-  Interval range;  ///< bounds of its values
+  size_t offset;   ///< in bytes from the beginning of a row
+  Interval range;  ///< smallest and largest value
 };
 
-/// Rows of the tables that an instance of an object comes from, outermost first: a shoot's, then its leaf's.
+/// Rows of the instance tables that placed an object, outermost first: for a leaf of a shoot the shoot's row, then the
+/// leaf's.
 class InstanceRows {
  public:
-  static constexpr uint32_t kMost = 4;
+  static constexpr uint32_t kMost = 4;  ///< deepest nesting of instances
 
-  InstanceRows() {}  // NOLINT(modernize-use-equals-default): rows that are not there are not set to anything
+  InstanceRows() {}  // NOLINT(modernize-use-equals-default): leaves the unused rows uninitialized
   void add(const std::vector<InstanceColumn>& columns, const std::byte* row) { rows_[count_++] = {&columns, row}; }
-  /// The number in the innermost table that has such a column; empty where none has.
+  /// Value of the column in the innermost table that has it; empty if no table has it.
   std::optional<float> find(std::string_view column) const {
     for (uint32_t i = count_; i-- > 0;)
       for (const InstanceColumn& c : *rows_[i].columns)
@@ -46,46 +47,47 @@ class InstanceRows {
   uint32_t count_ = 0;
 };
 
-/// What a texture may know of the point that it is asked for. What comes after the instance is set for those textures
-/// alone that `need_details`; 0 elsewhere.
+/// Surface point at which a texture is evaluated. The members after `instance` are set only for textures whose
+/// `needs_details` is true; else they are 0.
 struct TexturePoint {
   Vec2 uv;
   InstanceRows instance = {};
   Vec3 p{};  ///< world space
   Vec3 n{};  ///< shading normal, world space, unit
-  /// To where the camera's next sample along x and y of the film would fall: what to filter over.
+  /// Change of p and uv from this camera sample to the next one in x and y of the film: the footprint to filter over.
   Vec3 dp_dx{}, dp_dy{};
   Vec2 duv_dx{}, duv_dy{};
 };
 
-/// A number over a surface.
+/// Scalar texture. Thread-safe.
 class FloatTexture {
  public:
   virtual ~FloatTexture() = default;
   virtual float evaluate(const TexturePoint& at) const = 0;
   /// Bounds of the values.
   virtual Interval range() const = 0;
-  /// Whether values come near to them; those of noise hardly do.
+  /// True if values come close to both bounds; false for bounds that are rarely approached, as those of noise.
   virtual bool is_range_tight() const { return true; }
-  /// Reads more of its points than (u, v) and instance. What it is made of says so for itself.
+  /// True if the texture itself reads more of a TexturePoint than `uv` and `instance`. Textures that it is made of
+  /// report this separately.
   virtual bool needs_details() const { return false; }
   bool is_constant() const { return range().min == range().max; }
 };
 
-/// A reflectance or transmittance over a surface, in [0, 1] at every wavelength.
+/// Spectral texture: a reflectance or transmittance, in [0, 1] at every wavelength. Thread-safe.
 class SpectrumTexture {
  public:
   virtual ~SpectrumTexture() = default;
   virtual SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const = 0;
-  /// Wavelengths (nm) for which the data stand.
+  /// Wavelengths (nm) for which there are data.
   virtual Interval range_nm() const = 0;
   /// Upper bound of the values.
   virtual float max_value() const = 0;
-  /// As of a FloatTexture.
+  /// See FloatTexture::needs_details.
   virtual bool needs_details() const { return false; }
 };
 
-/// Made from parameters that hold one number or spectrum, as materials use them.
+/// Texture of a parameter that is a number.
 class ConstantFloatTexture final : public FloatTexture {
  public:
   explicit ConstantFloatTexture(float value) : value_(value) {}
@@ -96,6 +98,7 @@ class ConstantFloatTexture final : public FloatTexture {
   float value_;
 };
 
+/// Texture of a parameter that is a spectrum.
 class ConstantSpectrumTexture final : public SpectrumTexture {
  public:
   explicit ConstantSpectrumTexture(SpectrumPtr value) : value_(std::move(value)) {}
@@ -109,15 +112,17 @@ class ConstantSpectrumTexture final : public SpectrumTexture {
   SpectrumPtr value_;
 };
 
-/// Where a texture was defined, and among which others.
+/// Context in which a texture is made.
 struct TexturePlacement {
-  Transform world_from_texture;
-  SharedWork* shared = nullptr;  ///< what textures of one scene have in common; nullptr: each has its own
+  Transform world_from_texture;  ///< the current transformation at the texture's definition
+  SharedWork* shared = nullptr;  ///< results shared by the textures of a scene; nullptr: nothing is shared
 };
 
+/// Plug-in record of a scalar texture. `make` returns a texture, not null, and throws InputError.
 struct FloatTextureInfo : PluginInfo {
   std::unique_ptr<FloatTexture> (*make)(const Params&, const TexturePlacement&);
 };
+/// Plug-in record of a spectral texture. `make` returns a texture, not null, and throws InputError.
 struct SpectrumTextureInfo : PluginInfo {
   std::unique_ptr<SpectrumTexture> (*make)(const Params&, const TexturePlacement&);
 };

@@ -36,7 +36,8 @@ Transform::Rows multiply(const Transform::Rows& a, const Transform::Rows& b) {
   return to_float(product);
 }
 
-/// By cofactors. Columns that lie in one plane up to the rounding of a scene file's decimals count as singular.
+/// Inverse by cofactors. A matrix whose columns are coplanar up to the rounding of decimals in a scene file counts as
+/// singular; the entries of its inverse are NaN.
 RowsDouble invert(const RowsDouble& m) {
   constexpr double kFlat = 1e-10;
   const Vec3d x = column(m, 0), y = column(m, 1), z = column(m, 2), origin = column(m, 3);
@@ -70,7 +71,7 @@ Transform Transform::scale(const Vec3& by) {
   return Transform(from_columns({by.x, 0, 0}, {0, by.y, 0}, {0, 0, by.z}, {}));
 }
 
-/// Rodrigues 1840.
+/// Rodrigues' rotation formula (1840).
 Transform Transform::rotate(double angle_deg, const Vec3& axis) {
   const double angle = angle_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
   const Vec3d a = normalize(to_double(axis));

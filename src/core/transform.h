@@ -6,40 +6,41 @@
 
 namespace frond {
 
-/// Affine map with its inverse. A map that cannot be inverted holds entries that are not finite: `is_valid` says so,
-/// and whoever reads a scene asks it after every step.
+/// Affine transformation with its inverse. A transformation that cannot be inverted has entries that are not finite;
+/// the scene reader calls `is_valid` after every directive that changes one.
 class Transform {
  public:
-  /// Three rows of four; the last column is the translation, the fourth row would be 0 0 0 1.
+  /// The first three rows of a 4 x 4 matrix, whose last column is the translation; the fourth row is 0 0 0 1.
   using Rows = std::array<std::array<float, 4>, 3>;
   using RowsDouble = std::array<std::array<double, 4>, 3>;
 
   Transform() = default;  ///< identity
-  /// Invalid when singular.
+  /// Invalid if `rows` is singular.
   explicit Transform(const RowsDouble& rows);
 
   static Transform translate(const Vec3& by);
   static Transform scale(const Vec3& by);
-  /// About an axis of any length but 0, by the right-hand rule.
+  /// Rotation by `angle_deg` degrees about `axis`, of any length but 0, by the right-hand rule.
   static Transform rotate(double angle_deg, const Vec3& axis);
-  /// Camera from world: the camera sits at `eye`, +z points at `target`, +y to the side of `up`. The frame is a turned
-  /// one, never mirrored: with +x to the right of the image the world is left-handed, as in pbrt. Invalid where the
-  /// three give no frame.
+  /// Camera-from-world transformation of a camera at `eye` whose +z axis points to `target`, with +y in the plane of z
+  /// and `up`. It is a rotation and a translation, without reflection: if +x points to the right of the image, the
+  /// world is left-handed, as in pbrt. Invalid if `target` equals `eye` or `up` is parallel to the viewing direction.
   static Transform look_at(const Vec3& eye, const Vec3& target, const Vec3& up);
 
-  /// First `b`, then `a`.
+  /// Applies `b` first, then `a`.
   friend Transform operator*(const Transform& a, const Transform& b);
   friend bool operator==(const Transform&, const Transform&) = default;
 
   Transform inverse() const { return {inverse_, rows_}; }
   const Rows& rows() const { return rows_; }
+  /// True if all entries of the matrix and of its inverse are finite.
   bool is_valid() const;
-  /// Mirrors: turns right-handed frames into left-handed ones.
+  /// True if the transformation maps right-handed frames to left-handed ones (negative determinant).
   bool swaps_handedness() const;
 
   Vec3 point(const Vec3& p) const { return vector(p) + Vec3{rows_[0][3], rows_[1][3], rows_[2][3]}; }
   Vec3 vector(const Vec3& v) const { return {row(rows_[0], v), row(rows_[1], v), row(rows_[2], v)}; }
-  /// Keeps normals normal to their surface; the result is not unit.
+  /// Transforms a surface normal by the inverse transpose. The result is not normalized.
   Vec3 normal(const Vec3& n) const {
     const Rows& i = inverse_;
     return {i[0][0] * n.x + i[1][0] * n.y + i[2][0] * n.z, i[0][1] * n.x + i[1][1] * n.y + i[2][1] * n.z,

@@ -8,7 +8,7 @@ namespace frond {
 inline constexpr float kPi = 3.14159265358979323846f;
 inline constexpr float kInvPi = 0.31830988618379067154f;
 
-/// Three components; points, vectors and normals alike. `float` carries the render, `double` the leaf's walk.
+/// Three components: a point, a vector or a normal. The renderer uses `float`, the random walk in leaves `double`.
 template <class T>
 struct Vec3T {
   T x{}, y{}, z{};
@@ -31,6 +31,7 @@ using Vec3d = Vec3T<double>;
 constexpr Vec3d to_double(const Vec3& v) { return {double(v.x), double(v.y), double(v.z)}; }
 constexpr Vec3 to_float(const Vec3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
+/// Two components: texture coordinates, film positions or a pair of random numbers.
 struct Vec2 {
   float x{}, y{};
   friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
@@ -51,35 +52,38 @@ template <class T>
 T length(const Vec3T<T>& a) {
   return std::sqrt(dot(a, a));
 }
+/// `a` scaled to length 1. The square of its length must neither overflow nor underflow.
 template <class T>
 Vec3T<T> normalize(const Vec3T<T>& a) {
   return a / length(a);
 }
-/// For vectors whose square does not fit.
+/// `a` scaled to length 1 after division by its largest component; 0 if `a` is 0. Slow path of normalize_any.
 template <class T>
 [[gnu::cold, gnu::noinline]] Vec3T<T> normalize_extreme(const Vec3T<T>& a) {
   const T largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
   if (!(largest > 0)) return {};
   return normalize(Vec3T<T>{a.x / largest, a.y / largest, a.z / largest});
 }
-/// The same for vectors of any length, even where its square overflows or vanishes; 0 for 0.
+/// `a` scaled to length 1, also if the square of its length overflows or underflows; 0 if `a` is 0.
 template <class T>
 inline Vec3T<T> normalize_any(const Vec3T<T>& a) {
   const T square = dot(a, a);
   return square > T(1e-30) && square < T(1e30) ? a / std::sqrt(square) : normalize_extreme(a);
 }
 
-/// Right-handed orthonormal frame around a unit `z`.
+/// Right-handed orthonormal frame with unit axes x, y and z.
 template <class T>
 struct FrameT {
   Vec3T<T> x, y, z;
 
-  /// Duff et al. 2017, "Building an Orthonormal Basis, Revisited": no branch, no loss near either pole.
+  /// Frame with z = `n`, a unit vector. Duff et al. 2017, Building an Orthonormal Basis, Revisited (JCGT 6(1)): free of
+  /// branches, and accurate near both poles.
   static FrameT around(const Vec3T<T>& n) {
     const T sign = std::copysign(T(1), n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
     return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
-  /// With x as near to a vector as may be; where that is along z, any.
+  /// Frame with z = `n`, a unit vector, and x along the projection of `v` onto the plane normal to `n`; x is arbitrary
+  /// if `v` is parallel to `n`.
   static FrameT along(const Vec3T<T>& n, const Vec3T<T>& v) {
     const Vec3T<T> y = normalize_any(cross(n, v));
     return dot(y, y) > T(0.5) ? FrameT{cross(y, n), y, n} : around(n);

@@ -8,41 +8,44 @@
 
 namespace frond {
 
-/// Where a ray meets the scene.
+/// Intersection of a ray with the scene.
 struct SurfacePoint {
   Hit hit;
   const Material* material = nullptr;
-  const AreaLight* light = nullptr;  ///< nullptr: the surface gives off no light
+  const AreaLight* light = nullptr;  ///< nullptr if the surface does not emit
   uint32_t material_id = 0;          ///< index of the material in the scene's description
-  uint64_t instance_id = 0;          ///< of the instance of an object, counted from 1; 0: the shape stands for itself
+  uint64_t instance_id = 0;          ///< index of the instance of an object, from 1; 0 if the shape is not instanced
 };
 
-/// Rays that begin close to each other and go nearly the same way: they are traced together.
+/// Rays with similar origins and directions, which are traced together.
 struct RayPacket {
   static constexpr int kWidth = 8;
-  const Ray* rays;       ///< kWidth of them
-  const uint64_t* keys;  ///< of each, as of one ray
-  uint32_t lanes = 0;    ///< which of them are there, by bit
+  const Ray* rays;       ///< kWidth rays
+  const uint64_t* keys;  ///< one for each ray; see World
+  uint32_t lanes = 0;    ///< bit i is set if ray i is valid
 };
 
-/// What an integrator sees of a scene. Thread-safe. `key` feeds the random numbers of partly transparent surfaces
-/// (`alpha`); it must differ from ray to ray.
+/// Scene as seen by an integrator. Thread-safe. `key` is the key of the random numbers for partly transparent surfaces
+/// (`alpha`); it must differ between rays.
 class World {
  public:
   virtual ~World() = default;
+  /// Finds the nearest intersection with t in (0, ray.t_max) and writes it to `point`; returns false if there is none.
   virtual bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const = 0;
+  /// True if the ray meets any surface with t in (0, ray.t_max).
   virtual bool occluded(const Ray& ray, uint64_t key) const = 0;
-  /// Which of the packet's rays meet something, by bit; `points` has one for each lane. Where two surfaces are at the
-  /// same distance, which of them it is may hang on what else is in the packet.
+  /// Intersects all rays of a packet: sets bit i of the result and points[i] if ray i meets a surface. If two surfaces
+  /// are at the same distance, the one reported can depend on the other rays of the packet.
   virtual uint32_t intersect(const RayPacket& packet, SurfacePoint* points) const;
-  /// Which of them something is in the way of.
+  /// Sets bit i of the result if ray i meets any surface.
   virtual uint32_t occluded(const RayPacket& packet) const;
+  /// All lights; Light::index is the index in this list.
   virtual std::span<const Light* const> lights() const = 0;
-  /// Those of `lights` that surround the scene.
+  /// The environment lights among `lights`.
   virtual std::span<const EnvironmentLight* const> environment() const = 0;
-  /// Radius of a sphere around everything.
+  /// Radius of a sphere that contains the scene.
   virtual float radius() const = 0;
-  /// Of its paths; its materials are made ready for them.
+  /// Wavelength strategy of the render, for which the materials have been prepared.
   virtual const WavelengthStrategy& wavelengths() const = 0;
 };
 
@@ -60,9 +63,10 @@ inline uint32_t World::occluded(const RayPacket& packet) const {
   return hits;
 }
 
-/// A ray from a hit that cannot meet the same surface again: the origin is lifted off along ng, to the side of `d`.
+/// Origin for a ray that leaves a hit in the direction `d` and must not intersect the same surface again: the point,
+/// offset along ng to the side of `d`.
 inline Vec3 offset_origin(const Hit& hit, const Vec3& d) {
-  // 2^-17 of the largest coordinate behind p leaves room for barycentrics and an instance's transform: 8 um at 1 m.
+  // 2^-17 of the largest coordinate (8 um at 1 m) exceeds the errors of barycentrics and of an instance's transform.
   const float lift = hit.extent * 0x1p-17f + 0x1p-40f;
   return hit.p + hit.ng * (dot(d, hit.ng) < 0 ? -lift : lift);
 }

@@ -9,11 +9,13 @@ namespace {
 
 constexpr ExportOption kOptions[] = {ExportOption::angles, ExportOption::views};
 
+/// Returns a comment line that documents a column.
 std::string note(const Quantity& q) {
   return fmt::format("# {}{}{}: {}\n", q.name, q.unit.empty() || q.unit == "1" ? "" : ", ", q.unit == "1" ? "" : q.unit,
                      q.doc);
 }
 
+/// Returns one row for each number, so that readers need no knowledge of the shape.
 std::string csv_file(const ExportMaterial& material, const ExportRequest& request) {
   const BsdfTable t = make_table(material, request);
   std::string text = "# frond " FROND_VERSION " export\n# material: " + material.label + '\n';

@@ -7,16 +7,18 @@
 namespace frond {
 namespace {
 
+/// Evaluates the material on a flat surface. Throws InputError if it returns no BSDF.
 const Bsdf& evaluated(const Material& material, const std::vector<double>& nm, Arena& arena) {
   const GivenWavelengths wavelengths({nm.begin(), nm.end()});
   const Bsdf* bsdf = material.evaluate(flat_hit(), wavelengths.sample(0), arena);
-  if (!bsdf) fail({}, "the material says that it has no surface there: nothing can be exported");
+  if (!bsdf) fail({}, "the material has no surface there (an alpha of 0, for one): it cannot be exported");
   return *bsdf;
 }
 
+/// Throws InputError for a BSDF that a table of f cannot represent.
 void check(const Bsdf& bsdf, const std::string& label) {
   if (any(bsdf.flags() & Lobes::stochastic))
-    fail({}, "{}: its f is a random estimate, which no table can hold; of a leaf by abm, leaf_solved is the mean",
+    fail({}, "{}: its f is a random estimate, which no table can hold; for a leaf of abm, leaf_solved is the mean",
          label);
   if (any(bsdf.flags() & Lobes::specular)) fail({}, "{}: it has a delta lobe, which no table of f can hold", label);
   const SampledSpectrum ratio = bsdf.index_ratio();
@@ -36,6 +38,7 @@ ExportedBsdf::ExportedBsdf(const ExportMaterial& material, std::vector<double> w
 ExportedBsdf::At::At(const ExportedBsdf& bsdf) : bsdf_(evaluated(*bsdf.material_, bsdf.wavelengths_nm_, arena_)) {}
 
 SampledSpectrum ExportedBsdf::At::operator()(const Vec3& light, const Vec3& seen) const {
+  // An exact f uses no random numbers.
   RandomStream unused(0);
   return bsdf_.f(seen, light, unused);
 }

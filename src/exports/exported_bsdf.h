@@ -11,32 +11,32 @@
 
 namespace frond {
 
-/// What is exported: a material without a scene, whose f is exact and has no delta lobe, with air on both of its sides.
+/// The material to export: without a scene, with an exact f and no delta lobe, in air on both sides.
 struct ExportMaterial {
-  std::string label;  ///< the material's text
-  /// The material, prepared for one to four wavelengths (nm). Throws InputError where its data do not reach them.
+  std::string label;  ///< name and parameters
+  /// Returns the material, prepared for one to four wavelengths (nm). Throws InputError if its data do not cover them.
   std::function<std::shared_ptr<const Material>(const std::vector<double>&)> prepare;
-  uint64_t seed;  ///< of all random numbers: another one for each material
+  uint64_t seed;  ///< differs between materials
   const ThreadPool& pool;
   const Log& log;
 };
 
-/// f of a material at one to four wavelengths, as a renderer sees it.
+/// Rendered f of a material at one to four wavelengths.
 class ExportedBsdf {
  public:
-  /// Throws InputError, which says what would be lost, for a material that is a random estimate, has a delta lobe or
-  /// refracts light into another medium.
+  /// Throws InputError for a material that is a random estimate, has a delta lobe, or refracts light into another
+  /// medium. The message names what the export would lose.
   ExportedBsdf(const ExportMaterial& material, std::vector<double> wavelengths_nm);
 
   const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
   const Material& material() const { return *material_; }
 
-  /// For one thread at a time.
+  /// Evaluator with its own memory, for one thread.
   class At {
    public:
     explicit At(const ExportedBsdf& bsdf);
-    /// 1/sr, a lane for each wavelength: light comes from the direction `light`, and is seen from `seen`, both away
-    /// from the surface. Nothing is scattered to or from the horizon.
+    /// Returns f in 1/sr, one lane for each wavelength, for light from direction `light` seen from direction `seen`;
+    /// both point away from the surface. Returns 0 if either is on the horizon.
     SampledSpectrum operator()(const Vec3& light, const Vec3& seen) const;
     const Bsdf& bsdf() const { return bsdf_; }
 
@@ -50,7 +50,7 @@ class ExportedBsdf {
   std::shared_ptr<const Material> material_;
 };
 
-/// Runs of up to four wavelengths, in order.
+/// Splits wavelengths into groups of up to four, in order.
 std::vector<std::vector<double>> in_fours(const std::vector<double>& wavelengths_nm);
 
 }  // namespace frond

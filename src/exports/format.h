@@ -10,29 +10,29 @@
 
 namespace frond {
 
-/// What an export is to hold. Lists that are empty are the format's own.
+/// Contents of an export. Empty lists select the format's defaults.
 struct ExportRequest {
   std::vector<double> wavelengths_nm;
   std::vector<double> theta_i_deg, theta_o_deg, phi_o_deg;
-  int64_t rays = 0;  ///< 0: as many as the format says
+  int64_t rays = 0;  ///< 0: the format's default
 };
 
-/// What a request can say, for formats that do not look at all of it.
+/// Optional parts of a request. A format uses a subset of them.
 enum class ExportOption : uint8_t { angles, views, rays };
 
-/// A file format for programs that are not frond.
+/// A file format for other programs.
 struct ExportFormat {
   std::string_view name, doc;
-  bool is_text;                           ///< can go to standard output
-  std::span<const ExportOption> options;  ///< that it looks at, beside the wavelengths
-  void (*check)(const ExportRequest&);    ///< throws InputError for what is asked for in vain, before anything is done
-  std::string (*write)(const ExportMaterial&, const ExportRequest&);  ///< the whole file; throws InputError
+  bool is_text;                           ///< may be written to standard output
+  std::span<const ExportOption> options;  ///< used by the format, in addition to the wavelengths
+  void (*check)(const ExportRequest&);    ///< throws InputError for an invalid request, before any work
+  std::string (*write)(const ExportMaterial&, const ExportRequest&);  ///< returns the whole file; throws InputError
 };
 
-/// Throws InputError for numbers that do not ascend; `what` they are.
+/// Throws InputError unless the numbers ascend. `what` names them in the message.
 void check_ascending(std::string_view what, const std::vector<double>& numbers);
 
-/// All of them. A new format is one file and its name in two lines of format.cpp.
+/// Returns all formats. A new format is one file and two lines in format.cpp.
 std::span<const ExportFormat* const> export_formats();
 
 }  // namespace frond

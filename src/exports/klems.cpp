@@ -8,15 +8,17 @@
 namespace frond {
 namespace {
 
+/// A quadrature rule.
 struct Rule {
   std::vector<double> x, weight;  // on [0, 1]
 };
 
+/// Gauss-Legendre rule with N nodes.
 template <int N>
 Rule gauss_rule() {
   using Gauss = boost::math::quadrature::gauss<double, N>;
   Rule rule;
-  for (size_t i = 0; i < Gauss::abscissa().size(); ++i)  // the half that is not negative
+  for (size_t i = 0; i < Gauss::abscissa().size(); ++i)  // boost lists the non-negative half
     for (const double sign : {-1.0, 1.0}) {
       const double x = Gauss::abscissa()[i];
       if (x == 0 && sign > 0) continue;
@@ -27,17 +29,20 @@ Rule gauss_rule() {
 
 constexpr std::array kOrders{2, 3, 5, 8, 12};
 
+/// Rules are computed once.
 const Rule& rule_of(size_t level) {
   static const std::array<Rule, kOrders.size()> rules{gauss_rule<2>(), gauss_rule<3>(), gauss_rule<5>(),
                                                       gauss_rule<8>(), gauss_rule<12>()};
   return rules[level];
 }
 
+/// Position of a patch: its ring and its column within the ring.
 struct Place {
   const KlemsBasis::Ring& ring;
   int column;
 };
 
+/// Returns ring and column of a patch.
 Place place_of(size_t patch) {
   auto ring = KlemsBasis::kRings.begin();
   for (; patch >= size_t(ring->phis); ++ring) patch -= size_t(ring->phis);
@@ -48,7 +53,7 @@ double cosine(double deg) { return deg == 90 ? 0 : std::cos(deg * std::numbers::
 
 using Nodes = std::vector<KlemsBasis::Node>;
 
-/// Of all patches, by level.
+/// Returns the nodes of a patch at a level (index of kOrders). All are computed once.
 const Nodes& nodes_of(size_t patch, size_t level) {
   static const auto all = [] {
     std::array<std::vector<Nodes>, kOrders.size()> levels;
@@ -64,7 +69,7 @@ Vec3 outgoing(const Vec3& w, bool front) { return {w.x, w.y, front ? w.z : -w.z}
 
 using Lanes = std::array<double, kLanes>;
 
-/// Of one pair of patches.
+/// Mean of f over one pair of patches, at one level.
 class PairMean {
  public:
   PairMean(const ExportedBsdf::At& f, bool light_in_front, bool seen_in_front, size_t in, size_t out)
@@ -88,12 +93,14 @@ class PairMean {
   size_t in_, out_;
 };
 
+/// Result of the adaptive integration of a pair.
 struct Settled {
   Lanes mean;
   double error;  ///< of pi f
   bool holds;
 };
 
+/// Raises the order until two results agree within the tolerance.
 Settled settle(const PairMean& pair) {
   constexpr double kAbsolute = 2e-5, kRelative = 2e-4;  // of pi f
   Settled s{pair.at(0), 0, false};
@@ -111,6 +118,7 @@ Settled settle(const PairMean& pair) {
 
 }  // namespace
 
+/// Analytic: the sphere's projected area between two polar angles, over the number of patches.
 double KlemsBasis::projected_solid_angle(size_t patch) {
   const auto [ring, column] = place_of(patch);
   const double a = cosine(ring.theta_min_deg), b = cosine(ring.theta_max_deg);
@@ -129,7 +137,7 @@ std::vector<KlemsBasis::Node> KlemsBasis::nodes(size_t patch, int order) {
     const auto add = [&](double phi, double weight) {
       nodes.push_back({{float(s * std::cos(phi)), float(s * std::sin(phi)), float(mu)}, share * weight});
     };
-    if (ring.phis == 1)  // all around: even steps are Gauss's rule of what is periodic
+    if (ring.phis == 1)  // even steps are Gauss's rule for periodic functions
       for (int j = 0; j < 2 * order; ++j) add(std::numbers::pi * (j + 0.5) / order, 0.5 / order);
     else
       for (size_t j = 0; j < rule.x.size(); ++j) add(width * (column - 0.5 + rule.x[j]), rule.weight[j]);

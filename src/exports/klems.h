@@ -7,14 +7,14 @@
 
 namespace frond {
 
-/// Klems's full basis: a hemisphere in 145 patches of about the same projected solid angle, the first about the normal
-/// (Klems 1994, ASHRAE Transactions 100(1):1065-1072; its table as WINDOW 6 calls LBNL/Klems Full).
+/// Klems's full basis: a hemisphere divided into 145 patches of about equal projected solid angle, the first around the
+/// normal (Klems 1994, ASHRAE Transactions 100(1):1065-1072; LBNL/Klems Full in WINDOW 6).
 class KlemsBasis {
  public:
   static constexpr size_t kPatches = 145;
   struct Ring {
     double theta_min_deg, theta_max_deg;
-    int phis;  ///< patches, the first centred on azimuth 0
+    int phis;  ///< number of patches in the ring; the first is centred on azimuth 0
   };
   static constexpr std::array<Ring, 9> kRings{{{0, 5, 1},
                                                {5, 15, 8},
@@ -26,41 +26,42 @@ class KlemsBasis {
                                                {65, 75, 16},
                                                {75, 90, 12}}};
 
-  /// A direction and its share of a patch's projected solid angle.
+  /// A quadrature direction and its share of the patch's projected solid angle.
   struct Node {
     Vec3 w;  ///< z above 0
     double weight;
   };
-  /// Gauss's rule of that order in cos theta and in azimuth; the weights of a patch add up to 1.
+  /// Returns nodes of Gauss's rule of this order in cos theta and azimuth. The weights of a patch sum to 1.
   static std::vector<Node> nodes(size_t patch, int order);
-  /// Integral of cos theta over the patch, sr.
+  /// Returns the integral of cos theta over the patch, sr.
   static double projected_solid_angle(size_t patch);
 };
 
-/// A side that light meets: front is that of +z.
+/// Side that the light is on. The front is the side of +z.
 enum class LitSide : uint8_t { front, back };
 
-/// f averaged over pairs of Klems's patches.
+/// f averaged over pairs of Klems patches.
 ///
-/// Patch k about the direction v(k) of KlemsBasis: light leaves to the front along (x, y, z) of v(k), to the back along
-/// (x, y, -z), and comes in from (-x, -y, z) or (-x, -y, -z); so the mirror direction, or the one straight on, of patch
-/// k is patch k, as the format has it.
+/// With v(k) = (x, y, z) the direction of patch k of KlemsBasis, light leaves to the front along (x, y, z) and to the
+/// back along (x, y, -z), and arrives from (-x, -y, z) or (-x, -y, -z). The mirror direction and the straight direction
+/// of patch k are therefore patch k, as the format requires.
 class KlemsMatrices {
  public:
-  /// Integrates f over both patches with respect to projected solid angle, by Gauss's rules of rising order until two
-  /// agree: pi f within 2e-5 and 2e-4 of itself.
+  /// Integrates f over both patches with respect to projected solid angle. The order of Gauss's rule rises until two
+  /// results agree: pi f within 2e-5 and 2e-4 of itself.
   KlemsMatrices(const ExportMaterial& material, const std::vector<double>& wavelengths_nm);
 
-  /// 1/sr.
+  /// Returns the mean f in 1/sr of an incident and an outgoing patch.
   double f(size_t wavelength, LitSide lit, bool reflected, size_t in, size_t out) const {
     return f_[place(wavelength, lit, reflected) + out * KlemsBasis::kPatches + in];
   }
-  /// By how much the last two rules differ at most, in pi f, over all wavelengths.
+  /// Returns the largest difference of the last two rules in pi f, over all wavelengths.
   double error() const { return error_; }
-  /// Pairs of patches where the last two rules do not agree as asked.
+  /// Returns the number of pairs of patches for which the last two rules do not agree within the tolerance.
   size_t unsettled() const { return unsettled_; }
 
  private:
+  /// Index of a matrix in f_.
   static size_t place(size_t wavelength, LitSide lit, bool reflected) {
     return ((wavelength * 2 + size_t(lit)) * 2 + (reflected ? 0 : 1)) * KlemsBasis::kPatches * KlemsBasis::kPatches;
   }

@@ -17,7 +17,7 @@ constexpr ExportOption kOptions[] = {ExportOption::angles, ExportOption::views};
 
 #ifdef FROND_NETCDF_FILE
 
-/// The library, opened when a file is asked for: it brings others with it that no other command needs.
+/// The NetCDF library, loaded on first use, because it loads further libraries that no other command needs.
 struct NetCdf {
   SharedObject library{FROND_NETCDF_FILE, "the NetCDF library", SharedObject::Binding::lazy};
 
@@ -41,7 +41,7 @@ struct NetCdf {
   decltype(::nc_abort)* abort = find<decltype(::nc_abort)>("nc_abort");
 };
 
-/// A classic file that is made in memory.
+/// A classic NetCDF file, created in memory.
 class NetCdfFile {
  public:
   NetCdfFile() { check(nc_.create_mem("frond", NC_CLOBBER, kFirstBytes, &id_)); }
@@ -51,11 +51,13 @@ class NetCdfFile {
   NetCdfFile(const NetCdfFile&) = delete;
   NetCdfFile& operator=(const NetCdfFile&) = delete;
 
+  /// Defines a dimension.
   int dimension(const Quantity& q, size_t length) {
     int id;
     check(nc_.def_dim(id_, name(q).c_str(), length, &id));
     return id;
   }
+  /// Defines a variable with its unit and documentation.
   int variable(const Quantity& q, nc_type type, const std::vector<int>& dimensions) {
     int id;
     check(nc_.def_var(id_, name(q).c_str(), type, int(dimensions.size()), dimensions.data(), &id));
@@ -66,7 +68,7 @@ class NetCdfFile {
   void attribute(int variable, const char* key, std::string_view text) {
     check(nc_.put_att_text(id_, variable, key, text.size(), text.data()));
   }
-  /// A list of words, as the CF conventions have them: numbers with their meanings.
+  /// Defines a variable of words by the CF conventions: flag_values and flag_meanings.
   void flags(int variable, std::span<const std::string_view> words) {
     std::string meanings;
     for (const std::string_view word : words) (meanings += meanings.empty() ? "" : " ") += word;
@@ -89,7 +91,7 @@ class NetCdfFile {
   }
 
  private:
-  static constexpr size_t kFirstBytes = 1;  // it grows: what is not needed of more would stay in the file
+  static constexpr size_t kFirstBytes = 1;  // initial size; unused bytes would remain in the file
 
   static std::string name(const Quantity& q) { return std::string(q.name); }
   static std::vector<signed char> numbers_to(size_t count) {
@@ -97,6 +99,7 @@ class NetCdfFile {
     for (size_t i = 0; i < count; ++i) values.push_back(static_cast<signed char>(i));
     return values;
   }
+  /// Throws InputError with the library's message.
   void check(int status) const {
     if (status != NC_NOERR) fail({}, "NetCDF: {}", nc_.strerror(status));
   }
@@ -110,6 +113,7 @@ void check_netcdf(const ExportRequest& request) {
   const NetCdf library;
 }
 
+/// Variables follow the CF conventions, so that common tools label the axes.
 std::string netcdf_file(const ExportMaterial& material, const ExportRequest& request) {
   const BsdfTable t = make_table(material, request);
   NetCdfFile file;

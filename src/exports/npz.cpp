@@ -13,7 +13,7 @@ namespace {
 constexpr ExportOption kOptions[] = {ExportOption::angles, ExportOption::views};
 static_assert(std::endian::native == std::endian::little);
 
-/// A file as numpy.save writes it, version 1.0 (NumPy's documentation, numpy.lib.format).
+/// Returns a file as numpy.save writes it, format version 1.0 (NumPy documentation, numpy.lib.format).
 std::string npy(const std::string& type, const std::vector<size_t>& shape, std::string_view data) {
   constexpr size_t kStart = 10, kAlignment = 64;
   const std::string tuple = fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
@@ -31,7 +31,8 @@ std::string numbers(const std::vector<size_t>& shape, const std::vector<T>& valu
              {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
 }
 
-/// Of UTF-32, as NumPy keeps them, each as long as the longest. The words are ASCII; other bytes count as Latin-1.
+/// Returns an array of words in UTF-32, padded to the longest, as NumPy stores strings. Bytes above 127 are taken as
+/// Latin-1.
 std::string words(const std::vector<size_t>& shape, std::span<const std::string_view> values) {
   size_t longest = 1;
   for (const std::string_view v : values) longest = std::max(longest, v.size());
@@ -44,6 +45,7 @@ std::string words(const std::vector<size_t>& shape, std::span<const std::string_
   return npy(fmt::format("<U{}", longest), shape, data);
 }
 
+/// Arrays are named as in the CSV columns.
 std::string npz_file(const ExportMaterial& material, const ExportRequest& request) {
   const BsdfTable t = make_table(material, request);
   const size_t w = t.wavelengths_nm.size(), i = t.theta_i_deg.size(), o = t.theta_o_deg.size(), p = t.phi_o_deg.size();

@@ -22,13 +22,13 @@ using Color = std::array<double, 3>;
 
 double angle_deg(size_t i) { return std::min(kLastAngle_deg, 90.0 * double(i) / double(kAngles - 1)); }
 
-/// Of one side, over the angle.
+/// Shares of the light reflected and transmitted by one side, by angle.
 struct SideTable {
   std::array<Color, kAngles> surface{}, body{}, transmitted{};  ///< Rs, Rd, T
-  double exponent = 0;  ///< of the surface's lobe about the mirror direction, power over the cosine
+  double exponent = 0;  ///< exponent of the cosine in the surface's lobe about the mirror direction
 };
 
-/// Mean cosine between the normal and what the surface reflects of light along the normal.
+/// Mean cosine between the normal and light that the surface reflects at normal incidence.
 struct SurfaceTally {
   float lit_side;
   Moments cosines = {};
@@ -41,8 +41,8 @@ struct SurfaceTally {
   void clear() { cosines = {}; }
 };
 
-/// e of a lobe whose share of the light goes with (cos alpha)^e about the mirror direction: of light along the normal
-/// the mean of cos alpha is (e + 1) / (e + 2).
+/// Returns the exponent e of a lobe whose share of the light is proportional to (cos alpha)^e about the mirror
+/// direction. At normal incidence the mean of cos alpha is (e + 1) / (e + 2).
 double surface_exponent(const LitMaterial& along_normal, int64_t rays, const ThreadPool& pool) {
   SurfaceTally tally{toward_light(along_normal.beam).z};
   shoot(along_normal, 0, rays, tally, pool, {});
@@ -51,8 +51,7 @@ double surface_exponent(const LitMaterial& along_normal, int64_t rays, const Thr
   return std::max(1.0, (2 * mean - 1) / (1 - mean));
 }
 
-/// Share of the light that Cycles' phong_ramp sends on, (e + 2) / 2 pi (cos alpha)^e to a solid angle that counts by
-/// its cosine with the normal.
+/// Returns the albedo of Cycles' phong_ramp: the integral of (e + 2) / 2 pi (cos alpha)^e over projected solid angle.
 double phong_albedo(double exponent, double theta_deg) {
   constexpr double kNegligible = 1e-9;
   const double theta = theta_deg * std::numbers::pi / 180, s = std::sin(theta), c = std::cos(theta);
@@ -64,7 +63,7 @@ double phong_albedo(double exponent, double theta_deg) {
   return total(integrate({0, 1, 0, 2 * std::numbers::pi}, density, kNegligible, mirror));
 }
 
-/// The shares at one wavelength; true where the material tells its surface from its body.
+/// Measures the shares at one wavelength. Returns whether the material separates surface from subsurface scattering.
 bool measure(const ExportMaterial& material, const ExportedBsdf& bsdf, bool front, size_t channel, int64_t rays,
              SideTable& side) {
   const double nm = bsdf.wavelengths_nm()[0];
@@ -89,6 +88,7 @@ bool measure(const ExportMaterial& material, const ExportedBsdf& bsdf, bool fron
   return tells_surface;
 }
 
+/// Returns an OSL array literal: the front's angles, then the back's.
 std::string array_text(const char* name, const char* doc, const std::array<std::array<Color, kAngles>, 2>& sides) {
   std::string text = fmt::format("    // {}\n    color {}[{}] = {{", doc, name, 2 * kAngles);
   for (const auto& side : sides)
@@ -100,10 +100,10 @@ std::string array_text(const char* name, const char* doc, const std::array<std::
 }
 
 constexpr const char* kHead =
-    R"(// Light with the weights of the viewing angle and side, as Baranoski and Rokne's simplified model has it: the mirror
-// direction spread by a power of the cosine, a diffuse reflection and a diffuse transmission. Red, green and blue are
-// {:g}, {:g} and {:g} nm. Shares of the light that come back are those of frond's material, angle by angle; how they are
-// spread over directions is not (docs/exports.md says how far from it).
+    R"(// Three lobes as in Baranoski and Rokne's simplified model, weighted by the viewing angle and side: a power of the
+// cosine about the mirror direction, a diffuse reflection and a diffuse transmission. Red, green and blue are
+// {:g}, {:g} and {:g} nm. At each angle the shares of the light equal those of frond's material; their distribution
+// over directions is an approximation (docs/other_renderers.md states its error).
 
 // A lobe of Cycles (stdcycles.h): (e + 2) / 2 pi (cos alpha)^e, alpha from the mirror direction.
 closure color phong_ramp(normal N, float exponent, color colors[8]) [[int builtin = 1]];
@@ -131,6 +131,7 @@ constexpr const char* kTail =
 }}
 )";
 
+/// Default wavelengths are the paper's.
 std::vector<double> colors_of(const ExportRequest& request) {
   return request.wavelengths_nm.empty() ? std::vector<double>{608, 551, 455} : request.wavelengths_nm;
 }
@@ -149,7 +150,7 @@ std::string osl_file(const ExportMaterial& material, const ExportRequest& reques
     const ExportedBsdf bsdf(material, {nm[channel]});
     if (any(ExportedBsdf::At(bsdf).bsdf().flags() & Lobes::from_light))
       fail({},
-           "{}: its shares hang on the light's direction, those of an OSL closure on the viewer's: leave "
+           "{}: its shares depend on the light's direction, those of an OSL closure on the viewer's: leave "
            "incident=light out",
            material.label);
     for (const bool front : {true, false})
@@ -168,7 +169,7 @@ std::string osl_file(const ExportMaterial& material, const ExportRequest& reques
   text += array_text("surface", "Rs, over what the lobe by itself sends on.", surface);
   text += array_text("body", "Rd.", {sides[0].body, sides[1].body});
   text += array_text("transmitted", "T.", {sides[0].transmitted, sides[1].transmitted});
-  // Cycles' lobe counts by the cosine with the normal, which along the normal is one power more.
+  // Cycles weights its lobe by the cosine with the normal; at normal incidence this is one more power.
   return text + fmt::format(kTail, sides[0].exponent - 1, sides[1].exponent - 1, kAngles - 1);
 }
 

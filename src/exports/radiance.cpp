@@ -11,7 +11,7 @@
 namespace frond {
 namespace {
 
-/// Every 10 nm of what the eye sees.
+/// Returns the visible range in steps of 10 nm.
 std::vector<double> default_wavelengths() {
   constexpr int kFirst = 380, kLast = 780, kStep = 10;
   std::vector<double> nm;
@@ -19,13 +19,14 @@ std::vector<double> default_wavelengths() {
   return nm;
 }
 
-/// A block of the file: how much each wavelength has of it.
+/// A block of the file, with the weight of each wavelength.
 struct Block {
   const char *wavelength, *detector;
-  std::vector<double> weights;  ///< their sum is 1
+  std::vector<double> weights;  ///< sum to 1
 };
 
-/// Shares in X, Y and Z of D65, each by itself, for what is linear between the wavelengths and constant beyond them.
+/// Weights of one of X, Y and Z under D65, normalized, for values that are linear between the wavelengths and constant
+/// beyond.
 Block color_block(const char* wavelength, const char* detector, size_t which, const std::vector<double>& nm) {
   Block block{wavelength, detector, std::vector<double>(nm.size())};
   double sum = 0;
@@ -46,6 +47,7 @@ Block color_block(const char* wavelength, const char* detector, size_t which, co
   return block;
 }
 
+/// Returns the blocks of the file: visible, and the CIE channels.
 std::vector<Block> blocks_of(const std::vector<double>& nm) {
   std::vector<Block> blocks{color_block("Visible", "ASTM E308 1931 Y.dsp", 1, nm)};
   if (nm.size() == 1) return blocks;
@@ -54,6 +56,7 @@ std::vector<Block> blocks_of(const std::vector<double>& nm) {
   return blocks;
 }
 
+/// Escapes text for XML.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) switch (c) {
@@ -75,7 +78,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-/// A text that may stand in a comment: two hyphens may not.
+/// Returns the text without double hyphens, which XML comments must not contain.
 std::string comment(const std::string& text) {
   std::string result;
   for (const char c : text) result += c == '-' && result.ends_with('-') ? std::string(" -") : std::string(1, c);
@@ -95,7 +98,7 @@ std::string basis_text() {
   return text + "\t\t</AngleBasis>\n";
 }
 
-/// WINDOW 6 calls front what is the back of a Radiance surface, -z (bsdf_m.c, load_bsdf_data).
+/// A pair of sides. WINDOW 6 calls "front" the back (-z) of a Radiance surface (bsdf_m.c, load_bsdf_data).
 struct Direction {
   const char* name;
   LitSide lit;
@@ -106,6 +109,7 @@ constexpr Direction kDirections[]{{"Transmission Front", LitSide::back, false},
                                   {"Reflection Front", LitSide::back, true},
                                   {"Reflection Back", LitSide::front, true}};
 
+/// Appends one matrix: outgoing patches as rows, incident patches as columns.
 void append_matrix(const KlemsMatrices& matrices, const Block& block, const Direction& d, std::string& text) {
   constexpr const char* kHead =
       "\t<WavelengthData>\n\t\t<LayerNumber>System</LayerNumber>\n\t\t<Wavelength unit=\"Integral\">{}</Wavelength>\n"
@@ -128,7 +132,7 @@ void append_matrix(const KlemsMatrices& matrices, const Block& block, const Dire
   text += "\t\t\t</ScatteringData>\n\t\t</WavelengthDataBlock>\n\t</WavelengthData>\n";
 }
 
-/// The largest share of light from one patch that leaves again.
+/// Returns the largest directional albedo of a patch; above 1 the file would create energy.
 double largest_share(const KlemsMatrices& matrices, size_t wavelengths) {
   double largest = 0;
   for (size_t w = 0; w < wavelengths; ++w)
@@ -150,7 +154,7 @@ std::string radiance_file(const ExportMaterial& material, const ExportRequest& r
   const KlemsMatrices matrices(material, nm);
   if (matrices.unsettled() > 0)
     material.log.warn(
-        {}, fmt::format("{} of {} pairs of patches hold a lobe too narrow to be integrated as asked: pi f "
+        {}, fmt::format("{} of {} pairs of patches contain a lobe too narrow for the requested accuracy: pi f "
                         "is uncertain by up to {:.2g}",
                         matrices.unsettled(), in_fours(nm).size() * 4 * KlemsBasis::kPatches * KlemsBasis::kPatches,
                         matrices.error()));

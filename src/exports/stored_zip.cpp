@@ -12,24 +12,25 @@ namespace {
 
 constexpr size_t kMost = std::numeric_limits<uint32_t>::max();
 
+/// Appends an integer, little-endian.
 void put(std::string& out, uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out += char(value >> (8 * i) & 0xff);
 }
 
-/// What a file's own header and its entry in the directory have alike.
+/// Returns the fields that a local header and a directory entry have in common.
 std::string entry(std::string_view name, std::string_view bytes) {
   constexpr uint64_t kVersion = 20, kFirstOfJanuary1980 = 0x21;
   std::string e;
   put(e, kVersion, 2);
   put(e, 0, 2);  // no flags
   put(e, 0, 2);  // stored
-  put(e, 0, 2);  // midnight
+  put(e, 0, 2);  // time: midnight
   put(e, kFirstOfJanuary1980, 2);
   put(e, crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()), 4);
-  put(e, bytes.size(), 4);  // as it is stored
+  put(e, bytes.size(), 4);  // compressed size
   put(e, bytes.size(), 4);
   put(e, name.size(), 2);
-  put(e, 0, 2);  // nothing further
+  put(e, 0, 2);  // no extra field
   return e;
 }
 

@@ -6,13 +6,13 @@
 
 namespace frond {
 
-/// Files in one, none of them compressed: a ZIP archive as APPNOTE.TXT 6.3 (PKWARE) has it, as numpy.savez writes them.
-/// The same files give the same bytes.
+/// ZIP archive of uncompressed files (PKWARE APPNOTE.TXT 6.3), as numpy.savez writes them. Equal files give equal
+/// bytes.
 class StoredZip {
  public:
-  /// Throws InputError for what 32 bits cannot count, which is above 4 GB in all.
+  /// Throws InputError if the total exceeds 4 GB, the limit of 32-bit offsets.
   void add(std::string_view name, std::string_view bytes);
-  /// The whole archive.
+  /// Returns the whole archive.
   std::string finish() &&;
 
  private:

@@ -10,13 +10,14 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
+/// Returns multiples of `step` below `end`.
 std::vector<double> steps(double step, double end) {
   std::vector<double> numbers;
   for (int i = 0; i * step < end; ++i) numbers.push_back(i * step);
   return numbers;
 }
 
-/// Axes of a request, those of the format where it has none.
+/// Returns the axes of a request, with defaults for empty lists.
 BsdfTable axes_of(const ExportRequest& request) {
   constexpr double kStep_deg = 5, kAzimuthStep_deg = 15;
   const auto or_else = [](const std::vector<double>& given, const std::vector<double>& own) {
@@ -30,14 +31,15 @@ BsdfTable axes_of(const ExportRequest& request) {
   return table;
 }
 
+/// Returns the unit vector of angles in degrees, on the front or the back.
 Vec3 direction(double theta_deg, double phi_deg, bool front) {
   const double s = std::sin(theta_deg * kDegree), c = std::cos(theta_deg * kDegree);
   return {float(s * std::cos(phi_deg * kDegree)), float(s * std::sin(phi_deg * kDegree)), float(front ? c : -c)};
 }
 
-/// All that leaves, one light at a time.
+/// Fills f and integrates R and T, one direction of the light at a time.
 void fill(const ExportedBsdf& bsdf, const ExportMaterial& material, size_t wavelength, BsdfTable& table) {
-  constexpr int kThetas = 4, kPhis = 6;  // patches are cut further where that is needed
+  constexpr int kThetas = 4, kPhis = 6;  // initial patches, which are subdivided where necessary
   const size_t angles = table.theta_i_deg.size(), views = table.theta_o_deg.size() * table.phi_o_deg.size() * 2;
   const ThreadPool alone(1);
   material.pool.for_each(int64_t(angles * 2), [&](int64_t index, int) {

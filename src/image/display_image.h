@@ -8,15 +8,17 @@
 
 namespace frond {
 
-/// Which OpenColorIO display and view a PNG or JPEG goes through; empty: the configuration's defaults.
+/// OpenColorIO display and view by which a PNG or JPEG is encoded; empty: the configuration's defaults.
 struct DisplayChoice {
   std::string display, view;
 };
 
-/// Refuses names that OpenColorIO does not know, and any for an EXR, which holds linear values. Throws InputError.
+/// Throws InputError if the OpenColorIO configuration lacks the display or the view, or if one is set for an EXR, whose
+/// values are linear.
 void check_display_choice(const std::string& path, const ColorManager& colors, const DisplayChoice& choice);
 
-/// R, G and B of an image that is linear in `space`, through a display transform, as PNG or JPEG.
+/// Writes the first three channels of an image, which are linear in `space`, as PNG or JPEG encoded by a display
+/// transform. `text` are header attributes by name. Throws InputError.
 void write_display_image(const std::string& path, const Image& image, std::string_view space,
                          const ColorManager& colors, const DisplayChoice& choice,
                          const std::map<std::string, std::string>& text);

@@ -17,7 +17,7 @@
 namespace frond {
 namespace {
 
-/// To memory: replace_file brings it onto the disk whole.
+/// Stream into memory; replace_file then writes the complete file to the disk.
 class MemoryStream final : public Imf::OStream {
  public:
   MemoryStream() : OStream("memory") {}
@@ -36,7 +36,7 @@ class MemoryStream final : public Imf::OStream {
   size_t at_ = 0;
 };
 
-/// OpenEXR compresses by all threads of the machine, unless the program has told it how many.
+/// Lets OpenEXR compress with all hardware threads, unless the program has already set its number of threads.
 void start_threads() {
   static std::once_flag once;
   std::call_once(once, [] {

@@ -7,10 +7,11 @@
 
 namespace frond {
 
-/// The bytes of an OpenEXR file; `header` as write_image takes it, with the date among its text. Throws InputError.
+/// Returns the bytes of an OpenEXR file (ZIP compression). `header` is as for write_image, with the date in its text.
+/// Throws InputError.
 std::vector<unsigned char> encode_exr(const Image& image, const ImageHeader& header, ExrDepth depth);
 
-/// To values that ExrDepth::half keeps.
+/// Rounds values to the nearest that a file of ExrDepth::half stores.
 void round_to_halves(std::span<float> values);
 
 }  // namespace frond

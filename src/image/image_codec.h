@@ -10,31 +10,32 @@
 
 namespace frond {
 
-/// What is left to OpenImageIO: reading all formats, writing those of 8 bits. To link its 250 libraries takes 0.3 s, so
-/// it lies in a shared object of its own (src/openimageio), which is opened when an image is first read, or is to be
-/// written as PNG or JPEG.
+/// Functions of OpenImageIO: reading all formats and encoding 8-bit formats. Linking its 250 libraries at the start of
+/// the program takes 0.3 s. They are therefore linked into a shared object (src/openimageio), which is loaded when an
+/// image is first read, or first encoded as PNG or JPEG. Thread-safe.
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// As read_image.
+  /// Reads an image file; see read_image.
   virtual ImageFile read(const std::filesystem::path& path, const Location& where) const = 0;
-  /// The bytes of a .png or .jpg; values are clamped to [0, 1]. Throws InputError.
+  /// Returns the bytes of a .png or .jpg file (by the extension of `path`) with the attributes `text`. Values are
+  /// clamped to [0, 1]. Throws InputError.
   virtual std::vector<unsigned char> encode(const std::filesystem::path& path, const Image& image,
                                             const std::map<std::string, std::string>& text) const = 0;
 };
 
-/// Opens image_codec_file() at the first call.
+/// Returns the codec of image_codec_file(), which the first call loads. Throws as open_image_codec does.
 const ImageCodec& image_codec();
 
-/// The shared object, beside the library's own file.
+/// Returns the path of the shared object: in the folder of the library's own file.
 std::filesystem::path image_codec_file();
 
-/// Throws InputError where the file cannot be loaded, or is of another build.
+/// Loads the codec from a shared object. Throws InputError if it cannot be loaded or belongs to another build.
 const ImageCodec& open_image_codec(const std::filesystem::path& file);
 
-/// What the shared object offers: by its one function, `frond_image_codec`.
+/// Record that the shared object's only function, `frond_image_codec`, returns.
 struct ImageCodecModule {
-  BuildRecord build = {};  ///< leave it as it is
+  BuildRecord build = {};  ///< filled by its initialiser; do not set it
   const ImageCodec* codec = nullptr;
 };
 

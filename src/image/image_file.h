@@ -13,48 +13,52 @@
 
 namespace frond {
 
-/// The attribute that has a file's colour space.
+/// Header attribute with a file's colour space.
 inline constexpr const char* kColorSpaceKey = "frond:colorspace";
 
-/// What an image file says beside its pixels.
+/// Metadata of an image file.
 struct ImageHeader {
   std::string color_space;                  ///< linear name of spectra/color/color_space.h; empty: unknown
   std::map<std::string, std::string> text;  ///< attributes by name, such as "frond:seed"
-  /// Where the image lies in a larger one of which it is a part (EXR's data and display windows); 0: it is the whole.
+  /// Position of a crop in the full image and the size of that image, pixels (EXR's data and display windows); 0: the
+  /// image is not a crop.
   int x = 0, y = 0, full_width = 0, full_height = 0;
-  /// Channels that stay floats in an EXR of halves: ids and places, which halves would round away.
+  /// Channels that are stored as floats in an EXR of halves: ids and positions, which halves cannot represent.
   std::vector<std::string> full_precision = {};
 };
 
+/// Floating-point format of an EXR's channels: 16 or 32 bits.
 enum class ExrDepth { half, single };
 
-/// Refuses, by InputError, a path that `write_image` could not write: unknown extension, missing folder, no permission,
-/// something that is no regular file. Nothing is left behind.
+/// Throws InputError for a path that `write_image` could not write: unknown extension, missing folder, no permission,
+/// not a regular file. No file remains after the check.
 void check_writable(const std::filesystem::path& path);
 
-/// Refuses, by InputError at `where`, an extension that `write_image` does not know.
+/// Throws InputError at `where` for an extension that `write_image` does not support.
 void check_image_name(const std::filesystem::path& path, const Location& where);
 
-/// By the extension, in whatever case.
+/// Returns whether the extension, in upper or lower case, is .exr. Throws as check_image_name does.
 bool is_exr(const std::filesystem::path& path);
 
-/// Writes .exr (floats), or .png and .jpg (8 bits; values are already encoded for a display, and clamped to [0, 1]).
-/// The image is encoded in memory, written beside its place, synchronised to the disk and renamed: a file of that name
-/// is either the old one or the whole new one. Known colour spaces leave their chromaticities in an EXR. The date is
-/// now, or SOURCE_DATE_EPOCH if that is set. Throws InputError when anything fails.
+/// Writes .exr (floats or halves), or .png and .jpg (8 bits; values are already encoded for a display, and are clamped
+/// to [0, 1]). The file is written atomically (replace_file): a file of this name is either the old one or the complete
+/// new one. An EXR in a known colour space stores its chromaticities. The date is file_time(). Throws InputError on any
+/// failure.
 void write_image(const std::filesystem::path& path, const Image& image, const ImageHeader& header,
                  ExrDepth depth = ExrDepth::single);
 
+/// Image file as read.
 struct ImageFile {
   Image image;
   ImageHeader header;
-  std::optional<Chromaticities> chromaticities;
-  bool eight_bit = false;   ///< values 0 to 255 in the file, here 0 to 1
-  bool is_encoded = false;  ///< for a display, as 8 bits are and PNG is
+  std::optional<Chromaticities> chromaticities;  ///< from an EXR's header
+  bool eight_bit = false;                        ///< the file stores 0 to 255, which is here 0 to 1
+  bool is_encoded = false;                       ///< values are encoded for a display: 8-bit formats and PNG
 };
 
-/// Reads an image in any format that OpenImageIO knows (EXR, PNG, JPEG, HDR, TIFF, ...): values as they stand in the
-/// file, alpha not multiplied in. Throws InputError at `where` if there is no such file or its data are not whole.
+/// Reads an image in any format that OpenImageIO supports (EXR, PNG, JPEG, HDR, TIFF, ...). Values are those of the
+/// file, without conversion of colours; alpha is unassociated. Throws InputError at `where` if the file does not exist
+/// or its data are incomplete.
 ImageFile read_image(const std::filesystem::path& path, const Location& where);
 
 }  // namespace frond

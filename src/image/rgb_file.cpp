@@ -30,7 +30,7 @@ void check_finite(const Image& image, const std::filesystem::path& path, const L
 }
 
 bool is_near(const Chromaticity& a, const Chromaticity& b) {
-  constexpr double kSame = 2e-3;  // of rounded figures
+  constexpr double kSame = 2e-3;  // tolerance for chromaticities rounded to three decimals
   return std::abs(a.x - b.x) < kSame && std::abs(a.y - b.y) < kSame;
 }
 
@@ -39,7 +39,7 @@ bool is_near(const Chromaticity& a, const Chromaticity& b) {
   if (bands.empty()) fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
   fail({},
        "{} holds bands from {} to {} nm and no colours; frond convert --bands {},{},{} shows three of them, and frond "
-       "compare --wavelengths bands,... tells errors band by band",
+       "compare --wavelengths bands,... reports errors band by band",
        path, bands.front(), bands.back(), bands.back(), bands[bands.size() / 2], bands.front());
 }
 

@@ -4,33 +4,38 @@
 
 namespace frond {
 
-/// An image file with R, G and B in place of its channels, or with its only colour three times; for textures and
-/// lights. Throws InputError at `where`, for values that are not finite too.
+/// Reads an image file as an image with the channels R, G and B, for textures and lights. The first channel of a file
+/// with one or two channels (grey, grey and alpha) is repeated. Throws InputError at `where` if the file cannot be
+/// read, lacks one of the channels or contains values that are not finite.
 ImageFile read_rgb(const std::filesystem::path& path, const Location& where);
 
-/// By the name in its header or its chromaticities; sRGB where the file says nothing, nullptr for a space of its own
-/// that is not known.
+/// Returns the colour space of a file, by the name in its header or by its chromaticities; sRGB if the file states
+/// neither, nullptr if its chromaticities are not those of a known space.
 const ColorSpace* color_space_of(const ImageFile& file);
 
-/// An image file with all of its channels, as read_image, whose values are finite. Throws InputError at `where`.
+/// Reads an image file with all its channels, as read_image. Throws InputError at `where` also if a value is not
+/// finite.
 ImageFile read_finite(const std::filesystem::path& path, const Location& where);
 
-/// To a linear value, by the curve of IEC 61966-2-1.
+/// Returns the linear value of an sRGB-encoded one (IEC 61966-2-1).
 float decode_srgb(float v);
+/// Decodes all channels of an image in place.
 void decode_srgb(Image& image);
 
-/// What a linear image file says: of a render, if it has a leaf channel and a seed.
+/// Content of a linear image file. Files of renders also state a seed and can have a leaf channel.
 struct LinearFile {
-  std::string path, space;
+  std::string path, space;       ///< file name, and linear name of the colour space
   Image image;                   ///< R G B
-  std::vector<float> leaf;       ///< share of leaf of each pixel; empty: not in the file
-  std::string seed;              ///< of the render, as its header says; empty: it does not
-  double correlated_pixels = 1;  ///< that share the noise of one, as the header says
+  std::vector<float> leaf;       ///< foliar ratio of each pixel; empty: not in the file
+  std::string seed;              ///< seed of the render, from the header; empty: not in the file
+  double correlated_pixels = 1;  ///< upper bound of the variance of a sum of pixels over that of independent pixels
 };
 
-/// Throws InputError when the file is not linear or lacks a channel.
+/// Reads a linear image file. Throws InputError if the file is encoded for a display, does not state its colour space
+/// or lacks R, G or B.
 LinearFile read_linear(const std::string& path);
 
+/// Throws InputError, which names both files, if the images differ in width or height.
 void check_same_size(const LinearFile& a, const LinearFile& b);
 
 }  // namespace frond

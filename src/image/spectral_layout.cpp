@@ -17,25 +17,26 @@ namespace {
 
 constexpr std::string_view kPrefix = "S0.", kUnit = "nm";
 
-/// "551,000000nm"
+/// Returns a wavelength as the layout writes it, such as "551,000000nm".
 std::string wavelength_text(double nm) {
   std::string text = fmt::format("{:.6f}", nm);
   std::ranges::replace(text, '.', ',');
   return text.append(kUnit);
 }
 
-/// A response as the layout writes spectra, point by point: "450nm:0.5;451nm:0.75;"
+/// Returns a response as the layout writes spectra, point by point: "450nm:0.5;451nm:0.75;".
 std::string sensitivity_text(std::span<const ResponsePoint> response) {
   std::string text;
   for (const auto& [nm, value] : response) text += fmt::format("{}nm:{};", nm, value);
   return text;
 }
 
-/// Of the image's channels, the spectral ones.
+/// Channel of radiance: its wavelength and its index in the image.
 struct SpectralChannel {
   double nm;
   size_t index;
 };
+/// Returns an image's channels of radiance in ascending order of wavelength.
 std::vector<SpectralChannel> spectral_channels(const Image& image) {
   std::vector<SpectralChannel> channels;
   for (size_t i = 0; i < image.channels.size(); ++i)

@@ -9,25 +9,30 @@
 
 namespace frond {
 
-/// Name of a channel of radiance in the layout of Fichet, Pacanowski and Wilkie 2021, "An OpenEXR Layout for Spectral
-/// Images": S0.551,000000nm.
+// Channel names and attributes of the layout of Fichet, Pacanowski and Wilkie 2021, "An OpenEXR Layout for Spectral
+// Images".
+
+/// Returns the name of a channel of radiance, such as "S0.551,000000nm".
 std::string spectral_channel(double nm);
-/// Of its variance: variance.551,000000nm.
+/// Returns the name of the channel with its variance, such as "variance.551,000000nm".
 std::string variance_channel(double nm);
-/// The wavelength (nm) that such a name says; nothing for other names, and for other units than nm.
+/// Returns the wavelength (nm) in the name of a channel of radiance; nothing for other names and for units other than
+/// nm.
 std::optional<double> wavelength_of_channel(const std::string& name);
 
-/// Wavelengths (nm) of an image's bands in ascending order; none where it is no spectral image.
+/// Returns the wavelengths (nm) of an image's bands in ascending order; empty if it is not a spectral image.
 std::vector<double> bands_of(const Image& image);
 
-/// Colour space of the R G B that a spectral image has for programs that know no spectra; empty: it has none, for the
-/// bands do not cover the visible.
+/// Returns the colour space of the preview channels R, G and B, which a spectral image contains for viewers without
+/// support of the layout; empty if it has no preview, because the bands do not cover the visible.
 std::string preview_space(std::span<const Band> bands);
-/// What the layout asks of the header: its version, units, and each channel's sensitivity where it has one.
+/// Returns the header attributes that the layout requires: its version, the units, and the sensitivity of each channel
+/// that has a response.
 std::map<std::string, std::string> spectral_attributes(std::span<const Band> bands);
 
-/// Three bands of an image of that layout as R G B: those nearest to `nm`, scaled so that a white surface in
-/// equal-energy light of luminance 1 is 1. Throws InputError that lists the bands where none lies within 10 nm.
+/// Returns a false-colour image: R, G and B are the bands nearest to the three wavelengths `nm`, scaled so that a white
+/// surface in equal-energy light of luminance 1 is 1. Throws InputError, which lists the bands, if none lies within 10
+/// nm of a wavelength.
 Image false_color_image(const ImageFile& file, const std::string& path, std::span<const double> nm);
 
 }  // namespace frond

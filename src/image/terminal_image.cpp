@@ -9,6 +9,7 @@
 namespace frond {
 namespace {
 
+/// Appends the escape code (SGR) of a 24-bit colour; `ground` is 38 for the foreground, 48 for the background.
 void append_color(std::string& text, int ground, const float* rgb) {
   const auto byte = [](float v) { return int(std::lround(255 * std::clamp(v, 0.0f, 1.0f))); };
   fmt::format_to(std::back_inserter(text), "\x1b[{};2;{};{};{}m", ground, byte(rgb[0]), byte(rgb[1]), byte(rgb[2]));

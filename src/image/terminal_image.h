@@ -6,13 +6,13 @@
 
 namespace frond {
 
-/// The image in `columns` x 2 `rows` pixels at most, each the mean of those that it stands for: what terminal_text
-/// makes of it then fits into so many columns and rows. Its sides keep their ratio; it is never enlarged.
+/// Returns the image reduced to at most `columns` x 2 `rows` pixels by averaging (box filter), so that its
+/// terminal_text fits into that many columns and rows. The aspect ratio is kept; an image is never enlarged.
 Image fitted_image(const Image& image, int columns, int rows);
 
-/// Text that shows an image on a terminal: a character for two pixels, one above the other, as upper half blocks in
-/// colours of 24 bits (ANSI escape codes). `shown`: R, G, B from 0 to 1, encoded for a display. Every line ends with
-/// the terminal's own colours and a newline.
+/// Returns text that displays an image on a terminal: each character is an upper half block in 24-bit colours (ANSI
+/// escape codes) and shows two pixels, one above the other. `shown` has the channels R, G, B, encoded for a display, in
+/// [0, 1]. Every line ends with a reset of the colours and a newline.
 std::string terminal_text(const Image& shown);
 
 }  // namespace frond

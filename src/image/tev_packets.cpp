@@ -12,12 +12,14 @@
 namespace frond {
 namespace {
 
+/// Types of packets that are sent, as numbered by tev.
 enum class Type : uint8_t { create_image = 4, update_image = 6 };
 
+/// Packet under construction.
 class Packet {
  public:
   Packet(Type type, bool grabs_focus, std::string_view name) {
-    put(uint32_t{0});  // the length, once it is known
+    put(uint32_t{0});  // the length, set by `take`
     put(uint8_t(type));
     put(uint8_t(grabs_focus));
     put(name);
@@ -73,8 +75,8 @@ std::vector<unsigned char> update_image_packet(std::string_view name, const Imag
   const size_t channels = image.channels.size(), row = size_t(image.width) * channels;
   packet.put_channels(image.channels);
   for (const int32_t v : {0, begin, image.width, end - begin}) packet.put(v);
-  for (size_t c = 0; c < channels; ++c) packet.put(int64_t(c));  // where a channel's values begin
-  for (size_t c = 0; c < channels; ++c) packet.put(int64_t(channels));
+  for (size_t c = 0; c < channels; ++c) packet.put(int64_t(c));         // offset of the channel's first value
+  for (size_t c = 0; c < channels; ++c) packet.put(int64_t(channels));  // stride: the channels are interleaved
   packet.put(std::span(image.pixels).subspan(size_t(begin) * row, size_t(end - begin) * row));
   return packet.take();
 }

@@ -8,17 +8,18 @@
 
 namespace frond {
 
-// Packets of the protocol by which the viewer tev is shown images over TCP (github.com/Tom94/tev, include/tev/Ipc.h):
-// length of all, type, body; numbers little endian, strings ended by a zero.
+// Packets of the TCP protocol of the image viewer tev (github.com/Tom94/tev, include/tev/Ipc.h): length of the packet
+// in bytes, type, body. Numbers are little-endian, strings zero-terminated.
 
-/// Where tev listens if nothing else is said.
+/// Default address of tev.
 inline constexpr const char* kTevAddress = "127.0.0.1:14158";
 
-/// An image of this size with these channels, black, which the viewer goes to. One of the same name is replaced.
+/// Returns a packet that creates a black image with the size and channels of `image` and selects it in the viewer. It
+/// replaces an image of the same name.
 std::vector<unsigned char> create_image_packet(std::string_view name, const Image& image);
 
-/// Its rows from `begin` to before `end`, all channels (UpdateImage, version 3). Throws InputError where they need 4
-/// GiB or more.
+/// Returns a packet (UpdateImage, version 3) with all channels of the rows [begin, end) of `image`. Throws InputError
+/// if it needs 4 GiB or more.
 std::vector<unsigned char> update_image_packet(std::string_view name, const Image& image, int begin, int end);
 
 }  // namespace frond

@@ -35,7 +35,7 @@ Hit flat_hit() {
 
 const Bsdf& bsdf_of(const Material& material, const Beam& beam, Arena& arena) {
   const Bsdf* bsdf = material.evaluate(flat_hit(), OneWavelength(beam.lambda_nm).sample(0), arena);
-  if (!bsdf) fail({}, "the material says that it has no surface there: nothing can be measured");
+  if (!bsdf) fail({}, "the material has no surface there: nothing can be measured");
   return *bsdf;
 }
 
@@ -55,7 +55,7 @@ void check_as_rendered(const LitMaterial& lit) {
   if (!lit.as_rendered) return;
   Arena arena;
   if (any(bsdf_of(lit.material, lit.beam, arena).flags() & Lobes::specular))
-    fail({}, "the material has a delta lobe, which can be measured along the model's own incident direction alone");
+    fail({}, "the material has a delta lobe, which can be measured only along the model's own incident direction");
 }
 
 SampledWavelengths OneWavelength::sample(float) const {

@@ -7,21 +7,22 @@
 
 #include "core/material.h"
 
-/// The calls that a renderer makes of a BSDF, and what it hands over: for those who time them.
+/// The calls that a renderer makes of a BSDF, with realistic arguments, for benchmarks.
 namespace frond {
 
-/// Wavelengths (nm) of a benchmark with so many lanes, 1 to kLanes.
+/// Returns the wavelengths (nm) of a benchmark with 1 to kLanes lanes.
 std::vector<float> benchmark_wavelengths(int lanes);
 
-/// Unit vector at so many degrees from the front's normal, azimuth 0.
+/// Returns the unit vector at theta_deg degrees from the front's normal, azimuth 0.
 Vec3 viewer_at(double theta_deg);
 
-/// What varies from call to call, drawn beforehand; the same ones again and again.
+/// Arguments that vary from call to call: drawn in advance and reused cyclically.
 class CallDraws {
  public:
+  /// Arguments of one call.
   struct Draw {
     Vec3 wi;  ///< uniform over the sphere
-    Vec3 wo;  ///< on either side, by its cosine
+    Vec3 wo;  ///< on either side, cosine-weighted
     float uc;
     Vec2 u;
   };
@@ -34,17 +35,17 @@ class CallDraws {
   size_t i_ = 0;
 };
 
-/// What one vertex of a path learns from its BSDF.
+/// Results of a BSDF at one vertex of a path.
 struct PathVertex {
   SampledSpectrum f_cos;   ///< f |cos theta| toward the light's sample, 1/sr; 0 where `light_pdf` is
   float light_pdf = 0;     ///< of the BSDF for the light's sample, 1/sr
   SampledSpectrum weight;  ///< of the scattered ray: f |cos theta| / pdf; 0 where nothing is scattered
-  Vec3 wi;                 ///< its direction
-  float pdf = 0;           ///< of the BSDF for it, 1/sr, as MIS asks; infinite for a delta lobe
+  Vec3 wi;                 ///< direction of the scattered ray
+  float pdf = 0;           ///< of the BSDF for it, 1/sr, as MIS uses it; infinite for a delta lobe
 };
 
-/// Asks a BSDF as the path integrator does at each vertex: its density and value toward a sample of a light, then a
-/// scattered ray, and its density where the sample's own is approximate.
+/// Calls a BSDF as the path integrator does at each vertex: density and value toward a light sample, then a scattered
+/// ray, and its density if the sample's own is approximate.
 inline PathVertex path_vertex(const Bsdf& bsdf, const Vec3& wo, const Vec3& toward_light, float uc, Vec2 u,
                               RandomStream& rng) {
   PathVertex vertex;

@@ -15,7 +15,7 @@ struct Rule {
 
 Rule gauss_rule() {
   using Gauss = boost::math::quadrature::gauss<double, kOrder>;
-  const auto& nodes = Gauss::abscissa();  // the half that is not negative, 0 first
+  const auto& nodes = Gauss::abscissa();  // the nodes that are not negative, 0 first
   const auto& weights = Gauss::weights();
   Rule rule{};
   rule.x[0] = 0.5, rule.weight[0] = weights[0] / 2;
@@ -30,7 +30,7 @@ struct Value {
   double integral = 0, largest = 0;  // largest density at a node
 };
 
-/// A direction where the density is known.
+/// A direction with its density.
 struct Peak {
   double cos_theta, phi, density;
 };
@@ -81,10 +81,9 @@ class Cubature {
 
  private:
   bool is_settled(const SphereBox& box, const Value& whole, const Value& sum, std::span<const Peak> peaks) const {
-    constexpr double kRelative = 1e-4;  // finer, the rounding of float densities would drive the cutting
-    constexpr double kUneven =
-        8;  // largest over mean: a lobe stands between few nodes, and two rules may agree by chance
-    constexpr double kOverlooked = 3;  // times what the nodes see: they have missed a lobe
+    constexpr double kRelative = 1e-4;  // below it, float rounding of densities would cause subdivision
+    constexpr double kUneven = 8;       // largest over mean: few nodes hit the lobe, and two rules may agree by chance
+    constexpr double kOverlooked = 3;   // times the largest at the nodes: they have missed a lobe
     if (std::abs(sum.integral - whole.integral) > tolerance_ + kRelative * std::abs(sum.integral)) return false;
     if (sum.largest * box.solid_angle() > tolerance_ + kUneven * sum.integral) return false;
     return std::ranges::none_of(peaks, [&sum](const Peak& p) { return p.density > kOverlooked * sum.largest; });

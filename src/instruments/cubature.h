@@ -9,7 +9,7 @@
 
 namespace frond {
 
-/// A function of direction, per sr.
+/// Function of direction, 1/sr.
 using Density = std::function<double(const Vec3&)>;
 
 /// A patch of the sphere and the integral of a density over it.
@@ -18,28 +18,31 @@ struct SpherePart {
   double integral = 0;
 };
 
-/// Integrates by adaptive Gauss quadrature, and returns the parts that it cut the box into. These are cut until cutting
-/// changes them by no more than `tolerance` and a 10,000th of their value. `peaks`: directions where the density may be
-/// large, so that no narrow lobe slips through the nodes.
+/// Integrates by adaptive Gauss quadrature; returns the parts into which it has divided the box. A part is divided
+/// until division changes its integral by at most `tolerance` plus a 10,000th of its value. `peaks`: directions where
+/// the density may be large, so that no narrow lobe is missed between nodes.
 std::vector<SpherePart> integrate(const SphereBox& box, const Density& density, double tolerance,
                                   std::span<const SpherePoint> peaks = {});
 
+/// Sum of the integrals.
 double total(std::span<const SpherePart> parts);
 
-/// Draws directions in parts, half of them in proportion to the integral and half to the solid angle: for Monte Carlo
-/// integration of something that is large about where the integrated density is.
+/// Draws directions in parts, half of them in proportion to the integral and half to the solid angle: importance
+/// sampling for functions similar to the integrated density.
 class PartSampler {
  public:
+  /// A unit vector and its density.
   struct Draw {
     Vec3 w;
-    double density;  ///< of this draw, per sr
+    double density;  ///< of this draw, 1/sr
   };
+  /// At least one part.
   explicit PartSampler(std::vector<SpherePart> parts);
   Draw draw(RandomStream& numbers) const;
 
  private:
   std::vector<SpherePart> parts_;
-  std::vector<double> cumulative_;  ///< probability of this part and those before
+  std::vector<double> cumulative_;  ///< probability of all parts up to this one
 };
 
 }  // namespace frond

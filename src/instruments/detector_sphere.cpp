@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// cos(180 k / thetas degrees), exact on the horizon: no patch takes a ray from the other side.
+/// cos(180 k / thetas degrees), exactly 0 at the horizon, so that no patch receives rays from the other side.
 double cos_edge(int k, int thetas) {
   if (2 * k == thetas) return 0;
   return std::cos(std::numbers::pi * k / thetas);

@@ -16,28 +16,29 @@ struct Patch {
   double phi_deg() const { return (phi_min_deg + phi_max_deg) / 2; }
 };
 
-/// A collector sphere about a specimen, cut into patches equal in theta ("along its latitude") and in phi ("along its
+/// A collector sphere around a specimen, divided evenly in theta ("along its latitude") and in phi ("along its
 /// longitude"), as in Baranoski and Rokne, section 4: 20 x 40 patches are 9 degrees wide each way, ten rows of them
 /// above the specimen and ten below. Patches are centred on phi = 0, 360 / phis, ..., so that the plane of incidence
-/// runs through the middle of the first and, where `phis` is even, of the one across.
+/// passes through the middle of the first patch and, if `phis` is even, of the opposite one.
 class DetectorSphere {
  public:
   static constexpr int kMostPatches = 16'000'000;
 
-  /// Throws InputError unless 2 <= thetas, even (no patch may lie across the horizon), 1 <= phis, and there are no more
-  /// than kMostPatches.
+  /// Throws InputError unless thetas >= 2 and even (no patch may cross the horizon), phis >= 1, and there are at most
+  /// kMostPatches.
   DetectorSphere(int thetas, int phis);
 
   int thetas() const { return thetas_; }
   int phis() const { return phis_; }
   size_t size() const { return static_cast<size_t>(thetas_) * static_cast<size_t>(phis_); }
+  /// Index of a patch: rows from the +z pole, columns by azimuth.
   size_t index(int theta, int phi) const {
     return static_cast<size_t>(theta) * static_cast<size_t>(phis_) + static_cast<size_t>(phi);
   }
 
   Patch patch(int theta, int phi) const;
   Patch patch(size_t i) const;
-  /// The patch that a unit vector lies in.
+  /// Returns the index of the patch that contains a unit vector.
   size_t find(const Vec3& w) const {
     const size_t row = static_cast<size_t>(thetas_) - 1 - z_.find(double(w.z));
     const size_t column = diamond_.find(diamond_angle(double(w.x), double(w.y)));
@@ -45,7 +46,8 @@ class DetectorSphere {
   }
 
  private:
-  /// Grows with the azimuth from 0 to 4 like that of a point on the square |x| + |y| = 1, for the price of a division.
+  /// Increases with the azimuth from 0 to 4 like that of a point on the square |x| + |y| = 1; costs one division
+  /// instead of an arc tangent.
   static double diamond_angle(double x, double y) {
     const double sum = (x < 0 ? -x : x) + (y < 0 ? -y : y);
     if (sum == 0) return 0;

@@ -8,10 +8,11 @@
 
 namespace frond {
 
-/// The same one to four wavelengths for every path, and no film; some lanes may be retired, as an integrator retires
-/// them.
+/// Wavelength strategy with the same one to four wavelengths (nm) for every path and no film; lanes may be retired, as
+/// by an integrator.
 class GivenWavelengths final : public WavelengthStrategy {
  public:
+  /// `retired`: indices of inactive lanes.
   explicit GivenWavelengths(std::vector<float> nm, const std::vector<size_t>& retired = {}) : nm_(std::move(nm)) {
     assert(!nm_.empty() && nm_.size() <= kLanes);
     lambda_.count = static_cast<int>(nm_.size());

@@ -35,7 +35,7 @@ SphereBox box_of(const Patch& p) {
           p.phi_max_deg * kDegree};
 }
 
-/// f |cos theta| of a material whose f is exact, for one thread at a time.
+/// Evaluates f |cos theta| of a material with an exact f, for one thread.
 class ShareDensity {
  public:
   explicit ShareDensity(const LitMaterial& lit)
@@ -56,7 +56,7 @@ class ShareDensity {
   bool detector_is_wo_;
 };
 
-/// Those of the directions that lie in the box, with their azimuths as the box counts them.
+/// The directions that lie in the box, with their azimuths in the box's range.
 std::vector<SpherePoint> points_in(const SphereBox& box, std::span<const SpherePoint> points) {
   std::vector<SpherePoint> result;
   for (SpherePoint p : points) {

@@ -6,13 +6,13 @@
 
 namespace frond {
 
-/// Intervals between ascending edges. Found without a search, by a table of where to begin to look.
+/// Intervals between ascending edges, found in constant time by a table of start positions.
 class GuidedEdges {
  public:
-  /// Two edges at least, the first below the last.
+  /// At least two edges, the first below the last.
   explicit GuidedEdges(std::vector<double> edges);
 
-  /// i with edges[i] <= x < edges[i + 1]; outside all, the first or the last interval.
+  /// Returns i with edges[i] <= x < edges[i + 1]; outside all, the first or the last interval.
   size_t find(double x) const {
     const double cell = (x - edges_.front()) * cells_per_unit_;
     const double last = static_cast<double>(guide_.size() - 1);

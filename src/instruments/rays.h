@@ -11,14 +11,13 @@
 
 namespace frond {
 
-/// Rays are shot in blocks, each with a random stream of its own.
+/// Rays are traced in blocks, each with its own random stream.
 inline constexpr int64_t kRaysPerBlock = 1 << 16;
 
-/// Called now and then, from the measuring thread, with the rays shot so far.
+/// Called from time to time, from the measuring thread, with the number of rays traced so far.
 using RayProgress = std::function<void(int64_t rays)>;
 
-/// What becomes of the rays of one block, a batch at a time. What they do depends on the lit and the block's
-/// number alone.
+/// Scatters the rays of one block, a batch at a time. Results depend on `lit` and the block's number alone.
 class RayBlock {
  public:
   RayBlock(const LitMaterial& lit, int64_t number)
@@ -30,6 +29,7 @@ class RayBlock {
   RayBlock(const RayBlock&) = delete;
   RayBlock& operator=(const RayBlock&) = delete;
 
+  /// Returns the next scattered rays, at most `wanted`; valid until the next call.
   std::span<const Scattered> next(int64_t wanted) {
     const std::span batch = std::span(rays_).first(static_cast<size_t>(std::min<int64_t>(wanted, kBatch)));
     if (as_rendered_)
@@ -50,9 +50,9 @@ class RayBlock {
   std::array<Scattered, kBatch> rays_;
 };
 
-/// Shoots rays number `first` to `last` and adds them to `total`. `first` is a multiple of kRaysPerBlock. A Tally has
-/// add(ray), add(tally) and clear(); those of the blocks are added in their order, so that sums have the same bits for
-/// any number of threads.
+/// Traces rays `first` to `last` - 1 and adds them to `total`. `first` is a multiple of kRaysPerBlock. A Tally has
+/// add(ray), add(tally) and clear(); tallies of blocks are added in their order, so that sums are bitwise equal for any
+/// number of threads.
 template <class Tally>
 void shoot(const LitMaterial& lit, int64_t first, int64_t last, Tally& total, const ThreadPool& pool,
            const RayProgress& progress) {

@@ -14,18 +14,18 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// Toward a light, with its radiance there and the density of the choice.
+/// Sample of a light: direction, radiance and density.
 struct TowardLight {
   Vec3 w;
   float radiance, pdf;
 };
 
-/// The horizontal circle at this height, phi in turns.
+/// Point of the horizontal circle at this height; phi in turns.
 Vec3 on_sphere(float cosine, float sine, float turns) {
   return {sine * std::cos(2 * kPi * turns), sine * std::sin(2 * kPi * turns), cosine};
 }
 
-// Both lights: irradiance pi on the front, drawn in proportion to radiance.
+// Both lights give the irradiance pi on the front and are sampled in proportion to radiance.
 
 class OvercastSky {
  public:
@@ -42,7 +42,7 @@ class OvercastSky {
 class SunDisc {
  public:
   TowardLight sample(Vec2 u) const {
-    const float square = u.x * chord_ * chord_;  // of the chord from the centre: even in area
+    const float square = u.x * chord_ * chord_;  // square of the chord from the centre: uniform in area
     const Vec3 w = on_sphere(1 - square / 2, std::sqrt(square * (1 - square / 4)), u.y);
     return {frame_.to_world(w), radiance_, pdf_};
   }
@@ -63,7 +63,7 @@ class SunDisc {
   float radiance_ = static_cast<float>(std::numbers::pi / (kSolidAngle * kMeanCosine));
 };
 
-/// One estimate: each lane's moments.
+/// Moments of one estimate, by lane.
 struct LaneMoments {
   std::array<Moments, kLanes> lanes;
 
@@ -72,7 +72,7 @@ struct LaneMoments {
   }
 };
 
-/// Moments over batches of their means and variances, each the mean of the lanes in use.
+/// Moments over batches of their means and variances, each averaged over the lanes in use.
 struct BatchMoments {
   Moments mean, variance;
 
@@ -94,7 +94,7 @@ class LitSpecimen {
  public:
   explicit LitSpecimen(const PathHit& hit)
       : bsdf_(hit.material.evaluate(flat_hit(), hit.lambda, arena_)), wo_(viewer_at(hit.theta_deg)) {
-    if (!bsdf_) fail({}, "the material says that it has no surface there: nothing can be measured");
+    if (!bsdf_) fail({}, "the material has no surface there: nothing can be measured");
   }
 
   void add_to(Batch& batch, RandomStream& rng) const {

@@ -6,7 +6,7 @@
 
 namespace frond {
 
-/// A flat specimen as a path meets it. `material` is prepared for the wavelengths, which are the same for every path.
+/// A flat specimen as hit by a path. `material` is prepared for the wavelengths, which are the same for every path.
 struct PathHit {
   const Material& material;
   SampledWavelengths lambda;
@@ -14,28 +14,29 @@ struct PathHit {
   uint64_t seed = 0;
 };
 
-/// A one-sample estimate: means over the wavelengths of its expectation and of its variance, each with the error of
-/// having been found out by some samples.
+/// Expectation and variance of a one-sample estimate, means over the wavelengths, each with its own sampling error.
 struct Worth {
   Estimate mean, variance;
 };
 
-/// What a sample of a BSDF is worth: how much one-sample estimates of three things differ from each other.
+/// Variance of one-sample estimates of three integrals with a BSDF: a measure of its sampling.
 struct SampleWorth {
-  /// Of the albedo for light from everywhere, by one scattered ray: f |cos theta| / pdf.
+  /// Albedo for light from everywhere, by one scattered ray: f |cos theta| / pdf.
   Worth albedo;
-  /// Of the radiance under a sky above the front, where a white diffuse surface has 1. Light sample and scattered ray
-  /// together, as the path integrator weighs them (power heuristic). The sky is the overcast one of the CIE, 1 + 2 cos
-  /// theta (Moon and Spencer 1942), drawn in proportion to its radiance.
+  /// Radiance under a sky above the front, where a white Lambertian surface has 1, by one light sample and one
+  /// scattered ray, combined as in the path integrator (power heuristic). The sky is the overcast sky of the CIE, 1 + 2
+  /// cos theta (Moon and Spencer 1942), sampled in proportion to its radiance.
   Worth sky;
-  /// The same under the sun's disc, 0.533 degrees wide, 45 degrees from the front's normal, across the plane of sight.
+  /// The same under the sun's disc, 0.533 degrees wide, 45 degrees from the front's normal, perpendicular to the plane
+  /// of sight.
   Worth sun;
 };
 
 inline constexpr double kSunZenith_deg = 45, kSunRadius_deg = 0.2665;
 
-/// Deterministic: depends on the hit and the number of samples alone, which is rounded up to a multiple of 64. Throws
-/// InputError for angles out of range, a material that says it has no surface there, and weights that are no numbers.
+/// Measures the three. Deterministic: depends on the hit and the number of samples alone, which is rounded up to a
+/// multiple of 64. Throws InputError for angles out of range, a material without a surface there, and weights that are
+/// not numbers.
 SampleWorth measure_worth(const PathHit& hit, int64_t samples, const ThreadPool& pool);
 
 }  // namespace frond

@@ -5,7 +5,7 @@
 namespace frond {
 namespace {
 
-/// Where rays have gone. Each adds to one class or, where it was absorbed, to none.
+/// Tally of exits. Each ray adds to one class, or to none if absorbed.
 struct ShareTally {
   float lit_side;  ///< sign of the light's cos theta
   Moments surface = {}, subsurface = {}, transmitted = {};
@@ -25,7 +25,7 @@ struct ShareTally {
   void clear() { surface = subsurface = transmitted = {}; }
 };
 
-/// The mean over all rays of what some of them added.
+/// Mean over all rays; the rays of other classes count as 0.
 Estimate share(const Moments& added, int64_t rays) {
   Moments all = added;
   all.add_zeros(rays - added.count());
@@ -63,7 +63,8 @@ int64_t first_round(const Dose& dose) {
   return dose.standard_error > 0 ? whole_blocks(2 / dose.standard_error, dose.rays) : dose.rays;
 }
 
-/// How many rays in all should do. An early error may be far off, so a round grows the total eightfold at most.
+/// Total number of rays expected to suffice. An early error may be inaccurate, so a round increases the total at most
+/// eightfold.
 int64_t next_round(const SpectrophotometerMeasurement& so_far, const Dose& dose) {
   constexpr double kMargin = 1.02;
   const double ratio = so_far.standard_error() / dose.standard_error, done = double(so_far.rays);

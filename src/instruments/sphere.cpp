@@ -32,12 +32,12 @@ SphereBins::SphereBins(std::span<const Vec3> directions, int bins)
 
 namespace {
 
-constexpr int kEvenSplits = 4;     // first ones, in the middle of the box whatever it holds: no box over 1/16 sphere
-constexpr int kDeepestSplit = 32;  // ends the cutting where many directions are the same one
+constexpr int kEvenSplits = 4;     // the first splits halve the box: no box exceeds 1/16 of the sphere
+constexpr int kDeepestSplit = 32;  // ends the recursion if many directions coincide
 
 double coordinate(const SpherePoint& p, bool by_phi) { return by_phi ? p.phi : p.cos_theta; }
 
-/// The points' median where that lies inside, else the middle.
+/// The points' median if it lies inside the box, else the middle.
 double median_or_middle(std::span<SpherePoint> points, bool by_phi, double low, double high) {
   const auto middle = points.begin() + static_cast<ptrdiff_t>(points.size() / 2);
   std::ranges::nth_element(points, middle, {}, [by_phi](const SpherePoint& p) { return coordinate(p, by_phi); });

@@ -12,6 +12,7 @@ struct SpherePoint {
   double cos_theta, phi;  ///< phi in [0, 2 pi)
   Vec3 w;
 
+  /// From a unit vector.
   explicit SpherePoint(const Vec3& direction);
 };
 
@@ -24,21 +25,22 @@ struct SphereBox {
 
   /// Solid angle, sr.
   double solid_angle() const { return (z1 - z0) * (phi1 - phi0); }
-  /// Area-preserving map of the unit square.
+  /// Area-preserving map of the unit square into the box.
   Vec3 at(double u, double v) const;
 };
 
-/// The whole sphere cut into patches that hold about as many of some directions each, and none of which reaches across
-/// the horizon or is larger than 1/16 of the sphere. So a narrow lobe gets narrow patches.
+/// Partition of the sphere into patches that contain about equally many of some directions; none crosses the horizon or
+/// is larger than 1/16 of the sphere. A narrow lobe therefore has narrow patches.
 class SphereBins {
  public:
-  /// `bins`: how many there should be, about.
+  /// `bins`: approximate number of patches.
   SphereBins(std::span<const Vec3> directions, int bins);
 
   size_t size() const { return bins_.size(); }
   const SphereBox& box(size_t bin) const { return bins_[bin].box; }
-  /// Those of the directions that lie in the bin.
+  /// The directions that lie in the bin.
   std::span<const SpherePoint> points(size_t bin) const { return bins_[bin].points; }
+  /// Index of the bin that contains a unit vector.
   size_t find(const Vec3& w) const;
 
  private:

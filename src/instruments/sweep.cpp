@@ -12,13 +12,13 @@
 namespace frond {
 namespace {
 
-/// The range with `far` for an end at infinity.
+/// The range with infinite ends replaced by `far`.
 Interval finite(const Interval& range, double far) { return {std::max(range.min, -far), std::min(range.max, far)}; }
 
-/// Ends of the range.
+/// Range whose ends are swept.
 Interval ends(const Param& p) { return finite(p.range, 1000); }
 
-/// Where points inside are drawn.
+/// Range from which points inside are drawn.
 Interval inside(const Param& p) {
   const auto* value = std::get_if<double>(&p.default_value);
   return finite(p.range, std::max({1.0, value ? 2 * std::abs(*value) : 0.0, p.range.min, -p.range.max}));
@@ -36,7 +36,7 @@ ParsedParam level(const Param& p, double value) {
   return given(p, "spectrum", std::vector<double>{360, value, 2500, value});
 }
 
-/// Values of a parameter between which nothing lies: booleans, choices. Empty for others.
+/// Discrete values of a parameter: booleans, choices. Empty for others.
 std::vector<ParsedParam> choices(const Param& p) {
   std::vector<ParsedParam> result;
   if (p.kind == ParamKind::boolean)
@@ -46,7 +46,7 @@ std::vector<ParsedParam> choices(const Param& p) {
   return result;
 }
 
-/// A value at u of the way through a range, u in [0, 1]; nothing where the kind has no range.
+/// Value at the fraction u in [0, 1] of a range; nothing if the kind has no range.
 std::vector<ParsedParam> at(const Param& p, const Interval& range, double u) {
   const double x = std::lerp(range.min, range.max, u);
   const auto vector_of = [&](std::string type, size_t n) {
@@ -79,7 +79,7 @@ std::vector<ParsedParam> at(const Param& p, const Interval& range, double u) {
   }
 }
 
-/// What a parameter that must be given is given where nothing else says.
+/// Value of a required parameter that nothing else gives.
 ParsedParam stand_in(const Param& p) {
   if (const auto options = choices(p); !options.empty()) return options.front();
   if (p.kind == ParamKind::material && p.list) return given(p, "string", std::vector<std::string>{"one", "other"});
@@ -148,7 +148,7 @@ class Sweep {
   std::vector<ParameterSet> sets_;
 };
 
-/// Numbers given in pairs of wavelength (nm) and value, linear in between.
+/// Numbers in pairs of wavelength (nm) and value, linear in between.
 class GivenSpectrum final : public Spectrum {
  public:
   explicit GivenSpectrum(std::vector<double> pairs) : pairs_(std::move(pairs)) {}

@@ -16,21 +16,22 @@ struct ParameterSet {
   ParsedPlugin plugin;
 };
 
+/// Options of `parameter_sweep`.
 struct SweepOptions {
-  std::vector<ParsedParam> pinned = {};  ///< given in every set and not swept, as far as the plugin declares them
+  std::vector<ParsedParam> pinned = {};  ///< given in every set and not swept, if the plug-in declares them
   int random_corners = 4;                ///< sets with every parameter at one end of its range
-  int random_points = 4;                 ///< sets with every parameter inside
+  int random_points = 4;                 ///< sets with every parameter inside its range
   uint64_t seed = 1;
 };
 
-/// Sets of parameters over a plugin's declared box: the defaults, each end of each parameter's range and each choice
-/// alone, corners and points inside. Names of files and other free strings keep their defaults. 1000 stands for an end
-/// at infinity, and twice the default (at least 1) where points inside are drawn. Sets may break rules between
-/// parameters: the plugin then refuses them.
+/// Returns sets of parameters over a plug-in's declared ranges: the defaults, each end of each parameter's range and
+/// each choice alone, random corners and points inside. File names and other free strings keep their defaults. 1000
+/// replaces an infinite end, and twice the default (at least 1) for points inside. Sets may violate rules between
+/// parameters; the plug-in then refuses them.
 std::vector<ParameterSet> parameter_sweep(const PluginInfo& info, const SweepOptions& options);
 
-/// Scene files' side of binding without a scene: spectra that are the numbers given, linear in between (rgb: their mean
-/// at every wavelength), one material behind every name, no textures.
+/// Parameter resolver without a scene: spectra are the numbers given, linear in between (rgb: their mean at every
+/// wavelength), every material name resolves to `material_by_name`, and there are no textures.
 class PlainResolver final : public ParamResolver {
  public:
   using MaterialByName = std::function<std::shared_ptr<Material>(const std::string& name)>;

@@ -6,14 +6,14 @@
 namespace frond {
 namespace {
 
-/// Of a light that shines from everywhere, on a surface that faces it.
+/// Irradiance of a light that does not depend on the point, on a surface that faces it.
 double irradiance(const Light& light, double power, double radius) {
-  constexpr double kOfSky = 4;  // a sky's power enters the sphere around the scene from all sides
+  constexpr double kOfSky = 4;  // area of the scene's sphere over that of its disc
   const double e = power / (std::numbers::pi * radius * radius);
   return light.is_delta() ? e : e / kOfSky;
 }
 
-/// A surface that no ray meets is sampled all the same.
+/// Whether a light has an area to sample, also if no ray can hit it.
 bool has_points(const Light& light) {
   const auto bounds = light.bounds();
   return bounds && !(bounds->min == bounds->max);
@@ -23,7 +23,7 @@ bool has_points(const Light& light) {
 
 LightSelector::LightSelector(const World& world, Strategy strategy)
     : lights_(world.lights().begin(), world.lights().end()), probability_(lights_.size(), 0.f) {
-  constexpr double kLeast = 1e-3;  // of the mean: what has no luminance may still shine in the infrared
+  constexpr double kLeast = 1e-3;  // of the mean: a light without luminance may emit in the infrared
   std::vector<double> powers(lights_.size(), 0);
   double total = 0;
   for (size_t i = 0; i < lights_.size(); ++i) {
@@ -40,6 +40,7 @@ LightSelector::LightSelector(const World& world, Strategy strategy)
   for (size_t i = 0; i < lights_.size(); ++i) {
     if (lights_[i]->competing_share() == 0) continue;
     const double power = std::max(powers[i], least);
+    // A single light needs no tree: its probability is 1.
     const bool by_place = strategy == Strategy::tree && count_ > 1;
     if (const auto bounds = by_place ? lights_[i]->bounds() : std::nullopt) {
       entries.push_back({uint32_t(i), *bounds, power});
@@ -66,6 +67,7 @@ float LightSelector::tree_share(const LitPoint& point) const {
 
 std::optional<LightSelector::Choice> LightSelector::choose_among_all(const LitPoint& point, float u) const {
   float share = 1;
+  // u draws between the tree and the other lights, then is rescaled to [0, 1) and reused.
   if (!tree_.empty()) {
     const float of_tree = tree_share(point);
     if (u < of_tree) {

@@ -9,52 +9,58 @@
 
 namespace frond {
 
-/// Chooses one light of the scene for a sample that competes with scattered rays.
+/// Selects one light of the scene for light sampling at a surface point.
 class LightSelector {
  public:
+  /// Probability of a light: equal, in proportion to its power, or by a light tree.
   enum class Strategy : uint8_t {
     uniform,
     power,
-    tree,  ///< by what lights may give at the point
+    tree,  ///< by an estimate of each light's irradiance at the point (LightTree)
   };
+  /// A light and the probability with which it was drawn.
   struct Choice {
     const Light* light;
     float probability;
   };
-  /// Of a surface: where it is, and its unit geometric normal.
+  /// Position and unit geometric normal of a surface point, world space.
   struct LitPoint {
     Vec3 p, n;
   };
 
   LightSelector() = default;
+  /// `world` must outlive the selector.
   LightSelector(const World& world, Strategy strategy);
 
+  /// Whether no light is sampled.
   bool empty() const { return count_ == 0; }
-  /// More than one light: `choose` reads its number.
+  /// Whether there is more than one light, so that `choose` uses `u`.
   bool has_choice() const { return count_ > 1; }
-  /// Some light has points or directions to sample: all but delta lights, and of these surfaces that no ray meets.
+  /// Whether some light has points or directions to sample: all except delta lights, including emitting surfaces that
+  /// no ray can hit.
   bool has_extent() const { return has_extent_; }
-  /// Nothing where no light reaches the point.
+  /// Draws a light by `u` in [0, 1); nothing if no light reaches the point.
   std::optional<Choice> choose(const LitPoint& point, float u) const {
     if (count_ == 1) return Choice{only_, 1};
     return choose_among_all(point, u);
   }
+  /// Probability with which `choose` draws this light at the point.
   float probability(const Light& light, const LitPoint& point) const;
 
  private:
   std::optional<Choice> choose_among_all(const LitPoint& point, float u) const;
-  /// Of all at this point, that one of the tree is chosen.
+  /// Probability at this point that a light of the tree is drawn.
   float tree_share(const LitPoint& point) const;
 
-  std::vector<const Light*> lights_;  ///< of the scene; their places are the numbers of the tree
-  size_t count_ = 0;                  ///< of those that are chosen at all
-  const Light* only_ = nullptr;       ///< where that is one
+  std::vector<const Light*> lights_;  ///< all lights of the scene, by their index in the tree
+  size_t count_ = 0;                  ///< number of lights that are sampled
+  const Light* only_ = nullptr;       ///< the light, if that number is one
   bool has_extent_ = false;
   LightTree tree_;
-  std::vector<size_t> everywhere_;  ///< places of those that are chosen the same way everywhere
-  std::vector<float> cumulative_;   ///< probabilities of these, one among another
-  std::vector<float> probability_;  ///< the same by point; 0 for others
-  float irradiance_ = 0;            ///< of these together
+  std::vector<size_t> everywhere_;  ///< indices of lights whose probability does not depend on the point
+  std::vector<float> cumulative_;   ///< cumulative probabilities of these among each other
+  std::vector<float> probability_;  ///< the same by light, not cumulative; 0 for others
+  float irradiance_ = 0;            ///< sum of these lights' irradiances
 };
 
 }  // namespace frond

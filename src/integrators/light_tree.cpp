@@ -23,7 +23,7 @@ struct Cone {
   double half;
 };
 
-/// The smallest that has both.
+/// The smallest cone that contains both.
 Cone union_of(Cone a, Cone b) {
   if (b.half > a.half) std::swap(a, b);
   const double between = std::acos(std::clamp(dot(a.axis, b.axis), -1.0, 1.0));
@@ -50,7 +50,8 @@ LightBounds union_of(const LightBounds& a, const LightBounds& b) {
 
 Vec3 middle(const LightBounds& b) { return (b.min + b.max) * 0.5f; }
 
-/// Solid angle that a cluster shines into, weighted by cosines.
+/// Orientation measure M_Omega of Conty Estevez and Kulla 2018: solid angle into which a cluster emits, weighted by
+/// cosines, sr.
 double orientation_measure(const LightBounds& b) {
   const double spread = angle(b.cos_spread), reach = std::min(std::numbers::pi, spread + angle(b.cos_reach));
   const double once =
@@ -60,7 +61,8 @@ double orientation_measure(const LightBounds& b) {
   return b.two_sided ? std::min(2 * once, 4 * std::numbers::pi) : once;
 }
 
-/// What a cluster costs: the smaller, the more alike its lights.
+/// Cost of a cluster by the surface area orientation heuristic: power times orientation measure times area. The
+/// smaller, the more alike its lights.
 double cost(const LightBounds& b, double power, double stretch) {
   const Vec3d d = to_double(b.max) - to_double(b.min);
   constexpr double kLine = 1e-3;  // lights in a line have no area
@@ -68,11 +70,11 @@ double cost(const LightBounds& b, double power, double stretch) {
   return power * stretch * orientation_measure(b) * size;
 }
 
-/// Cosine of the difference of two angles, or 1 where the second is the larger.
+/// Cosine of max(0, a - b) for two angles a, b.
 float cos_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
   return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
 }
-/// Sine of the same, or 0.
+/// Sine of max(0, a - b).
 float sin_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
   return cos_a > cos_b ? 0 : sin_a * cos_b - cos_a * sin_b;
 }
@@ -90,7 +92,7 @@ struct Cluster {
   }
 };
 
-/// Where to cut entries: those whose middle lies before a plane come first.
+/// Partitions the entries by the cheapest of the planes between bins; returns the number of entries before it.
 template <class Entry>
 size_t partition(std::span<Entry> entries) {
   constexpr int kBins = 12;
@@ -138,7 +140,7 @@ LightTree::LightTree(std::vector<Entry> entries) {
 }
 
 uint32_t LightTree::build(std::span<Entry> entries, uint64_t trail, int depth) {
-  constexpr int kBalanced = 32;  // from here on by halves, so that ways fit into their bits
+  constexpr int kBalanced = 32;  // deeper nodes are split in halves, so that paths fit into 64 bits
   const auto place = uint32_t(nodes_.size());
   nodes_.emplace_back();
   if (entries.size() == 1) {
@@ -161,12 +163,14 @@ float LightTree::importance(const Node& node, const Vec3& p, const Vec3& n) {
   const float radius2 = dot(diagonal, diagonal) / 4, center2 = dot(to_light, to_light);
   const float distance2 = std::max({center2, radius2, 1e-30f});
   const Vec3 w = center2 > 0 ? to_light * (1 / std::sqrt(center2)) : Vec3{0, 0, 1};
-  // Half the angle that the cluster takes up, seen from the point; all directions from within.
+  // Angular radius of the cluster as seen from the point; pi from within it.
   const float cos_size = center2 > radius2 ? std::sqrt(std::max(0.f, 1 - radius2 / center2)) : -1;
   const float sin_size = sine(cos_size);
   float cos_facing = -dot(w, b.axis);
   if (b.two_sided) cos_facing = std::abs(cos_facing);
   const float sin_spread = sine(b.cos_spread), sin_facing = sine(cos_facing);
+  // Importance of Conty Estevez and Kulla 2018: the angle between the axis and the point, less the cluster's spread and
+  // angular radius, bounds the emission; the angle of incidence, less the radius, bounds the cosine.
   const float cos_beyond = cos_of_difference(sin_facing, cos_facing, sin_spread, b.cos_spread);
   const float sin_beyond = sin_of_difference(sin_facing, cos_facing, sin_spread, b.cos_spread);
   const float cos_least = cos_of_difference(sin_beyond, cos_beyond, sin_size, cos_size);

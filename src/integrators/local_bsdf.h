@@ -7,31 +7,34 @@
 
 namespace frond {
 
-/// A BSDF at a hit, in world space. The shading normal alone decides on which side a direction is, as in pbrt-v4 and
+/// A BSDF at a hit, in world space. The shading normal alone decides the side of a direction, as in pbrt-v4 and
 /// Mitsuba: the BSDF keeps all of its energy, however far that normal is from the geometric one.
 class LocalBsdf {
  public:
-  /// Set, not made anew: a copy of what has just been written field by field waits for all of it.
+  /// Sets the members in place: a struct that was just written field by field cannot be copied until those writes reach
+  /// the cache.
   void set(const Bsdf& bsdf, const Hit& hit, const Vec3& wo) {
     bsdf_ = &bsdf;
     frame_ = hit.shading;
     wo_ = frame_.to_local(wo);
   }
 
+  /// Returns f |cos theta_i|, 1/sr, and stores the BSDF's density for wi, 1/sr, in `pdf`.
   SampledSpectrum f_cos(const Vec3& wi_world, RandomStream rng, float& pdf) const {
     const Vec3 wi = frame_.to_local(wi_world);
     pdf = bsdf_->pdf(wo_, wi);
     return pdf > 0 ? bsdf_->f(wo_, wi, rng) * std::abs(wi.z) : SampledSpectrum();
   }
 
+  /// A sampled direction.
   struct Sample {
     Vec3 wi;                 ///< world space
     SampledSpectrum weight;  ///< f |cos theta_i| / pdf
-    float pdf;               ///< for the balance with light sampling
-    float power_factor;      ///< by which refraction has divided the weight
+    float pdf;               ///< 1/sr, for MIS with light sampling
+    float power_factor;      ///< eta^2: the factor by which refraction has divided the weight
     bool is_specular;
   };
-  /// False where nothing is scattered.
+  /// Samples a direction into `sample`; returns false if nothing is scattered.
   bool sample(float uc, Vec2 u, RandomStream rng, Sample& sample) const {
     const auto s = bsdf_->sample(wo_, uc, u, rng);
     if (!s) return false;

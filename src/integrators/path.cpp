@@ -10,32 +10,32 @@
 namespace frond {
 namespace {
 
-/// Streams of one path vertex, told apart by what they are for.
+/// Uses of random streams at one path vertex.
 enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette };
 
-/// Keys of the random numbers of one vertex: those of its rays, and streams by use.
+/// Key of the random numbers of one vertex: of its rays, and of its streams by use.
 struct VertexKey {
   uint64_t value;
 
-  /// Streams count on from their keys in other steps.
+  /// The step differs from that of a stream's counter, so that streams do not overlap.
   uint64_t of(Use use) const { return value + uint64_t(use) * 0xd1342543de82ef95ull; }
   RandomStream stream(Use use) const { return RandomStream(of(use)); }
 };
 
-/// A path on its way from the camera to the lights.
+/// State of a path.
 struct Path {
   Ray ray;
   SampledWavelengths lambda;
   SampledSpectrum throughput;
-  /// Density of the last direction, for the balance with light sampling; infinite where no light sample competes.
+  /// Density of the last direction, 1/sr, for MIS with light sampling; infinite if no light sample competes.
   float scatter_pdf;
-  float power_factor;                ///< by which refraction alone has divided the throughput
+  float power_factor;                ///< factor by which refraction alone has divided the throughput
   int depth;                         ///< scattering events so far
   LightSelector::LitPoint previous;  ///< the last vertex
-  VertexKey key;                     ///< of the vertex that it is at
+  VertexKey key;                     ///< of the current vertex
 };
 
-/// Places in a bundle, ascending.
+/// Indices of paths in a bundle, ascending.
 class LaneList {
  public:
   void add(size_t lane) { lanes_[count_++] = uint8_t(lane); }
@@ -60,11 +60,11 @@ constexpr Param kPath[] = {
     {.name = "sampledirect",
      .kind = ParamKind::boolean,
      .default_value = true,
-     .doc = "Sample the lights at every hit; false: follow scattered rays alone."},
+     .doc = "Sample lights at every hit; false: only scattered rays find lights."},
     {.name = "lightsampler",
      .kind = ParamKind::string,
      .default_value = std::string_view("bvh"),
-     .doc = "How a hit chooses its light. bvh: by what lights may give there.",
+     .doc = "Selection of a light at a hit. bvh: by a light tree's estimate of its contribution there.",
      .choices = kLightSamplers},
     {.name = "termination",
      .kind = ParamKind::string,
@@ -79,7 +79,7 @@ constexpr Param kPath[] = {
      .doc = "Attenuation below which a path ends."},
 };
 
-/// What the parameters say.
+/// Values of the parameters.
 struct PathSettings {
   int max_depth;
   bool sample_lights;
@@ -87,12 +87,13 @@ struct PathSettings {
   float cutoff;
 };
 
-/// The paths of a bundle, from vertex to vertex side by side.
+/// Traces the paths of a bundle together, one vertex after the other.
 class PathTracer final : public Tracer {
  public:
   PathTracer(const World& world, const LightSelector& selector, const PathSettings& settings)
       : world_(world), selector_(selector), settings_(settings) {}
 
+  // Each iteration is one vertex of all paths: intersect, add emission, sample lights, sample the BSDF.
   void trace(PathBundle& bundle) override {
     bundle_ = &bundle;
     LaneList alive = begin();
@@ -131,10 +132,11 @@ class PathTracer final : public Tracer {
     return lanes;
   }
 
-  /// Streams of this vertex of a path.
+  /// Key of this vertex of a path.
   VertexKey key_of(size_t lane) const { return {hash_key(bundle_->keys[lane], uint64_t(vertex_))}; }
 
-  /// Camera rays, in packets that hold the same rays whichever results are wanted.
+  /// Intersects camera rays in packets, whose rays do not depend on which results are wanted: a sample does not depend
+  /// on which other samples are rendered.
   LaneList meet_first(const LaneList& alive) {
     uint32_t hits = 0;
     for (size_t first = 0; first < kMost; first += kWidth) {
@@ -147,6 +149,7 @@ class PathTracer final : public Tracer {
     return after_rays(alive, hits);
   }
 
+  /// Intersects the next rays one by one, since they are incoherent.
   LaneList meet(const LaneList& alive) {
     uint32_t hits = 0;
     for (const size_t i : alive)
@@ -155,7 +158,7 @@ class PathTracer final : public Tracer {
     return after_rays(alive, hits);
   }
 
-  /// Those that met something.
+  /// Returns the paths that hit a surface; the others receive the environment's radiance and end.
   LaneList after_rays(const LaneList& alive, uint32_t hits) {
     LaneList met;
     for (const size_t i : alive) {
@@ -169,7 +172,8 @@ class PathTracer final : public Tracer {
     return met;
   }
 
-  /// Those that may be scattered. Where a surface is not there, the path goes straight on.
+  /// Adds emission and evaluates materials. Returns the paths that may be scattered; a path that hits an invisible
+  /// surface goes to `passed`.
   LaneList look(const LaneList& met, LaneList& passed) {
     LaneList scattering;
     for (const size_t i : met) {
@@ -221,21 +225,21 @@ class PathTracer final : public Tracer {
         weight_of(light, path, [&] { return light.pdf(path.previous.p, at); }));
   }
 
-  /// Weight of light met by a scattered ray.
+  /// MIS weight of emission hit by a scattered ray (power heuristic, Veach and Guibas 1995).
   template <class Pdf>
   float weight_of(const Light& light, const Path& path, const Pdf& light_pdf) const {
     if (std::isinf(path.scatter_pdf)) return 1;
     return power_heuristic(path.scatter_pdf, light_pdf() * selector_.probability(light, path.previous));
   }
 
-  /// What a light would add to a path, were nothing in the way.
+  /// Contribution of a light sample to a path if it is not occluded.
   struct Lit {
     SampledSpectrum radiance;
     float weight;
   };
 
   void add_sampled_lights(const LaneList& lanes) {
-    // Numbers that no light of the scene would read are not made.
+    // Random numbers that no light of the scene uses are not generated.
     if (selector_.has_choice()) draw(lanes, Number::light, numbers_);
     if (selector_.has_extent()) draw(lanes, Number::on_light, pairs_);
     LaneList lit;
@@ -267,6 +271,7 @@ class PathTracer final : public Tracer {
       if (!(dark >> i & 1)) add(i, lit_[i].radiance, lit_[i].weight);
   }
 
+  /// Returns the mask of the occluded paths: shadow rays one by one.
   uint32_t occluded(const LaneList& lit) const {
     uint32_t dark = 0;
     for (const size_t i : lit)
@@ -274,6 +279,7 @@ class PathTracer final : public Tracer {
     return dark;
   }
 
+  /// The same in packets, for coherent rays: toward delta or nearby lights from the first hit.
   uint32_t occluded_alike(const LaneList& lit) const {
     uint32_t dark = 0;
     for (size_t first = 0; first < kMost; first += kWidth) {
@@ -285,7 +291,7 @@ class PathTracer final : public Tracer {
     return dark;
   }
 
-  /// From the lifted origin to the same point of the light, and just short of its surface.
+  /// Shadow ray from the offset origin to the same point of the light, ending just short of its surface.
   static void set_shadow_ray(const Hit& hit, const LightSample& sample, Ray& ray) {
     const bool is_distant = std::isinf(sample.distance);
     ray.o = offset_origin(hit, sample.wi);
@@ -301,14 +307,14 @@ class PathTracer final : public Tracer {
     path.ray.t_max = INFINITY;
   }
 
-  /// Straight on through a surface that is not there. Shadow rays stop at it, so no light sample competes with what
-  /// lies behind.
+  /// Continues a path straight through an invisible surface. Shadow rays are blocked by it, so no light sample competes
+  /// with emission behind it.
   static void pass(const Hit& hit, Path& path) {
     path.scatter_pdf = INFINITY;
     set_ray(hit, path.ray.d, path);
   }
 
-  /// Turns paths into their next directions. Those that go on, with those that were passed through.
+  /// Samples the next directions. Returns the paths that continue, including those in `passed`.
   LaneList scatter(const LaneList& lanes, const LaneList& passed) {
     draw(lanes, Number::lobe, numbers_);
     draw(lanes, Number::direction, pairs_);
@@ -329,7 +335,7 @@ class PathTracer final : public Tracer {
     return next;
   }
 
-  /// False where nothing is scattered.
+  /// Returns false if nothing is scattered.
   bool scatter(const Hit& hit, const LocalBsdf& bsdf, float uc, Vec2 u, Path& path) const {
     LocalBsdf::Sample sample;
     if (!bsdf.sample(uc, u, path.key.stream(Use::bsdf), sample)) return false;
@@ -341,8 +347,9 @@ class PathTracer final : public Tracer {
     return true;
   }
 
-  /// Whether the path ends here; roulette rewards the survivors. It begins after the fifth scattering: earlier, the few
-  /// that go on make more noise in dark places than the others save time.
+  /// Returns whether the path ends here; Russian roulette divides the survivors' throughput by their probability. It
+  /// starts after the fifth scattering: earlier, the few survivors add more noise in dark regions than the time saved
+  /// is worth.
   bool ends(Path& path) const {
     if (path.throughput.is_black()) return true;
     if (settings_.cut_off_attenuation) return attenuation(path) * path.power_factor < settings_.cutoff;
@@ -353,7 +360,7 @@ class PathTracer final : public Tracer {
     return false;
   }
 
-  /// The paper's luminance of the attenuation where the lanes are its three colours; the mean elsewhere.
+  /// The paper's luminance of the attenuation if the lanes are its three colours; else the mean.
   float attenuation(const Path& path) const {
     const auto shares = world_.wavelengths().luminance_shares();
     if (shares.empty()) return mean(path.throughput, path.lambda);
@@ -362,7 +369,7 @@ class PathTracer final : public Tracer {
     return sum;
   }
 
-  /// What the sampler's numbers of a vertex are for.
+  /// Sampler dimensions of one vertex.
   enum class Number : uint32_t { light, on_light, lobe, direction, count };
 
   void get(const PixelSamples& samples, uint32_t dimension, float* u) const {
@@ -372,7 +379,7 @@ class PathTracer final : public Tracer {
     bundle_->sampler.get2d(samples, dimension, u);
   }
 
-  /// For these lanes; for all at once where that is as cheap.
+  /// Draws the sampler's numbers for these paths; for the whole bundle if that is as fast.
   template <class T>
   void draw(const LaneList& lanes, Number number, std::array<T, kMost>& u) const {
     constexpr size_t kFew = 4;
@@ -382,17 +389,17 @@ class PathTracer final : public Tracer {
     for (const size_t i : lanes) get({s.x, s.y, s.first + i, 1}, dimension, &u[i]);
   }
 
-  static constexpr int kSafeScatterings = 5;  ///< which roulette follows
+  static constexpr int kSafeScatterings = 5;  ///< Russian roulette starts after these
 
-  /// Surfaces that are not there, in one path: rounding might have a ray meet the same one for ever.
+  /// Largest number of invisible surfaces along one path: rounding could make a ray hit the same one without end.
   static constexpr int kMostPassed = 1000;
 
   const World& world_;
   const LightSelector& selector_;
   const PathSettings& settings_;
-  PathBundle* bundle_ = nullptr;  ///< the one that is being traced
+  PathBundle* bundle_ = nullptr;  ///< current bundle
   Arena arena_;
-  /// Counts for random numbers: a surface that is not there makes one too.
+  /// Index of the vertex for random numbers; invisible surfaces count too.
   int vertex_ = 0;
   std::array<Path, kMost> paths_;
   std::array<SurfacePoint, kMost> points_;

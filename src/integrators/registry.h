@@ -6,6 +6,7 @@
 
 namespace frond {
 
+/// The built-in integrators, by name.
 std::span<const IntegratorInfo* const> builtin_integrators();
 
 }  // namespace frond

@@ -17,6 +17,10 @@
 #include "system/machine.h"
 
 namespace frond {
+
+// `frond bench`: cost and variance of a BSDF's calls. Google Benchmark times the calls; variances are estimated
+// separately, so that timing loops contain nothing else (docs/performance.md).
+
 namespace {
 
 using enum ArgumentKind;
@@ -29,11 +33,12 @@ constexpr JobParam kParams[] = {
     JobParam("lanes", numbers, "Numbers of wavelengths that a path carries.",
              {.default_value = "1,2,3,4", .range = {1, kLanes}}),
     JobParam("wavelengths", numbers,
-             "Wavelengths; a path of n lanes carries the first n. By default those of frond_bench (docs/bench.md).",
+             "Wavelengths; a path of n lanes carries the first n. By default the wavelengths of frond_bench "
+             "(docs/performance.md).",
              {.unit = "nm", .range = kAboveZero, .aliases = "wavelength"}),
     JobParam("repetitions", count, "Number of repetitions of each benchmark.",
              {.default_value = "5", .range = {1, 10000}}),
-    JobParam("min-time", real, "Least duration of a repetition.",
+    JobParam("min-time", real, "Minimum duration of a repetition.",
              {.default_value = "0.01", .unit = "s", .range = kAboveZero}),
     JobParam("samples", count, "Number of samples for the variance of each estimate.",
              {.default_value = "1e5", .range = {1000, kCounts.max}}),
@@ -44,6 +49,7 @@ constexpr JobParam kParams[] = {
     chart_param("plot", "Chart of variance against the cost of a hit: .svg or .png."),
 };
 
+/// Returns --angles. Throws InputError for 90 degrees, at which a ray hits neither side.
 std::vector<double> angles_of(const Arguments& args) {
   const auto angles = args.numbers("angles");
   if (std::ranges::count(angles, 90) > 0)
@@ -51,7 +57,7 @@ std::vector<double> angles_of(const Arguments& args) {
   return angles;
 }
 
-/// The wavelengths of each number of lanes.
+/// Returns one strategy for each entry of --lanes. Without --wavelengths, the wavelengths of frond_bench are used.
 std::vector<GivenWavelengths> wavelengths_of(const Arguments& args) {
   const auto nm = args.numbers("wavelengths");
   const double most = nm.empty() ? kLanes : std::min(double(nm.size()), double(kLanes));
@@ -66,7 +72,7 @@ std::vector<GivenWavelengths> wavelengths_of(const Arguments& args) {
   return strategies;
 }
 
-/// The materials under test, each prepared for each number of lanes.
+/// The materials under test. Each is prepared once for every number of lanes.
 class TimedMaterials {
  public:
   explicit TimedMaterials(const JobRun& run)
@@ -79,7 +85,7 @@ class TimedMaterials {
                                             run.context.options().cache));
         Arena arena;
         if (!materials_.back()->evaluate(flat_hit(), w.sample(0), arena))
-          fail({}, "{}: the material says that it has no surface there: nothing can be measured", text);
+          fail({}, "{}: the material has no surface there (an alpha of 0, for one): it cannot be measured", text);
       }
     }
   }
@@ -87,7 +93,7 @@ class TimedMaterials {
   size_t count() const { return labels_.size(); }
   size_t angles() const { return angles_deg_.size(); }
 
-  /// Numbers of lanes run fastest, then angles, then materials.
+  /// Returns the hits to time. Numbers of lanes vary fastest, then angles, then materials.
   std::vector<TimedHit> hits() const {
     std::vector<TimedHit> all;
     for (size_t m = 0; m < labels_.size(); ++m)
@@ -107,18 +113,19 @@ class TimedMaterials {
   std::vector<std::shared_ptr<Material>> materials_;
 };
 
-/// What an estimate of one sample gives: its expectation and relative variance, by which its time is multiplied.
+/// An estimator of one sample, its expectation and relative variance, and the call whose time the variance is
+/// multiplied by.
 struct NamedWorth {
   const char* name;
   Worth SampleWorth::*worth;
   BsdfCall call;
-  const char* variance;  ///< in Google Benchmark's JSON
+  const char* variance;  ///< counter's name in Google Benchmark's JSON
 };
 constexpr NamedWorth kWorths[] = {{"albedo", &SampleWorth::albedo, BsdfCall::sample, "variance"},
                                   {"sky", &SampleWorth::sky, BsdfCall::hit, "sky_variance"},
                                   {"sun", &SampleWorth::sun, BsdfCall::hit, "sun_variance"}};
 
-/// CPU microseconds until the standard error is 1 % of the mean; infinite where the mean is 0.
+/// Returns the CPU time in us until the standard error is 1 % of the mean; infinite if the mean is 0.
 double us_to_percent(const Worth& worth, double variance, const Estimate& time_ns) {
   constexpr double kPercent = 0.01;
   if (worth.mean.mean == 0) return std::numeric_limits<double>::infinity();
@@ -126,12 +133,14 @@ double us_to_percent(const Worth& worth, double variance, const Estimate& time_n
   return time_ns.mean * 1e-3 * variance / (error * error);
 }
 
+/// Columns that identify a measurement, common to both tables.
 void add_row_head(Table& table, const BenchMeasurement& r) {
   table.add("material", r.material);
   table.add("theta_deg", r.theta_deg);
   table.add("wavelengths", r.lanes);
 }
 
+/// CPU time of each call in ns, one row for each measurement.
 Table times_table(const std::vector<BenchMeasurement>& measurements) {
   Table table{"times"};
   for (const BenchMeasurement& r : measurements) {
@@ -142,8 +151,9 @@ Table times_table(const std::vector<BenchMeasurement>& measurements) {
   return table;
 }
 
+/// Table of expectations and variances. A variance below the rounding error of floats is reported as exactly 0.
 Table worths_table(const std::vector<BenchMeasurement>& measurements) {
-  constexpr double kRounding = 1e-12;  // of floats, in the variance
+  constexpr double kRounding = 1e-12;  // rounding error of floats in the variance
   Table table{"worths"};
   for (const BenchMeasurement& r : measurements) {
     add_row_head(table, r);
@@ -163,7 +173,7 @@ Table worths_table(const std::vector<BenchMeasurement>& measurements) {
 
 using Json = nlohmann::ordered_json;
 
-/// Google Benchmark's JSON with frond's counters.
+/// Returns Google Benchmark's JSON with frond's counters added to each benchmark's iterations.
 std::string json_of(const std::string& of_times, const Arguments& args, std::span<const TimedHit> hits,
                     const std::vector<BenchMeasurement>& measurements) {
   Json json = Json::parse(of_times);
@@ -191,13 +201,15 @@ std::string json_of(const std::string& of_times, const Arguments& args, std::spa
   return json.dump(2) + '\n';
 }
 
+/// Timings are unreliable when other processes use the processors.
 void warn_where_busy(const Log& log) {
   double load = 0;
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
   if (getloadavg(&load, 1) == 1 && load > threads)
-    log.warn({}, fmt::format("the machine had other work to do: a load of {:.1f} on {} processors", load, threads));
+    log.warn({}, fmt::format("the machine is busy: load average {:.1f} on {} processors", load, threads));
 }
 
+/// Times all materials first, on one thread, and estimates their variances afterwards on all threads.
 Result bench(const JobRun& run) {
   check_chart_param(run, "plot");
   const TimedMaterials materials(run);

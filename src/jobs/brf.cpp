@@ -15,6 +15,10 @@
 #include "system/machine.h"
 
 namespace frond {
+
+// `frond brf`: bidirectional reflectance factor of a scene for a distant sensor, or a comparison of leaf models by it
+// (docs/radiometry.md).
+
 namespace {
 
 using enum ArgumentKind;
@@ -22,10 +26,11 @@ using enum ArgumentKind;
 constexpr JobParam kParams[] = {
     kSceneParam,
     kRadiometryWavelengthsParam,
-    JobParam("zenith", numbers, "Zenith angles of the views; under one sun a negative angle looks from the sun's side.",
+    JobParam("zenith", numbers,
+             "Zenith angles of the views; negative angles are on the sun's side, if there is one sun.",
              {.default_value = "-75:75:5", .unit = "degrees", .decides = true}),
     JobParam("azimuth", numbers,
-             "Azimuths of the views from the plane of the sun, or from +x toward +y where there is not one sun.",
+             "Azimuths of the views from the sun's plane; from +x toward +y if there is not exactly one sun.",
              {.default_value = "0", .unit = "degrees", .decides = true}),
     JobParam("hemisphere", flag, "Views of the whole hemisphere, every 5 degrees of zenith and 15 of azimuth.",
              {.decides = true, .excludes = "zenith,azimuth"}),
@@ -38,11 +43,12 @@ constexpr JobParam kParams[] = {
     kIntegratorParam,
     kSeedParam,
     JobParam("compare", texts,
-             "MODEL[,parameter=value...];...: leaf models that replace the scene's leaves: which is accurate enough?",
+             "MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate "
+             "enough.",
              {.type = "MATERIAL", .excludes = "plot,checkpoint,resume"}),
-    JobParam("reference", text, "Leaf model that the models of --compare are compared with.",
+    JobParam("reference", text, "Reference leaf model of --compare.",
              {.type = "MATERIAL", .default_value = "leaf_solved"}),
-    JobParam("within", real, "Largest relative difference that is accurate enough for --compare.",
+    JobParam("within", real, "Largest relative difference at which --compare calls a model accurate enough.",
              {.default_value = "0.02", .range = kAboveZero}),
     kIgnoreUnsupportedParam,
     kStrictParam,
@@ -53,6 +59,7 @@ constexpr JobParam kParams[] = {
     kResumeParam,
 };
 
+/// Returns the views: --zenith x --azimuth, or a hemisphere in rings of 5 degrees up to 85.
 std::vector<ViewDirection> views_of(const Arguments& args) {
   std::vector<ViewDirection> views;
   if (args.flag("hemisphere")) {
@@ -71,7 +78,8 @@ std::vector<ViewDirection> views_of(const Arguments& args) {
   return views;
 }
 
-/// Nothing, or the partial result of an earlier run. Throws InputError for that of another measurement.
+/// Returns an empty part, or the partial result of an earlier run. Throws InputError if that result is of another
+/// measurement.
 RenderPart first_part(const JobRun& run, const BrfMeter& meter, const KeptFile* kept) {
   RenderPart fresh = meter.scene().empty_part();
   const auto path = kept ? kept->found(run.args.flag("resume")) : std::nullopt;
@@ -83,9 +91,10 @@ RenderPart first_part(const JobRun& run, const BrfMeter& meter, const KeptFile* 
   return part;
 }
 
-/// Nothing where it was stopped; `kept` may be nullptr.
+/// Returns nullopt if the measurement was stopped. `kept` may be nullptr.
 std::optional<BrfMeasurement> measure(const JobRun& run, const BrfMeter& meter, const KeptFile* kept) {
   RenderControl control = run.control_until(run.args.real("time-limit"));
+  // A refinement starts with few samples and doubles them; each band needs at least one sample.
   constexpr uint64_t kFirst = 64;
   const uint64_t needed = meter.scene().scene().wavelengths().bands().size();
   const bool refines = run.args.given("rms");
@@ -109,10 +118,11 @@ std::optional<BrfMeasurement> measure(const JobRun& run, const BrfMeter& meter, 
   if (kept) kept->keep(end != RefineEnd::stopped, false, write);
   if (end == RefineEnd::stopped) return {};
   if (end == RefineEnd::time_over && sample_count(part.film).least == 0)
-    fail({}, "{}: the time was over before every direction had been seen", run.args.spelled("time-limit"));
+    fail({}, "{}: the time limit ended before every direction was measured", run.args.spelled("time-limit"));
   return meter.read(part.film);
 }
 
+/// Appends one row for each view and band. `model` may be empty.
 void add_rows(Table& table, const BrfMeasurement& measurement, const std::string& model) {
   for (size_t view = 0; view < measurement.views.size(); ++view)
     for (size_t band = 0; band < measurement.wavelengths_nm.size(); ++band) {
@@ -124,7 +134,7 @@ void add_rows(Table& table, const BrfMeasurement& measurement, const std::string
     }
 }
 
-/// A row for each direction, a column for each wavelength.
+/// Table with one row for each direction and one column for each wavelength.
 Table by_direction(const BrfMeasurement& measurement) {
   Table table{"brf"};
   for (size_t view = 0; view < measurement.views.size(); ++view) {
@@ -136,7 +146,7 @@ Table by_direction(const BrfMeasurement& measurement) {
   return table;
 }
 
-/// A leaf model's BRF, and its cost.
+/// BRF of the scene with one leaf model, and the model's cost.
 struct ModelMeasurement {
   compare::Candidate model;
   BrfMeasurement brf;
@@ -164,8 +174,8 @@ Result comparison_result(const ModelMeasurement& reference, const std::vector<Mo
     verdicts.add("upper_bound", v.upper);
     verdicts.add("enough", std::string(v.answer == Answer::enough       ? "yes"
                                        : v.answer == Answer::not_enough ? "no"
-                                       : m.brf.has_heavy_tails          ? "unknown: its noise has no bound"
-                                                                        : "unknown: more paths would tell"));
+                                       : m.brf.has_heavy_tails          ? "unknown: its noise is unbounded"
+                                                                        : "unknown: more paths are needed"));
     if (v.answer == Answer::enough && !enough) enough = &m;
   }
   const std::string& cheapest = (enough ? *enough : reference).model.label;
@@ -177,13 +187,14 @@ Result comparison_result(const ModelMeasurement& reference, const std::vector<Mo
                           reference.model.label, reference.cpu_us_per_path, 100 * within, to_text(verdicts), cheapest)};
 }
 
-/// The scene with one leaf model after another in place of its leaves.
+/// Measures the scene once with each leaf model in place of its leaves. Models share the geometry of the first.
 Result run_comparison(const JobRun& run, const BrfRequest& request) {
   const SceneDescription description = described_scene(run);
   std::unique_ptr<BrfMeter> first;
   const auto measured = [&](const compare::Candidate& model) {
     if (!model.wavelengths.empty() || model.integrator)
-      fail({}, "{} takes materials alone: \"{}\" has an @", run.args.spelled("compare"), model.text);
+      fail({}, "{} takes materials without @wavelengths or @integrator: \"{}\"", run.args.spelled("compare"),
+           model.text);
     SceneDescription with_model = description;
     apply_overrides({.swaps = {{"*", model.material}}}, with_model, run.session().registry(), run.log());
     auto meter = std::make_unique<BrfMeter>(run.session(), std::move(with_model), request,
@@ -202,10 +213,12 @@ Result run_comparison(const JobRun& run, const BrfRequest& request) {
   const ModelMeasurement reference = measured(compare::parse_candidate(run.args.text("reference")));
   std::vector<ModelMeasurement> measurements;
   for (const compare::Candidate& model : models) measurements.push_back(measured(model));
+  // Sorted by cost, so that the first sufficient model is the cheapest.
   std::ranges::sort(measurements, {}, &ModelMeasurement::cpu_us_per_path);
   return comparison_result(reference, measurements, run.args.real("within"));
 }
 
+/// The job: measures the scene as it is, or with the leaf models of --compare.
 Result brf(const JobRun& run) {
   check_chart_param(run, "plot");
   const BrfRequest request{.views = views_of(run.args),
@@ -239,10 +252,9 @@ Result brf(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kBrfJob(
-    "brf", "Measure", "Measure the bidirectional reflectance factor of a scene from far away.",
-    "Where the scene says nothing about the incident direction, leaves are reciprocal, or conserve energy "
-    "where they cannot be reciprocal.",
-    kParams, SessionUse::all, brf);
+extern const JobInfo kBrfJob("brf", "Measure", "Measure the bidirectional reflectance factor of a scene from far away.",
+                             "Unless the scene sets \"incident\", leaves are reciprocal, or conserve energy "
+                             "where they cannot be reciprocal.",
+                             kParams, SessionUse::all, brf);
 
 }  // namespace frond

@@ -5,6 +5,9 @@
 #include "scene/geometry/instance_writer.h"
 
 namespace frond {
+
+// `frond canopy`: table of randomly placed leaves, a homogeneous canopy in the sense of radiative transfer models.
+
 namespace {
 
 using enum ArgumentKind;
@@ -17,28 +20,29 @@ const std::vector<std::string_view> kAngles = [] {
 
 const JobParam kParams[] = {
     output_param("Instance table to write, a NumPy file (.npy).", true),
-    JobParam("lai", real, "Leaf area index: one-sided area of the leaves over that of the ground.",
+    JobParam("lai", real, "Leaf area index: one-sided leaf area over ground area.",
              {.default_value = "3", .range = kAboveZero}),
     JobParam("count", count, "Number of leaves.", {.range = {1, 4e9}, .excludes = "lai"}),
-    JobParam("ball", real, "Radius of a ball around the origin that the leaves fill, in place of a plot.",
+    JobParam("ball", real, "Fill a ball of this radius around the origin instead of a plot.",
              {.range = kAboveZero, .needs = "count"}),
     JobParam("angles", text, "Distribution of leaf angles.", {.default_value = "spherical", .choices = kAngles}),
-    JobParam("scale", real, "Scale of each leaf: its radius, where the object is a disk of radius 1.",
+    JobParam("scale", real, "Scale of each leaf: its radius if the object is a disk of radius 1.",
              {.default_value = "0.05", .range = kAboveZero}),
-    JobParam("leaf-area", real, "One-sided area of the object at scale 1; the default is that of a disk of radius 1.",
+    JobParam("leaf-area", real, "One-sided area of the object at scale 1; the default is a disk of radius 1.",
              {.default_value = "3.141592653589793", .range = kAboveZero}),
-    JobParam("size", numbers, "Size of the plot along x and y, from 0: its period.",
+    JobParam("size", numbers, "Size of the plot along x and y, from 0; also the period of a repeated plot.",
              {.type = "X,Y", .default_value = "10,10", .range = kAboveZero, .values = 2}),
-    JobParam("heights", numbers, "Least and largest height of the leaves' centres.",
+    JobParam("heights", numbers, "Minimum and maximum height of the leaves' centres.",
              {.type = "LEAST,MOST", .default_value = "0,1", .values = 2}),
-    JobParam("apart", real, "Least distance between the leaves' centres; by default positions are independent.",
+    JobParam("apart", real, "Minimum distance between the leaves' centres; by default positions are independent.",
              {.range = kAboveZero}),
     JobParam("column", texts,
-             "Number that each leaf has for Texture \"instance\", uniform between two bounds: chlorophylla=2:5.",
+             "Random number of each leaf for Texture \"instance\", uniform between two bounds: chlorophylla=2:5.",
              {.type = "NAME=LEAST:MOST"}),
     kSeedParam,
 };
 
+/// Parses NAME=LEAST:MOST. Throws InputError.
 HomogeneousCanopy::Column column_of(const std::string& text, const Arguments& args) {
   const size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
   std::optional<std::vector<double>> ends;
@@ -49,6 +53,7 @@ HomogeneousCanopy::Column column_of(const std::string& text, const Arguments& ar
   return {text.substr(0, equals), {(*ends)[0], (*ends)[1]}};
 }
 
+/// Returns the canopy of the arguments. Throws InputError if --heights is reversed.
 HomogeneousCanopy canopy_of(const Arguments& args) {
   const auto size = args.numbers("size"), heights = args.numbers("heights");
   if (!(heights[0] <= heights[1])) fail({}, "{}: {} is above {}", args.spelled("heights"), heights[0], heights[1]);
@@ -66,11 +71,12 @@ HomogeneousCanopy canopy_of(const Arguments& args) {
   return canopy;
 }
 
+/// The job: draws leaves one by one, so that memory does not grow with their number.
 Result canopy(const JobRun& run) {
   const HomogeneousCanopy canopy = canopy_of(run.args);
   const uint64_t leaves = canopy.leaves();
-  constexpr uint64_t kMost = 0xfffffffe;  // of one table, in Embree
-  if (leaves == 0 || leaves > kMost) fail({}, "these are {} leaves: 1 to {} are possible", leaves, kMost);
+  constexpr uint64_t kMost = 0xfffffffe;  // largest number of instances of one geometry in Embree
+  if (leaves == 0 || leaves > kMost) fail({}, "the number of leaves is {}: it must be from 1 to {}", leaves, kMost);
   std::vector<std::string> names;
   for (const HomogeneousCanopy::Column& column : canopy.columns) names.push_back(column.name);
   const std::string output = run.args.text("output");
@@ -81,7 +87,7 @@ Result canopy(const JobRun& run) {
   writer.finish();
   const double area = double(leaves) * canopy.leaf_area * canopy.scale * canopy.scale;
   Result result{.facts = {{"leaves", double(leaves)}, {"area", area}}};
-  std::string message = fmt::format("{}: {} leaves, {:.6g} of area", output, leaves, area);
+  std::string message = fmt::format("{}: {} leaves, area {:.6g}", output, leaves, area);
   if (canopy.ball == 0) {
     const double index = area / (canopy.size[0] * canopy.size[1]);
     result.facts.push_back({"leaf_area_index", index});
@@ -94,7 +100,7 @@ Result canopy(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kCanopyJob("canopy", "Scenes",
-                                "Write an instance table of leaves at random, for Shape \"instances\".", "", kParams,
-                                SessionUse::none, canopy);
+                                "Write an instance table of randomly placed leaves, for Shape \"instances\".", "",
+                                kParams, SessionUse::none, canopy);
 
 }  // namespace frond

@@ -4,6 +4,9 @@
 #include "jobs/record/common_params.h"
 
 namespace frond {
+
+// `frond check`: reads and checks scenes without building or rendering them.
+
 namespace {
 
 constexpr JobParam kParams[] = {
@@ -13,6 +16,8 @@ constexpr JobParam kParams[] = {
     kStrictParam,
 };
 
+/// Returns all errors of one scene: of its files, its plug-ins and parameters, its image's name, and in strict mode its
+/// warnings.
 Problems problems_of(const JobRun& run, const std::vector<std::filesystem::path>& files) {
   StrictLog& log = run.context.log();
   log.begin(run.args.flag("strict"));
@@ -26,6 +31,7 @@ Problems problems_of(const JobRun& run, const std::vector<std::filesystem::path>
   return problems;
 }
 
+/// The job: checks every scene, and reports all errors. The exit code is 1 if there is an error.
 Result check(const JobRun& run) {
   Result result{.tables = {{"problems"}}};
   for (const auto& files : scenes_of(run.args.texts("scene"))) {
@@ -37,7 +43,7 @@ Result check(const JobRun& run) {
       result.errors.push_back(message);
     }
     const size_t count = problems.count();
-    result.text += count == 0 ? fmt::format("{}: nothing is wrong\n", name)
+    result.text += count == 0 ? fmt::format("{}: no errors\n", name)
                               : fmt::format("{}: {} error{}\n", name, count, count == 1 ? "" : "s");
     if (count > 0) result.code = 1;
   }

@@ -14,6 +14,8 @@
 
 namespace frond {
 
+// `frond compare`: error and cost of leaf models in a scene, against a converged reference (docs/compare.md).
+
 extern const JobInfo kCompareJob;
 
 namespace {
@@ -25,45 +27,44 @@ using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
     kSceneParam,
-    JobParam(
-        "materials", texts,
-        "Candidates, separated by ; or given again: [LABEL:]MATERIAL[,parameter=value...], with @wavelengths=PLUGIN or "
-        "@integrator=PLUGIN behind it. The first is the baseline of speed-ups.",
-        {.type = "MATERIAL",
-         .default_value = "abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert",
-         .aliases = "models",
-         .decides = true}),
-    JobParam("output", text, "Folder of the report: charts, tables, index.html. Without it results are printed alone.",
+    JobParam("materials", texts,
+             "Candidates, separated by ;: [LABEL:]MATERIAL[,parameter=value...], optionally followed by "
+             "@wavelengths=PLUGIN or "
+             "@integrator=PLUGIN. The first is the baseline of speed-ups.",
+             {.type = "MATERIAL",
+              .default_value = "abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert",
+              .aliases = "models",
+              .decides = true}),
+    JobParam("output", text, "Folder of the report: charts, tables, index.html. By default results are only printed.",
              {.type = "FOLDER", .aliases = "o", .path = PathUse::write}),
     JobParam("reference", text,
-             "Candidate that errors are measured against, once converged. The default is the expectation of the analog "
-             "walk, with less noise.",
+             "Candidate whose converged render is the reference. The default is the expectation of the analog "
+             "random walk, with less noise.",
              {.type = "MATERIAL", .default_value = "abm,mode=weighted", .decides = true}),
     JobParam("rms", numbers, "Report the cheapest candidate with this RMS error.",
              {.type = "NUMBER", .range = kAboveZero, .decides = true}),
     JobParam(
         "target", text,
-        "RMS errors of red, green and blue for speed-up (c): three numbers, or front, back, ambient for the paper's.",
+        "RMS errors of red, green and blue for speed-up (c): three numbers, or the paper's front, back or ambient.",
         {.type = "R,G,B", .decides = true, .excludes = "relative"}),
-    JobParam(
-        "relative", flag,
-        "Errors relative to the reference: of each channel the RMS over pixels divided by the reference's mean over "
-        "these pixels; --rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.",
-        {.decides = true}),
+    JobParam("relative", flag,
+             "Report errors relative to the reference: RMS over pixels, divided by the reference's mean over "
+             "them, in each channel; --rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.",
+             {.decides = true}),
     JobParam("leaf", texts, "Name of a material to replace; by default every leaf.", {.type = "NAME", .decides = true}),
-    JobParam("wavelengths", text, "Wavelengths in place of the scene's; smpte for the paper's three.",
+    JobParam("wavelengths", text, "Wavelength strategy instead of the scene's; smpte: the paper's three wavelengths.",
              {.type = "WAVELENGTHS", .decides = true}),
     JobParam("size", count, "Pixels of the longer side; 256 by default, 128 with --quick.",
              {.range = {1, 65536}, .decides = true}),
-    JobParam("spp", count, "Samples per pixel of the last measurement of a candidate; 256 by default, 32 with --quick.",
+    JobParam("spp", count, "Largest number of samples per pixel of a candidate; 256 by default, 32 with --quick.",
              {.range = {1, 1 << 24}, .aliases = "samples", .decides = true}),
     JobParam(
         "reference-spp", count,
-        "Samples per pixel of each of the reference's two renders; 1024 by default, 128 with --quick, or the number "
-        "that is cached.",
+        "Samples per pixel of each of the reference's two renders; by default 1024, 128 with --quick, or the number "
+        "in the cache.",
         {.range = {1, 1 << 30}, .aliases = "reference-samples", .decides = true}),
     JobParam("exposure", real,
-             "LitMaterial of images and FLIP; by default such that the image is neither dark nor overexposed.",
+             "Exposure of images and FLIP; by default such that the image is neither dark nor overexposed.",
              {.unit = "stops", .range = {-20, 20}, .decides = true}),
     kSeedParam,
     JobParam("quick", flag, "Preview: 128 pixels, up to 32 samples, a reference of 2 x 128 samples.",
@@ -74,13 +75,13 @@ constexpr JobParam kParams[] = {
     kJsonParam,
 };
 
-/// Sizes where the arguments give none.
+/// Default sizes.
 struct Setting {
   int64_t size, samples, reference_samples;
 };
 constexpr Setting kQuick{128, 32, 128}, kFull{256, 256, 1024};
 
-/// The paper's three sets by name, or three numbers.
+/// Returns --target: a set of the paper by name, or three numbers. Throws InputError.
 std::array<double, 3> target_of(const Arguments& args) {
   const std::string text = args.text("target");
   if (text == "front") return {0.009, 0.009, 0.012};
@@ -93,6 +94,7 @@ std::array<double, 3> target_of(const Arguments& args) {
   return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
+/// Returns the plan of the arguments, with `setting` as defaults. Throws InputError for too many candidates.
 Plan plan_of(const JobRun& run, const Setting& setting) {
   const Arguments& args = run.args;
   Plan plan{.reference = compare::parse_candidate(args.text("reference")),
@@ -106,12 +108,13 @@ Plan plan_of(const JobRun& run, const Setting& setting) {
   return plan;
 }
 
+/// Returns the last folder and the file name of a scene: file names alone are mostly "scene.pbrt".
 std::string scene_name(const std::filesystem::path& scene) {
   const auto folder = scene.parent_path().filename();
   return (folder.empty() ? scene.filename() : folder / scene.filename()).string();
 }
 
-/// Ends a study, which takes no stop token, by an exception.
+/// Stops a study by an exception, because compare::measure takes no stop token.
 class StoppingProgress final : public Progress {
  public:
   explicit StoppingProgress(const JobRun& run) : run_(run) {}
@@ -127,9 +130,10 @@ class StoppingProgress final : public Progress {
   const JobRun& run_;
 };
 
-/// What `frond render` would select for leaves that ask for this error; "" where wavelengths have no colours.
+/// Returns a sentence about the models that `frond render` would select for open leaves with this error bound; "" if
+/// the wavelengths have no colours.
 std::string leaf_by_leaf(const JobRun& run, double rms, const compare::Study& study, const Plan& plan) {
-  SceneDescription description{study.description(), {}, {}, {}};  // the geometry is the study's
+  SceneDescription description{study.description(), {}, {}, {}};  // without geometry, which the study's scene provides
   const PluginText open{"leaf", {{"model", "auto"}, {"maxrms", fmt::format("{}", rms)}}};
   apply_overrides({.swaps = study.swaps_to(open), .seed = study.seed()}, description, study.registry(), silent_log());
   const choose::ChoiceTask task{study.session(), description, plan.top_samples, study.any_scene().get()};
@@ -139,6 +143,7 @@ std::string leaf_by_leaf(const JobRun& run, double rms, const compare::Study& st
   return choose::choice_sentence(chosen->choice);
 }
 
+/// The job: renders reference and candidates, evaluates the errors, and writes the report.
 Result compare_models(const JobRun& run) {
   const Arguments& args = run.args;
   const auto start = std::chrono::steady_clock::now();
@@ -156,12 +161,12 @@ Result compare_models(const JobRun& run) {
   if (args.given("seed")) options.seed = args.seed("seed");
   Session& session = run.session();
   const compare::Study study(session, options);
-  if (args.flag("strict")) (void)study.scene(plan.reference);  // its warnings come before the renders
+  if (args.flag("strict")) (void)study.scene(plan.reference);  // strict mode reports warnings before the renders
   run.context.log().check();
   StoppingProgress progress(run);
   plan.progress = &progress;
   Comparison result = compare::measure(study, plan, request);
-  // The chooser knows absolute errors alone.
+  // The selection of models supports absolute errors only.
   for (const double rms : request.relative ? std::vector<double>{} : request.rms)
     result.leaf_by_leaf += (result.leaf_by_leaf.empty() ? "" : "\n") + leaf_by_leaf(run, rms, study, plan);
   result.scene = scene_name(args.text("scene"));
@@ -181,8 +186,7 @@ Result compare_models(const JobRun& run) {
 
 }  // namespace
 
-const JobInfo kCompareJob("compare", "Leaf models",
-                          "Measure what each leaf model costs in a scene, and what error it makes.", "", kParams,
-                          SessionUse::all, compare_models);
+const JobInfo kCompareJob("compare", "Leaf models", "Measure the cost and the error of each leaf model in a scene.", "",
+                          kParams, SessionUse::all, compare_models);
 
 }  // namespace frond

@@ -13,24 +13,29 @@
 #include "scene/format/words.h"
 
 namespace frond {
+
+// `frond completion`: shell scripts, and the completions that they request. Completions follow from the records of the
+// jobs, so that the scripts need no update for a new option.
+
 namespace {
 
 using enum ArgumentKind;
 using Words = std::vector<std::string>;
-using Offers = std::map<std::string, std::string>;  ///< words and what they mean
+using Offers = std::map<std::string, std::string>;  ///< completions and their descriptions
 
 constexpr std::string_view kShells[] = {"bash", "zsh", "fish"};
 constexpr JobParam kParams[] = {
     JobParam("shell", text, "Shell that the script is for.",
              {.choices = kShells, .positional = true, .required = true}),
-    JobParam("words", texts, "A command line: print what its last word may become. Used by the scripts.",
-             {.positional = true}),
+    JobParam("words", texts, "Command line whose last word to complete. Used by the scripts.", {.positional = true}),
     JobParam("output", text, "File to write; - is standard output.",
              {.type = "FILE", .default_value = "-", .aliases = "o", .path = PathUse::write}),
 };
+/// Stands for the name of a command, the first positional argument of `frond`.
 constexpr JobParam kCommand("command", text, "", {.type = "COMMAND"});
 
-/// Values of a parameter that is no path. What they do not replace is taken from `value`.
+/// Returns completions for a parameter that is not a path. Removes from `value` the prefix that completions do not
+/// replace, such as "MATERIAL=".
 Offers offered_values(const JobParam& p, std::string& value) {
   Offers offers;
   std::string type = value_name(p);
@@ -51,12 +56,12 @@ Offers offered_values(const JobParam& p, std::string& value) {
   return offers;
 }
 
-/// Lines of what the last word may become; FILE, FOLDER or SCENE where that is a path.
+/// Returns completions of the last word, one a line; FILE, FOLDER or SCENE if the shell is to complete a path.
 std::string completed(const Words& given, bool documented) {
-  static const std::regex kParted("\n([=:])(\n|$)");  // what bash makes of "--spp=4"
+  static const std::regex kParted("\n([=:])(\n|$)");  // bash splits "--spp=4" into three words
   CommandParams command = frond_params();
   command.arguments = {&kCommand};
-  const JobParam *param = nullptr, *option = nullptr;  // whose value the word is; whose the next one is
+  const JobParam *param = nullptr, *option = nullptr;  // whose value is this word; is the next word
   std::string value, lines;
   const Words words = split(std::regex_replace(fmt::format("{}", fmt::join(given, "\n")), kParted, "$1"), '\n');
   for (size_t i = 1; i < words.size(); ++i) {
@@ -90,6 +95,7 @@ std::string completed(const Words& given, bool documented) {
   return lines;
 }
 
+/// The job: prints a shell's script, or the completions that the script requests.
 Result completion(const JobRun& run) {
   const std::string shell = run.args.text("shell"), output = run.args.text("output");
   std::string made(shell == "bash" ? bash_completion : shell == "zsh" ? zsh_completion : fish_completion);

@@ -10,17 +10,21 @@
 #include "scene/resolver.h"
 
 namespace frond {
+
+// `frond conform`: statistical and exact tests of the laws that every BSDF must have (docs/validation.md).
+
 namespace {
 
 using enum ArgumentKind;
 
-constexpr double kFewestSamples = 1000;  // below it, tests have next to no power
+constexpr double kFewestSamples = 1000;  // with fewer samples, tests have almost no power
 constexpr double kMostSamples = 1 << 30;
+/// Largest angle, just below the horizon.
 constexpr double kGrazing_deg = 89.9999;
 
 constexpr JobParam kParams[] = {
     kMaterialParam,
-    JobParam("sweep", flag, "Test over the declared ranges of the parameters that are not given, too.",
+    JobParam("sweep", flag, "Also vary the parameters that are not given over their declared ranges.",
              {.decides = true}),
     JobParam("samples", count, "Number of samples for each direction.",
              {.default_value = "20000", .range = {kFewestSamples, kMostSamples}, .decides = true}),
@@ -34,32 +38,31 @@ constexpr JobParam kParams[] = {
         "wavelengths", numbers, "Wavelengths, tested in groups of four.",
         {.default_value = "608,551,455", .unit = "nm", .range = kAboveZero, .aliases = "wavelength", .decides = true}),
     JobParam("seed", seed, "Seed of all random numbers.", {.default_value = "1", .decides = true}),
-    JobParam("lossless", flag,
-             "Claim that the material absorbs nothing with these parameters: all light that comes in leaves.",
-             {.decides = true}),
+    JobParam("lossless", flag, "Claim that the material absorbs nothing with these parameters.", {.decides = true}),
     JobParam("reciprocal", flag, "Claim f(a, b) = f(b, a), in addition to the material's own claims.",
              {.decides = true}),
-    JobParam("false-alarm-rate", real, "Probability that any law is called broken although all hold.",
+    JobParam("false-alarm-rate", real, "Probability of reporting a broken law although all laws hold.",
              {.default_value = "1e-6", .range = {1e-12, 0.5}, .decides = true}),
     kCsvParam,
     kJsonParam,
     chart_param("map", "Map of the directions of the worst finding: .svg or .png.", "picture"),
 };
 
+/// With --sweep, returns parameter sets over the declared ranges; otherwise the given set alone.
 std::vector<ParameterSet> parameter_sets(const MaterialWords& material, const PluginText& text, const Arguments& args) {
   if (args.flag("sweep"))
     return parameter_sweep(material.info, {.pinned = material.plugin.params, .seed = args.seed("seed")});
   return {{text.params.empty() ? "defaults" : words_of(text), material.plugin}};
 }
 
-/// Whether the material may refuse more than its own declared values: parameters, wavelengths, or parameters that it
-/// requires.
+/// Whether the material may refuse values other than its declared defaults: parameters or wavelengths are given, or a
+/// parameter is required.
 bool is_asked_for(const MaterialWords& material, const Arguments& args) {
   return !material.plugin.params.empty() || args.given("wavelengths") ||
          std::ranges::any_of(material.info.params, &Param::required);
 }
 
-/// As many at once as a path carries.
+/// Splits wavelengths into groups of at most kLanes, the number that a path carries.
 std::vector<GivenWavelengths> in_lanes(const std::vector<double>& nm) {
   std::vector<GivenWavelengths> groups;
   for (size_t i = 0; i < nm.size(); i += kLanes) {
@@ -69,6 +72,7 @@ std::vector<GivenWavelengths> in_lanes(const std::vector<double>& nm) {
   return groups;
 }
 
+/// Tests the material in groups of wavelengths, and judges all findings together, so that the false alarm rate holds.
 ConformReport examine_material(const JobRun& run) {
   const Arguments& args = run.args;
   const Registry& registry = run.session().registry();
@@ -86,7 +90,7 @@ ConformReport examine_material(const JobRun& run) {
                        .findings = {}};
   const Claims claims{args.flag("lossless"), args.flag("reciprocal")};
   const RefusingLog refusing;
-  const std::filesystem::path no_cache;  // a sweep would fill it with leaves that no scene has
+  const std::filesystem::path no_cache;  // a sweep would fill the cache with tables of leaves that no scene has
   for (const GivenWavelengths& wavelengths : in_lanes(report.wavelengths_nm)) {
     run.check_stop();
     SceneResolver resolver(others, registry, wavelengths, refusing);
@@ -100,6 +104,7 @@ ConformReport examine_material(const JobRun& run) {
   return report;
 }
 
+/// The job. The map is drawn before the report is returned, so that a failure to draw is an error.
 Result conform(const JobRun& run) {
   constexpr int kBroken = 2;
   check_chart_param(run, "map");

@@ -7,6 +7,9 @@
 #include "jobs/support/display_params.h"
 
 namespace frond {
+
+// `frond convert`: mean of images, exposure and display transform.
+
 namespace {
 
 using enum ArgumentKind;
@@ -14,15 +17,17 @@ using enum ArgumentKind;
 constexpr JobParam kParams[] = {
     files_param("images", "EXR files of one size and colour space."),
     output_param("Image to write: .png, .jpg or .exr.", true),
-    JobParam("bands", numbers,
-             "Wavelengths of three bands to show as red, green and blue, such as 850,650,550; white in equal-energy "
-             "light is 1.",
-             {.type = "R,G,B", .unit = "nm", .range = kAboveZero, .values = 3}),
+    JobParam(
+        "bands", numbers,
+        "Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy "
+        "light is 1.",
+        {.type = "R,G,B", .unit = "nm", .range = kAboveZero, .values = 3}),
     JobParam("exposure", real, "Change of exposure.", {.default_value = "0", .unit = "stops"}),
     kDisplayParam,
     kViewParam,
 };
 
+/// Reads an image in linear RGB: its own colours, or three of its bands.
 LinearFile read(const std::string& path, const std::vector<double>& bands_nm) {
   if (bands_nm.empty()) return read_linear(path);
   return {.path = path,
@@ -32,6 +37,7 @@ LinearFile read(const std::string& path, const std::vector<double>& bands_nm) {
           .seed = {}};
 }
 
+/// Returns the mean of the images. Throws InputError unless all have one size and one colour space.
 LinearFile mean_of(const std::vector<std::string>& paths, const std::vector<double>& bands_nm) {
   LinearFile mean = read(paths[0], bands_nm);
   for (size_t i = 1; i < paths.size(); ++i) {
@@ -46,6 +52,7 @@ LinearFile mean_of(const std::vector<std::string>& paths, const std::vector<doub
   return mean;
 }
 
+/// The job: averages the images, applies the exposure, and writes the mean.
 Result convert(const JobRun& run) {
   const std::string output = run.args.text("output");
   const DisplayChoice display = display_choice(run.args);

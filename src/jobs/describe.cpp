@@ -7,6 +7,10 @@
 #include "scene/textures/normal_map.h"
 
 namespace frond {
+
+// `frond describe`: documentation of plug-ins and commands, from their records. docs/plugins.md and docs/commands.md
+// are its output.
+
 namespace {
 
 using enum ArgumentKind;
@@ -14,10 +18,11 @@ using enum ArgumentKind;
 constexpr JobParam kParams[] = {
     JobParam("name", text, "Name of a plug-in (see frond list), a kind of plug-in such as material, or a command.",
              {.type = "PLUGIN", .positional = true}),
-    JobParam("markdown", flag, "Print Markdown; without a name, of every plug-in."),
-    JobParam("commands", flag, "Print Markdown of every command.", {.excludes = "markdown"}),
+    JobParam("markdown", flag, "Print Markdown; without a name, for every plug-in."),
+    JobParam("commands", flag, "Print Markdown for every command.", {.excludes = "markdown"}),
 };
 
+/// Returns the name of a parameter's type in scene files.
 constexpr std::string_view type_name(ParamKind kind) {
   constexpr std::string_view kNames[] = {"bool",
                                          "integer",
@@ -38,12 +43,13 @@ constexpr std::string_view type_name(ParamKind kind) {
   return kNames[size_t(kind)];
 }
 
-/// A parameter of a plug-in or a command.
+/// Documentation of one parameter of a plug-in or a command.
 struct Row {
   std::string name, type, default_value, unit, range, doc;
-  std::string head;  ///< as it is written in a scene, or on a command line
+  std::string head;  ///< syntax in a scene file or on a command line
 };
 
+/// Returns the default value as a scene file would state it; "" if there is none.
 std::string default_text(const Param& p) {
   if (p.required) return "required";
   struct Print {
@@ -57,6 +63,7 @@ std::string default_text(const Param& p) {
   return std::visit(Print(), p.default_value);
 }
 
+/// Returns the choices or the range of a plug-in's parameter; "" if any value is accepted.
 std::string range_text(const Param& p) {
   if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, " | "));
   const bool below = std::isfinite(p.range.min), above = std::isfinite(p.range.max);
@@ -66,7 +73,7 @@ std::string range_text(const Param& p) {
   return "";
 }
 
-/// With the parameters of every material.
+/// Parameters of a plug-in. Materials also have the parameters that every material has (normal maps).
 std::vector<Row> rows_of(const PluginInfo& info) {
   std::vector<Row> rows;
   const auto add = [&rows](std::span<const Param> params) {
@@ -80,6 +87,7 @@ std::vector<Row> rows_of(const PluginInfo& info) {
   return rows;
 }
 
+/// Returns the row of a command's parameter. Positional parameters have no dashes.
 Row row_of(const JobParam& p) {
   const std::string name = p.positional ? std::string(p.name) : fmt::format("{}", fmt::join(option_names(p), ", "));
   const std::string value = value_name(p);
@@ -100,6 +108,7 @@ std::vector<Row> rows_of(std::span<const JobParam> params) {
   return rows;
 }
 
+/// Returns the rows as indented text.
 std::string text_of(const std::vector<Row>& rows) {
   std::string text;
   for (const Row& row : rows) {
@@ -114,6 +123,7 @@ std::string text_of(const std::vector<Row>& rows) {
   return text;
 }
 
+/// Returns the rows as a Markdown table.
 std::string markdown_of(const std::vector<Row>& rows, std::string_view head) {
   if (rows.empty()) return "";
   const auto escape = [](std::string_view s) {
@@ -146,6 +156,7 @@ std::string text_of(const JobInfo& job) {
   return fmt::format("command \"{}\"\n  {}\n{}  {}\n", job.name, job.doc, details, usage(job)) + text_of(rows);
 }
 
+/// Header of the tables of docs/commands.md.
 constexpr std::string_view kCommandHead = "| parameter | value | default | unit | range or choices | description |";
 
 std::string markdown_of(const JobInfo& job) {
@@ -158,7 +169,7 @@ std::string markdown_of(const JobInfo& job) {
   return text + fmt::format("[Common parameters](#common-parameters): {}.\n\n", fmt::join(names, ", "));
 }
 
-/// docs/commands.md.
+/// Returns the page docs/commands.md.
 std::string commands_page() {
   std::string text =
       "# Commands\n\nAll commands of frond and their parameters. Made by `frond describe --commands`; "
@@ -174,11 +185,12 @@ std::string commands_page() {
   return text;
 }
 
+/// The job: prints plug-ins by name or by kind, and commands by name.
 Result describe(const JobRun& run) {
   const std::string name = run.args.text("name");
   const bool markdown = run.args.flag("markdown");
   if (run.args.flag("commands")) return {.text = commands_page(), .is_requested = true};
-  if (name.empty() && !markdown) fail({}, "frond describe takes a name; frond list prints those of plug-ins");
+  if (name.empty() && !markdown) fail({}, "frond describe needs a name; frond list prints the names of plug-ins");
   const Registry registry = load_registry(run.context.options().plugins);
   std::vector<std::string_view> names;
   std::string found;
@@ -191,7 +203,7 @@ Result describe(const JobRun& run) {
   for (const PluginInfo* info : all_plugins(registry))
     add(name.empty() || info->name == name || info->kind == name, *info);
   for (const JobInfo* job : all_jobs()) add(!name.empty() && job->name == name, *job);
-  if (found.empty()) fail({}, "nothing is called \"{}\"{}", name, suggestion(name, names));
+  if (found.empty()) fail({}, "no plug-in or command is named \"{}\"{}", name, suggestion(name, names));
   if (name.empty()) found = "# Plugins\n\nMade by `frond describe --markdown`.\n\n" + found;
   return {.text = found, .is_requested = true};
 }

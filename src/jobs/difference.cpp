@@ -7,6 +7,9 @@
 #include "study/smpte_luminance.h"
 
 namespace frond {
+
+// `frond difference`: RMS error between two renders. Two halves of each render separate noise from bias.
+
 namespace {
 
 using enum ArgumentKind;
@@ -14,13 +17,15 @@ using enum ArgumentKind;
 constexpr std::string_view kSpace = "linear SMPTE-C";
 constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 constexpr JobParam kParams[] = {
-    files_param("images", "A1 A2 B1 B2: two halves of each render, each with its own seed.", 4),
+    files_param("images", "A1 A2 B1 B2: two halves of render A and two of render B, each with its own seed.", 4),
     output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is.", false),
-    JobParam("scale", real, "Difference at full colour.", {.default_value = "0.1", .range = kAboveZero}),
+    JobParam("scale", real, "Luminance difference that is drawn in full colour.",
+             {.default_value = "0.1", .range = kAboveZero}),
     JobParam("json", flag, "Print JSON."),
 };
 
-/// Blue where `b` is brighter, red where `a` is, white where they are equal: also told apart in colour blindness.
+/// Colour of a difference: blue below 0 (`b` is brighter), red above, white at 0. The palette is safe for colour
+/// blindness.
 std::array<float, 3> false_color(float t) {
   t = std::clamp(t, -1.f, 1.f);
   const std::array<float, 3> blue{0.13f, 0.40f, 0.67f}, white{0.97f, 0.97f, 0.97f}, red{0.70f, 0.09f, 0.17f};
@@ -30,6 +35,7 @@ std::array<float, 3> false_color(float t) {
   return c;
 }
 
+/// Writes the difference of mean luminances, A minus B, in false colour.
 void write_difference(const std::string& path, const std::vector<LinearFile>& halves, double scale) {
   const Image& size = halves[0].image;
   Image shown(size.width, size.height, {"R", "G", "B"});
@@ -45,6 +51,7 @@ void write_difference(const std::string& path, const std::vector<LinearFile>& ha
   write_image(path, shown, {"", {{"frond:difference_scale", fmt::format("{}", scale)}}});
 }
 
+/// Reads the four images and converts them to linear SMPTE-C, in which errors are measured.
 std::vector<LinearFile> read_halves(const std::vector<std::string>& paths) {
   const ColorManager colors;
   std::vector<LinearFile> halves;
@@ -56,8 +63,8 @@ std::vector<LinearFile> read_halves(const std::vector<std::string>& paths) {
   return halves;
 }
 
-/// The bias estimate is the mean of (A1 - B1)(A2 - B2): the factors have to be independent. The same seed within one
-/// factor, as in A1 and B1, does no harm.
+/// The bias estimate is the mean of (A1 - B1)(A2 - B2), so the two factors must be independent. A common seed within
+/// one factor, as in A1 and B1, is harmless.
 void warn_of_same_noise(const std::vector<LinearFile>& halves, const Log& log) {
   for (const auto& [i, j] : {std::pair{0u, 1u}, {2u, 3u}, {0u, 3u}, {1u, 2u}}) {
     const LinearFile &a = halves[i], &b = halves[j];
@@ -68,7 +75,7 @@ void warn_of_same_noise(const std::vector<LinearFile>& halves, const Log& log) {
   }
 }
 
-/// The numbers of a channel, in the order of the table and the facts. Those with a title are in the text.
+/// Statistics of a channel, in the order of the table and the facts. Text output shows those with a title.
 constexpr struct {
   const char *name, *title;
   double (*of)(const ImageError&);
@@ -85,7 +92,8 @@ constexpr struct {
     {"noise_b", "", [](const ImageError& e) { return e.noise_b; }},
 };
 
-/// Adds facts "rms_red" and so on, with `prefix` before each name, and rows of the table. Returns the text.
+/// Adds facts ("rms_red", with `prefix` before the name) and table rows for the pixels selected by `use`. Returns the
+/// text.
 std::string add_errors(Result& result, const std::string& region, const std::string& prefix,
                        const std::vector<LinearFile>& halves, std::span<const float> use) {
   double correlated = 1;
@@ -111,6 +119,7 @@ std::string add_errors(Result& result, const std::string& region, const std::str
   return to_text(shown);
 }
 
+/// The job: prints errors over all pixels, and over leaf pixels if the image has a leaf mask.
 Result difference(const JobRun& run) {
   const std::string output = run.args.text("output");
   if (!output.empty()) check_writable(output);

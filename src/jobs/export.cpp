@@ -12,19 +12,23 @@
 #include "report/text_output.h"
 
 namespace frond {
+
+// `frond export`: BSDFs for other renderers and programs (docs/other_renderers.md).
+
 namespace {
 
 using enum ArgumentKind;
 
 constexpr Interval kBelowHorizon_deg{0, 89.9999};
 
-/// "radiance", "csv", ...
+/// Returns the names of all export formats: "radiance", "csv", ...
 std::vector<std::string_view> format_names() {
   std::vector<std::string_view> names;
   for (const ExportFormat* format : export_formats()) names.push_back(format->name);
   return names;
 }
 
+/// Returns the help of --format, which is assembled from the formats' own descriptions.
 std::string format_doc() {
   std::string doc = "File format.";
   for (const ExportFormat* format : export_formats()) doc += fmt::format(" {}: {}.", format->name, format->doc);
@@ -37,23 +41,23 @@ const std::string kFormatDoc = format_doc();
 const JobParam kParams[] = {
     kMaterialParam,
     JobParam("format", text, kFormatDoc, {.choices = kFormatNames, .decides = true, .required = true}),
-    JobParam("output", text, "File to write; - is standard output, for formats that are text.",
+    JobParam("output", text, "File to write; - is standard output, for text formats only.",
              {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = true}),
-    JobParam("wavelengths", numbers, "Wavelengths, ascending, or red,green,blue of osl.",
+    JobParam("wavelengths", numbers, "Wavelengths, ascending; for osl those of red,green,blue.",
              {.unit = "nm", .range = {360, 2500}, .decides = true}),
-    JobParam("angles", numbers, "Angles of a table from the normal to the light, on either side.",
+    JobParam("angles", numbers, "Angles between the normal and the light, on both sides, in a table.",
              {.unit = "degrees", .range = kBelowHorizon_deg, .decides = true}),
-    JobParam("view-angles", numbers, "Angles of a table from the normal to the viewer.",
+    JobParam("view-angles", numbers, "Angles between the normal and the viewer in a table.",
              {.unit = "degrees", .range = kBelowHorizon_deg, .decides = true}),
     JobParam("view-azimuths", numbers,
-             "Azimuths of a table from the light to the viewer; the mirror direction is at 180.",
+             "Azimuths from the light to the viewer in a table; the mirror direction is at 180.",
              {.unit = "degrees", .range = {0, 359.9999}, .decides = true}),
-    JobParam("rays", count, "Number of rays for each share of the light that is measured by rays.",
+    JobParam("rays", count, "Number of rays for each share of the light, where rays measure it.",
              {.range = {2, kCounts.max}, .decides = true}),
     kSeedParam,
 };
 
-/// Refuses arguments that the format does not use.
+/// Throws InputError for a given option that the format does not use; the message names the formats that do.
 void check_arguments(const Arguments& args, const ExportFormat& format) {
   constexpr std::pair<std::string_view, ExportOption> kOptions[] = {{"angles", ExportOption::angles},
                                                                     {"view-angles", ExportOption::views},
@@ -70,9 +74,10 @@ void check_arguments(const Arguments& args, const ExportFormat& format) {
     fail({}, "{} is for {} {}", args.spelled(name), args.spelled("format"), fmt::join(others, ", "));
   }
   if (args.text("output") == "-" && !format.is_text)
-    fail({}, "{} {} is no text: it goes to a file", args.spelled("format"), format.name);
+    fail({}, "{} {} is no text: it cannot be written to standard output", args.spelled("format"), format.name);
 }
 
+/// The job: prepares the material in groups of wavelengths as the format requests them.
 Result export_material(const JobRun& run) {
   const Arguments& args = run.args;
   const ExportFormat& format =

@@ -12,6 +12,9 @@
 #include "system/machine.h"
 
 namespace frond {
+
+// `frond fit`: leaf parameters from measured reflectance and transmittance (docs/fit.md).
+
 namespace {
 
 using enum ArgumentKind;
@@ -20,23 +23,23 @@ constexpr std::string_view kStructures[] = {"bifacial", "unifacial"}, kSieve[] =
                            kMaterials[] = {"leaf", "leaf_solved", "leaf_simplified", "leaf_lambert", "abm"};
 
 constexpr JobParam kParams[] = {
-    JobParam("file", text, "Measured spectra: CSV as frond spectrophotometer and spectroradiometers write.",
+    JobParam("file", text, "Measured spectra: CSV as written by frond spectrophotometer or by spectroradiometers.",
              {.type = "FILE", .path = PathUse::read, .decides = true, .positional = true, .excludes = "data"}),
-    JobParam("data", text, "The content of such a file, in its place.", {.type = "CSV", .decides = true}),
-    JobParam("output", text, "Scene file to write, with the leaf's Material line; - is standard output.",
+    JobParam("data", text, "Measured spectra as a string, in the format of such a file.",
+             {.type = "CSV", .decides = true}),
+    JobParam("output", text, "Scene file to write, with the leaf's Material directive; - is standard output.",
              {.type = "FILE", .aliases = "o", .path = PathUse::write}),
     kJsonParam,
     kCsvParam,
     chart_param("plot", "Chart of measured and fitted spectra: .svg or .png."),
-    JobParam("leaf", text, "Name of the leaf to fit, in a file with several leaves.",
-             {.type = "LEAF", .decides = true}),
-    JobParam("angle", real, "Angle of incidence, where the file does not have it.",
+    JobParam("leaf", text, "Name of the leaf to fit, if the file has several.", {.type = "LEAF", .decides = true}),
+    JobParam("angle", real, "Angle of incidence, if the file does not state it.",
              {.default_value = "8", .unit = "degrees", .range = {0, 180}, .decides = true}),
-    JobParam("structure", text, "Structure of the leaf; by default the one that fits better.",
+    JobParam("structure", text, "Structure of the leaf; by default the better fit.",
              {.choices = kStructures, .decides = true}),
-    JobParam("sieve", text, "Absorption with sieve and detour effects; by default what fits better.",
+    JobParam("sieve", text, "Absorption with sieve and detour effects; by default the better fit.",
              {.choices = kSieve, .decides = true}),
-    JobParam("fix", texts, "NAME=NUMBER: a known number, in the scene's units.",
+    JobParam("fix", texts, "NAME=NUMBER: keep a parameter at this value, in the units of scene files.",
              {.type = "NAME=NUMBER", .decides = true}),
     JobParam("like", text, "Specimen used as a prior (standard deviation about one third).",
              {.choices = leaf::kSpecimenNames, .decides = true}),
@@ -44,14 +47,14 @@ constexpr JobParam kParams[] = {
              {.default_value = "leaf", .choices = kMaterials, .decides = true}),
 };
 
-/// A number that is fitted, or that follows one.
+/// Parses NAME=NUMBER for a fitted parameter, or for one that depends on a fitted parameter. Throws InputError.
 leaf::FitRequest::Fixed fixed_of(const std::string& word, const std::string& option) {
   std::vector<std::string_view> names{"mesophyllfraction", "chlorophyllb", "lignin"};
   for (const leaf::FitVariable& v : leaf::kFitVariables) names.push_back(v.name);
   const size_t equals = word.find('=');
   const std::string name = word.substr(0, equals);
   if (std::ranges::find(names, name) == names.end())
-    fail({}, "{}: a fit has no number \"{}\"{}", option, name, suggestion(name, names));
+    fail({}, "{}: there is no fit parameter \"{}\"{}", option, name, suggestion(name, names));
   const auto value = equals == word.npos ? std::nullopt : parse_number(word.substr(equals + 1));
   if (!value || !(*value >= 0) || !std::isfinite(*value))
     fail({}, "{} {}: {}=NUMBER is needed, 0 at least, in the scene's units", option, word, name);
@@ -61,16 +64,19 @@ leaf::FitRequest::Fixed fixed_of(const std::string& word, const std::string& opt
   return {name, *value};
 }
 
+/// Returns the structure of --structure or --like; nullopt: fit both and select the better one. Throws InputError if
+/// they contradict each other.
 std::optional<leaf::Structure> structure_of(const Arguments& args, const leaf::Specimen* like) {
   using enum leaf::Structure;
   const std::string given = args.text("structure");
   if (!like) return given.empty() ? std::nullopt : std::optional(given == "bifacial" ? bifacial : unifacial);
   const std::string_view own = like->params.structure == bifacial ? "bifacial" : "unifacial";
   if (!given.empty() && given != own)
-    fail({}, "{} {} is {}, {} says otherwise", args.spelled("like"), like->name, own, args.spelled("structure"));
+    fail({}, "{} {} is {}, which contradicts {}", args.spelled("like"), like->name, own, args.spelled("structure"));
   return like->params.structure;
 }
 
+/// Builds the request. Throws InputError if there are fewer values than free parameters and no prior.
 leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasurement> measurements) {
   leaf::FitRequest request{.measurements = std::move(measurements)};
   request.like = leaf::find_specimen(args.text("like"));
@@ -80,14 +86,16 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasure
   for (const std::string& word : args.texts("fix")) request.fixed.push_back(fixed_of(word, args.spelled("fix")));
   size_t values = 0;
   for (const leaf::LeafMeasurement& r : request.measurements) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
+  // Fewer values than parameters leave the fit undetermined, unless a prior determines the rest.
   const size_t all = std::size(leaf::kFitVariables), free = all - std::min(all, request.fixed.size());
   if (values == 0) fail({}, "there is no value to fit within 360 to 2500 nm");
   if (values < free && !request.has_prior)
-    fail({}, "{} values are fewer than the {} numbers to fit: {} some, or {} a specimen", values, free,
-         args.spelled("fix"), args.spelled("like"));
+    fail({}, "{} values are fewer than the {} parameters to fit: use {} or {}", values, free, args.spelled("fix"),
+         args.spelled("like"));
   return request;
 }
 
+/// Reads the measurements of --file or --data. Rows outside 360 to 2500 nm are left out with a warning.
 std::vector<leaf::LeafMeasurement> measurements_of(const JobRun& run) {
   const Arguments& args = run.args;
   if (!args.given("file") && !args.given("data"))
@@ -103,6 +111,7 @@ std::vector<leaf::LeafMeasurement> measurements_of(const JobRun& run) {
   return std::move(measured.measurements);
 }
 
+/// The job: fits the leaf, and writes scene file, chart and tables.
 Result fit(const JobRun& run) {
   const Arguments& args = run.args;
   check_chart_param(run, "plot");

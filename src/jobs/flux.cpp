@@ -11,6 +11,10 @@
 #include "spectra/spd_file.h"
 
 namespace frond {
+
+// `frond flux`: light budget of a scene: reflected, transmitted and absorbed shares, by material or by instance
+// (docs/radiometry.md).
+
 namespace {
 
 using enum ArgumentKind;
@@ -24,11 +28,12 @@ constexpr JobParam kParams[] = {
     JobParam("paths", count, "Number of light paths.", {.default_value = "1e6", .range = kCounts}),
     kRmsParam,
     kTimeLimitParam,
-    JobParam("by", text, "Measure what each instance of an object absorbs: a row for each.",
+    JobParam("by", text, "Measure the absorption of each instance of an object, one row each.",
              {.choices = kBy, .decides = true}),
-    JobParam("irradiance", text,
-             "Irradiance of the horizontal plane, for photon flux: name of a spectrum, or an .spd file.",
-             {.type = "SPECTRUM", .default_value = "solar-am1.5-global", .unit = "W/(m2 nm)"}),
+    JobParam(
+        "irradiance", text,
+        "Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, or an .spd file.",
+        {.type = "SPECTRUM", .default_value = "solar-am1.5-global", .unit = "W/(m2 nm)"}),
     kSwapParam,
     kIntegratorParam,
     kSeedParam,
@@ -40,12 +45,13 @@ constexpr JobParam kParams[] = {
     kResumeParam,
 };
 
-/// What becomes of the light: one row, band by band.
+/// One quantity of the light budget, by band.
 struct Row {
   std::string quantity, material;
   const std::vector<MeanError>& shares;
 };
 
+/// Returns the rows of the budget, in the order of the tables.
 std::vector<Row> rows_of(const FluxMeasurement& measurement) {
   std::vector<Row> rows{{"reflected", "", measurement.reflected}, {"transmitted", "", measurement.transmitted}};
   for (const FluxMeasurement::OfMaterial& m : measurement.materials) rows.push_back({"absorbed", m.name, m.absorbed});
@@ -56,7 +62,7 @@ std::vector<Row> rows_of(const FluxMeasurement& measurement) {
   return rows;
 }
 
-/// Share of the photons. The standard error is an upper bound: bands share their paths.
+/// Returns the share of PAR photons. Its standard error is an upper bound, because bands share their paths.
 MeanError share_of_photons(std::span<const MeanError> shares, const PhotonWeights& photons) {
   MeanError sum;
   for (size_t band = 0; band < shares.size(); ++band) {
@@ -66,7 +72,7 @@ MeanError share_of_photons(std::span<const MeanError> shares, const PhotonWeight
   return sum;
 }
 
-/// A row for each quantity and wavelength; that of PAR photons has no wavelength.
+/// Table with one row for each quantity and wavelength. Rows of PAR photons have no wavelength.
 Table share_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
   const auto add = [&table](const Row& row, double nm, const MeanError& share) {
@@ -84,7 +90,7 @@ Table share_table(const FluxMeasurement& measurement, const std::optional<Photon
   return table;
 }
 
-/// A row for each quantity, a column for each wavelength.
+/// Text table with one row for each quantity and one column for each wavelength.
 std::string share_text(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   Table table{"flux"};
   for (const Row& row : rows_of(measurement)) {
@@ -97,8 +103,8 @@ std::string share_text(const FluxMeasurement& measurement, const std::optional<P
   return to_text(table);
 }
 
-/// A row for each instance: its area, the absorbed photon flux, and the absorbed shares of the incident light. There
-/// may be 1e8 of them: whole columns.
+/// Table with one row for each instance: area, absorbed photon flux (umol / (m2 s)), and absorbed shares of the
+/// incident light. It is built by whole columns, because there may be 1e8 instances.
 Table instance_table(const FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   const size_t bands = measurement.wavelengths_nm.size(), count = measurement.areas.size();
   Table table{"instances"};
@@ -125,7 +131,7 @@ Table instance_table(const FluxMeasurement& measurement, const std::optional<Pho
   return table;
 }
 
-/// Writes a checkpoint when the last one is older than the interval.
+/// Returns a callback that writes a checkpoint if the last one is older than the interval.
 std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& meter, const KeptFile& kept) {
   using Clock = std::chrono::steady_clock;
   const std::chrono::duration<double> interval(checkpoint_seconds(run.args));
@@ -134,15 +140,16 @@ std::function<void()> checkpoint_writer(const JobRun& run, const FluxMeter& mete
     try {
       meter.save(kept.checkpoint());
     } catch (const InputError& error) {
-      run.log().warn({}, fmt::format("no checkpoint was written, measuring goes on: {}", error.what()));
+      run.log().warn({}, fmt::format("no checkpoint was written; the measurement continues: {}", error.what()));
     }
     last = Clock::now();
   };
 }
 
-/// Nothing where it was stopped; `kept` may be nullptr.
+/// Returns nullopt if the measurement was stopped. `kept` may be nullptr.
 std::optional<FluxMeasurement> measure(const JobRun& run, FluxMeter& meter, const KeptFile* kept) {
   const RenderControl control = run.control_until(run.args.real("time-limit"));
+  // A refinement starts with few paths and doubles them.
   constexpr uint64_t kFirst = 1 << 16;
   const double rms = run.args.real("rms");
   const RefineLimits limits{rms > 0 ? kFirst : uint64_t(run.args.count("paths")), uint64_t{1} << 40, rms};
@@ -160,21 +167,23 @@ std::optional<FluxMeasurement> measure(const JobRun& run, FluxMeter& meter, cons
       },
       [&] { return measurement.emplace(meter.read()).error(); });
   if (end != RefineEnd::stopped && meter.paths() == 0)
-    fail({}, "{}: the time was over before any light path was traced", run.args.spelled("time-limit"));
+    fail({}, "{}: the time limit ended before any light path was traced", run.args.spelled("time-limit"));
   if (kept) kept->keep(end != RefineEnd::stopped, false, [&meter](const auto& path) { meter.save(path); });
   if (end == RefineEnd::stopped) return {};
   return measurement ? std::move(measurement) : meter.read();
 }
 
+/// Returns the weights of bands in the PAR photon flux; nullopt if the bands do not cover 400 to 700 nm.
 std::optional<PhotonWeights> photon_weights(const Scene& scene, const Spectrum& irradiance) {
   std::vector<double> nm;
   for (const Band& band : scene.wavelengths().bands()) nm.push_back(band.nm);
   return PhotonWeights::of(nm, irradiance);
 }
 
+/// Returns the table of instances. It is printed as CSV unless a file is written, because it may be long.
 Result by_instance(const JobRun& run, FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
   if (!photons)
-    run.log().info(fmt::format("no PAR: it takes bands from 400 to 700 nm, in steps of 50 nm at most ({} 400:700:20)",
+    run.log().info(fmt::format("no PAR: bands from 400 to 700 nm are needed, in steps of at most 50 nm ({} 400:700:20)",
                                run.args.spelled("wavelengths")));
   Result result;
   result.tables.push_back(instance_table(measurement, photons));
@@ -185,6 +194,7 @@ Result by_instance(const JobRun& run, FluxMeasurement& measurement, const std::o
   return result;
 }
 
+/// The job: traces light paths until the requested number or error is reached, with checkpoints.
 Result flux(const JobRun& run) {
   std::optional<KeptFile> kept;
   if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
@@ -216,9 +226,10 @@ Result flux(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kFluxJob("flux", "Measure", "Measure where the light that falls on a scene goes.",
-                              "Shares of the incident light, by wavelength: reflected, transmitted, and "
-                              "absorbed by each material. With wavelengths from 400 to 700 nm also shares "
+extern const JobInfo kFluxJob("flux", "Measure",
+                              "Measure the light budget of a scene: reflection, transmission, absorption.",
+                              "Reports shares of the incident light by wavelength: reflected, transmitted, and "
+                              "absorbed by each material. With wavelengths from 400 to 700 nm, also shares "
                               "of the photons (PAR).",
                               kParams, SessionUse::all, flux);
 

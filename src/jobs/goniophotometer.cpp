@@ -7,6 +7,10 @@
 #include "report/patch_charts.h"
 
 namespace frond {
+
+// `frond goniophotometer`: BRDF and BTDF of a material over the whole sphere, by rays or by integration
+// (docs/instruments.md).
+
 namespace {
 
 using enum ArgumentKind;
@@ -20,10 +24,10 @@ constexpr JobParam kParams[] = {
     kWithParam,
     JobParam("rays", count, "Number of rays for each measurement.",
              {.default_value = "1e6", .range = kRayCounts, .decides = true}),
-    JobParam("patches", text, "THETAxPHI: numbers of detectors, patches of equal angles over the whole sphere.",
+    JobParam("patches", text, "THETAxPHI: numbers of detector patches, equal in angle, over the whole sphere.",
              {.type = "THETAxPHI", .default_value = "20x40", .decides = true}),
     JobParam("integrate", flag,
-             "Integrate f over each patch, without noise, where it is not a random estimate; use rays elsewhere.",
+             "Integrate f over each patch, without noise, if the material evaluates f exactly; otherwise use rays.",
              {.decides = true}),
     kRenderedParam,
     kSeedParam,
@@ -34,7 +38,7 @@ constexpr JobParam kParams[] = {
     JobParam("map-scale", text, "Colour scale of the map.", {.default_value = "linear", .choices = kScales}),
 };
 
-/// "20x40"; "20,40" as well, which is how a program writes two numbers.
+/// Parses --patches. "20,40" is accepted as well as "20x40", because Python passes two numbers with a comma.
 DetectorSphere sphere_of(const Arguments& args) {
   std::string words = args.text("patches");
   std::ranges::replace(words, 'x', ',');
@@ -48,6 +52,7 @@ DetectorSphere sphere_of(const Arguments& args) {
 
 std::string kind_of(const GoniophotometerMeasurement& r, const Patch& p) { return r.is_reflected(p) ? "BRDF" : "BTDF"; }
 
+/// Table with one row for each patch of each measurement.
 Table table_of(const std::vector<LabelledPatches>& measurements) {
   Table table{"measurements"};
   for (const auto& [material, r] : measurements)
@@ -82,7 +87,7 @@ Table table_of(const std::vector<LabelledPatches>& measurements) {
   return table;
 }
 
-/// Of each side of each measurement: the share of the light, and where f is largest.
+/// Summary with one row for each side of each measurement: share of the light, and position of the largest f.
 Table summary_of(const std::vector<LabelledPatches>& measurements) {
   Table table{"summary"};
   for (const auto& [material, r] : measurements)
@@ -107,7 +112,7 @@ Table summary_of(const std::vector<LabelledPatches>& measurements) {
   return table;
 }
 
-/// Refuses what would fail after the measurements.
+/// Throws InputError for requests that would fail after the measurements.
 void check(const JobRun& run, const MaterialsUnderTest& tested, const DetectorSphere& sphere) {
   const MeasurementCounts counts{tested.materials().size(), tested.angles_deg().size(), tested.wavelengths_nm().size()};
   if (run.args.given("plot")) check_plane_chart(counts, sphere);
@@ -115,6 +120,7 @@ void check(const JobRun& run, const MaterialsUnderTest& tested, const DetectorSp
   for (size_t i = 0; i < tested.size(); ++i) check_no_delta_lobe(tested.lit_material(i));
 }
 
+/// Integration is possible only if the material evaluates f exactly.
 GoniophotometerMeasurement measure(const JobRun& run, const MaterialsUnderTest& tested, size_t i,
                                    const DetectorSphere& sphere) {
   run.check_stop();
@@ -124,6 +130,7 @@ GoniophotometerMeasurement measure(const JobRun& run, const MaterialsUnderTest& 
   return measure_f(lit, sphere, rays, run.session().pool(), tested.progress(i, rays));
 }
 
+/// The job. Charts are checked before the first ray.
 Result goniophotometer(const JobRun& run) {
   check_chart_param(run, "plot");
   check_chart_param(run, "map");

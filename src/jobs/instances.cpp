@@ -13,6 +13,9 @@
 #include "system/file_bytes.h"
 
 namespace frond {
+
+// `frond instances`: instance table from a CSV file.
+
 namespace {
 
 using enum ArgumentKind;
@@ -25,7 +28,7 @@ constexpr JobParam kParams[] = {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A CSV file of numbers, read line by line; the first line names the columns.
+/// A CSV file of numbers, read line by line. Its first line names the columns.
 class NumberTable {
  public:
   explicit NumberTable(const std::string& path)
@@ -39,7 +42,7 @@ class NumberTable {
   }
 
   const std::vector<std::string>& names() const { return names_; }
-  /// Number of lines of numbers.
+  /// Number of lines with values.
   size_t count() const {
     size_t lines = 0;
     std::string_view rest = rest_;
@@ -50,6 +53,7 @@ class NumberTable {
     }
     return lines;
   }
+  /// Reads the next line that is not blank. Returns false at the end. Throws InputError with line and column.
   bool next(std::vector<double>& values) {
     std::string_view line;
     do {
@@ -75,6 +79,7 @@ class NumberTable {
   const std::shared_ptr<const std::string>& file() const { return file_; }
 
  private:
+  /// Returns the text without blanks at both ends.
   static std::string_view trimmed(std::string_view s) {
     constexpr std::string_view kBlank = " \t\r";
     const size_t first = s.find_first_not_of(kBlank);
@@ -84,6 +89,7 @@ class NumberTable {
   std::string_view text() const {
     return {reinterpret_cast<const char*>(mapped_.bytes().data()), mapped_.bytes().size()};
   }
+  /// Takes the next line, and counts lines for errors. Returns false at the end.
   bool next_line(std::string_view& line) {
     if (rest_.empty()) return false;
     const size_t end = rest_.find('\n');
@@ -100,17 +106,18 @@ class NumberTable {
   int line_ = 0;
 };
 
-/// How a line says where an instance is: which of its columns are which.
+/// Assigns columns to the position, orientation and scale of an instance.
 class Placement {
  public:
+  /// Throws InputError if the position is missing, or if the orientation is incomplete or given twice.
   explicit Placement(const NumberTable& table) : names_(table.names()) {
     const Location where{table.file(), 1, 1};
     for (const char* name : {"x", "y", "z"})
-      if (!place(name)) fail(where, "there is no column \"{}\"; x, y and z say where an instance is", name);
+      if (!place(name)) fail(where, "there is no column \"{}\"; x, y and z are the position of an instance", name);
     const auto whole = [&](std::initializer_list<const char*> group) {
       const auto given = std::ranges::count_if(group, [&](const char* name) { return place(name).has_value(); });
       if (given != 0 && size_t(given) != group.size())
-        fail(where, "columns {} go together: {} of them are there", fmt::join(group, ", "), given);
+        fail(where, "columns {} must be given together: {} of them are present", fmt::join(group, ", "), given);
       return given != 0;
     };
     by_matrix_ = whole({"m00", "m01", "m02", "m10", "m11", "m12", "m20", "m21", "m22"});
@@ -118,7 +125,7 @@ class Placement {
     by_normal_ = whole({"nx", "ny", "nz"});
     by_angles_ = whole({"zenith", "azimuth"});
     if (by_matrix_ + by_quaternion_ + by_normal_ + by_angles_ > 1)
-      fail(where, "only one of a matrix, a quaternion, a normal and angles gives the orientation");
+      fail(where, "give the orientation by only one of a matrix, a quaternion, a normal and angles");
     place("scale");
     if (place("spin") && (by_matrix_ || by_quaternion_))
       fail(where, "\"spin\" is a rotation about a normal; a matrix or a quaternion includes it");
@@ -126,9 +133,10 @@ class Placement {
       if (!used_.contains(names_[i])) columns_.push_back(i);
   }
 
-  /// All other columns.
+  /// Indices of all other columns.
   const std::vector<size_t>& columns() const { return columns_; }
 
+  /// Returns the object-to-world map of a row. Throws InputError for a normal or a quaternion of length 0.
   AffineMap map(const std::vector<double>& v, const Location& where) const {
     const auto at = [&](const char* name, double otherwise) {
       const auto column = used_.find(name);
@@ -156,12 +164,14 @@ class Placement {
   }
 
  private:
+  /// Returns the index of a column and marks it as used; nullopt if there is none.
   std::optional<size_t> place(const std::string& name) {
     const auto found = std::ranges::find(names_, name);
     if (found == names_.end()) return {};
     return used_[name] = size_t(found - names_.begin());
   }
 
+  /// Rotation by the quaternion (q, w), normalized here, and uniform scaling.
   static AffineMap turned(const Vec3d& position, Vec3d q, double w, double scale, const Location& where) {
     const double norm = std::sqrt(dot(q, q) + w * w);
     if (norm == 0) fail(where, "the quaternion is 0 0 0 0");
@@ -179,6 +189,7 @@ class Placement {
   bool by_matrix_ = false, by_quaternion_ = false, by_normal_ = false, by_angles_ = false;
 };
 
+/// The job: converts row by row, so that memory does not grow with the number of instances.
 Result instances(const JobRun& run) {
   NumberTable table(run.args.text("csv"));
   const Placement placement(table);
@@ -205,7 +216,7 @@ Result instances(const JobRun& run) {
 
 extern const JobInfo kInstancesJob(
     "instances", "Scenes", "Write an instance table, for Shape \"instances\", from CSV.",
-    "The first line names the columns: x,y,z; scale; the orientation, as nx,ny,nz or zenith,azimuth (degrees) "
+    "The first line names the columns: position x,y,z; scale; orientation as nx,ny,nz or zenith,azimuth (degrees) "
     "of the z axis, which is a leaf's normal, and spin about it (degrees), or as qw,qx,qy,qz, or m00,m01 to "
     "m22. All other columns are numbers for Texture \"instance\".",
     kParams, SessionUse::none, instances);

@@ -5,14 +5,17 @@
 #include "render/plugins.h"
 
 namespace frond {
+
+// `frond list`: names of plug-ins and specimens.
+
 namespace {
 
 constexpr std::string_view kWhat[] = {"specimens"};
-constexpr JobParam kParams[] = {
-    JobParam("what", ArgumentKind::text,
-             "What to list in place of plug-ins; specimens are the leaves that \"string specimen\" can name.",
-             {.choices = kWhat, .positional = true})};
+constexpr JobParam kParams[] = {JobParam("what", ArgumentKind::text,
+                                         "What to list instead of plug-ins; specimens: values of \"string specimen\".",
+                                         {.choices = kWhat, .positional = true})};
 
+/// Returns the specimens with their sources.
 Result list_specimens() {
   Result result{.tables = {{"specimens"}}, .is_requested = true};
   for (const leaf::Specimen& s : leaf::kSpecimens) {
@@ -24,6 +27,7 @@ Result list_specimens() {
   return result;
 }
 
+/// The job: lists all plug-ins, grouped by kind.
 Result list(const JobRun& run) {
   if (run.args.given("what")) return list_specimens();
   const Registry registry = load_registry(run.context.options().plugins);
@@ -42,7 +46,7 @@ Result list(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kListJob("list", "Materials", "List every plug-in that a scene can name.", "", kParams,
+extern const JobInfo kListJob("list", "Materials", "List all plug-ins that a scene can name.", "", kParams,
                               SessionUse::plugins, list);
 
 }  // namespace frond

@@ -11,6 +11,9 @@
 #include "system/file_time.h"
 
 namespace frond {
+
+// `frond man`: man pages in roff, from the records of the jobs (man-pages(7), groff_man(7)).
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -18,11 +21,11 @@ namespace fs = std::filesystem;
 constexpr JobParam kParams[] = {
     JobParam("command", ArgumentKind::text, "Command that the page describes; frond itself by default.",
              {.type = "COMMAND", .positional = true}),
-    JobParam("folder", ArgumentKind::text, "Folder to write the pages of all commands to.",
+    JobParam("folder", ArgumentKind::text, "Folder for the pages of all commands.",
              {.type = "FOLDER", .path = PathUse::write}),
 };
 
-/// Text in roff, without a line break.
+/// Escapes text for roff. The text has no line break.
 std::string escaped(std::string_view text) {
   constexpr std::pair<char, const char*> kEscapes[] = {{'\\', "\\e"},  {'-', "\\-"},   {'~', "\\(ti"}, {'^', "\\(ha"},
                                                        {'`', "\\(ga"}, {'"', "\\(dq"}, {'\'', "\\(aq"}};
@@ -37,7 +40,8 @@ std::string escaped(std::string_view text) {
 std::string bold(std::string_view text) { return "\\fB" + escaped(text) + "\\fR"; }
 std::string italic(std::string_view text) { return "\\fI" + escaped(text) + "\\fR"; }
 
-/// Lines of text; each sentence begins a line, and no line is a request of roff.
+/// Returns roff lines of at most 72 characters. Each sentence begins a line (groff's convention), and no line begins
+/// with a request.
 std::string paragraph(const std::string& text) {
   constexpr size_t kWidth = 72;
   std::string result, line;
@@ -56,8 +60,10 @@ std::string paragraph(const std::string& text) {
   return result;
 }
 
+/// Pages of commands are named frond-COMMAND, as those of git.
 std::string page_name(std::string_view command) { return command.empty() ? "frond" : "frond-" + std::string(command); }
 
+/// Returns the entry of a parameter: its names in bold, the value's name in italics, and the help text.
 std::string entry(const JobParam& p) {
   const std::string value = value_name(p);
   std::string head;
@@ -70,6 +76,7 @@ std::string entry(const JobParam& p) {
   return ".TP\n" + head + '\n' + paragraph(documented(p) + (p.required && !p.positional ? " Required." : ""));
 }
 
+/// Returns a section with one entry for each parameter; "" without parameters.
 std::string entries(const char* section, const std::vector<const JobParam*>& params) {
   if (params.empty()) return "";
   std::string text = std::string(".SH ") + section + '\n';
@@ -77,28 +84,31 @@ std::string entries(const char* section, const std::vector<const JobParam*>& par
   return text;
 }
 
-/// A list of bold terms and their meanings.
+/// Section with a list of bold terms and their definitions.
 std::string definitions(const char* section, std::span<const std::pair<const char*, const char*>> rows) {
   std::string text = std::string(".SH ") + section + '\n';
   for (const auto& [word, meaning] : rows) text += ".TP\n" + bold(word) + '\n' + paragraph(meaning);
   return text;
 }
 
+/// Exit codes of run() in cli/commands.h.
 constexpr std::pair<const char*, const char*> kExitStatus[] = {
     {"0", "Done."},
-    {"1", "Wrong use or wrong input; a message on standard error says what is wrong."},
+    {"1", "Wrong usage or invalid input; the error is on standard error."},
     {"2", "frond conform found that a law is broken."},
-    {"75", "Another frond works on the same part; try again later."},
+    {"75", "Another frond process has locked the same part; try again later."},
     {"130, 143", "Stopped by SIGINT or SIGTERM; the partial result is kept if --checkpoint or --resume asks for it."},
 };
 
+/// Environment variables that all commands read.
 constexpr std::pair<const char*, const char*> kEnvironment[] = {
     {"FROND_PLUGIN_PATH", "Folders, separated by colons, whose shared objects are loaded as by --plugin."},
     {"OCIO", "Configuration of OpenColorIO for --display and --view."},
-    {"SOURCE_DATE_EPOCH", "Time that files state as the time when they were written, in seconds since 1970."},
-    {"XDG_CACHE_HOME", "Computed tables are kept in its folder frond; by default ~/.cache."},
+    {"SOURCE_DATE_EPOCH", "Time of writing that files state, in seconds since 1970; by default the current time."},
+    {"XDG_CACHE_HOME", "Base of the cache of computed tables, its folder frond; by default ~/.cache."},
 };
 
+/// Returns the header and the sections NAME and SYNOPSIS. The date is file_time(), so that builds are reproducible.
 std::string head(std::string_view command, const std::string& doc) {
   std::string name = page_name(command);
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -106,13 +116,14 @@ std::string head(std::string_view command, const std::string& doc) {
                      fmt::gmtime(file_time()), FROND_VERSION, paragraph(page_name(command) + " - " + doc));
 }
 
-/// frond(1).
+/// Returns the page frond(1).
 std::string overview() {
   std::string text = head("", "a spectral path tracer for plant leaves") +
                      "\\fBfrond\\fR \\fICOMMAND\\fR [\\fIOPTION\\fR ...] [\\fIARGUMENT\\fR ...]\n.SH DESCRIPTION\n";
   text += paragraph(
-      "Reads scenes of pbrt-v4's format, renders leaves by models of their tissue, and measures materials and scenes. "
-      "Each command has a page of its own.");
+      "Reads scenes in pbrt-v4's format, renders leaves with models of their tissue, and measures materials and "
+      "scenes. "
+      "Each command has its own page.");
   text += ".SH COMMANDS\n";
   for (const JobInfo* job : all_jobs())
     text += ".TP\n\\fB" + escaped(page_name(job->name)) + "\\fR(1)\n" + paragraph(std::string(job->doc));
@@ -120,6 +131,7 @@ std::string overview() {
          definitions("ENVIRONMENT", kEnvironment);
 }
 
+/// Returns the synopsis of a command; optional arguments are in brackets.
 std::string synopsis(const JobInfo& job, const CommandParams& params) {
   std::string text = "\\fBfrond\\fR " + bold(job.name) + " [\\fIOPTION\\fR ...]";
   for (const JobParam* p : params.arguments) {
@@ -129,6 +141,7 @@ std::string synopsis(const JobInfo& job, const CommandParams& params) {
   return text + '\n';
 }
 
+/// Returns the section on pbrt-v4's options, for frond-render(1).
 std::string pbrt_section() {
   std::string text = ".SH OPTIONS OF PBRT-V4\n" + paragraph("They are ignored with a warning, or refused.");
   for (const PbrtOption& o : kPbrtOptions) {
@@ -139,6 +152,7 @@ std::string pbrt_section() {
   return text;
 }
 
+/// Returns the page of a command.
 std::string page(const JobInfo& job) {
   const CommandParams params = command_params(job);
   std::string doc = first_sentence(job.doc);
@@ -151,6 +165,7 @@ std::string page(const JobInfo& job) {
   return text + ".SH SEE ALSO\n\\fBfrond\\fR(1): exit status and environment\n";
 }
 
+/// The job: prints one page, or writes all pages to a folder.
 Result man(const JobRun& run) {
   const std::string command = run.args.text("command");
   if (!run.args.given("folder"))

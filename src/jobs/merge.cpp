@@ -5,36 +5,42 @@
 #include "render/parts/part_file.h"
 
 namespace frond {
+
+// `frond merge`: combines parts of one render (docs/many_machines.md).
+
 namespace {
 
 using enum ArgumentKind;
 
 constexpr JobParam kParams[] = {
-    files_param("parts", "Parts of one render, which have no sample in common."),
+    files_param("parts", "Parts of one render, without common samples."),
     output_param("Image to write: .exr (linear), .png or .jpg (through the display transform).", false, "part"),
-    JobParam("part", text, "Part to write, in place of an image.", {.type = "FILE", .path = PathUse::write}),
+    JobParam("part", text, "Part to write instead of an image.", {.type = "FILE", .path = PathUse::write}),
     JobParam("allow-holes", flag, "Write an image although samples or pixels are missing."),
     kDisplayParam,
     kViewParam,
 };
 
+/// Throws InputError, or warns with --allow-holes, if samples or pixels are missing.
 void check_holes(const RenderPart& whole, const JobRun& run) {
   const std::string missing = what_is_missing(whole);
   if (missing.empty()) return;
   if (!run.args.flag("allow-holes"))
-    fail({}, "{} are in none of the parts: {} makes an image without them", missing, run.args.spelled("allow-holes"));
-  run.log().warn({}, fmt::format("{} are in none of the parts", missing));
+    fail({}, "no part has {}; {} writes the image without them", missing, run.args.spelled("allow-holes"));
+  run.log().warn({}, fmt::format("no part has {}", missing));
 }
 
+/// Writes the image of the merged parts, with warnings about missing samples.
 void write_merged(const RenderPart& whole, const ImageOutput& output, const JobRun& run) {
   check_holes(whole, run);
   if (lacks_neighbors(whole.film))
     run.log().warn({},
-                   "pixels at the edges lack samples of those beside them, which the filter reaches: other parts of "
-                   "the image have them");
+                   "pixels at the edges lack samples of neighbouring pixels within the filter's radius: other parts of "
+                   "the image contain them");
   output.write(whole.film, finished_image(whole));
 }
 
+/// The job: merges all parts in memory, then writes an image or a part.
 Result merge(const JobRun& run) {
   const Arguments& args = run.args;
   if (!args.given("output") && !args.given("part"))
@@ -45,8 +51,9 @@ Result merge(const JobRun& run) {
   const RenderPart whole = merge_parts({parts.begin(), parts.end()});
   if (output)
     write_merged(whole, *output, run);
-  else  // other parts may still be merged with this one: holes are no problem
+  else  // holes are allowed: further parts may be merged with this one
     write_part(args.text("part"), whole.header, whole.film);
+  // Such samples count as the film's largest value or as black.
   const uint64_t lost = whole.film.not_finite();
   if (lost > 0) run.log().warn({}, fmt::format("{} samples were too bright for the film, or not finite", lost));
   const SampleCount samples = sample_count(whole.film);
@@ -62,7 +69,7 @@ Result merge(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kMergeJob("merge", "Cluster", "Merge parts of a render, which frond render --part has written.",
-                               "", kParams, SessionUse::none, merge);
+extern const JobInfo kMergeJob("merge", "Cluster", "Merge parts of a render, written by frond render --part.", "",
+                               kParams, SessionUse::none, merge);
 
 }  // namespace frond

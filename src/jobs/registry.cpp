@@ -2,7 +2,8 @@
 
 namespace frond {
 
-// One job, one file, one line here and one in the list below, which has the order of `frond --help`.
+// Every job has one file, one declaration here, and one entry in the list below, which sets the order of `frond
+// --help`.
 extern const JobInfo kBenchJob;
 extern const JobInfo kBrfJob;
 extern const JobInfo kCanopyJob;

@@ -15,18 +15,22 @@
 #include "system/atomic_file.h"
 
 namespace frond {
+
+// `frond render`: images, parts of images, and checkpoints.
+
 namespace {
 
 using enum ArgumentKind;
 using Clock = std::chrono::steady_clock;
 
 constexpr JobParam kParams[] = {
-    JobParam("scene", texts, "Scene file (pbrt-v4 format). Of several files, each that has WorldBegin ends a scene.",
+    JobParam("scene", texts, "Scene file (pbrt-v4 format). Several files: each file with WorldBegin ends a scene.",
              {.type = "SCENE", .path = PathUse::read, .decides = true, .positional = true, .required = true}),
-    JobParam("output", text,
-             "Image: .exr (linear), .png or .jpg (through the display transform). By default the file that the scene's "
-             "film names.",
-             {.type = "FILE", .aliases = "o,outfile", .path = PathUse::write, .excludes = "part"}),
+    JobParam(
+        "output", text,
+        "Image: .exr (linear), .png or .jpg (through the display transform). By default the file named by the scene's "
+        "film.",
+        {.type = "FILE", .aliases = "o,outfile", .path = PathUse::write, .excludes = "part"}),
     JobParam("spp", count, "Number of samples per pixel; by default the scene's.", {.range = {1, 1 << 30}}),
     JobParam(
         "wavelengths", text,
@@ -38,22 +42,22 @@ constexpr JobParam kParams[] = {
     JobParam(
         "crop", numbers, "Crop as fractions of the film; ends are rounded up.",
         {.type = "X0,X1,Y0,Y1", .range = {0, 1}, .aliases = "cropwindow", .values = 4, .excludes = "pixels,pixel"}),
-    JobParam("pixels", numbers, "Crop in pixels; x1 and y1 are not part of it.",
+    JobParam("pixels", numbers, "Crop in pixels; x1 and y1 are excluded.",
              {.type = "X0,X1,Y0,Y1",
               .range = {0, 1 << 30},
               .aliases = "pixelbounds",
               .values = 4,
               .whole = true,
               .excludes = "pixel"}),
-    JobParam("pixel", numbers, "The one pixel to render.",
+    JobParam("pixel", numbers, "Single pixel to render.",
              {.type = "X,Y", .range = {0, 1 << 30}, .values = 2, .whole = true}),
     kIntegratorParam,
     JobParam("filter", text,
-             "PLUGIN[,parameter=value...]: pixel filter; one of the scene's kind keeps the scene's other parameters. "
-             "gaussian,reconstruction=importance: pixels share no samples.",
+             "PLUGIN[,parameter=value...]: pixel filter; one of the scene's type keeps the scene's other parameters. "
+             "gaussian,reconstruction=importance: each sample counts in one pixel only.",
              {.type = "FILTER", .decides = true}),
     JobParam("channels", text,
-             "Data of the first surface that camera rays meet, beside the image's colours; names with commas between "
+             "Additional channels with data of the first surface that camera rays hit; names separated by commas "
              "(docs/scene_format.md).",
              {.type = "CHANNELS", .decides = true}),
     JobParam("max-rms", real,
@@ -62,53 +66,55 @@ constexpr JobParam kParams[] = {
              {.range = kAboveZero, .excludes = "samples"}),
     kTimeLimitParam,
     JobParam("quick", flag, "Preview: half the resolution, a sixteenth of the samples.", {.decides = true}),
-    JobParam("pilot", flag, "Choose the models of open leaves and report the choice; render nothing."),
+    JobParam("pilot", flag, "Select the models of open leaves and report them; render nothing."),
     JobParam("display", text,
-             "Display of PNG and JPEG output; sRGB by default. tev: the same as --display-server 127.0.0.1:14158."),
-    JobParam("view", text, "View of that display."),
+             "OpenColorIO display of PNG and JPEG output; sRGB by default. tev: the same as --display-server "
+             "127.0.0.1:14158."),
+    JobParam("view", text, "View of the display."),
     JobParam("color-space", text,
-             "Colour space of an EXR file's R, G and B where the scene names none, such as linear sRGB.",
+             "Colour space of R, G and B in an EXR file if the scene names none, such as linear sRGB.",
              {.decides = true}),
     JobParam("display-server", text, "Show the image in the viewer tev while it is rendered.", {.type = "HOST:PORT"}),
     JobParam("preview", flag, "Show the image in the terminal while it is rendered, and at the end."),
     JobParam("part", text, "Write a part, to be combined with frond merge, instead of an image.",
              {.type = "FILE", .path = PathUse::write}),
-    JobParam("samples", text, "Range of samples to render, FIRST:END, as in 64:128; by default from 0 to --spp.",
+    JobParam("samples", text, "Range of samples to render, without END, as in 64:128; by default from 0 to --spp.",
              {.type = "FIRST:END"}),
     JobParam("checkpoint", real,
-             "Keep the partial result at this interval, and when stopped by SIGINT or SIGTERM: in OUTPUT.part, or in "
-             "FILE.checkpoint where --part writes FILE.",
+             "Save the partial result at this interval, and when stopped by SIGINT or SIGTERM: in OUTPUT.part, or in "
+             "FILE.checkpoint if --part writes FILE.",
              {.unit = "s", .range = kAboveZero}),
-    JobParam("resume", flag, "Resume from OUTPUT.part, or --part's file, if it is there; keep one too."),
-    JobParam("disable-pixel-jitter", flag, "Sample at the centres of pixels and lens.", {.decides = true}),
-    JobParam("disable-texture-filtering", flag, "Look textures up at points.", {.decides = true}),
+    JobParam("resume", flag, "Resume from OUTPUT.part, or --part's file, if it exists; also save checkpoints."),
+    JobParam("disable-pixel-jitter", flag, "Sample the centres of pixels and lens.", {.decides = true}),
+    JobParam("disable-texture-filtering", flag, "Point-sample textures.", {.decides = true}),
     JobParam("disable-wavelength-jitter", flag, "Use the same wavelengths for all samples.", {.decides = true}),
     kIgnoreUnsupportedParam,
     kStrictParam,
     JobParam("json", flag, "Print the statistics as JSON on standard output."),
 };
 
-/// Counts by depth, up to the last that is not 0.
+/// Counts by path depth, without trailing zeros.
 std::vector<uint64_t> counts(std::span<const uint64_t> by_depth) {
   while (!by_depth.empty() && by_depth.back() == 0) by_depth = by_depth.first(by_depth.size() - 1);
   return {by_depth.begin(), by_depth.end()};
 }
 
+/// Returns 0 without paths, for a render that was complete already.
 double per_path(double value, const RenderStatistics& s) { return s.paths > 0 ? value / double(s.paths) : 0; }
 
-/// A render from its scene to its files.
+/// One render, from its scene to its files.
 class SceneRender {
  public:
   SceneRender(const JobRun& run, std::vector<std::filesystem::path> files)
       : run_(run), files_(std::move(files)), task_(run), views_(run.args) {}
 
-  /// Adds its statistics to the result.
+  /// Appends the render's statistics to the result.
   void render(Result& result) {
     try {
       prepare();
     } catch (const InputError& error) {
       if (!run_.args.flag("strict")) throw;
-      Problems problems;  // the warnings so far are errors too
+      Problems problems;  // warnings so far are errors too
       problems.add(error);
       problems.attempt([this] { run_.context.log().check(); });
       problems.check();
@@ -120,31 +126,32 @@ class SceneRender {
                  run_.context.log().target());
     fill(part);
     result.stopped = run_.control.stop.stop_requested();
-    if (kept_)  // an image that is done is not lost with its checkpoint
+    if (kept_)  // a complete image is written even if its checkpoint fails
       kept_->keep(!result.stopped, !output_, [&part](const auto& path) { write_part(path, part.header, part.film); });
     if (result.stopped && kept_) return kept_->report_stop();
     if (!result.stopped) finish(part, result);
   }
 
  private:
-  /// What can be refused is refused before the render.
+  /// Detects errors before the render: reads and builds the scene, checks outputs.
   void prepare() {
     task_.read(files_);
     find_paths();
     task_.choose(output_ ? &*output_ : nullptr);
     if (run_.args.flag("pilot")) return;
-    if (task_.choice()) load_start_ = Clock::now();  // its time is reported apart
+    if (task_.choice()) load_start_ = Clock::now();  // the time of the selection is reported separately
     task_.load(output_ ? &*output_ : nullptr);
     load_seconds_ = std::chrono::duration<double>(Clock::now() - load_start_).count();
     views_.check(task_.scene().image_format());
     run_.context.log().check();
   }
 
+  /// Determines the files: a part, or an image with its partial result beside it.
   void find_paths() {
     const Arguments& args = run_.args;
     if (args.given("part")) {
       const std::string part = args.text("part");
-      names_ = {part, part + ".checkpoint"};  // a part of this name is finished
+      names_ = {part, part + ".checkpoint"};  // a part of this name is complete
       return;
     }
     output_.emplace(args.given("output") ? args.text("output") : task_.film_file(), display_of(args));
@@ -153,6 +160,7 @@ class SceneRender {
     check_replaceable(names_->finished);
   }
 
+  /// Adds the selected models to the result, for --pilot.
   void report_choice(Result& result) const {
     const auto& choice = task_.choice();
     if (!choice)
@@ -164,7 +172,7 @@ class SceneRender {
     result.is_requested = true;
   }
 
-  /// The partial result of an earlier run, or an empty part.
+  /// Returns an earlier run's partial result, or an empty part. Throws InputError if that result is of another render.
   RenderPart first_part() const {
     RenderPart fresh = task_.empty_part();
     const auto path = kept_ ? kept_->found(run_.args.flag("resume")) : std::nullopt;
@@ -175,6 +183,7 @@ class SceneRender {
     return part;
   }
 
+  /// Throws InputError, which names the difference, unless the found part belongs to the same render.
   void check_same_render(const RenderPart& wanted, const RenderPart& found, const std::filesystem::path& path) const {
     const std::string resume = run_.args.spelled("resume");
     const std::string difference =
@@ -184,10 +193,10 @@ class SceneRender {
       fail({}, "{}: \"{}\" was made {} {}", resume, path.string(), task_.is_adaptive() ? "without" : "with",
            run_.args.spelled("max-rms"));
     if (found.film.settings().crop != wanted.film.settings().crop || found.film.sampled() != wanted.film.sampled())
-      fail({}, "{}: \"{}\" is of other pixels than this command asks for", resume, path.string());
+      fail({}, "{}: \"{}\" has other pixels than this command requests", resume, path.string());
   }
 
-  /// Renders what is missing.
+  /// Renders the samples that the part lacks.
   void fill(RenderPart& part) {
     RenderControl control = run_.control;
     if (run_.args.given("time-limit"))
@@ -203,33 +212,35 @@ class SceneRender {
     });
   }
 
+  /// Reports noise, writes the image, and reports statistics.
   void finish(const RenderPart& part, Result& result) {
     views_.finish_preview();
     const SampleCount samples = sample_count(part.film);
     if (output_ && samples.most == 0)
-      fail({}, "{}: the time was over before anything was rendered", run_.args.spelled("time-limit"));
+      fail({}, "{}: the time limit ended before any sample was rendered", run_.args.spelled("time-limit"));
     const Log& log = run_.log();
     if (const uint64_t count = part.film.not_finite(); count > 0)
-      log.warn({},
-               fmt::format("{} samples were too bright for the film, or no numbers at all, and count as its brightest "
-                           "or as black",
-                           count));
+      log.warn({}, fmt::format("{} samples were too bright for the film or not finite: they count as its largest value "
+                               "or as black",
+                               count));
+    // Adaptive renders report noise; others report missing samples.
     if (task_.is_adaptive())
       report_noise(part.film);
     else if (samples.least < task_.samples().count())
-      log.warn({}, fmt::format("the time was over: pixels have {} to {} samples, not {}", samples.least, samples.most,
-                               task_.samples().count()));
+      log.warn({}, fmt::format("the time limit ended: pixels have {} to {} samples, not {}", samples.least,
+                               samples.most, task_.samples().count()));
     const ErrorTail tail = error_tail(part.film);
-    if (tail.is_heavy())  // no fault of the scene's, so never an error
+    if (tail.is_heavy())  // not an error in strict mode: the scene is correct
       run_.context.log().target().warn(
-          {}, fmt::format("a thousandth of the pixels holds {:.0f} % of the noise: rare samples outweigh all others "
-                          "there, and estimates of the noise are too small",
+          {}, fmt::format("0.1 % of the pixels contain {:.0f} % of the noise: rare samples dominate "
+                          "there, and noise is underestimated",
                           100 * tail.share));
     if (output_) output_->write(part.film, finished_image(part));
     views_.finish_display(output_ && output_->rounds_to_halves(part.film));
     report(part.film, samples, tail.share, result);
   }
 
+  /// Logs the image's noise; warns if it exceeds --max-rms.
   void report_noise(const Film& film) const {
     const NoiseEstimate noise = image_noise(film, noise_z());
     const double max_rms = run_.args.real("max-rms");
@@ -237,10 +248,11 @@ class SceneRender {
       run_.log().info(fmt::format("noise RMS {:.5f}, {:.5f} at most ({:.0f} %)", noise.rms(), noise.upper_rms(),
                                   100 * kNoiseConfidence));
     else
-      run_.log().warn({}, fmt::format("noise RMS {:.5f}, {:.5f} at most: more than the {:g} asked for", noise.rms(),
+      run_.log().warn({}, fmt::format("noise RMS {:.5f}, {:.5f} at most: more than the requested {:g}", noise.rms(),
                                       noise.upper_rms(), max_rms));
   }
 
+  /// Adds the statistics to the table, and logs them unless --json prints them.
   void report(const Film& film, const SampleCount& samples, double error_tail, Result& result) const {
     const RenderStatistics& s = statistics_;
     const std::string output = output_ ? output_->path() : names_->finished.string();
@@ -269,6 +281,7 @@ class SceneRender {
     run_.log().info(fmt::format("foliar ratio (camera samples that hit a leaf): {:.2f} %", 100 * film.foliar_ratio()));
   }
 
+  /// Appends the last row of the table as a JSON object, with path counts by depth.
   void add_json(Result& result) const {
     nlohmann::ordered_json json;
     const Table& table = result.tables[0];
@@ -293,19 +306,20 @@ class SceneRender {
   std::vector<std::filesystem::path> files_;
   RenderTask task_;
   RenderViews views_;
-  std::optional<ImageOutput> output_;     ///< empty: a part is asked for
-  std::optional<KeptFile::Names> names_;  ///< empty: no part is kept
-  std::optional<KeptFile> kept_;          ///< until all is written: signals come while the last part is
+  std::optional<ImageOutput> output_;     ///< empty if a part is written
+  std::optional<KeptFile::Names> names_;  ///< empty if no part is kept
+  std::optional<KeptFile> kept_;          ///< kept until all is written, because a signal may arrive before
   double load_seconds_ = 0;
   RenderStatistics statistics_;
 };
 
+/// The job: renders the scenes one after another.
 Result render(const JobRun& run) {
   const auto scenes = scenes_of(run.args.texts("scene"));
   for (const char* name : {"output", "part"})
     if (scenes.size() > 1 && run.args.given(name))
-      fail({}, "{} scenes cannot all be written to {}: without it each goes where its Film says", scenes.size(),
-           run.args.text(name));
+      fail({}, "{} scenes cannot all be written to {}: without it each is written to the file of its Film",
+           scenes.size(), run.args.text(name));
   Result result{.tables = {{"renders"}}};
   for (const auto& files : scenes) {
     SceneRender(run, files).render(result);

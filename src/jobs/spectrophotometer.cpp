@@ -7,6 +7,9 @@
 #include "report/share_tables.h"
 
 namespace frond {
+
+// `frond spectrophotometer`: reflectance, transmittance and absorptance of a material (docs/instruments.md).
+
 namespace {
 
 using enum ArgumentKind;
@@ -17,9 +20,9 @@ constexpr JobParam kParams[] = {
     kAnglesParam,
     kWithParam,
     JobParam("rays", count,
-             "Number of rays for each measurement: 1e6 by default; with --se the largest number, 1e9 by default.",
+             "Number of rays for each measurement, by default 1e6; with --se the maximum, by default 1e9.",
              {.range = kRayCounts, .decides = true}),
-    JobParam("se", real, "Stop when the standard errors of R, T and A are no larger than this.",
+    JobParam("se", real, "Stop when the standard errors of R, T and A are at most this.",
              {.range = kAboveZero, .aliases = "standard-error", .decides = true}),
     kRenderedParam,
     kSeedParam,
@@ -28,10 +31,11 @@ constexpr JobParam kParams[] = {
     chart_param("plot", "Chart of R and 1 - T against wavelength or angle: .svg or .png."),
 };
 
+/// A share of the incident light, its column and its estimate.
 struct Share {
   const char* name;
   Estimate SpectrophotometerMeasurement::*value;
-  bool is_optional;  ///< known of materials whose flags tell surface and body apart
+  bool is_optional;  ///< requires a material whose flags distinguish surface from subsurface scattering
 };
 constexpr Share kShares[] = {{"Rs", &SpectrophotometerMeasurement::surface, true},
                              {"Rd", &SpectrophotometerMeasurement::subsurface, true},
@@ -39,6 +43,7 @@ constexpr Share kShares[] = {{"Rs", &SpectrophotometerMeasurement::surface, true
                              {"T", &SpectrophotometerMeasurement::transmittance, false},
                              {"A", &SpectrophotometerMeasurement::absorptance, false}};
 
+/// Table with one row for each measurement.
 Table table_of(std::span<const LabelledMeasurement> measurements) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Table table{"measurements"};
@@ -56,16 +61,16 @@ Table table_of(std::span<const LabelledMeasurement> measurements) {
   table.document("Rs",
                  "share of the light, 0 to 1, that the surface reflects at the first event; blank where the "
                  "material does not tell Rs and Rd apart");
-  table.document("Rd", "share that leaves the body on the lit side");
-  table.document("R", "Rs + Rd, the share that is reflected; R_se and the like: standard errors");
-  table.document("T", "share that leaves by the other side");
+  table.document("Rd", "share that leaves the tissue on the lit side");
+  table.document("R", "Rs + Rd, the share that is reflected; columns ending in _se: standard errors");
+  table.document("T", "share that leaves on the other side");
   table.document("A", "1 - R - T, the share that is absorbed");
   table.document("rays", "number of rays of light");
   table.columns.back().only_data = true;
   return table;
 }
 
-/// A table for each material, below its name.
+/// Returns a table for each material, headed by the material's name.
 std::string text_of(const std::vector<LabelledMeasurement>& measurements, size_t per_material) {
   std::string text;
   for (size_t i = 0; i < measurements.size(); i += per_material)
@@ -74,16 +79,19 @@ std::string text_of(const std::vector<LabelledMeasurement>& measurements, size_t
   return text;
 }
 
+/// Warns if the largest number of rays was reached before the requested standard error.
 void warn_where_not_reached(const JobRun& run, const Dose& dose, const std::vector<LabelledMeasurement>& measurements) {
   const auto missed = std::ranges::count_if(
       measurements, [&](const LabelledMeasurement& r) { return r.measurement.standard_error() > dose.standard_error; });
   if (dose.standard_error > 0 && missed > 0)
-    run.log().warn({}, fmt::format("{} of {} measurements ended at {} rays before their standard error was {}", missed,
+    run.log().warn({}, fmt::format("{} of {} measurements reached {} rays before a standard error of {}", missed,
                                    measurements.size(), dose.rays, dose.standard_error));
 }
 
+/// The job. The chart is checked before the first ray.
 Result spectrophotometer(const JobRun& run) {
   check_chart_param(run, "plot");
+  // With --se, measurements end by their error, so the default limit is larger.
   constexpr int64_t kRays = 1'000'000, kMostRays = 1'000'000'000;
   const int64_t by_default = run.args.given("se") ? kMostRays : kRays;
   const Dose dose{run.args.given("rays") ? run.args.count("rays") : by_default, run.args.real("se")};

@@ -10,35 +10,42 @@
 #include "system/child_process.h"
 
 namespace frond {
+
+// `frond submit`: a cluster job of one array of tasks, each with a range of samples, and a job that merges their parts
+// (docs/many_machines.md).
+
 namespace {
 
 namespace fs = std::filesystem;
 using enum ArgumentKind;
 
+/// Parameters of the job itself; those of `frond render` are added by JobInfo::extends.
 constexpr JobParam kParams[] = {
     JobParam("scene", text, "Scene file.",
              {.type = "SCENE", .path = PathUse::read, .positional = true, .required = true}),
     JobParam("output", text, "Image that the merge job writes.",
              {.type = "FILE", .aliases = "o,outfile", .path = PathUse::write, .required = true}),
     JobParam("spp", count, "Number of samples per pixel.", {.range = {1, 1 << 30}, .required = true}),
-    JobParam("tasks", count, "Number of tasks that share the samples.", {.range = {1, 1e6}, .required = true}),
+    JobParam("tasks", count, "Number of tasks, among which the samples are divided.",
+             {.range = {1, 1e6}, .required = true}),
     JobParam("slurm", flag, "Write a job for Slurm.", {.required = true}),
-    JobParam("run", flag, "Submit it too, by sbatch."),
+    JobParam("run", flag, "Also submit the job with sbatch."),
     JobParam("folder", text, "Folder of the job's scripts, parts and logs; OUTPUT.slurm by default.",
              {.type = "FOLDER", .path = PathUse::write}),
 };
 
-/// Parameters of render that each task sets itself.
+/// Parameters of `frond render` that each task sets itself.
 constexpr std::string_view kSetByTasks[] = {"part",       "samples", "checkpoint", "resume",
                                             "time-limit", "threads", "pilot"};
 
-/// As a shell reads it.
+/// Quotes a word for a POSIX shell.
 std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
   return text + "'";
 }
 
+/// Replaces each name in the template by its value.
 std::string filled(std::string_view text_template, const std::vector<std::pair<std::string, std::string>>& values) {
   std::string text(text_template);
   for (const auto& [name, value] : values)
@@ -47,13 +54,13 @@ std::string filled(std::string_view text_template, const std::vector<std::pair<s
   return text;
 }
 
-/// The frond program that tasks run: this one, or from Python the one on their PATH.
+/// Returns the frond program that tasks run: this executable, or from Python the one on the tasks' PATH.
 std::string program() {
   const fs::path self = fs::read_symlink("/proc/self/exe");
   return self.filename().string().starts_with("python") ? "frond" : self.string();
 }
 
-/// Those that are handed on to render: its own, but for what submit and the tasks set.
+/// Returns the parameters that are passed on to `frond render`: its own, except those that submit or the tasks set.
 std::vector<const JobParam*> handed_on(const JobRun& run) {
   std::vector<const JobParam*> params;
   for (const JobParam* p : params_of(kRenderJob)) {
@@ -65,7 +72,7 @@ std::vector<const JobParam*> handed_on(const JobRun& run) {
   return params;
 }
 
-/// Renders next to nothing: what each task would refuse an hour later is refused here.
+/// Renders for a moment, so that errors appear now and not an hour later in each task.
 void try_out(const JobRun& run, const fs::path& folder, std::span<const JobParam* const> params) {
   const fs::path part = folder / "parts" / "trial.part";
   Arguments args(params_of(kRenderJob), run.args.spelling());
@@ -86,7 +93,8 @@ void try_out(const JobRun& run, const fs::path& folder, std::span<const JobParam
   }
 }
 
-/// Options of frond render for the tasks: the arguments, and what the session has without one, as in Python.
+/// Returns the options of `frond render` for the tasks. Options of the session that are not arguments (from Python) are
+/// added.
 std::vector<std::string> task_options(const JobRun& run, std::span<const JobParam* const> params) {
   std::vector<std::string> words = absolute_words(run.args, params);
   const auto& [threads, cache, plugins] = run.context.options();
@@ -100,16 +108,19 @@ std::vector<std::string> task_options(const JobRun& run, std::span<const JobPara
   return words;
 }
 
+/// The job: writes the scripts of an array job and its merge job; render.sbatch is written last and marks the folder as
+/// complete.
 Result submit(const JobRun& run) {
   const Arguments& args = run.args;
   const int64_t tasks = args.count("tasks"), samples = args.count("spp");
   if (tasks > samples) fail({}, "{} tasks cannot share {} samples: each needs at least one", tasks, samples);
   const std::string output = args.text("output");
-  if (!fs::path(output).has_filename()) fail({}, "{} names no image: \"{}\"", args.spelled("output"), output);
+  if (!fs::path(output).has_filename())
+    fail({}, "{} is not the name of an image: \"{}\"", args.spelled("output"), output);
   const fs::path folder = fs::absolute(args.given("folder") ? args.text("folder") : output + ".slurm");
   std::error_code error;
   if (fs::exists(folder / "render.sbatch", error))
-    fail({}, "\"{}\" holds a job already: its submit.sh renders what is missing; delete it to begin anew",
+    fail({}, "\"{}\" already contains a job: its submit.sh renders the missing samples; delete it to start anew",
          folder.string());
   const auto params = handed_on(run);
   fs::create_directories(folder / "parts");
@@ -124,6 +135,7 @@ Result submit(const JobRun& run) {
       {"@SPP@", std::to_string(samples)},
       {"@TASKS@", std::to_string(tasks)},
       {"@LAST_TASK@", std::to_string(tasks - 1)}};
+  // render.sbatch is written last: its existence marks a complete job.
   const fs::path script = folder / "submit.sh";
   write_text((folder / "merge.sbatch").string(), filled(merge_sbatch, values));
   write_text(script.string(), filled(submit_sh, values));
@@ -132,7 +144,7 @@ Result submit(const JobRun& run) {
   Result result{.facts = {{"script", script.string()}}};
   if (!args.flag("run")) {
     result.text = fmt::format(
-        "{} submits {} tasks and the merge after them; edit render.sbatch beside it first, for your cluster\n",
+        "{} submits {} tasks and the merge job; first adapt render.sbatch in the same folder to your cluster\n",
         script.string(), tasks);
     return result;
   }
@@ -147,7 +159,7 @@ Result submit(const JobRun& run) {
 
 extern const JobInfo kSubmitJob("submit", "Cluster",
                                 "Render on a cluster: an array job of sample ranges, and the job that merges them.",
-                                "The options of frond render are handed on to the tasks.", kParams, SessionUse::all,
+                                "The options of frond render are passed on to the tasks.", kParams, SessionUse::all,
                                 submit, &kRenderJob);
 
 }  // namespace frond

@@ -10,13 +10,16 @@
 #include "leaf/table/table_cache.h"
 #include "leaf/table/table_file.h"
 #include "leaf/tissue/constants.h"
-#include "materials/portable_leaf.h"
+#include "materials/leaf_file.h"
 #include "materials/registry.h"
 #include "report/text_output.h"
 #include "scene/format/plugin_text.h"
 #include "system/machine.h"
 
 namespace frond {
+
+// `frond table`: tables of leaf_simplified and leaf_solved as files (docs/file_formats.md).
+
 namespace {
 
 using enum ArgumentKind;
@@ -25,35 +28,35 @@ constexpr std::string_view kSimplified = "leaf_simplified", kSolved = "leaf_solv
 constexpr std::string_view kMethods[] = {"solve", "montecarlo"};
 
 constexpr JobParam kParams[] = {
-    JobParam(
-        "leaf", texts,
-        "MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a material "
-        "leaf_simplified.",
-        {.type = "MATERIAL", .decides = true, .positional = true}),
+    JobParam("leaf", texts,
+             "MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a name "
+             "leaf_simplified.",
+             {.type = "MATERIAL", .decides = true, .positional = true}),
     JobParam("specimen", text, "Specimen of the leaf; soybean by default.",
              {.choices = leaf::kSpecimenNames, .decides = true}),
-    JobParam("method", text, "Method: solve, without noise, or montecarlo, random walks as published.",
+    JobParam("method", text, "Method: solve (deterministic, without noise) or montecarlo (random walks, as published).",
              {.default_value = "solve", .choices = kMethods, .decides = true}),
     JobParam(
         "wavelengths", numbers, "Wavelengths.",
         {.unit = "nm", .range = leaf::kConstantsRange_nm, .aliases = "wavelength", .decides = true, .required = true}),
     JobParam("angles", numbers, "Angles of incidence, ascending; above 90 on the abaxial side.",
              {.default_value = "0:180:1", .unit = "degrees", .range = {0, 180}, .decides = true}),
-    JobParam("rays", count, "Number of random walks of montecarlo for each angle and wavelength.",
+    JobParam("rays", count, "Number of random walks for each angle and wavelength, with montecarlo.",
              {.default_value = "1e6", .range = {1, 1e9}, .decides = true}),
     JobParam("nodes", count,
-             "Number of nodes of the solution for each segment of directions; by default as many as it needs.",
+             "Number of quadrature nodes for each segment of directions; by default chosen by its error.",
              {.range = {2, 200}, .decides = true}),
-    JobParam("depths", numbers, "LEAST,MOST: optical depths of a .leaf file, for leaves whose chemistry varies.",
+    JobParam("depths", numbers, "Range of optical depths in a .leaf file, for leaves whose chemistry varies.",
              {.type = "LEAST,MOST", .range = {0, kAnyValue.max}, .values = 2, .decides = true}),
     kSeedParam,
-    JobParam("equalsides", flag, "Write the mean of both sides, at angles up to 90.", {.decides = true}),
-    JobParam("output", text,
-             "File to write; - is standard output. FILE.leaf of leaf_solved: for other programs (docs/leaf_file.md).",
-             {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = true}),
+    JobParam("equalsides", flag, "Write the mean of both sides, at angles up to 90 degrees.", {.decides = true}),
+    JobParam(
+        "output", text,
+        "File to write; - is standard output. FILE.leaf, of leaf_solved: for other programs (docs/file_formats.md).",
+        {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = true}),
 };
 
-/// The leaf's parameters are numbers and words alone.
+/// Resolver for a table's parameters, which must be constants: it refuses textures and other references.
 class NoReferences final : public ParamResolver {
  public:
   std::shared_ptr<const FloatTexture> float_texture(const std::string&, const Location&) override { refuse(); }
@@ -63,9 +66,10 @@ class NoReferences final : public ParamResolver {
   std::filesystem::path file(const std::string& name, const Location&) override { return name; }
 
  private:
-  [[noreturn]] static void refuse() { fail({}, "a leaf's table is made for one leaf: numbers alone, no textures"); }
+  [[noreturn]] static void refuse() { fail({}, "the table of a leaf requires constant parameters, not textures"); }
 };
 
+/// Returns the parameters of the leaf, checked against the material's declarations.
 Params params_of(const PluginInfo& info, const PluginText& leaf) {
   ParsedPlugin plugin{std::string(info.name), {}, {}};
   set_params(leaf, info, {}, plugin);
@@ -73,17 +77,17 @@ Params params_of(const PluginInfo& info, const PluginText& leaf) {
   return Params(info, plugin, none);
 }
 
-/// A render makes its own table by these; here the job's parameters say the same.
+/// Throws InputError for parameters that control the table of a render; the message names this job's equivalent.
 void check_is_of_leaf(const std::string& name, const Arguments& args) {
   const std::map<std::string, std::string> instead{{"tablemethod", args.spelled("method") + " solve or montecarlo"},
                                                    {"tablerays", args.spelled("rays")},
                                                    {"tablestep", args.spelled("angles") + " first:last:step"}};
   if (name == "tablefile") fail({}, "a table is made of a leaf, not of a \"tablefile\"");
   if (const auto found = instead.find(name); found != instead.end())
-    fail({}, "\"{}\" is for renders that make their table: use {}", name, found->second);
+    fail({}, "\"{}\" applies to renders, which compute their own table: use {}", name, found->second);
 }
 
-/// The material whose table is made, and its parameters.
+/// Parses the positional words: a material and its parameters. Throws InputError.
 PluginText leaf_of(const JobRun& run) {
   std::string text = material_text(run.args.texts("leaf"), run.log());
   const size_t end = text.find(',');
@@ -103,6 +107,7 @@ PluginText leaf_of(const JobRun& run) {
   return leaf;
 }
 
+/// Returns --wavelengths in the given order. Throws InputError for duplicates.
 std::vector<double> wavelengths_of(const Arguments& args) {
   const auto nm = args.numbers("wavelengths");
   auto sorted = nm;
@@ -112,12 +117,12 @@ std::vector<double> wavelengths_of(const Arguments& args) {
   return nm;
 }
 
-/// Ascending; for equal sides those up to 90 and their counterparts on the other side.
+/// Returns --angles, which must ascend. With --equalsides: angles up to 90 and their counterparts on the other side.
 std::vector<double> angles_of(const Arguments& args) {
   auto theta_deg = args.numbers("angles");
   const auto wrong = std::ranges::adjacent_find(theta_deg, std::greater_equal());
   if (wrong != theta_deg.end())
-    fail({}, "{} ascend, {} comes after {}", args.spelled("angles"), *std::next(wrong), *wrong);
+    fail({}, "{} must ascend: {} follows {}", args.spelled("angles"), *std::next(wrong), *wrong);
   if (!args.flag("equalsides")) return theta_deg;
   std::erase_if(theta_deg, [](double theta) { return theta > 90; });
   if (theta_deg.empty()) fail({}, "{} needs angles up to 90", args.spelled("equalsides"));
@@ -126,15 +131,17 @@ std::vector<double> angles_of(const Arguments& args) {
   return theta_deg;
 }
 
-/// Writes the file, and logs what it holds.
+/// Writes the file and logs its summary.
 Result write_table(const JobRun& run, const std::string& content, const std::string& summary) {
   write_text(run.args.text("output"), content);
   run.log().info(summary);
   return {};
 }
 
+/// Returns a size rounded to kB of 1024 bytes.
 std::string kilobytes(size_t bytes) { return fmt::format("{} kB", (bytes + 512) / 1024); }
 
+/// Writes the table of leaf_simplified as CSV.
 Result make_shares_file(const JobRun& run, const PluginText& leaf) {
   static constexpr PluginInfo kLeaf{"the table of", kSimplified, "", "", kLeafParams};
   const Arguments& args = run.args;
@@ -157,6 +164,7 @@ Result make_shares_file(const JobRun& run, const PluginText& leaf) {
                      leaf::summary(request, args.text("output"), table) + fmt::format(", {:.2g} s of CPU", seconds));
 }
 
+/// Writes the mode table of leaf_solved.
 Result make_modes_file(const JobRun& run, const Params& params) {
   const leaf::ModeTableRequest request{.params = LeafParams(params).tissue(),
                                        .wavelengths_nm = wavelengths_of(run.args),
@@ -171,27 +179,29 @@ Result make_modes_file(const JobRun& run, const Params& params) {
                                      kilobytes(leaf::ModeLookup(request, spectrum, false).bytes()), seconds));
 }
 
-/// For programs other than frond: docs/leaf_file.md.
+/// Writes a .leaf file for other programs (docs/file_formats.md).
 Result make_leaf_file(const JobRun& run, const Params& params) {
-  PortableLeafRequest request{.wavelengths_nm = wavelengths_of(run.args),
-                              .tolerance = params.real("tolerance"),
-                              .nodes = int(run.args.count("nodes"))};
+  LeafFileRequest request{.wavelengths_nm = wavelengths_of(run.args),
+                          .tolerance = params.real("tolerance"),
+                          .nodes = int(run.args.count("nodes"))};
   if (const auto depths = run.args.numbers("depths"); !depths.empty()) request.depths = {depths[0], depths[1]};
-  const leaf::PortableLeaf table =
-      make_portable_leaf(LeafParams(params), std::move(request), run.session().pool(), run.log(), {});
-  const std::string bytes = leaf::portable_bytes(table);
+  const leaf::LeafFile table =
+      make_leaf_file(LeafParams(params), std::move(request), run.session().pool(), run.log(), {});
+  const std::string bytes = leaf::leaf_file_bytes(table);
   return write_table(run, bytes,
                      fmt::format("{}: {}{} wavelengths x {} cells, {}", run.args.text("output"),
                                  table.is_reciprocal ? "reciprocal, " : "", table.wavelengths_nm.size(), table.cells,
                                  kilobytes(bytes.size())));
 }
 
-/// Refuses those that are given, which have no effect on this kind of table.
+/// Throws InputError for a given parameter that has no effect on this type of table. `use` names the type that it
+/// applies to.
 void refuse(const Arguments& args, std::initializer_list<std::string_view> names, const std::string& use) {
   for (const std::string_view name : names)
     if (args.given(name)) fail({}, "{} is for {}", args.spelled(name), use);
 }
 
+/// The job: selects the file format by material and extension.
 Result table(const JobRun& run) {
   const PluginText leaf = leaf_of(run);
   const bool is_leaf_file = run.args.text("output").ends_with(".leaf");
@@ -213,9 +223,9 @@ Result table(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kTableJob(
-    "table", "Leaf models", "Write the table that a leaf material looks up, as a file that it can read.",
-    "leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the modes of its BSDF, or as "
-    "FILE.leaf all of it for other programs.",
+    "table", "Leaf models", "Write the table of a leaf material to a file that it can read.",
+    "leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as "
+    "FILE.leaf the complete material for other programs.",
     kParams, SessionUse::threads, table);
 
 }  // namespace frond

@@ -14,16 +14,17 @@ constexpr Param kOwn[] = {
     {.name = "mode",
      .kind = ParamKind::string,
      .default_value = std::string_view("analog"),
-     .doc = "Absorption: analog kills whole rays, as published; weighted takes a share of each, with the same mean.",
+     .doc = "Absorption. analog: of whole rays at random, as published; weighted: of a share of each, same mean.",
      .choices = kModes},
 };
-// The walk has no f of the way back to be balanced with: leaf_solved has both.
+// Without incident "reciprocal": a random walk cannot be symmetrised. leaf_solved can.
 constexpr auto kAbm = without_reciprocal(with_leaf_params(kOwn));
 
+// Walks run in double: cosines of grazing rays are small.
 Vec3d in_double(const Vec3& w) { return normalize(Vec3d{w.x, w.y, w.z}); }
 Vec3 in_float(const Vec3d& w) { return {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)}; }
 
-/// The leaf where it was hit, at the wavelengths of the path: a tissue for each active lane.
+/// A leaf at a hit, at the wavelengths of the path: a tissue for each active lane.
 struct LeafLanes {
   std::array<const Tissue*, kLanes> tissues{};
   std::array<int, kLanes> lane{};
@@ -34,10 +35,11 @@ struct LeafLanes {
     lane[count++] = of_lane;
   }
   std::span<const Tissue* const> all() const { return std::span(tissues).first(count); }
+  /// Index of the hero, uniform.
   size_t draw_hero(RandomStream& rng) const { return count > 1 ? rng.bits() % count : 0; }
 };
 
-/// Walks through the leaf, one for all the wavelengths of a path.
+/// BSDF by random walks through the leaf, one walk for all wavelengths of a path (hero wavelengths).
 class AbmBsdf : public Bsdf {
  public:
   AbmBsdf(const LeafLanes& lanes, leaf::Absorption absorption)
@@ -52,12 +54,14 @@ class AbmBsdf : public Bsdf {
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
     const auto [wi, lobe, weight] = walk(wo, uc, u, rng);
+    // The weight is exact for any pdf > 0; `pdf` is that of MIS, as for LayeredBsdf.
     if (weight.is_black()) return {};
     const float density = pdf(wo, wi);
     return BsdfSample{weight * (density / std::abs(wi.z)), wi, density, lobe, true};
   }
 
-  /// Exact for the surface at one of the wavelengths, a cosine lobe on each side for all that has been inside.
+  /// Approximate: exact for the surface at one of the wavelengths, a cosine lobe on each side for light that has been
+  /// inside.
   float pdf(const Vec3& wo, const Vec3& wi) const override {
     if (wo.z == 0 || std::abs(wi.z) < kLeastCosine || lanes_.count == 0) return 0;
     const float share = surface_share(wo);
@@ -66,6 +70,7 @@ class AbmBsdf : public Bsdf {
     return density;
   }
 
+  // For instruments: batches of one wavelength use the SIMD walk.
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
     if (lanes_.count == 1 && incident.z != 0) return scatter_batch(incident, rng, rays);
     for (Scattered& ray : rays) {
@@ -75,7 +80,7 @@ class AbmBsdf : public Bsdf {
   }
 
  protected:
-  /// From `incident` to `leaving`.
+  /// Estimate of f for light from `incident` to `leaving`.
   SampledSpectrum leaf_f(const Vec3& incident, const Vec3& leaving, RandomStream& rng) const {
     SampledSpectrum f;
     if (incident.z == 0 || std::abs(leaving.z) < kLeastCosine || lanes_.count == 0) return f;
@@ -86,7 +91,7 @@ class AbmBsdf : public Bsdf {
     return f;
   }
 
-  /// Of a path's lobes; kept off 1, so that no direction is left without density.
+  /// Probability of the surface's lobe; at most 0.95, so that no direction has density 0.
   float surface_share(const Vec3& wo) const {
     return std::min(static_cast<float>(leaf::surface_reflectance(tissue(), wo.z)), 0.95f);
   }
@@ -109,7 +114,7 @@ class AbmBsdf : public Bsdf {
     }
   }
 
-  /// `uc` draws the hero and then the first branch.
+  /// `uc` draws the hero; its remainder draws the first branch.
   Scattered walk(const Vec3& incident, float uc, Vec2 u, RandomStream& rng) const {
     if (incident.z == 0 || lanes_.count == 0) return {};
     const float place = uc * static_cast<float>(lanes_.count);
@@ -123,6 +128,7 @@ class AbmBsdf : public Bsdf {
     return ray;
   }
 
+  // The flags of a ray by its end: instruments count Rs, Rd and T by them.
   static Lobes lobes_of(leaf::Fate fate) {
     if (fate == leaf::Fate::surface) return Lobes::reflection | Lobes::glossy | Lobes::surface | Lobes::stochastic;
     const Lobes side = fate == leaf::Fate::reflected ? Lobes::reflection : Lobes::transmission;
@@ -134,8 +140,8 @@ class AbmBsdf : public Bsdf {
   SurfaceLobe surface_;
 };
 
-/// The same leaf, whose incident light comes along wi: a walk from there tells how much leaves along wo. Walks do not
-/// end where they are wanted, so directions are drawn from `pdf`, which is then their density.
+/// The same leaf with the light's direction wi as incident direction: a walk from wi estimates the light along wo.
+/// Walks cannot be made to end along wo, so directions are drawn from `pdf`, which is then exact.
 class AbmFromLightBsdf final : public AbmBsdf {
  public:
   using AbmBsdf::AbmBsdf;
@@ -157,6 +163,8 @@ class AbmFromLightBsdf final : public AbmBsdf {
   }
 };
 
+// Material "abm": random walks through the leaf's tissue. A hit makes one tissue for each active lane; all of them
+// share the walk.
 class Abm final : public Material {
  public:
   explicit Abm(const Params& p)
@@ -164,6 +172,7 @@ class Abm final : public Material {
         model_(leaf_.tissue()),
         absorption_(p.string("mode") == "analog" ? leaf::Absorption::analog : leaf::Absorption::weighted) {}
 
+  // Tissues of a constant leaf are built once if paths carry fixed or listed wavelengths, else at each hit.
   void prepare(const Preparation& preparation) override {
     const WavelengthStrategy& wavelengths = preparation.wavelengths;
     leaf_.check_wavelengths(wavelengths);
@@ -198,12 +207,15 @@ class Abm final : public Material {
     return lanes;
   }
 
+  // `band` is a lane's index in the listed wavelengths; tissues at other wavelengths are made at the hit.
   const Tissue* constant_tissue(const SampledWavelengths& lambda, size_t lane, Arena& arena) const {
+    // With fixed wavelengths tissues are indexed by lane, with listed ones by the index in the list.
     const size_t place = fixed_ ? lane : lambda.band[lane];
     if (place < made_.size() && made_[place].nm == lambda.nm[lane]) return &made_[place].tissue;
     return arena.make<Tissue>(model_.at(double(lambda.nm[lane])));
   }
 
+  // Lobes at a point of the leaf: those of textured aspect ratios are built at each hit.
   const leaf::InterfaceLobes& lobes_at(const TexturePoint& at, Arena& arena) const {
     if (leaf_.aspects_are_constant()) return model_.lobes();
     leaf::LeafLobes lobes = model_.leaf_lobes();
@@ -227,7 +239,7 @@ class Abm final : public Material {
   LeafParams leaf_;
   leaf::TissueModel model_;
   leaf::Absorption absorption_;
-  std::vector<Made> made_;  ///< of a constant leaf, where paths' wavelengths are fixed, lane by lane, or listed
+  std::vector<Made> made_;  ///< tissues of a constant leaf at fixed wavelengths (by lane) or listed ones
   bool fixed_ = false;
 };
 

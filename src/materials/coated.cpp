@@ -5,32 +5,32 @@
 namespace frond {
 namespace {
 
-constexpr std::array kCoatMedium{
-    Param{.name = "thickness",
-          .kind = ParamKind::float_texture,
-          .default_value = 0.01,
-          .range = kAtLeastZero,
-          .doc = "Optical thickness of the medium between the coat and what it covers."},
-    Param{.name = "albedo",
-          .kind = ParamKind::spectrum_texture,
-          .default_value = 0.0,
-          .range = {0, 1},
-          .doc = "Share of light that the medium scatters, of what it takes out of its way."},
-    Param{.name = "g",
-          .kind = ParamKind::float_texture,
-          .default_value = 0.0,
-          .range = {-1, 1},
-          .doc = "Mean cosine of the medium's scattering."},
-    Param{.name = "maxdepth",
-          .kind = ParamKind::integer,
-          .default_value = 10,
-          .range = {0, 1000},
-          .doc = "Longest walk below the coat, in events."},
-    Param{.name = "nsamples",
-          .kind = ParamKind::integer,
-          .default_value = 1,
-          .range = {1, 1000},
-          .doc = "Walks for each value of the BSDF."}};
+// Parameters and defaults are pbrt-v4's, so that its scene files render alike.
+constexpr std::array kCoatMedium{Param{.name = "thickness",
+                                       .kind = ParamKind::float_texture,
+                                       .default_value = 0.01,
+                                       .range = kAtLeastZero,
+                                       .doc = "Optical thickness of the medium between the coat and the base."},
+                                 Param{.name = "albedo",
+                                       .kind = ParamKind::spectrum_texture,
+                                       .default_value = 0.0,
+                                       .range = {0, 1},
+                                       .doc = "Single-scattering albedo of the medium."},
+                                 Param{.name = "g",
+                                       .kind = ParamKind::float_texture,
+                                       .default_value = 0.0,
+                                       .range = {-1, 1},
+                                       .doc = "Mean cosine of the medium's phase function (Henyey-Greenstein)."},
+                                 Param{.name = "maxdepth",
+                                       .kind = ParamKind::integer,
+                                       .default_value = 10,
+                                       .range = {0, 1000},
+                                       .doc = "Largest number of events of a random walk below the coat."},
+                                 Param{.name = "nsamples",
+                                       .kind = ParamKind::integer,
+                                       .default_value = 1,
+                                       .range = {1, 1000},
+                                       .doc = "Number of random walks for each evaluation of the BSDF."}};
 
 constexpr Param coat_eta(std::string_view name) {
   return {.name = name,
@@ -39,7 +39,7 @@ constexpr Param coat_eta(std::string_view name) {
           .doc = "Index of refraction of the coat over that outside."};
 }
 
-/// The coat and the medium under it, from their parameters.
+/// The coat and the medium below it, from their parameters.
 class CoatParams {
  public:
   CoatParams(const Params& p, std::string_view eta, const RoughnessNames& roughness)
@@ -55,6 +55,7 @@ class CoatParams {
     check_range(albedo_->range_nm(), wavelengths, albedo_where_, "albedo");
   }
   LaneIndices indices(const SampledWavelengths& lambda) const { return {eta_->sample(lambda), lambda}; }
+  /// Makes the BSDF of the coat over `base`.
   template <class Base>
   const Bsdf* cover(const Base& base, const LaneIndices& indices, const Hit& hit, const SampledWavelengths& lambda,
                     Arena& arena) const {
@@ -77,10 +78,11 @@ constexpr Param kReflectance{.name = "reflectance",
                              .kind = ParamKind::spectrum_texture,
                              .default_value = 0.5,
                              .range = {0, 1},
-                             .doc = "Share of the light that the surface below the coat reflects."};
+                             .doc = "Reflectance of the surface below the coat."};
 constexpr auto kCoatedDiffuse = joined(std::array{kReflectance, coat_eta("eta")}, roughness_params(kRoughnessNames),
                                        std::array{kRemapRoughness}, kCoatMedium);
 
+// Material "coateddiffuse": a DiffuseBase under a dielectric coat.
 class CoatedDiffuse final : public Material {
  public:
   explicit CoatedDiffuse(const Params& p)
@@ -106,6 +108,7 @@ class CoatedDiffuse final : public Material {
   CoatParams coat_;
 };
 
+// Names as in pbrt-v4: the coat is its "interface".
 constexpr RoughnessNames kCoatRoughness{"interface.roughness", "interface.uroughness", "interface.vroughness"};
 constexpr RoughnessNames kMetalRoughness{"conductor.roughness", "conductor.uroughness", "conductor.vroughness"};
 constexpr MetalNames kMetalNames{"conductor.eta", "conductor.k", "reflectance"};
@@ -113,6 +116,7 @@ constexpr auto kCoatedConductor =
     joined(std::array{coat_eta("interface.eta")}, roughness_params(kCoatRoughness), metal_params(kMetalNames),
            roughness_params(kMetalRoughness), std::array{kRemapRoughness}, kCoatMedium);
 
+// Material "coatedconductor": a ConductorBase under a dielectric coat, each with its own roughness.
 class CoatedConductor final : public Material {
  public:
   explicit CoatedConductor(const Params& p)
@@ -126,6 +130,7 @@ class CoatedConductor final : public Material {
     const LaneIndices indices = coat_.indices(lambda);
     const ConductorIndices metal = metal_.at(hit.at, lambda);
     const Float4 eta = indices.eta().v;
+    // Fresnel's formula requires indices relative to the medium before the metal, which is the coat's.
     const ConductorIndices below_coat(SampledSpectrum(metal.eta.v / eta), SampledSpectrum(metal.k.v / eta));
     return coat_.cover(ConductorBase(roughness_.at(hit.at), below_coat, indices.mask()), indices, hit, lambda, arena);
   }
@@ -141,11 +146,11 @@ class CoatedConductor final : public Material {
 }  // namespace
 
 extern const MaterialInfo coated_diffuse_material{
-    {"material", "coateddiffuse", "A diffuse surface under a dielectric coat.", "Guo, Hasan and Zhao 2018; pbrt-v4",
+    {"material", "coateddiffuse", "Lambertian surface under a dielectric coat.", "Guo, Hasan and Zhao 2018; pbrt-v4",
      kCoatedDiffuse},
     make_material<CoatedDiffuse>};
 
-extern const MaterialInfo coated_conductor_material{{"material", "coatedconductor", "A metal under a dielectric coat.",
+extern const MaterialInfo coated_conductor_material{{"material", "coatedconductor", "Metal under a dielectric coat.",
                                                      "Guo, Hasan and Zhao 2018; pbrt-v4", kCoatedConductor},
                                                     make_material<CoatedConductor>};
 

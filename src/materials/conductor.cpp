@@ -9,6 +9,7 @@ constexpr MetalNames kMetalNames{"eta", "k", "reflectance"};
 constexpr auto kConductor =
     joined(metal_params(kMetalNames), roughness_params(kRoughnessNames), std::array{kRemapRoughness});
 
+// Material "conductor": Trowbridge-Reitz facets with a metal's Fresnel reflectance.
 class Conductor final : public Material {
  public:
   explicit Conductor(const Params& p) : metal_(p, kMetalNames), roughness_(p, kRoughnessNames) {}
@@ -27,8 +28,8 @@ class Conductor final : public Material {
 
 }  // namespace
 
-extern const MaterialInfo conductor_material{{"material", "conductor", "A metal, smooth or rough.",
-                                              "Trowbridge and Reitz 1975; Heitz 2018; pbrt-v4", kConductor},
-                                             make_material<Conductor>};
+extern const MaterialInfo conductor_material{
+    {"material", "conductor", "Metal, smooth or rough.", "Trowbridge and Reitz 1975; Heitz 2018; pbrt-v4", kConductor},
+    make_material<Conductor>};
 
 }  // namespace frond

@@ -6,12 +6,15 @@
 namespace frond {
 namespace {
 
+// An index of 0 counts as 1, as in pbrt-v4 (LaneIndices).
 constexpr Param kEta{.name = "eta",
                      .kind = ParamKind::unbounded,
                      .default_value = 1.5,
                      .doc = "Index of refraction inside (against the normal) over that outside."};
 constexpr auto kDielectric = joined(std::array{kEta}, roughness_params(kRoughnessNames), std::array{kRemapRoughness});
 
+// Material "dielectric". The interface is smooth if its roughness is below a threshold, or if no lane is refracted:
+// rough facets of index 1 have no effect.
 class Dielectric final : public Material {
  public:
   explicit Dielectric(const Params& p) : eta_(p.spectrum("eta")), roughness_(p, kRoughnessNames) {}
@@ -34,8 +37,9 @@ class Dielectric final : public Material {
 constexpr Param kThinDielectric[] = {{.name = "eta",
                                       .kind = ParamKind::unbounded,
                                       .default_value = 1.5,
-                                      .doc = "Index of refraction of the pane over that of what is around it."}};
+                                      .doc = "Index of refraction of the pane over that outside."}};
 
+// Material "thindielectric": both faces of a pane as one surface.
 class ThinDielectric final : public Material {
  public:
   explicit ThinDielectric(const Params& p) : eta_(p.spectrum("eta")) {}
@@ -52,12 +56,12 @@ class ThinDielectric final : public Material {
 }  // namespace
 
 extern const MaterialInfo dielectric_material{
-    {"material", "dielectric", "Glass, water: reflects and refracts, smooth or rough, with dispersion.",
+    {"material", "dielectric", "Dielectric such as glass or water: smooth or rough, with dispersion.",
      "Walter et al. 2007; Heitz 2018; pbrt-v4", kDielectric},
     make_material<Dielectric>};
 
 extern const MaterialInfo thin_dielectric_material{
-    {"material", "thindielectric", "A thin pane of glass: reflects and lets through, without refraction.", "pbrt-v4",
+    {"material", "thindielectric", "Thin dielectric pane: reflects and transmits without refraction.", "pbrt-v4",
      kThinDielectric},
     make_material<ThinDielectric>};
 

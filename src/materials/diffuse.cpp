@@ -15,6 +15,7 @@ constexpr Param kDiffuse[] = {
      .doc = "Share of the light that is reflected."},
 };
 
+// Material "diffuse": a Lambertian reflector, the same on both sides.
 class Diffuse final : public Material {
  public:
   explicit Diffuse(const Params& p) : reflectance_(p.spectrum_texture("reflectance")), where_(p.where("reflectance")) {}
@@ -34,8 +35,7 @@ class Diffuse final : public Material {
 
 }  // namespace
 
-extern const MaterialInfo diffuse_material{
-    {"material", "diffuse", "Reflects light evenly into all directions.", "Lambert 1760", kDiffuse},
-    make_material<Diffuse>};
+extern const MaterialInfo diffuse_material{{"material", "diffuse", "Lambertian reflector.", "Lambert 1760", kDiffuse},
+                                           make_material<Diffuse>};
 
 }  // namespace frond

@@ -25,6 +25,8 @@ constexpr Param kDiffuseTransmission[] = {
      .doc = "Factor on reflectance and transmittance."},
 };
 
+// Material "diffusetransmission": a Lambertian reflector and transmitter, the same on both sides. pbrt-v4 accepts
+// shares whose sum exceeds 1; here they are scaled to conserve energy, with a warning.
 class DiffuseTransmission final : public Material {
  public:
   explicit DiffuseTransmission(const Params& p)
@@ -52,11 +54,12 @@ class DiffuseTransmission final : public Material {
   struct Shares {
     SampledSpectrum reflected, transmitted;
   };
-  /// As they are given: together they can be more than 1.
+  /// As given: their sum may exceed 1.
   Shares given_shares(const TexturePoint& at, const SampledWavelengths& lambda) const {
     const SampledSpectrum scale = scale_ * lane_mask(lambda);
     return {reflectance_->evaluate(at, lambda) * scale, transmittance_->evaluate(at, lambda) * scale};
   }
+  /// Scaled to a sum of at most 1, lane by lane, which conserves energy.
   Shares shares(const TexturePoint& at, const SampledWavelengths& lambda) const {
     const Shares s = given_shares(at, lambda);
     if (!may_exceed_) return s;
@@ -64,9 +67,10 @@ class DiffuseTransmission final : public Material {
     return {s.reflected * least, s.transmitted * least};
   }
 
-  /// Constants are looked at every 2 nm, textures also at 16 x 16 places.
+  /// Samples the sum every 2 nm, textures also at 16 x 16 points.
   void warn_of_excess(const Params& p) const {
     const Interval r = reflectance_->range_nm(), t = transmittance_->range_nm();
+    // Constant spectra cover every wavelength: the range of leaf and lamp data is tested.
     const Interval both{std::max({r.min, t.min, 300.0}), std::min({r.max, t.max, 2500.0})};
     float most = 0;
     for (double nm = both.min; nm <= both.max; nm += 2)
@@ -77,10 +81,9 @@ class DiffuseTransmission final : public Material {
         most = std::max(most, reflected[0] + transmitted[0]);
       }
     if (most > 1)
-      p.warn("reflectance",
-             fmt::format("reflectance + transmittance goes up to {:.4g}; where it is more than 1, which a "
-                         "surface cannot give off, both are scaled down to 1 together",
-                         most));
+      p.warn("reflectance", fmt::format("reflectance + transmittance reaches {:.4g}; where the sum exceeds 1, both are "
+                                        "scaled down to a sum of 1",
+                                        most));
   }
 
   static SampledWavelengths one_wavelength(float nm) {
@@ -94,15 +97,14 @@ class DiffuseTransmission final : public Material {
 
   std::shared_ptr<const SpectrumTexture> reflectance_, transmittance_;
   float scale_;
-  bool may_exceed_;
+  bool may_exceed_;  ///< by bounds of both spectra, so that evaluate() skips the test for most materials
   Location reflectance_where_, transmittance_where_;
 };
 
 }  // namespace
 
 extern const MaterialInfo diffuse_transmission_material{
-    {"material", "diffusetransmission", "Reflects and transmits light evenly into all directions.", "pbrt-v4",
-     kDiffuseTransmission},
+    {"material", "diffusetransmission", "Lambertian reflector and transmitter.", "pbrt-v4", kDiffuseTransmission},
     make_material<DiffuseTransmission>};
 
 }  // namespace frond

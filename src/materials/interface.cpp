@@ -3,6 +3,7 @@
 namespace frond {
 namespace {
 
+// A path continues straight through a surface without a BSDF.
 class Interface final : public Material {
  public:
   explicit Interface(const Params&) {}
@@ -15,7 +16,7 @@ class Interface final : public Material {
 extern const MaterialInfo interface_material{
     {"material",
      "interface",
-     "A surface that is not there: rays of a path go straight on, shadow rays stop.",
+     "Invisible surface: rays of a path pass straight through, shadow rays are blocked.",
      "pbrt-v4",
      {}},
     make_material<Interface>};

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kAuto = "auto";
 
-/// The ladder: from the cheapest to the most accurate.
+/// A leaf model; kLadder orders them from the cheapest to the most accurate.
 struct Model {
   std::string_view name;
   const MaterialInfo* info;
@@ -34,17 +34,19 @@ constexpr Param kOwn[] = {
     {.name = "model",
      .kind = ParamKind::string,
      .default_value = kAuto,
-     .doc = "The material that stands for the leaf; auto: frond render takes the cheapest that meets maxrms "
-            "(docs/choosing.md), all else takes abm, by weighted walks, or, of a reciprocal leaf, leaf_solved.",
+     .doc = "Leaf model. auto: frond render selects the cheapest that meets maxrms (docs/selection.md); other commands "
+            "use "
+            "abm with weighted walks, or leaf_solved if incident is reciprocal.",
      .choices = kModels},
     {.name = "maxrms",
      .kind = ParamKind::real,
      .default_value = 0.01,
      .range = {1e-6, 1},
-     .doc = "Largest RMS error of the image that the model may cause, in linear SMPTE-C, where white is 1."},
+     .doc = "Largest RMS error of the image that the model may cause, in linear SMPTE-C (white: 1)."},
 };
 constexpr auto kLeaf = with_leaf_params(kOwn);
 
+/// The material of a model; for "auto", the exact model that the leaf's incident direction permits.
 const MaterialInfo& material_of(std::string_view model, bool is_reciprocal) {
   if (model == kAuto) return is_reciprocal ? leaf_solved_material : abm_material;
   const auto found = std::ranges::find(kLadder, model, &Model::name);
@@ -54,8 +56,10 @@ const MaterialInfo& material_of(std::string_view model, bool is_reciprocal) {
 
 ParsedParam weighted_walks() { return {"string", "mode", {}, {}, std::vector<std::string>{"weighted"}}; }
 
-/// A material cannot see the image, so it does not choose: who can writes down what was chosen as "model".
+/// Does not select a model, since a material has no access to the image: the renderer (docs/selection.md) replaces
+/// "auto" by a model's name before the material is made.
 std::unique_ptr<Material> make_leaf(const Params& p) {
+  // Read so that the parameter counts as used; the renderer reads the value.
   (void)p.real("maxrms");
   const MaterialInfo& info = material_of(p.string("model"), p.string("incident") == "reciprocal");
   const bool walks = &info == &abm_material;
@@ -65,8 +69,8 @@ std::unique_ptr<Material> make_leaf(const Params& p) {
 }  // namespace
 
 extern const MaterialInfo leaf_material{
-    {"material", "leaf", "Leaf by the cheapest model that is accurate enough for the image.", "docs/choosing.md",
-     kLeaf},
+    {"material", "leaf", "Open leaf: replaced by the cheapest leaf model that meets a stated error of the image.",
+     "docs/selection.md", kLeaf},
     make_leaf};
 
 }  // namespace frond

@@ -17,8 +17,8 @@ constexpr Param kOwn[] = {
      .kind = ParamKind::real,
      .unit = "degrees",
      .range = {0, 89},
-     .doc = "Angle from the normal whose reflectance and transmittance stand for all angles, such as 8 of an "
-            "integrating sphere; by default the means under diffuse light, over all angles."},
+     .doc = "Angle of incidence whose reflectance and transmittance are used at all angles, such as 8 of an "
+            "integrating sphere; by default the means under diffuse light."},
 };
 constexpr auto kLeafLambert = with_leaf_params(kOwn);
 
@@ -27,9 +27,9 @@ struct Incidence {
   double theta_deg, weight;
 };
 
-/// By ascending angle. The mean of a share S under diffuse light, 2 int S(theta) cos theta sin theta dtheta, is that of
-/// 2 mu S(mu) over mu = cos theta in [0, 1]: S is smooth in mu up to grazing, and Gauss's rule converges fast: with
-/// eight points the tests hold the specimens to 2e-5, and leaves with any cuticle to 2e-4.
+/// Returns the angles in ascending order. The mean of a share S under diffuse light, 2 int S(theta) cos theta sin theta
+/// dtheta, is that of 2 mu S(mu) over mu = cos theta in [0, 1]: S is smooth in mu up to grazing, so Gauss's rule
+/// converges fast; with eight points the tests hold the specimens to 2e-5, and leaves with any cuticle to 2e-4.
 std::vector<Incidence> incidences(const Params& p) {
   if (p.given("incidence")) return {{p.real("incidence"), 1}};
   std::vector<Incidence> result;
@@ -39,30 +39,31 @@ std::vector<Incidence> incidences(const Params& p) {
   return result;
 }
 
-/// Both sides' shares at one wavelength, next to each other.
+/// Shares of both sides at one wavelength.
 struct alignas(16) TwoSides {
   float front_reflected, front_transmitted, back_reflected, back_transmitted;
 };
 
-/// The reciprocal leaf nearest to it, as of leaf/table/reciprocal_modes.h: with d of either side
+/// Returns the reciprocal leaf closest to `s`, as in leaf/table/reciprocal_modes.h, with one d for each side:
 ///   d_f (d_f R_f + d_b T) = R_f + T_f,   d_b (d_b R_b + d_f T) = R_b + T_b,   T = (T_f + T_b) / 2,
-/// and d_f d_b solves a quadratic equation.
+/// where d_f d_b solves a quadratic equation.
 TwoSides make_reciprocal(const TwoSides& s) {
   const double front = double(s.front_reflected) + double(s.front_transmitted),
                back = double(s.back_reflected) + double(s.back_transmitted);
   const double through = (double(s.front_transmitted) + double(s.back_transmitted)) / 2;
   const double reflects = double(s.front_reflected) * double(s.back_reflected);
   const double b = through * (front + back), root = through * (front - back);
+  // The smaller root of the quadratic equation, in the form without cancellation.
   const double denominator = b + std::sqrt(root * root + 4 * front * back * reflects);
   const double t = denominator > 0 ? 2 * front * back * through / denominator : 0;
   return {float(front - t), float(t), float(back - t), float(t)};
 }
 
-/// Front and back shares by wavelength: lane by lane where the lanes are always the same, linear in between otherwise.
+/// Shares of both sides by wavelength: lane by lane if the lanes are fixed, else linear in between.
 class TwoSidedSpectra {
  public:
   TwoSidedSpectra() = default;
-  /// `fixed_lanes`: the wavelengths are the lanes; else they ascend, and are two at least.
+  /// `fixed_lanes`: the wavelengths are the lanes; else they ascend and are at least two.
   TwoSidedSpectra(const std::vector<double>& nm, std::vector<TwoSides> values, bool fixed_lanes)
       : values_(std::move(values)) {
     if (!fixed_lanes) axis_ = leaf::WavelengthAxis(nm);
@@ -96,25 +97,29 @@ class TwoSidedSpectra {
   std::vector<TwoSides> values_;
 };
 
-/// A leaf by two numbers a side and wavelength, as plant codes have them.
+/// A Lambertian leaf, as in models of plant canopies: a reflectance and a transmittance for each side and wavelength.
 class LeafLambert final : public Material {
  public:
   explicit LeafLambert(const Params& p) : leaf_(p), incidences_(incidences(p)) {
+    // A texture would require a table at each point.
     if (!leaf_.is_constant())
       fail(p.where(),
-           "leaf_lambert takes no textures: its numbers are the whole leaf's; leaf_simplified and leaf_solved take "
+           "leaf_lambert takes no textures: its parameters are those of the whole leaf; leaf_simplified and "
+           "leaf_solved take "
            "them for "
            "chemistry, thickness and cuticle, abm for everything");
   }
 
   void prepare(const Preparation& preparation) override {
     leaf_.check_wavelengths(preparation.wavelengths);
+    // Both means need shares at a few angles only, so the table is small.
     const leaf::TableRequest request = request_for(preparation.wavelengths);
     const auto make = [&] {
       const leaf::Table table =
           leaf::cached_table(request, leaf_.specimen(), preparation.pool, preparation.log, preparation.cache_dir);
       return means(table, !preparation.wavelengths.fixed_nm().empty());
     };
+    // Materials of one leaf and one set of wavelengths share their spectra.
     const std::string what = leaf_.is_reciprocal() ? "reciprocal means, " : "means, ";
     spectra_ = preparation.share<TwoSidedSpectra>(
         what + wavelengths_key(preparation.wavelengths) + leaf::describe(request), make);
@@ -129,10 +134,12 @@ class LeafLambert final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
+  // Angles of the adaxial side, then of the abaxial side in reverse, so that they ascend; a unifacial leaf is
+  // symmetric.
   leaf::TableRequest request_for(const WavelengthStrategy& wavelengths) const {
     leaf::TableRequest request;
     request.params = leaf_.tissue();
-    request.params.cuticle_aspect = 0;  // it turns reflected light, and no share depends on it
+    request.params.cuticle_aspect = 0;  // no share depends on it: leaves with other cuticles share a table
     request.wavelengths_nm = table_wavelengths(wavelengths);
     request.theta_deg.clear();
     for (const Incidence& i : incidences_) request.theta_deg.push_back(i.theta_deg);
@@ -152,7 +159,7 @@ class LeafLambert final : public Material {
     return {table.wavelengths_nm, std::move(values), fixed_lanes};
   }
 
-  /// One side's, all that is reflected in `subsurface`.
+  /// Mean of one side; `subsurface` holds all reflected light.
   leaf::Shares mean(const leaf::Table& table, size_t wavelength, bool back) const {
     leaf::Shares sum;
     for (size_t i = 0; i < incidences_.size(); ++i) {
@@ -172,8 +179,7 @@ class LeafLambert final : public Material {
 }  // namespace
 
 extern const MaterialInfo leaf_lambert_material{
-    {"material", "leaf_lambert",
-     "Leaf by two numbers for each side and wavelength: what it reflects and transmits, evenly into all directions.",
+    {"material", "leaf_lambert", "Lambertian leaf: one reflectance and one transmittance for each side and wavelength.",
      "The models of plant canopies, such as Verhoef 1984 (SAIL)", kLeafLambert},
     make_material<LeafLambert>};
 

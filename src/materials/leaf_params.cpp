@@ -19,6 +19,7 @@ Incident incident_of(std::string_view word) {
 }  // namespace
 
 LeafParams::LeafParams(const Params& p)
+    // Starts from the specimen's parameters; `read` replaces those that the scene gives.
     : specimen_(p.string("specimen")),
       where_(p.where()),
       pigments_where_(p.where("pigments")),
@@ -28,7 +29,7 @@ LeafParams::LeafParams(const Params& p)
 
 leaf::DepthMap LeafParams::read(const Params& p) {
   Varying varying;
-  /// The texture, if it is one that varies.
+  /// Sets a parameter; returns its texture if that varies over the leaf.
   const auto replace = [&p, this](double TissueParams::*number, std::string_view name) -> Aspect {
     if (!p.given(name)) return nullptr;
     if (!p.is_texture(name)) {
@@ -36,6 +37,7 @@ leaf::DepthMap LeafParams::read(const Params& p) {
       return nullptr;
     }
     const auto texture = p.float_texture(name);
+    // The largest value bounds the depth; DepthMap evaluates the texture itself.
     tissue_.*number = texture->range().max;
     return texture->is_constant() ? nullptr : texture;
   };
@@ -61,6 +63,7 @@ leaf::DepthMap LeafParams::read(const Params& p) {
 }
 
 void LeafParams::read_pigments(const Params& p, Varying& varying) {
+  // Beyond a file's range its first or last value is used here; check_wavelengths rejects such renders.
   const auto files = p.files("pigments");
   const auto concentrations = p.float_textures("pigmentconcentrations");
   if (files.size() != concentrations.size())
@@ -86,8 +89,8 @@ void LeafParams::refuse_wall_textures(const Params& p) const {
   for (const auto& [name, texture] : {Wall{"epidermisaspect", epidermis_aspect()},
                                       Wall{"spongyaspect", spongy_aspect()}, Wall{"palisadeaspect", palisade_aspect()}})
     if (texture)
-      fail(p.where(name), "{} takes no texture for \"{}\": every texel would need a table; abm takes one", p.plugin(),
-           name);
+      fail(p.where(name), "{} takes no texture for \"{}\": each texel would need its own table; abm takes one",
+           p.plugin(), name);
 }
 
 void LeafParams::check_wavelengths(const WavelengthStrategy& wavelengths) const {

@@ -19,25 +19,26 @@ inline constexpr Unit kDensity = "kg/m^3";
 
 inline constexpr std::string_view kIncident[] = {"traced", "light", "reciprocal"};
 
+// A parameter that may be a texture.
 constexpr Param leaf_number(std::string_view name, Unit unit, Interval range, std::string_view doc) {
   return {.name = name, .kind = ParamKind::float_texture, .unit = unit, .range = range, .doc = doc};
 }
 
 }  // namespace detail
 
-/// What every leaf material lets a scene say of the leaf, so that one can stand for another. Without a default of their
-/// own, numbers are those of the specimen.
+/// Parameters of every leaf material, so that one can replace another in a scene. Parameters without a default are the
+/// specimen's.
 inline constexpr std::array kLeafParams{
     Param{.name = "specimen",
           .kind = ParamKind::string,
           .default_value = std::string_view("soybean"),
           .doc =
-              "A leaf of the literature, or one fitted to measurements (frond list specimens): its structure, and the "
-              "numbers that are not given.",
+              "Named set of leaf parameters, from the literature or fitted to measurements (frond list specimens): the "
+              "structure, and the parameters that are not given.",
           .choices = leaf::kSpecimenNames},
     detail::leaf_number("thickness", "m", {1e-6, 1e-2}, "Thickness of the leaf; by default the specimen's."),
     detail::leaf_number("mesophyllfraction", "", {0, 1},
-                        "Part of the thickness that absorbs; by default the specimen's."),
+                        "Share of the thickness that absorbs; by default the specimen's."),
     detail::leaf_number("chlorophylla", detail::kDensity, {0, 100},
                         "Chlorophyll a in the mesophyll; by default the specimen's."),
     detail::leaf_number("chlorophyllb", detail::kDensity, {0, 100},
@@ -48,9 +49,10 @@ inline constexpr std::array kLeafParams{
     detail::leaf_number("cellulose", detail::kDensity, {0, 1500},
                         "Cellulose in the mesophyll; by default the specimen's."),
     detail::leaf_number("lignin", detail::kDensity, {0, 1500}, "Lignin in the mesophyll; by default the specimen's."),
-    detail::leaf_number("otherabsorption", "1/m", {0, 1e5},
-                        "Absorption of what else is in the mesophyll (starch, sugars, tannins), at every wavelength "
-                        "alike; by default the specimen's."),
+    detail::leaf_number(
+        "otherabsorption", "1/m", {0, 1e5},
+        "Absorption coefficient of the mesophyll's other constituents (starch, sugars, tannins), the same "
+        "at every wavelength; by default the specimen's."),
     detail::leaf_number("cuticleaspect", "", {0, 1000},
                         "Aspect ratio of the cuticle's undulations: the exponent of the surface lobe; by default the "
                         "specimen's."),
@@ -72,15 +74,15 @@ inline constexpr std::array kLeafParams{
           .list = true},
     Param{.name = "sieve",
           .kind = ParamKind::boolean,
-          .doc = "Absorb with the sieve and detour effects of the later model (Baranoski and Eng 2007); by default the "
-                 "specimen's, which of soybean and maize is false."},
+          .doc = "Absorption with the sieve and detour effects (Baranoski and Eng 2007); by default the specimen's, "
+                 "which is false for soybean and maize."},
     Param{.name = "incident",
           .kind = ParamKind::string,
           .default_value = std::string_view("traced"),
           .doc =
-              "Incident direction of the model, which is not reciprocal: that of the traced ray, as published, or of "
-              "the light; reciprocal: of neither, by the reciprocal BSDF closest to the model "
-              "(docs/reciprocal_leaf.md).",
+              "Incident direction of the model, which is not reciprocal. traced: that of the traced ray, as published; "
+              "light: that of the light; reciprocal: neither, the reciprocal BSDF closest to the model replaces it "
+              "(docs/leaf_models.md).",
           .choices = detail::kIncident},
 };
 
@@ -92,30 +94,32 @@ constexpr auto with_leaf_params(const Param (&own)[N]) {
   return all;
 }
 
-/// Of a material that cannot be reciprocal.
+/// The parameters of a material that cannot be reciprocal.
 template <size_t N>
 constexpr std::array<Param, N> without_reciprocal(std::array<Param, N> params) {
   for (Param& p : params)
     if (p.name == "incident") {
       p.doc =
-          "What the model, which is not reciprocal, takes for its incident ray: the one that is traced, as published, "
-          "or "
-          "the light.";
+          "Incident direction of the model, which is not reciprocal. traced: that of the traced ray, as published; "
+          "light: that of the light.";
       p.choices = std::span(detail::kIncident).first(2);
     }
   return params;
 }
 
-/// A leaf as a scene gives it.
+/// The leaf that a scene describes, from the parameters above.
 class LeafParams {
  public:
+  /// Throws InputError if pigments and their concentrations differ in number, or a file cannot be read.
   explicit LeafParams(const Params& p);
 
-  /// What is constant; where a texture stands for a number, the greatest that it can be.
+  /// Constant parameters; where a texture gives a parameter, its largest value.
   const leaf::TissueParams& tissue() const { return tissue_; }
+  /// Optical depth of the mesophyll, by point and wavelength.
   const leaf::DepthMap& depth() const { return depth_; }
-  /// Whether nothing varies over the leaf.
+  /// Whether no parameter varies over the leaf.
   bool is_constant() const { return depth_.is_constant() && aspects_are_constant(); }
+  /// Whether no texture gives an aspect ratio.
   bool aspects_are_constant() const {
     return std::all_of(aspects_.begin(), aspects_.end(), [](const Aspect& a) { return !a; });
   }
@@ -126,19 +130,22 @@ class LeafParams {
   const Aspect& spongy_aspect() const { return aspects_[2]; }
   const Aspect& palisade_aspect() const { return aspects_[3]; }
 
+  /// Incident direction that the scene requests.
   Incident incident() const { return incident_; }
+  /// Whether the scene requests the reciprocal BSDF.
   bool is_reciprocal() const { return incident_ == Incident::reciprocal; }
-  /// Exponents of the surface's lobe that the texture of the cuticle gives, or else this one.
+  /// Range of the surface lobe's exponents: that of the cuticle's texture, or else `constant`.
   Interval exponents(double constant) const {
     return cuticle_aspect() ? cuticle_aspect()->range() : Interval{constant, constant};
   }
+  /// Name of the specimen, for the log.
   std::string specimen() const { return specimen_; }
 
-  /// Throws InputError where a texture says how the walls inside spread light, for materials whose tables hold for one
-  /// tissue. The cuticle shapes the surface alone.
+  /// Throws InputError if a texture gives the aspect ratio of an inner wall: for materials whose tables hold for one
+  /// tissue. The cuticle affects the surface alone.
   void refuse_wall_textures(const Params& p) const;
 
-  /// Throws InputError where the optical constants or a pigment's data do not reach the wavelengths.
+  /// Throws InputError if the optical constants or a pigment's data do not cover the wavelengths.
   void check_wavelengths(const WavelengthStrategy& wavelengths) const;
 
  private:
@@ -148,7 +155,7 @@ class LeafParams {
   };
   using Varying = std::vector<leaf::DepthMap::Varying>;
 
-  /// Fill in what the members before `depth_` hold.
+  /// Fill in the members before `depth_`.
   leaf::DepthMap read(const Params& p);
   void read_pigments(const Params& p, Varying& varying);
 

@@ -21,39 +21,40 @@ constexpr Param kOwn[] = {
     {.name = "surfacedirect",
      .kind = ParamKind::boolean,
      .default_value = true,
-     .doc = "Light sampling sees the surface lobe; false, as published: only rays that follow the lobe do."},
+     .doc = "Include the surface lobe in light sampling; false, as published: only rays drawn from it reach lights."},
     {.name = "tablemethod",
      .kind = ParamKind::string,
      .default_value = std::string_view("solve"),
-     .doc = "How reflectance and transmittance are found: solve, without noise, or by random walks, as published.",
+     .doc = "Method for reflectance and transmittance. solve: without noise; montecarlo: random walks, as published.",
      .choices = kMethods},
     {.name = "tablerays",
      .kind = ParamKind::integer,
      .default_value = 1000000,
      .range = {1, 1e9},
-     .doc = "Walks for each angle of incidence."},
+     .doc = "Number of random walks for each angle of incidence, with montecarlo."},
     {.name = "tablestep",
      .kind = ParamKind::real,
      .default_value = 1.0,
      .unit = "degrees",
      .range = {0.1, 90},
-     .doc = "Between the table's angles of incidence, at most: the widest step that divides 90 degrees."},
+     .doc = "Largest step between the table's angles of incidence; the widest that divides 90 degrees is used."},
     {.name = "tablefile",
      .kind = ParamKind::string,
-     .doc = "A file with the leaf's reflectance and transmittance, made by frond table or measured "
-            "(docs/table_format.md), in place of all that is said of its tissue."},
+     .doc = "File with the leaf's reflectance and transmittance, made by frond table or measured "
+            "(docs/file_formats.md); replaces all parameters of the tissue."},
 };
 constexpr auto kLeafSimplified = with_leaf_params(kOwn);
 
+// Parameters that have no effect with "tablefile".
 constexpr std::string_view kOfTable[] = {"tablemethod", "tablerays", "tablestep"};
 
-/// Step of the natural logarithm of tables over depth. With `index_wavelengths` errors stay below 4e-4, their mean
-/// below 3e-5.
+/// Step of the natural logarithm of depth in tables. With `index_wavelengths`, errors of shares stay below 4e-4, their
+/// mean below 3e-5.
 constexpr double kDepthStep = 0.1;
 
-/// Even, 90 degrees among them. A leaf that is the same seen from below needs one side.
+/// Returns even angles that include 90 degrees. A unifacial leaf is symmetric and requires only one side.
 std::vector<double> table_angles(const leaf::TissueParams& params, double most_step_deg) {
-  constexpr double kRounding = 1e-6;  // of a step that is meant to divide 90
+  constexpr double kRounding = 1e-6;  // tolerates steps such as 90 / 7, written in decimals
   const int steps = static_cast<int>(std::ceil(90 / most_step_deg - kRounding));
   std::vector<double> theta_deg;
   for (int i = 0; i <= (params.structure == leaf::Structure::unifacial ? steps : 2 * steps); ++i)
@@ -65,6 +66,8 @@ leaf::TableLookup lookup_of(const leaf::Table& table, const WavelengthStrategy& 
   return strategy.fixed_nm().empty() ? leaf::TableLookup::for_spectra(table) : leaf::TableLookup::for_lanes(table);
 }
 
+// Material "leaf_simplified". The table comes from "tablefile", from a solution over optical depth if chemistry or
+// thickness varies over the leaf, or else from the cache or a solution for the leaf's own depth.
 class LeafSimplified final : public Material {
  public:
   explicit LeafSimplified(const Params& p)
@@ -77,7 +80,8 @@ class LeafSimplified final : public Material {
     request_.params = leaf_.tissue();
     request_.theta_deg = table_angles(request_.params, p.real("tablestep"));
     if (p.string("tablemethod") == "montecarlo") request_.method = leaf::TableMethod::monte_carlo;
-    // Leaves with other cuticles share a table. Walks draw from its lobe, and other numbers thereafter.
+    // Leaves with other cuticles share a solved table. A table by walks depends on the cuticle's lobe through its
+    // random numbers.
     if (request_.method == leaf::TableMethod::solve) request_.params.cuticle_aspect = 0;
     request_.rays = p.integer("tablerays");
     if (!file_.is_given()) refuse_textures(p);
@@ -122,12 +126,14 @@ class LeafSimplified final : public Material {
  private:
   void refuse_textures(const Params& p) const {
     leaf_.refuse_wall_textures(p);
+    // Only the solver shares its work between depths (leaf/solve/solver.h).
     if (varies_ && request_.method == leaf::TableMethod::monte_carlo)
       fail(p.where("tablemethod"),
            "tables of leaves whose chemistry or thickness varies are solved: leave "
            "\"tablemethod\" out");
   }
 
+  /// Solves a table over depth for a leaf whose chemistry or thickness varies; not cached on disk.
   leaf::TableLookup depth_lookup(const Preparation& preparation) const {
     leaf_.check_wavelengths(preparation.wavelengths);
     const auto start = std::chrono::steady_clock::now();
@@ -149,10 +155,12 @@ class LeafSimplified final : public Material {
     return request;
   }
 
+  // Materials with equal keys share one look-up table.
   std::string key_of_request(const Preparation& preparation) const {
     return wavelengths_key(preparation.wavelengths) + leaf::describe(request_for(preparation.wavelengths));
   }
 
+  // Computes the table, or reads it from the cache on disk.
   leaf::TableLookup made_lookup(const Preparation& preparation) const {
     leaf_.check_wavelengths(preparation.wavelengths);
     const leaf::Table table = leaf::cached_table(request_for(preparation.wavelengths), leaf_.specimen(),
@@ -160,6 +168,7 @@ class LeafSimplified final : public Material {
     return lookup_of(table, preparation.wavelengths);
   }
 
+  // Reads "tablefile".
   leaf::TableLookup read_lookup(const Preparation& preparation) const {
     const leaf::Table table = leaf::read_table(file_.path(), file_.where());
     preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} angles{}", file_.path().string(),
@@ -171,13 +180,13 @@ class LeafSimplified final : public Material {
   }
 
   LeafParams leaf_;
-  bool varies_;  ///< the depth does, from place to place
+  bool varies_;  ///< the optical depth varies over the leaf
   leaf::TableRequest request_;
   std::shared_ptr<const leaf::TableLookup> lookup_;
-  std::shared_ptr<const leaf::ReciprocalLookup> reciprocal_;  ///< nullptr: it is not
-  LeafParams::Aspect surface_texture_;                        ///< nullptr: surface_
-  double exponent_;                                           ///< of the surface, where no texture says it
-  std::shared_ptr<const leaf::CutLobe> surface_;              ///< with that exponent
+  std::shared_ptr<const leaf::ReciprocalLookup> reciprocal_;  ///< nullptr: not reciprocal
+  LeafParams::Aspect surface_texture_;                        ///< exponent of the surface's lobe; nullptr: constant
+  double exponent_;                                           ///< of the surface's lobe if it is constant
+  std::shared_ptr<const leaf::CutLobe> surface_;              ///< lobe with that exponent
   LeafManner manner_;
   TableFileParam file_;
 };
@@ -185,7 +194,7 @@ class LeafSimplified final : public Material {
 }  // namespace
 
 extern const MaterialInfo leaf_simplified_material{
-    {"material", "leaf_simplified", "Leaf by three lobes, scaled by a table of its reflectance and transmittance.",
+    {"material", "leaf_simplified", "Leaf as three lobes, scaled by a table of reflectance and transmittance.",
      "Baranoski and Rokne, A Simplified Model for Light Interaction with Plant Tissue", kLeafSimplified},
     make_material<LeafSimplified>};
 

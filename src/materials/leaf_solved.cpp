@@ -19,17 +19,16 @@ constexpr Param kOwn[] = {
      .kind = ParamKind::real,
      .default_value = 5e-4,
      .range = {1e-5, 0.1},
-     .doc = "Largest error of the mode table, as a share of a white diffuse surface's BSDF: what missing modes and "
-            "interpolation between angles leave out. Of a file's modes, what looking them up may add."},
+     .doc = "Largest error of the mode table, by omitted modes and by interpolation between angles, relative to a "
+            "white Lambertian BSDF. With tablefile: the largest error that the look-up adds."},
     {.name = "tablefile",
      .kind = ParamKind::string,
-     .doc =
-         "A file with the leaf's modes, made by frond table leaf_solved (docs/table_format.md), in place of all that "
-         "is said of its tissue."},
+     .doc = "File with the leaf's mode table, made by frond table leaf_solved (docs/file_formats.md); replaces all "
+            "parameters of the tissue."},
 };
 constexpr auto kLeafSolved = with_leaf_params(kOwn);
 
-/// The walk of `abm`, solved beforehand: its BSDF without its noise.
+/// Leaf by the solved walk of `abm`: the same BSDF without noise.
 class LeafSolved final : public Material {
  public:
   explicit LeafSolved(const Params& p)
@@ -49,11 +48,12 @@ class LeafSolved final : public Material {
     fixed_.reset();
     if (file_.is_given())
       table_ = preparation.share<leaf::ModeLookup>(
-          key(preparation, fmt::format("leaf modes file {} {}", tolerance_, file_.path().string())),
+          key(preparation, fmt::format("mode table file {} {}", tolerance_, file_.path().string())),
           [&] { return read_table(preparation); });
     else
       make_table(preparation);
     if (leaf_.is_reciprocal()) scale_surface(preparation);
+    // With fixed wavelengths and one depth the selection is the same at every hit.
     if (table_->lanes_are_columns()) fixed_ = table_->select(preparation.wavelengths.sample(0));
   }
 
@@ -61,6 +61,7 @@ class LeafSolved final : public Material {
     const leaf::Lobe* surface = surface_texture_
                                     ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at)))
                                     : surface_.get();
+    // Lobe and selection lie in the arena or in this material, which both outlive the BSDF.
     SolvedHit at{table_.get(), selection(hit, lambda, arena), surface, lane_mask(lambda), leaf_.incident()};
     if (scaling_) {
       at.scaling = scaling_.get();
@@ -80,6 +81,7 @@ class LeafSolved final : public Material {
     return fixed_ ? &*fixed_ : arena.make<Selection>(table_->select(lambda));
   }
 
+  /// Makes the mode table or reads it from the cache; materials of one leaf share it.
   void make_table(const Preparation& preparation) {
     leaf_.check_wavelengths(preparation.wavelengths);
     const leaf::ModeTableRequest request = request_for(preparation.wavelengths);
@@ -95,10 +97,12 @@ class LeafSolved final : public Material {
     table_ = preparation.share<leaf::ModeLookup>(key(preparation, describe(request)), make);
   }
 
+  // Key of the look-up table that materials share.
   std::string key(const Preparation& preparation, const std::string& what) const {
     return (leaf_.is_reciprocal() ? "reciprocal " : "") + wavelengths_key(preparation.wavelengths) + what;
   }
 
+  /// Tabulates the factors that make the surface's lobe reciprocal.
   void scale_surface(const Preparation& preparation) {
     const Interval exponents = leaf_.exponents(exponent_), indices = table_->indices();
     scaling_ = preparation.share<leaf::SurfaceScaling>(
@@ -106,6 +110,7 @@ class LeafSolved final : public Material {
         [&] { return leaf::SurfaceScaling(exponents, indices); });
   }
 
+  /// Reads "tablefile".
   leaf::ModeLookup read_table(const Preparation& preparation) const {
     const std::string name = file_.path().string();
     const leaf::ModeTableFile file = leaf::read_mode_table_file(file_.path(), file_.where());
@@ -130,29 +135,30 @@ class LeafSolved final : public Material {
   leaf::ModeTableRequest request_for(const WavelengthStrategy& wavelengths) const {
     const double tolerance = leaf_.is_reciprocal() ? tolerance_ / leaf::kReciprocalFiner : tolerance_;
     leaf::ModeTableRequest request{.params = leaf_.tissue(), .wavelengths_nm = {}, .tolerance = tolerance};
-    request.params.cuticle_aspect = 0;  // of no concern to light inside: leaves with other cuticles share the table
+    request.params.cuticle_aspect = 0;  // does not affect light inside: leaves with other cuticles share the table
     request.wavelengths_nm = varies_ ? index_wavelengths(wavelengths) : table_wavelengths(wavelengths);
     if (varies_) request.depths = depth_axis(leaf_.depth(), wavelengths, leaf::kDepthStep);
     return request;
   }
 
   LeafParams leaf_;
-  bool varies_;                                          ///< the depth does, from place to place
-  LeafParams::Aspect surface_texture_;                   ///< nullptr: surface_
-  double exponent_;                                      ///< of the surface, where no texture says it
-  std::shared_ptr<const leaf::CutLobe> surface_;         ///< with that exponent
+  bool varies_;                                          ///< the optical depth varies over the leaf
+  LeafParams::Aspect surface_texture_;                   ///< exponent of the surface's lobe; nullptr: constant
+  double exponent_;                                      ///< of the surface's lobe if it is constant
+  std::shared_ptr<const leaf::CutLobe> surface_;         ///< lobe with that exponent
   std::shared_ptr<const leaf::SurfaceScaling> scaling_;  ///< nullptr: not reciprocal
   double tolerance_;
   TableFileParam file_;
   std::shared_ptr<const leaf::ModeLookup> table_;
-  std::optional<Selection> fixed_;  ///< of all hits, where it is the same for all
+  std::optional<Selection> fixed_;  ///< selection of all hits, if it is the same for all
 };
 
 }  // namespace
 
 extern const MaterialInfo leaf_solved_material{
-    {"material", "leaf_solved", "Leaf by the solution of its random walk: what abm converges to, without its noise.",
-     "docs/solved_leaf.md; the walk: Baranoski and Rokne 1997; Baranoski 2006; Baranoski and Eng 2007", kLeafSolved},
+    {"material", "leaf_solved",
+     "Leaf by the solution of abm's random walk: the BSDF that abm converges to, without noise.",
+     "docs/leaf_models.md; the walk: Baranoski and Rokne 1997; Baranoski 2006; Baranoski and Eng 2007", kLeafSolved},
     make_material<LeafSolved>};
 
 }  // namespace frond

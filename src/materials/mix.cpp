@@ -8,7 +8,7 @@ namespace {
 constexpr Param kMix[] = {
     {.name = "materials",
      .kind = ParamKind::material,
-     .doc = "The names of two materials.",
+     .doc = "Names of two materials.",
      .list = true,
      .required = true},
     {.name = "amount",
@@ -18,6 +18,8 @@ constexpr Param kMix[] = {
      .doc = "Share of the second material."},
 };
 
+// Material "mix". pbrt-v4 chooses one material at random at each hit; here both are evaluated, which has less noise and
+// the same mean.
 class Mix final : public Material {
  public:
   explicit Mix(const Params& p) : materials_(p.materials("materials")), amount_(p.float_texture("amount")) {
@@ -30,18 +32,20 @@ class Mix final : public Material {
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
     const float amount = std::clamp(amount_->evaluate(hit.at), 0.f, 1.f);
+    // The ends are the materials themselves, with their exact flags and densities.
     if (amount == 0) return materials_[0]->evaluate(hit, lambda, arena);
     if (amount == 1) return materials_[1]->evaluate(hit, lambda, arena);
     const Bsdf* first = materials_[0]->evaluate(hit, lambda, arena);
     const Bsdf* second = materials_[1]->evaluate(hit, lambda, arena);
     if (!first && !second) return nullptr;
+    // A material without a surface transmits its share of the light unchanged.
     if (!first) first = arena.make<PassThroughBsdf>(lambda);
     if (!second) second = arena.make<PassThroughBsdf>(lambda);
     return arena.make<MixtureBsdf>(*first, *second, amount);
   }
 
-  /// Not claimed where either refracts: unless the other does the same or is opaque, which materials do not say, no
-  /// index of the mixture makes both reciprocal.
+  /// Not claimed if either refracts: unless the other has the same index or is opaque, which materials do not report,
+  /// no index of the mixture makes both reciprocal.
   bool is_reciprocal() const override {
     return materials_[0]->is_reciprocal() && materials_[1]->is_reciprocal() && !refracts();
   }
@@ -55,7 +59,7 @@ class Mix final : public Material {
 
 }  // namespace
 
-extern const MaterialInfo mix_material{{"material", "mix", "Two materials at once.", "pbrt-v4", kMix},
+extern const MaterialInfo mix_material{{"material", "mix", "Blend of two materials.", "pbrt-v4", kMix},
                                        make_material<Mix>};
 
 }  // namespace frond

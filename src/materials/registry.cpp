@@ -19,6 +19,7 @@ extern const MaterialInfo leaf_solved_material;
 extern const MaterialInfo mix_material;
 extern const MaterialInfo thin_dielectric_material;
 
+// By name; docs/plugins.md and the lists of the command line keep this order.
 std::span<const MaterialInfo* const> builtin_materials() {
   static constexpr std::array table{
       &abm_material,        &coated_conductor_material, &coated_diffuse_material,       &conductor_material,

@@ -6,6 +6,7 @@
 
 namespace frond {
 
+/// The built-in materials, by name.
 std::span<const MaterialInfo* const> builtin_materials();
 
 }  // namespace frond

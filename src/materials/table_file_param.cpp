@@ -7,6 +7,7 @@
 namespace frond {
 namespace {
 
+// Parameters that a table file replaces.
 constexpr std::string_view kOfTissue[] = {"thickness",
                                           "mesophyllfraction",
                                           "chlorophylla",
@@ -40,7 +41,7 @@ void TableFileParam::look_for(const Params& p, std::span<const std::string_view>
 
 void TableFileParam::warn(const Log& log) {
   for (const auto& [name, where] : std::exchange(unused_, {}))
-    log.warn(where, fmt::format("\"{}\" has no effect beside \"tablefile\"", name));
+    log.warn(where, fmt::format("\"{}\" has no effect with \"tablefile\"", name));
 }
 
 }  // namespace frond

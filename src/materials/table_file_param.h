@@ -9,17 +9,19 @@
 
 namespace frond {
 
-/// "string tablefile" of a leaf material: a file that stands in place of all that the scene says of the tissue. The
-/// cuticle still shapes the surface lobe.
+/// Parameter "string tablefile" of a leaf material: a file that replaces all parameters of the tissue. The cuticle
+/// still shapes the surface lobe.
 class TableFileParam {
  public:
-  /// `also`: the material's own parameters that have no effect beside it.
+  /// `also`: the material's own parameters that have no effect if a file is given.
   TableFileParam(const Params& p, std::span<const std::string_view> also);
 
+  /// Whether the scene gives a file.
   bool is_given() const { return !path_.empty(); }
   const std::filesystem::path& path() const { return path_; }
+  /// Where the scene names the file.
   const Location& where() const { return where_; }
-  /// Of parameters that are given in vain: once.
+  /// Warns, on the first call, of parameters that have no effect.
   void warn(const Log& log);
 
  private:
@@ -29,7 +31,7 @@ class TableFileParam {
   };
   void look_for(const Params& p, std::span<const std::string_view> names);
 
-  std::filesystem::path path_;  ///< empty: there is none
+  std::filesystem::path path_;  ///< empty: no file is given
   Location where_;
   std::vector<Unused> unused_;
 };

@@ -15,7 +15,7 @@ namespace {
 
 std::vector<double> to_vector(std::span<const float> nm) { return {nm.begin(), nm.end()}; }
 
-/// Whole multiples of the step, as far as leaves are known; the range lies between them.
+/// Multiples of the step that enclose `range`, clamped to the range of the optical constants.
 std::vector<double> even_wavelengths(const Interval& range, double step_nm) {
   const Interval known = leaf::kConstantsRange_nm;
   std::vector<double> grid;
@@ -29,13 +29,15 @@ bool reaches(Interval data_nm, Interval needed_nm) {
   return data_nm.contains(needed_nm.min) && data_nm.contains(needed_nm.max);
 }
 
-/// As check_range, and says so where a render of fewer wavelengths would do: few files are made for a whole spectrum.
+/// As check_range, with a hint at --wavelengths smpte if that would succeed: most files do not cover the whole
+/// spectrum.
 void check_file_range(Interval in_file_nm, const WavelengthStrategy& strategy, const Location& where,
                       std::string_view name) {
+  // Range of the three SMPTE wavelengths 455, 551 and 608 nm.
   const Interval needed_nm = strategy.range_nm(), smpte_nm{455, 608};
   if (needed_nm.min < needed_nm.max && !reaches(in_file_nm, needed_nm) && reaches(in_file_nm, smpte_nm))
     fail(where,
-         "\"{}\" is known from {} to {} nm, the render needs {} to {} nm; --wavelengths smpte asks for 608, 551 and "
+         "\"{}\" is known from {} to {} nm, the render needs {} to {} nm; --wavelengths smpte renders 608, 551 and "
          "455 nm",
          name, in_file_nm.min, in_file_nm.max, needed_nm.min, needed_nm.max);
   check_range(in_file_nm, strategy, where, name);
@@ -51,14 +53,17 @@ std::vector<double> table_wavelengths(const WavelengthStrategy& strategy) {
 
 std::vector<double> file_wavelengths(std::vector<double> in_file_nm, const WavelengthStrategy& strategy,
                                      const Location& where, std::string_view name) {
+  // A file of one wavelength is constant over the spectrum.
   const bool grey = in_file_nm.size() == 1;
   std::ranges::sort(in_file_nm);
   if (!grey) check_file_range({in_file_nm.front(), in_file_nm.back()}, strategy, where, name);
   if (!strategy.fixed_nm().empty()) return to_vector(strategy.fixed_nm());
   const Interval needed = strategy.range_nm();
+  // A look-up interpolates between two wavelengths at least.
   return grey ? std::vector{needed.min, needed.max + 1} : in_file_nm;
 }
 
+// Strategies with one range share tables even if they draw wavelengths differently.
 std::string wavelengths_key(const WavelengthStrategy& strategy) {
   if (!strategy.fixed_nm().empty()) return fmt::format("fixed wavelengths {}\n", fmt::join(strategy.fixed_nm(), " "));
   const Interval range = strategy.range_nm();

@@ -9,25 +9,26 @@
 
 namespace frond {
 
-/// Wavelengths (nm) at which a leaf's table is made for a render: those that every path carries, lane by lane, or,
-/// where they vary, ascending ones to interpolate between: those of a list, or steps of 2.5 nm. At that step the error
-/// of a leaf's shares stays below 8e-4, at the red edge; its mean is 5e-5.
+/// Returns the wavelengths (nm) of a leaf's table for a render. If every path carries the same wavelengths: these, lane
+/// by lane. Else ascending ones to interpolate between: those of the strategy's list, or steps of 2.5 nm. With this
+/// step the error of a leaf's shares stays below 8e-4, at the red edge; its mean is 5e-5.
 std::vector<double> table_wavelengths(const WavelengthStrategy& strategy);
 
-/// Of a table that a file holds at the wavelengths `in_file_nm`: those at which a render needs it, lane by lane, or the
-/// file's own, ascending. One wavelength stands for all; else throws InputError at `where` where the file, `name`, does
-/// not reach as far as the render.
+/// Returns the wavelengths at which a render uses a table from a file with wavelengths `in_file_nm`: the render's, lane
+/// by lane, or the file's own, ascending. A file of one wavelength is used at all of them. Throws InputError at `where`
+/// if the file, `name`, does not cover the render's wavelengths.
 std::vector<double> file_wavelengths(std::vector<double> in_file_nm, const WavelengthStrategy& strategy,
                                      const Location& where, std::string_view name);
 
-/// All of a strategy that a table made or read for it depends on, for the key of what materials share.
+/// Returns everything of a strategy that a table depends on, for the key of data that materials share.
 std::string wavelengths_key(const WavelengthStrategy& strategy);
 
-/// As `table_wavelengths` where the table has the optical depth for an axis, so that the refractive indices alone
-/// change with the wavelength: 40 nm apart.
+/// As `table_wavelengths` for a table over optical depth: only the refractive indices change with the wavelength, so
+/// the step is 40 nm.
 std::vector<double> index_wavelengths(const WavelengthStrategy& strategy);
 
-/// All depths that a leaf's textures can give at these wavelengths, in steps of at most `step` of their logarithm.
+/// Axis over all depths that a leaf's textures can give at these wavelengths, in steps of at most `step` of their
+/// logarithm.
 leaf::DepthAxis depth_axis(const leaf::DepthMap& depth, const WavelengthStrategy& strategy, double step);
 
 }  // namespace frond

@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file of some bytes that claims an image of terabytes is refused before memory is asked for; no compression of
-/// images does better than this.
+/// Throws InputError if the header claims an image far larger than the file can contain, before memory is allocated. No
+/// image format compresses better than the limit here.
 void check_size(const OIIO::ImageSpec& spec, uintmax_t file_size, const Location& where, const fs::path& path) {
   constexpr uintmax_t kMostCompression = 4096, kAlwaysAllowed = 64u << 20;
   if (spec.image_bytes(true) > file_size * kMostCompression + kAlwaysAllowed)
@@ -21,6 +21,7 @@ void check_size(const OIIO::ImageSpec& spec, uintmax_t file_size, const Location
          spec.height, spec.nchannels);
 }
 
+/// Returns OpenEXR's attribute `chromaticities`: x and y of red, green, blue and white.
 std::optional<Chromaticities> read_chromaticities(const OIIO::ImageSpec& spec) {
   const auto* attribute = spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
   if (!attribute) return {};
@@ -29,6 +30,7 @@ std::optional<Chromaticities> read_chromaticities(const OIIO::ImageSpec& spec) {
   return Chromaticities{xy(0), xy(1), xy(2), xy(3)};
 }
 
+/// Returns the text attributes; those of other types are ignored.
 ImageHeader read_header(const OIIO::ImageSpec& spec) {
   ImageHeader header;
   header.color_space = spec.get_string_attribute(kColorSpaceKey);
@@ -38,19 +40,22 @@ ImageHeader read_header(const OIIO::ImageSpec& spec) {
   return header;
 }
 
-/// libjpeg fills what is missing with grey and reports success: a whole file has its end marker after its last scan.
+/// Returns whether a JPEG's end marker (EOI) follows its last scan (SOS). libjpeg fills missing data with grey and
+/// reports success.
 bool is_whole_jpeg(const std::string& bytes) {
   const size_t last_scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
   return last_scan != std::string::npos && end != std::string::npos && end > last_scan;
 }
 
-/// OpenImageIO can take a PNG for whole that ends in its pixels.
+/// Returns whether a PNG contains its last chunk, IEND. OpenImageIO may report success for a file that ends within the
+/// pixels.
 bool is_whole_png(const std::string& bytes) {
-  constexpr size_t kAfterName = 8;  // name and checksum
+  constexpr size_t kAfterName = 8;  // name and checksum of the chunk, 4 bytes each
   const size_t end = bytes.rfind("IEND");
   return end != std::string::npos && end + kAfterName <= bytes.size();
 }
 
+/// Size of a file in bytes; an error is reported with the file's name.
 uintmax_t size_of_file(const fs::path& path, const Location& where) {
   std::error_code error;
   const uintmax_t size = fs::file_size(path, error);
@@ -58,12 +63,13 @@ uintmax_t size_of_file(const fs::path& path, const Location& where) {
   return size;
 }
 
+/// The codec of this shared object. It has no state, so that all threads can use it at once.
 class OpenImageIOCodec final : public ImageCodec {
  public:
   ImageFile read(const fs::path& path, const Location& where) const override {
     const uintmax_t file_size = size_of_file(path, where);
     OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
+    config.attribute("oiio:UnassociatedAlpha", 1);  // keep the file's values: no multiplication by alpha
     const auto in = OIIO::ImageInput::open(path.string(), &config);
     if (!in) fail(where, "cannot read image \"{}\": {}", path.string(), OIIO::geterror());
     const OIIO::ImageSpec& spec = in->spec();
@@ -81,7 +87,7 @@ class OpenImageIOCodec final : public ImageCodec {
     return file;
   }
 
-  /// OpenImageIO does not notice a full disk: it writes to memory.
+  /// Encodes to memory, because OpenImageIO does not report a full disk.
   std::vector<unsigned char> encode(const fs::path& path, const Image& image,
                                     const std::map<std::string, std::string>& text) const override {
     const auto check = [&path](bool good, const std::string& why) {
@@ -89,7 +95,7 @@ class OpenImageIOCodec final : public ImageCodec {
     };
     OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeDesc::UINT8);
     spec.channelnames = image.channels;
-    spec.attribute("oiio:UnassociatedAlpha", 1);  // no division by alpha on the way to a PNG
+    spec.attribute("oiio:UnassociatedAlpha", 1);  // no division by alpha in a PNG
     for (const auto& [key, value] : text) spec.attribute(key, value);
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput memory(bytes);

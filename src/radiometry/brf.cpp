@@ -13,8 +13,8 @@
 namespace frond {
 namespace {
 
-/// The angle of a view's plane from +x. Under one sun, azimuth 0 is the plane that it stands in, and a negative zenith
-/// lies on its side.
+/// Returns the azimuth of a view from +x. With one sun, azimuth 0 is the sun's plane, and negative zenith angles are on
+/// the sun's side.
 double absolute_azimuth_deg(const ViewDirection& view, const std::optional<Vec3>& sun) {
   if (!sun) return view.azimuth_deg;
   const double away = std::atan2(-double(sun->y), -double(sun->x)) * 180 / std::numbers::pi;
@@ -44,8 +44,8 @@ std::string text_of(const std::vector<ViewDirection>& views) {
   return text;
 }
 
-/// Walks that are followed from the sensor, but whose incident direction is the light's, are weighted by numbers
-/// without a bound (docs/conventions.md).
+/// Whether paths traced from the sensor meet models that take the light's direction as incident: their weights are
+/// unbounded (docs/conventions.md).
 bool has_heavy_tails(const Scene& scene, size_t materials) {
   const SampledWavelengths lambda = scene.wavelengths().sample(0.5f);
   const Hit hit{.p = {}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}, {}}};

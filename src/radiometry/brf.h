@@ -8,53 +8,53 @@
 
 namespace frond {
 
-/// A direction that a scene is seen from.
+/// A direction from which a scene is seen.
 struct ViewDirection {
-  double zenith_deg;   ///< 0: from above; a negative one lies on the other side of the zenith
-  double azimuth_deg;  ///< of the plane that it lies in (BrfRequest::azimuth_of)
+  double zenith_deg;   ///< 0: nadir view from above; negative angles are on the opposite side of the zenith
+  double azimuth_deg;  ///< azimuth of the view's plane
 };
 
-/// The horizontal rectangle of a scene that a sensor sees.
+/// The horizontal rectangle that a sensor sees, in scene units.
 struct Target {
   double x0, x1, y0, y1, z;
 };
 
-/// What is asked of a bidirectional reflectance factor.
+/// Request of a bidirectional reflectance factor.
 struct BrfRequest {
   std::vector<ViewDirection> views;
   std::optional<Target> target = {};                 ///< empty: one period, or the scene's bounds, at its top
-  std::optional<std::array<double, 2>> period = {};  ///< in place of the scene's own
+  std::optional<std::array<double, 2>> period = {};  ///< replaces the scene's period
   std::string wavelengths = {};                      ///< a PluginText of `bands`
-  bool keeps_depth = false;  ///< paths are as long as the description's integrator has them; else of any length
+  bool keeps_depth = false;  ///< true: path lengths are limited as in the scene; false: unlimited
 };
 
-/// A scene's BRF, as far as it is known: the radiance toward a direction over that of a white Lambertian plane in the
-/// same light.
+/// BRF of a scene: radiance in a direction over the radiance of a white Lambertian plane in the same light.
 struct BrfMeasurement {
   std::vector<ViewDirection> views;
   std::vector<double> wavelengths_nm;
-  std::vector<MeanError> values;  ///< view by view, band by band
-  std::vector<double> rows;       ///< of each of the values: its BrfMeter::kRows independent ones
+  std::vector<MeanError> values;  ///< by view, then band
+  std::vector<double> rows;       ///< for each value, BrfMeter::kRows independent estimates
   uint64_t paths = 0;             ///< for each view
-  /// Standard errors are not to be trusted: a few paths that are hardly ever drawn carry much of the mean.
+  /// True if standard errors are unreliable, because a few rare paths contribute much of the mean.
   bool has_heavy_tails = false;
   const MeanError& at(size_t view, size_t band) const { return values[view * wavelengths_nm.size() + band]; }
-  /// Root mean square of the standard errors over views and bands, each relative to its mean.
+  /// Returns the RMS over views and bands of the standard errors relative to their means.
   double relative_error() const;
 };
 
-/// Renders a scene as a distant radiometer sees it. A film has a column for each view, and kRows rows that are
-/// independent of each other: how they differ tells the error, and knows how well a row's samples are spread.
+/// Renders a scene as a distant radiometer sees it. The film has a column for each view and kRows independent rows;
+/// their differences estimate the error, including the stratification within a row.
 class BrfMeter {
  public:
   static constexpr int kRows = 32;
 
-  /// Throws InputError. Leaves are reciprocal, or take the light's direction for incident, where the scene does not
-  /// say which, as energy asks for.
-  /// `other`: a scene in which the same stands, which is then not made again.
+  /// Throws InputError. Leaves without a stated incident direction become reciprocal, or take the light's direction as
+  /// incident, so that energy is conserved.
+  /// `other`: a scene with the same geometry, which is then shared.
   BrfMeter(Session& session, SceneDescription description, const BrfRequest& request, const Scene* other = nullptr);
 
   const LoadedScene& scene() const { return scene_; }
+  /// Returns the measurement from a film of the scene.
   BrfMeasurement read(const Film& film) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-/// Upper quantile of Student's distribution from the normal one's (Cornish and Fisher; Abramowitz and Stegun 26.7.5).
+/// Converts a normal quantile to Student's t (Cornish and Fisher; Abramowitz and Stegun 26.7.5).
 double student_quantile(double z, double freedom) {
   const double z3 = z * z * z, z5 = z3 * z * z;
   return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * freedom * freedom);

@@ -4,22 +4,21 @@
 
 namespace frond {
 
-/// By how much one BRF lies above another, relative to it: view by view, band by band. Measurements of one scene with
-/// one seed share their noise in part; row by row it is known how much, and that does not count.
+/// Returns the relative difference of one BRF from another, by view and band. Two measurements of one scene with one
+/// seed share part of their noise; differences of rows remove the shared part from the error.
 std::vector<MeanError> relative_to(const BrfMeasurement& reference, const BrfMeasurement& measurement);
 
-/// Whether a reading is near enough to another everywhere.
+/// Verdict on whether two measurements agree in every view and band.
 struct BrfVerdict {
   enum class Answer : uint8_t { enough, not_enough, unknown };
   Answer answer;
-  size_t view, band;  ///< where it may be furthest off
+  size_t view, band;  ///< where the difference may be largest
   MeanError worst;
-  double upper;  ///< bound of the largest difference that there may be
+  double upper;  ///< upper bound of the largest difference
 };
 
-/// `enough`: all differences lie within the limit, with 95 % confidence for all of them together; `not_enough`: one
-/// lies beyond it. Of
-/// measurements with heavy tails nothing is known.
+/// Returns `enough` if all differences are within the limit with 95 % joint confidence, `not_enough` if one exceeds it,
+/// else `unknown`. Measurements with heavy tails are always `unknown`.
 BrfVerdict judge(const BrfMeasurement& reference, const BrfMeasurement& measurement, double within);
 
 }  // namespace frond

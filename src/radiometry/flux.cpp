@@ -16,11 +16,11 @@ namespace {
 
 using Lanes = SampledSpectrum;
 
-/// What is summed up of a path: places in its row of quantities. Three for each material follow.
+/// Index of a quantity in a path's row. Three quantities for each material follow.
 enum Quantity : size_t { kReflected, kTransmitted, kTotal, kFirstOfMaterials };
 enum OfMaterial : size_t { kAbsorbed, kIncident, kUncollided, kQuantitiesOfMaterial };
 
-/// Of one path: shares of the light that fell in, lane by lane.
+/// Record of one path: shares of the incident light by quantity and lane.
 class PathRecord {
  public:
   explicit PathRecord(size_t quantities) : values_(quantities) {}
@@ -29,7 +29,7 @@ class PathRecord {
     by_instance_.clear();
   }
   void add(size_t quantity, const Lanes& share) { values_[quantity] += share; }
-  /// Takes part in the whole.
+  /// Adds light that leaves the scene.
   void leave(size_t quantity, const Lanes& share) {
     add(quantity, share);
     add(kTotal, share);
@@ -70,7 +70,7 @@ struct Moment {
   }
 };
 
-/// Moments of instances, which any thread adds to: whole numbers, so that the order does not matter.
+/// Moments of instances, which all threads add to. They are integers, so that the sum does not depend on the order.
 class InstanceSums {
  public:
   InstanceSums(uint64_t instances, size_t bands) : bands_(bands), cells_(instances * bands) {}
@@ -94,7 +94,7 @@ class InstanceSums {
   std::vector<Cell> cells_;
 };
 
-/// Where light falls in: a direction of one of the lights, and its weight.
+/// Samples the incident light: a direction of one of the lights, and a weight.
 class Incoming {
  public:
   Incoming(std::span<const Light* const> lights, const WavelengthStrategy& wavelengths)
@@ -107,8 +107,8 @@ class Incoming {
   }
 
   struct Sample {
-    Vec3 direction;  ///< of the light's way, downward
-    Lanes weight;    ///< 1 on average
+    Vec3 direction;  ///< direction of propagation, downward
+    Lanes weight;    ///< mean 1
   };
   std::optional<Sample> sample(RandomStream& random, const SampledWavelengths& lambda) const {
     const std::vector<double>& shares = irradiance_.shares();
@@ -125,7 +125,7 @@ class Incoming {
   }
 
  private:
-  /// Weighted by the irradiance of all directions. Of an even sky directions are drawn as they count on the plane.
+  /// Weight relative to the irradiance of all lights. Directions of a uniform sky are sampled with the cosine.
   static std::optional<Sample> sample_one(const Light& light, const EnvironmentLight* evenly, Vec2 u,
                                           const SampledWavelengths& lambda) {
     if (evenly) {
@@ -137,7 +137,7 @@ class Incoming {
     return Sample{-s->wi, s->radiance * (s->wi.z / s->pdf)};
   }
 
-  /// Variance of the weights, relative to their mean's square.
+  /// Returns the relative variance of the weights.
   static double spread(const Light& light, const EnvironmentLight* evenly, const SampledWavelengths& lambda) {
     constexpr int kPoints = 4096;
     RandomStream random(1);
@@ -150,7 +150,7 @@ class Incoming {
   }
 
   std::span<const Light* const> lights_;
-  std::vector<const EnvironmentLight*> evenly_;  ///< the lights themselves, where that spreads weights less
+  std::vector<const EnvironmentLight*> evenly_;  ///< sampled with the cosine, where that has less variance
   HorizontalIrradiance irradiance_;
 };
 
@@ -167,14 +167,14 @@ struct FluxMeter::State {
   Target target;
   Incoming incoming;
   size_t materials, bands;
-  std::vector<Moment> moments = {};  ///< quantity by quantity, band by band
-  std::vector<uint64_t> seen = {};   ///< paths, by band
+  std::vector<Moment> moments = {};  ///< by quantity and band
+  std::vector<uint64_t> seen = {};   ///< number of paths, by band
   std::unique_ptr<InstanceSums> by_instance = {};
   uint64_t paths = 0;
 
   size_t quantities() const { return kFirstOfMaterials + materials * kQuantitiesOfMaterial; }
   const Scene& scene() const { return loaded.scene(); }
-  /// All that hangs on the paths.
+  /// Returns all accumulators as bytes, for save and resume.
   std::vector<std::span<std::byte>> sums() {
     std::vector<std::span<std::byte>> arrays{std::as_writable_bytes(std::span(&paths, 1)),
                                              std::as_writable_bytes(std::span(moments)),
@@ -184,7 +184,7 @@ struct FluxMeter::State {
   }
 };
 
-/// What one block of paths adds.
+/// Accumulators of one block of paths.
 class FluxMeter::Sums {
  public:
   static constexpr uint64_t kBlock = 1024;
@@ -217,7 +217,7 @@ class FluxMeter::Sums {
 
   void follow(SampledWavelengths lambda, uint64_t key, RandomStream& random) {
     constexpr int kMostPassed = 1000, kFirstRoulette = 3;
-    constexpr float kFull = 0.25f;  // of the light that fell in: a path that carries less may end
+    constexpr float kFull = 0.25f;  // share of the incident light below which Russian roulette may end a path
     const Target& t = state_.target;
     const Vec2 u{random.uniform(), random.uniform()};
     const auto light = state_.incoming.sample(random, lambda);
@@ -258,8 +258,7 @@ class FluxMeter::Sums {
     Vec3 direction;
     Lanes weight;
   };
-  /// What leaves the surface of light that goes along `d`. The shading normal alone decides on which side directions
-  /// are.
+  /// Scatters light that travels along `d`. The shading normal alone decides on which side a direction is.
   static Onward scatter(const Bsdf& bsdf, const Hit& hit, const Vec3& d, RandomStream& random) {
     const Frame& frame = hit.shading;
     Scattered s;
@@ -293,7 +292,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
   const uint64_t instances = state_->scene().geometry().instances();
   if (instances == 0) fail({}, "this scene has no instances of objects (ObjectInstance, Shape \"instances\")");
   if (const double bytes = double(instances) * double(bands) * InstanceSums::kCellBytes; bytes > machine_memory())
-    fail({}, "{} instances and {} bands need {:.1f} GB of memory, this machine has {:.1f} GB: fewer bands take less",
+    fail({}, "{} instances and {} bands need {:.1f} GB of memory, this machine has {:.1f} GB: use fewer bands",
          instances, bands, bytes * 1e-9, machine_memory() * 1e-9);
   state_->by_instance = std::make_unique<InstanceSums>(instances, bands);
 }
@@ -304,7 +303,8 @@ const Scene& FluxMeter::scene() const { return state_->scene(); }
 
 void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control,
                       const std::function<void()>& after_round) {
-  constexpr uint64_t kBlocks = 256;  // that are traced before their sums are added, in their order
+  // Blocks are traced in batches; their sums are added in order, so that the result does not depend on threads.
+  constexpr uint64_t kBlocks = 256;
   RenderStatistics statistics;
   const double cpu = cpu_seconds();
   for (uint64_t done = 0; done < paths;) {

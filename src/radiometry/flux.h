@@ -12,56 +12,55 @@
 
 namespace frond {
 
-/// What is asked of the light that falls on a scene.
+/// Request of the light budget of a scene.
 struct FluxRequest {
-  std::optional<Target> target = {};                 ///< that light falls through; as of a BrfRequest
-  std::optional<std::array<double, 2>> period = {};  ///< in place of the scene's own
+  std::optional<Target> target = {};                 ///< as in BrfRequest
+  std::optional<std::array<double, 2>> period = {};  ///< replaces the scene's period
   std::string wavelengths = {};                      ///< a PluginText of `bands`
-  bool by_instance = false;                          ///< what each instance of an object absorbs, too
-  bool keeps_depth = false;                          ///< as of a BrfRequest
+  bool by_instance = false;                          ///< also measure the absorption of each instance
+  bool keeps_depth = false;                          ///< as in BrfRequest
 };
 
-/// Where the light goes, band by band: shares of the light that falls through the target.
+/// Light budget by band: shares of the light that enters through the target.
 struct FluxMeasurement {
   struct OfMaterial {
     std::string name;
     std::vector<MeanError> absorbed;    ///< by its surfaces
-    std::vector<MeanError> incident;    ///< that falls on them, on either side, every time that it does
-    std::vector<MeanError> uncollided;  ///< of this what has met nothing before
+    std::vector<MeanError> incident;    ///< light on either side; repeated incidence counts each time
+    std::vector<MeanError> uncollided;  ///< the share of `incident` without an earlier interaction
   };
   std::vector<double> wavelengths_nm;
   std::vector<MeanError> reflected;    ///< leaves upward
-  std::vector<MeanError> transmitted;  ///< leaves downward, where no ground is in its way
-  std::vector<OfMaterial> materials;   ///< those that light fell on
-  std::vector<MeanError> sum;          ///< of all that is absorbed or leaves: 1 but for its noise
+  std::vector<MeanError> transmitted;  ///< leaves downward, if there is no ground below
+  std::vector<OfMaterial> materials;   ///< materials that received light
+  std::vector<MeanError> sum;          ///< sum of all absorbed and leaving light: 1 up to noise
   uint64_t paths = 0;
-  double target_area = 0;              ///< in the scene's unit of length, squared
-  std::vector<MeanError> by_instance;  ///< absorbed by each instance, band by band, where it was asked for
-  std::vector<float> areas;            ///< of each instance, of one of its sides, where that was asked for
-  /// Root mean square of the standard errors of what is reflected and absorbed, relative to the light that falls in.
+  double target_area = 0;              ///< in scene units squared
+  std::vector<MeanError> by_instance;  ///< absorbed by each instance, by band; empty unless requested
+  std::vector<float> areas;            ///< one-sided area of each instance; empty unless requested
+  /// Returns the RMS of the standard errors of reflected and absorbed shares, relative to the incident light.
   double error() const;
 };
 
-/// Sends light from a scene's sun and sky through a horizontal rectangle, and follows it as it is scattered and
-/// absorbed. The BSDFs are asked what becomes of light that comes from where it does come from, whatever an image
-/// calls incident: no energy is lost or made.
+/// Traces light from a scene's sun and sky through a horizontal rectangle until it is absorbed or leaves. BSDFs are
+/// evaluated for the actual direction of the light, regardless of the scene's incident direction: energy is conserved.
 class FluxMeter {
  public:
-  /// Throws InputError, also where instances are too many to count them one by one.
+  /// Throws InputError, also if there are too many instances to measure each.
   FluxMeter(Session& session, SceneDescription description, const FluxRequest& request);
   ~FluxMeter();
 
-  /// Follows so many paths more, or fewer where it is stopped or the time is over. The figures depend on their number
-  /// alone.
-  /// `after_round` is called from time to time, when what has been followed can be saved; may be empty.
+  /// Traces this many further paths, or fewer if stopped or out of time. The result depends only on the total number.
+  /// `after_round` is called periodically when the state can be saved; may be empty.
   void trace(uint64_t paths, ThreadPool& pool, const RenderControl& control = {},
              const std::function<void()>& after_round = {});
+  /// Returns the measurement so far.
   FluxMeasurement read() const;
-  uint64_t paths() const;  ///< that have been followed
-  /// Writes what there is, whole or not at all. Throws InputError with the system's reason.
+  uint64_t paths() const;  ///< number of paths traced
+  /// Writes the accumulators; the file is replaced only when complete. Throws InputError with the system's reason.
   void save(const std::filesystem::path& path) const;
-  /// Goes on from what `save` has written: the figures are those of a meter that has never been stopped. Throws
-  /// InputError for a file of another measurement, or one that is cut short or damaged.
+  /// Continues from a saved file; the result equals that of an uninterrupted measurement. Throws InputError for a file
+  /// of another measurement, or a truncated or damaged file.
   void resume(const std::filesystem::path& path);
   const Scene& scene() const;
 

@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-/// Up to kLanes wavelengths of a list.
+/// Returns up to kLanes wavelengths of the list.
 SampledWavelengths lanes_at(std::span<const double> nm) {
   SampledWavelengths lambda;
   lambda.count = int(std::min<size_t>(nm.size(), kLanes));
@@ -20,6 +20,7 @@ SampledWavelengths lanes_at(std::span<const double> nm) {
   return lambda;
 }
 
+/// Van der Corput sequence in base 2, by reversing bits.
 float radical_inverse(uint32_t i) {
   i = (i << 16) | (i >> 16);
   i = ((i & 0x00ff00ff) << 8) | ((i & 0xff00ff00) >> 8);
@@ -29,7 +30,7 @@ float radical_inverse(uint32_t i) {
   return float(i >> 8) * 0x1p-24f;
 }
 
-/// Of one light.
+/// Returns the irradiance of one light on the plane.
 std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengths& lambda, int directions) {
   std::array<double, kLanes> sum{};
   const int count = light.is_delta() ? 1 : directions;
@@ -81,7 +82,7 @@ void HorizontalIrradiance::sum_bands(const WavelengthStrategy& wavelengths) {
     bands_ = values_;
     return;
   }
-  constexpr size_t kPaths = 4096;  // that see each band
+  constexpr size_t kPaths = 4096;  // paths for each band
   std::vector<double> sum(count), seen(count);
   for (size_t i = 0; i < kPaths * count; ++i) {
     const size_t turn = i / count;

@@ -9,18 +9,19 @@
 
 namespace frond {
 
-/// Spectral irradiance of a horizontal plane that faces +z above a scene, under its distant lights: what a BRF or an
-/// absorbed share is measured by. In the units of the lights' radiance, times sr.
+/// Spectral irradiance of a horizontal plane that faces +z above a scene, under its distant lights: the reference of a
+/// BRF or an absorbed share. Unit: unit of the lights' radiance, times sr.
 class HorizontalIrradiance {
  public:
-  /// Wide lights are summed up over kDirections of them, the same on every machine. Throws InputError where a light
-  /// stands in the scene, or none shines from above at some wavelength of the strategy.
+  /// Extended lights are integrated with kDirections directions, the same on every machine. Throws InputError for a
+  /// light at a finite distance, or if no light comes from above at a wavelength of the strategy.
   HorizontalIrradiance(std::span<const Light* const> lights, const WavelengthStrategy& wavelengths);
 
+  /// Returns the irradiance at up to kLanes wavelengths.
   SampledSpectrum at(const SampledWavelengths& lambda) const;
-  /// What part of it each light gives, on average over the wavelengths.
+  /// Returns each light's share of the irradiance, averaged over the wavelengths.
   const std::vector<double>& shares() const { return shares_; }
-  /// What a sensor's bands say of it.
+  /// Returns the irradiance in each band of the strategy.
   const std::vector<double>& bands() const { return bands_; }
 
  private:
@@ -33,8 +34,8 @@ class HorizontalIrradiance {
   std::vector<double> shares_, bands_;
 };
 
-/// Direction toward the scene's only light of one direction, as far as it stands above the horizon; empty where there
-/// is none, or more than one.
+/// Returns the direction toward the scene's only directional light, if it is above the horizon; nullopt if there is
+/// none or more than one.
 std::optional<Vec3> direction_to_sun(std::span<const Light* const> lights);
 
 }  // namespace frond

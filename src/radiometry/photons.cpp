@@ -17,7 +17,7 @@ std::optional<PhotonWeights> PhotonWeights::of(std::span<const double> nm, const
   for (size_t k = 1; k < within.size(); ++k)
     if (nm[within[k]] - nm[within[k - 1]] > kWidest) return {};
   for (size_t k = 0; k < within.size(); ++k) {
-    // What lies nearer to this band than to others, from 400 to 700 nm.
+    // A band's weight covers the wavelengths between 400 and 700 nm that are nearest to it.
     const double here = nm[within[k]];
     const double below = k == 0 ? kFirst : std::max(kFirst, (nm[within[k - 1]] + here) / 2);
     const double above = k + 1 == within.size() ? kLast : std::min(kLast, (here + nm[within[k + 1]]) / 2);

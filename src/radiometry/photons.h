@@ -8,13 +8,13 @@
 
 namespace frond {
 
-/// Photosynthetically active radiation, 400 to 700 nm, by photons: shares of light band by band become one of photons.
+/// Photosynthetically active radiation (PAR), 400 to 700 nm: converts shares of light by band to shares of photons.
 struct PhotonWeights {
-  std::vector<double> weights;  ///< of the bands, by the trapezoid rule; they add up to 1
-  double incident = 0;          ///< photon flux density of the light that falls in, umol m^-2 s^-1
+  std::vector<double> weights;  ///< by band, by the trapezoid rule; they sum to 1
+  double incident = 0;          ///< incident photon flux density, umol m^-2 s^-1
 
-  /// `irradiance`: of the horizontal plane, W m^-2 nm^-1. Empty where the bands, ascending, do not cover 400 to 700 nm,
-  /// up to 10 nm, in steps of 50 nm at most.
+  /// `irradiance`: on a horizontal plane, W m^-2 nm^-1. Returns nullopt if the ascending bands do not cover 400 to 700
+  /// nm, to within 10 nm, in steps of at most 50 nm.
   static std::optional<PhotonWeights> of(std::span<const double> bands_nm, const Spectrum& irradiance);
 };
 

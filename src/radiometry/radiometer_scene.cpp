@@ -11,12 +11,13 @@
 namespace frond {
 namespace {
 
+/// Whether the model's parameter "incident" accepts "reciprocal".
 bool can_be_reciprocal(const PluginInfo& info) {
   const Param* incident = find_param(info, "incident");
   return incident && std::ranges::count(incident->choices, std::string_view("reciprocal")) > 0;
 }
 
-/// Of a `leaf`, what stands for it.
+/// Returns the material's model; for `leaf` the model that it selects.
 std::string_view model_of(const ParsedPlugin& plugin) {
   const ParsedParam* model = find_param(plugin.params, "model");
   const auto* words = model ? std::get_if<std::vector<std::string>>(&model->values) : nullptr;
@@ -65,12 +66,12 @@ Target default_target(const Scene& scene) {
     target.y1 = target.y0 + double(period->y);
   }
   if (!(target.x0 < target.x1 && target.y0 < target.y1))
-    fail({}, "this scene has no area from above: --target x0,x1,y0,y1,z says what to look at");
+    fail({}, "the scene has no horizontal extent: give --target x0,x1,y0,y1,z");
   return target;
 }
 
 double distance_above(const Scene& scene, const Target& target, double cosine) {
-  constexpr double kClear = 1e-3;  // of the scene's size
+  constexpr double kClear = 1e-3;  // fraction of the scene's radius
   const double top = double(scene.geometry().bounds().max.z) + kClear * double(scene.radius());
   return std::max(0.0, top - target.z) / cosine;
 }

@@ -7,27 +7,26 @@
 
 namespace frond {
 
-/// Leaves for which nothing is said of their incident direction are made to keep energy: reciprocal, or where they
-/// cannot be, with the light's direction for incident, which is noisier.
+/// Makes leaves without a stated incident direction conserve energy: reciprocal where the model supports it, otherwise
+/// with the light's direction as incident, which is noisier.
 void keep_energy(SceneDescription& description, const Registry& registry);
 
-/// What radiometry asks of a scene that was made for images: leaves for which nothing is said are reciprocal, or take
-/// the light's direction for incident where they cannot be; paths end by roulette alone, unless `keeps_depth`; the
-/// period and the wavelengths, a PluginText of `bands`, are those asked for. Throws InputError.
+/// Prepares an image's scene for radiometry: applies keep_energy, ends paths by Russian roulette only unless
+/// `keeps_depth`, and sets the period and the wavelengths (a PluginText of `bands`). Throws InputError.
 void prepare_for_radiometry(const Registry& registry, const std::string& wavelengths,
                             const std::optional<std::array<double, 2>>& period, bool keeps_depth,
                             SceneDescription& description);
 
-/// A measurement in words: with the scene's own identity all that decides its figures. `what`: its kind, and whatever
-/// else it asks for.
+/// Returns a text that identifies a measurement together with the scene's own identity. `what`: its kind and other
+/// parameters.
 std::string measurement_text(const std::string& what, const std::optional<Target>& target,
                              const std::optional<std::array<double, 2>>& period);
 
-/// One period, or all that stands in the scene, at its top.
+/// Returns one period, or the scene's bounds, at the scene's top.
 Target default_target(const Scene& scene);
 
-/// How far along a direction, whose cosine with +z is given, a ray that passes the target begins: above all that stands
-/// in the scene, and not on it.
+/// Returns the distance from the target along a direction, whose cosine with +z is given, to a point above the whole
+/// scene. Rays through the target start there.
 double distance_above(const Scene& scene, const Target& target, double cosine);
 
 }  // namespace frond

@@ -16,7 +16,7 @@ static_assert(std::endian::native == std::endian::little, "sums are kept in this
 namespace frond {
 namespace {
 
-// Magic word, size of the header, header, arrays, and a hash of each piece after it.
+// Format: magic word, size of the header, header, arrays. Each section is followed by its hash.
 constexpr std::string_view kMagic = "frond sums 1\n";
 
 std::string_view text_of(std::span<const std::byte> bytes) {

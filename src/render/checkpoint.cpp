@@ -15,7 +15,8 @@
 namespace frond {
 namespace {
 
-/// Whether a file still has its name: a lock on one that has not keeps nobody out.
+/// True if `path` is still the name of the open file. Another process may have deleted or replaced the file, and then a
+/// lock on it has no effect.
 bool is_there(int descriptor, const std::filesystem::path& path) {
   struct stat opened {
   }, named{};
@@ -35,7 +36,8 @@ PartLock::PartLock(const std::filesystem::path& part) : path_(part) {
     if (has_lock && is_there(descriptor_, path_)) return;
     close(descriptor_);
     if (!has_lock)
-      throw Busy(fmt::format("another frond is at work on \"{}\": wait for it, or name another output", part.string()));
+      throw Busy(
+          fmt::format("another frond process is writing \"{}\": wait for it, or name another output", part.string()));
   }
 }
 
@@ -80,7 +82,7 @@ void Checkpointer::write() {
 }
 
 void Checkpointer::set_header(const PartHeader& header) {
-  // What is being written has the old header, and shall have none of the samples that the new one announces.
+  // Waits for a checkpoint in progress: it has the old header and must not contain samples of the new plan.
   const std::scoped_lock lock(writing_, mutex_);
   header_ = header;
   so_far_ = {};

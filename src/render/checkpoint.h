@@ -10,16 +10,17 @@
 
 namespace frond {
 
-/// Another program is at work on the same thing: what is refused now may be done later.
+/// Error: another process writes the same file; the same call can succeed later.
 class Busy : public InputError {
  public:
   explicit Busy(const std::string& message) : InputError({}, message) {}
 };
 
-/// Refuses, by Busy, that two programs work on one part: each would undo what the other has written. Holds for as
-/// long as it lives, or until the program ends, however it does.
+/// Lock on the file of a part: two processes must not overwrite each other's result. The destructor, or the end of the
+/// process for any reason, releases it. On file systems without locks it has no effect.
 class PartLock {
  public:
+  /// Throws Busy if another process holds the lock, InputError if the lock file cannot be written.
   explicit PartLock(const std::filesystem::path& part);
   ~PartLock();
   PartLock(const PartLock&) = delete;
@@ -30,19 +31,21 @@ class PartLock {
   int descriptor_;
 };
 
-/// Writes a part from time to time while it is being rendered, by a thread of its own. Is the render's Progress, and
-/// passes on what it receives.
+/// Writes checkpoints of a part in a separate thread while the part is being rendered. It is passed to the render as
+/// Progress and forwards all calls to `next`.
 class Checkpointer final : public Progress {
  public:
-  /// `part` and `log` must outlive it; of its header a copy is kept. `next` may be nullptr.
+  /// Writes to `path` every `seconds`. `part` and `log` must outlive the object; the header of `part` is copied. `next`
+  /// may be nullptr.
   Checkpointer(std::filesystem::path path, double seconds, const RenderPart& part, Progress* next, const Log& log);
   ~Checkpointer() override;
 
   void update(double fraction, const RenderStatistics& so_far) override;
   void finish() override;
-  /// In place of the copy.
+  /// Replaces the copy of the header. Thread-safe.
   void set_header(const PartHeader& header);
-  /// Now. Throws InputError; a write by the clock that fails is a warning, and tried again.
+  /// Writes a checkpoint immediately. Throws InputError. A periodic write that fails is reported as a warning and
+  /// repeated after the interval. Thread-safe.
   void write();
 
  private:
@@ -57,7 +60,7 @@ class Checkpointer final : public Progress {
   std::mutex mutex_, writing_;
   RenderStatistics so_far_;
   std::condition_variable_any ended_;
-  std::jthread thread_;  // last: it begins when all else is there
+  std::jthread thread_;  // the last member: it starts after the others are initialized
 };
 
 }  // namespace frond

@@ -14,7 +14,9 @@ ImageOutput::ImageOutput(std::string path, DisplayChoice display)
 
 void ImageOutput::check_channels(std::string_view film_space) const {
   if (film_space.empty() && !is_exr(path_))
-    fail({}, "{}: bands are no image, and go to an .exr file; frond convert --bands makes an image of three of them",
+    fail({},
+         "{}: PNG and JPEG cannot store bands: write an .exr file, from which frond convert --bands makes an image of "
+         "three bands",
          path_);
 }
 

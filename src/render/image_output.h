@@ -5,24 +5,24 @@
 
 namespace frond {
 
-/// Where a render goes. Made before rendering, so that what cannot be written is refused first.
+/// Image file of a render. It is constructed before rendering, so that errors of the path and of the display transform
+/// are reported first.
 class ImageOutput {
  public:
-  /// Throws InputError when the path cannot be written, and as check_display_choice does.
+  /// Throws InputError if the path cannot be written, and as check_display_choice does.
   ImageOutput(std::string path, DisplayChoice display);
 
-  /// Throws what `write` would throw for bands in a PNG or JPEG. Empty: the film's channels are bands.
+  /// Throws InputError if the film's channels are bands, that is, `film_space` is empty, and the file is PNG or JPEG.
   void check_channels(std::string_view film_space) const;
 
-  /// Throws what `write` would throw for a display or a view that does not go with the image's colours, and for bands
-  /// in a PNG or JPEG.
+  /// Throws InputError if the display or view does not support the image's colour space, or for bands in PNG or JPEG.
   void check(const ImageFormat& format) const;
 
-  /// EXR: all channels of film_image, linear. PNG and JPEG: R G B through the display transform. Throws InputError when
-  /// the image does not reach the disk.
+  /// Writes the image. EXR: all channels of film_image, linear. PNG and JPEG: R G B after the display transform. Throws
+  /// InputError if the file cannot be written.
   void write(const Film& film, const ImageFormat& format) const;
 
-  /// Whether `write` rounds the film's colours, or bands, to halves.
+  /// True if `write` rounds colours or bands to 16-bit floats.
   bool rounds_to_halves(const Film& film) const;
 
   const std::string& path() const { return path_; }

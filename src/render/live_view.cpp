@@ -24,7 +24,7 @@ void LiveView::finish(bool in_halves) {
   if (has_failed_) return;
   renew_image(film_, format_, {}, image_);
   if (in_halves) round_to_halves(image_.pixels);
-  show("it may not show the image as it is in the end");
+  show("it may not show the final image");
 }
 
 void LiveView::end_thread(bool at_once) {

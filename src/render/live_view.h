@@ -9,28 +9,29 @@
 
 namespace frond {
 
-/// Whom a render is shown to while it runs.
+/// Viewer of a render in progress.
 class Viewer {
  public:
   virtual ~Viewer() = default;
-  /// The whole image, linear, as it is by now. Called from one thread at a time. Throws InputError where it can be
-  /// shown no more.
+  /// Displays the whole image, linear, in its current state. Called from one thread at a time. Throws InputError if the
+  /// viewer cannot display images any more.
   virtual void show(const Image& image) = 0;
-  /// Called from another thread at the end: `show` shall be over in a few seconds, or, where nobody waits for it, now.
+  /// Called from another thread at the end of the render: a call of `show` must return within a few seconds, or, with
+  /// `at_once`, immediately.
   virtual void end(bool at_once) = 0;
 };
 
-/// Shows a film while it is rendered, four times a second at most, by a thread of its own, which goes on once what it
-/// has taken is below a hundredth of the process's CPU time. A viewer that fails is a warning, and shown nothing more.
+/// Sends a film to a viewer while it is rendered, from a separate thread, at most four times a second. The thread
+/// pauses until its CPU time is below 1 % of the process's. If the viewer fails, a warning is logged and no further
+/// image is sent.
 class LiveView {
  public:
-  /// `film` and `viewer` must outlive it. The log is called from that thread.
+  /// Starts the thread, which also calls `log`. `film`, `viewer` and `log` must outlive the object.
   LiveView(const Film& film, ImageFormat format, Viewer& viewer, const Log& log);
-  /// Ends it. What was shown last stays.
+  /// Stops the thread. The viewer keeps the last image.
   ~LiveView();
 
-  /// Shows what the film holds in the end, once nothing is rendered any more. `in_halves`: rounded to what such a file
-  /// keeps.
+  /// Displays the final image; call it after the render. With `in_halves`, values are rounded to 16-bit floats first.
   void finish(bool in_halves);
 
  private:
@@ -44,9 +45,9 @@ class LiveView {
   const Log& log_;
   Image image_;
   bool has_failed_ = false;
-  std::atomic<bool> is_left_ = false;  ///< what fails now is no news
+  std::atomic<bool> is_left_ = false;  ///< errors are no longer reported
   std::condition_variable_any ended_;
-  std::jthread thread_;  // last: it begins when all else is there
+  std::jthread thread_;  // the last member: it starts after the others are initialized
 };
 
 }  // namespace frond

@@ -8,22 +8,23 @@
 
 namespace frond {
 
-/// A material given in text: `abm,specimen=soybean`.
+/// Material given as text, such as `abm,specimen=soybean`.
 struct MaterialWords {
   const MaterialInfo& info;
   ParsedPlugin plugin;
 };
 
-/// Throws InputError for text of another form, unknown names and values of the wrong type.
+/// Parses a material. Throws InputError for syntax errors, unknown names and values of the wrong type.
 MaterialWords parse_material(const std::string& text, const Registry& registry);
 
-/// "specimen=soybean thickness=1e-4": the parameters with blanks between, "" where there are none. Random numbers hang
-/// on this form.
+/// The parameters of a material, separated by blanks: `specimen=soybean thickness=1e-4`. The seeds of measurements are
+/// hashes of this text, so that its format must not change.
 std::string words_of(const PluginText& material);
-/// What a material's random numbers begin with: the hash of its name and its parameters.
+/// Seed of a material's random numbers: hash of its name and its parameters.
 uint64_t material_seed(const std::string& text);
 
-/// A scene without shapes, in which each material is named as its plugin: for materials that take materials.
+/// Scene without shapes that has one named material for each material plug-in, under the plug-in's name. Materials with
+/// parameters of kind material refer to these.
 SceneDescription scene_of_materials(const Registry& registry);
 
 }  // namespace frond

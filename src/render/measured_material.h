@@ -13,27 +13,27 @@
 
 namespace frond {
 
-/// Changes materials before they are made; may be empty.
+/// Function that changes the description of materials before they are made; may be empty.
 using AdjustMaterials = std::function<void(SceneDescription&, const Registry&)>;
 
-/// A material given in text, `abm,specimen=soybean`, made without a scene and prepared for these wavelengths. Throws
-/// InputError for unknown names, parameters that are wrong, and wavelengths that the material's data do not reach.
+/// Makes a material from text such as `abm,specimen=soybean`, without a scene, and prepares it for these wavelengths.
+/// Throws InputError for unknown names, wrong parameters, and wavelengths outside the range of the material's data.
 std::shared_ptr<Material> ready_material(const std::string& text, const Registry& registry,
                                          const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
                                          const std::filesystem::path& cache_dir, const AdjustMaterials& adjust = {});
 
-/// A material under test: given in text, made without a scene and prepared for wavelengths one by one.
+/// Material under test of an instrument: made from text, without a scene, once for each wavelength.
 class MeasuredMaterial {
  public:
   /// Throws as ready_material does.
   MeasuredMaterial(const std::string& text, const Registry& registry, const std::vector<double>& wavelengths_nm,
                    ThreadPool& pool, const Log& log, const std::filesystem::path& cache_dir);
 
-  /// The text that it was given by.
+  /// Text from which the material was made.
   const std::string& label() const { return label_; }
-  /// For random numbers: material_seed of the label.
+  /// Seed for random numbers: material_seed of the label.
   uint64_t seed() const { return seed_; }
-  /// Prepared for the wavelength of that index.
+  /// Material prepared for the wavelength with this index.
   const Material& at(size_t wavelength) const { return *materials_[wavelength]; }
 
  private:

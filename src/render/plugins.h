@@ -7,11 +7,11 @@
 
 namespace frond {
 
-/// Every plugin that this build knows.
+/// All built-in plug-ins.
 Registry builtin_registry();
 
-/// Every plugin that a scene can name: those of this build, of the shared objects in the folders of FROND_PLUGIN_PATH,
-/// and of `files`. Throws InputError.
+/// The built-in plug-ins and those of the shared objects in the folders of FROND_PLUGIN_PATH and in `files`. Throws
+/// InputError if a shared object cannot be loaded.
 Registry load_registry(std::span<const std::string> files);
 
 }  // namespace frond

@@ -4,13 +4,13 @@
 
 namespace frond {
 
-/// Is told how far a render is, from one thread at a time.
+/// Observer of a render's progress. Called from one thread at a time.
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// `fraction` of the work, 0 to 1, and what it took so far.
+  /// Reports the completed fraction of the work, 0 to 1, and the statistics up to now.
   virtual void update(double fraction, const RenderStatistics& so_far) = 0;
-  /// The render has come to its end, or was stopped.
+  /// Reports that the render is complete or was stopped.
   virtual void finish() {}
 };
 

@@ -5,7 +5,8 @@
 
 namespace frond {
 
-/// For what is measured by itself: where something else than asked would be measured, that is an error.
+/// Log that discards information and throws warnings as InputError. Measurements use it: a warning means that the
+/// material deviates from what was requested, and then the measurement would be of another material.
 class RefusingLog final : public Log {
  public:
   void info(std::string_view) const override {}

@@ -25,14 +25,14 @@ class Clock {
   double cpu_ = cpu_seconds();
 };
 
-/// Cuts a plan into work items: the samples of a tile in blocks, all tiles' first blocks before all tiles' second, so
-/// that whatever ends a render early leaves an image that is finished to the same degree everywhere.
+/// Divides a plan into work items, each a block of samples of a tile. The first blocks of all tiles come before the
+/// second ones, so that an interrupted render has about the same number of samples everywhere.
 class WorkItems {
  public:
   WorkItems(const WorkPlan& plan, const Film& film) : plan_(plan), film_(film) {
-    // Enough paths in a block that what it costs to add it to the film is nothing beside them.
+    // With so many paths in a block the cost of adding it to the film is negligible.
     constexpr uint64_t kLeastSamples = 16, kPaths = 4096;
-    uint64_t pixels = 0;  // of the largest tile: those at an image's edges are cut
+    uint64_t pixels = 0;  // number of pixels in the largest tile; tiles at the edges of the image are smaller
     for (size_t i = 0; i < film.tiles(); ++i)
       pixels = std::max(pixels, uint64_t(film.tile_pixels(i).width() * film.tile_pixels(i).height()));
     block_ = std::max(kLeastSamples, std::bit_floor(kPaths / std::min(kPaths, pixels)));
@@ -57,7 +57,7 @@ class WorkItems {
   uint64_t block_, first_block_, blocks_;
 };
 
-/// What one thread works with.
+/// State of one thread.
 class Worker {
  public:
   Worker(const RenderJob& job, const Film& film)
@@ -71,7 +71,7 @@ class Worker {
     if (has_fixed_wavelengths_) bundle_.lambda.fill(job.wavelengths.sample(0));
   }
 
-  /// Renders an item, all that it has not got yet. It is then what `tile` holds.
+  /// Renders the samples of an item that `covered` lacks. Afterwards `tile` contains exactly these.
   void render(const WorkItem& item, const Coverage& covered) {
     tile_.clear(item.empty() ? Crop{} : item.pixels);
     statistics_ = {};
@@ -99,7 +99,7 @@ class Worker {
       for (int x = pixels.x0; x < pixels.x1; ++x) render_pixel(x, y, samples);
   }
 
-  /// A block is one of all pixels that share their samples.
+  /// With splatting, a block of samples spans all pixels of the tile.
   void render_shared_blocks(const WorkItem& piece) {
     for (uint64_t s = piece.samples.begin; s < piece.samples.end; s += FilmTile::kBlock) {
       const std::vector<FilmTile::Splat> before = tile_.splats();
@@ -123,7 +123,8 @@ class Worker {
     bundle_.traced = 0;
   }
 
-  /// Camera rays are made for whole packets, so that what is wanted does not decide what is traced together.
+  /// Camera rays are generated for whole packets, so that the rays traced together do not depend on which samples are
+  /// wanted.
   static uint32_t whole_packets(uint32_t wanted) {
     constexpr uint32_t kPacket = (1u << RayPacket::kWidth) - 1;
     uint32_t lanes = 0;
@@ -156,7 +157,7 @@ class Worker {
       else
         filter_[i] = {{0, 0}, 1};
       const Vec2 film_point{float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
-      // Made in its place: a copy of what has just been written number by number waits for all of it.
+      // Constructed in place: copying a ray right after its members were written would stall on store forwarding.
       ::new (&b.rays[i]) Ray(job_.camera.ray(film_point, on_lens[i]));
       if (!has_fixed_wavelengths_) b.lambda[i] = job_.wavelengths.sample_in_turn(first + i, u[i]);
       b.keys[i] = sample_key(job_.seed, at.x, at.y, first + i);
@@ -170,7 +171,7 @@ class Worker {
     return {color[0] / format_.white[0], color[1] / format_.white[1], color[2] / format_.white[2]};
   }
 
-  /// Some of the bundle's results, which follow each other.
+  /// Adds the results `begin` to `end - 1` of the bundle to the tile.
   void add(int x, int y, size_t begin, size_t end) {
     const bool has_channels = format_.channels.means() + format_.channels.ids() > 0;
     for (size_t i = begin; i < end; ++i) {
@@ -197,13 +198,13 @@ class Worker {
   const RenderJob& job_;
   const FilmFormat& format_;
   const bool has_fixed_wavelengths_ = !job_.wavelengths.fixed_nm().empty();
-  std::optional<SplatKernel> kernel_;  ///< of shared samples
+  std::optional<SplatKernel> kernel_;  ///< set with splatting
   std::unique_ptr<Tracer> tracer_;
   PathBundle bundle_;
-  std::array<Filter::Sample, kBundle> filter_;  ///< of the bundle's samples
+  std::array<Filter::Sample, kBundle> filter_;  ///< filter samples of the bundle
   std::array<FilmTile::Sample, kBundle> samples_;
   FilmTile tile_;
-  Vec3 axis_;  ///< along which depth is measured
+  Vec3 axis_;  ///< viewing direction, along which depth is measured
   RenderStatistics statistics_;
 };
 
@@ -219,13 +220,13 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   RenderStatistics total;
   std::mutex mutex;
   int64_t done = 0;
-  struct Ended {};  // thrown: even to pass over each of millions of items would take a second
+  struct Ended {};  // an exception, because skipping millions of items one by one would take a second
   const auto render_item = [&](int64_t i, int thread) {
     if (control.stop.stop_requested() || (control.deadline && std::chrono::steady_clock::now() >= *control.deadline))
       throw Ended();
     auto& worker = workers[size_t(thread)];
     if (!worker) worker = std::make_unique<Worker>(job, film);
-    // No other thread adds any of this item, so that what is missing of it stays the same.
+    // No other thread adds samples of this item: its missing samples remain the same meanwhile.
     worker->render(items.item(i), film.coverage(items.tile(i)));
     film.merge(items.tile(i), worker->tile());
     const std::lock_guard lock(mutex);
@@ -237,7 +238,7 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   };
   try {
     pool.for_each(items.count(), render_item);
-  } catch (const Ended&) {  // the film has what was done until then
+  } catch (const Ended&) {  // the film contains all completed items
   }
   clock.stop(total);
   if (control.progress) control.progress->finish();
@@ -265,7 +266,7 @@ int film_exponent(const RenderJob& job, const FilmSettings& settings) {
   }
   if (brightest.empty()) return 0;
   std::ranges::nth_element(brightest, brightest.begin() + ptrdiff_t(brightest.size() / 2));
-  constexpr int kMost = 400;  // so that squares of units are numbers
+  constexpr int kMost = 400;  // keeps the square of the unit finite and above 0
   return std::clamp(std::ilogb(brightest[brightest.size() / 2]), -kMost, kMost);
 }
 

@@ -16,12 +16,12 @@
 
 namespace frond {
 
-/// A pixel of the whole image.
+/// Pixel coordinates in the whole image.
 struct PixelPosition {
   int x, y;
 };
 
-/// The parts of one render. All of them are shared by the threads, none is changed.
+/// Components of a render. The threads share them and do not modify them.
 struct RenderJob {
   const World& world;
   const Camera& camera;
@@ -30,38 +30,38 @@ struct RenderJob {
   const Filter& filter;
   const Sampler& sampler;
   uint64_t seed;
-  /// Which pixels of the image the film's stand for, row by row: some of them, drawn from all. Empty: themselves.
-  /// Pixels that share samples stand for themselves.
+  /// Pixels of the image that the film's pixels represent, row by row, for a film that holds a random subset of an
+  /// image; empty: the film's own pixels. It must be empty with splatting.
   std::span<const PixelPosition> pixels = {};
-  bool pixel_jitter = true;       ///< else all samples lie at the pixels' centres and the lens's, unfiltered
-  bool wavelength_jitter = true;  ///< else they have the same wavelengths
+  bool pixel_jitter = true;       ///< false: all samples at the centres of the pixel and of the lens, unfiltered
+  bool wavelength_jitter = true;  ///< false: all samples have the same wavelengths
 };
 
-/// Which samples of which of a film's pixels are to be rendered.
+/// Samples to render: a range of sample indices for a rectangle of pixels.
 struct WorkPlan {
-  Crop pixels;          ///< within those whose samples the film takes
-  SampleRange samples;  ///< of each of them
+  Crop pixels;          ///< inside Film::sampled
+  SampleRange samples;  ///< sample indices of each pixel
   std::vector<uint64_t> tile_ends =
-      {};  ///< by tile of the film, in place of the range's end; empty: everywhere the same
+      {};  ///< end of the sample indices for each tile of the film; replaces samples.end if not empty
 };
 
-/// All pixels whose samples a film takes.
+/// Plan of these samples for all pixels of Film::sampled.
 WorkPlan plan_of(const Film& film, SampleRange samples);
 
-/// How a render is watched and ended. It ends between work items.
+/// Observer of a render, and conditions that end it early. A render ends between work items.
 struct RenderControl {
   std::stop_token stop = {};
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   Progress* progress = nullptr;  ///< may be nullptr
 };
 
-/// Adds to the film what is planned and not in it yet. The film depends on job and plan alone, not on threads, nor on
-/// what was there before it was begun or ended early. Says what this call took.
+/// Renders all samples of the plan that the film does not contain, and adds them to the film. The resulting film
+/// depends only on job and plan, not on the number of threads or on interruptions. Returns the statistics of this call.
 RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, const ThreadPool& pool,
                         const RenderControl& control = {});
 
-/// The film's exponent for images of this job: of the median over some paths' brightest responses. The same on every
-/// machine; 0 where all of them are black.
+/// Value of FilmFormat::exponent for a job: the exponent of the median, over 256 paths, of the largest component of the
+/// sensor's response; 0 if all paths are black. It is the same on every machine.
 int film_exponent(const RenderJob& job, const FilmSettings& settings);
 
 }  // namespace frond

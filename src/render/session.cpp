@@ -11,7 +11,7 @@
 namespace frond {
 namespace {
 
-/// Rows of the matrix that a conversion is, found by converting the unit vectors.
+/// Matrix of the conversion between two linear colour spaces, from the conversion of the unit vectors.
 Matrix3 matrix_of(std::string_view from, std::string_view to) {
   if (from == to) return Matrix3::diagonal({1, 1, 1});
   std::array<float, 9> unit{1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -22,7 +22,7 @@ Matrix3 matrix_of(std::string_view from, std::string_view to) {
   return m;
 }
 
-/// What a path of radiance 1 at all wavelengths says of colours.
+/// Mean film colour of paths with radiance 1 at all wavelengths.
 Triple white_of(const WavelengthStrategy& wavelengths, const Matrix3& color) {
   constexpr int kPaths = 1024;
   Triple sum{};
@@ -34,7 +34,8 @@ Triple white_of(const WavelengthStrategy& wavelengths, const Matrix3& color) {
   return sum;
 }
 
-/// What the image's R, G and B are in: what the scene's ColorSpace says, or what was asked for, or else the film's own.
+/// Colour space of the image's R, G and B: that of the scene's ColorSpace directive, else that of the request, else
+/// that of the film.
 std::string space_of(const SceneSettings& description, const ImageRequest& request, std::string_view film_space) {
   if (film_space.empty()) return {};
   std::string space = request.color_space;
@@ -51,7 +52,7 @@ std::array<std::array<double, 4>, 3> to_double_rows(const Transform& t) {
   return rows;
 }
 
-/// Names of materials, by the numbers of the channel that has them.
+/// Adds an attribute with the name of each material; its number is the value in the channel `material`.
 void name_materials(const SceneSettings& description, ImageFormat& image) {
   for (size_t i = 0; i < description.materials.size(); ++i) {
     const MaterialDescription& m = description.materials[i];
@@ -74,12 +75,12 @@ ImageFormat image_of(const SceneSettings& description, const ImageRequest& reque
   return image;
 }
 
-/// Nothing where pixels have samples of their own.
+/// Empty if each sample counts in one pixel only.
 std::optional<Splatting> splatting_of(const Scene& scene, const Crop& whole, const Crop& pixels, bool is_part) {
   if (scene.camera().pixels_are_apart() || !scene.has_pixel_jitter() || !splats(scene.filter())) return {};
   Splatting splatting = SplatKernel(scene.filter()).splatting();
   splatting.sampled = widened(pixels, splatting.reach_x(), splatting.reach_y());
-  if (is_part) {  // beside it are other pieces, but where the whole ends
+  if (is_part) {  // other parts take the samples next to this one, except outside the whole image
     Crop& sampled = splatting.sampled;
     if (pixels.x0 > whole.x0) sampled.x0 = pixels.x0;
     if (pixels.y0 > whole.y0) sampled.y0 = pixels.y0;
@@ -95,7 +96,7 @@ bool has_all(const Film& film, const std::vector<uint64_t>& tile_ends) {
   return true;
 }
 
-/// The fraction of all plans together, in place of that of one.
+/// Reports the fraction of the whole adaptive render instead of that of one plan.
 class WholeProgress final : public Progress {
  public:
   explicit WholeProgress(Progress* next) : next_(next) {}
@@ -118,8 +119,8 @@ class WholeProgress final : public Progress {
 void LoadedScene::check_samples(uint64_t samples) const {
   const size_t bands = facts_.format.bands, needed = (bands + kLanes - 1) / kLanes;
   if (samples < needed)
-    fail({}, "{} bands need {} samples per pixel at least, each of which sees {}: {} were asked for", bands, needed,
-         kLanes, samples);
+    fail({}, "{} bands need {} samples per pixel or more, as each sample carries {} of them: {} are requested", bands,
+         needed, kLanes, samples);
 }
 
 RenderJob LoadedScene::job() const {
@@ -152,7 +153,7 @@ Session::Session(const Log& log, SessionOptions options)
 std::vector<std::filesystem::path> Session::plugins() const { return plugin_files(options_.plugins); }
 
 void Session::add_material(const MaterialInfo& info) {
-  if (registry_.materials.find(info.name)) fail({}, "there is a material \"{}\" already", info.name);
+  if (registry_.materials.find(info.name)) fail({}, "material \"{}\" already exists", info.name);
   registry_.materials.add(info);
 }
 
@@ -192,7 +193,7 @@ LoadedScene Session::load(SceneDescription description, const ImageRequest& requ
   format.settings = film;
   format.splatting = splatting_of(*loaded.scene_, loaded.scene_crop_, film.crop, request.is_part);
   std::vector<std::string> channels = film.channels;
-  if (!loaded.scene_->wavelengths().bands().empty()) std::erase(channels, "albedo");  // a colour; bands have none
+  if (!loaded.scene_->wavelengths().bands().empty()) std::erase(channels, "albedo");  // needs a film of colours
   channels.insert(channels.end(), request.channels.begin(), request.channels.end());
   format.channels = ChannelList(channels);
   loaded.image_format_ = image_of(description, request, *loaded.scene_, film, format.channels);
@@ -205,9 +206,11 @@ LoadedScene Session::load(SceneDescription description, const ImageRequest& requ
   format.bands = wavelengths.bands().size();
   format.blocks = request.adaptive;
   if (format.bands > 0 && format.channels.has("albedo"))
-    fail({}, "channel \"albedo\" is a colour: wavelengths \"{}\" give bands", loaded.scene_->wavelengths_name());
+    fail({}, "channel \"albedo\" is a colour: with wavelengths \"{}\" the film has bands, not colours",
+         loaded.scene_->wavelengths_name());
   if (request.adaptive && format.bands > 0)
-    fail({}, "noise is measured in colours: wavelengths \"{}\" give bands", loaded.scene_->wavelengths_name());
+    fail({}, "a noise target needs a film of colours: with wavelengths \"{}\" the film has bands",
+         loaded.scene_->wavelengths_name());
   if (format.bands == 0) {
     format.color = matrix_of(wavelengths.film_space(), loaded.image_format_.space);
     format.white = white_of(wavelengths, format.color);
@@ -245,7 +248,7 @@ RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest
     if (!has_all(part.film, header.tile_ends)) return statistics;  // ended early
     if (image_noise(part.film, noise_z()).upper_rms() <= request.max_rms) return statistics;
     plan = next_plan(part.film, request.max_rms, request.most_samples);
-    if (plan.tile_ends == header.tile_ends) return statistics;  // no tile may have more
+    if (plan.tile_ends == header.tile_ends) return statistics;  // all tiles have the largest number of samples
     header.tile_ends = plan.tile_ends;
     ++header.round;
   }

@@ -16,36 +16,36 @@
 
 namespace frond {
 
-/// What is said of the image over what the scene says.
+/// Settings of an image in addition to those of the scene.
 struct ImageRequest {
-  std::optional<Crop> pixels = {};  ///< of the film, which --quick has halved
-  /// The other pixels of the scene's crop are rendered elsewhere, to be merged with these: samples that are shared are
-  /// taken of these pixels alone, and of those around the whole. Else of all that reach these pixels, which are then
-  /// the whole image's.
+  std::optional<Crop> pixels = {};  ///< pixels to render; in pixels of the film, which --quick halves
+  /// True if other parts, to be merged with this one, contain the other pixels of the scene's crop. It matters with
+  /// splatting only: the part then takes no samples of those pixels, but of pixels around the scene's crop. If false,
+  /// the part takes samples of all pixels that reach `pixels`.
   bool is_part = false;
-  std::vector<std::string> channels = {};  ///< beside those of the scene's film: names of render/film/channels.h
-  std::string color_space = {};  ///< by linear name, where the scene names none; empty: as the wavelengths have it
-  std::map<std::string, std::string> attributes = {};  ///< for the image's header
-  bool adaptive = false;                               ///< the film is to know its noise, for Session::render_to
-  std::string command = {};  ///< what asks for all this, without samples and pixels: for the header, and the identity
+  std::vector<std::string> channels = {};  ///< channels in addition to those of the scene's film (channels.h)
+  std::string color_space = {};  ///< linear name, if the scene states none; empty: that of the wavelength strategy
+  std::map<std::string, std::string> attributes = {};  ///< attributes for the header of the image file
+  bool adaptive = false;                               ///< collect block statistics, as Session::render_to requires
+  std::string command = {};  ///< command line without samples and pixels, for the file header and the identity
 };
 
-/// A scene, ready to be rendered, with all that its image is made of.
+/// A scene that is ready to render, with the formats of its film and its image.
 class LoadedScene {
  public:
   const Scene& scene() const { return *scene_; }
   const SceneDescription& description() const { return description_; }
-  /// What a film of it holds.
   const FilmFormat& film_format() const { return facts_.format; }
   const ImageFormat& image_format() const { return image_format_; }
-  /// Of each pixel, that the scene asks for.
+  /// Samples per pixel that the scene file states.
   uint64_t samples() const { return uint64_t(scene_->samples_per_pixel()); }
-  /// Throws InputError where a sensor's bands cannot all be seen in so many samples.
+  /// Throws InputError if `samples` per pixel are too few to sample each spectral band at least once.
   void check_samples(uint64_t samples) const;
+  /// Arguments for `render`; they refer to this object.
   RenderJob job() const;
-  /// All that decides its pixels. Reads every file that the scene names.
+  /// Identity of the image. Reads every file that the scene names; throws InputError.
   Identity identity() const { return identity_of(description_, facts_); }
-  /// A part that nothing has been rendered of.
+  /// Part without samples. Throws InputError if the film needs more memory than the machine has.
   RenderPart empty_part() const;
 
  private:
@@ -58,22 +58,22 @@ class LoadedScene {
   ImageFormat image_format_;
 };
 
-/// An image whose noise is small enough.
+/// Noise target of an adaptive render.
 struct NoiseRequest {
-  double max_rms = 0;                ///< over pixels and colours, in the film's units
-  uint64_t most_samples = 1u << 30;  ///< of a pixel
-  /// Is told of each plan, before it is rendered: what is to be kept with checkpoints. May be empty.
+  double max_rms = 0;                ///< RMS of the noise over pixels and colours, in film units
+  uint64_t most_samples = 1u << 30;  ///< upper limit of samples per pixel
+  /// Called before each plan is rendered, with the header for checkpoints; may be empty.
   std::function<void(const PartHeader&)> planned = {};
 };
 
+/// Options of a session.
 struct SessionOptions {
-  int threads = 0;                        ///< 0: all
-  std::filesystem::path cache = {};       ///< folder of tables that are computed at load; empty: nothing is kept
-  std::vector<std::string> plugins = {};  ///< shared objects beside those of FROND_PLUGIN_PATH
+  int threads = 0;                        ///< 0: one for each hardware thread
+  std::filesystem::path cache = {};       ///< folder for tables that materials compute; empty: none are stored
+  std::vector<std::string> plugins = {};  ///< shared objects, in addition to those of FROND_PLUGIN_PATH
 };
 
-/// What renders have in common: plug-ins, threads, cache and log. The entry point for programs
-/// that render with frond:
+/// Plug-ins, threads, cache and log that renders share. It is the entry point of the library for programs that render:
 ///
 ///   Session session(log);
 ///   const LoadedScene scene = session.load(session.read("scene.pbrt"));
@@ -81,49 +81,49 @@ struct SessionOptions {
 ///   session.render(scene, SampleRange{0, 64}, part);
 ///   const Image image = film_image(part.film, part.header.image);
 ///
-/// Whatever is wrong with the input is an InputError.
+/// All functions throw InputError for errors in the input. One thread at a time may use a session.
 class Session {
  public:
-  /// `log` must outlive it.
+  /// Loads the plug-ins. `log` must outlive the session.
   explicit Session(const Log& log, SessionOptions options = {});
 
   const Registry& registry() const { return registry_; }
-  /// One more material that scenes can name; `info` must outlive the session. Throws InputError for a name that is
-  /// taken.
+  /// Registers a material for scenes to use; `info` must outlive the session. Throws InputError if its name is taken.
   void add_material(const MaterialInfo& info);
   const Log& log() const { return log_; }
   ThreadPool& pool() { return pool_; }
-  /// Folder of tables that are computed at load; empty: nothing is kept.
+  /// Folder for tables that materials compute; empty: none are stored.
   const std::filesystem::path& cache() const { return options_.cache; }
   /// Shared objects that have been loaded.
   std::vector<std::filesystem::path> plugins() const;
 
-  /// A scene file; "-" is standard input.
+  /// Reads a scene file; `-` is standard input.
   SceneDescription read(const std::filesystem::path& path, const Unsupported& unsupported = {}) const;
-  /// A scene that stands in a string; `name` is what errors call it, and files that it names are found from there.
+  /// Reads a scene from a string. Error messages name it `name`, and file names in it are relative to that path.
   SceneDescription read_text(const std::string& text, const std::string& name,
                              const Unsupported& unsupported = {}) const;
-  /// One that may be in several files. What is wrong goes to `problems`, and all that could be read is returned.
+  /// Reads a scene from one or more files. Errors are added to `problems`; the result contains all that could be read.
   SceneDescription read(const std::vector<std::filesystem::path>& paths, const Unsupported& unsupported,
                         Problems& problems) const;
-  /// Loads all that a scene names and renders nothing. Throws all that is wrong.
+  /// Loads all files and makes all objects of a scene without rendering. Throws all errors together.
   void check(const SceneDescription& description);
-  /// The film that a scene asks for; half of it where a first look will do.
+  /// Film settings of a scene; with --quick, at half the resolution.
   FilmSettings film(const SceneSettings& description) const;
-  /// The description says all: overrides have been written into it (scene/overrides.h). `other`: a scene in which the
-  /// same stands, which is then not made again.
+  /// Makes a scene. The description must already contain all overrides (scene/overrides.h). `other` is a scene with the
+  /// same geometry, which is then shared, not built again.
   LoadedScene load(SceneDescription description, const ImageRequest& request = {}, const Scene* other = nullptr);
 
-  /// Adds these samples of all the part's pixels to it, but what it has already. Says what this call took; the part's
-  /// own statistics grow by it.
+  /// Renders these samples of all pixels of the part, except those that it already contains, and adds them. Returns the
+  /// statistics of this call, and adds them to the part's.
   RenderStatistics render(const LoadedScene& scene, SampleRange samples, RenderPart& part,
                           const RenderControl& control = {});
-  /// The same for some of the pixels, or other samples of each tile.
+  /// Like `render`, for a rectangle of pixels or for different numbers of samples in each tile.
   RenderStatistics render_plan(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
                                const RenderControl& control = {});
-  /// Adds samples where they do most against noise, until it is small enough with kNoiseConfidence
-  /// (render/film/adaptive.h), or no tile may have more, or the control ends it. The scene was loaded for that. A part
-  /// that was ended early goes on as if it had not been.
+  /// Adaptive render: adds samples to the tiles where they reduce the noise most, until its RMS is below the target
+  /// with confidence kNoiseConfidence (render/film/adaptive.h), all tiles have the largest number of samples, or
+  /// `control` ends it. The scene must be loaded with ImageRequest::adaptive. An interrupted part continues to the same
+  /// result.
   RenderStatistics render_to(const LoadedScene& scene, const NoiseRequest& request, RenderPart& part,
                              const RenderControl& control = {});
 

@@ -7,13 +7,14 @@
 
 namespace frond {
 
-/// The viewer tev, or another that speaks its protocol (image/tev_packets.h).
+/// The viewer tev, or another program with the same protocol (image/tev_packets.h).
 class TevViewer final : public Viewer {
  public:
-  /// `name`: of the image there. Nobody is called until something is to be shown.
+  /// `name` is the name of the image in the viewer. The first call of `show` opens the connection.
   TevViewer(ServerAddress at, std::string name) : at_(std::move(at)), name_(std::move(name)) {}
 
-  /// Of the first image what is not black, later what has changed; after `end` all of it.
+  /// Sends the rows of tiles that have changed since the last call, in the first call those that are not black, and
+  /// after `end` all of them. Throws InputError if the connection fails.
   void show(const Image& image) override;
   void end(bool at_once) override;
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr size_t kMostAngles = 6;
 
-/// Relative variance against time; no number where the mean is 0.
+/// Returns relative variance against time; NaN if the mean is 0.
 ChartPoint point_of(const BenchMeasurement& r, const Worth& w) {
   const double square = w.mean.mean * w.mean.mean, variance = w.variance.mean / square;
   return with_error(r.time(BsdfCall::hit).mean, variance > 0 ? variance : NAN, w.variance.standard_error() / square);
@@ -18,10 +18,9 @@ ChartPoint point_of(const BenchMeasurement& r, const Worth& w) {
 
 void check_bench_chart(size_t materials, size_t angles) {
   if (materials > kSeriesColors.size())
-    fail({}, "--plot: {} materials are more than the {} colours that can be told apart", materials,
-         kSeriesColors.size());
+    fail({}, "--plot: {} materials are more than the {} distinguishable colours", materials, kSeriesColors.size());
   if (angles > kMostAngles)
-    fail({}, "--plot: {} angles are more than the {} marks that can be told apart", angles, kMostAngles);
+    fail({}, "--plot: {} angles are more than the {} distinguishable marks", angles, kMostAngles);
 }
 
 Chart bench_chart(const std::vector<BenchMeasurement>& measurements) {

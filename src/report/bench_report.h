@@ -10,13 +10,13 @@
 
 namespace frond {
 
-/// What is timed. hit: the BSDF is made, its density and value toward a light are asked for, and a ray is scattered.
+/// Timed operation. hit: create the BSDF, evaluate its value and density toward a light, and sample a direction.
 enum class BsdfCall { sample, f, pdf, hit };
 inline constexpr std::array<std::string_view, 4> kBsdfCalls{"sample", "f", "pdf", "hit"};
 
-/// The measurements of a material seen from one direction with so many wavelengths.
+/// Measurements of a material, seen from one direction, with `lanes` wavelengths.
 struct BenchMeasurement {
-  std::string material;  ///< its text
+  std::string material;  ///< name and parameters
   double theta_deg = 0;
   int lanes = 1;
   std::array<Estimate, kBsdfCalls.size()> time_ns;  ///< CPU time of a call, by BsdfCall
@@ -25,10 +25,10 @@ struct BenchMeasurement {
   const Estimate& time(BsdfCall call) const { return time_ns[static_cast<size_t>(call)]; }
 };
 
-/// Relative variance of the lit planes against the time of a hit, at the largest number of
-/// wavelengths; a colour for each material, a mark for each angle, lines where time x variance is the same.
+/// Returns a chart of the relative variance of the lit planes against the time of a hit, at the largest number of
+/// wavelengths: one colour for each material, one mark for each angle, lines of constant time x variance.
 Chart bench_chart(const std::vector<BenchMeasurement>& measurements);
-/// Throws InputError for more materials or angles than that chart can tell apart.
+/// Throws InputError for more materials or angles than the chart has colours or marks.
 void check_bench_chart(size_t materials, size_t angles);
 
 }  // namespace frond

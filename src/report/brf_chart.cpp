@@ -10,7 +10,7 @@
 namespace frond {
 
 Chart brf_plane_chart(const BrfMeasurement& r) {
-  constexpr double kLogarithmic = 8;  // bands that differ by more have no room on one even scale
+  constexpr double kLogarithmic = 8;  // bands whose values differ by a larger factor need a logarithmic scale
   const auto [least, most] = std::ranges::minmax(r.values, {}, &MeanError::mean);
   const bool logarithmic = least.mean > 0 && most.mean / least.mean > kLogarithmic;
   const Range values = logarithmic ? Range{least.mean, most.mean}.widened() : Range{0, 1.08 * most.mean};
@@ -33,7 +33,7 @@ Chart brf_plane_chart(const BrfMeasurement& r) {
 Chart brf_hemisphere_chart(const BrfMeasurement& r) {
   constexpr size_t kMost = 12;
   const size_t bands = r.wavelengths_nm.size();
-  if (bands > kMost) fail({}, "--plot has room for {} maps, these are {} wavelengths", kMost, bands);
+  if (bands > kMost) fail({}, "--plot draws at most {} maps, {} wavelengths were given", kMost, bands);
   const auto zeniths = distinct(r.views, &ViewDirection::zenith_deg);
   const double ring = 1.0 / double(zeniths.size());
   Chart chart{2 * std::min<size_t>(bands, 3)};

@@ -5,10 +5,11 @@
 
 namespace frond {
 
-/// Views of one plane: the BRF against the zenith angle, a curve for each wavelength, with its standard errors.
+/// Returns a chart of views in one plane: BRF against zenith angle, one curve for each wavelength, with standard
+/// errors.
 Chart brf_plane_chart(const BrfMeasurement& measurement);
-/// Views of a whole hemisphere, in rings of equal steps: a map for each wavelength with a patch for each view, seen
-/// from above, the sun's side on the left.
+/// Returns maps of views of a whole hemisphere in rings of equal steps: one map for each wavelength and one patch for
+/// each view, seen from above with the sun's side on the left.
 Chart brf_hemisphere_chart(const BrfMeasurement& measurement);
 
 }  // namespace frond

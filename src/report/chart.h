@@ -9,24 +9,25 @@
 
 namespace frond {
 
-/// Eight colours that people of any colour vision tell apart (Okabe and Ito 2008), darkest first; their yellow, too
-/// faint on paper, gives way to a grey.
+/// Eight colours that are distinguishable with any colour vision (Okabe and Ito 2008), darkest first. Their yellow is
+/// replaced by a grey, because it is too faint on paper.
 inline constexpr std::array<const char*, 8> kSeriesColors{"#000000", "#0072b2", "#d55e00", "#009e73",
                                                           "#cc79a7", "#e69f00", "#56b4e9", "#999999"};
 
-/// An interval; empty where `low` is above `high`.
+/// An interval; empty if `low` is above `high`.
 struct Range {
   double low = HUGE_VAL, high = -HUGE_VAL;
 
   bool is_empty() const { return !(low <= high); }
-  /// What is not finite is left out.
+  /// Extends the interval to `v`. Values that are not finite are ignored.
   void include(double v) {
     if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
   }
-  /// For a logarithmic axis: with room of up to a third of a decade around the values.
+  /// Returns the interval widened by up to a third of a decade at each end, for a logarithmic axis.
   Range widened() const;
 };
 
+/// A labelled position on an axis.
 struct Tick {
   double value;
   std::string text;
@@ -34,40 +35,41 @@ struct Tick {
 
 struct Axis {
   std::string label;  ///< with the unit
-  Range range = {};   ///< empty: that of the points; {low, -HUGE_VAL}: from `low` on
+  Range range = {};   ///< empty: that of the points; {low, -HUGE_VAL}: from `low` to the largest point
   bool is_logarithmic = false;
-  double step = 0;               ///< between ticks of a linear axis; 0: chosen
-  std::vector<Tick> ticks = {};  ///< empty: chosen
+  double step = 0;               ///< between ticks of a linear axis; 0: automatic
+  std::vector<Tick> ticks = {};  ///< empty: automatic
 
-  /// 0 at the low end of the range, 1 at the high end. Not finite for 0 and less on a logarithmic axis.
+  /// Returns the position from 0 (low end) to 1 (high end); not finite for values <= 0 on a logarithmic axis.
   double position(double value) const;
 };
 
-/// Ticks within the range, `most` or a few more: multiples of 1, 2 or 5 times a power of ten; on logarithmic axes of
-/// many decades powers of ten.
+/// Returns about `most` ticks within the range: multiples of 1, 2 or 5 times a power of ten; powers of ten on
+/// logarithmic axes of many decades.
 std::vector<Tick> ticks_of(const Axis& axis, double most);
 
 enum class Dash { solid, dashed, dotted, dash_dotted };
 enum class Mark { disk, square, up, diamond, down, pentagon, ring, open_square, cross, star, bar, none };
-/// The order in which charts take marks, by their number.
+/// Returns the mark of series i.
 inline constexpr Mark series_mark(size_t i) { return Mark(i % size_t(Mark::cross)); }
 
 struct ChartPoint {
   double x, y;
-  Range bar = {};  ///< of errors of y; empty: none
+  Range bar = {};  ///< error bar of y; empty: none
 };
-/// With a bar of `error` each way.
+/// Returns a point with an error bar of y +- error.
 inline ChartPoint with_error(double x, double y, double error) { return {x, y, {y - error, y + error}}; }
 
-/// A curve, interrupted where a point has no position, or an area. Without points: an entry of the legend.
+/// A curve, interrupted at points that are not finite, or a filled area. A series without points is an entry of the
+/// legend.
 struct Series {
-  std::string label, color;  ///< label: in the legend; empty: none
+  std::string label, color;  ///< label: in the legend; empty: not in the legend
   double width = 1.5;        ///< of lines, pixels; 0: no line
   Dash dash = Dash::solid;
   Mark mark = Mark::none;
   double mark_size = 3.5;  ///< radius, pixels
   std::vector<ChartPoint> points = {};
-  std::string text = {};  ///< on the first point
+  std::string text = {};  ///< annotation of the first point
   bool is_filled = false;
 };
 inline Series line(std::string label, std::string color, double width = 1.5, Dash dash = Dash::solid,
@@ -79,15 +81,15 @@ inline Series marks(std::string label, std::string color, Mark mark, double size
 }
 
 struct Panel {
-  double width, height;  ///< pixels, with its texts
+  double width, height;  ///< pixels, including titles and labels
   std::string title;
   Axis x, y;
   std::string mirrored = {};  ///< label of an axis on the right that counts 1 - y; empty: none
-  bool is_map = false;        ///< x and y have one scale and no axes
+  bool is_map = false;        ///< x and y have one scale; no axes are drawn
   std::vector<Series> series = {};
 };
 
-/// Panels row by row; a legend of all their series is added below.
+/// Panels in rows of `columns`, with a legend of all their series below.
 struct Chart {
   size_t columns = 1;
   std::vector<Panel> panels = {};
@@ -95,18 +97,18 @@ struct Chart {
   std::vector<std::string> captions = {};  ///< smaller, below the title
 };
 
-/// SVG that refers to nothing outside. The same chart gives the same text.
+/// Returns a self-contained SVG. Equal charts give equal text.
 std::string chart_svg(const Chart& chart);
-/// Why no PNG can be made; empty: it can, by librsvg.
+/// Returns the reason why PNG is not available (librsvg is missing); "" if it is available.
 std::string png_refusal();
 
-/// Refuses, by InputError, a chart that cannot be made: a name that does not end in .svg or .png, a folder that does
-/// not take it, PNG without librsvg.
+/// Throws InputError if the chart cannot be written: a name that does not end in .svg or .png, a folder that is not
+/// writable, PNG without librsvg.
 void check_chart(const std::string& path);
-/// Writes SVG or PNG, by the path's ending, whole or not at all.
+/// Writes SVG or PNG, selected by the extension. The file is replaced only when it is complete. Throws InputError.
 void write_chart(const std::string& path, const Chart& chart);
 
-/// The values that occur, each once, in their first order.
+/// Returns the distinct values of `get`, in the order of their first occurrence.
 template <class Items, class Get>
 auto distinct(const Items& items, const Get& get) {
   std::vector<std::decay_t<decltype(std::invoke(get, items[0]))>> values;
@@ -115,6 +117,7 @@ auto distinct(const Items& items, const Get& get) {
   return values;
 }
 
+/// Returns the index of `value` in `values`; values.size() if absent.
 template <class T>
 size_t place_in(const std::vector<T>& values, const T& value) {
   return size_t(std::ranges::find(values, value) - values.begin());

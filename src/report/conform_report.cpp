@@ -8,8 +8,9 @@
 namespace frond {
 namespace {
 
+/// Returns the verdict on one law.
 std::string_view verdict(const LawSummary& law) {
-  if (law.tests == 0) return "not asked";
+  if (law.tests == 0) return "untested";
   return law.failures == 0 ? "holds" : "BROKEN";
 }
 
@@ -23,11 +24,12 @@ std::string tests_text(const LawSummary& law) {
   return law.failures == 0 ? tests : fmt::format("{} of {}", law.failures, tests);
 }
 
-/// Of a statistical law: what p says in any other one, the verdict says too.
+/// Returns the p-value of a statistical law. For other laws the verdict says the same.
 std::string p_text(const LawSummary& law) {
   return law.worst && law.worst->statistical ? fmt::format("{:.2g}", law.worst->p_value) : "";
 }
 
+/// Returns the findings that fail, for a broken law.
 std::vector<const Finding*> failures_of(const ConformReport& report, Law law) {
   std::vector<const Finding*> failures;
   for (const Finding& f : report.findings)
@@ -36,6 +38,7 @@ std::vector<const Finding*> failures_of(const ConformReport& report, Law law) {
   return failures;
 }
 
+/// Lists a few failures; tables contain all.
 std::string failures_text(const ConformReport& report, Law law) {
   constexpr size_t kShown = 3;
   const auto failures = failures_of(report, law);
@@ -54,6 +57,7 @@ std::string broken_text(const ConformReport& report) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Whether the material could be created for at least one set of parameters.
 bool is_there(const ConformReport& report) {
   return std::ranges::any_of(report.findings, [](const Finding& f) { return f.law != Law::parameters; });
 }
@@ -66,7 +70,7 @@ std::string conform_text(const ConformReport& r) {
   std::string text = fmt::format(
       "{}\n{} nm; wo at {} deg from the normal, front and back; {} samples each; seed {}\n{}. If every law "
       "holds, "
-      "the chance that any is called broken is {:.2g}: a test fails below p = {:.2g}.\n\n",
+      "the probability that any is reported as broken is {:.2g}: a test fails below p = {:.2g}.\n\n",
       r.material, fmt::join(r.wavelengths_nm, ", "), fmt::join(r.effort.angles_deg, ", "), r.effort.samples,
       r.effort.seed, counted(r.findings.size(), "test"), r.false_alarm_rate, r.level);
   if (r.all_hold() && !is_there(r)) text += "The surface is not there: there is no BSDF to ask.\n\n";
@@ -76,7 +80,7 @@ std::string conform_text(const ConformReport& r) {
                         p_text(law), law.law.text);
     text += failures_text(r, law.law.law);
   }
-  return text + (r.all_hold() ? "\nEvery law that was asked holds.\n" : "\nBroken: " + broken_text(r) + ".\n");
+  return text + (r.all_hold() ? "\nAll tested laws hold.\n" : "\nBroken: " + broken_text(r) + ".\n");
 }
 
 std::vector<Fact> conform_facts(const ConformReport& r) {

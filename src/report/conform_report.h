@@ -9,9 +9,9 @@
 
 namespace frond {
 
-/// All findings of the job conform, judged.
+/// All findings of the job conform, with their verdict.
 struct ConformReport {
-  std::string material;  ///< its text
+  std::string material;  ///< name and parameters
   std::vector<double> wavelengths_nm;
   ExaminationEffort effort;
   double false_alarm_rate = 0;
@@ -21,19 +21,19 @@ struct ConformReport {
   bool all_hold() const;
 };
 
-/// For a terminal: a line for each law, and the failures of those that are broken.
+/// Returns text for a terminal: a line for each law, and the failures of broken laws.
 std::string conform_text(const ConformReport& report);
-/// How it was tested, and whether all laws hold.
+/// Returns the settings of the test, and whether all laws hold.
 std::vector<Fact> conform_facts(const ConformReport& report);
-/// "laws": verdicts; "findings": each test.
+/// Returns the tables "laws" (verdicts) and "findings" (all tests).
 std::vector<Table> conform_tables(const ConformReport& report);
 
-/// The finding to draw: of the broken ones, or where all hold of all, that with the smallest p which has a map. nullptr
-/// where none has.
+/// Returns the finding to draw: the one with the smallest p-value among those with a map; only broken laws are
+/// considered if there are any. nullptr if no finding has a map.
 const Finding* finding_to_draw(const ConformReport& report);
 
-/// A finding's map: both hemispheres of wi in equal-area projection, each patch in the colour of found / expected, or
-/// of found where there is nothing to compare with. Needs `finding.map`.
+/// Returns a finding's map: both hemispheres of wi in equal-area projection. The colour of a patch is found / expected,
+/// or found if there is no expected value. Requires `finding.map`.
 Chart sphere_chart(const Finding& finding);
 
 }  // namespace frond

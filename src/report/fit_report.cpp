@@ -25,11 +25,12 @@ constexpr NamedBand kBands[] = {{"visible", {360, 700}},
                                 {"short-wave infrared", {1300, 2500}}};
 constexpr double kGoTogether = 0.9;
 
-/// All numbers of the leaf that a scene says, in its words.
+/// A parameter of the leaf, by its name and in its unit in scene files.
 struct Said {
   std::string_view name;
   double value;
 };
+/// Returns all parameters that a scene file states.
 std::vector<Said> said(const FitReport& report) {
   const TissueParams& p = report.result.params;
   std::vector<Said> all{{"thickness", p.thickness_m},
@@ -47,11 +48,13 @@ std::vector<Said> said(const FitReport& report) {
   return all;
 }
 
+/// Whether the leaf's structure has this parameter.
 bool exists(const FitReport& report, const FittedNumber& number) {
   return report.result.params.structure == leaf::Structure::bifacial ||
          number.variable->number != &TissueParams::palisade_aspect;
 }
 
+/// Returns the names of the parameters that the data do not determine.
 std::vector<std::string> not_told(const FitReport& report) {
   std::vector<std::string> names;
   for (const FittedNumber& n : report.result.numbers)
@@ -170,7 +173,7 @@ std::vector<Table> fit_tables(const FitReport& report) {
 Chart fit_chart(const FitReport& report) {
   const auto all = distinct(report.request.measurements, &leaf::LeafMeasurement::theta_deg);
   if (all.size() > kSeriesColors.size())
-    fail({}, "--plot: {} angles are more than the {} colours that can be told apart", all.size(), kSeriesColors.size());
+    fail({}, "--plot: {} angles are more than the {} distinguishable colours", all.size(), kSeriesColors.size());
   Panel panel = shares_panel("wavelength (nm)");
   for (size_t a = 0; a < all.size(); ++a) {
     const std::string of_angle = all.size() == 1 ? "" : fmt::format(" {:.6g}°", all[a]);

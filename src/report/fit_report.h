@@ -8,23 +8,23 @@
 
 namespace frond {
 
-/// A leaf that was fitted to measurements.
+/// Result of a fit of leaf parameters, with its source.
 struct FitReport {
   const leaf::FitRequest& request;
   const leaf::FitResult& result;
-  std::string source;    ///< the file with the measurements
-  std::string material;  ///< plug-in of the Material line
+  std::string source;    ///< name of the file with the measurements
+  std::string material;  ///< plug-in of the Material directive
 };
 
-/// A `Material` line of a scene file, with comments: its source, and the numbers that the data do not determine.
+/// Returns a `Material` directive with comments: the source, and the parameters that the data do not determine.
 std::string fit_scene(const FitReport& report);
-/// For a terminal: errors by band, the numbers with their errors, strong correlations, and what is not determined.
+/// Returns text for a terminal: errors by band, parameters with errors, strong correlations, undetermined parameters.
 std::string fit_text(const FitReport& report);
-/// Errors, and what is not a number of the leaf.
+/// Returns errors, and results that are not parameters of the leaf.
 std::vector<Fact> fit_facts(const FitReport& report);
-/// "spectra", "leaf", "numbers", "bands", "correlations".
+/// Returns the tables "spectra", "leaf", "numbers", "bands", "correlations".
 std::vector<Table> fit_tables(const FitReport& report);
-/// R from below, T from above; measured spectra as points, fitted ones as lines.
+/// Returns a chart of R from below and T from above: measured spectra as points, fitted spectra as lines.
 Chart fit_chart(const FitReport& report);
 
 }  // namespace frond

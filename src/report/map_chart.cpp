@@ -12,7 +12,8 @@ namespace {
 constexpr size_t kMostMeasurements = 12;
 constexpr size_t kMostCells = 100'000;
 
-/// Of what is above 0. A logarithmic scale spans a decade at least, so that a number stands at it.
+/// Returns the scale of all values above 0. A logarithmic scale spans at least a decade, so that it has a labelled
+/// tick.
 ColorScale scale_of(const std::vector<LabelledPatches>& measurements, bool logarithmic) {
   constexpr double kLeastSpan = 11;
   Range range;
@@ -23,7 +24,8 @@ ColorScale scale_of(const std::vector<LabelledPatches>& measurements, bool logar
   return {{"f (sr⁻¹)", {logarithmic ? std::min(range.low, range.high / kLeastSpan) : 0, range.high}, logarithmic}};
 }
 
-/// Seen from the light's side, the light coming from the left: azimuths run the other way round if that is the back.
+/// Draws a hemisphere seen from the light's side, with the light from the left. If the back is lit, azimuths are
+/// mirrored.
 void add_patches(const PolarMap& map, const ColorScale& scale, const GoniophotometerMeasurement& r, bool reflected) {
   const double handed = r.beam.theta_deg <= 90 ? std::numbers::pi / 180 : -std::numbers::pi / 180;
   for (size_t i = 0; i < r.sphere.size(); ++i) {
@@ -41,7 +43,7 @@ void add_patches(const PolarMap& map, const ColorScale& scale, const Goniophotom
 void check_map_chart(const MeasurementCounts& c, const DetectorSphere& sphere) {
   const size_t measurements = c.materials * c.angles * c.wavelengths;
   if (measurements > kMostMeasurements)
-    fail({}, "--map draws {} measurements at most, {} were asked for ({} materials, {} angles, {} wavelengths)",
+    fail({}, "--map draws {} measurements at most, {} were given ({} materials, {} angles, {} wavelengths)",
          kMostMeasurements, measurements, c.materials, c.angles, c.wavelengths);
   if (sphere.size() > kMostCells)
     fail({}, "--map draws {} patches at most, there are {} x {}", kMostCells, sphere.thetas(), sphere.phis());

@@ -6,7 +6,7 @@
 
 namespace frond {
 
-/// A goniophotometer's measurement and the material under test.
+/// A goniophotometer's measurement, labelled with the material under test.
 struct LabelledPatches {
   std::string material;
   GoniophotometerMeasurement measurement;

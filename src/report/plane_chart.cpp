@@ -7,9 +7,9 @@ namespace frond {
 namespace {
 
 constexpr size_t kMostAngles = 6, kMostMaterials = 4;
-constexpr std::array kMarks{Mark::disk, Mark::ring, Mark::square, Mark::open_square};  // of materials
+constexpr std::array kMarks{Mark::disk, Mark::ring, Mark::square, Mark::open_square};  // by material
 
-/// f of each patch in the plane of incidence, with its standard error. The angle is from the normal of that side,
+/// Returns f of the patches in the plane of incidence, with standard errors. The angle is from the normal of that side,
 /// negative on the light's side.
 std::vector<ChartPoint> plane_points(const GoniophotometerMeasurement& r, bool reflected) {
   std::vector<ChartPoint> points;
@@ -25,7 +25,7 @@ std::vector<ChartPoint> plane_points(const GoniophotometerMeasurement& r, bool r
   return points;
 }
 
-/// A panel with the vertical lines of one angle, y up to the largest f of all measurements.
+/// Returns a panel with the vertical lines of one angle of incidence. y extends to the largest f of all measurements.
 Panel empty_panel(const std::vector<LabelledPatches>& measurements, double theta_deg, bool reflected) {
   double top = 0;
   for (const auto& [material, r] : measurements)
@@ -44,7 +44,7 @@ Panel empty_panel(const std::vector<LabelledPatches>& measurements, double theta
 
 void check_plane_chart(const MeasurementCounts& c, const DetectorSphere& sphere) {
   if (sphere.phis() % 2 != 0)
-    fail({}, "--plot: with {} patches in phi none is centred across from the light; an even number is needed",
+    fail({}, "--plot: with {} patches in phi no patch is centred opposite the light; an even number is needed",
          sphere.phis());
   if (c.wavelengths > kSeriesColors.size() || c.materials > kMostMaterials || c.angles > kMostAngles)
     fail({}, "--plot holds {} wavelengths, {} materials and {} angles at most; {}, {} and {} were given",
@@ -57,7 +57,7 @@ Chart plane_chart(const std::vector<LabelledPatches>& measurements) {
   const auto wavelengths = distinct(measurements, [](const auto& r) { return r.measurement.beam.lambda_nm; });
   const bool some_integrated =
       std::ranges::any_of(measurements, [](const auto& r) { return r.measurement.is_integrated(); });
-  // A line alone where f was integrated, points about it where that of another reading was.
+  // An integrated f is a line; a measured f of the same material is drawn as points.
   const auto series = [&](const LabelledPatches& r, std::string label, std::string color) -> Series {
     const size_t m = place_in(materials, r.material);
     const bool exact = r.measurement.is_integrated();

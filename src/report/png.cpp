@@ -14,7 +14,7 @@ namespace frond {
 #ifdef FROND_RSVG_FILE
 namespace {
 
-/// A function of librsvg, which is opened when a PNG is asked for, or of Cairo and GLib, which it brings with it.
+/// Returns a function of librsvg, which is loaded on first use, or of its dependencies Cairo and GLib.
 template <class Function>
 Function* late(const char* name) {
   static const SharedObject library(FROND_RSVG_FILE, "librsvg", SharedObject::Binding::lazy);

@@ -12,7 +12,8 @@ Panel shares_panel(std::string x_label) {
 
 void check_shares_chart(size_t materials, size_t angles, size_t wavelengths) {
   const size_t along = std::max(angles, wavelengths), curves = materials * std::min(angles, wavelengths);
-  if (along < 2) fail({}, "--plot draws R and T against wavelength or angle: two values of one at least are needed");
+  if (along < 2)
+    fail({}, "--plot draws R and T against wavelength or angle: at least two values of one of them are needed");
   if (curves > kSeriesColors.size())
     fail({},
          "--plot: {} curves ({} materials, {} angles, {} wavelengths) are more than the {} colours that can be told "
@@ -35,7 +36,7 @@ Chart shares_chart(const std::vector<LabelledMeasurement>& measurements) {
   const auto labels = distinct(measurements, label_of);
   check_shares_chart(labels.size() / std::min(angles, wavelengths), angles, wavelengths);
   Panel panel = shares_panel(by_wavelength ? "wavelength (nm)" : "angle of incidence (degrees)");
-  // Points where they stand apart, lines and bars alone where there are many.
+  // Few points are drawn as marks; many as lines and error bars only.
   const Mark mark = std::max(angles, wavelengths) <= 40 ? Mark::disk : Mark::none;
   for (size_t i = 0; i < labels.size(); ++i) {
     Series r{labels[i], kSeriesColors[i], 1.5, {}, mark, 2.5}, t{"", r.color, 1.5, Dash::dashed, mark, 2.5};

@@ -11,12 +11,12 @@ namespace {
 // A diverging palette that is readable with any colour vision: ColorBrewer's RdBu.
 constexpr std::array kRatioColors{0x2166ac, 0x67a9cf, 0xf7f7f7, 0xef8a62, 0xb2182b};
 
-/// What stands for a patch: found / expected, or what was found where there is nothing to compare with.
+/// Returns the value that a patch shows: found / expected, or found if nothing is expected.
 double value_of(const SphereMap& map, const SphereMap::Patch& p) {
   return map.expected.empty() ? p.found : p.found / p.expected;
 }
 
-/// Of the ratios' logarithms to either side of 1, up to a round limit; of what is found alone, from 0.
+/// Returns a scale symmetric in the logarithm of the ratio, up to a round limit; for found values, a scale from 0.
 ColorScale scale_of(const SphereMap& map) {
   constexpr std::array kLimits{1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0};
   Range all{0, 0};
@@ -30,7 +30,8 @@ ColorScale scale_of(const SphereMap& map) {
   return {{fmt::format("{}, over {}", map.found, map.expected), {least, most}, true, 0, ticks}, kRatioColors};
 }
 
-/// Lambert's equal-area projection of a hemisphere, the pole in the middle; the back is seen through the front.
+/// Radius in Lambert's equal-area projection of a hemisphere, with the pole in the centre. The back is seen through the
+/// front.
 double radius_of(double cos_theta) { return std::sqrt(std::max(0.0, 1 - std::abs(cos_theta))); }
 
 }  // namespace

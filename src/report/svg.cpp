@@ -5,13 +5,13 @@
 namespace frond {
 namespace {
 
-constexpr double kCharacter = 7.8, kLegendLine = 20, kSample = 34;  // a character's width in DejaVu Sans, or more
-constexpr double kFar = 50;  // sizes of the panel, beyond which coordinates are cut off
+constexpr double kCharacter = 7.8, kLegendLine = 20, kSample = 34;  // upper bound of a character's width in DejaVu Sans
+constexpr double kFar = 50;  // coordinates are clipped at this multiple of the panel's size
 constexpr const char *kStart = " text-anchor='start'", *kEnd = " text-anchor='end'", *kLarge = " font-size='15'",
                      *kSmall = " font-size='11'",
                      *kHalo = " font-size='11' stroke='#fff' stroke-width='3' paint-order='stroke'";
 constexpr std::array kDashes{"none", "7,4", "2,3", "7,3,2,3"};
-// Marks of radius 1.
+// Paths of the marks at radius 1.
 constexpr const char *kDisk = "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0-2 0z", *kSquare = "M-.9-.9H.9V.9H-.9z",
                      *kUp = "M-1.2.8L0-1.3 1.2.8z", *kDiamond = "M0-1.3L1.3 0 0 1.3-1.3 0z",
                      *kDown = "M-1.2-.8L0 1.3 1.2-.8z", *kPentagon = "M0-1.2L1.14-.37.7.97-.7.97-1.14-.37z",
@@ -19,7 +19,7 @@ constexpr const char *kDisk = "M-1 0a1 1 0 1 0 2 0a1 1 0 1 0-2 0z", *kSquare = "
                      *kBar = "M0-1.8V1.8";
 constexpr std::array kMarks{kDisk, kSquare, kUp, kDiamond, kDown, kPentagon, kDisk, kSquare, kCross, kStar, kBar};
 
-/// Without an exponent where people write none, else as 2×10⁻⁷.
+/// Returns a decimal number for common magnitudes, otherwise a power of ten, as in 2×10⁻⁷.
 std::string tick_text(double value) {
   constexpr std::array kDigits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   const double size = std::abs(value);
@@ -31,6 +31,7 @@ std::string tick_text(double value) {
   return text;
 }
 
+/// Returns the smallest step of 1, 2 or 5 times a power of ten that is at least `least`.
 double even_step(double least) {
   const double power = std::pow(10, std::floor(std::log10(least))), factor = least / power * 0.999999;
   return power * (factor <= 1 ? 1 : factor <= 2 ? 2 : factor <= 5 ? 5 : 10);
@@ -46,11 +47,12 @@ std::vector<Tick> log_ticks(const Range& r, double most) {
   return ticks;
 }
 
+/// Upper bound of a text's width in pixels.
 double width_of(std::string_view text) {
   return kCharacter * double(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
-/// As XML has it, cut short where it is wider than `room`.
+/// Returns an SVG text element. The text is escaped, and truncated if it is wider than `room`.
 std::string text_at(double x, double y, std::string_view text, std::string_view more = "", double room = 1e6) {
   std::string xml;
   for (const char c : text) {
@@ -80,7 +82,7 @@ std::string mark_at(double x, double y, const Series& s) {
                      kMarks[size_t(s.mark)], fill, s.color, width);
 }
 
-/// With a range if it has none: that of the points.
+/// Returns the axis with a range: its own, or the range of the points.
 Axis with_range(Axis axis, const std::vector<Series>& series, double ChartPoint::*coordinate) {
   Range& r = axis.range;
   if (r.is_empty())
@@ -92,6 +94,7 @@ Axis with_range(Axis axis, const std::vector<Series>& series, double ChartPoint:
   return axis;
 }
 
+/// Draws one panel at a position of the chart.
 class PanelDrawing {
  public:
   PanelDrawing(const Panel& panel, double left, double top, size_t id)
@@ -126,7 +129,7 @@ class PanelDrawing {
     return fmt::format("M{:.2f},{:.2f}H{:.2f}V{:.2f}H{:.2f}Z", left_, top_, right_, bottom_, left_);
   }
 
-  /// Lines through the points that have a place.
+  /// Returns a path through the points with a finite position.
   std::string path_of(const Series& s) const {
     std::string path;
     bool goes_on = false;
@@ -142,7 +145,7 @@ class PanelDrawing {
   }
   std::string curve(const Series& s) const {
     std::string bars;
-    // The ends of bars may lie where a logarithmic axis has nothing.
+    // An error bar may extend to values <= 0, which a logarithmic axis cannot show.
     const auto end = [&](double v) { return y_at(y_.is_logarithmic ? std::max(v, y_.range.low / 10) : v); };
     for (const ChartPoint& p : s.points)
       if (p.bar.low < p.bar.high && std::isfinite(x_.position(p.x)))
@@ -172,7 +175,7 @@ class PanelDrawing {
   size_t id_;
 };
 
-/// Entries column by column, from `y` on; `y` becomes their lower end.
+/// Draws the legend column by column, starting at `y`, which is set to its lower end.
 std::string legend(const Chart& chart, double width, double& y) {
   std::vector<Series> entries;
   double column = 0;

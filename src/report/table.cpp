@@ -30,7 +30,7 @@ Json json_value(const Column& c, size_t row) {
   return v;
 }
 
-/// Two significant digits of the error decide how many the mean has.
+/// Returns "mean +- error". The mean has as many decimals as two significant digits of the error.
 std::string with_error(double mean, double error) {
   if (!std::isfinite(mean)) return "";
   constexpr double kNegligible = 1e-6;
@@ -48,7 +48,7 @@ std::string cell(const Table& table, const Column& c, size_t row) {
   return std::isfinite(v) ? fmt::format("{:.6g}", v) : c.missing;
 }
 
-/// Characters of UTF-8.
+/// Number of UTF-8 characters.
 size_t width(const std::string& text) {
   return size_t(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
 }
@@ -126,7 +126,7 @@ std::string to_csv(const Table& table, const std::vector<std::string>& notes) {
 }
 
 std::string to_text(const Table& table) {
-  std::vector<std::vector<std::string>> shown;  // by column: its name, then its cells
+  std::vector<std::vector<std::string>> shown;  // by column: the name, then the cells
   for (const Column& c : table.columns) {
     if (c.only_data || (is_error(c.name) && table.find(c.name.substr(0, c.name.size() - 3)))) continue;
     auto& cells = shown.emplace_back(1, c.name);

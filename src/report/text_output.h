@@ -5,13 +5,13 @@
 
 namespace frond {
 
-/// Refuses, by InputError, a file that cannot be written. "-" is standard output.
+/// Throws InputError if the file cannot be written. "-" is standard output.
 void check_text_output(const std::string& path);
 
-/// The whole text, or an InputError and the old file.
+/// Writes the whole text. On failure throws InputError and leaves an old file unchanged.
 void write_text(const std::string& path, std::string_view text);
 
-/// A field of a CSV file, in quotes where it has to be (RFC 4180).
+/// Returns a field of a CSV file, quoted if necessary (RFC 4180).
 std::string csv_field(const std::string& text);
 
 }  // namespace frond

@@ -5,12 +5,12 @@
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 
-// What a scene says of its image.
+// Film settings of a scene.
 
 namespace frond {
 namespace {
 
-/// A film of a shared object may ask for anything.
+/// Validates the settings, because a plug-in's film may return any values.
 void check_film(const FilmSettings& film, const FilmInfo& info, const Location& where) {
   const auto [x0, y0, x1, y1] = film.crop;
   if (film.width < 1 || film.height < 1 || film.width > 65536 || film.height > 65536)
@@ -23,7 +23,7 @@ void check_film(const FilmSettings& film, const FilmInfo& info, const Location& 
          film.max_component);
 }
 
-/// Of a camera's shutter, in seconds; 1 of one that has none.
+/// Returns the exposure time of a camera with a shutter, in s; 1 for other cameras.
 double open_time(const Params& camera, const CameraInfo& info) {
   const auto is_time = [&info](std::string_view name) {
     const Param* declared = find_param(info, name);
@@ -35,6 +35,7 @@ double open_time(const Params& camera, const CameraInfo& info) {
 
 }  // namespace
 
+/// The exposure time of the camera and the film speed become one factor.
 FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry, const Log& log) {
   OptionResolver resolver(description, log);
   const FilmInfo& info = registry.films.get(description.film.name, description.film.where);

@@ -12,11 +12,11 @@ extern const FloatTextureInfo instance_float_texture;
 
 namespace {
 
-/// A shape of a shared object may make anything; Embree does not check it.
+/// Validates a mesh, because a plug-in's shape may return any data and Embree does not check it.
 void check_made(const ShapeGeometry& geometry, const ShapeInfo& info, const Location& where) {
   const auto refuse = [&](const std::string& what) { fail(where, "shape \"{}\" has a defect: {}", info.name, what); };
   const auto* pointer = std::get_if<MeshPtr>(&geometry);
-  if (pointer ? !*pointer : !std::get<AnalyticShapePtr>(geometry)) refuse("it has made nothing");
+  if (pointer ? !*pointer : !std::get<AnalyticShapePtr>(geometry)) refuse("make() returned nothing");
   if (!pointer) return;
   const TriangleMesh& mesh = **pointer;
   const size_t vertices = mesh.p.size(), triangles = mesh.triangles.size();
@@ -35,12 +35,12 @@ void check_made(const ShapeGeometry& geometry, const ShapeInfo& info, const Loca
       refuse(fmt::format("it has made a mesh of {} vertices with a triangle that names number {}", vertices, last));
 }
 
-/// Embree leaves out what lies farther than 1.8e18, without a word.
+/// Throws InputError for coordinates that are too large: Embree silently drops geometry beyond 1.8e18.
 void check_extent(const ShapeGeometry& geometry, const Location& where) {
   static constexpr float kFarthest = 1e18f;
   const auto check = [&where](const Vec3& p) {
     const bool is_within = std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
-    if (!is_within)  // or no number
+    if (!is_within)  // also false for NaN
       fail(where, "this shape reaches to ({:g}, {:g}, {:g}): {:g} units from the origin is the limit", p.x, p.y, p.z,
            kFarthest);
   };
@@ -55,12 +55,13 @@ void check_extent(const ShapeGeometry& geometry, const Location& where) {
   }
 }
 
+/// Throws InputError for an area light on a shape that cannot be sampled.
 void check_emitter(const ShapeGeometry& geometry, const Location& where) {
   if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry); shape && !(*shape)->cannot_emit().empty())
     fail(where, "this shape cannot give off light: {}; triangles can", (*shape)->cannot_emit());
 }
 
-/// Leaf meshes often carry each face twice, once for either side: a light path then meets two leaves in one.
+/// Warns about duplicate faces, which leaf meshes often have for both sides: a light path would hit two leaves at once.
 void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where, const Log& log) {
   const auto* mesh = std::get_if<MeshPtr>(&geometry);
   if (!mesh) return;
@@ -79,7 +80,7 @@ void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where, 
                         doubles, (*mesh)->triangles.size()));
 }
 
-/// Turns shapes into surfaces and instances, objects in the order in which they hold each other.
+/// Converts shapes to surfaces and instances. Objects are ordered so that contained objects come first.
 class GeometryBuilder {
  public:
   GeometryBuilder(const SceneDescription& description, const Registry& registry, SceneResolver& resolver,
@@ -94,6 +95,7 @@ class GeometryBuilder {
     visits_.resize(description.objects.size());
   }
 
+  /// Throws all errors after all shapes have been built.
   std::shared_ptr<const Geometry> build() {
     ObjectParts world;
     problems_.attempt([&] {
@@ -105,12 +107,13 @@ class GeometryBuilder {
   }
 
  private:
-  /// Of an object of the description: where it stands in the order of building.
+  /// State of an object of the description, and its index in building order.
   struct Visit {
     bool is_open = false;
     std::optional<uint32_t> place = {};
   };
 
+  /// Builds an object after the objects that it contains. Returns its index. Throws InputError for a cycle.
   uint32_t visit(size_t index) {
     const ObjectDescription& object = description_.objects[index];
     if (visits_[index].is_open) fail(object.where, "object \"{}\" holds an instance of itself", object.name);
@@ -123,6 +126,7 @@ class GeometryBuilder {
     return *visits_[index].place;
   }
 
+  /// Builds the shapes and instances of an object or of the world.
   ObjectParts parts_of(const std::vector<ShapeDescription>& shapes, const InstanceList& set) {
     ObjectParts parts;
     for (const ShapeDescription& shape : shapes) problems_.attempt([&] { add(shape, parts); });
@@ -135,6 +139,7 @@ class GeometryBuilder {
     return parts;
   }
 
+  /// Creates one shape, which may be a surface or a table of instances.
   void add(const ShapeDescription& shape, ObjectParts& parts) {
     const Location& where = shape.plugin.where;
     const ShapeInfo& info = registry_.shapes.get(shape.plugin.name, where);
@@ -149,6 +154,7 @@ class GeometryBuilder {
         parts.surfaces.push_back(surface(std::move(geometry), info, shape, params));
   }
 
+  /// Checks a created shape. A constant alpha of 1 is dropped, so that Embree needs no filter callback.
   Surface surface(ShapeGeometry geometry, const ShapeInfo& info, const ShapeDescription& shape, const Params& params) {
     const Location& where = shape.plugin.where;
     check_made(geometry, info, where);
@@ -165,10 +171,10 @@ class GeometryBuilder {
     return result;
   }
 
+  /// Tables are shared between shapes that name the same file.
   Instances instances(const ObjectInstances& set, const ShapeDescription& shape, const Params& params) {
     if (shape.area_light)
-      fail(shape.plugin.where,
-           "instances of objects cannot give off light: area lights inside objects are not supported");
+      fail(shape.plugin.where, "instances of objects cannot emit light: area lights inside objects are not supported");
     const auto object = by_name_.find(set.object);
     if (object == by_name_.end()) fail_unknown(set.object, params.where("object"));
     auto& table = tables_[set.table];
@@ -180,6 +186,7 @@ class GeometryBuilder {
     return result;
   }
 
+  /// Throws InputError with the nearest object name.
   [[noreturn]] void fail_unknown(const std::string& object, const Location& where) const {
     std::vector<std::string_view> names;
     for (const auto& [name, place] : by_name_) names.push_back(name);
@@ -207,13 +214,14 @@ std::shared_ptr<const Geometry> build_geometry(const SceneDescription& descripti
   return GeometryBuilder(description, registry, resolver, pool, log, problems).build();
 }
 
+/// The range of a texture is compared with the range of the columns of that name.
 void check_instance_textures(const SceneSettings& description, const Geometry& geometry, const Log& log) {
   const std::vector<InstanceColumn> columns = geometry.columns();
   std::vector<std::string_view> names;
   for (const InstanceColumn& c : columns) names.push_back(c.name);
   for (const TextureDescription& texture : description.textures) {
     if (texture.plugin.name != instance_float_texture.name) continue;
-    const ParsedParam& name = *find_param(texture.plugin.params, "column");  // it is required, and a single one
+    const ParsedParam& name = *find_param(texture.plugin.params, "column");  // required, with a single value
     const std::string& wanted = std::get<std::vector<std::string>>(name.values).front();
     const auto column = std::ranges::find(columns, wanted, &InstanceColumn::name);
     if (column == columns.end())

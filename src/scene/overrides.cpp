@@ -10,6 +10,7 @@
 namespace frond {
 namespace {
 
+/// Removes parameters that the material does not have, each with a warning.
 void leave_out_unknown(const MaterialInfo& info, ParsedPlugin& plugin, const Log& log) {
   std::erase_if(plugin.params, [&](const ParsedParam& given) {
     if (find_param(info, given.name) || find_param(normal_bend_params, given.name)) return false;

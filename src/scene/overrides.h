@@ -11,34 +11,35 @@
 
 namespace frond {
 
-/// Puts one material in place of another.
+/// Replacement of a material.
 struct MaterialSwap {
-  std::string from;  ///< name of a named material, or of a plugin; "*": every leaf
+  std::string from;  ///< name of a named material, or of a material plug-in; "*": every leaf
   PluginText to;
-  Location where = {};  ///< of what asks for it
+  Location where = {};  ///< location of the request, for errors
 };
 
-/// What a user says over a scene file.
+/// The user's overrides of a scene file.
 struct SceneOverrides {
   std::vector<MaterialSwap> swaps = {};
   std::string wavelengths = {};  ///< a PluginText; empty: the scene's
-  /// Of the scene's own kind: these parameters over the scene's. Of another: in its place.
+  /// A plug-in of the scene's type overrides only the given parameters; another one replaces it.
   std::optional<PluginText> integrator = {}, filter = {};
   std::optional<uint64_t> seed = {};
   bool quick = false;  ///< half the resolution, a sixteenth of the samples
 };
 
-/// Writes the overrides into the description, which then says all that is to be rendered. What the scene's text is
-/// (`files`, `content_hash`) stays. Throws InputError.
+/// Writes the overrides into the description, so that it describes the complete render. `files` and `content_hash` are
+/// unchanged. Throws InputError.
 void apply_overrides(const SceneOverrides& overrides, SceneSettings& description, const Registry& registry,
                      const Log& log);
 
-/// What the new material does not know of the old one's parameters is left out, with a warning: the two describe the
-/// same leaf, but each has its own method. Throws InputError at `where`, which is then the place of what is new.
+/// Replaces a material. Parameters that the new material does not have are dropped with a warning; the leaf's
+/// parameters are kept. Throws InputError at `where`.
 void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log,
                    const Location& where = {});
 
-/// In this order, each on what the last one left. Throws InputError where the scene has no such material.
+/// Applies the swaps in order, each to the result of the previous one. Throws InputError if the scene has no such
+/// material.
 void apply_swaps(SceneSettings& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
                  const Log& log);
 

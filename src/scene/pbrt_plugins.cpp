@@ -13,12 +13,12 @@
 namespace frond {
 namespace {
 
-/// What stands in for a plugin of pbrt-v4. Parameters that `ours` declares go on; the others that pbrt knows are
+/// Replacement of a plug-in of pbrt-v4. Parameters that the replacement declares are kept; other parameters of pbrt are
 /// dropped.
 struct StandIn {
   std::string_view name, ours;
-  std::string_view feature;                   ///< of --ignore-unsupported; empty: the image is the same
-  std::span<const std::string_view> of_pbrt;  ///< parameters that it may have; empty: any
+  std::string_view feature;                   ///< kind for --ignore-unsupported; empty: the expected image is the same
+  std::span<const std::string_view> of_pbrt;  ///< allowed parameters; empty: any
   std::string_view caution = {};
 };
 
@@ -51,7 +51,7 @@ constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}, ", w
 constexpr StandIn kTextures[] = {{"ptex", "constant", "textures", {}}};
 constexpr StandIn kFilms[] = {{"spectral", "rgb", "films", {}}};
 
-/// Of pbrt-v3 and older.
+/// Materials of pbrt-v3 and older.
 constexpr std::string_view kOldMaterials[] = {"matte",     "plastic",    "uber",        "glass",   "mirror",
                                               "substrate", "metal",      "translucent", "fourier", "disney",
                                               "none",      "shinymetal", "kdsubsurface"};
@@ -64,6 +64,7 @@ constexpr std::string_view kOldFilms[] = {"image"};
 constexpr std::string_view kOldShapes[] = {"cone", "heightfield", "hyperboloid", "nurbs", "paraboloid"};
 constexpr std::string_view kOldTextures[] = {"uv"};
 
+/// Returns a numeric parameter; nullopt if it is not given. Throws InputError for several values.
 std::optional<double> number(const ParsedPlugin& plugin, std::string_view name) {
   const ParsedParam* p = find_param(plugin.params, name);
   if (!p) return {};
@@ -72,13 +73,13 @@ std::optional<double> number(const ParsedPlugin& plugin, std::string_view name) 
   return (*values)[0];
 }
 
-/// One description's plugins, kind after kind.
+/// Replaces the plug-ins of one description, kind by kind.
 class Answerer {
  public:
   Answerer(const Unsupported& unsupported, const Log& log, Problems& problems)
       : unsupported_(unsupported), log_(log), problems_(problems) {}
 
-  /// Says whether something stands in. Also after an error, which is then told once.
+  /// Returns whether the plug-in was replaced. Also true after an error, so that it is reported once.
   template <class Info>
   bool answer(std::string_view directive, const PluginTable<Info>& ours, std::span<const StandIn> stand_ins,
               std::span<const std::string_view> old, ParsedPlugin& plugin) {
@@ -96,7 +97,7 @@ class Answerer {
     return false;
   }
 
-  /// pbrt moves a mesh's vertices by a texture.
+  /// Drops displacement, by which pbrt moves a mesh's vertices.
   void leave_out_displacement(ParsedPlugin& shape) {
     if (shape.name != "plymesh") return;
     if (const ParsedParam* p = find_param(shape.params, "displacement"))
@@ -106,6 +107,7 @@ class Answerer {
     std::erase_if(shape.params, [](const auto& p) { return p.name == "displacement" || p.name == "edgelength"; });
   }
 
+  /// Only the first plug-in of an older version is reported: the remedy is the same for all.
   void refuse_old(std::string_view directive, const ParsedPlugin& plugin) {
     if (!old_.empty()) return;
     old_.attempt([&] {
@@ -115,10 +117,11 @@ class Answerer {
     });
   }
 
-  /// That the file is for an older version, if it is.
+  /// Errors that identify the file as written for an older version of pbrt.
   const Problems& old() const { return old_; }
 
  private:
+  /// Replaces the plug-in, with a warning or a log message, and drops parameters that the replacement lacks.
   void replace(std::string_view directive, const PluginInfo& ours, const StandIn& by, ParsedPlugin& plugin) {
     if (!by.feature.empty())
       problems_.attempt([&] {
@@ -141,7 +144,7 @@ class Answerer {
   Problems old_;
 };
 
-/// Samples of x times y strata.
+/// Converts x times y strata to a number of samples.
 void count_strata(ParsedPlugin& sampler) {
   const double x = number(sampler, "xsamples").value_or(4), y = number(sampler, "ysamples").value_or(4);
   const Location where =
@@ -154,15 +157,16 @@ void warn_of_regularize(const ParsedPlugin& integrator, const Log& log) {
   if (!p) return;
   const auto* value = std::get_if<std::vector<bool>>(&p->values);
   if (value && value->size() == 1 && (*value)[0])
-    log.warn(p->where, "\"regularize\" has no effect: nothing is blurred, what pbrt leaves out shows as noise");
+    log.warn(p->where, "\"regularize\" has no effect: paths that pbrt blurs appear as noise");
 }
 
+/// Collects parameter names without duplicates.
 void add_params(std::span<const Param> params, std::vector<std::string_view>& names) {
   for (const Param& p : params)
     if (std::ranges::find(names, p.name) == names.end()) names.push_back(p.name);
 }
 
-/// What no plugin of the target takes is passed over by all of them.
+/// Warns about attributes that no plug-in of their target accepts.
 void warn_of_attributes(const SceneSettings& description, const Registry& r, const Log& log) {
   std::map<std::string_view, std::vector<std::string_view>> names;
   const auto add = [&names](std::string_view target, const auto& table) {
@@ -180,14 +184,14 @@ void warn_of_attributes(const SceneSettings& description, const Registry& r, con
   }
 }
 
-/// Hair's colour goes by two names.
+/// Renames the colour of material "hair", which has two names.
 void rename_color(ParsedPlugin& material) {
   if (find_param(material.params, "reflectance")) return;
   const auto color = std::ranges::find(material.params, "color", &ParsedParam::name);
   if (color != material.params.end()) color->name = "reflectance";
 }
 
-/// Of a lens of 50 mm, as the film is large; pbrt measures the shorter side.
+/// Sets the field of view of a 50 mm lens on the film; pbrt's field of view refers to the shorter side.
 void set_field_of_view(ParsedPlugin& camera, const ParsedPlugin& film) {
   constexpr double kFocalLength = 50;  // mm
   const double diagonal = number(film, "diagonal").value_or(35), x = number(film, "xresolution").value_or(1280),
@@ -198,7 +202,7 @@ void set_field_of_view(ParsedPlugin& camera, const ParsedPlugin& film) {
   camera.params.push_back({"float", "fov", camera.where, camera.where, std::vector<double>{degrees}});
 }
 
-/// White for numbers, grey for colours.
+/// Replaces a texture by a constant: white for float, grey for spectrum.
 void set_constant(TextureDescription& texture) {
   const bool is_real = texture.value == TextureDescription::Value::real;
   const Location& where = texture.plugin.where;
@@ -221,7 +225,7 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   warn_of_regularize(d.integrator, log);
   if (d.integrator.name == "path")
     std::erase_if(d.integrator.params, [](const auto& p) { return p.name == "regularize"; });
-  // Shadow rays of these pass what only parts media; those of "path" do not. pbrt takes volpath where none is given.
+  // Shadow rays of volpath pass through material "interface", those of path do not. volpath is pbrt's default.
   const bool sees_through_interfaces =
       !d.integrator.where.file || d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
   answerer.answer("Integrator", registry.integrators, kIntegrators, kOldIntegrators, d.integrator);
@@ -254,7 +258,7 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   answer_shapes(d.shapes);
   for (ObjectDescription& object : d.objects) answer_shapes(object.shapes);
   if (answerer.old().empty()) return;
-  problems = answerer.old();  // all there is to say
+  problems = answerer.old();  // other errors follow from the wrong version
   d = {};
 }
 

@@ -8,9 +8,9 @@
 
 namespace frond {
 
-/// Replaces names of pbrt-v4 by plug-ins of another name. What gives the same image, but for noise, is reported
-/// in the log (samplers; volpath, where there are no media); what does not has to be let pass
-/// (scene/format/unsupported.h). Names of older versions of pbrt are errors that say how a file is upgraded.
+/// Replaces names of pbrt-v4 plug-ins by frond's. Replacements with the same expected image are logged (samplers;
+/// volpath without media); others must be allowed by `unsupported` (scene/format/unsupported.h). Names of older
+/// versions of pbrt are errors that explain how to upgrade a file.
 void answer_pbrt_plugins(SceneDescription& description, const Registry& registry, const Unsupported& unsupported,
                          const Log& log, Problems& problems);
 

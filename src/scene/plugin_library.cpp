@@ -11,6 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns the shared object's table of plug-ins. Throws InputError if it was built for another interface version.
 const PluginModule& module_of(const SharedObject& library, const fs::path& file) {
   const auto function = library.find<decltype(frond_plugin)>("frond_plugin");
   if (!function) fail({}, "plug-in \"{}\" has no function frond_plugin (core/plugin_module.h)", file.string());
@@ -33,7 +34,7 @@ void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTab
            file.string(), table.kind(), info->name);
     const Info* known = table.find(info->name);
     if (known == info) continue;
-    if (known) fail({}, "plug-in \"{}\": there is a {} \"{}\" already", file.string(), table.kind(), info->name);
+    if (known) fail({}, "plug-in \"{}\": {} \"{}\" already exists", file.string(), table.kind(), info->name);
     if (info->kind != table.kind())
       fail({}, "plug-in \"{}\" offers \"{}\" as a {}, but calls it a {}", file.string(), info->name, table.kind(),
            info->kind);
@@ -46,6 +47,7 @@ void add_all(std::span<const Info* const> infos, const fs::path& file, PluginTab
 
 }  // namespace
 
+/// All symbols are bound at load time, so that a missing one is an error here and not during a render.
 void load_plugin(const fs::path& file, Registry& registry) {
   const PluginModule& module = module_of(SharedObject(file, "plug-in", SharedObject::Binding::now), file);
   add_all(module.materials, file, registry.materials);
@@ -62,6 +64,7 @@ void load_plugin(const fs::path& file, Registry& registry) {
   add_all(module.spectrum_textures, file, registry.spectrum_textures);
 }
 
+/// Empty entries of the path are ignored.
 std::vector<fs::path> plugins_in(std::string_view folders) {
   std::vector<fs::path> files;
   while (!folders.empty()) {

@@ -11,15 +11,15 @@
 
 namespace frond {
 
-/// Reads a scene as parse_scene does, and answers pbrt's plugins.
+/// Reads a scene as parse_scene does, and replaces pbrt's plug-ins.
 SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,
                             const Unsupported& unsupported, Problems& problems);
 
-/// As the next from text; `name` is what errors call it, and what it includes is found from there.
+/// Same for text; `name` is used in errors and to resolve included files.
 SceneDescription read_scene_text(const std::string& text, const std::string& name, const Registry& registry,
                                  const Log& log, const Unsupported& unsupported = {});
 
-/// All errors at once as InputErrors.
+/// Throws all errors together as InputErrors.
 SceneDescription read_scene(const std::filesystem::path& path, const Registry& registry, const Log& log,
                             const Unsupported& unsupported = {});
 

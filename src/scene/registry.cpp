@@ -60,6 +60,7 @@ Registry make_registry(std::span<const MaterialInfo* const> materials,
           .spectrum_textures{"spectrum texture", kSpectrumTextures}};
 }
 
+/// The order is the order of `frond list`.
 std::vector<const PluginInfo*> all_plugins(const Registry& r) {
   std::vector<const PluginInfo*> all;
   const auto add = [&all](const auto& table) { all.insert(all.end(), table.all().begin(), table.all().end()); };

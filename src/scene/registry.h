@@ -12,8 +12,8 @@
 
 namespace frond {
 
-/// Every plugin that a scene file can name. One list of what there is: the parser's errors, `frond list`, `frond
-/// describe`, the docs and the tests all read it.
+/// All plug-ins that a scene file can name. The parser's errors, `frond list`, `frond describe`, the documentation and
+/// the tests use this list.
 struct Registry {
   PluginTable<MaterialInfo> materials;
   PluginTable<IntegratorInfo> integrators;
@@ -29,10 +29,10 @@ struct Registry {
   PluginTable<SpectrumTextureInfo> spectrum_textures;
 };
 
-/// All of them, in the order of the tables.
+/// Returns all plug-ins in the order of the tables.
 std::vector<const PluginInfo*> all_plugins(const Registry& registry);
 
-/// The tables of this layer and of spectra, with the materials and integrators given.
+/// Returns the plug-ins of scene/ and spectra/, with the given materials and integrators.
 Registry make_registry(std::span<const MaterialInfo* const> materials,
                        std::span<const IntegratorInfo* const> integrators);
 

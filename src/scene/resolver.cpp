@@ -18,7 +18,7 @@ namespace {
 
 const std::vector<double>& numbers(const ParsedParam& p) { return std::get<std::vector<double>>(p.values); }
 
-/// A name such as "stdillum-D65", or that of a file.
+/// Returns a spectrum by name, as "stdillum-D65", or from a file.
 SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneSettings& description) {
   const auto& words = std::get<std::vector<std::string>>(p.values);
   if (words.size() != 1) fail(p.value_where, "\"{}\" takes one spectrum, {} names given", p.name, words.size());
@@ -31,18 +31,20 @@ SpectrumPtr spectrum_of_name(const ParsedParam& p, const SceneSettings& descript
   return named_spectrum(words[0], p.value_where);
 }
 
-/// Names that stand for names, level upon level; each level can double the work of a lookup.
+/// Limits the nesting of references; each level can double the cost of a lookup.
 void check_depth(size_t levels, const Location& where) {
   constexpr size_t kDeepest = 16;
   if (levels > kDeepest) fail(where, "textures and materials are nested more than {} deep", kDeepest);
 }
 
+/// Throws InputError for other numbers of values.
 Triple rgb_of(const ParsedParam& p) {
   const auto& v = numbers(p);
   if (v.size() != 3) fail(p.value_where, "\"{}\" takes 3 values as rgb, {} given", p.name, v.size());
   return {v[0], v[1], v[2]};
 }
 
+/// A second value, the scale of older files, is accepted and ignored.
 SpectrumPtr blackbody_of(const ParsedParam& p) {
   const auto& v = numbers(p);
   if (v.empty() || v.size() > 2)
@@ -50,6 +52,7 @@ SpectrumPtr blackbody_of(const ParsedParam& p) {
   return std::make_shared<BlackbodySpectrum>(v[0], p.value_where);
 }
 
+/// Throws InputError for a negative value.
 SpectrumPtr constant_of(const ParsedParam& p) {
   const auto& v = numbers(p);
   if (v.size() != 1) fail(p.value_where, "\"{}\" takes one value as float, {} given", p.name, v.size());
@@ -57,7 +60,7 @@ SpectrumPtr constant_of(const ParsedParam& p) {
   return std::make_shared<ConstantSpectrum>(float(v[0]));
 }
 
-/// An emission has luminance 1 before it is scaled; one that nobody sees cannot have that.
+/// Normalizes an emission to luminance 1. Throws InputError for a spectrum without luminance.
 SpectrumPtr normalized(SpectrumPtr s, const ParsedParam& p) {
   if (s->max_value() > 0 && !(photometric(*s) > 0))
     fail(p.value_where, "\"{}\" has no luminance between 360 and 830 nm, by which emissions are scaled", p.name);
@@ -76,7 +79,7 @@ SceneResolver::SceneResolver(const SceneSettings& description, const Registry& r
 
 SceneResolver::~SceneResolver() = default;
 
-/// Makes something that may ask for others, and tells whether one of those needs details.
+/// Creates an object that may refer to others, and records whether one of them needs derivatives.
 template <class Make>
 auto SceneResolver::make(const std::string& key, const Make& make, bool& needs_details) {
   in_progress_.insert(key);
@@ -91,13 +94,13 @@ auto SceneResolver::make(const std::string& key, const Make& make, bool& needs_d
     leave();
     needs_details = needs_details || result->needs_details();
     return result;
-  } catch (...) {  // others are made after an error
+  } catch (...) {  // further objects are created after an error
     leave();
     throw;
   }
 }
 
-/// To what is being made of it.
+/// Propagates the flag to the referring object.
 void SceneResolver::pass_on(bool needs_details) {
   if (needs_details && !needs_details_.empty()) needs_details_.back() = true;
 }
@@ -150,6 +153,7 @@ std::shared_ptr<const SpectrumTexture> SceneResolver::spectrum_texture(const std
   return texture(name, where, TextureDescription::Value::spectrum, registry_.spectrum_textures, spectrum_textures_);
 }
 
+/// Also finds materials by the names that MakeNamedMaterial defines later in the file.
 std::shared_ptr<Material> SceneResolver::material(const std::string& name, const Location& where) {
   std::vector<std::string_view> names;
   for (size_t i = 0; i < description_.materials.size(); ++i) {
@@ -168,6 +172,7 @@ std::shared_ptr<Material> SceneResolver::material(const std::string& name, const
   fail_unknown("material", name, names, where);
 }
 
+/// Creates the material on first use.
 std::shared_ptr<Material> SceneResolver::material(size_t index) {
   if (const auto it = materials_.find(index); it != materials_.end()) {
     pass_on(it->second.needs_details);
@@ -189,8 +194,8 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
   return materials_.emplace(index, made).first->second.material;
 }
 
-/// Tables that end within the visible are 0 beyond, as in pbrt-v4; what may not be 0, such as an index of refraction,
-/// keeps its last value.
+/// Extends a table that ends within the visible range: by 0 as in pbrt-v4, or by its last value if 0 is invalid, as for
+/// an index of refraction.
 SpectrumPtr SceneResolver::in_the_visible(SpectrumPtr s, const ParsedParam& p, SpectrumUse use) {
   const Beyond beyond = use == SpectrumUse::unbounded ? Beyond::held : Beyond::zero;
   const Interval data_nm = s->range_nm(), needed_nm = wavelengths_.range_nm();
@@ -213,7 +218,7 @@ void SceneResolver::warn_of_clamping(const ParsedParam& p, double most) {
        fmt::format("\"{}\" goes up to {:.6g}, a reflectance lies in 0 to 1: it is clamped", p.name, most));
 }
 
-/// A reflectance as pbrt-v4 takes it: channels above 1 are 1.
+/// Returns a reflectance with channels clamped to 1, as in pbrt-v4.
 Triple SceneResolver::clamped_rgb(const ParsedParam& p) {
   Triple rgb = rgb_of(p);
   const double most = std::max({rgb[0], rgb[1], rgb[2]});
@@ -223,6 +228,7 @@ Triple SceneResolver::clamped_rgb(const ParsedParam& p) {
   return rgb;
 }
 
+/// Converts the value by type: rgb, blackbody, a number, sampled pairs, a name, or a file.
 SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
   const bool emission = use == SpectrumUse::illuminant;
   SpectrumPtr s;

@@ -15,17 +15,16 @@ namespace frond {
 struct ColorSpace;
 class NormalBend;
 
-/// A material of the description.
+/// A material created from the description.
 struct MadeMaterial {
   std::shared_ptr<Material> material;
-  bool needs_details = false;              ///< it, or a texture of it, reads details of its hits
-  std::shared_ptr<const NormalBend> bend;  ///< nullptr: normals are the surface's own
+  bool needs_details = false;              ///< the material or one of its textures reads derivatives of hits
+  std::shared_ptr<const NormalBend> bend;  ///< normal or bump map; nullptr: none
 };
 
-/// Looks up what parameters refer to: textures and materials by name, spectra by value, name or file. Things are made
-/// when first asked for. A table that
-/// ends within the visible is continued there, with a warning; a spectrum that does not reach the render's wavelengths
-/// even so is an error at its parameter.
+/// Resolves references of parameters: textures and materials by name, spectra by value, name or file. Objects are
+/// created on first use. A spectrum that ends within the visible range is extended with a warning; one that does not
+/// cover the render's wavelengths even then is an error at its parameter.
 class SceneResolver final : public ParamResolver {
  public:
   SceneResolver(const SceneSettings& description, const Registry& registry, const WavelengthStrategy& wavelengths,
@@ -37,19 +36,19 @@ class SceneResolver final : public ParamResolver {
   std::shared_ptr<Material> material(const std::string& name, const Location& where) override;
   SpectrumPtr spectrum(const ParsedParam& param, SpectrumUse use) override;
   std::filesystem::path file(const std::string& name, const Location& where) override;
-  /// Once, however often the same plugin is made.
+  /// Logs each warning once, even if a plug-in is created repeatedly.
   void warn(const Location& where, std::string_view message) override;
 
-  /// Without its bend, which is with those of `materials`.
+  /// Returns the material without its normal map, which is in `materials`.
   std::shared_ptr<Material> material(size_t index);
-  /// All that have been made, each once, by their index in the description.
+  /// All materials created so far, by index in the description.
   const std::map<size_t, MadeMaterial>& materials() const { return materials_; }
 
  private:
   template <class Texture>
   struct MadeTexture {
     std::shared_ptr<const Texture> texture;
-    bool needs_details;  ///< it, or one that it is made of
+    bool needs_details;  ///< the texture or one of its inputs
   };
   template <class Texture>
   using MadeTextures = std::map<std::string, MadeTexture<Texture>>;
@@ -76,9 +75,9 @@ class SceneResolver final : public ParamResolver {
   MadeTextures<SpectrumTexture> spectrum_textures_;
   std::map<size_t, MadeMaterial> materials_;
   SharedWork shared_;                  ///< of textures
-  std::set<std::string> in_progress_;  ///< textures and materials being made: a second visit is a cycle
+  std::set<std::string> in_progress_;  ///< textures and materials being created: a second visit is a cycle
   std::set<std::string> warned_;
-  std::vector<bool> needs_details_;  ///< of what is being made, level by level
+  std::vector<bool> needs_details_;  ///< for the objects being created, by nesting level
 };
 
 }  // namespace frond

@@ -14,7 +14,7 @@
 namespace frond {
 namespace {
 
-/// What the film says of its responses, which wavelengths are weighed by, where that is not the eye as it is.
+/// Returns the film's sensor parameters, which weight wavelengths instead of the eye's response.
 std::vector<ParsedParam> sensor_params(const SceneSettings& description) {
   using Values = decltype(ParsedParam::values);
   std::vector<ParsedParam> params;
@@ -25,6 +25,7 @@ std::vector<ParsedParam> sensor_params(const SceneSettings& description) {
   return params;
 }
 
+/// Parses the parameters of a wavelength strategy with the types of its declaration.
 ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, const Registry& registry) {
   const PluginText choice = parse_plugin_text(text, where);
   ParsedPlugin plugin{choice.name, where, {}};
@@ -32,7 +33,7 @@ ParsedPlugin wavelengths_plugin(const std::string& text, const Location& where, 
   return plugin;
 }
 
-/// The strategy that a PluginText names, with what the film says of its responses.
+/// Creates the strategy of a PluginText with the film's sensor.
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, const Location& where,
                                                      const SceneSettings& description, const Registry& registry) {
   OptionResolver resolver(description);
@@ -43,6 +44,7 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const std::string& text, co
   return made_by(info, where, [&] { return info.make(Params(info, plugin, resolver)); });
 }
 
+/// A material with parameters of type material mixes others.
 bool is_mixture(const MaterialInfo& info) {
   return std::any_of(info.params.begin(), info.params.end(),
                      [](const Param& p) { return p.kind == ParamKind::material; });
@@ -50,14 +52,15 @@ bool is_mixture(const MaterialInfo& info) {
 
 }  // namespace
 
-/// Turns the description into a scene, in the order of what depends on what. After an error it goes on with what does
-/// not depend on it; all are thrown together.
+/// Builds the scene from the description in order of dependency. After an error it continues with independent objects,
+/// and throws all errors together.
 class SceneBuilder {
  public:
   SceneBuilder(Scene& scene, const SceneSettings& settings, const Registry& registry, ThreadPool& pool, const Log& log,
                const std::filesystem::path& cache)
       : scene_(scene), description_(settings), registry_(registry), pool_(pool), log_(log), cache_(cache) {}
 
+  /// Builds a scene. `other` may be nullptr.
   void build(const SceneDescription& description, const Scene* other, SharedWork& shared) {
     if (other) return build(*other, shared);
     const auto resolver = build_settings();
@@ -66,7 +69,7 @@ class SceneBuilder {
     finish(*resolver, shared);
   }
 
-  /// All that can be wrong in these shapes and what they are made of, also in what nothing is made of.
+  /// Checks shapes and everything that the description declares, used or not.
   void check(const SceneDescription& description) {
     const auto resolver = build_settings();
     bind_all(*resolver);
@@ -76,7 +79,7 @@ class SceneBuilder {
   }
 
  private:
-  /// With what stands in the other, and as much of what that is made of as is the same.
+  /// Builds a scene that shares the geometry of `other`, and its equal lights and materials.
   void build(const Scene& other, SharedWork& shared) {
     const auto resolver = build_settings();
     problems_.check();
@@ -100,6 +103,7 @@ class SceneBuilder {
     finish(*resolver, shared);
   }
 
+  /// Builds everything that is located in the scene.
   void build_world(const SceneDescription& description, SceneResolver& resolver) {
     check_declarations(resolver);
     build_lights(resolver);
@@ -108,7 +112,7 @@ class SceneBuilder {
     build_area_lights(resolver);
   }
 
-  /// What has no wavelengths cannot be bound.
+  /// Returns the resolver; nullptr if the wavelengths are invalid, because parameters cannot be bound without them.
   std::unique_ptr<SceneResolver> build_settings() {
     problems_.attempt([this] { build_options(); });
     if (!scene_.wavelengths_) problems_.check();
@@ -117,6 +121,7 @@ class SceneBuilder {
     return resolver;
   }
 
+  /// Prepares the materials, which may compute tables, and fills the lookups by material index.
   void finish(SceneResolver& resolver, SharedWork& shared) {
     const Preparation preparation{*scene_.wavelengths_, pool_, log_, cache_, &shared};
     for (const auto& [place, made] : resolver.materials()) {
@@ -149,7 +154,7 @@ class SceneBuilder {
     problems_.attempt([&] { Params(table.get(plugin.name, plugin.where), plugin, resolver); });
   }
 
-  /// Also of what no shape uses: a name or parameter that is wrong is told at once.
+  /// Checks names and parameters of all declarations, including those that no shape uses.
   void check_declarations(SceneResolver& resolver) {
     for (const TextureDescription& t : description_.textures) {
       if (t.value == TextureDescription::Value::real)
@@ -164,7 +169,7 @@ class SceneBuilder {
     for (const ParsedPlugin& light : description_.area_lights) check(registry_.area_lights, light, resolver);
   }
 
-  /// Also what nothing is made of.
+  /// Creates all materials and textures, including unused ones.
   void bind_all(SceneResolver& resolver) {
     for (const TextureDescription& t : description_.textures)
       problems_.attempt([&] {
@@ -183,6 +188,7 @@ class SceneBuilder {
       });
   }
 
+  /// Reads Options, which later steps depend on.
   void build_options() {
     const SceneOptions options = read_options(description_, log_);
     scene_.has_pixel_jitter_ = options.has_pixel_jitter;
@@ -200,7 +206,7 @@ class SceneBuilder {
         log_.warn(of_film.where, fmt::format("\"{}\" has no effect on wavelengths \"{}\"", of_film.name, info.name));
   }
 
-  /// Lights that stand in the scene would have to be there again too.
+  /// Throws InputError for lights at finite positions in a periodic scene, because they would have to be repeated.
   void check_period() const {
     if (!period_ || !scene_.lights_) return;
     for (const Light* light : scene_.lights_->all)
@@ -211,6 +217,7 @@ class SceneBuilder {
       }
   }
 
+  /// Repeats the geometry, if there is a period.
   void build_tiling() {
     if (!period_) return;
     check_period();
@@ -218,13 +225,14 @@ class SceneBuilder {
     scene_.tiling_.emplace(*period_, scene_.geometry_->bounds());
   }
 
+  /// Builds film, camera, filter, sampler and integrator.
   void build_view(SceneResolver& resolver) {
     CameraPlacement placement{description_.camera_from_world.inverse(), 0, 0};
     const bool has_film = problems_.attempt([&] {
       scene_.film_ = Scene::film_settings(description_, registry_, log_);
       placement.width = scene_.film_.width, placement.height = scene_.film_.height;
     });
-    // A camera's frame hangs on the film's shape: without one only its parameters can be looked at.
+    // A camera depends on the film's aspect ratio. Without a film, only its parameters are checked.
     if (has_film)
       problems_.attempt([&] {
         scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
@@ -242,6 +250,7 @@ class SceneBuilder {
     problems_.attempt([this] { check_filter(); });
   }
 
+  /// A camera with unrelated pixels requires a filter that stays within a pixel.
   void check_filter() const {
     if (scene_.camera_->pixels_are_apart() && !scene_.filter_->stays_in_pixel())
       fail(description_.filter.where.file ? description_.filter.where : description_.camera.where,
@@ -250,7 +259,7 @@ class SceneBuilder {
            description_.filter.name);
   }
 
-  /// Embree takes no ray whose numbers are too large; the film's corners and the lens's rim have the largest.
+  /// Embree rejects rays with large coordinates. The film's corners and the lens's edge have the largest.
   void check_camera(const FilmSettings& film) const {
     constexpr float kFarthest = 1e12f;
     const auto within = [](const Vec3& v, float limit) {
@@ -261,11 +270,12 @@ class SceneBuilder {
         for (const Vec2 lens : {Vec2{0, 0.5f}, Vec2{1, 0.5f}, Vec2{0.5f, 0}, Vec2{0.5f, 1}}) {
           const Ray ray = scene_.camera_->ray({x, y}, lens);
           if (!within(ray.o, kFarthest) || !within(ray.d, 2) || ray.d == Vec3{})
-            fail(description_.camera.where, "this camera stands or reaches out of bounds: {:g} units at most",
+            fail(description_.camera.where, "this camera is out of bounds: {:g} units from the origin at most",
                  kFarthest);
         }
   }
 
+  /// Lights that fail are reported together.
   void build_lights(SceneResolver& resolver) {
     for (const LightDescription& light : description_.lights)
       problems_.attempt(
@@ -273,7 +283,7 @@ class SceneBuilder {
   }
 
   const Light* add(std::unique_ptr<Light> light, const Location& where) {
-    // A single one that is none would leave nothing to the others, which are chosen by their share.
+    // One light of infinite or NaN power would break the selection of lights by power.
     if (const double power = light->power(1); !(std::isfinite(power) && power >= 0))
       fail(where, "this light has the power {}, which is not possible", power);
     const Light* const added = light.get();
@@ -282,7 +292,7 @@ class SceneBuilder {
     return added;
   }
 
-  /// One for each surface that gives off light. There are no lights after these.
+  /// Creates a light for each emissive surface. Must be called last.
   void build_area_lights(SceneResolver& resolver) {
     emissions_.resize(description_.area_lights.size());
     for (const Surface& surface : scene_.geometry_->surfaces()) {
@@ -294,17 +304,19 @@ class SceneBuilder {
     scene_.lights_ = std::move(lights_);
   }
 
-  /// What a directive says, for all of its shapes: images are read and spectra fitted once.
+  /// Returns the emission of a directive. It is shared by all of its shapes, so that images are read and spectra fitted
+  /// once.
   const AreaEmission& emission_of(size_t place, SceneResolver& resolver) {
     if (!emissions_[place]) emissions_[place] = make(registry_.area_lights, description_.area_lights[place], resolver);
     return *emissions_[place];
   }
 
+  /// Creates one light for the surface, or one for each face if the directive states a power.
   void build_area_light(const Surface& surface, SceneResolver& resolver, SurfaceLights& of_surface) {
     const AreaEmission& emission = emission_of(*surface.area_light, resolver);
     const Location& where = description_.area_lights[*surface.area_light].where;
     const auto add_over = [&](std::unique_ptr<const EmittingSurface> emitting) {
-      // Lights divide by it.
+      // Lights divide by the area.
       if (const double area = emitting->area(); !(std::isfinite(area) && area > 0))
         fail(where, "an area light needs a surface with an area, this one has {}", area);
       auto light = made_by(registry_.area_lights.get(description_.area_lights[*surface.area_light].name, where), where,
@@ -318,7 +330,7 @@ class SceneBuilder {
       of_surface.whole = add_over(std::make_unique<ShapeEmitter>(surface));
       return;
     }
-    log_.warn(where, fmt::format("each of the shape's {} triangles or patches gives off this \"power\", as in pbrt-v4: "
+    log_.warn(where, fmt::format("each of the shape's {} triangles or patches emits this \"power\", as in pbrt-v4: "
                                  "all of them together {} times as much",
                                  faces, faces));
     of_surface.by_primitive.resize(primitives_of(surface.geometry));
@@ -331,7 +343,7 @@ class SceneBuilder {
   }
 
   Scene& scene_;
-  std::optional<uint64_t> seed_;  ///< empty: the sampler's own
+  std::optional<uint64_t> seed_;  ///< empty: the sampler's seed
   std::optional<Vec2> period_;
   Location period_where_;
   bool filters_textures_ = true;
@@ -342,10 +354,11 @@ class SceneBuilder {
   const Log& log_;
   const std::filesystem::path& cache_;
   std::shared_ptr<LightTable> lights_ = std::make_shared<LightTable>();
-  std::map<const Light*, Location> light_where_;          ///< where there is a period
-  std::vector<std::unique_ptr<AreaEmission>> emissions_;  ///< by area light of the description; made when needed
+  std::map<const Light*, Location> light_where_;          ///< only for periodic scenes
+  std::vector<std::unique_ptr<AreaEmission>> emissions_;  ///< by index of the area light; created on first use
 };
 
+/// The index identifies the light for light samplers.
 void LightTable::add(std::unique_ptr<Light> light) {
   light->set_index(int(all.size()));
   all.push_back(light.get());
@@ -360,6 +373,7 @@ bool Scene::intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const {
   return true;
 }
 
+/// A periodic scene traces rays one by one, because they pass different cells.
 uint32_t Scene::intersect(const RayPacket& packet, SurfacePoint* points) const {
   if (tiling_) return World::intersect(packet, points);
   std::array<GeometryHit, RayPacket::kWidth> at;
@@ -369,6 +383,7 @@ uint32_t Scene::intersect(const RayPacket& packet, SurfacePoint* points) const {
   return hits;
 }
 
+/// Resolves the indices of a hit to material and light.
 void Scene::describe(const GeometryHit& at, SurfacePoint& point) const {
   point.material = material_at_[at.material];
   point.light = at.surface ? lights_->of_surface[*at.surface].at(at.primitive) : nullptr;
@@ -377,11 +392,13 @@ void Scene::describe(const GeometryHit& at, SurfacePoint& point) const {
   if (is_detailed_[at.material]) add_details(at.material, point.hit);
 }
 
+/// Sets the texture footprint, then applies a normal or bump map, which may use textures.
 void Scene::add_details(uint32_t material, Hit& hit) const {
   footprint_.set(hit);
   if (bend_at_[material]) bend_at_[material]->bend(hit);
 }
 
+/// In a periodic scene, searches the cells along the ray for the nearest hit.
 bool Scene::meets(const Ray& ray, uint64_t key, GeometryHit& nearest, Hit& hit) const {
   if (!tiling_) return geometry_->intersect(ray, key, {is_detailed_.data()}, nearest, hit);
   float distance = INFINITY;
@@ -419,9 +436,10 @@ std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& descri
   return make_wavelengths(options.wavelengths, options.wavelengths_where, description, registry);
 }
 
+/// A material can be tested for is_leaf only after it has been created.
 std::vector<size_t> Scene::leaf_materials(const SceneSettings& description, const Registry& registry) {
   const auto wavelengths =
-      make_wavelengths("smpte", {}, description, registry);  // what is a leaf does not hang on them
+      make_wavelengths("smpte", {}, description, registry);  // whether a material is a leaf does not depend on them
   SceneResolver resolver(description, registry, *wavelengths);
   std::vector<size_t> leaves;
   for (size_t i = 0; i < description.materials.size(); ++i) {
@@ -438,6 +456,7 @@ Scene::Scene(const SceneDescription& description, const Registry& registry, Thre
   SceneBuilder(*this, description, registry, pool, log, cache).build(description, other, shared ? *shared : own);
 }
 
+/// Builds into a scene that is discarded.
 void Scene::check(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log) {
   Scene scene;
   SceneBuilder(scene, description, registry, pool, log, {}).check(description);

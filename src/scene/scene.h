@@ -16,52 +16,51 @@
 
 namespace frond {
 
-/// The strategy that the description's options name, with its parameters as a scene file has them. Throws InputError.
+/// Returns the wavelength strategy of the description's options, with its parameters. Throws InputError.
 ParsedPlugin wavelengths_plugin(const SceneSettings& description, const Registry& registry);
 
-/// The strategy itself. Throws InputError.
+/// Returns the wavelength strategy object. Throws InputError.
 std::unique_ptr<WavelengthStrategy> make_wavelengths(const SceneSettings& description, const Registry& registry);
 
-/// Of a surface: the light that all of it is, or one for each of its primitives.
+/// Lights of a surface: one for the whole surface, or one for each primitive.
 struct SurfaceLights {
   const AreaLight* whole = nullptr;
   std::vector<const AreaLight*> by_primitive = {};
 
-  /// nullptr: it gives off none.
+  /// Returns nullptr if the primitive emits no light.
   const AreaLight* at(uint32_t primitive) const { return by_primitive.empty() ? whole : by_primitive[primitive]; }
 };
 
-/// What gives off light in a scene.
+/// All lights of a scene.
 struct LightTable {
   std::vector<std::unique_ptr<Light>> owned;
   std::vector<const Light*> all;
-  std::vector<const EnvironmentLight*> environment;  ///< those that surround the scene
-  std::vector<SurfaceLights> of_surface;             ///< by Geometry::surfaces
+  std::vector<const EnvironmentLight*> environment;  ///< the infinite ones among them
+  std::vector<SurfaceLights> of_surface;             ///< by index in Geometry::surfaces
 
   void add(std::unique_ptr<Light> light);
 };
 
-/// A scene ready to be rendered: a geometry, and what the things in it are made of.
+/// A scene ready to be rendered: geometry, materials, lights, camera, film, sampler and integrator.
 class Scene final : public World {
  public:
-  /// What the scene says of its image, half of it where a first look will do; throws InputError.
+  /// Returns the film's settings, at half resolution for a preview. Throws InputError.
   static FilmSettings film_settings(const SceneSettings& description, const Registry& registry,
                                     const Log& log = silent_log());
 
-  /// Which of the description's materials are leaves (Material::is_leaf), by index. A mixture of others is none: its
-  /// parts stand for themselves. Throws InputError.
+  /// Returns the indices of the materials that are leaves (Material::is_leaf). A mixture is not a leaf, but the
+  /// materials that it mixes may be. Throws InputError.
   static std::vector<size_t> leaf_materials(const SceneSettings& description, const Registry& registry);
 
-  /// `cache`: folder of tables that are computed here; empty: no files are kept.
-  /// `other`: a scene in which the same stands: the geometry is then that one, whatever shapes are described, and so
-  /// are lights and materials as far as they do not differ. The description is the other's but for its materials,
-  /// wavelengths, integrator and view. `shared` holds what such scenes have in common. Throws InputError.
+  /// `cache`: folder for computed tables; empty: none are stored. `other`: a scene that differs only in materials,
+  /// wavelengths, integrator and view; its geometry is shared regardless of the described shapes, and so are equal
+  /// lights and materials. `shared` holds work common to such scenes. Throws InputError.
   Scene(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log,
         const std::filesystem::path& cache = {}, const Scene* other = nullptr, SharedWork* shared = nullptr);
   ~Scene() override;
 
-  /// Loads all that the scene names, whether a shape needs it or not, and makes nothing of it. Throws InputError, with
-  /// all that is wrong.
+  /// Loads everything that the scene names, whether used or not, without building it. Throws InputError with all
+  /// errors.
   static void check(const SceneDescription& description, const Registry& registry, ThreadPool& pool, const Log& log);
 
   bool intersect(const Ray& ray, uint64_t key, SurfacePoint& point) const override;
@@ -80,16 +79,16 @@ class Scene final : public World {
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
   const Geometry& geometry() const { return *geometry_; }
-  /// Along x and y, after which the scene is repeated; empty: it is not.
+  /// Period along x and y; nullopt: the scene is not repeated.
   std::optional<Vec2> period() const { return period_; }
-  /// The material of this index in the description; nullptr where nothing is made of it.
+  /// Returns the material with this index in the description; nullptr if it is unused.
   const Material* material(size_t index) const { return material_at_[index]; }
   int samples_per_pixel() const { return samples_per_pixel_; }
-  /// Else all samples lie at the pixels' centres and the lens's.
+  /// If false, all samples are at the centres of pixels and lens.
   bool has_pixel_jitter() const { return has_pixel_jitter_; }
-  /// Else all samples have the same wavelengths.
+  /// If false, all samples have the same wavelengths.
   bool has_wavelength_jitter() const { return has_wavelength_jitter_; }
-  /// Of all random numbers.
+  /// Seed of all random numbers.
   uint64_t seed() const { return sampler_->seed(); }
 
  private:
@@ -107,11 +106,11 @@ class Scene final : public World {
   std::unique_ptr<Sampler> sampler_;
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<Integrator> integrator_;
-  std::map<size_t, MadeMaterial> materials_;         ///< by their index in the description
-  std::map<size_t, ParsedPlugin> material_plugins_;  ///< what they were made from
-  std::vector<const Material*> material_at_;         ///< `materials_` for hits; nullptr where nothing is made
-  std::vector<uint8_t> is_detailed_;                 ///< by index: whether hits need details
-  std::vector<const NormalBend*> bend_at_;           ///< by index; nullptr: none
+  std::map<size_t, MadeMaterial> materials_;         ///< by index in the description
+  std::map<size_t, ParsedPlugin> material_plugins_;  ///< the plug-ins that they were created from
+  std::vector<const Material*> material_at_;         ///< as `materials_`, for hits; nullptr: unused
+  std::vector<uint8_t> is_detailed_;                 ///< by material index: whether hits need derivatives
+  std::vector<const NormalBend*> bend_at_;           ///< by material index; nullptr: none
   Footprint footprint_;
   std::shared_ptr<const LightTable> lights_;
   std::shared_ptr<const Geometry> geometry_;

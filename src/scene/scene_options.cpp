@@ -20,45 +20,57 @@ constexpr Param kOptionParams[] = {
     {.name = "wavelengths",
      .kind = ParamKind::string,
      .default_value = std::string_view("hero"),
-     .doc = "Wavelength strategy."},
+     .doc = "Wavelength strategy: hero, meyer, smpte or bands, with parameters."},
     {.name = "period",
      .kind = ParamKind::real,
      .range = {1e-6, 1e9},
-     .doc = "Two lengths, after which the scene is repeated along x and y.",
+     .doc = "Two lengths along x and y after which the scene is repeated periodically.",
      .list = true},
     {.name = "disablepixeljitter",
      .kind = ParamKind::boolean,
      .default_value = false,
-     .doc = "All samples at the pixels' centres and the lens's."},
+     .doc = "Sample only the centres of pixels and lens."},
     {.name = "disabletexturefiltering",
      .kind = ParamKind::boolean,
      .default_value = false,
-     .doc = "Textures are read at points."},
+     .doc = "Point-sample textures, without filtering."},
     {.name = "disablewavelengthjitter",
      .kind = ParamKind::boolean,
      .default_value = false,
-     .doc = "All samples see the same wavelengths."},
-    {.name = "forcediffuse", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "pixelstats", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "wavefront", .kind = ParamKind::boolean, .default_value = false, .doc = "pbrt's; has no effect."},
-    {.name = "displacementedgescale", .kind = ParamKind::real, .default_value = 1.0, .doc = "pbrt's; has no effect."},
+     .doc = "Use the same wavelengths for all samples."},
+    {.name = "forcediffuse",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "Accepted for compatibility with pbrt-v4; ignored with a warning."},
+    {.name = "pixelstats",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "Accepted for compatibility with pbrt-v4; ignored with a warning."},
+    {.name = "wavefront",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "Accepted for compatibility with pbrt-v4; ignored with a warning."},
+    {.name = "displacementedgescale",
+     .kind = ParamKind::real,
+     .default_value = 1.0,
+     .doc = "Accepted for compatibility with pbrt-v4; ignored with a warning."},
     {.name = "msereferenceimage",
      .kind = ParamKind::string,
      .default_value = std::string_view(),
-     .doc = "pbrt's; has no effect: frond difference compares images."},
+     .doc = "Accepted for compatibility with pbrt-v4; ignored with a warning. frond difference compares images."},
     {.name = "msereferenceout",
      .kind = ParamKind::string,
      .default_value = std::string_view(),
-     .doc = "pbrt's; has no effect: frond difference compares images."},
+     .doc = "Accepted for compatibility with pbrt-v4; ignored with a warning. frond difference compares images."},
     {.name = "rendercoordsys",
      .kind = ParamKind::string,
      .default_value = std::string_view("cameraworld"),
-     .doc = "pbrt's; has no effect: it does not change the image.",
+     .doc = "Accepted for compatibility with pbrt-v4; ignored: the image does not depend on it.",
      .choices = kCoordSystems},
 };
 constexpr PluginInfo kOptions{"scene option", "Option", "Options of the whole render.", "", kOptionParams};
 
-/// Refuses names that are none.
+/// Throws InputError for an unknown option, with the nearest name.
 void check_names(const std::vector<ParsedParam>& options) {
   std::vector<std::string_view> names;
   for (const Param& p : kOptionParams) names.push_back(p.name);
@@ -93,6 +105,7 @@ SceneOptions read_options(const SceneSettings& description, const Log& log) {
   return options;
 }
 
+/// Overrides the scene's own option.
 void set_wavelengths(SceneSettings& description, const std::string& text) {
   set_param(description.options, {"string", "wavelengths", {}, {}, std::vector<std::string>{text}});
 }

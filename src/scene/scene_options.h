@@ -8,12 +8,12 @@
 
 namespace frond {
 
-/// What a scene's `Option`s say, and what stands over them.
+/// Values of a scene's `Option` directives, with overrides.
 struct SceneOptions {
-  std::optional<uint64_t> seed;  ///< empty: the sampler's own
+  std::optional<uint64_t> seed;  ///< empty: the sampler's seed
   std::string wavelengths;       ///< a PluginText
   Location wavelengths_where;
-  std::optional<Vec2> period;  ///< empty: the scene is not repeated
+  std::optional<Vec2> period;  ///< empty: no repetition
   Location period_where;
   bool has_pixel_jitter = true, has_wavelength_jitter = true, filters_textures = true;
 };
@@ -21,10 +21,10 @@ struct SceneOptions {
 /// Throws InputError.
 SceneOptions read_options(const SceneSettings& description, const Log& log = silent_log());
 
-/// `text`: a PluginText.
+/// Sets the wavelength strategy. `text`: a PluginText.
 void set_wavelengths(SceneSettings& description, const std::string& text);
 
-/// Binding of what can refer to files, but to nothing else of the scene: options, wavelengths, films.
+/// Resolver for plug-ins that may refer to files but not to other objects of the scene: options, wavelengths, films.
 class OptionResolver final : public ParamResolver {
  public:
   explicit OptionResolver(const SceneSettings& description, const Log& log = silent_log())

@@ -3,11 +3,11 @@
 namespace frond {
 namespace {
 
-// Exact by the definition of the SI (2019): h c / k and, from it, Wien's displacement constant.
+// Exact values by the definition of the SI (2019): c2 = h c / k and, from it, Wien's displacement constant.
 constexpr double kSecondRadiation_nm_K = 1.438776877e7;
 constexpr double kWien_nm_K = 2.897771955e6;
 
-/// Spectral radiance up to a constant factor (Planck 1901).
+/// Returns the spectral radiance of a blackbody up to a constant factor (Planck 1901).
 double planck(double lambda_nm, double kelvin) {
   const double l = lambda_nm / 1000;
   return 1 / (l * l * l * l * l * std::expm1(kSecondRadiation_nm_K / (lambda_nm * kelvin)));

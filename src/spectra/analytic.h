@@ -8,10 +8,10 @@
 
 namespace frond {
 
-/// Where a formula holds: every wavelength.
+/// Range (nm) of spectra that are given by a formula: every wavelength.
 inline constexpr Interval kEveryWavelength{1, std::numeric_limits<double>::infinity()};
 
-/// The same value at every wavelength (equal energy, as an emission).
+/// Constant spectrum: the same value at every wavelength (equal-energy spectrum if it is an emission).
 class ConstantSpectrum final : public Spectrum {
  public:
   explicit ConstantSpectrum(float value, Interval range_nm = kEveryWavelength) : value_(value), range_nm_(range_nm) {}
@@ -25,7 +25,7 @@ class ConstantSpectrum final : public Spectrum {
   Interval range_nm_;
 };
 
-/// Planck's law, scaled so that its maximum over all wavelengths is 1 (as pbrt-v4's "blackbody").
+/// Blackbody by Planck's law, scaled so that its maximum over all wavelengths is 1 (as pbrt-v4's "blackbody").
 class BlackbodySpectrum final : public Spectrum {
  public:
   /// Throws InputError unless the temperature lies in [100, 1e6] K.
@@ -38,7 +38,7 @@ class BlackbodySpectrum final : public Spectrum {
   double kelvin_, scale_;
 };
 
-/// Another spectrum times a number.
+/// Product of another spectrum and a constant.
 class ScaledSpectrum final : public Spectrum {
  public:
   ScaledSpectrum(SpectrumPtr base, double scale) : base_(std::move(base)), scale_(static_cast<float>(scale)) {}
@@ -52,7 +52,7 @@ class ScaledSpectrum final : public Spectrum {
   float scale_;
 };
 
-/// Another spectrum, no higher than 1.
+/// Minimum of another spectrum and 1, such as a reflectance that must conserve energy.
 class ClampedSpectrum final : public Spectrum {
  public:
   explicit ClampedSpectrum(SpectrumPtr base) : base_(std::move(base)) {}

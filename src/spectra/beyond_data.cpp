@@ -5,6 +5,7 @@
 namespace frond {
 namespace {
 
+/// Extension of a spectrum to kCieRange_nm.
 class BeyondData final : public Spectrum {
  public:
   BeyondData(SpectrumPtr base, Beyond beyond)

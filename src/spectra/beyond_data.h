@@ -4,13 +4,14 @@
 
 namespace frond {
 
-/// What holds in the visible where a spectrum's data do not reach.
+/// Value of a spectrum at visible wavelengths for which it has no data.
 enum class Beyond : uint8_t {
-  zero,  ///< as pbrt-v4 reads tables
-  held,  ///< the value at the nearest end
+  zero,  ///< 0, as in pbrt-v4's tables
+  held,  ///< the value at the nearest end of the data
 };
 
-/// The spectrum, known over kCieRange_nm at least: beyond its data is what is said. The same one where its data reach.
+/// Returns the spectrum extended to cover kCieRange_nm, with values beyond its data according to `beyond`. Returns the
+/// spectrum itself if its data cover kCieRange_nm.
 SpectrumPtr known_in_the_visible(SpectrumPtr s, Beyond beyond);
 
 }  // namespace frond

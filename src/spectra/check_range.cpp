@@ -7,7 +7,7 @@ bool reaches(Interval data_nm, Interval needed_nm) {
   return data_nm.contains(needed_nm.min) && data_nm.contains(needed_nm.max);
 }
 
-/// `advice` ends the message.
+/// Throws the error; `advice` is the end of its message.
 [[noreturn]] void refuse(Interval data_nm, Interval needed_nm, const Location& where, std::string_view what,
                          std::string_view advice) {
   if (needed_nm.min == needed_nm.max)

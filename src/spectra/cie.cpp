@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kFirst_nm = 360, kStep_nm = 5;
 
+/// Row of the table: colour matching functions and the spectrum of D65.
 struct Row {
   double xbar, ybar, zbar, d65;
 };
@@ -132,7 +133,8 @@ Triple cie_xyz(double lambda_nm) {
 }
 
 Triple to_xyz(const Spectrum& s) {
-  // Gauss's rule with two points a nanometre is exact for the product of tables whose points are whole nanometres.
+  // Gauss-Legendre quadrature with two points in each nanometre is exact for the product of two functions that are
+  // linear between whole nanometres.
   const double offset = 0.5 / std::sqrt(3.0);
   Triple sum{};
   for (int nm = int(kCieRange_nm.min); nm < int(kCieRange_nm.max); ++nm)

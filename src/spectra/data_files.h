@@ -4,8 +4,8 @@
 
 namespace frond {
 
-/// Files of src/spectra/data, put into the library by CMake.
-extern const std::string_view solar_csv;
-extern const std::string_view named_csv;
+// Files of src/spectra/data, which CMake embeds in the library. Lines that begin with # are comments with the sources.
+extern const std::string_view solar_csv;  ///< wavelength (nm), extraterrestrial, global, direct (W m^-2 nm^-1)
+extern const std::string_view named_csv;  ///< blocks, each with a line of column names that begins with "nm,"
 
 }  // namespace frond

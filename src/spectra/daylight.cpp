@@ -10,11 +10,13 @@
 namespace frond {
 namespace {
 
-constexpr double kRevised = 1.4388 / 1.4380;  // of Planck's second constant, since the series was defined
+/// Revision of Planck's second radiation constant c2 since the CIE defined the daylight illuminants.
+constexpr double kRevised = 1.4388 / 1.4380;
 
 }  // namespace
 
 SpectrumPtr cie_daylight(double kelvin, DaylightDigits digits) {
+  // Chromaticity on the daylight locus, and the factors M1 and M2 of the components S1 and S2 (CIE 15:2004, 3.1).
   const double k = 1e3 / kelvin;
   const double x = kelvin <= 7000 ? ((-4.6070 * k + 2.9678) * k + 0.09911) * k + 0.244063
                                   : ((-2.0064 * k + 1.9018) * k + 0.24748) * k + 0.237040;

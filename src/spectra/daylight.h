@@ -4,20 +4,22 @@
 
 namespace frond {
 
-/// Of the shares of daylight's components.
+/// Precision of M1 and M2, the factors of daylight's components S1 and S2.
 enum class DaylightDigits {
-  three,  ///< after the point, as the CIE's own tables of its illuminants have them
-  all,
+  three,  ///< rounded to three decimals, as in the CIE's tables of its illuminants
+  all,    ///< not rounded
 };
 
-/// Daylight of a correlated colour temperature from 4000 to 25000 K (CIE 15:2004, 3.1), 300 to 830 nm: 100 at 560 nm.
+/// Returns CIE daylight of a correlated colour temperature from 4000 to 25000 K (CIE 15:2004, 3.1), 300 to 830 nm. Its
+/// value at 560 nm is 100.
 SpectrumPtr cie_daylight(double kelvin, DaylightDigits digits);
 
-/// Of today's scale, for one by the constant c2 of 1931, 1.4380e-2 m K, by which illuminants have their names.
+/// Converts a colour temperature to the present scale (c2 = 1.4388e-2 m K) from that of 1931 (c2 = 1.4380e-2 m K),
+/// after which the CIE's illuminants are named: D65 has 6504 K.
 double kelvin_by_scale_of_1931(double kelvin);
 
-/// CIE daylight of a temperature by the scale of 1931, up to a factor; below 4000 K, where that is not defined, a
-/// blackbody, as pbrt-v4 has it. `kelvin` in [1000, 1e5].
+/// Returns CIE daylight of a temperature on the scale of 1931, up to a constant factor. Below 4000 K (present scale),
+/// where CIE daylight is not defined, it is a blackbody, as in pbrt-v4. `kelvin` in [1000, 1e5].
 SpectrumPtr daylight(double kelvin);
 
 }  // namespace frond

@@ -4,10 +4,10 @@
 
 namespace frond {
 
-/// Three numbers of one colour: XYZ or RGB.
+/// The three values of a colour: XYZ or RGB.
 using Triple = std::array<double, 3>;
 
-/// Rows of a 3x3 matrix that acts on columns.
+/// 3x3 matrix, stored by rows, that multiplies column vectors.
 struct Matrix3 {
   std::array<Triple, 3> row{};
 
@@ -27,7 +27,7 @@ struct Matrix3 {
   }
 };
 
-/// By cofactors; the determinant must not be 0.
+/// Returns the inverse by cofactors; the determinant must not be 0 (not checked).
 constexpr Matrix3 inverse(const Matrix3& m) {
   const auto cofactor = [&m](size_t i, size_t j) {
     const size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;

@@ -11,6 +11,7 @@
 namespace frond {
 namespace {
 
+/// Name of a spectrum that a function returns.
 struct Named {
   std::string_view name;
   SpectrumPtr (*get)();
@@ -36,7 +37,7 @@ constexpr Named kNamed[] = {{"glass-BAF10", glass_baf10},
                             {"stdillum-D75", d75},
                             {"stdillum-E", illuminant_e}};
 
-/// Those that are tables.
+/// Names of columns of src/spectra/data/named.csv.
 constexpr std::string_view kTables[] = {
     "metal-Ag-eta", "metal-Ag-k",     "metal-Al-eta", "metal-Al-k",    "metal-Au-eta", "metal-Au-k",     "metal-Cu-eta",
     "metal-Cu-k",   "metal-CuZn-eta", "metal-CuZn-k", "metal-MgO-eta", "metal-MgO-k",  "metal-TiO2-eta", "metal-TiO2-k",

@@ -8,10 +8,11 @@
 
 namespace frond {
 
-/// A spectrum by the name that pbrt-v4 gives it, or one that it has not (glass-SF5, which it calls glass-F5, and the
-/// like; stdillum-D55, -D75, -E; solar-*). Throws InputError that lists what there is.
+/// Returns the spectrum of a name: pbrt-v4's names, and in addition glass-SF5, -SF10, -SF11 (pbrt-v4's glass-F5, -F10,
+/// -F11), stdillum-D55, -D75, -E and solar-*. Throws InputError for an unknown name, with a suggestion. Thread-safe.
 SpectrumPtr named_spectrum(std::string_view name, const Location& where);
 
+/// Returns all names that named_spectrum accepts, sorted.
 std::vector<std::string_view> spectrum_names();
 
 }  // namespace frond

@@ -10,7 +10,7 @@
 namespace frond {
 namespace {
 
-/// Cuts off what comes before the separator, and returns it.
+/// Returns the text before the separator, and removes it and the separator from `text`.
 std::string_view cut(std::string_view& text, char separator) {
   const size_t end = text.find(separator);
   const std::string_view first = text.substr(0, end);
@@ -18,13 +18,14 @@ std::string_view cut(std::string_view& text, char separator) {
   return first;
 }
 
-/// Where a name stands in the line that begins a block; 0 where it does not.
+/// Returns the index of a name in the line of column names that begins a block; 0, the index of "nm", if it is absent.
 size_t place_in(std::string_view names, std::string_view name) {
   for (size_t i = 0; !names.empty(); ++i)
     if (cut(names, ',') == name) return i;
   return 0;
 }
 
+/// Number in column `index` of a line.
 double field(std::string_view line, size_t index) {
   for (size_t i = 0; i < index; ++i) cut(line, ',');
   const std::string_view text = cut(line, ',');

@@ -7,10 +7,12 @@
 
 namespace frond {
 
-/// A column of src/spectra/data/named.csv against its wavelengths.
+/// Returns a column of src/spectra/data/named.csv, by wavelength (nm). Throws std::logic_error if there is no such
+/// column.
 std::vector<SpectrumPoint> named_column(std::string_view name);
 
-/// The same as a spectrum. Where the table ends within kCieRange_nm its last value holds up to there, as in pbrt-v4.
+/// Returns the same column as a spectrum. A table that ends within kCieRange_nm is extended to the ends of that
+/// interval by its first and last value, as in pbrt-v4.
 SpectrumPtr named_table(std::string_view name);
 
 }  // namespace frond

@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kColumns = 4;  // wavelength_nm, extraterrestrial, global, direct
 
-/// The column against the wavelengths.
+/// Returns a column of solar.csv as a spectrum over the wavelengths in column 0.
 SpectrumPtr column(size_t index) {
   std::vector<SpectrumPoint> points;
   for (size_t begin = 0; begin < solar_csv.size();) {

@@ -9,11 +9,13 @@
 namespace frond {
 namespace {
 
+/// Number with its position in the file.
 struct Number {
   double value;
   Location where;
 };
 
+/// Skips a leading +, which std::from_chars does not accept.
 double parse_number(std::string_view word, const Location& where) {
   const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
   double value = 0;
@@ -22,6 +24,7 @@ double parse_number(std::string_view word, const Location& where) {
   return value;
 }
 
+/// Appends the numbers of a line; `where` has the line's number.
 void parse_line(std::string_view line, Location where, std::vector<Number>& numbers) {
   line = line.substr(0, line.find('#'));
   constexpr std::string_view kSpace = " \t\r\f\v";

@@ -11,7 +11,8 @@ bool is_constant(std::span<const SpectrumPoint> points) {
   return std::all_of(points.begin(), points.end(), [&](const auto& p) { return p.value == points[0].value; });
 }
 
-/// Longest table that make_tabulated spreads to 1 nm, so that a stray wavelength cannot take all memory.
+/// Longest wavelength of a table that make_tabulated resamples to 1 nm: limits the memory that a mistyped wavelength
+/// uses.
 constexpr double kLongestDense_nm = 10000;
 
 bool lies_on_whole_nanometres(std::span<const SpectrumPoint> points) {
@@ -45,6 +46,7 @@ TabulatedSpectrum::TabulatedSpectrum(std::span<const SpectrumPoint> points) {
 }
 
 float TabulatedSpectrum::at(float lambda_nm) const {
+  // Outside the points the value at the nearest end is returned, as Spectrum requires.
   const auto above = std::upper_bound(lambda_nm_.begin(), lambda_nm_.end(), lambda_nm);
   if (above == lambda_nm_.begin()) return values_.front();
   if (above == lambda_nm_.end()) return values_.back();

@@ -8,17 +8,17 @@
 
 namespace frond {
 
-/// One entry of a tabulated spectrum, and where a file has it.
+/// Entry of a tabulated spectrum.
 struct SpectrumPoint {
   double lambda_nm, value;
-  Location where = {};
+  Location where = {};  ///< position in the file, for error messages
 };
 
-/// Throws InputError unless there are two points at least, wavelengths are positive and ascend, and values are finite
-/// and not negative.
+/// Throws InputError at the position of the first fault unless there are at least two points, wavelengths are positive
+/// and strictly ascend, and values are finite and not negative.
 void check_points(std::span<const SpectrumPoint> points);
 
-/// Linear between its points, whatever their spacing.
+/// Spectrum that is linear between points of any spacing. A look-up is a binary search.
 class TabulatedSpectrum final : public Spectrum {
  public:
   /// Throws as check_points does.
@@ -31,10 +31,10 @@ class TabulatedSpectrum final : public Spectrum {
   std::vector<float> lambda_nm_, values_;
 };
 
-/// Linear between values that stand 1 nm apart: a look-up costs the same however long the table.
+/// Spectrum that is linear between values 1 nm apart. A look-up takes constant time, whatever the table's length.
 class DenseSpectrum final : public Spectrum {
  public:
-  /// `values` for first_nm, first_nm + 1, ...; two at least.
+  /// `values` at first_nm, first_nm + 1, ...; at least two.
   DenseSpectrum(int first_nm, std::vector<float> values);
   float at(float lambda_nm) const override {
     const float x = std::clamp(lambda_nm - first_nm_, 0.f, last_);
@@ -51,13 +51,14 @@ class DenseSpectrum final : public Spectrum {
   std::vector<float> values_;
 };
 
-/// `s` at each whole nanometre from first_nm to last_nm.
+/// Returns the values of `s` at each whole nanometre from first_nm to last_nm, inclusive.
 DenseSpectrum sample_densely(const Spectrum& s, int first_nm, int last_nm);
 
-/// The fastest spectrum that is exactly linear between the points. Throws as TabulatedSpectrum does.
+/// Returns the fastest spectrum that is exactly linear between the points: constant, dense (all wavelengths whole
+/// nanometres) or tabulated. Throws as check_points does.
 SpectrumPtr make_tabulated(std::span<const SpectrumPoint> points);
 
-/// The same from a flat list (wavelength, value, ...), as a scene file gives it at `where`.
+/// Returns the same from a flat list (wavelength, value, ...) of a scene file. Throws InputError at `where`.
 SpectrumPtr make_tabulated(std::span<const double> pairs, const Location& where);
 
 }  // namespace frond

@@ -7,30 +7,30 @@
 
 namespace frond {
 
-/// What one render of a pair has cost so far, on average of the two.
+/// Cost of one render, as the mean of the two.
 struct RenderCost {
   double wall_seconds = 0, cpu_seconds = 0, rays = 0;
 };
 
-/// The description's sampler, with a seed of its own.
+/// Returns the description's sampler with another seed.
 std::unique_ptr<Sampler> make_sampler(const SceneSettings& description, const Registry& registry,
                                       const WavelengthStrategy& wavelengths, uint64_t seed);
 
-/// The unit of films of a scene (FilmFormat).
+/// Returns the unit of a scene's films (FilmFormat), as an exponent of 2.
 int film_exponent(const Scene& scene);
 
-/// Two renders of one image with seeds of their own, which tell noise from bias. They can be continued to more
-/// samples at any time, and then hold the very sums of a render that had all of them at once.
+/// Two independent renders of one image, which separate noise from bias. They can be continued; the sums are then
+/// exactly those of an uninterrupted render.
 class PairedFilms {
  public:
-  /// By the description's sampler; films of the scene's wavelengths, with their colours as they are, in units of
+  /// Uses the description's sampler. Films have the scene's wavelengths, without colour conversion, in units of
   /// 2^exponent. `pixels`: as in a RenderJob.
   PairedFilms(const FilmSettings& film, int exponent, std::array<uint64_t, 2> seeds, const SceneSettings& description,
               const Registry& registry, const Scene& scene, std::vector<PixelPosition> pixels = {});
 
-  /// Up to so many samples a pixel; nothing where there are as many. `scene` is that of the constructor.
+  /// Continues to `samples` samples per pixel; does nothing if they are present. `scene` must be the constructor's.
   void advance_to(uint64_t samples, const Scene& scene, const ThreadPool& pool, Progress* progress);
-  /// Goes on from what was kept of these two renders.
+  /// Continues from a saved state of these two renders.
   void restore(std::array<Film, 2> films, uint64_t samples, const RenderCost& cost);
 
   uint64_t samples() const { return samples_; }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
   fail({}, "cannot write \"{}\": {}", path.string(), std::strerror(error));
 }
 
-/// Where a path leads: renaming onto a symbolic link would replace the link.
+/// Returns the target of a symbolic link, else the path: renaming a file to a link would replace the link.
 fs::path follow_links(const fs::path& path) {
   std::error_code error;
   const fs::path target = fs::canonical(path, error);
@@ -52,7 +52,7 @@ void NewFile::write(std::span<const unsigned char> bytes) {
 
 void NewFile::finish() {
   if (fsync(descriptor_) != 0) fail_to_write(target_, errno);
-  const int descriptor = descriptor_;
+  const int descriptor = descriptor_;  // close releases it even if it fails
   descriptor_ = -1;
   if (close(descriptor) != 0) fail_to_write(target_, errno);
   if (rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
@@ -69,7 +69,7 @@ void check_replaceable(const fs::path& path) {
     if (!fs::is_regular_file(target, error)) fail({}, "cannot write \"{}\": it is no regular file", path.string());
     if (access(target.c_str(), W_OK) != 0) fail_to_write(path, errno);
   }
-  const NewFile probe(target);
+  const NewFile probe(target);  // fails if no file can be created in the folder
 }
 
 void replace_file(const fs::path& path, std::span<const unsigned char> bytes) {

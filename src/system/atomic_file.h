@@ -5,25 +5,29 @@
 
 namespace frond {
 
-/// Refuses, by InputError, a path whose folder cannot take a new file, or which is something else than a regular file.
-/// Leaves nothing behind.
+/// Throws InputError if replace_file could not write to `path`: the folder does not exist or is not writable, or the
+/// path exists and is not a writable regular file. No file remains after the check.
 void check_replaceable(const std::filesystem::path& path);
 
-/// Puts `bytes` at `path`, whole or not at all: written under another name in the same folder, synchronised to the
-/// disk, renamed. A symbolic link is followed. Throws InputError with the system's reason; the old file is then
-/// untouched.
+/// Writes a file atomically: `bytes` are written to a temporary file in the same folder, synchronised to the disk and
+/// renamed to `path`. A symbolic link is followed. Throws InputError with the system's reason; an existing file is then
+/// unchanged.
 void replace_file(const std::filesystem::path& path, std::span<const unsigned char> bytes);
 
-/// The same for what is too large to be held in memory, piece by piece: the file is there when `finish` has returned.
+/// Writes a file atomically in several steps, for content that does not fit into memory. The file appears at its path
+/// when `finish` returns. All functions throw InputError with the system's reason.
 class NewFile {
  public:
+  /// Creates a temporary file in the folder of `path`.
   explicit NewFile(const std::filesystem::path& path);
-  /// Without `finish` nothing is left of it.
+  /// Deletes the temporary file unless `finish` has been called.
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
 
+  /// Appends the bytes.
   void write(std::span<const unsigned char> bytes);
+  /// Synchronises the file to the disk and renames it. No other function may be called afterwards.
   void finish();
 
  private:

@@ -16,7 +16,7 @@ std::string mismatch(const BuildRecord& record) {
            "headers that frond installs";
   std::set<std::string> others;
   for (const char* at = record.headers; at < record.headers_end;) {
-    const std::string_view entry(at);  // there are zeros between entries, as many as their alignment asks for
+    const std::string_view entry(at);  // entries are padded with zeros to their alignment
     at += entry.size() + 1;
     if (entry.empty()) continue;
     const std::string_view path = entry.substr(0, entry.find(' '));

@@ -11,13 +11,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// File with the time of its last use (its modification time).
 struct CachedFile {
   fs::path path;
   fs::file_time_type used;
   uintmax_t bytes;
 };
 
-/// The name is frond's own: the folder may be one that holds other things.
+/// Returns whether the name is one of this kind. The folder may contain other files, which must not be deleted.
 bool is_of(const CacheKind& kind, std::string_view file) {
   constexpr size_t kHashDigits = 16;
   if (!file.starts_with(kind.name)) return false;
@@ -25,14 +26,15 @@ bool is_of(const CacheKind& kind, std::string_view file) {
   return file.find_first_not_of("0123456789abcdef") == kHashDigits && file[kHashDigits] == '.';
 }
 
-/// As replace_file names it while it writes, or as earlier versions did.
+/// Returns whether the name is that of a temporary file of replace_file, or of earlier versions.
 bool is_temporary(const CacheKind& kind, std::string_view file) {
   return file.ends_with(".tmp") && (file.starts_with(".frond-") || is_of(kind, file));
 }
 
+/// Files of one kind in a folder of the cache.
 class Folder {
  public:
-  /// Files that another process deletes meanwhile are left out.
+  /// Skips files that another process deletes meanwhile.
   Folder(const fs::path& folder, const CacheKind& kind) {
     std::error_code error;
     for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
@@ -45,12 +47,13 @@ class Folder {
     std::ranges::sort(kept_, std::greater(), &CachedFile::used);
   }
 
+  /// Deletes temporary files older than a day: younger ones may belong to a running process.
   void delete_leftovers() {
     const auto yesterday = fs::file_time_type::clock::now() - std::chrono::hours(24);
     for (const CachedFile& file : temporary_)
       if (file.used < yesterday) remove(file);
   }
-  /// But for `newest` the last used ones stay.
+  /// Keeps `newest`, then the most recently used files up to the limit; deletes the others.
   void delete_beyond(uintmax_t most_bytes, const fs::path& newest) {
     std::error_code error;
     const uintmax_t newest_bytes = fs::file_size(newest, error);
@@ -90,7 +93,7 @@ void limit_cache(const fs::path& newest, const CacheKind& kind, const Log& log) 
   folder.delete_leftovers();
   folder.delete_beyond(kind.most_bytes, newest);
   if (folder.deleted() == 0) return;
-  log.info(fmt::format("cache: {} file{} {}* that lay unused for longest deleted, {:.0f} MB; {:.1f} GB may stay",
+  log.info(fmt::format("cache: deleted {} least recently used file{} {}*, {:.0f} MB; the limit is {:.1f} GB",
                        folder.deleted(), folder.deleted() > 1 ? "s" : "", kind.name,
                        double(folder.deleted_bytes()) * 1e-6, double(kind.most_bytes) * 1e-9));
 }

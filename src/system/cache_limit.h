@@ -9,19 +9,19 @@
 
 namespace frond {
 
-/// Files of one kind in the user's cache, NAME-HASH.EXTENSION with a hash of 16 hexadecimal digits, and what they may
-/// take of the disk together.
+/// Kind of files in the user's cache: their names are NAME-HASH.EXTENSION with a hash of 16 hexadecimal digits, and
+/// their total size is limited.
 struct CacheKind {
-  std::string_view name;  ///< ends in '-'
-  uintmax_t most_bytes;
+  std::string_view name;  ///< beginning of the file names, which ends in '-'
+  uintmax_t most_bytes;   ///< largest total size
 };
 
-/// Deletes files of the kind in the folder of `newest`, those that were not used for longest first, until all together
-/// take no more than they may; never `newest` itself. Temporary files of runs that were killed go after a day. Tells
-/// how many. Other processes may use and limit the folder at the same time.
+/// Deletes files of the kind in the folder of `newest`, least recently used first, until their total size is within the
+/// limit; `newest` itself is kept. Also deletes temporary files of killed processes that are older than a day. Logs the
+/// number of deleted files. Other processes may use and limit the folder at the same time.
 void limit_cache(const std::filesystem::path& newest, const CacheKind& kind, const Log& log);
 
-/// Counts as used now. A file that cannot be marked is left as it is.
+/// Sets a file's modification time, which orders the deletion, to now. Errors are ignored.
 void mark_as_used(const std::filesystem::path& file);
 
 }  // namespace frond

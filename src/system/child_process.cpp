@@ -17,7 +17,8 @@ extern char** environ;
 namespace frond {
 namespace {
 
-/// An unnamed file for one of the child's streams: unlike a pipe it never fills up, so nobody waits for anybody.
+/// Unnamed temporary file for one of the child's streams. Unlike a pipe it has no limited buffer, so that parent and
+/// child cannot block each other.
 class StreamFile {
  public:
   StreamFile() : file_(std::tmpfile(), &std::fclose) {
@@ -42,6 +43,7 @@ class StreamFile {
   std::unique_ptr<FILE, int (*)(FILE*)> file_;
 };
 
+/// Returns the child's status; a signal does not end the wait.
 int wait_for(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

@@ -18,13 +18,13 @@ struct CloseFile {
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
-/// What is read, and what messages call it.
+/// File to read, and its description in messages.
 struct Source {
   std::string path;
   const Location& where;
   std::string_view what;
 
-  /// `plain` is the whole message on a file that is called by its name alone.
+  /// Throws InputError. `plain` is the complete message for a file without a description.
   [[noreturn]] void refuse(std::string_view reason, std::string_view plain) const {
     if (what.empty()) fail(where, "{}", plain);
     fail(where, "cannot read {} \"{}\": {}", what, path, reason);
@@ -35,7 +35,7 @@ struct Source {
   }
 };
 
-/// Devices would never end, and folders open but do not read.
+/// Throws for devices, which may be endless, and for folders, which can be opened but not read.
 void check_kind(const Source& source) {
   std::error_code error;
   const fs::file_type type = fs::status(source.path, error).type();
@@ -65,7 +65,7 @@ std::string read_file_bytes(const fs::path& path, const Location& where, std::st
   const Source source{path.string(), where, what};
   const File file = open(source);
   std::string bytes;
-  std::error_code unknown_size;
+  std::error_code unknown_size;  // a pipe has none
   if (const auto size = fs::file_size(path, unknown_size); !unknown_size) bytes.reserve(size);
   append_rest(file.get(), source, bytes);
   return bytes;
@@ -83,7 +83,7 @@ MappedFile::MappedFile(const fs::path& path, const Location& where, std::string_
   std::error_code error;
   size_ = fs::file_size(path, error);
   if (error) source.refuse("read", error.value());
-  if (size_ == 0) return;
+  if (size_ == 0) return;  // mmap rejects an empty range
   void* mapped = mmap(nullptr, size_, PROT_READ, MAP_SHARED, fileno(file.get()), 0);
   if (mapped == MAP_FAILED) source.refuse("map", errno);
   data_ = static_cast<const std::byte*>(mapped);

@@ -10,14 +10,15 @@
 
 namespace frond {
 
-/// The whole of a file. Throws InputError at `where` when it cannot be read; folders and devices, which may never end,
-/// are refused. The message calls the file `what`, or nothing but its name.
+/// Returns the whole content of a regular file or named pipe. Throws InputError at `where` if it cannot be read, and
+/// for folders and devices, which may be endless. `what` describes the file in the message, for example "spectrum
+/// file".
 std::string read_file_bytes(const std::filesystem::path& path, const Location& where, std::string_view what = {});
-/// The whole of standard input.
+/// Returns the whole of standard input. Throws InputError if it cannot be read.
 std::string read_standard_input();
 
-/// A file's bytes, mapped into memory: read when they are looked at, and dropped where memory is short. The file must
-/// not be cut short meanwhile.
+/// Read-only memory map of a file: the system reads a page at its first access and may drop it if memory is short. The
+/// file must not be truncated while it is mapped.
 class MappedFile {
  public:
   /// Throws InputError as read_file_bytes.
@@ -26,6 +27,7 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
+  /// The file's content; valid as long as this object.
   std::span<const std::byte> bytes() const { return {data_, size_}; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kMagic = "\x1f\x8b";
 constexpr size_t kBlock = size_t{1} << 18;
 
-/// zlib's state, ended in any case.
+/// Decompressor of zlib, which is ended by the destructor.
 class Inflater {
  public:
   Inflater() {
@@ -50,12 +50,10 @@ std::string unpack_gzip(std::string_view bytes, const std::string& name, const L
     const int verdict = inflate(&stream, Z_NO_FLUSH);
     text.append(block.data(), block.size() - stream.avail_out);
     if (text.size() > most)
-      fail(where,
-           "{} unpacks to more than {} bytes, as no text does; what gunzip makes of it is read whatever its size", name,
-           most);
+      fail(where, "{} unpacks to more than {} bytes; a larger file must be unpacked with gunzip first", name, most);
     if (verdict == Z_STREAM_END) {
       const std::string_view rest(reinterpret_cast<const char*>(stream.next_in), stream.avail_in);
-      if (!is_gzip(rest)) return text;  // zeros that fill a tape's block, say
+      if (!is_gzip(rest)) return text;  // such as the zeros that pad a tape's block
       if (inflateReset(&stream) != Z_OK) fail(where, "{} cannot be unpacked", name);
     } else if (verdict == Z_BUF_ERROR) {
       fail(where, "{} is compressed and ends too early: it was cut short", name);

@@ -8,15 +8,15 @@
 
 namespace frond {
 
-/// Whether these bytes begin as a gzip file does (RFC 1952).
+/// Returns whether the bytes begin with the magic number of gzip (RFC 1952).
 bool is_gzip(std::string_view bytes);
 
-/// What text of `packed` bytes may unpack to: scenes and meshes pack to a tenth or so, a file that is made to fill the
-/// memory to a thousandth.
+/// Largest size in bytes that `packed` bytes of compressed text may unpack to. Scenes and meshes are compressed to
+/// about a tenth; a file made to exhaust memory, to a thousandth.
 constexpr size_t most_unpacked(size_t packed) { return std::max(size_t{1} << 28, 64 * packed); }
 
-/// What a gzip file of one or more members holds. Throws InputError at `where` where it is damaged or cut short, and
-/// where it would fill more than `most` bytes; 0: most_unpacked. Messages call it `name`.
+/// Returns the uncompressed content of a gzip file of one or more members. Throws InputError at `where` if the file is
+/// damaged or truncated, or unpacks to more than `most` bytes (0: most_unpacked). `name` is the file in messages.
 std::string unpack_gzip(std::string_view bytes, const std::string& name, const Location& where, size_t most = 0);
 
 }  // namespace frond

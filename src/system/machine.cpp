@@ -17,6 +17,7 @@ double seconds(clockid_t clock) {
   return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
 }
 
+/// Model name of the first processor, from Linux's /proc/cpuinfo.
 std::string processor() {
   std::ifstream in("/proc/cpuinfo");
   for (std::string line; std::getline(in, line);)

@@ -4,14 +4,14 @@
 
 namespace frond {
 
-/// The processor, its threads and the system: what times depend on.
+/// Returns processor, number of hardware threads and operating system, to be reported with measured times.
 std::string machine_description();
-/// Of this machine, bytes.
+/// Returns the physical memory of this machine in bytes.
 double machine_memory();
 
-/// CPU time that this process has used, seconds, all threads together.
+/// Returns the CPU time of this process in seconds, summed over all threads.
 double cpu_seconds();
-/// The calling thread's alone.
+/// Returns the CPU time of the calling thread in seconds.
 double thread_cpu_seconds();
 
 }  // namespace frond

@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Why the last call of the loader failed.
+/// Returns the reason why the last call of the loader failed.
 std::string loader_error() {
   const char* text = dlerror();
   return text ? text : "unknown reason";
@@ -20,7 +20,7 @@ std::string loader_error() {
 SharedObject::SharedObject(const fs::path& file, std::string_view what, Binding binding) {
   std::error_code error;
   if (!fs::exists(file, error)) fail({}, "{} \"{}\": there is no such file", what, file.string());
-  // Absolute: the loader would look for a bare name in its own folders.
+  // An absolute path, because the loader searches for a bare name in its own folders.
   handle_ = dlopen(fs::absolute(file).c_str(), (binding == Binding::now ? RTLD_NOW : RTLD_LAZY) | RTLD_LOCAL);
   if (handle_) return;
   const std::string reason = loader_error();
@@ -37,7 +37,7 @@ fs::path own_file() {
   if (dladdr(&kHere, &info) == 0 || !info.dli_fname) return "/proc/self/exe";
   std::error_code error;
   const auto path = fs::canonical(info.dli_fname, error);
-  return error ? fs::path("/proc/self/exe") : path;  // of a program, the name that it was called by
+  return error ? fs::path("/proc/self/exe") : path;  // for a program, dli_fname is the name of its command
 }
 
 }  // namespace frond

@@ -7,17 +7,18 @@
 
 namespace frond {
 
-/// A shared object, opened while the program runs. It is never closed: what it made points into it.
+/// Shared object that is loaded at run time. It is never unloaded, because objects that it creates point into its code.
 class SharedObject {
  public:
-  /// When its calls are bound: now, so that nothing which is missing is found out in the middle of a render; or each
-  /// when it is first made, which takes less time.
+  /// When symbols are bound: `now`, so that a missing symbol is reported at once and not during a render, or `lazy`, at
+  /// the first call of each function, which loads faster.
   enum class Binding { now, lazy };
 
-  /// Throws InputError, which calls it `what`: there is no such file, or the loader refuses it.
+  /// Throws InputError if the file does not exist or cannot be loaded; `what` describes the file in the message.
   SharedObject(const std::filesystem::path& file, std::string_view what, Binding binding);
 
-  /// An exported function (extern "C"), nullptr where there is none of that name. Function: its type.
+  /// Returns an exported function (extern "C") of the type Function, nullptr if no symbol has this name. The type is
+  /// not checked.
   template <class Function>
   Function* find(const char* name) const {
     return reinterpret_cast<Function*>(symbol(name));
@@ -29,7 +30,7 @@ class SharedObject {
   void* handle_;
 };
 
-/// The file that holds this code: libfrond.so, or the program that it is linked into.
+/// Returns the file that contains frond's code: libfrond.so, or the program that it is linked into.
 std::filesystem::path own_file();
 
 }  // namespace frond

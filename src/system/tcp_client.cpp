@@ -23,6 +23,7 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
+/// Result of getaddrinfo: an error number, or 0 and the addresses.
 struct Lookup {
   int error;
   Addresses found;
@@ -38,7 +39,8 @@ Lookup look_up(const ServerAddress& at, int flags) {
   return {error, Addresses(error == 0 ? list : nullptr)};
 }
 
-/// False when the time is over. The end is looked at again and again: it may be set while this waits.
+/// Calls `ready` with a time to wait until it returns true. Returns false when the time is over. Each wait is at most
+/// 50 ms, because another thread may set the deadline meanwhile.
 template <class Ready>
 bool wait_until(const Patience& patience, const Ready& ready) {
   using namespace std::chrono_literals;
@@ -50,7 +52,7 @@ bool wait_until(const Patience& patience, const Ready& ready) {
   }
 }
 
-/// Numbers are known at once. Names are looked up by a thread that nobody waits for: a network takes its time.
+/// Numeric addresses need no look-up. A name is looked up in a detached thread, because getaddrinfo has no time-out.
 Addresses addresses_of(const ServerAddress& at, const Patience& patience) {
   Lookup lookup = look_up(at, AI_NUMERICHOST);
   if (lookup.error != 0) {
@@ -65,7 +67,7 @@ Addresses addresses_of(const ServerAddress& at, const Patience& patience) {
   return std::move(lookup.found);
 }
 
-/// Whether the socket takes bytes, or has an error to tell, before the time is over.
+/// Returns whether the socket accepts bytes, or has an error, before the time is over.
 bool wait_for(int socket, const Patience& patience) {
   return wait_until(patience, [socket](std::chrono::milliseconds time) {
     pollfd wanted{socket, POLLOUT, 0};
@@ -73,7 +75,7 @@ bool wait_for(int socket, const Patience& patience) {
   });
 }
 
-/// An error number, or 0.
+/// Connects a non-blocking socket. Returns an error number, or 0.
 int connect_to(int socket, const addrinfo& to, const Patience& patience) {
   if (connect(socket, to.ai_addr, to.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS && errno != EINTR) return errno;

@@ -9,27 +9,28 @@
 
 namespace frond {
 
-/// Where a server listens.
+/// Address of a server.
 struct ServerAddress {
-  std::string host;  ///< a name, or an IP address
+  std::string host;  ///< host name or IP address, IPv6 without brackets
   uint16_t port;     ///< 1 to 65535
-  /// As it is parsed.
+  /// Returns HOST:PORT, as parse_server_address accepts it.
   std::string text() const;
 };
 
-/// Of "HOST:PORT", an IPv6 address in brackets. Throws InputError, which names the option.
+/// Parses "HOST:PORT"; an IPv6 address is in brackets. Throws InputError, which names the command-line `option`.
 ServerAddress parse_server_address(std::string_view text, std::string_view option);
 
-/// How long the other side of a connection is waited for: so many seconds each time that nothing moves, and in no case
-/// beyond an end, which another thread may set meanwhile.
+/// Time-outs of a connection: a limit in seconds for each wait, and a deadline for all of them. Another thread may set
+/// the deadline during a wait.
 class Patience {
  public:
   using Clock = std::chrono::steady_clock;
   explicit Patience(double seconds) : seconds_(seconds) {}
 
+  /// Sets the deadline; without it there is none.
   void end_at(Clock::time_point end) { end_ = end; }
   Clock::time_point end() const { return end_; }
-  /// When a wait that begins now is over, unless the end comes first.
+  /// Returns when a wait that begins now ends, unless the deadline is earlier.
   Clock::time_point limit() const;
 
  private:
@@ -37,17 +38,19 @@ class Patience {
   std::atomic<Clock::time_point> end_ = Clock::time_point::max();
 };
 
-/// A connection to a server that is sent bytes and not listened to. Of a server that goes away it learns by an error,
-/// not by SIGPIPE.
+/// TCP connection to a server, for sending only. A closed connection is reported by an exception, not by SIGPIPE. Use
+/// by one thread at a time.
 class TcpClient {
  public:
-  /// `patience` must outlive it. Throws InputError, with the reason, where nobody answers.
+  /// Connects. `patience` must outlive this object. Throws InputError, with the reason, if no connection is made in
+  /// time.
   TcpClient(const ServerAddress& to, const Patience& patience);
   ~TcpClient();
   TcpClient(const TcpClient&) = delete;
   TcpClient& operator=(const TcpClient&) = delete;
 
-  /// All of it. Throws InputError where the other side has gone or takes nothing more; nothing can be sent after that.
+  /// Sends all bytes. Throws InputError if the server has closed the connection or a time-out expires; the connection
+  /// is then unusable.
   void send(std::span<const unsigned char> bytes);
 
  private:

@@ -204,6 +204,23 @@ TEST(Architecture, FilesAndFoldersAreSmall) {
   EXPECT_GT(files.size(), 20u);
 }
 
+// A comment says why, or states an invariant, a unit or a source.
+TEST(Architecture, OneLineInTenIsAComment) {
+  static const std::regex comment(R"re(^\s*//|///<)re");
+  std::map<std::string, std::pair<int, int>> lines;  // of each module: comments, all that are not empty
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSrc)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    auto& [comments, all] = lines[std::filesystem::relative(entry.path(), kSrc).begin()->string()];
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);) {
+      all += line.find_first_not_of(' ') != line.npos;
+      comments += std::regex_search(line, comment);
+    }
+  }
+  EXPECT_GT(lines.size(), 15u);
+  for (const auto& [module, count] : lines) EXPECT_GE(10 * count.first, count.second) << "src/" << module;
+}
+
 TEST(Architecture, ImageAndColourLibrariesStayInTheFilesThatNeedThem) {
   static const std::regex heavy(
       R"re(#include\s+["<](OpenImageIO/|OpenEXR/|OpenColorIO/|CLI/|nlohmann/|embree[34]/|scene/geometry/embree))re");

@@ -453,7 +453,7 @@ TEST_F(Commands, WhatTheOutputCannotHoldIsRefusedFirst) {
   EXPECT_THAT(refusal({"-o", path("x.png"), "--display", "foo"}), HasSubstr("unknown display \"foo\""));
   EXPECT_THAT(refusal({"-o", path("x.png"), "--view", "foo"}), HasSubstr("unknown view of display sRGB \"foo\""));
   EXPECT_THAT(refusal({"-o", path("x.png"), "--wavelengths", "bands,wavelengths=450,900"}),
-              HasSubstr("bands are no image"));
+              HasSubstr("cannot store bands"));
   EXPECT_THAT(refusal({"-o", path("x.exr"), "--view", "Raw"}), HasSubstr("holds linear values"));
   EXPECT_THAT(refusal({"-o", path("x.png")}), HasSubstr("no_such"));
 }

@@ -60,7 +60,7 @@ TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(error({"--fix", "clorophylla=1"}), HasSubstr("did you mean \"chlorophylla\"?"));
   EXPECT_THAT(error({"--like", "oak"}), HasSubstr("one of soybean, maize"));
   EXPECT_THAT(error({"--like", "maize", "--structure", "bifacial"}), HasSubstr("unifacial"));
-  EXPECT_THAT(error({"--leaf", "oak"}), HasSubstr("names no leaves"));
+  EXPECT_THAT(error({"--leaf", "oak"}), HasSubstr("has no names of leaves"));
   EXPECT_THAT(error({"-o", "/nowhere/leaf.pbrt"}), HasSubstr("/nowhere"));
   const std::string short_one = folder_.write("short.csv", "nm,R\n550,0.1\n").string();
   const auto done = frond_command({"fit", short_one});
@@ -104,7 +104,7 @@ TEST_F(FittingData, IsRefusedAsAFileIs) {
                 HasSubstr("chlorophylla=NUMBER is needed, 0 at least"))
         << value;
   EXPECT_THAT(refusal({{"data", kSpectrum}, {"fix", "thickness=0"}}), HasSubstr("thickness is above 0"));
-  EXPECT_THAT(refusal({{"data", kSpectrum}, {"leaf", "oak"}}), HasSubstr("names no leaves: leaf has no effect"));
+  EXPECT_THAT(refusal({{"data", kSpectrum}, {"leaf", "oak"}}), HasSubstr("has no names of leaves: leaf has no effect"));
   EXPECT_THAT(refusal({{"data", kSpectrum}, {"file", "a.csv"}}), HasSubstr("file excludes data"));
   EXPECT_THAT(refusal({}), HasSubstr("measured spectra are needed"));
 }

@@ -118,12 +118,12 @@ TEST_F(Merge, NamesWhatDiffers) {
     const Outcome o = merge({first, other}, {"-o", path("m.exr")});
     EXPECT_EQ(o.code, 1);
     EXPECT_THAT(o.err,
-                AllOf(HasSubstr("no parts of one render"), HasSubstr(field), HasSubstr(first), HasSubstr(other)));
+                AllOf(HasSubstr("not parts of the same render"), HasSubstr(field), HasSubstr(first), HasSubstr(other)));
   }
 }
 
 TEST_F(Merge, RefusesWhatIsNoPart) {
-  EXPECT_THAT(merge({path("scene.pbrt")}, {"-o", path("m.exr")}).err, HasSubstr("is no part of a render"));
+  EXPECT_THAT(merge({path("scene.pbrt")}, {"-o", path("m.exr")}).err, HasSubstr("is not a part file"));
   EXPECT_THAT(merge({path("none.part")}, {"-o", path("m.exr")}).err, HasSubstr("none.part"));
   EXPECT_THAT(merge({part("0:1")}, {}).err, HasSubstr("--output or --part is needed"));
 }

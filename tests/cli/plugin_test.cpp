@@ -61,7 +61,7 @@ TEST(Plugin, WhatIsNoneIsRefusedWithAReason) {
               HasSubstr("light \"deep\": the default of \"depth\" has the wrong type: it takes a number"));
   EXPECT_THAT(refusal(library("unresolved")),
               AllOf(HasSubstr("gone_since_the_last_version"), HasSubstr("built for another one")));
-  EXPECT_THAT(refusal(library("taken")), HasSubstr("there is a material \"diffuse\" already"));
+  EXPECT_THAT(refusal(library("taken")), HasSubstr("material \"diffuse\" already exists"));
   EXPECT_THAT(refusal(library("wrong_kind")), HasSubstr("offers \"lost\" as a material, but calls it a light"));
 }
 
@@ -195,14 +195,14 @@ TEST_F(PluginKinds, WhatTheyMakeWrongIsRefusedAtItsPlace) {
               HasSubstr("refused.pbrt:2:7: shape \"torn\" has a defect: it has made a mesh of 2 vertices with a "
                         "triangle that names number 2"));
   EXPECT_THAT(refusal("WorldBegin\nLightSource \"nothing\"\nShape \"sphere\"\n"),
-              HasSubstr("refused.pbrt:2:13: light \"nothing\" has a defect: it has made nothing"));
+              HasSubstr("refused.pbrt:2:13: light \"nothing\" has a defect: make() returned nothing"));
   EXPECT_THAT(refusal("WorldBegin\nAreaLightSource \"glow\" \"bool nothing\" true\nShape \"tile\"\n"),
-              HasSubstr("refused.pbrt:2:17: area light \"glow\" has a defect: it has made nothing"));
+              HasSubstr("refused.pbrt:2:17: area light \"glow\" has a defect: make() returned nothing"));
   EXPECT_THAT(refusal("WorldBegin\nLightSource \"nothing\" \"bool throws\" true\nShape \"sphere\"\n"),
               HasSubstr("refused.pbrt:2:13: light \"nothing\" has a defect: thrown on purpose"));
   for (const auto& [how, what] :
        {std::pair{"odd", "which from 0 on are no pairs"}, std::pair{"normals", "with 1 normals"},
-        std::pair{"null", "it has made nothing"}, std::pair{"endless", "reaches to"}})
+        std::pair{"null", "make() returned nothing"}, std::pair{"endless", "reaches to"}})
     EXPECT_THAT(refusal(std::string("WorldBegin\nShape \"torn\" \"string how\" \"") + how + "\"\n"),
                 AllOf(HasSubstr("refused.pbrt:2:7: "), HasSubstr(what)));
   EXPECT_THAT(refusal("Film \"square\" \"integer pixels\" 0\nWorldBegin\nShape \"sphere\"\n"),
@@ -219,7 +219,7 @@ TEST_F(PluginCommands, TheSearchPathIsLoadedByItself) {
   unsetenv("FROND_PLUGIN_PATH");
   EXPECT_THAT(list.out, HasSubstr("picky"));
   EXPECT_EQ(twice.code, 0) << twice.err;
-  EXPECT_THAT(copied.err, HasSubstr("there is a material \"picky\" already"));
+  EXPECT_THAT(copied.err, HasSubstr("material \"picky\" already exists"));
 }
 
 }  // namespace

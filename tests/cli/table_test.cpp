@@ -97,9 +97,9 @@ TEST(TableCommand, WritesALeafFileOverDepths) {
     std::memcpy(&value, bytes.data() + at, sizeof value);
     return value;
   };
-  EXPECT_EQ(whole(16), 2u);   // wavelengths; docs/leaf_file.md
+  EXPECT_EQ(whole(16), 2u);   // wavelengths; docs/file_formats.md
   EXPECT_EQ(whole(20), 32u);  // depths: ln(10 / 0.1) in steps of at most 0.15, both ends
-  EXPECT_THAT(written("10,0.1").err, HasSubstr("depths from 10 to 0.1 are no range"));
+  EXPECT_THAT(written("10,0.1").err, HasSubstr("invalid range of depths, 10 to 0.1"));
   EXPECT_THAT(written("-1,10").err, HasSubstr("--depths: 2 numbers from 0 on"));
   EXPECT_THAT(table_command({"--wavelengths", "551", "--depths", "1,2", "-o", path}).err,
               HasSubstr("--depths is for a .leaf file of leaf_solved"));

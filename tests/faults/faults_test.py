@@ -228,7 +228,7 @@ class OneOutput(FrondTest):
         first = self.start(self.command(output, "--spp", 1 << 20, "--checkpoint", 0.05, "--resume"))
         self.wait_for((self.folder / "a.exr.part").exists, "a checkpoint")
         _, err = self.run_to_end(self.command(output, "--spp", 4, "--checkpoint", 0.05, "--resume"), 75)
-        self.assertIn("another frond is at work", err)
+        self.assertIn("another frond process is writing", err)
         self.assertIn("a.exr.part", err)
         self.assertIsNone(first.poll())
         first.kill()

@@ -81,7 +81,7 @@ TEST(PairedDifference, AnIntervalHoldsAsOftenAsItSays) {
 TEST(PairedDifference, SimultaneousBoundsHoldWhereFewPixelsHaveMostOfTheError) {
   const double z = normal_upper_quantile(sidak_level(0.05, 80));
   const int64_t missed = misses(1, z, kImages);
-  RecordProperty("missed", std::to_string(missed));  // docs/choosing.md
+  RecordProperty("missed", std::to_string(missed));  // docs/selection.md
   EXPECT_GT(binomial_p(missed, kImages, 0, 0.05), 1e-6);
 }
 

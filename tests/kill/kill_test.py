@@ -218,7 +218,7 @@ class Radiometers(FrondTest):
                 paths = ("--paths", 1000, "--csv", self.csv)
                 self.run_to_end(self.command(name, *paths, "--checkpoint", 9))
                 _, err = self.run_to_end(self.command(name, *paths, "--checkpoint", 9), code=1)
-                self.assertIn("is there already", err)
+                self.assertIn("already exists", err)
                 _, err = self.run_to_end(self.command(name, *other, *paths, "--resume"), code=1)
                 self.assertIn("another measurement", err)
                 self.part.write_bytes(self.part.read_bytes()[:-20])

@@ -77,7 +77,7 @@ Errors errors_of(const char* specimen, bool sieve, double least, double most, bo
   return errors;
 }
 
-/// As docs/table_format.md states.
+/// As docs/file_formats.md states.
 TEST(DepthTable, IsAsExactAsStated) {
   for (const char* specimen : {"soybean", "maize"}) {
     const bool sieve = specimen[0] == 'm';

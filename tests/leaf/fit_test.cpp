@@ -148,7 +148,7 @@ TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(error("nm,R,T\n550,.7,.6\n"), AllOf(HasSubstr("a.csv:2"), HasSubstr("R + T is 1.3")));
   EXPECT_THAT(error("leaf,nm,R\noak,550,.1\nelm,550,.2\n"), AllOf(HasSubstr("2 leaves"), HasSubstr("elm, oak")));
   EXPECT_THAT(error("leaf,nm,R\noak,550,.1\n", {.leaf = "oaks"}), HasSubstr("did you mean \"oak\"?"));
-  EXPECT_THAT(error("nm,R\n550,.1\n", {.leaf = "oak"}), HasSubstr("names no leaves"));
+  EXPECT_THAT(error("nm,R\n550,.1\n", {.leaf = "oak"}), HasSubstr("has no names of leaves"));
   EXPECT_THAT(error("nm,R,side\n550,.1,middle\n"), HasSubstr("adaxial"));
   EXPECT_THAT(error("550 .1 .2 .3\n"), HasSubstr("4 columns"));
 }

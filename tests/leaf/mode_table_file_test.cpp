@@ -95,9 +95,8 @@ TEST(ModeTableFile, NamesWhatIsWrongAndWhere) {
     EXPECT_THAT(error_of([&] { parse_mode_table_file(text, "leaf.modes"); }), HasSubstr(message));
   }
   EXPECT_THAT(error_of([&] { parse_mode_table_file(sound.substr(0, sound.size() - 15), "leaf.modes"); }),
-              HasSubstr("the file ends where the 3 numbers of mode 0"));
-  EXPECT_THAT(error_of([&] { parse_mode_table_file("", "leaf.modes"); }),
-              HasSubstr("the file ends where cells N should"));
+              HasSubstr("the file ends before the 3 numbers of mode 0"));
+  EXPECT_THAT(error_of([&] { parse_mode_table_file("", "leaf.modes"); }), HasSubstr("the file ends before cells N"));
   EXPECT_THAT(error_of([&] { parse_mode_table_file(sound + "0.02\n", "leaf.modes"); }),
               HasSubstr(":22:1: 1 word in place of"));
   EXPECT_THAT(error_of([&] { parse_mode_table_file(std::string("\0", 1), "leaf.modes"); }), HasSubstr("no text"));
@@ -108,11 +107,11 @@ TEST(ModeTableFile, IsRefusedWhereItCannotBeReadOrSaysThingsTwice) {
   EXPECT_THAT(error_of([&] { read_mode_table_file(folder.name_of(""), {}); }), HasSubstr("it is a folder"));
   EXPECT_THAT(error_of([&] { read_mode_table_file(folder.name_of("none"), {}); }), HasSubstr("No such file"));
   EXPECT_EQ(error_of([] { read_mode_table_file("/dev/zero", {}); }),
-            "cannot read leaf modes \"/dev/zero\": it is no regular file");
+            "cannot read mode table \"/dev/zero\": it is no regular file");
   const std::string sound = plain_leaf();
   const fs::path twice = folder.write("twice", sound + sound.substr(sound.find("wavelength_nm")));
   EXPECT_THAT(error_of([&] { read_mode_table_file(twice, {}); }),
-              HasSubstr("twice:22:1: 551 nm comes twice, the first time in line 5"));
+              HasSubstr("twice:22:1: 551 nm is given twice, first in line 5"));
 }
 
 TEST(ModeTableFile, IsTheCacheToo) {

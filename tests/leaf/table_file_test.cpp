@@ -89,12 +89,12 @@ TEST(TableFile, RefusesBadColumns) {
   EXPECT_THAT(refusal(std::string("\x7f"
                                   "ELF\0",
                                   5)),
-              HasSubstr("this is no text"));
+              HasSubstr("not a text file"));
   EXPECT_THAT(refusal("theta,wavelength_nm,Rs,Rd,T\n"), HasSubstr("no column \"theta\" in a leaf's table"));
   EXPECT_THAT(refusal("theta_deg,wavelength,Rs,Rd,T\n"), HasSubstr("did you mean \"wavelength_nm\"?"));
   EXPECT_THAT(refusal("theta_deg,wavelength_nm,Rs,Rd\n"), HasSubstr("there is no column \"T\"; a leaf's table has"));
   EXPECT_THAT(refusal("theta_deg,wavelength_nm,Rs,Rd,T,T\n"), HasSubstr("leaf.csv:1:33: there are two columns \"T\""));
-  EXPECT_THAT(refusal("theta_deg,wavelength_nm,Rs,Rd,T,Rs_se\n"), HasSubstr("all are given or none"));
+  EXPECT_THAT(refusal("theta_deg,wavelength_nm,Rs,Rd,T,Rs_se\n"), HasSubstr("come together or not at all"));
   EXPECT_THAT(refusal("0,550,.1,.1,.1\n"), HasSubstr("no column \"0\""));
   EXPECT_THAT(refusal(kColumns + "100,550,.1,.1,.1\n"), HasSubstr("those of the adaxial side are missing"));
   EXPECT_THAT(error_of([] { read_table("/no/such.csv", {}); }), HasSubstr("No such file"));

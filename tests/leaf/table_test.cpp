@@ -343,7 +343,7 @@ std::array<LookupError, 3> lookup_errors(const std::string& specimen, double ste
   return errors;
 }
 
-/// Figures of docs/table_format.md, rounded up to two digits.
+/// Figures of docs/file_formats.md, rounded up to two digits.
 TEST(TableLookup, IsAsFarOffForEachStepAsStated) {
   struct {
     std::string specimen;

@@ -133,7 +133,7 @@ TEST(LeafLambert, IsExactAtTheWavelengthsOfAList) {
 
 TEST(LeafLambert, RefusesTexturesByName) {
   EXPECT_THAT(error_of([] { Ready("leaf_lambert", {texture("chlorophylla", {"3:30"})}); }),
-              HasSubstr("leaf_lambert takes no textures: its numbers are the whole leaf's"));
+              HasSubstr("leaf_lambert takes no textures: its parameters are those of the whole leaf"));
   EXPECT_EQ(error_of([] { Ready("leaf_lambert", {texture("chlorophylla", {"3:3"})}); }), "");
 }
 

@@ -228,10 +228,9 @@ TEST(LeafSimplified, TakesItsTableFromAFile) {
   }
   EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {file("8,500,0,0,0\n8,600,0,0,0\n")}); }),
               HasSubstr("is known from 500 to 600 nm, the render needs 455 to 608 nm"));
-  EXPECT_THAT(
-      error_of([&] { Ready("leaf_simplified", {file("8,455,0,0,0\n8,608,0,0,0\n")}, "hero"); }),
-      HasSubstr("is known from 455 to 608 nm, the render needs 360 to 830 nm; --wavelengths smpte asks for 608, "
-                "551 and 455 nm"));
+  EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {file("8,455,0,0,0\n8,608,0,0,0\n")}, "hero"); }),
+              HasSubstr("is known from 455 to 608 nm, the render needs 360 to 830 nm; --wavelengths smpte renders 608, "
+                        "551 and 455 nm"));
   EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {file("8,551,1,1,1\n")}); }),
               HasSubstr("t.csv:2:1: Rs + Rd + T"));
 }
@@ -257,7 +256,7 @@ TEST(LeafSimplified, SaysWhatAFileMakesMeaningless) {
   ::testing::internal::CaptureStderr();
   material->prepare({*strategy, pool, log, {}});
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              HasSubstr("warning: \"thickness\" has no effect beside \"tablefile\""));
+              HasSubstr("warning: \"thickness\" has no effect with \"tablefile\""));
 }
 
 /// The tables of a scene, by what they say of themselves.
@@ -333,7 +332,7 @@ TEST(LeafSimplified, TablesHaveTheStepThatIsAsked) {
 TEST(LeafSimplified, TakesTexturesOfDepthAndSurfaceAlone) {
   for (const char* name : {"epidermisaspect", "spongyaspect", "palisadeaspect"})
     EXPECT_THAT(error_of([&] { Ready("leaf_simplified", {texture(name, {"1:2"})}); }),
-                HasSubstr(fmt::format("takes no texture for \"{}\": every texel would need a table", name)));
+                HasSubstr(fmt::format("takes no texture for \"{}\": each texel would need its own table", name)));
   EXPECT_THAT(error_of([] {
                 Ready("leaf_simplified", {texture("lignin", {"1:2"}), words("tablemethod", {"montecarlo"})});
               }),

@@ -1,4 +1,4 @@
-"""That examples/read_part reads what docs/part_format.md says: its colours are those of frond's own EXR, to the bit.
+"""examples/read_part reads parts as docs/many_machines.md describes them: its colours equal those of frond's EXR file, to the bit.
 
 usage: read_part_test.py FROND; exits with 77 where there is no zstd."""
 

@@ -22,7 +22,7 @@ TEST(PartLocks, HoldOffOthersUntilTheyAreGone) {
   const fs::path part = folder.name_of("a.part");
   {
     const PartLock lock(part);
-    EXPECT_THAT(error_of([&] { const PartLock second(part); }), HasSubstr("another frond is at work on"));
+    EXPECT_THAT(error_of([&] { const PartLock second(part); }), HasSubstr("another frond process is writing"));
     EXPECT_EQ(error_of([&] { const PartLock other(folder.name_of("b.part")); }), "");
   }
   EXPECT_EQ(error_of([&] { const PartLock again(part); }), "");

@@ -273,7 +273,7 @@ TEST_F(Parts, WhatIsNoneOrOfAnotherVersionIsRefused) {
     return all;
   };
   for (const std::string_view text : {"", "frond", "a scene\n", "\x76\x2f\x31\x01"})
-    EXPECT_THAT(reading(text), HasSubstr("is no part of a render"));
+    EXPECT_THAT(reading(text), HasSubstr("is not a part file"));
   const auto bytes = encode_part(whole.header, whole.film);
   std::string other(bytes.begin(), bytes.end());
   other[other.find('3')] = '2';

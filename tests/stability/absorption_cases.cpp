@@ -20,7 +20,7 @@ using testing::number;
 
 const std::vector<double> kAngles{10, 75, 89.99, 140};
 
-/// No ray may lose anything: not in the mean, but each.
+/// Every ray keeps its energy, not only their mean.
 Cell walks_lose_nothing(const Tissue& tissue, Absorption absorption) {
   Comparison comparison;
   for (const double theta_deg : kAngles) {
@@ -63,7 +63,7 @@ Cell integral_loses_nothing(const Specimen& solved) {
   return comparison.cell();
 }
 
-/// Light from one direction, whichever of wo and wi the material takes for it.
+/// For each value of "incident", light from one direction.
 Cell instruments_lose_nothing(const Parameters& params) {
   Comparison comparison(2e-6);
   for (const char* material : {"abm", "leaf_simplified"})
@@ -81,7 +81,7 @@ Cell instruments_lose_nothing(const Parameters& params) {
   return comparison.cell();
 }
 
-/// R + T = 1, and each share as solved with twice the nodes.
+/// R + T = 1, and each share equal to that of a solution with twice the nodes.
 void add_lossless(Theme& theme, const std::string& name, TissueParams params) {
   params.mesophyll_fraction = 0;
   const TissueModel model(params);
@@ -94,7 +94,8 @@ void add_lossless(Theme& theme, const std::string& name, TissueParams params) {
   const Specimen solved_leaf = solved_specimen({params, 800});
   theme
       .add(name + ": energy",
-           "R + T = 1: each ray in double precision, within 2e-6 in single; modes within 5e-4; whichever way incident")
+           "R + T = 1: for each ray in double precision; within 2e-6 in single precision; mode table within 5e-4; for "
+           "every incident")
       .add(Method::walk_analog, walks_lose_nothing(tissue, Absorption::analog))
       .add(Method::walk_weighted, walks_lose_nothing(tissue, Absorption::weighted))
       .add(Method::batch, batches_lose_nothing(tissue))
@@ -112,13 +113,13 @@ void add_lossless(Theme& theme, const std::string& name, TissueParams params) {
   compare_solved_leaf(shares, solved_leaf, lit);
 }
 
-/// Of a mesophyll that lets nothing through.
+/// Cases of an opaque mesophyll.
 void add_opaque(Theme& theme, const std::string& name, const LeafInScene& leaf, const TissueParams& tissue_params) {
   const TissueModel model(tissue_params);
   const Tissue tissue = model.at(leaf.lambda_nm);
   Lit lit = solved_finely(tissue, kAngles);
   for (leaf::Shares& s : lit.truth) s.transmitted = 0;
-  Row& row = theme.add(name, "T = 0, R of the surface and the epidermis alone; solver within 1e-5, table within 5e-4");
+  Row& row = theme.add(name, "T = 0, R only of surface and epidermis; solver within 1e-5, table within 5e-4");
   compare_tissue_methods(row, tissue, lit, 1e-5);
   compare_material_methods(row, leaf, lit, 5e-4);
   compare_solved_leaf(row, solved_specimen(leaf), lit);
@@ -148,7 +149,8 @@ void add_bad_pigment(Theme& theme, const std::string& name, std::string_view tex
   for (const auto& [method, material] : kLeafMaterials) row.add(method, give_to(material));
 }
 
-/// Media of one index, one lobe at the entrance, absorption between: light goes straight on, by Beer's law.
+/// Media with equal indices, a lobe at the entrance and absorption: light is attenuated by Beer's law without
+/// scattering.
 void add_beer(Theme& theme, double exponent, double depth) {
   const leaf::Lobe lobe(exponent);
   Tissue tissue{};
@@ -163,7 +165,7 @@ void add_beer(Theme& theme, double exponent, double depth) {
   const Lit lit{{0, 180}, {{0, 0, t}, {0, 0, t}}};
   const double bound = exponent > 0 ? 1e-5 : 5e-5;
   Row& row =
-      theme.add(fmt::format("equal indices, optical depth {:g}, entrance spread by exponent {:g}", depth, exponent),
+      theme.add(fmt::format("equal indices, optical depth {:g}, entrance lobe of exponent {:g}", depth, exponent),
                 fmt::format("T = (e + 1) E(e + 2, depth), R = 0; solver within {}", rounded_up(bound)));
   compare_tissue_methods(row, tissue, lit, bound);
 }
@@ -172,9 +174,9 @@ void add_beer(Theme& theme, double exponent, double depth) {
 
 Theme absorption() {
   Theme theme{
-      "No absorption, and all",
+      "No absorption and complete absorption",
       "At 10, 75, 89.99 and 140 degrees and 800 nm, against 1, against 0, against Beer's law in closed form, and "
-      "against the solver with twice its nodes. A walk that nothing absorbs is as long as it likes."};
+      "against the solver with twice its nodes. Without absorption the length of a walk is not limited."};
   for (const leaf::Specimen& s : std::span(leaf::kSpecimens).first(2)) {
     add_lossless(theme, fmt::format("{}, no absorption", s.name), s.params);
     TissueParams narrow = s.params;
@@ -185,7 +187,7 @@ Theme absorption() {
   }
   add_bad_pigment(theme, "of negative absorption", "300 1\n3000 -1\n", "negative");
   add_bad_pigment(theme, "of absorption NaN", "300 1\n3000 nan\n", "nan");
-  add_bad_pigment(theme, "known to 700 nm alone, at 800 nm", "300 1\n700 1\n",
+  add_bad_pigment(theme, "defined up to 700 nm, at 800 nm", "300 1\n700 1\n",
                   "from 300 to 700 nm, 800 nm was asked for");
   for (const double exponent : {0.0, 1.0, 5.0})
     for (const double depth : {0.01, 1.0}) add_beer(theme, exponent, depth);

@@ -4,27 +4,27 @@
 
 namespace frond::stability {
 
-/// Light from the normal to grazing and across it.
+/// Light from the normal to the horizon and beyond.
 Theme incidence();
 /// Aspect ratios, thickness, pigments and mesophyll fraction at the ends of their ranges.
 Theme ends_of_ranges();
-/// The same numbers outside them.
+/// The same parameters outside their ranges.
 Theme outside_ranges();
-/// Nothing absorbs, or all does.
+/// No absorption and complete absorption.
 Theme absorption();
-/// Refractive indices that no leaf has.
+/// Refractive indices outside those of leaves.
 Theme indices();
 /// Four wavelengths on one walk.
 Theme dispersion();
 /// f, pdf and sample in and near the surface's plane.
 Theme directions();
-/// Files with tables, good and bad.
+/// Valid and invalid table files.
 Theme table_files();
 /// Requests to the instruments.
 Theme instruments();
-/// Weights of samples: whether noise settles.
+/// Sample weights: whether their variance is finite.
 Theme tails();
-/// Scenes: normals that disagree, places far from the origin.
+/// Scenes: tilted shading normals, objects far from the origin.
 Theme scenes();
 
 }  // namespace frond::stability

@@ -5,10 +5,10 @@
 namespace frond::stability {
 namespace {
 
-/// What arithmetic in double precision may lose on the way.
+/// Tolerance for rounding in double precision.
 constexpr double kRounding = 1e-12;
 
-/// Smaller ones depend on the compiler and its library.
+/// Smaller errors depend on the compiler and its library.
 constexpr double kLeastToTell = 1e-6, kLeastSe = 1e-8;
 
 }  // namespace

@@ -9,24 +9,23 @@
 
 namespace frond::stability {
 
-/// How far from the truth an estimate may be, in its standard errors: a sound one is further with probability 6e-7.
+/// Largest accepted error of an estimate in standard errors; a correct one exceeds it with probability 6e-7.
 inline constexpr double kMostStandardErrors = 5;
 
-/// A number rounded up to 1, 2 or 5 times a power of ten: the same text wherever rounding differs a little.
+/// A number rounded up to 1, 2 or 5 times a power of ten, so that small rounding differences do not change the text.
 std::string rounded_up(double x);
 
-/// Of shares of light that one method found with the true ones. Negative values and such as are no numbers are
-/// surprises, whatever the truth.
+/// Compares shares of light of one method with their true values. Negative values and NaN are always unexpected.
 class Comparison {
  public:
-  /// `bound` on the method's own error; 0: it is exact.
+  /// `bound`: largest accepted error of the method beside its noise; 0: the method is exact.
   explicit Comparison(double bound = 0) : bound_(bound) {}
 
-  /// Without noise.
+  /// A value without noise.
   void add(std::string_view what, double value, double truth);
-  /// A mean over `rays`. Where few would have met an outcome, 10 rays are allowed for beside the standard errors.
+  /// A mean over `rays`. The bound adds 10 rays to the standard errors, for rare outcomes.
   void add(std::string_view what, const Estimate& value, double truth, int64_t rays);
-  /// Anything else that has to hold.
+  /// Any other condition.
   void require(bool holds, std::string_view what);
 
   Cell cell() const;
@@ -38,18 +37,18 @@ class Comparison {
   double bound_;
   double largest_error_ = 0, largest_se_ = 0;
   bool has_values_ = false, has_estimates_ = false;
-  std::string surprise_;  ///< the first
+  std::string surprise_;  ///< the first unexpected result
 };
 
-/// `act` throws an InputError whose message contains `part`. Words that name a place of this run (a folder) are left
-/// out of the text.
+/// The cell of an `act` that must throw an InputError whose message contains `part`. `folder`, the path of a temporary
+/// folder, is removed from the message.
 template <class Act>
 Cell refusal(std::string_view part, const Act& act, std::string_view folder = {});
 
-/// What is expected of it.
+/// The expected result of `refusal`.
 inline std::string expect_refusal(std::string_view part) { return fmt::format("refused: ... {} ...", part); }
 
-/// The cell for a message, or for none.
+/// The cell of a message; an empty message means that nothing was thrown.
 Cell refusal_cell(std::string_view part, std::string message, std::string_view folder);
 
 template <class Act>

@@ -10,7 +10,7 @@ using test::flag;
 using test::words;
 using testing::number;
 
-/// Unit, at this height over the surface's plane.
+/// Unit vector with the z coordinate `z`.
 Vec3 at_height(float z, float phi) {
   const float r = std::sqrt(std::max(0.f, 1 - z * z));
   return {r * std::cos(phi), r * std::sin(phi), z};
@@ -19,7 +19,7 @@ Vec3 at_height(float z, float phi) {
 bool is_sound(float x) { return x >= 0 && x <= std::numeric_limits<float>::max(); }
 bool is_sound(const SampledSpectrum& s) { return is_sound(s[0]) && s[1] == 0 && s[2] == 0 && s[3] == 0; }
 
-/// All that a BSDF says of a pair of directions.
+/// Checks f and pdf of a pair of directions.
 void check_pair(Comparison& c, const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) {
   RandomStream rng(3);
   const SampledSpectrum f = bsdf.f(wo, wi, rng);
@@ -45,7 +45,7 @@ void check_samples(Comparison& c, const Bsdf& bsdf, const Vec3& wo, float heavie
   }
 }
 
-/// Numbers at the edge of what the sampler's square can hold.
+/// Random numbers at the ends of their intervals.
 void check_corners(Comparison& c, const Bsdf& bsdf, const Vec3& wo) {
   constexpr float kAlmostOne = 0x1.fffffep-1f;
   for (const float uc : {0.f, 0.03f, kAlmostOne})
@@ -68,7 +68,7 @@ std::vector<std::unique_ptr<Specimen>> with_surfaces(std::string_view material, 
   return specimens;
 }
 
-/// Both sides of where cosines begin to count as 0, and the smallest floats.
+/// Cosines on both sides of the threshold below which they count as 0, and the smallest floats.
 constexpr float kHeights[] = {1, 1e-3f, 1e-10f, 1.0001e-20f, 0.9999e-20f, 1e-30f, 1e-44f, 0};
 
 void check_height(Comparison& c, const Bsdf& bsdf, float z, float heaviest) {
@@ -93,11 +93,11 @@ Cell check_surfaces(const std::vector<std::unique_ptr<Specimen>>& specimens, flo
 
 Theme directions() {
   Theme theme{
-      "Directions in the surface's plane and near it",
-      "f, pdf and sample for wo at this height (cos theta) on either side, and wi at each of these heights on "
-      "either side, ahead, aside and back, at wo itself and at -wo; surfaces of exponent 0, 5 and 1000; the "
-      "sampler's numbers at random and in the corners of their square. `leaf_simplified` with \"surfacedirect\" "
-      "true and, as \"walked\", false over a table of walks."};
+      "Directions in and near the surface's plane",
+      "f, pdf and sample for wo at this cos theta on both sides and wi at each of these cosines on both sides, at "
+      "azimuths of 0, 1 and pi, and for wi = wo and wi = -wo. Surfaces have the exponents 0, 5 and 1000. sample is "
+      "called with random numbers inside their intervals and at the ends. The column \"simplified\" has "
+      "\"surfacedirect\" true; \"simplified, walked\" has it false and a table of walks."};
   const auto abm = with_surfaces("abm", {});
   const auto simplified = with_surfaces("leaf_simplified", {words("tablemethod", {"solve"})});
   const auto solved = with_surfaces("leaf_solved", {}), lambert = with_surfaces("leaf_lambert", {});
@@ -108,7 +108,7 @@ Theme directions() {
     theme
         .add(z > 0 && z < 1e-38f ? "cos theta = 1e-44, denormal" : fmt::format("cos theta = {:g}", z),
              z == 0 ? "no light: f = pdf = 0, no sample"
-                    : "finite, none negative, weights at most 1, of leaf_solved 4; 0 where wi is in the plane")
+                    : "finite, not negative; weights at most 1 (leaf_solved: 4); 0 if wi is in the plane")
         .add(Method::abm, check_surfaces(abm, z))
         .add(Method::simplified, check_surfaces(simplified, z))
         .add(Method::simplified_walked, check_surfaces(published, z))

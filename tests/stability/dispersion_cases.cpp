@@ -110,9 +110,9 @@ void add_dispersion(Theme& theme, std::string_view specimen, double depth, Absor
 Theme dispersion() {
   Theme theme{
       "Strong dispersion",
-      "One walk for four wavelengths whose cuticles have the indices 1.3, 1.43, 1.57 and 1.7 and whose mesophylls "
-      "absorb in the ratio 1 : 2 : 3 : 4, against the solver, wavelength by wavelength, at 5, 60, 89.5 and 140 "
-      "degrees. Without absorption the weights of a wavelength have the mean 1."};
+      "One walk for four wavelengths, with refractive indices of the cuticle of 1.3, 1.43, 1.57 and 1.7 and "
+      "absorption in the mesophyll in the ratio 1 : 2 : 3 : 4. Each wavelength is compared with the solver at 5, 60, "
+      "89.5 and 140 degrees. Without absorption the weights of a wavelength have the mean 1."};
   for (const char* specimen : {"soybean", "maize"})
     for (const Absorption absorption : {Absorption::analog, Absorption::weighted})
       for (const double depth : {0.0, 0.3}) add_dispersion(theme, specimen, depth, absorption);

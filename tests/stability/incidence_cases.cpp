@@ -22,15 +22,15 @@ void add_angles(Theme& theme, std::string name, std::string_view specimen, const
   compare_solved_leaf(row, solved_specimen({params, kNm}), lit);
 }
 
-/// What all methods say just above and just below the horizon: everything is reflected at the surface.
+/// Just above and just below the horizon everything is reflected at the surface.
 void add_crossing(Theme& theme, std::string_view specimen) {
   const leaf::TissueParams& params = find_specimen(specimen)->params;
   const TissueModel model(params);
   const leaf::Tissue tissue = model.at(kNm);
   const std::vector<double> crossing{90 - 1e-9, 90, 90 + 1e-9};
   const Lit lit{crossing, std::vector<leaf::Shares>(crossing.size(), {1, 0, 0})};
-  Row& row = theme.add(fmt::format("{}, from 90 - 1e-9 over 90 to 90 + 1e-9", specimen),
-                       "continuous: all reflected at the surface; solver within 1e-9, table within 5e-6");
+  Row& row = theme.add(fmt::format("{}, 90 - 1e-9, 90 and 90 + 1e-9", specimen),
+                       "continuous: everything is reflected at the surface; solver within 1e-9, table within 5e-6");
   compare_tissue_methods(row, tissue, lit, 1e-9);
   compare_material_methods(row, {params, kNm}, lit, 5e-6);
   compare_solved_leaf(row, solved_specimen({params, kNm}), lit);
@@ -41,8 +41,8 @@ void add_crossing(Theme& theme, std::string_view specimen) {
 Theme incidence() {
   Theme theme{
       "Angles of incidence",
-      "Rs, Rd and T at 551 nm against the solver with twice its nodes; where the horizon is crossed, against 1, 0 "
-      "and 0. Degrees from the adaxial normal: above 90 the abaxial side is lit."};
+      "Rs, Rd and T at 551 nm against the solver with twice its nodes, and across the horizon against 1, 0 and 0. "
+      "Angles are in degrees from the adaxial normal: above 90 the abaxial side is lit."};
   for (const char* specimen : {"soybean", "maize"}) {
     for (const double theta_deg : {0.0, 89.9, 89.999, 90.0, 90.1, 180.0})
       add_angles(theme, fmt::format("{}", theta_deg), specimen, {theta_deg});

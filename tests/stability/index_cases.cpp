@@ -27,7 +27,7 @@ void add_indices(Theme& theme, const leaf::Specimen& specimen, const Indices& in
   compare_tissue_methods(row, tissue, solved_finely(tissue, kAngles), bound);
 }
 
-/// Nothing is reflected; without absorption all comes through.
+/// Equal indices without absorption: R = 0, T = 1.
 void add_equal(Theme& theme, const leaf::Specimen& specimen) {
   const TissueModel model(specimen.params);
   Tissue tissue = model.at(800);
@@ -41,18 +41,19 @@ void add_equal(Theme& theme, const leaf::Specimen& specimen) {
 
 Theme indices() {
   Theme theme{
-      "Refractive indices that no leaf has",
-      "A tissue made by hand, at 5, 40, 60, 88 and 130 degrees, against the solver with twice its nodes. n_c is "
-      "the cuticle's index, n_m the mesophyll's, n_a the antidermal wall's; depth is the mesophyll's optical depth."};
+      "Refractive indices outside those of leaves",
+      "An artificial tissue at 5, 40, 60, 88 and 130 degrees, against the solver with twice its nodes. n_c is the "
+      "refractive index of the cuticle, n_m of the mesophyll, n_a of the antidermal wall; depth is the optical depth "
+      "of the mesophyll."};
   const Indices all[] = {
-      {"n_c 0.8: below the air's", 0.8, 1.4},
-      {"all of the leaf below 1", 0.8, 0.7, 0.9, 0.7},
-      {"n_m 1.0001: critical at 89.2 degrees", 1.4, 1.0001},
-      {"n_m 1 + 1e-9: a hair above the air space", 1.4, 1 + 1e-9},
+      {"n_c 0.8: below that of air", 0.8, 1.4},
+      {"all indices of the leaf below 1", 0.8, 0.7, 0.9, 0.7},
+      {"n_m 1.0001: critical angle 89.2 degrees", 1.4, 1.0001},
+      {"n_m 1 + 1e-9: just above that of the air space", 1.4, 1 + 1e-9},
       {"n_m = n_c", 1.4, 1.4},
       {"n_c and n_m 3", 3, 3},
       {"n_c 1.4, n_m 3", 1.4, 3},
-      {"n_a 3: light would be held in the wall, could it get there", 1.4, 1.4, 1, 3},
+      {"n_a 3: light that enters the wall would be trapped in it", 1.4, 1.4, 1, 3},
   };
   for (const leaf::Specimen& specimen : std::span(leaf::kSpecimens).first(2)) {
     add_equal(theme, specimen);

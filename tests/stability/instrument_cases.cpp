@@ -41,7 +41,7 @@ void add_patches(Theme& theme, int thetas, int phis, const std::string& part) {
       .add(Method::goniophotometer, refusal(part, [&] { DetectorSphere(thetas, phis); }));
 }
 
-/// The detectors miss no ray: their f integrates to R and T.
+/// The detectors catch every ray: their f integrates to R and T.
 Cell whole_sphere(double theta_deg, int thetas, int phis, const leaf::Shares& truth) {
   constexpr int64_t kRays = 50000;
   Specimen specimen("abm", {}, kNm);
@@ -77,7 +77,7 @@ leaf::Shares truth_of(const Beam& beam) {
 
 void add_measurement(Theme& theme, std::string name, const Beam& beam, int thetas, int phis) {
   const leaf::Shares truth = truth_of(beam);
-  theme.add(std::move(name), "R and T exact, by the sum of all patches too")
+  theme.add(std::move(name), "R and T exact, also as the sum over all patches")
       .add(Method::spectrophotometer, all_shares(beam, truth, 50000))
       .add(Method::goniophotometer, whole_sphere(beam.theta_deg, thetas, phis, truth));
 }
@@ -92,9 +92,7 @@ void add_delta_lobe(Theme& theme) {
   comparison.add("Rs", measurement.surface, truth.surface, 50000);
   comparison.add("Rd", measurement.subsurface, truth.subsurface, 50000);
   comparison.add("T", measurement.transmittance, truth.transmitted, 50000);
-  theme
-      .add("a delta lobe: leaf_simplified with \"surfacedirect\" false",
-           "its share exact; its f " + expect_refusal(part))
+  theme.add("a delta lobe: leaf_simplified with \"surfacedirect\" false", "shares exact; f " + expect_refusal(part))
       .add(Method::spectrophotometer, comparison.cell())
       .add(Method::goniophotometer, refusal(part, [&] {
              check_no_delta_lobe({specimen.material(), {30, kNm}});
@@ -104,7 +102,7 @@ void add_delta_lobe(Theme& theme) {
 }  // namespace
 
 Theme instruments() {
-  Theme theme{"Instruments", "`abm`, soybean, at 30 degrees and 551 nm where nothing else is said."};
+  Theme theme{"Instruments", "`abm`, soybean, at 30 degrees and 551 nm unless the case states other values."};
   add_refusal(theme, "0 rays", "2 rays at least", {.rays = 0});
   add_refusal(theme, "-5 rays", "2 rays at least", {.rays = -5});
   add_refusal(theme, "1 ray", "2 rays at least", {.rays = 1});
@@ -122,7 +120,7 @@ Theme instruments() {
   add_measurement(theme, "2 x 1 patches", {30, kNm}, 2, 1);
   add_measurement(theme, "400 x 800 patches, most of them empty", {30, kNm}, 400, 800);
   add_measurement(theme, "at 0 degrees", {0, kNm}, 20, 40);
-  add_measurement(theme, "at 90 degrees, the limit from the front", {90, kNm}, 20, 40);
+  add_measurement(theme, "at 90 degrees, as the limit from the front", {90, kNm}, 20, 40);
   add_measurement(theme, "at 180 degrees", {180, kNm}, 20, 40);
   add_delta_lobe(theme);
   return theme;

@@ -16,25 +16,25 @@ struct MeasuredShares {
   void add(leaf::Fate fate, double weight);
 };
 
-/// Unit vector toward the light. At 90 degrees rounding leaves it a trifle above the horizon.
+/// Unit vector toward the light. At 90 degrees, rounding puts it slightly above the horizon.
 Vec3d toward(double theta_deg);
 
 MeasuredShares walk_many(const leaf::Tissue& tissue, double theta_deg, leaf::Absorption absorption, int rays);
 MeasuredShares walk_many_in_batch(const leaf::Tissue& tissue, double theta_deg, leaf::Absorption absorption, int rays);
 
-/// Light that a leaf at one wavelength gets, and what truly becomes of it.
+/// Angles of incidence and the true shares at one wavelength.
 struct Lit {
   std::vector<double> theta_deg;
   std::vector<leaf::Shares> truth;
 };
 
-/// By the solver with twice its nodes.
+/// Shares by the solver with twice its nodes.
 Lit solved_finely(const leaf::Tissue& tissue, const std::vector<double>& theta_deg);
 
 void add_shares(Comparison& comparison, const MeasuredShares& measured, const leaf::Shares& truth);
 void add_shares(Comparison& comparison, const leaf::Shares& value, const leaf::Shares& truth);
 
-/// Fills in the cells of everything that works on a tissue: walks and the solver.
+/// Adds the cells of the methods that use a tissue: walks and the solver.
 void compare_tissue_methods(Row& row, const leaf::Tissue& tissue, const Lit& lit, double solver_bound);
 
 }  // namespace frond::stability

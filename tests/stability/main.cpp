@@ -5,8 +5,7 @@
 
 #include "tests/stability/cases.h"
 
-/// Runs every case. Prints a line for each cell, or tables with --markdown; ends with 1 where a cell is not as
-/// expected.
+/// Runs every case. Prints a line for each cell, or the page with --markdown; exits with 1 if a cell is unexpected.
 int main(int argc, char** argv) {
   using namespace frond::stability;
   const bool markdown = argc == 2 && std::strcmp(argv[1], "--markdown") == 0;
@@ -19,6 +18,6 @@ int main(int argc, char** argv) {
                                   instruments(), tails(),          scenes()};
   fmt::print("{}", markdown ? to_markdown(themes) : to_text(themes));
   const std::vector<std::string> list = surprises(themes);
-  for (const std::string& line : list) fmt::print(stderr, "SURPRISE in {}\n", line);
+  for (const std::string& line : list) fmt::print(stderr, "UNEXPECTED: {}\n", line);
   return list.empty() ? 0 : 1;
 }

@@ -7,27 +7,35 @@
 namespace frond::stability {
 namespace {
 
-constexpr std::string_view kHowToRead = R"(# Where methods fail
+constexpr std::string_view kHowToRead = R"(# Limits of the methods
 
-`scripts/stability` writes this page, from what it finds; `frond_stability`, one of the tests, fails where a method does
-anything else than what is expected of it. There is no surprise in what follows: nothing that is no number, nothing
-negative, nothing endless, no value that was clamped without a word.
+For readers who need to know what frond's leaf methods do at the ends of their parameter ranges, at grazing angles and
+with wrong input.
 
-Rows are cases with the expected behaviour beside them, columns are methods. A cell says what a method did:
+```sh
+scripts/stability
+```
 
-| | |
+The command runs every case and writes this page. `frond_stability`, one of the tests, runs the same cases and fails
+if a result is not the expected one. No result on this page is unexpected: no method returns NaN, a negative value or
+infinity, and none clamps a value silently.
+
+Rows are cases with their expected result; columns are methods. A cell is the result of one method:
+
+| result | meaning |
 |---|---|
-| exact, se 2e-3 | agrees with the truth within 5 of its standard errors; the largest of them |
-| exact | agrees to rounding in double precision |
-| error 5e-5 | a method without noise: its largest error, within what is expected |
-| error below 1e-6 | an error of which the digits would tell more of the compiler than of the method |
-| holds | all that is expected was looked at and is so |
+| exact, se 2e-3 | agrees with the true value within 5 standard errors; the largest standard error |
+| exact | agrees with the true value to rounding in double precision |
+| error 5e-5 | a method without noise: its largest error, which is within the expected bound |
+| error below 1e-6 | an error whose digits depend on the compiler more than on the method |
+| holds | every expected property was checked and holds |
 | refused: ... | refused, with this message |
-| - | not for this method |
+| - | the method does not apply |
 
-Numbers are rounded up to 1, 2 or 5 times a power of ten. The truth is a closed form where there is one, else the solver
-with twice the nodes that it takes by itself. A sound method is further off than 5 standard errors with probability
-6e-7; outcomes so rare that few rays meet them are given 10 rays more. Seeds are fixed: the page is the same each time.
+Numbers are rounded up to 1, 2 or 5 times a power of ten. The true value is a closed form if there is one, otherwise a
+result of the solver with twice its default nodes. A correct method differs by more than 5 standard errors with
+probability 6e-7; the bound for rare outcomes includes a further 10 rays. Seeds are fixed, so the page is the same
+each time.
 
 )";
 
@@ -39,25 +47,25 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"spectral f", "`leaf::estimate_subsurface_f` for four wavelengths at once, integrated over all directions"},
     {"solver", "`leaf::solve`"},
     {"abm", "material `abm`: `sample`, `f` and `pdf`"},
-    {"simplified", "material `leaf_simplified`, its table solved"},
-    {"simplified, walked", "material `leaf_simplified`, its table by 1000 walks for each degree"},
+    {"simplified", "material `leaf_simplified` with a solved table"},
+    {"simplified, walked", "material `leaf_simplified` with a table of 1000 walks for each degree"},
     {"table file", "material `leaf_simplified` with `tablefile`"},
     {"solved leaf",
-     "material `leaf_solved`, f integrated over all directions: R and T within its tolerance, 5e-4; "
-     "[its limits](solved_leaf.md#limits)"},
-    {"solved f", "material `leaf_solved`, pi f by direction, against modes of twice the nodes at the very angles"},
-    {"lambert",
-     "material `leaf_lambert`, R and T at the `incidence` that it is given: the case's angles up to 89 degrees"},
-    {"spectrophotometer", "`measure_shares`, as `frond spectrophotometer` calls it, of `abm`"},
+     "material `leaf_solved`, f integrated over all directions: R and T within its tolerance, 5e-4 "
+     "([leaf models](leaf_models.md))"},
+    {"solved f",
+     "material `leaf_solved`, pi f by direction, against a mode table of twice the nodes solved at these angles"},
+    {"lambert", "material `leaf_lambert`, R and T with `incidence` set to each angle of the case up to 89 degrees"},
+    {"spectrophotometer", "`measure_shares` of `abm`, as `frond spectrophotometer` calls it"},
     {"goniophotometer", "`measure_f` and its sphere of detectors, as `frond goniophotometer` calls them"},
     {"path, abm", "the path integrator, rendering a scene with `abm`"},
     {"path, weighted abm", "the same with `abm` in its weighted mode"},
     {"path, simplified", "the same with `leaf_simplified`"},
     {"path, solved leaf", "the same with `leaf_solved`"},
-    {"path, lambert", "the same with `leaf_lambert`, its means under diffuse light"},
+    {"path, lambert", "the same with `leaf_lambert`, whose R and T are means under diffuse light"},
 }};
 
-/// What Markdown would take for its own.
+/// Escapes the characters that Markdown interprets.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -76,7 +84,7 @@ std::string markdown_row(const std::vector<std::string>& fields) {
 std::string cell_text(const Row& row, Method method) {
   const auto cell = row.cells.find(method);
   if (cell == row.cells.end()) return "-";
-  return (cell->second.is_surprise ? "SURPRISE: " : "") + cell->second.text;
+  return (cell->second.is_surprise ? "UNEXPECTED: " : "") + cell->second.text;
 }
 
 std::string to_markdown(const Theme& theme) {
@@ -133,7 +141,7 @@ std::string to_text(const std::vector<Theme>& themes) {
 }
 
 std::string to_markdown(const std::vector<Theme>& themes) {
-  std::string text = std::string(kHowToRead) + "| column | |\n|---|---|\n";
+  std::string text = std::string(kHowToRead) + "| column | method |\n|---|---|\n";
   for (const auto& [name, doc] : kNames) text += fmt::format("| {} | {} |\n", name, doc);
   for (const Theme& theme : themes) text += "\n" + to_markdown(theme);
   return text;

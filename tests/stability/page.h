@@ -9,7 +9,7 @@
 
 namespace frond::stability {
 
-/// Whatever computes something of a leaf. The columns of the page.
+/// Methods that compute a leaf's optics: the columns of the page.
 enum class Method : uint8_t {
   walk_analog,
   walk_weighted,
@@ -38,13 +38,13 @@ struct MethodName {
 const MethodName& describe(Method method);
 inline constexpr size_t kMethods = 20;
 
-/// What one method did in one case.
+/// Result of one method in one case.
 struct Cell {
   std::string text;
   bool is_surprise = false;
 };
 
-/// One case: what it is, what is expected, and what each method that it concerns made of it.
+/// One case: its name, the expected result, and the result of each method that it applies to.
 struct Row {
   std::string name, expected;
   std::map<Method, Cell> cells = {};
@@ -55,7 +55,7 @@ struct Row {
   }
 };
 
-/// Cases that are read together.
+/// A table of related cases.
 struct Theme {
   std::string title, text;
   std::vector<Row> rows = {};
@@ -63,17 +63,17 @@ struct Theme {
   Row& add(std::string name, std::string expected) {
     return rows.emplace_back(Row{std::move(name), std::move(expected)});
   }
-  /// Those that any of its rows concerns, in their order.
+  /// The methods with a cell in any row, in order.
   std::vector<Method> methods() const;
 };
 
-/// One line for each cell that is not as expected.
+/// One line for each unexpected cell.
 std::vector<std::string> surprises(const std::vector<Theme>& themes);
 
-/// For people at a terminal: a line for each cell.
+/// One line for each cell, for a terminal.
 std::string to_text(const std::vector<Theme>& themes);
 
-/// docs/stability.md: how to read it, and a table for each theme.
+/// docs/stability.md: its introduction, and a table for each theme.
 std::string to_markdown(const std::vector<Theme>& themes);
 
 }  // namespace frond::stability

@@ -34,11 +34,13 @@ constexpr Number kNumbers[] = {
     {&TissueParams::palisade_aspect, "palisadeaspect"},
 };
 
+const Number& known(std::string_view name) { return *std::ranges::find(kNumbers, name, &Number::name); }
+
 const Param& declared(std::string_view name) {
   return *std::ranges::find_if(kLeafParams, [&](const Param& p) { return p.name == name; });
 }
 
-/// docs/solved_leaf.md, Limits: lobes of exponent 0 have an edge; those of 100 would need more cells than there may be.
+/// Lobes of exponent 0 have an edge; those of 100 need more cells than the limit (docs/leaf_models.md).
 constexpr double kEdgeOfF = 3e-3, kNarrowestF = 2e-3;
 
 /// Bounds on the errors of the solver, of looking up its table, and of pi f of `leaf_solved`; 0: not compared.
@@ -64,12 +66,12 @@ void add_leaf(Theme& theme, std::string name, const TissueParams& params, double
   if (bounds.f > 0) row.add(Method::solved_f, compare_solved_f(solved, tissue, {10, 40, 55, 75}, bounds.f));
 }
 
-/// Pigments do so by the depth of the mesophyll, as its thickness and fraction do.
+/// Pigments change f only through the optical depth of the mesophyll, as thickness and fraction do.
 bool shapes_f(std::string_view name) { return name == "thickness" || name == "mesophyllfraction"; }
 
 bool is_aspect(std::string_view name) { return name.ends_with("aspect"); }
 
-/// Where the number matters most.
+/// The wavelength at which the parameter has the largest effect.
 double telling_nm(std::string_view name) {
   if (name == "protein" || name == "cellulose" || name == "lignin") return 2100;
   return is_aspect(name) ? 800 : 551;
@@ -92,7 +94,7 @@ void add_aspects(Theme& theme, std::string_view specimen, double cuticle, double
   add_leaf(theme, fmt::format("{}, cuticle {:g}, all cells {:g}", specimen, cuticle, cells), params, 800, bounds);
 }
 
-/// One number given to every leaf material.
+/// One parameter value outside its range, for every leaf material.
 void add_refusal(Theme& theme, std::string_view name, double value, const std::string& part) {
   Row& row = theme.add(fmt::format("{} {:g}", name, value), expect_refusal(part));
   const auto give_to = [&](std::string_view material) {
@@ -101,7 +103,7 @@ void add_refusal(Theme& theme, std::string_view name, double value, const std::s
   for (const auto& [method, material] : kLeafMaterials) row.add(method, give_to(material));
 }
 
-/// Each number in its turn: the last message stands for all, unless one is a surprise.
+/// Each parameter in turn: the cell has the last message, or the first unexpected one.
 Cell refuses_all(std::string_view material, double value, const std::string& part) {
   Cell cell;
   for (const Number& n : kNumbers)
@@ -112,17 +114,17 @@ Cell refuses_all(std::string_view material, double value, const std::string& par
 
 void add_no_number(Theme& theme, double value) {
   const std::string part = fmt::format("has the value {}, finite numbers are needed", value);
-  Row& row = theme.add(fmt::format("each of these numbers {}", value), expect_refusal(part));
+  Row& row = theme.add(fmt::format("each parameter {}", value), expect_refusal(part));
   for (const auto& [method, material] : kLeafMaterials) row.add(method, refuses_all(material, value, part));
 }
 
-/// One that leaves the range somewhere.
+/// A texture with values outside the range.
 void add_texture(Theme& theme) {
   const std::string part = "has values from 3 to 300, outside the range 0 to 100 kg/m^3";
   const auto give_to = [&](std::string_view material) {
     return refusal(part, [&] { Specimen(material, {test::texture("chlorophylla", {"3:300"})}, 551); });
   };
-  Row& row = theme.add("chlorophylla by a texture from 3 to 300", expect_refusal(part));
+  Row& row = theme.add("chlorophylla from a texture with values 3 to 300", expect_refusal(part));
   for (const auto& [method, material] : kLeafMaterials) row.add(method, give_to(material));
 }
 
@@ -130,7 +132,7 @@ std::string range_text(const Param& p) {
   return fmt::format("outside its range {} to {}{}{}", p.range.min, p.range.max, p.unit.empty() ? "" : " ", p.unit);
 }
 
-/// The nearest that is wrong, as people would type it.
+/// Values just outside a range.
 double just_below(const Interval& range) { return range.min == 0 ? -1e-9 : range.min * 0.999; }
 double just_above(const Interval& range) { return range.max * 1.001; }
 
@@ -148,7 +150,9 @@ void add_oblateness(Theme& theme, double oblateness) {
     comparison.add("R + T", measured.all.estimate(), truth.surface + truth.subsurface + truth.transmitted, kSamples);
     comparison.add("T", measured.transmitted.estimate(), truth.transmitted, kSamples);
   }
-  theme.add(fmt::format("oblateness {:g} of the surface lobe", oblateness), "R + T and T as without it, within 5e-4")
+  theme
+      .add(fmt::format("oblateness {:g} of the surface lobe", oblateness),
+           "R + T and T as without oblateness, within 5e-4")
       .add(Method::simplified, comparison.cell());
 }
 
@@ -156,10 +160,11 @@ void add_oblateness(Theme& theme, double oblateness) {
 
 Theme ends_of_ranges() {
   Theme theme{
-      "Numbers of the leaf at the ends of their ranges",
-      "Rs, Rd and T at 10, 75 and 140 degrees against the solver with twice its nodes, where the number matters: "
-      "pigments at 551, fibres at 2100, aspect ratios at 800 nm. All others are the soybean's, or the maize's "
-      "where it says so. pi f where the number shapes it and twice the nodes are solved in a few seconds."};
+      "Parameters at the ends of their ranges",
+      "Rs, Rd and T at 10, 75 and 140 degrees against the solver with twice its nodes, at a wavelength that the "
+      "parameter affects: 551 nm for pigments, 2100 nm for fibres, 800 nm for aspect ratios. All other parameters "
+      "are those of soybean, or of maize if the case names it. pi f is compared if the parameter changes its shape "
+      "and a solution with twice the nodes takes only a few seconds."};
   for (const Number& n : kNumbers) {
     if (is_aspect(n.name)) continue;
     const Interval range = declared(n.name).range;
@@ -168,9 +173,10 @@ Theme ends_of_ranges() {
     if (range.min == 0) add_value(theme, n, 1e-12);
     add_value(theme, n, range.max, bounds);
   }
-  for (const double cuticle : {0.0, 0.2, 5.0, 1000.0}) add_value(theme, kNumbers[8], cuticle, {.f = kModesTolerance});
+  for (const double cuticle : {0.0, 0.2, 5.0, 1000.0})
+    add_value(theme, known("cuticleaspect"), cuticle, {.f = kModesTolerance});
   const Bounds edge{5e-4, 2e-3, kEdgeOfF}, narrow{1e-5, 2e-3}, narrow_with_f{1e-5, 2e-3, kNarrowestF};
-  for (const Number& n : {kNumbers[9], kNumbers[10], kNumbers[11]}) {
+  for (const Number& n : {known("epidermisaspect"), known("spongyaspect"), known("palisadeaspect")}) {
     add_value(theme, n, 0, edge);
     add_value(theme, n, 100, n.name == "epidermisaspect" ? narrow_with_f : narrow);
   }
@@ -183,8 +189,8 @@ Theme ends_of_ranges() {
 }
 
 Theme outside_ranges() {
-  Theme theme{"Numbers of the leaf outside their ranges",
-              "The nearest numbers beyond each end, and such as are none, given to every leaf material."};
+  Theme theme{"Parameters outside their ranges",
+              "Every leaf material with values just outside each end of a range, and with NaN and infinity."};
   for (const Number& n : kNumbers) {
     const Param& p = declared(n.name);
     add_refusal(theme, n.name, just_below(p.range), range_text(p));

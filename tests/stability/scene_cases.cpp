@@ -16,7 +16,7 @@ const std::string kSky = "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65
 
 std::string triple(double x, double y, double z) { return fmt::format("{:.9g} {:.9g} {:.9g}", x, y, z); }
 
-/// A sheet of leaf about `place`, filling a film that looks down on it from 30 degrees off its normal.
+/// A sheet of leaf with its centre at `place`; it fills the film of a camera 30 degrees from its normal.
 struct Sheet {
   std::string material;
   std::string world = kSky;
@@ -46,7 +46,7 @@ Shape "trianglemesh" "point3 P" [{} {} {} {}] "integer indices" [0 1 2  0 2 3] {
   }
 };
 
-/// Vertex normals that all lean by an angle toward +x.
+/// Vertex normals tilted by an angle toward +x.
 std::string leaning(double deg) {
   return fmt::format("\"normal N\" [{0} {0} {0} {0}]", triple(std::sin(deg * kDegree), 0, std::cos(deg * kDegree)));
 }
@@ -69,7 +69,7 @@ const Leaf kLeaves[] = {{Method::path_abm, kAbm},
                         {Method::path_solved, "\"leaf_solved\""},
                         {Method::path_lambert, "\"leaf_lambert\""}};
 
-/// A row with a cell for each leaf; cell_of(leaf) makes it.
+/// Adds a row with the cell cell_of(leaf) for each leaf.
 template <class CellOf>
 void add_leaves(Theme& theme, std::string name, std::string expected, const CellOf& cell_of) {
   Row& row = theme.add(std::move(name), std::move(expected));
@@ -94,7 +94,7 @@ Cell furnace(const Leaf& leaf, bool direct) {
   return comparison.cell();
 }
 
-/// Shading normals that lean by an angle, by which no more light may come back than there is.
+/// Shading normals tilted by an angle must not increase the light above that of the sky.
 Cell bent(const Leaf& leaf, double lean_deg) {
   const Sheet sheet{.material = leaf.material + " \"float mesophyllfraction\" 0", .normals = leaning(lean_deg)};
   const Film film = render_text(sheet.text(), {.samples = kSamples});
@@ -133,15 +133,19 @@ Cell far_away(const Leaf& leaf, double place) {
 Theme scenes() {
   Theme theme{
       "Scenes",
-      "Means of images of 8 x 8 pixels at 608, 551 and 455 nm. A sheet of soybean leaf, tilted; \"no absorption\" "
-      "is a mesophyll fraction of 0. The far scenes have a second sheet 512 units under the first and a sun."};
+      "Means of images of 8 x 8 pixels at 608, 551 and 455 nm. The scene is a tilted sheet of soybean leaf; \"no "
+      "absorption\" is a mesophyll fraction of 0. The scenes far from the origin add a second sheet 512 units below "
+      "the first and a distant light."};
   for (const bool direct : {false, true})
     add_leaves(theme,
-               fmt::format("no absorption, under a sky of 1, {}", direct ? "light sampled" : "light met by chance"),
+               fmt::format("no absorption, under a sky of radiance 1, {}",
+                           direct ? "with light sampling" : "without light sampling"),
                "radiance 1, table within 2e-4", [&](const Leaf& leaf) { return furnace(leaf, direct); });
   for (const double lean_deg : {45.0, 80.0, 89.9, 90.0, 135.0, 180.0})
-    add_leaves(theme, fmt::format("no absorption, under a sky of 1, shading normals lean by {:g} degrees", lean_deg),
-               "radiance above 0, at most 1", [&](const Leaf& leaf) { return bent(leaf, lean_deg); });
+    add_leaves(
+        theme,
+        fmt::format("no absorption, under a sky of radiance 1, shading normals tilted by {:g} degrees", lean_deg),
+        "radiance above 0, at most 1", [&](const Leaf& leaf) { return bent(leaf, lean_deg); });
   for (const double place : {1e5, 1e7})
     add_leaves(theme, fmt::format("a sheet 8192 units wide, {} units from the origin", rounded_up(place)),
                "as at the origin", [&](const Leaf& leaf) { return far_away(leaf, place); });

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// From the normal to the side that light comes from or goes to.
+/// A direction; theta is measured from the normal of the side `below` names.
 struct Direction {
   double theta_deg, azimuth;
   bool below;
@@ -21,7 +21,7 @@ struct Direction {
   }
 };
 
-/// The cosine series at the very angles, and the surface's lobe in closed form.
+/// f from the cosine series at exactly the given angles and the surface's lobe in closed form.
 class TrueF {
  public:
   TrueF(const leaf::Tissue& tissue, const std::vector<double>& theta_deg) : tissue_(tissue) {
@@ -30,7 +30,7 @@ class TrueF {
     modes_ = leaf::solve_modes(tissue, sines, 1e-5, 2 * leaf::mode_nodes(tissue));
   }
 
-  /// Of directions whose angles have the places `i` and `o`; wo is the incident one.
+  /// f of directions whose angles have the indices `i` and `o`; wo is the incident direction.
   double at(const Direction& wo, const Direction& wi, size_t i, size_t o) const {
     const double cos_i = std::cos(wo.theta_deg * kDegree), cos_o = std::cos(wi.theta_deg * kDegree);
     const double phi = wi.azimuth - wo.azimuth - std::numbers::pi;  // 0: straight on

@@ -51,7 +51,7 @@ Cell measured(const Specimen& specimen, const Lit& lit) {
   return comparison.cell();
 }
 
-/// For methods that tell R and not its parts.
+/// For methods that return R but not Rs and Rd.
 void add_all_reflected(Comparison& comparison, const Shares& value, const Shares& truth) {
   comparison.add("R", value.surface + value.subsurface, truth.surface + truth.subsurface);
   comparison.add("T", value.transmitted, truth.transmitted);
@@ -64,7 +64,7 @@ Cell looked_up(Specimen& specimen, const Lit& lit, double bound) {
   return comparison.cell();
 }
 
-/// Of `leaf_lambert`, whose R and T are those of one angle: a leaf for each. None where all angles are beyond its
+/// The cell of `leaf_lambert`, with a separate leaf for each angle of incidence; none if all angles are outside its
 /// range.
 std::optional<Cell> given_incidence(const Parameters& params, double lambda_nm, const Lit& lit, double bound) {
   Comparison comparison(bound);
@@ -79,7 +79,7 @@ std::optional<Cell> given_incidence(const Parameters& params, double lambda_nm, 
   return any ? std::optional(comparison.cell()) : std::nullopt;
 }
 
-/// A table's own noise: `rays` walks at each angle, of which the neighbours take part in a look-up.
+/// Noise of a table with `rays` walks at each angle, for a look-up between neighbouring angles.
 Cell looked_up_in_walked(Specimen& specimen, const Lit& lit, double bound) {
   Comparison comparison(bound);
   const auto add = [&](std::string_view what, double value, double truth) {

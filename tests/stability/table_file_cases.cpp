@@ -27,7 +27,7 @@ class Files {
                                      part, [&] { open(file, nm); }, folder_.name_of("")));
   }
 
-  /// Accepted, and each of these angles has the shares beside it.
+  /// Adds a case of an accepted file whose shares at the angles of `lit` must be those of `lit`.
   void holds(std::string name, std::string expected, std::string_view rows, const Lit& lit, double nm = 551) {
     Comparison comparison(2e-4);
     const std::string file = folder_.write("t.csv", std::string(kHead) + std::string(rows)).string();
@@ -55,13 +55,13 @@ class Files {
 
 void add_accepted(Files& files) {
   const Shares s{0.04, 0.06, 0.12};
-  files.holds("one row", "stands for all angles, both sides and all wavelengths", "8,551,0.04,0.06,0.12\n",
+  files.holds("one row", "holds for all angles, both sides and all wavelengths", "8,551,0.04,0.06,0.12\n",
               {{0, 8, 45, 89.999, 91, 180}, {s, s, s, s, s, s}}, 800);
-  files.holds("angles to 40 degrees alone", "the nearest holds beyond; both sides are the same; within 2e-4",
+  files.holds("only angles up to 40 degrees", "values of the nearest angle beyond; both sides equal; within 2e-4",
               "0,551,0.1,0.2,0.3\n40,551,0.04,0.06,0.12\n",
               {{0, 40, 80, 90.1, 140, 180}, {{0.1, 0.2, 0.3}, s, s, s, s, {0.1, 0.2, 0.3}}});
-  files.holds("R + T = 1", "accepted as it is", "8,551,0.1,0.4,0.5\n", {{8, 100}, {{0.1, 0.4, 0.5}, {0.1, 0.4, 0.5}}});
-  files.holds("a black leaf: all shares 0", "accepted as it is: nothing comes back", "8,551,0,0,0\n",
+  files.holds("R + T = 1", "accepted unchanged", "8,551,0.1,0.4,0.5\n", {{8, 100}, {{0.1, 0.4, 0.5}, {0.1, 0.4, 0.5}}});
+  files.holds("a black leaf: all shares 0", "accepted unchanged: no light is scattered", "8,551,0,0,0\n",
               {{8, 100}, {Shares{}, Shares{}}});
 }
 
@@ -75,32 +75,32 @@ void add_bad_numbers(Files& files) {
   files.refuses("an angle of NaN", "nan,551,0.1,0.1,0.5\n", "theta_deg is from 0 to 180, nan was given");
   files.refuses("an angle of 180.1", "180.1,551,0.1,0.1,0.5\n", "theta_deg is from 0 to 180, 180.1 was given");
   files.refuses("a wavelength of 0", "8,0,0.1,0.1,0.5\n", "wavelength_nm is above 0, 0 was given");
-  files.refuses("a word for a number", "8,551,0.1,much,0.5\n", "Rd is a number, \"much\" was given");
+  files.refuses("a word instead of a number", "8,551,0.1,much,0.5\n", "Rd is a number, \"much\" was given");
 }
 
 void add_bad_order(Files& files) {
-  files.refuses("unsorted", "40,551,0.1,0.1,0.1\n8,551,0.1,0.1,0.1\n", "theta_deg 8 comes after 40 at 551 nm (line 2)");
-  files.refuses("an angle twice", "8,551,0.1,0.1,0.1\n8,551,0.1,0.1,0.1\n",
+  files.refuses("unsorted angles", "40,551,0.1,0.1,0.1\n8,551,0.1,0.1,0.1\n",
+                "theta_deg 8 comes after 40 at 551 nm (line 2)");
+  files.refuses("a repeated angle", "8,551,0.1,0.1,0.1\n8,551,0.1,0.1,0.1\n",
                 "angles ascend, each once for a wavelength");
-  files.refuses("angles missing at one wavelength", "8,551,0.1,0.1,0.1\n40,551,0.1,0.1,0.1\n8,608,0.1,0.1,0.1\n",
+  files.refuses("an angle missing at one wavelength", "8,551,0.1,0.1,0.1\n40,551,0.1,0.1,0.1\n8,608,0.1,0.1,0.1\n",
                 "608 nm has no row for theta_deg 40");
-  files.refuses("the adaxial side missing", "100,551,0.1,0.1,0.1\n", "those of the adaxial side are missing");
-  files.refuses("wavelengths outside", "8,551,0.1,0.1,0.1\n8,608,0.1,0.1,0.1\n", "from 551 to 608 nm", 800);
+  files.refuses("no angles of the adaxial side", "100,551,0.1,0.1,0.1\n", "those of the adaxial side are missing");
+  files.refuses("a wavelength outside the table", "8,551,0.1,0.1,0.1\n8,608,0.1,0.1,0.1\n", "from 551 to 608 nm", 800);
 }
 
 void add_bad_files(Files& files) {
   files.refuses_text("an empty file", "", "the table is empty: a line with the names of the columns and then");
-  files.refuses("names of the columns alone", "",
-                "the table is empty: a row for each angle and wavelength is expected");
-  files.refuses_text("a column missing", "theta_deg,wavelength_nm,Rs,Rd\n8,551,0.1,0.1\n", "there is no column \"T\"");
-  files.refuses_text("a column misspelt", "theta,wavelength_nm,Rs,Rd,T\n8,551,0.1,0.1,0.1\n",
+  files.refuses("only the header", "", "the table is empty: a row for each angle and wavelength is expected");
+  files.refuses_text("a missing column", "theta_deg,wavelength_nm,Rs,Rd\n8,551,0.1,0.1\n", "there is no column \"T\"");
+  files.refuses_text("a misspelt column", "theta,wavelength_nm,Rs,Rd,T\n8,551,0.1,0.1,0.1\n",
                      "there is no column \"theta\" in a leaf's table");
   files.refuses("a row too short", "8,551,0.1,0.1\n", "4 fields, but the file has 5 columns");
-  files.refuses_text("no text at all, but bytes",
+  files.refuses_text("a binary file",
                      std::string_view("\x7f"
                                       "ELF\0\0\xff\xfe",
                                       8),
-                     "this is no text");
+                     "not a text file");
   files.refuses_file("no such file", files.name_of("none.csv"), "No such file or directory");
   files.refuses_file("a folder", files.folder(), "it is a folder");
 }
@@ -109,8 +109,9 @@ void add_bad_files(Files& files) {
 
 Theme table_files() {
   Theme theme{
-      "Files with tables",
-      "`leaf_simplified` with `tablefile` at 551 nm. What is accepted is read off the material at several angles."};
+      "Table files",
+      "`leaf_simplified` with `tablefile` at 551 nm. For accepted files, Rs, Rd and T of the material are compared "
+      "with the file at several angles."};
   Files files(theme);
   add_accepted(files);
   add_bad_numbers(files);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNm = 551;
 
-/// Weights of samples, of paths that arrive from everywhere alike: what a path through leaves is multiplied by.
+/// Sample weights (factors of a path's throughput) for paths that arrive uniformly from all directions.
 struct Weights {
   double largest = 0;
   double share_of_largest = 0;  ///< of the sum of squares
@@ -42,10 +42,10 @@ Cell bounded(const Weights& w) {
 }
 
 Cell unbounded(const Weights& w) {
-  constexpr double kLeast = 15;  // grows like the root of their number
-  return {
-      fmt::format("weights up to {}; one has {} of all squares", rounded_up(w.largest), rounded_up(w.share_of_largest)),
-      w.largest < kLeast};
+  constexpr double kLeast = 15;  // grows like the square root of the number of samples
+  return {fmt::format("weights up to {}; one has a share of {} of the squares", rounded_up(w.largest),
+                      rounded_up(w.share_of_largest)),
+          w.largest < kLeast};
 }
 
 Specimen leaf(std::string_view material, const std::string& specimen, const std::string& incident) {
@@ -56,15 +56,16 @@ Specimen leaf(std::string_view material, const std::string& specimen, const std:
 
 Theme tails() {
   Theme theme{
-      "Tails",
-      "Weights of a million samples, f |cos| / pdf at 551 nm, of paths that arrive from everywhere alike. By "
-      "\"light\" f grows like 1 / cos toward grazing views, and the square of a weight has no mean: the noise of "
-      "an image in which leaves light each other does not settle (reciprocal_leaf.md)."};
+      "Sample weights",
+      "Weights f |cos| / pdf of a million samples at 551 nm, for paths that arrive uniformly from all directions. "
+      "With \"incident\" \"light\", f grows like 1 / cos toward grazing views and the squared weight has no finite "
+      "mean: the noise of images with light between leaves does not converge ([leaf models](leaf_models.md))."};
   for (const std::string specimen : {"soybean", "maize"})
     for (const std::string incident : {"traced", "light", "reciprocal"}) {
       const bool settles = incident != "light";
-      Row& row = theme.add(fmt::format("{}, incident {}", specimen, incident),
-                           settles ? "bounded, no weight above 6" : "not bounded; lambert, which is flat, is");
+      Row& row =
+          theme.add(fmt::format("{}, incident {}", specimen, incident),
+                    settles ? "bounded, no weight above 6" : "not bounded, except for lambert, whose f is constant");
       for (const auto& [method, name] : kLeafMaterials) {
         if (method == Method::abm && incident == "reciprocal") {
           row.add(method, refusal("reciprocal", [&] { leaf("abm", specimen, incident); }));

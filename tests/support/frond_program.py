@@ -31,7 +31,7 @@ THREADS = 2
 
 
 def part_header(path):
-    """What a part says before its sums (docs/part_format.md)."""
+    """What a part says before its sums (docs/many_machines.md)."""
     data = pathlib.Path(path).read_bytes()
     magic = b"frond part 3\n"
     assert data.startswith(magic), f"{path} is no part"

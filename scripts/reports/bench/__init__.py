@@ -1,1 +1,1 @@
-"""Runs the benchmarks and compares two runs of them (docs/benchmarks.md)."""
+"""Runs the benchmarks and compares two runs of them (docs/performance.md)."""

@@ -11,11 +11,11 @@ from tools import ROOT, write, write_section
 from . import page, results, session, tables, text
 from .comparison import Comparison
 
-DOCUMENT = ROOT / "docs" / "benchmarks.md"
+DOCUMENT = ROOT / "docs" / "performance.md"
 
 
 def arguments():
-    """What they do: scripts/bench."""
+    """The options; scripts/bench describes them."""
     parser = argparse.ArgumentParser(prog="scripts/bench")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--compare", nargs=2, metavar=("A.json", "B.json"))
@@ -32,7 +32,7 @@ def arguments():
 def setting_of(options):
     chosen = {"filter": options.filter, "rounds": options.repetitions}
     if options.repetitions is not None and options.repetitions < 1:
-        raise SystemExit("--repetitions: one at least")
+        raise SystemExit("--repetitions is at least 1")
     base = session.QUICK if options.quick else session.Setting()
     return dataclasses.replace(base, **{k: v for k, v in chosen.items() if v is not None})
 

@@ -12,7 +12,7 @@ FALSE_ALARMS = 0.05
 
 class Comparison:
     """`times`: of each benchmark name, a, b (CPU time), ratio of B over A with a 95 % interval of its own from low to high, p,
-    adjusted for all benchmarks, and mark; sorted from the slowest on. `figures`: of counters that do not hang on time name,
+    adjusted for all benchmarks, and mark; sorted from the slowest on. `figures`: of counters that do not depend on time name,
     counter, a, b, a_se, b_se (standard errors), p, adjusted for all figures, and mark, in the benchmarks' order."""
 
     def __init__(self, a, b):

@@ -1,4 +1,4 @@
-"""A comparison of two runs as one HTML page that needs nothing beside it."""
+"""A comparison of two runs as one self-contained HTML page."""
 
 import html as html_library
 import pathlib
@@ -14,7 +14,7 @@ from .comparison import FALSE_ALARMS, warnings
 from .text import change, interval, seconds, verdict
 
 HERE = pathlib.Path(__file__).parent
-STYLES = (ROOT / "src/study/compare/page/page.css", HERE / "page.css")  # that of frond compare's report, and more
+STYLES = (ROOT / "src/study/compare/page/page.css", HERE / "page.css")  # the style of frond compare's report, and additions
 SIGNS = {"slower": "▲ slower", "faster": "▼ faster", "": ""}
 CHANNELS = ("red", "green", "blue")
 
@@ -64,7 +64,7 @@ def time_table(comparison):
 
 
 def figure(change_of_figure, unit):
-    """A counter of the images' errors in one cell."""
+    """The cell of a counter of the images' errors."""
     a, b = (f"{x / unit:.3g}".replace("-", "−") for x in (change_of_figure.a, change_of_figure.b))
     if change_of_figure.mark == "same":
         return span(a, "same")
@@ -72,13 +72,13 @@ def figure(change_of_figure, unit):
 
 
 def derived(comparison, name, counter, unit):
-    """A counter that hangs on time: its change is the times'."""
+    """The cell of a counter that depends on time; its significance is that of the times."""
     found = [run.counters[name].get(counter) for run in (comparison.a, comparison.b)]
     return "-" if any(x is None for x in found) else " → ".join(f"{numpy.exp(numpy.log(x).mean()) / unit:.3g}" for x in found)
 
 
-# Of the counters, what stands over their columns and the unit there.
-TIMED = {"us_per_path": ("µs a path", 1), "speedup": ("speed-up", 1),
+# For each counter the heading of its column and the unit.
+TIMED = {"us_per_path": ("µs per path", 1), "speedup": ("speed-up", 1),
          "speedup_equal_noise": ("speed-up at equal noise", 1), "efficiency": ("efficiency, 10⁹/s", 1e9)}
 ERRORS = {f"{kind}_{c}": (f"{word} {c}, {power}", unit) for kind, word, power, unit in (
     ("offset", "offset", "10⁻³", 1e-3), ("rms", "RMS", "10⁻³", 1e-3), ("bias2", "bias²", "10⁻⁶", 1e-6))
@@ -104,22 +104,22 @@ def scene_sections(comparison):
 {scene_table(timed, TIMED, lambda *column: derived(comparison, *column))}
 </section>
 <section><h2>Scenes: error</h2>
-<p class="note">One figure where A and B have the same to the last digit, else A → B; <span class="changed">bold</span>
-where they differ by more than their standard errors explain.</p>
+<p class="note">One value if A and B are equal to the last digit, otherwise A → B; <span class="changed">bold</span>
+if they differ by more than their standard errors explain.</p>
 {scene_table(judged, ERRORS, lambda name, counter, unit: figure(figures[name, counter], unit))}
 </section>"""
 
 
 def method(comparison):
-    how = ("A and B ran in turn in each round, and the ratio of each round is one figure" if comparison.paired else
-           "A and B are two runs of their own (Welch's test)")
-    return f"""<p>A round is a process of its own; a benchmark's time in it is that of its fastest repetition, which
-other work disturbed least. {how}. The test is Student's t on logarithms, corrected for the number of benchmarks (Holm
-1979): two runs of one program are marked anywhere with a probability of {FALSE_ALARMS:.0%}. Another layout of the same
-code can move a benchmark of nanoseconds by some per cent; that is a true change of the time, and means nothing.</p>
-<p>Offset, RMS, bias² and variance come from renders of fixed seeds: the same code gives the same digits. Where they differ,
-they are held against their standard errors, with a chance of {FALSE_ALARMS:.0%} for a false alarm among all of them.
-docs/benchmarks.md says what each counter means.</p>"""
+    how = ("A and B ran in turn in each round, and the ratio of each round is one value" if comparison.paired else
+           "A and B are two separate runs (Welch's test)")
+    return f"""<p>Each round is a separate process; a benchmark's time in a round is that of its fastest repetition, which
+other work disturbed least. {how}. The test is Student's t on logarithms, corrected for the number of benchmarks (Holm 1979): in two runs
+of one program any benchmark is marked with a probability of {FALSE_ALARMS:.0%}. A different memory layout of the same code can
+change a benchmark of nanoseconds by a few per cent; this is a real change of the time, but means nothing.</p>
+<p>Offset, RMS, bias² and variance come from renders with fixed seeds: the same code gives the same digits. Differing values
+are tested against their standard errors, with a probability of {FALSE_ALARMS:.0%} for a false alarm among all of them.
+docs/performance.md defines the counters.</p>"""
 
 
 def html(comparison):

@@ -1,10 +1,10 @@
-"""Ratios with their intervals, as small images in the rows of a table."""
+"""Small charts of ratios with their intervals, for the rows of a table."""
 
 import math
 
 WIDTH, HEIGHT = 300, 26
 CENTER, REACH = WIDTH / 2, WIDTH / 2 - 34
-REACHES = (1.05, 1.1, 1.2, 1.5, 2, 4, 10, 100)  # what the axis may go to, either way
+REACHES = (1.05, 1.1, 1.2, 1.5, 2, 4, 10, 100)  # possible ends of the axis, in both directions
 COLORS = {"slower": "#b34700", "faster": "#0067a5", "": "#5c6166"}
 
 

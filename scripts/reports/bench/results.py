@@ -1,4 +1,4 @@
-"""One run of the benchmarks, as Google Benchmark writes it, in several rounds: a process each."""
+"""One run of the benchmarks in Google Benchmark's format, with several rounds (one process each)."""
 
 import json
 
@@ -6,14 +6,14 @@ import pandas
 
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
-# What Google Benchmark itself says of a benchmark; all other numbers are counters of ours.
+# Google Benchmark's own fields of a benchmark; all other numbers are frond's counters.
 FIELDS = {"family_index", "per_family_instance_index", "repetitions", "repetition_index", "threads", "iterations",
           "real_time", "cpu_time", "items_per_second", "bytes_per_second", "round", "seconds"}
 
 
 class Run:
-    """`times[benchmark][round]`: CPU seconds of an iteration, of the fastest repetition of a round, which the machine
-    disturbed least. `counters[benchmark][counter][round]`: the mean of a round."""
+    """`times[benchmark][round]`: CPU seconds of an iteration in the fastest repetition of a round, which other work disturbed
+    least. `counters[benchmark][counter][round]`: mean of a round."""
 
     def __init__(self, document):
         self.context = document["context"]
@@ -27,7 +27,7 @@ class Run:
 
     @property
     def label(self):
-        return self.context.get("commit", "a commit that nobody noted")
+        return self.context.get("commit", "unknown commit")
 
     @property
     def rounds(self):
@@ -43,5 +43,5 @@ def read(path):
 
 
 def family(name):
-    """The benchmarks that belong together: what stands before the first slash."""
+    """The family of a benchmark: its name up to the first slash."""
     return name.split("/")[0]

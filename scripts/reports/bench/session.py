@@ -1,4 +1,4 @@
-"""Builds and runs the benchmarks: several rounds, each a process, the programs in turn."""
+"""Builds and runs the benchmarks: several rounds, each a separate process, with the programs in turn."""
 
 import contextlib
 import dataclasses
@@ -18,7 +18,7 @@ QUICK_FILTER = r"^(scene/(soybean-front|hundred-leaves)|bsdf/.*/(hit_and|sample_
 
 @dataclasses.dataclass
 class Setting:
-    """How much is measured. A round's repetitions are mixed at random by Google Benchmark."""
+    """Number and length of measurements. Google Benchmark runs the repetitions of a round in random order."""
     rounds: int = 12
     repetitions: int = 3
     min_time: float = 0.02  # seconds
@@ -29,7 +29,7 @@ QUICK = Setting(rounds=5, min_time=0.01, filter=QUICK_FILTER)
 
 
 class Program:
-    """The benchmarks of one state of the sources: those of the folder that this file is in, or of a commit."""
+    """frond_bench built from a commit, or from the working tree that contains this file."""
 
     def __init__(self, commit=None):
         if commit in (None, "."):
@@ -45,7 +45,7 @@ class Program:
     def build(self):
         command = 'source "$0/scripts/setup.sh"; install_missing "${build_packages[@]}"; build frond_bench'
         done = subprocess.run(["bash", "-euo", "pipefail", "-c", command, str(self.tree)], check=False,
-                              env=os.environ | {"CCACHE_BASEDIR": str(self.tree)})  # trees share what is the same
+                              env=os.environ | {"CCACHE_BASEDIR": str(self.tree)})  # worktrees share ccache entries
         if done.returncode != 0:
             raise SystemExit(f"{self.tree} does not build")
 
@@ -68,7 +68,7 @@ def git(*words):
 
 
 def measure(programs, setting):
-    """One document for each program, in the form that Google Benchmark writes and its compare.py reads."""
+    """One document for each program, in the JSON format of Google Benchmark."""
     for program in programs:
         program.build()
     with film_cache() as cache:
@@ -83,7 +83,7 @@ def measure(programs, setting):
 
 
 def film_cache():
-    """A folder for the films behind the scenes' errors, which all rounds share: the user's own, or of this session."""
+    """The folder of the films from which errors of scenes are computed; all rounds share it. The user's, or a temporary one."""
     own = os.environ.get("FROND_BENCH_CACHE")
     return contextlib.nullcontext(own) if own else tempfile.TemporaryDirectory()
 

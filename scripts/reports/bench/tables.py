@@ -13,7 +13,7 @@ Z95 = 1.96
 
 
 def mean_and_reach(rounds, further=0.0):
-    """Geometric mean and half of its 95 % interval: from how the rounds differ, and from a further relative error."""
+    """Geometric mean and half of its 95 % interval, from the variance between rounds and a further relative error."""
     logs = numpy.log(rounds.dropna())
     mean = numpy.exp(logs.mean())
     if len(logs) < 2:
@@ -23,7 +23,7 @@ def mean_and_reach(rounds, further=0.0):
 
 
 def plus_minus(value, reach):
-    """With as many digits as the interval leaves sense to."""
+    """`value ± reach`, rounded to the digits that the interval determines."""
     if not reach > 0:
         return f"{value:.3g}"
     digits = max(0, 1 - math.floor(math.log10(reach)))
@@ -36,7 +36,7 @@ def rms(counters, channel):
 
 
 def bias(counters, channel):
-    """The root of its square, or the upper end of its interval where it cannot be told from none."""
+    """Square root of the squared bias, or the upper end of its interval if it does not differ significantly from 0."""
     value, error = (settled(counters[key]) for key in (f"bias2_{channel}", f"bias2_{channel}_se"))
     if value < Z95 * error:
         return f"< {1000 * math.sqrt(max(0, value) + Z95 * error):.1f}"
@@ -44,7 +44,7 @@ def bias(counters, channel):
 
 
 def relative_error(counters):
-    """Of the noise's variance."""
+    """Relative standard error of the noise's variance."""
     return settled(counters["variance_se"]) / settled(counters["variance"])
 
 
@@ -55,7 +55,7 @@ def scenes(run):
             _, scene, leaf = name.split("/")
             baseline = run.counters.get(f"scene/{scene}/abm", {})
             body.append([scene, f"`{leaf}`", *costs(counters), *errors(counters, baseline)])
-    head = ["scene", "leaf", "µs a path", "speed-up", "at equal noise", "efficiency, 10⁹/s", "RMS·10³ red", "green", "blue",
+    head = ["scene", "leaf", "µs per path", "speed-up", "at equal noise", "efficiency, 10⁹/s", "RMS·10³ red", "green", "blue",
             "bias·10³ red", "green", "blue"]
     return table(head, body) if body else ""
 
@@ -76,7 +76,7 @@ def errors(counters, baseline):
 
 
 def calls(run):
-    """What a BSDF costs: a whole hit by angle, sampling by the number of wavelengths."""
+    """CPU time of a BSDF: a hit by angle, `sample` by the number of wavelengths."""
     columns = [f"hit_and_sample/theta:{angle}" for angle in (0, 45, 80)]
     columns += [f"sample_from_everywhere/wavelengths:{n}" for n in (1, 3, 4)]
     materials = dict.fromkeys(name.split("/")[1] for name in run.times if name.startswith("bsdf/"))
@@ -90,14 +90,14 @@ def nanoseconds(rounds):
 
 
 def figures(run):
-    """Everything that a run's reader asks for first."""
+    """The tables of scenes and BSDFs."""
     return "\n".join(part for part in (scenes(run), calls(run)) if part)
 
 
 def section(run):
-    """What the page of measured speed says of a run."""
+    """The section "bench" of docs/performance.md."""
     context = run.context
     made = (f"{context['machine']}; {context['compiler']}, `{context['compiler_flags'].strip()}`; frond "
             f"{context['frond_version']}, {context['date'][:10]}; {context['rounds']} rounds of {context['repetitions']} "
-            f"repetitions; the machine's load was up to {max(context['load_avg']):.0f}.")
-    return f"{made}\n\n{figures(run)}"
+            f"repetitions; maximum machine load {max(context['load_avg']):.0f}.")
+    return f"### Leaf models and BSDFs\n\n{made}\n\n{figures(run)}"

@@ -1,4 +1,4 @@
-"""A comparison in words: figures as people read them, and the summary on the terminal."""
+"""A comparison as text: formatted values, and the summary on the terminal."""
 
 import math
 
@@ -13,7 +13,7 @@ def seconds(value):
 
 
 def change(ratio):
-    """A ratio as a change in per cent, or as a factor where that is easier to grasp."""
+    """A ratio as a change in per cent, or as a factor below 0.5 and above 2."""
     if math.isinf(ratio) or ratio == 0:
         return "unknown"
     if not 0.5 < ratio < 2:
@@ -63,7 +63,7 @@ def summary(comparison):
             lines += ["", f"{word}, with 95 % intervals:"]
             lines += [f"  {change(c.ratio):>9}  {interval(c.low, c.high):22} {c.name}" for c in changes]
     if comparison.changed_figures():
-        lines += ["", "Other images:"]
+        lines += ["", "Changed images:"]
         lines += [f"  {f.name} {f.counter}: {f.a:.4g} ± {f.a_se:.1g}, now {f.b:.4g} ± {f.b_se:.1g}"
                   for f in comparison.changed_figures()]
     return "\n".join(lines + ["", verdict(comparison)])

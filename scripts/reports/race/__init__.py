@@ -1,1 +1,1 @@
-"""scripts/race: frond beside other renderers, on scenes that all of them can show."""
+"""scripts/race: compares frond with other renderers on scenes that all of them can render."""

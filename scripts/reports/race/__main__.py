@@ -9,20 +9,19 @@ import tempfile
 
 import numpy
 
-from tools import ROOT, machine
+from tools import ROOT, machine, write_section
 
 from . import luminance, page, programs, scenes
 
-DOCUMENT = ROOT / "docs" / "race.md"
+DOCUMENT = ROOT / "docs" / "performance.md"
 FIGURES = ROOT / "build" / "race" / "figures.json"
-
 
 FULL = {"size": 512, "samples": 64, "rounds": 5, "threads": 1, "filters": ["box", "gaussian"], "leaves": list(scenes.LEAVES)}
 QUICK = {"size": 256, "samples": 16, "rounds": 2}
 
 
 def arguments():
-    """What they do: scripts/race."""
+    """The options; scripts/race describes them."""
     parser = argparse.ArgumentParser(prog="scripts/race")
     parser.add_argument("--only", action="append", choices=list(scenes.SCENES), metavar="SCENE")
     parser.add_argument("--programs", metavar="WORD", action="append")
@@ -35,15 +34,16 @@ def arguments():
     for name in ("--quick", "--no-docs"):
         parser.add_argument(name, action="store_true")
     options = parser.parse_args()
+    options.no_docs |= options.quick  # few samples are no figures for the page
     for name, value in (FULL | (QUICK if options.quick else {})).items():
         setattr(options, name, getattr(options, name) or value)
     if options.rounds < 2 or options.samples not in [4**n for n in range(1, 9)]:  # Mitsuba's ldsampler takes no other number
-        raise SystemExit("two rounds at least, and samples that are a power of four: 4, 16, 64, 256")
+        raise SystemExit("--rounds is at least 2, --samples a power of four: 4, 16, 64, 256 ...")
     return options
 
 
 def race(name, leaf, running, setting, folder):
-    """One kind of image by all programs in turn: for each filter and program a dictionary of figures."""
+    """Renders one scene and kind of leaf with all programs in turn; a dictionary of figures for each filter and program."""
     results = []
     for reconstruction in setting.filters:
         costs, images, base = {}, {}, {}
@@ -67,7 +67,7 @@ def race(name, leaf, running, setting, folder):
 
 def figures(program, reconstruction, base, costs, own, reference, setting):
     pixels = setting.size**2
-    us = (numpy.array(costs) - base) / (pixels * (setting.samples - 1)) * 1e6  # a path, by round: CPU, wall
+    us = (numpy.array(costs) - base) / (pixels * (setting.samples - 1)) * 1e6  # per path, by round: CPU, wall
     cpu, wall = program.before(reconstruction) + base - numpy.median(us, axis=0) * pixels / 1e6
     beside = luminance.difference(own, reference)
     return {"program": program.name, "cpu": us[:, 0].tolist(), "wall": us[:, 1].tolist(), "set_up_cpu": cpu, "set_up_wall": wall,
@@ -105,14 +105,13 @@ def main():
     about = {"machine": machine(), "system": f"{platform.system()} {platform.machine()}", "missing": missing,
              "versions": sorted({program.version() for program in running})}
     if options.no_docs:
-        print(page.page(about, raced))
+        print(page.section(about, raced))
     else:
-        DOCUMENT.write_text(page.page(about, kept()), encoding="utf-8")
-        print(f"Written: {DOCUMENT}")
+        write_section(DOCUMENT, "race", page.section(about, kept()))
 
 
 def kept():
-    """Figures of scenes that this machine has raced, in their order."""
+    """Figures of the scenes that were measured on this machine, in the order of SCENES."""
     if not FIGURES.exists():
         return {}
     figures = json.loads(FIGURES.read_text(encoding="utf-8"))
@@ -121,7 +120,7 @@ def kept():
 
 
 def keep(raced):
-    """So that a scene can be raced by itself, and a race that is stopped has not been for nothing."""
+    """Stores the figures, so that a scene can be measured alone and an interrupted run keeps its finished scenes."""
     figures = {"machine": machine(), "scenes": kept() | raced}
     FIGURES.parent.mkdir(parents=True, exist_ok=True)
     FIGURES.write_text(json.dumps(figures, indent=1), encoding="utf-8")

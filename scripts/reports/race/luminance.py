@@ -1,4 +1,4 @@
-"""Images as arrays of luminance, and what can be said of several that differ in their seeds alone."""
+"""Images as arrays of luminance, and statistics of images that differ only in their seeds."""
 
 import dataclasses
 
@@ -19,10 +19,10 @@ def read(path):
 
 @dataclasses.dataclass
 class Statistics:
-    """Of the images of several seeds; blocks are some pixels each."""
+    """Statistics of images with different seeds; a block is 16 x 16 pixels."""
     mean: float
     mean_error: float  # standard error, from the spread of each block between seeds
-    variance: float  # of one image's pixel, mean over pixels
+    variance: float  # of a pixel in one image, mean over the pixels
     variance_error: float  # standard error, from the spread over blocks
     block_means: numpy.ndarray
     block_variances: numpy.ndarray  # of these means, over seeds
@@ -45,10 +45,10 @@ def measure(images):
 
 @dataclasses.dataclass
 class Difference:
-    """Of two programs' images, relative to the mean of the second."""
+    """Difference of two programs' images, relative to the mean of the second."""
     mean: float
-    error: float  # standard error of that
-    blocks: float  # RMS over blocks of 16 x 16 pixels, less what noise makes
+    error: float  # standard error of `mean`
+    blocks: float  # RMS over blocks of 16 x 16 pixels, without the contribution of noise
 
 
 def difference(a, b):

@@ -1,7 +1,7 @@
-"""Renders for scripts/race in a process of its own, by the Python that Mitsuba 3 is installed for.
+"""Renders for scripts/race with Mitsuba 3, in a separate process of the Python that Mitsuba is installed in.
 
-Arguments: a variant, the scene (JSON that scenes.py writes), threads. Each line of the standard input asks for a render, as
-JSON; each job returns a line with what it took.
+Arguments: variant, scene (JSON of scenes.py), threads. Each line of standard input requests a render, as JSON; for each request
+one line of JSON with its CPU and wall-clock time is printed.
 """
 
 import json
@@ -15,7 +15,7 @@ import mitsuba as mi
 
 
 def diffuse_leaf():
-    """Reflects and transmits evenly, from both sides; Mitsuba has none of its own. Not for scalar variants."""
+    """Lambertian reflector and transmitter, which Mitsuba does not have. Not for scalar variants."""
 
     class DiffuseLeaf(mi.BSDF):
         def __init__(self, properties):
@@ -88,7 +88,7 @@ def shape_of(shape, materials):
 
 
 def load(scene, leaf=None):
-    """The scene with its own leaves or with these."""
+    """The scene with its own leaves, or with the BSDF `leaf` for all leaves."""
     two_sided = lambda value: {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": spectrum(value)}}
     reflectance, transmittance = scene["leaf"]
     if leaf is None and transmittance:
@@ -113,7 +113,7 @@ def load(scene, leaf=None):
     if scene["sky"]:
         world["sky"] = {"type": "constant", "radiance": spectrum(scene["sky"], light=True)}
     origin, target, up = scene["camera"]["look"]
-    # The gaussian's radius is four times its stddev, always.
+    # Mitsuba's Gaussian has a radius of four standard deviations.
     filters = {"box": {"type": "box"}, "gaussian": {"type": "gaussian", "stddev": scene["gaussian"]["sigma"]}}
     for name, reconstruction in filters.items():
         world[f"sensor-{name}"] = {

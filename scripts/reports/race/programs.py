@@ -1,4 +1,4 @@
-"""The programs of the race: how each renders a scene, and what CPU time that took."""
+"""The programs that scripts/race compares: how each renders a scene, and the CPU time that it takes."""
 
 import glob
 import json
@@ -14,11 +14,11 @@ from tools import FROND, Use, run
 
 from . import scenes
 
-MOST_TRACED = 10_000  # instances for Mitsuba's LLVM variants: with 100,000 the first image is not there after five minutes
+MOST_TRACED = 10_000  # instances for Mitsuba's LLVM variants: with 100,000 the first image takes more than five minutes
 
 
 class Command:
-    """A program that renders one image and ends."""
+    """A program that renders one image per process."""
 
     suffix = ".pfm"
 
@@ -37,7 +37,7 @@ class Command:
         return numpy.array([use.cpu, use.wall])
 
     def before(self, reconstruction):
-        """What was done before the first of the renders that are measured."""
+        """CPU and wall time before the first measured render."""
         return numpy.zeros(2)
 
     def can(self, scene, leaf):
@@ -78,7 +78,7 @@ class Pbrt(Command):
 
 
 class Mitsuba:
-    """A process for each scene, which goes on from render to render; LLVM variants compile at their first."""
+    """One process per scene, which renders repeatedly; LLVM variants compile in the first render."""
 
     suffix = ".pfm"
 
@@ -97,7 +97,7 @@ class Mitsuba:
     def open(self, scene, leaf, setting, folder):
         file = folder / f"{self.variant}-{leaf}.json"
         scenes.write_json(scene, file, leaf, setting.size)
-        home = folder / f"home-{self.variant}"  # without kernels that were compiled before
+        home = folder / f"home-{self.variant}"  # without cached kernels
         home.mkdir(exist_ok=True)
         words = [self.python, pathlib.Path(__file__).with_name("mitsuba_worker.py"), self.variant, file, setting.threads]
         self.process = subprocess.Popen(list(map(str, words)), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
@@ -118,7 +118,7 @@ class Mitsuba:
         return self.answer()
 
     def render(self, reconstruction, samples, seed, out):
-        """The second of its kind: the first of each number of samples may compile."""
+        """Times the second render of a kind, because the first one of each number of samples may compile."""
         if (reconstruction, samples) in self.compiling:
             return self.ask(reconstruction, samples, seed, out)
         first, second = (self.ask(reconstruction, samples, seed, out) for _ in range(2))
@@ -126,7 +126,7 @@ class Mitsuba:
         return second
 
     def before(self, reconstruction):
-        """Loading, and compiling once."""
+        """Time of loading, and of compiling once."""
         costs = [cost for (name, _), cost in self.compiling.items() if name == reconstruction]
         return self.loaded + numpy.maximum(0, max(costs, key=lambda cost: cost[0]))
 
@@ -136,13 +136,13 @@ class Mitsuba:
 
 
 def libllvm():
-    """Where Dr.Jit finds LLVM; 14 and 15 abort."""
+    """Path of an LLVM library for Dr.Jit; it aborts with versions 14 and 15."""
     found = [path for version in (19, 22, 16) for path in sorted(glob.glob(f"/usr/lib/*/libLLVM-{version}.so"))]
     return os.environ.get("DRJIT_LIBLLVM_PATH") or next(iter(found), None)
 
 
 def present(pbrt, python):
-    """The programs that are there, and a word on each that is not."""
+    """The installed programs, and a message for each one that is missing."""
     programs, missing = [Frond("frond, three wavelengths", "smpte"), Frond("frond, hero wavelengths", "hero")], []
     python = python or sys.executable
     code = "import mitsuba; print(*mitsuba.variants())"

@@ -1,7 +1,7 @@
-"""The scenes of the race: our own, in grey, as every program can show them.
+"""Scenes of scripts/race: frond's own, with grey materials, so that every program can render them.
 
-A scene file is read into plain data, what the programs do not share is replaced (materials, sampler, film), and written
-again: for pbrt-v4 and frond in their format, for Mitsuba as JSON that mitsuba_worker.py loads.
+A scene file is read into plain data. Materials, sampler and film, which differ between the programs, are replaced. The scene is
+then written for pbrt-v4 and frond in their format, and for Mitsuba as JSON that mitsuba_worker.py loads.
 """
 
 import dataclasses
@@ -14,13 +14,13 @@ from scipy.spatial.transform import Rotation
 
 from tools import ROOT, program
 
-# Reflectance of what is no leaf; leaves: reflectance and transmittance. Grey, so that three wavelengths, colours and spectra
-# have the same image.
+# Reflectance of other surfaces; reflectance and transmittance of leaves. Grey materials give the same image with three
+# wavelengths, RGB colours and spectra.
 GREY = {"wall": 0.5, "petiole": 0.3, "backdrop": 0.1, "soil": 0.2}
 LEAVES = {"opaque": (0.5, 0), "leaf": (0.45, 0.4)}
 DEPTH = 16  # scattering events
-GAUSSIAN = {"sigma": 0.5, "radius": 2}  # Mitsuba's, which has no other radius; frond's and pbrt-v4's is 1.5 where nothing is said
-MITSUBA_UNITS = 100  # a metre in its: its rays start 0.1 mm off a surface and more where lengths are small
+GAUSSIAN = {"sigma": 0.5, "radius": 2}  # Mitsuba's only radius; the default of frond and pbrt-v4 is 1.5
+MITSUBA_UNITS = 100  # units per metre in Mitsuba's scenes: it offsets ray origins from surfaces by 0.1 mm or more if 1 is a metre
 
 
 @dataclasses.dataclass
@@ -29,7 +29,7 @@ class Shape:
     parameters: dict
     to_world: numpy.ndarray  # 4 x 4
     material: str
-    object: str = None  # which it is a part of
+    object: str = None  # name of the object that contains the shape
     reversed: bool = False
     radiance: float = 0  # of the front
 
@@ -39,7 +39,7 @@ class Scene:
     camera: dict = dataclasses.field(default_factory=dict)
     shapes: list = dataclasses.field(default_factory=list)
     instances: list = dataclasses.field(default_factory=list)  # of (object, matrix)
-    table: tuple = None  # (object, file): frond's own way to say the instances
+    table: tuple = None  # (object, file): the instances as a table of frond
     distant: list = dataclasses.field(default_factory=list)  # of (direction to the light, irradiance)
     sky: float = 0
 
@@ -77,7 +77,7 @@ def directives(path):
 
 
 def read(path, folder):
-    """The narrow part of the format that our scenes are written in; whatever else is there is an error."""
+    """Reads the directives that frond's own scenes use; any other directive is an error."""
     scene, stack = Scene(), []
     here = {"ctm": numpy.eye(4), "material": None, "reversed": False, "radiance": 0}
     current = None
@@ -90,7 +90,7 @@ def read(path, folder):
             if name == "WorldBegin":
                 here["ctm"] = numpy.eye(4)
             elif name == "Scale" and plain == [-1, 1, 1] and not scene.camera:
-                continue  # right-handed space, as all our scenes
+                continue  # right-handed space, as in all of frond's scenes
             elif name == "LookAt":
                 scene.camera["look"] = [plain[0:3], plain[3:6], plain[6:9]]
             elif name == "Camera" and plain == ["perspective"]:
@@ -132,14 +132,14 @@ def read(path, folder):
                 scene.shapes.append(Shape(plain[0], values, here["ctm"], here["material"] or "backdrop", current,
                                           here["reversed"], here["radiance"]))
             else:
-                raise SystemExit(f"{path}: the race knows no {name} {' '.join(map(str, plain))}")
+                raise SystemExit(f"{path}: scripts/race does not support {name} {' '.join(map(str, plain))}")
 
     follow(path)
     return scene
 
 
 def lamp(toward, distance, radius):
-    """A disk that faces the origin, as bright as makes a white surface there have the value 1."""
+    """A disk light that faces the origin and gives a white surface there the value 1."""
     z = -numpy.array(toward) / numpy.linalg.norm(toward)
     x = numpy.array([z[1], -z[0], 0]) / math.hypot(z[0], z[1])
     matrix = affine(numpy.stack([x, numpy.cross(z, x), z], axis=1), -distance * z)
@@ -147,7 +147,7 @@ def lamp(toward, distance, radius):
 
 
 def hundred_front(folder):
-    """A hundred leaves before a wall, under a lamp; all pixels see a surface."""
+    """A hundred leaves in front of a wall, lit by a lamp; every pixel sees a surface."""
     scene = read(ROOT / "scenes/hundred-leaves/closed.pbrt", folder)
     [(toward, _)] = scene.distant
     scene.distant = []
@@ -156,7 +156,7 @@ def hundred_front(folder):
 
 
 def hundred_ambient(folder):
-    """The same leaves without a wall, under an even sky."""
+    """The same leaves without a wall, under a uniform sky."""
     scene = read(ROOT / "scenes/hundred-leaves/scene.pbrt", folder)
     scene.distant, scene.sky = [], 1
     return scene
@@ -166,7 +166,7 @@ def soybean(name):
     def make(folder):
         return read(ROOT / f"scenes/soybean-{name}/scene.pbrt", folder)
     make.__doc__ = {"front": "A soybean plant, lit from the front by a lamp.", "back": "A soybean plant, lit from behind.",
-                    "ambient": "A soybean plant on soil under an even sky."}[name]
+                    "ambient": "A soybean plant on soil under a uniform sky."}[name]
     return make
 
 
@@ -175,7 +175,7 @@ CANOPY_LEAVES = 100_000
 
 
 def canopy(folder):
-    """100,000 leaves of 2,000 triangles over soil, leaf area index 3, under the sun and an even sky."""
+    """100,000 leaves of 2,000 triangles over soil, leaf area index 3, under the sun and a uniform sky."""
     side = math.sqrt(CANOPY_LEAVES * LEAF_AREA / 3)
     table = folder / "canopy.npy"
     program("canopy", "-q", "-o", table, "--count", CANOPY_LEAVES, "--scale", 1, "--leaf-area", LEAF_AREA, "--size", f"{side},{side}",
@@ -201,8 +201,8 @@ def numbers(values):
 
 
 def without_normals(path, folder):
-    """A copy of a mesh of ours whose triangles are flat: programs differ in what they do where the normals of the vertices and
-    that of the triangle see a direction on different sides, and so do their images."""
+    """A copy of a mesh with flat triangles. Programs, and so their images, differ for directions that are on different sides of
+    the vertex normals and of the triangle's normal."""
     head, body = path.read_bytes().split(b"end_header\n", 1)
     lines = head.decode("ascii").splitlines()
     first = next(i for i, line in enumerate(lines) if line.startswith("element vertex"))
@@ -221,7 +221,7 @@ def grey(value):
 
 
 def write_pbrt(scene, path, leaf, box, size, tables=False):
-    """For pbrt-v4 and frond; with `tables` instances are named as frond's table."""
+    """Writes a scene for pbrt-v4 and frond; with `tables` the instances are a table of frond."""
     white = '"spectrum L" "stdillum-D65"'
     lines = ["Scale -1 1 1", "LookAt " + " ".join(map(numbers, scene.camera["look"])),
              f'Camera "perspective" "float fov" {scene.camera["fov"]}',
@@ -263,7 +263,7 @@ def write_pbrt(scene, path, leaf, box, size, tables=False):
 
 
 def write_ply(path, indices, points):
-    """A mesh as text: Mitsuba loads meshes from files."""
+    """Writes a mesh as an ASCII file, because Mitsuba loads meshes from files."""
     lines = ["ply", "format ascii 1.0", f"element vertex {len(points) // 3}", "property float x", "property float y",
              "property float z", f"element face {len(indices) // 3}", "property list uchar int vertex_indices", "end_header"]
     lines += map(numbers, numpy.reshape(points, (-1, 3)))
@@ -272,7 +272,7 @@ def write_ply(path, indices, points):
 
 
 def write_json(scene, path, leaf, size):
-    """For mitsuba_worker.py."""
+    """Writes a scene for mitsuba_worker.py."""
     document = dataclasses.asdict(scene) | {"grey": GREY, "leaf": LEAVES[leaf], "depth": DEPTH, "size": size,
                                             "gaussian": GAUSSIAN}
     larger = affine(MITSUBA_UNITS * numpy.eye(3))

@@ -18,7 +18,7 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
   for (const double angle_deg : effort.angles_deg)
     for (const int side : {1, -1}) {
       const double cos_theta = side * std::cos(angle_deg * std::numbers::pi / 180);
-      const double phi = 0.4 + 0.03 * angle_deg;  // no axis, where mistakes of azimuth hide
+      const double phi = 0.4 + 0.03 * angle_deg;  // off the axes, where errors of azimuth would not show
       ExaminationEffort own = effort;
       own.seed = hash_key(effort.seed, static_cast<uint64_t>(angle_deg), static_cast<uint64_t>(side + 1));
       const Examination s(bsdf, lambda, sphere_direction(cos_theta, phi), own,
@@ -42,6 +42,7 @@ Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claim
 double judge(Findings& findings, double false_alarm_rate) {
   size_t tests = 0;
   for (const Finding& f : findings) tests += f.statistical ? 1 : 0;
+  // Exact tests have p = 0 or 1 and raise no false alarms, so only statistical ones share the rate.
   const double level = sidak_level(false_alarm_rate, tests);
   for (Finding& f : findings) f.passed = f.p_value >= level;
   return level;

@@ -14,17 +14,17 @@
 
 namespace frond {
 
-/// What every BSDF and every material plugin must obey. An exact BSDF is one that is not stochastic and whose samples
-/// say that their pdf is the density.
+/// Laws that every BSDF and every material plug-in must obey. A BSDF is exact if it is not stochastic and its samples
+/// report an exact pdf.
 enum class Law : uint8_t {
   parameters,     ///< a plugin reads every parameter it declares and no other, and can be made from its defaults
   sampling,       ///< exact: directions of `sample` are distributed as `pdf` (chi-square over bins of the sphere)
   agreement,      ///< exact: f and pdf of a sample are those of `f` and `pdf` for its direction
   normalisation,  ///< exact: `pdf` integrates to the share of calls of `sample` that give a direction, delta lobes
                   ///< apart; not exact: to 1, or less if there are delta lobes
-  energy,         ///< no more power comes out than went in, at each wavelength; just as much where nothing is said to
-                  ///< absorb
-  flags,          ///< what flags say of sides and lobes holds
+  energy,         ///< exitant power is at most the incident power at each wavelength; equal for materials claimed to
+                  ///< be lossless
+  flags,          ///< sides and lobes are as the flags state
   values,         ///< all finite and not negative, densities of samples positive; nothing scatters at cos theta = 0
   lanes,          ///< lanes that are not active hold 0
   reciprocity,    ///< f(a, b) = f(b, a), where claimed; with the squares of the indices of refraction (Bsdf)
@@ -34,7 +34,7 @@ enum class Law : uint8_t {
   coverage,       ///< `pdf` is positive wherever f is
 };
 
-/// A law as a report has it.
+/// Name and text of a law in reports.
 struct LawInfo {
   Law law;
   std::string_view name, text;
@@ -42,12 +42,12 @@ struct LawInfo {
 
 /// In the order of the enumeration.
 inline constexpr std::array<LawInfo, 12> kLaws{{
-    {Law::parameters, "parameters", "every declared one is read and no other, and these values work"},
+    {Law::parameters, "parameters", "every declared parameter is read and no other; the values are accepted"},
     {Law::sampling, "sampling", "exact BSDFs: sample's directions follow pdf"},
     {Law::agreement, "agreement", "exact BSDFs: a sample's f and pdf are those of f() and pdf()"},
-    {Law::normalisation, "normalisation", "pdf integrates to how often sample gives a direction"},
-    {Law::energy, "energy", "no more comes out than went in; as much, where lossless"},
-    {Law::flags, "flags", "what flags say of sides and lobes is so"},
+    {Law::normalisation, "normalisation", "pdf integrates to the share of samples that have a direction"},
+    {Law::energy, "energy", "exitant power is at most the incident power; equal if lossless"},
+    {Law::flags, "flags", "sides and lobes agree with the flags"},
     {Law::values, "values", "all finite, none negative; nothing scatters at cos theta = 0"},
     {Law::lanes, "lanes", "wavelengths that are not active hold 0"},
     {Law::reciprocity, "reciprocity", "f(a, b) = f(b, a), where claimed"},
@@ -55,65 +55,68 @@ inline constexpr std::array<LawInfo, 12> kLaws{{
     {Law::streams, "streams", "other BSDFs: the noise of f comes from its stream, not from directions"},
     {Law::coverage, "coverage", "pdf is positive wherever f is"},
 }};
+/// Name of a law, as in kLaws.
 std::string_view law_name(Law law);
 
-/// Where over the sphere of wi a law was looked at, for one wo: a number for each patch, and what it should be.
+/// Results of a law over the sphere of wi for one wo: for each patch the number found and the number expected.
 struct SphereMap {
+  /// A patch and its two numbers.
   struct Patch {
     SphereBox box;
     double found = 0, expected = 0;
   };
   Vec3 wo;
-  std::string found, expected;  ///< what the numbers are; no `expected`: there is nothing to compare with
+  std::string found, expected;  ///< names of the numbers; empty `expected`: nothing to compare with
   std::vector<Patch> patches;
 };
 
 /// The outcome of one test of one law.
 struct Finding {
   Law law;
-  std::string where;    ///< what was tested: plugin, parameters, wavelengths, direction
-  std::string message;  ///< what was compared
+  std::string where;    ///< the object tested: plug-in, parameters, wavelengths, direction
+  std::string message;  ///< the comparison, with its numbers
   double p_value = 1;   ///< of a statistical test; 0 or 1 for any other
   bool statistical = false;
   bool passed = true;                              ///< set by `judge`
-  std::shared_ptr<const SphereMap> map = nullptr;  ///< if ExaminationEffort asks for maps and the law has directions
+  std::shared_ptr<const SphereMap> map = nullptr;  ///< if ExaminationEffort requests maps and the law has directions
 };
 using Findings = std::vector<Finding>;
 
-/// What is known of a material beyond what all of them owe. Which way round f conserves energy, its flags say
+/// Claims about a material beyond the laws of all materials. The direction in which f conserves energy is a flag
 /// (Lobes::from_light).
 struct Claims {
-  bool lossless = false;  ///< absorbs nothing: as much comes out as goes in
+  bool lossless = false;  ///< absorbs nothing: exitant power equals incident power
   bool reciprocal = false;
 };
 
-/// How much work goes into one BSDF. Directions `wo` lie at each of the angles on both sides.
+/// Effort for one BSDF. Directions `wo` lie at each of the angles on both sides.
 struct ExaminationEffort {
-  int samples = 20000;  ///< of `sample` for each direction
+  int samples = 20000;  ///< calls of `sample` for each direction
   std::vector<double> angles_deg = {0, 30, 60, 80, 89};
   uint64_t seed = 1;
   bool maps = false;  ///< keep a SphereMap with each finding
 };
 
-/// Runs all laws that a BSDF can be asked about. `where` begins the text of each finding. `judge` comes after.
+/// Tests all laws of a BSDF. `where` is the start of each finding's text. Call `judge` afterwards.
 Findings examine(const Bsdf& bsdf, const SampledWavelengths& lambda, const Claims& claims,
                  const ExaminationEffort& effort, const std::string& where);
 
-/// Sets `passed`, and returns the p-value below which a finding fails. `false_alarm_rate` is that of all the findings
-/// together: the chance that any law is said to be broken though all hold.
+/// Sets `passed` of all findings; returns the p-value below which a finding fails. `false_alarm_rate`: probability that
+/// any law is reported broken although all hold, over all findings together.
 double judge(Findings& findings, double false_alarm_rate);
 
-/// What all findings say of one law.
+/// Summary of all findings on one law.
 struct LawSummary {
   LawInfo law;
   int tests = 0, failures = 0;
-  const Finding* worst = nullptr;  ///< that of the smallest p
+  const Finding* worst = nullptr;  ///< the finding with the smallest p
 };
-/// One for each law, in the order of kLaws.
+/// Returns a summary for each law, in the order of kLaws.
 std::vector<LawSummary> summarise(std::span<const Finding> findings);
 
+/// Laws with at least one finding that did not pass.
 std::set<Law> broken_laws(std::span<const Finding> findings);
-/// A line for each finding that did not pass, up to 20.
+/// Returns a line for each finding that did not pass, up to 20.
 std::string failures_text(std::span<const Finding> findings);
 
 }  // namespace frond

@@ -47,7 +47,7 @@ std::shared_ptr<const SphereMap> Verdict::map_of_faults() const {
 }
 
 void Examination::integrate_pdf() {
-  constexpr double kTolerance = 1e-8;  // for each of up to some 1,000 parts of the sphere
+  constexpr double kTolerance = 1e-8;  // for each of up to about 1,000 parts of the sphere
   const auto density = [this](const Vec3& wi) { return static_cast<double>(bsdf.pdf(wo, wi)); };
   for (size_t b = 0; b < bins.size(); ++b) {
     auto parts = integrate(bins.box(b), density, kTolerance, bins.points(b));
@@ -65,7 +65,7 @@ std::vector<BsdfSample> Examination::draw(int64_t count, uint64_t seed) const {
 }
 
 void Examination::probe(uint64_t seed) {
-  // An exact f needs no mean: a few directions a bin are enough to look at it.
+  // An exact f has no noise to average: a few directions per bin suffice.
   const int64_t each = exact ? 4 : std::max<int64_t>(4, drawn / static_cast<int64_t>(bins.size()));
   probes.reserve(bins.size() * static_cast<size_t>(each));
   RandomStream numbers(seed);

@@ -29,10 +29,9 @@ struct fmt::formatter<frond::SampledSpectrum> : fmt::formatter<float> {
 
 namespace frond {
 
-/// Everything that was asked of a BSDF for one direction wo: the material the laws are judged by. Part of
-/// the laws' own implementation.
+/// Samples, values and densities of a BSDF for one direction wo, from which the laws are tested. Internal to the laws.
 struct Examination {
-  /// f for a direction drawn in one bin.
+  /// f for a direction drawn in one bin, with the densities of the draw and of the BSDF.
   struct Probe {
     PartSampler::Draw drawn;
     SampledSpectrum f;
@@ -46,10 +45,11 @@ struct Examination {
   Examination(const Bsdf& asked, const SampledWavelengths& wavelengths, const Vec3& direction,
               const ExaminationEffort& effort, const std::string& asked_where);
 
-  /// For a finding: a pair of numbers for each bin. nullptr where nobody asked for maps. Without `expected` there is
-  /// nothing to compare with.
+  /// Returns a map of a pair of numbers for each bin; nullptr unless maps are requested. Empty `expected`: nothing to
+  /// compare with.
   std::shared_ptr<const SphereMap> map(std::string found_name, std::span<const double> found,
                                        std::string expected_name = {}, std::span<const double> expected = {}) const;
+  /// `count` as a share of all calls of `sample`.
   double share(int64_t count) const { return static_cast<double>(count) / static_cast<double>(drawn); }
 
   const Bsdf& bsdf;
@@ -58,14 +58,14 @@ struct Examination {
   std::string where;
   bool maps;
   int64_t drawn;  ///< calls of `sample`
-  /// Further samples, a quarter as many, that decide where the bins are and which of them can be tested: what is tested
-  /// must not choose its own tests.
+  /// A quarter as many independent samples, which determine the bins and the bins that can be tested: choosing tests by
+  /// the tested samples would bias their p-values.
   std::vector<BsdfSample> pilot;
-  std::vector<BsdfSample> samples;  ///< those that gave a direction
+  std::vector<BsdfSample> samples;  ///< calls that returned a direction
   bool exact;                       ///< see Law
   SphereBins bins;
   std::vector<double> pdf_mass;     ///< integral of `pdf` over each bin
-  std::vector<PartSampler> in_bin;  ///< draws directions in each bin
+  std::vector<PartSampler> in_bin;  ///< draw directions in each bin
   std::vector<Probe> probes;
 
  private:
@@ -74,28 +74,29 @@ struct Examination {
   void probe(uint64_t seed);
 };
 
-/// Largest relative difference that float arithmetic explains, where exponents go to 1000: 1000 times a few roundings.
+/// Largest relative difference that float rounding explains, for exponents up to 1000: 1000 times a few roundings.
 inline constexpr double kRounding = 1e-3;
 
 /// Relative error allowed to the quadrature of a pdf: float rounding of the pdf and the rule's own error.
 inline constexpr double kQuadrature = 5e-4;
 
-/// Means of fewer equal values than this are far from a normal distribution.
+/// Effective count below which a mean is far from normally distributed.
 inline constexpr double kEnoughForNormal = 100;
 
+/// One call of `sample` with numbers and a stream from `key`.
 inline std::optional<BsdfSample> draw_once(const Bsdf& bsdf, const Vec3& wo, uint64_t key) {
   RandomStream numbers(hash_key(key, 0)), stream(hash_key(key, 1));
   const float uc = numbers.uniform(), u = numbers.uniform(), v = numbers.uniform();
   return bsdf.sample(wo, uc, {u, v}, stream);
 }
 
-/// A random stream for one call of `f`.
+/// One call of `f` with a stream from `key`.
 inline SampledSpectrum f_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, uint64_t key) {
   RandomStream stream(key);
   return bsdf.f(wo, wi, stream);
 }
 
-/// Equal but for rounding.
+/// Whether two values are equal apart from rounding.
 inline bool near(float a, float b) {
   return std::abs(a - b) <= static_cast<float>(kRounding) * std::max(std::abs(a), std::abs(b));
 }
@@ -106,6 +107,7 @@ inline bool near(const SampledSpectrum& a, const SampledSpectrum& b) {
   return true;
 }
 
+/// Finite and not negative.
 inline bool is_proper(float x) { return std::isfinite(x) && x >= 0; }
 inline bool is_proper(const SampledSpectrum& s) {
   for (int i = 0; i < kLanes; ++i)
@@ -113,6 +115,7 @@ inline bool is_proper(const SampledSpectrum& s) {
   return true;
 }
 
+/// A finding of a statistical test.
 inline Finding statistical(Law law, const Examination& s, double p_value, std::string message,
                            std::shared_ptr<const SphereMap> map) {
   Finding finding{.law = law, .where = s.where, .message = std::move(message), .p_value = p_value, .statistical = true};
@@ -122,12 +125,13 @@ inline Finding statistical(Law law, const Examination& s, double p_value, std::s
 
 inline bool is_specular(const BsdfSample& sample) { return any(sample.flags & Lobes::specular); }
 
+/// f |cos theta| / pdf in one lane.
 inline double weight(const BsdfSample& sample, int lane) {
   return static_cast<double>(sample.f[lane]) * std::abs(static_cast<double>(sample.wi.z)) /
          static_cast<double>(sample.pdf);
 }
 
-// Laws of one series.
+// Laws for one direction wo.
 void check_sampling(const Examination& s, Findings& findings);
 void check_normalisation(const Examination& s, Findings& findings);
 void check_energy(const Examination& s, const Claims& claims, uint64_t seed, Findings& findings);
@@ -143,11 +147,11 @@ void check_values(const Examination& s, Findings& findings);
 void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t seed, Findings& findings);
 void check_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort, Findings& findings);
 
-/// The verdict on a law that allows no exception: passes until the first fault, whose text it keeps.
+/// Verdict on a law that permits no exception: passes until the first violation, whose text it stores.
 class Verdict {
  public:
   Verdict(Law law, const std::string& where) : finding_{.law = law, .where = where, .message = {}} {}
-  /// Of the directions of a series: for a map, it counts the faults in each bin.
+  /// For the directions of an examination: counts violations in each bin for a map.
   Verdict(Law law, const Examination& s) : Verdict(law, s.where) {
     if (!s.maps) return;
     series_ = &s;
@@ -156,12 +160,13 @@ class Verdict {
   }
 
   bool failed() const { return finding_.p_value == 0; }
-  /// What is expected from now on concerns this direction.
+  /// Sets the direction that the following expectations refer to.
   void at(const Vec3& wi) {
     if (!series_) return;
     bin_ = series_->bins.find(wi);
     asked_[bin_] += 1;
   }
+  /// Records a violation unless `holds`.
   template <class... Args>
   void expect(bool holds, fmt::format_string<Args...> format, const Args&... args) {
     if (holds) return;
@@ -170,6 +175,7 @@ class Verdict {
     finding_.p_value = 0;
     finding_.message = fmt::vformat(format, fmt::make_format_args(args...));
   }
+  /// The verdict as a finding: p = 1 or 0.
   Finding finding() const {
     Finding result = finding_;
     if (series_ && failed()) result.map = map_of_faults();

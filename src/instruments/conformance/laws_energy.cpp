@@ -10,13 +10,13 @@ namespace {
 /// Rounding of a mean of weights in float.
 constexpr double kWeightRounding = 1e-4;
 
-/// What comes out at one wavelength: all of it, and through each bin.
+/// Exitant energy at one wavelength: in all, and through each bin.
 struct Outgoing {
   Estimate all;
   std::vector<double> by_bin;
 };
 
-/// Mean weight of `sample`, of power, a call without a direction counting as 0.
+/// Mean weight of `sample`, as power; a call without a direction counts as 0.
 Outgoing mean_weight(const Examination& s, int lane) {
   Moments moments;
   std::vector<double> by_bin(s.bins.size(), 0);
@@ -29,8 +29,8 @@ Outgoing mean_weight(const Examination& s, int lane) {
   return {moments.estimate(), std::move(by_bin)};
 }
 
-/// Integral of f(w, s.wo) |cos theta| over w, lane by lane, for a BSDF that conserves the energy of light that arrives
-/// along wi, summed over wo: a stratified mean over the bins.
+/// Integral of f(w, s.wo) |cos theta| over w, lane by lane, by a stratified mean over the bins: the albedo of a BSDF
+/// that conserves, summed over wo, the energy of light along wi.
 std::array<Outgoing, kLanes> albedo_from_light(const Examination& s, uint64_t seed) {
   std::array<Outgoing, kLanes> result{};
   const int64_t each = std::max<int64_t>(4, s.drawn / static_cast<int64_t>(s.bins.size()));
@@ -51,7 +51,7 @@ std::array<Outgoing, kLanes> albedo_from_light(const Examination& s, uint64_t se
   return result;
 }
 
-/// Energy through each bin, over what an evenly white sheet would send there: |cos theta| / pi.
+/// Energy through each bin, relative to a white Lambertian surface, |cos theta| / pi.
 std::shared_ptr<const SphereMap> energy_map(const Examination& s, std::vector<double> by_bin) {
   for (size_t b = 0; b < by_bin.size(); ++b) {
     const SphereBox& box = s.bins.box(b);

@@ -22,7 +22,7 @@ double sum(const SampledSpectrum& s) {
   return result;
 }
 
-/// Sums over the samples in each bin: of their f or pdf, and of what `f` and `pdf` say.
+/// Sums over the samples in each bin: of their own f and pdf, and of the values of `f` and `pdf`.
 class AgreementMap {
  public:
   explicit AgreementMap(const Examination& s) : s_(s), f_(s.bins.size(), 0), own_f_(f_), pdf_(f_), own_pdf_(f_) {}
@@ -102,7 +102,7 @@ void check_lanes(const Examination& s, Findings& findings) {
 }
 
 void check_coverage(const Examination& s, Findings& findings) {
-  constexpr float kUnderflow = 1e-30f;  // where f has all but vanished, a density may have vanished
+  constexpr float kUnderflow = 1e-30f;  // a density may underflow where f nearly does
   Verdict verdict(Law::coverage, s);
   for (const Examination::Probe& probe : s.probes) {
     verdict.at(probe.wi());

@@ -20,7 +20,7 @@ double total(const std::vector<double>& values) {
 
 namespace {
 
-/// How many samples went into each bin, delta lobes apart.
+/// Number of samples in each bin, without delta lobes.
 std::vector<double> counts(const Examination& s) {
   std::vector<double> result(s.bins.size(), 0);
   for (const BsdfSample& sample : s.samples)
@@ -32,7 +32,7 @@ std::string box_text(const SphereBox& box) {
   return fmt::format("cos theta {:.3f} to {:.3f}, phi {:.3f} to {:.3f}", box.z0, box.z1, box.phi0, box.phi1);
 }
 
-/// What was counted in the bin that is farthest off, in standard errors.
+/// Describes the bin with the largest deviation in standard errors.
 std::string farthest_off(const Examination& s, const std::vector<double>& observed,
                          const std::vector<double>& expected) {
   const auto off = [&](size_t b) { return std::abs(observed[b] - expected[b]) / std::sqrt(expected[b] + 1); };
@@ -53,18 +53,18 @@ void check_sampling(const Examination& s, Findings& findings) {
   if (!s.exact) return;
   const std::vector<double> observed = counts(s);
   const double count = total(observed), mass = total(s.pdf_mass);
-  if (count < 50 || mass <= 0) return;  // a purely specular one; coverage and normalisation see what is wrong otherwise
+  if (count < 50 || mass <= 0) return;  // purely specular, or a fault that coverage and normalisation find
   const std::vector<double> expected = scaled(s.pdf_mass, count / mass);
   findings.push_back(statistical(Law::sampling, s, chi_square_p(observed, expected),
-                                 fmt::format("{} sampled directions in {} bins, farthest off in {}", count,
+                                 fmt::format("{} sampled directions in {} bins, largest deviation in {}", count,
                                              s.bins.size(), farthest_off(s, observed, expected)),
-                                 s.map("directions sampled", observed, "directions as pdf has them", expected)));
+                                 s.map("directions sampled", observed, "directions expected from pdf", expected)));
 }
 
 void check_normalisation(const Examination& s, Findings& findings) {
   const double mass = total(s.pdf_mass);
   const auto deltas = std::ranges::count_if(s.samples, is_specular);
-  const auto map = s.exact ? s.map("directions sampled", counts(s), "directions as pdf promises them",
+  const auto map = s.exact ? s.map("directions sampled", counts(s), "directions expected from pdf",
                                    scaled(s.pdf_mass, static_cast<double>(s.drawn)))
                            : nullptr;
   if (!s.exact || !(mass <= 1 + kQuadrature)) {
@@ -85,10 +85,10 @@ void check_normalisation(const Examination& s, Findings& findings) {
 
 namespace {
 
-/// What `sample` and `f` say of one bin, or of several together.
+/// Comparison of `sample` and `f` in one bin, or in several together.
 struct BinComparison {
-  Moments sampled;           // weights of samples in the bin; calls that went elsewhere are not counted yet
-  double sampled_count = 0;  // effective count that the pilot promises
+  Moments sampled;           // weights of samples in the bin; other calls are added as zeros later
+  double sampled_count = 0;  // effective count expected from the pilot
   Estimate integrated;       // of f |cos theta| over the bin
   double integrated_count = 0;
 
@@ -117,14 +117,14 @@ std::vector<BinComparison> compare_bins(const Examination& s, int lane) {
   return bins;
 }
 
-/// What the bins of one lane say, as a map: the shares of light that `sample` and f send into each.
+/// Map of one lane: the shares of light that `sample` and f send into each bin.
 std::shared_ptr<const SphereMap> weight_map(const Examination& s, std::span<const BinComparison> bins) {
   std::vector<double> sampled, integrated;
   for (const BinComparison& bin : bins) {
     sampled.push_back(bin.sampled.mean() * s.share(bin.sampled.count()));
     integrated.push_back(bin.integrated.mean);
   }
-  return s.map("light as sample sends it", sampled, "light as f has it", integrated);
+  return s.map("light sampled", sampled, "light expected from f", integrated);
 }
 
 Finding compare(const Examination& s, int lane, BinComparison bin, const std::string& name,
@@ -145,7 +145,8 @@ void check_unbiasedness(const Examination& s, Findings& findings) {
   if (s.exact) return;
   for (int lane = 0; lane < s.lambda.count; ++lane) {
     if (!s.lambda.is_active(lane)) continue;
-    // Bins with too little in them to be compared alone; and each side as a whole, where little errors add up.
+    // Bins with too few samples for a test of their own are tested together; so is each side as a whole, where small
+    // errors add up.
     BinComparison thin, front, back;
     const auto bins = compare_bins(s, lane);
     const auto map = weight_map(s, bins);
@@ -165,8 +166,8 @@ void check_unbiasedness(const Examination& s, Findings& findings) {
   }
 }
 
-/// At a pair of directions f keeps its mean over the streams; a hair's breadth aside that mean is the same. Noise made
-/// from directions is one number at the pair and another one beside it: it never averages out where directions repeat.
+/// The mean of f over streams is the same at a pair of directions and at a distance of 1e-5 from it. Noise derived from
+/// directions is one number at the pair and another one beside it: it would not average out where directions repeat.
 void check_streams(const Examination& s, uint64_t seed, Findings& findings) {
   if (s.exact) return;
   constexpr int kPairs = 4;

@@ -20,6 +20,7 @@ std::vector<Vec3> random_directions(int count, uint64_t seed) {
   return directions;
 }
 
+// Directions where division by zero or cancellation is likely: poles, horizon, grazing.
 std::vector<Vec3> awkward_directions(uint64_t seed) {
   std::vector<Vec3> directions{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {-1, 0, -0.f}};
   for (const double z : {1e-30, 1e-7, 1e-4, 0.01, 1 - 1e-7})
@@ -28,6 +29,7 @@ std::vector<Vec3> awkward_directions(uint64_t seed) {
   return directions;
 }
 
+// Numbers at the ends of [0, 1), where inverse distributions may diverge.
 void check_sample_values(const Bsdf& bsdf, const Vec3& wo, uint64_t seed, Verdict& verdict) {
   constexpr std::array<float, 4> kNumbers{0, 0x1p-24f, 0.5f, 1 - 0x1p-24f};
   for (const float uc : kNumbers)
@@ -66,13 +68,13 @@ void check_awkward_values(const Bsdf& bsdf, const std::string& where, uint64_t s
 
 namespace {
 
-/// What is equal there and back: n_i^2 f(wo, wi), over the square of the index on +z.
+/// The quantity that is equal if the directions are exchanged: n_i^2 f(wo, wi), over the square of the index on +z.
 SampledSpectrum reciprocal_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, uint64_t key) {
   const SampledSpectrum f = f_once(bsdf, wo, wi, key);
   return wi.z < 0 && wo.z > 0 ? f * power_of_radiance(bsdf, wo, wi) : f;
 }
 
-/// f there and back between `a` and patches of the sphere.
+/// f in both orders of directions between `a` and patches of the sphere.
 std::shared_ptr<const SphereMap> reciprocity_map(const Bsdf& bsdf, const Vec3& a, uint64_t seed) {
   constexpr int kBands = 16, kSectors = 32;
   const auto mean_of = [](const SampledSpectrum& s) {
@@ -109,7 +111,7 @@ void check_exact_reciprocity(const Bsdf& bsdf, const std::string& where, const E
   findings.push_back(finding);
 }
 
-/// Means of f over the streams, both ways, for a few pairs of directions.
+/// Compares means of f over streams in both orders, for a few pairs of directions.
 void check_mean_reciprocity(const Bsdf& bsdf, const std::string& where, const ExaminationEffort& effort,
                             Findings& findings) {
   const auto directions = random_directions(16, effort.seed);

@@ -14,7 +14,7 @@ Hit flat_hit() {
   return {.p = {0.3f, 0.2f, 0.1f}, .ng = {0, 0, 1}, .shading = Frame::around({0, 0, 1}), .at = {{0.5f, 0.5f}}};
 }
 
-/// Where a shading normal leans away from the surface.
+/// A hit whose shading normal is not the geometric one.
 Hit tilted_hit() {
   Hit hit = flat_hit();
   hit.shading = Frame::around(normalize(Vec3{0.5f, -0.3f, 0.8f}));
@@ -29,7 +29,7 @@ std::string wavelengths_text(const SampledWavelengths& lambda) {
   return text + " nm";
 }
 
-/// nullptr where the plugin refuses the parameters or breaks the law of parameters.
+/// Makes and prepares the material; nullptr if the plug-in refuses the parameters or breaks the law of parameters.
 std::unique_ptr<Material> make_ready(const MaterialInfo& info, const ParameterSet& set, bool must_work,
                                      const std::string& where, const MaterialExamination& how, Findings& findings) {
   Finding finding{.law = Law::parameters, .where = where, .message = {}};
@@ -71,7 +71,7 @@ Findings examine(const MaterialInfo& info, std::span<const ParameterSet> sets, c
     if (!material) continue;
     const Claims claims{how.claims.lossless, how.claims.reciprocal || material->is_reciprocal()};
     arena.reset();
-    if (const Bsdf* bsdf = material->evaluate(flat_hit(), lambda, arena)) {  // else the surface is not there
+    if (const Bsdf* bsdf = material->evaluate(flat_hit(), lambda, arena)) {  // nullptr: an invisible surface
       const Findings more = examine(*bsdf, lambda, claims, effort, where);
       findings.insert(findings.end(), more.begin(), more.end());
     }

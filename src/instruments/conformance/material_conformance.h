@@ -6,18 +6,19 @@
 
 namespace frond {
 
+/// Input of `examine` for a material plug-in.
 struct MaterialExamination {
-  const Preparation& preparation;  ///< its wavelengths are those that the BSDFs are asked at
+  const Preparation& preparation;  ///< determines the wavelengths of the BSDFs
   ParamResolver& resolver;
-  Claims claims;  ///< for every set of parameters, beside what the material claims itself
+  Claims claims;  ///< for all sets of parameters, in addition to the material's own
   ExaminationEffort effort;
-  /// The first set or the wavelengths are what somebody asks for: where the material refuses them, that is no defect of
-  /// it, and the InputError gets through.
+  /// The user gave the first set or the wavelengths: if the material refuses them this is no defect, and the InputError
+  /// is passed on.
   bool is_asked_for = false;
 };
 
-/// Makes the material from each set of parameters and runs all laws on its BSDF. Sets that the plugin refuses with an
-/// InputError are passed over, save the first, which must be right. Throws InputError.
+/// Makes the material from each set of parameters and tests all laws on its BSDF. Sets that the plug-in refuses with an
+/// InputError are skipped, except the first, which must be valid. Throws InputError.
 Findings examine(const MaterialInfo& info, std::span<const ParameterSet> sets, const MaterialExamination& how);
 
 }  // namespace frond

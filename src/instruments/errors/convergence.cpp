@@ -9,7 +9,7 @@ namespace {
 
 double noise_of(const ConvergencePoint& p, double z) { return p.noise.value + z * p.noise.standard_error; }
 
-/// Where, between two points, noise has fallen to `noise`: a straight line of logarithms.
+/// Effort between two points at which noise reaches `noise`: linear in logarithms.
 Effort between(const ConvergencePoint& a, const ConvergencePoint& b, double noise, double z) {
   const double t = std::log(noise_of(a, z) / noise) / std::log(noise_of(a, z) / noise_of(b, z));
   const auto mix = [t](double from, double to) { return from * std::pow(to / from, t); };

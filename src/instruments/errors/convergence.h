@@ -8,35 +8,36 @@
 
 namespace frond {
 
-/// What one method has reached after so much work.
+/// Noise of a method's render after a number of samples (per pixel) and seconds.
 struct ConvergencePoint {
   double samples, seconds;
   MeanSquare noise;
 };
 
-/// Work that is needed for something.
+/// Samples and seconds that reach an error.
 struct Effort {
   double samples, seconds;
-  bool measured;  ///< false: beyond the last point, where noise is taken to go on as 1 / samples
+  bool measured;  ///< false: extrapolated beyond the last point, with noise as 1 / samples
 };
 
-/// How a method's error falls with work: bias stays, noise goes. Between points noise and time follow power laws.
+/// Error of a method against work: bias is constant, noise decreases. Between points noise and time are interpolated as
+/// power laws.
 class Convergence {
  public:
-  /// Points in the order of their samples, one at least.
+  /// Points in ascending order of samples, at least one.
   Convergence(std::vector<ConvergencePoint> points, MeanSquare bias);
 
-  /// Until the noise of one render is down to this mean square; of no work less than the first point's. Nothing where
+  /// Effort until the noise of one render is at most this mean square; at least the first point's. None if
   /// `mean_square` is not positive.
   std::optional<Effort> until_noise(double mean_square, double z = 0) const;
-  /// Until bias and noise together are down to `rms`, even if each is `z` standard errors larger than it seems. Nothing
-  /// where bias alone is too large.
+  /// Effort until bias and noise together are at most `rms`, even if each is `z` standard errors larger than estimated.
+  /// None if bias alone is larger.
   std::optional<Effort> until_rms(double rms, double z = 0) const;
-  /// Until noise is no more than bias: from there on more samples help little. Nothing where no bias can be told from
-  /// none with 97.5 % confidence.
+  /// Effort until noise is at most bias; further samples have little effect. None if bias is not significant with 97.5
+  /// % confidence.
   std::optional<Effort> until_plateau() const;
 
-  /// Mean square of one render's noise after so many samples; before the first point and after the last as 1 / samples.
+  /// Mean square of one render's noise after a number of samples; as 1 / samples outside the points.
   double noise_after(double samples) const;
 
   const MeanSquare& bias() const { return bias_; }
@@ -47,11 +48,12 @@ class Convergence {
   MeanSquare bias_;
 };
 
+/// A point for `pareto_frontier`, in any units.
 struct CostAndError {
   double cost, error;
 };
 
-/// Those that no other beats in cost and error at once, by rising cost: their places in the list.
+/// Returns the indices of the points that no other point beats in both cost and error, by ascending cost.
 std::vector<size_t> pareto_frontier(std::span<const CostAndError> points);
 
 }  // namespace frond

@@ -13,10 +13,10 @@ namespace frond {
 namespace {
 
 // Names and numbers are the paper's: section 4.1 for colour, 4.2 for features, 4.3 for both.
-constexpr double kQc = 0.7, kPc = 0.4, kPt = 0.95;  // colour: exponent, and where its range is bent
+constexpr double kQc = 0.7, kPc = 0.4, kPt = 0.95;  // colour: exponent, and the knee of its range
 constexpr double kQf = 0.5, kFeatureWidth_deg = 0.082;
 
-/// One channel each.
+/// Three images of one channel each.
 using Planes = std::array<Image, 3>;
 
 double cube_root_or_line(double t) {
@@ -31,7 +31,7 @@ class Colorimetry {
     const Triple xyz = space_.xyz_from_rgb * rgb;
     return {xyz[0] / white_[0], xyz[1] / white_[1], xyz[2] / white_[2]};
   }
-  /// The linear opponent space in which contrast sensitivity is filtered.
+  /// Linear opponent colour space in which contrast sensitivity is filtered.
   Triple ycxcz(const Triple& rgb) const {
     const auto [x, y, z] = white_relative_xyz(rgb);
     return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
@@ -40,7 +40,7 @@ class Colorimetry {
     const double y = (c[0] + 16) / 116, x = y + c[1] / 500, z = y - c[2] / 200;
     return space_.rgb_from_xyz * Triple{x * white_[0], y * white_[1], z * white_[2]};
   }
-  /// L*a*b* with chroma weaker where it is dark (Hunt's effect).
+  /// L*a*b* with chroma reduced in dark colours (Hunt effect).
   Triple hunt_lab(const Triple& rgb) const {
     const Triple r = white_relative_xyz(rgb);
     const double fx = cube_root_or_line(r[0]), fy = cube_root_or_line(r[1]), fz = cube_root_or_line(r[2]);
@@ -53,11 +53,11 @@ class Colorimetry {
   Triple white_ = space_.xyz_from_rgb * Triple{1, 1, 1};
 };
 
-/// City blocks in lightness, Euclid in chroma (Abasi et al. 2020).
+/// HyAB distance: city-block in lightness, Euclidean in chroma (Abasi et al. 2020).
 double hyab(const Triple& a, const Triple& b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
 
-/// The sum of two Gaussians in space, of which the contrast sensitivity of one channel is the Fourier transform:
-/// a sqrt(pi/b) exp(-pi^2 x^2 / b), x in degrees. Each is separable, their sum is not.
+/// Sum of two Gaussians in space whose Fourier transform is the contrast sensitivity of one channel: a sqrt(pi/b)
+/// exp(-pi^2 x^2 / b), x in degrees. Each is separable, their sum is not.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
@@ -88,7 +88,7 @@ double sum_of(std::span<const double> v) {
 
 Image perceived(const Image& channel, const Sensitivity& s, double pixels_per_degree) {
   const auto g1 = gaussian(s.b1, pixels_per_degree), g2 = gaussian(s.b2, pixels_per_degree);
-  // In two dimensions the kernel's total is the square of a line's, and so is the factor sqrt(pi / b).
+  // In two dimensions the kernel's total is the square of that along a line, and so is the factor sqrt(pi / b).
   double w1 = s.a1 * std::numbers::pi / s.b1, w2 = s.a2 * std::numbers::pi / s.b2;
   const double total = w1 * sum_of(g1) * sum_of(g1) + w2 * sum_of(g2) * sum_of(g2);
   w1 /= total, w2 /= total;
@@ -112,7 +112,7 @@ Planes opponent_planes(const Image& image, const Colorimetry& colors) {
   return planes;
 }
 
-/// Bends [0, max] onto [0, 1]: differences up to kPc of the largest take up kPt of the range.
+/// Maps [0, max] to [0, 1] piecewise linearly: differences up to kPc of the largest use kPt of the range.
 double redistributed(double difference, double largest) {
   const double knee = kPc * largest;
   if (difference < knee) return kPt / knee * difference;
@@ -132,8 +132,8 @@ std::vector<Triple> filtered_lab(const Planes& opponent, const Colorimetry& colo
   return lab;
 }
 
-/// First (edges) or second (points) derivative of a Gaussian along a line; positive and negative weights of the whole
-/// two-dimensional kernel add up to 1 and -1.
+/// First (edges) or second (points) derivative of a Gaussian along a line, normalised such that the positive and the
+/// negative weights of the two-dimensional kernel sum to 1 and -1.
 struct FeatureKernel {
   std::vector<double> derivative, gaussian;
 };
@@ -156,7 +156,7 @@ FeatureKernel feature_kernel(bool points, double pixels_per_degree) {
   return k;
 }
 
-/// How strong edges or points are, whichever way they run.
+/// Magnitude of edges or points, independent of their orientation.
 std::vector<double> feature_strength(const Image& lightness, const FeatureKernel& k) {
   const Image x = separable_filter(lightness, k.derivative, k.gaussian);
   const Image y = separable_filter(lightness, k.gaussian, k.derivative);

@@ -6,17 +6,16 @@
 
 namespace frond {
 
-/// Where people watch from: 0.7 m before a display 0.7 m and 3840 pixels wide.
+/// Default viewing condition of FLIP: 0.7 m before a display 0.7 m and 3840 pixels wide.
 inline constexpr double kPixelsPerDegree = 67;
 
-/// LDR-FLIP, the difference that a person sees who flips between two images of one size, pixel by pixel: 0, none, to 1.
-/// The images are linear red, green and blue with the primaries of sRGB; what lies outside [0, 1] is clipped, as a
-/// display does.
+/// LDR-FLIP: the perceived difference when flipping between two images of one size, by pixel: 0 (none) to 1. The images
+/// are linear red, green and blue with the primaries of sRGB; values outside [0, 1] are clipped, as on a display.
 /// P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. D. Fairchild, "FLIP: A Difference Evaluator
 /// for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020.
 std::vector<float> flip_map(const Image& reference, const Image& test, double pixels_per_degree = kPixelsPerDegree);
 
-/// The mean of the map: the paper's one number for two images.
+/// Returns the mean of the map: the paper's single number for two images.
 double mean_flip(const Image& reference, const Image& test, double pixels_per_degree = kPixelsPerDegree);
 
 }  // namespace frond

@@ -28,14 +28,15 @@ ImageError image_error(std::span<const float> a1, std::span<const float> a2, std
     total += square(a - b);
     clipped += square(std::clamp(a, 0.0, 1.0) - std::clamp(b, 0.0, 1.0));
     product += d1 * d2;
-    // With d = delta + e, e normal of variance s^2: Var(d1 d2) = 2 delta^2 s^2 + s^4, and this has that expectation.
+    // With d = delta + e, e normal of variance s^2: Var(d1 d2) = 2 delta^2 s^2 + s^4, of which this is an unbiased
+    // estimate.
     product_variance += d1 * d2 * gap2 + square(gap2) / 4;
   }
   ImageError e;
   if (n == 0) return e;
   e.rms = std::sqrt(total / n);
   e.rms_clipped = std::sqrt(clipped / n);
-  // Variances of pixels add up as if they were independent; covariances make the sum larger by the factor at most.
+  // Variances of pixels add as if independent; covariances increase the sum by at most this factor.
   e.bias_squared = {product / n, std::sqrt(std::max(0.0, product_variance) * correlated_pixels) / n};
   e.noise = std::sqrt(std::max(0.0, total / n - std::max(0.0, e.bias_squared.value)));
   e.noise_a = std::sqrt(gap_a / n) / 2;

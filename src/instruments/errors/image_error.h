@@ -6,28 +6,28 @@
 
 namespace frond {
 
-/// A mean over pixels of squared differences, with its standard error. Where there is less of it than noise, the
-/// estimate may come out negative.
+/// Mean over pixels of squared differences, with its standard error. If it is smaller than the noise, the estimate may
+/// be negative.
 struct MeanSquare {
   double value = 0, standard_error = 0;
 
   double root() const { return std::sqrt(std::max(0.0, value)); }
-  /// Root of the end of a confidence interval that lies `z` standard errors up.
+  /// Root of the upper end of a confidence interval, `z` standard errors up.
   double root_at(double z) const { return std::sqrt(std::max(0.0, value + z * standard_error)); }
 };
 
-/// Two-sided 95 % of a normal variable, in standard errors.
+/// Number of standard errors of a two-sided 95 % interval of a normal variable.
 inline constexpr double kZ95 = 1.96;
 
-/// How one method's image differs from another's, in one channel. Two renders differ by bias and by noise; two
-/// independent halves of each tell them apart, since the mean of (A1 - B1)(A2 - B2) over pixels estimates bias squared
-/// without any noise in it.
+/// Difference of one method's image from another's, in one channel. Two renders differ by bias and by noise, which two
+/// independent halves of each separate: the mean of (A1 - B1)(A2 - B2) over pixels estimates the squared bias without
+/// noise.
 struct ImageError {
   double rms = 0;                   ///< of the difference of the full images, (A1 + A2)/2 - (B1 + B2)/2
   double rms_clipped = 0;           ///< the same after clipping both to [0, 1]
-  MeanSquare bias_squared;          ///< may come out negative where there is less bias than noise
-  double noise = 0;                 ///< root of what bias leaves of rms squared
-  double noise_a = 0, noise_b = 0;  ///< of each full image alone, from how its halves differ
+  MeanSquare bias_squared;          ///< may be negative if bias is smaller than noise
+  double noise = 0;                 ///< root of rms^2 - bias^2
+  double noise_a = 0, noise_b = 0;  ///< of each full image, from the difference of its halves
   double mean_difference = 0;       ///< A - B
 
   double bias() const;
@@ -35,9 +35,9 @@ struct ImageError {
   double bias_upper() const;
 };
 
-/// The four halves, pixel by pixel, of one channel. `use` (as long, or empty for all pixels) picks pixels by a weight
-/// above 0.5. `correlated_pixels`: how many share the noise of one (Splatting::correlated_pixels); the standard error
-/// grows by its root.
+/// Computes the error of one channel from the four halves, by pixel. `use` (as long, or empty for all pixels) selects
+/// pixels by a weight above 0.5. `correlated_pixels`: number of pixels that share the noise of one
+/// (Splatting::correlated_pixels); the standard error grows with its root.
 ImageError image_error(std::span<const float> a1, std::span<const float> a2, std::span<const float> b1,
                        std::span<const float> b2, std::span<const float> use = {}, double correlated_pixels = 1);
 

@@ -5,7 +5,7 @@
 namespace frond {
 namespace {
 
-/// Of one pixel, over its channels.
+/// Product of the two halves' differences of one pixel, mean over its channels.
 double product(const PairedDifference& a, size_t a_half, const PairedDifference& b, size_t b_half, size_t pixel) {
   double sum = 0;
   for (size_t c = 0; c < a.channels; ++c) {

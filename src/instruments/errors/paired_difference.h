@@ -8,25 +8,25 @@
 
 namespace frond {
 
-/// How one method's image differs from another's, pixel by pixel, in two independent pairs of renders: noise of the
-/// first says nothing of the second's. Within a pair the two renders may share their random numbers, which makes the
-/// difference less noisy where their paths are alike.
+/// Difference of one method's image from another's, by pixel, in two pairs of renders whose noise is independent.
+/// Within a pair the two renders may share random numbers, which reduces the noise of the difference where their paths
+/// are similar.
 struct PairedDifference {
-  std::array<std::vector<float>, 2> half;  ///< the channels of a pixel next to each other
+  std::array<std::vector<float>, 2> half;  ///< the channels of a pixel are adjacent
   size_t channels = 0;
 
   size_t pixels() const { return channels > 0 ? half[0].size() / channels : 0; }
 };
 
-/// Mean square over pixels and channels of the difference that stays however many samples are taken. The pixels are
-/// taken to be drawn at random from the image, so that the spread among them is uncertainty too.
+/// Mean square, over pixels and channels, of the difference without noise. The pixels are treated as a random sample of
+/// the image, so their spread is part of the uncertainty.
 Estimate mean_square(const PairedDifference& difference);
 
-/// Where such a mean square lies, at `z` as in `confidence_interval`. It is none below 0: what noise makes of it there
-/// takes nothing off the upper end, and no skewness below 0 does.
+/// Confidence interval of such a mean square, with `z` as in `confidence_interval`. Clamped to values of at least 0:
+/// noise that makes the estimate negative does not lower the upper end, nor does negative skewness.
 ConfidenceInterval mean_square_interval(const Estimate& mean_square, double z);
 
-/// Mean product of two differences, without their noise.
+/// Mean product of two differences, unbiased by their noise.
 double mean_product(const PairedDifference& a, const PairedDifference& b);
 
 }  // namespace frond

@@ -5,7 +5,7 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// The mean of what is added, and an upper bound of its standard error.
+/// Mean of the values added, and an upper bound of its standard error.
 class BoundedMean {
  public:
   void add(double x) {
@@ -22,7 +22,7 @@ class BoundedMean {
   double count_ = 0, sum_ = 0, squares_ = 0;
 };
 
-/// Mean square of one render's difference from the reference's mean, less the reference's own noise.
+/// Mean square of one render's difference from the reference's mean, minus the reference's own noise.
 double excess(double a1, double a2, double r1, double r2) {
   const double r = (r1 + r2) / 2;
   return (square(a1 - r) + square(a2 - r)) / 2 - square(r1 - r2) / 4;

@@ -17,13 +17,13 @@ double hall_transform(double t, double skewness) {
   return t + a * t * t + a * a * t * t * t / 3 + skewness / 6;
 }
 
-/// Hall's cubic is a whole cube but for a constant: its inverse is in closed form.
+/// Hall's cubic is the cube of a linear function plus a constant, so its inverse has a closed form.
 double inverse_hall_transform(double score, double skewness) {
   const double a = skewness / 3, t = score - skewness / 6;
   return std::abs(a) < 1e-9 ? t : (std::cbrt(1 + 3 * a * t) - 1) / a;
 }
 
-/// A standard normal variable, about, if nothing but chance and up to `slack` makes the difference.
+/// Approximately standard normal if only chance and a difference of up to `slack` separate the two.
 double normal_score(const Estimate& difference, double slack) {
   if (!std::isfinite(difference.mean) || !std::isfinite(difference.variance))
     return std::numeric_limits<double>::infinity();

@@ -12,8 +12,8 @@ struct MeanError {
   double mean = 0, standard_error = 0;
 };
 
-/// An estimated expectation, with the variance and the third cumulant of the estimate itself: those of independent
-/// estimates add.
+/// An estimated expectation, with the variance and the third cumulant of the estimate; both add for independent
+/// estimates.
 struct Estimate {
   double mean = 0, variance = 0, third_cumulant = 0;
 
@@ -26,7 +26,7 @@ struct Estimate {
   }
 };
 
-/// Running sums of a sample, for its mean and how far to trust it.
+/// Running sums of a sample, for its mean and the error of that.
 class Moments {
  public:
   void add(double x) {
@@ -41,16 +41,17 @@ class Moments {
     sum_of_squares_ += other.sum_of_squares_;
     sum_of_cubes_ += other.sum_of_cubes_;
   }
-  /// As if 0 had been added that often.
+  /// Adds the value 0 that many times.
   void add_zeros(int64_t zeros) { count_ += zeros; }
 
   int64_t count() const { return count_; }
+  /// 0 for no values.
   double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
-  /// Unbiased; 0 for fewer than two values.
+  /// Unbiased variance of the values; 0 for fewer than two.
   double variance() const;
-  /// Of the expectation.
+  /// Estimate of the expectation.
   Estimate estimate() const;
-  /// How many equal values would carry as much (Kish 1965): sum^2 / sum of squares.
+  /// Effective sample size (Kish 1965): sum^2 / sum of squares.
   double effective_count() const { return sum_of_squares_ > 0 ? sum_ * sum_ / sum_of_squares_ : 0; }
 
  private:
@@ -64,13 +65,13 @@ double normal_upper_tail(double z);
 /// The z with P(Z >= z) = `p`.
 double normal_upper_quantile(double p);
 
-/// Two-sided p-value of "the two have equal expectations", by a z-test with the skewness taken out (Hall 1992, "On the
-/// Removal of Skewness by Transformation"): means of Monte Carlo weights are far from normal where it matters, in the
-/// tails. A difference of up to `slack`, for rounding, counts as none. NaN on either side gives 0.
+/// Two-sided p-value of "the two have equal expectations", by a z-test with the skewness removed (Hall 1992, "On the
+/// Removal of Skewness by Transformation"): means of Monte Carlo weights are far from normal in the tails, which decide
+/// the test. A difference of up to `slack`, for rounding, counts as none. NaN on either side returns 0.
 double equality_p(const Estimate& a, const Estimate& b, double slack);
 
-/// Where the expectation lies: each end is exceeded with the probability that a standard normal variable exceeds `z`,
-/// by the same test.
+/// Confidence interval of the expectation: each end is exceeded with the probability that a standard normal variable
+/// exceeds `z`, by the same test.
 struct ConfidenceInterval {
   double low, high;
 };
@@ -79,25 +80,26 @@ ConfidenceInterval confidence_interval(const Estimate& a, double z);
 /// One-sided p-value of "the expectation is at most `bound`", by the same test.
 double at_most_p(const Estimate& a, double bound, double slack);
 
-/// Two-sided p-value of `successes` out of `trials`, where the success probability lies somewhere in [low, high]: that
-/// of the most favourable one.
+/// Two-sided p-value of `successes` out of `trials` for the most favourable success probability in [low, high].
 double binomial_p(int64_t successes, int64_t trials, double low, double high);
 
 /// Pearson's chi-square test of counts against expectations.
 struct ChiSquare {
   double statistic = 0;
-  int freedom = 0;  ///< degrees of it: classes - 1
-  double p = 1;     ///< chance of so large a statistic or a larger one
+  int freedom = 0;  ///< degrees of freedom: classes - 1
+  double p = 1;     ///< probability of a statistic at least as large
 };
 
-/// Classes are pooled, in their order, until each expects at least 5 (Cochran 1954). p is 1 where fewer than two are
-/// left: nothing can be told; 0 where an expectation is no number.
+/// Classes are pooled, in their order, until each expects at least 5 (Cochran 1954). p is 1 if fewer than two remain,
+/// and 0 if an expectation is not a number.
 ChiSquare chi_square(std::span<const double> observed, std::span<const double> expected);
+/// The p-value alone.
 inline double chi_square_p(std::span<const double> observed, std::span<const double> expected) {
   return chi_square(observed, expected).p;
 }
 
-/// Level of each of `tests` tests such that all of them together raise a false alarm at most at `rate` (Sidak 1967).
+/// Significance level of each of `tests` tests such that the probability of any false alarm is at most `rate` (Sidak
+/// 1967).
 double sidak_level(double rate, size_t tests);
 
 }  // namespace frond

@@ -14,11 +14,14 @@
 namespace frond {
 namespace {
 
+/// Parses a number. Returns nullopt for infinity and NaN too.
 std::optional<double> finite_number(std::string_view text) {
   const auto value = parse_number(text);
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+/// Appends first:last:step, both ends included up to rounding. Returns false if the text or the number of steps is
+/// invalid.
 bool append_range(const std::vector<std::string>& ends, std::vector<double>& numbers) {
   constexpr double kRounding = 1e-9, kMostNumbers = 1e6;
   const auto first = finite_number(ends[0]), last = finite_number(ends[1]), step = finite_number(ends[2]);
@@ -29,10 +32,12 @@ bool append_range(const std::vector<std::string>& ends, std::vector<double>& num
   return true;
 }
 
+/// Kinds whose values are parsed as numbers; seeds are not, because doubles lack 64 bits.
 bool is_number_kind(ArgumentKind kind) {
   return kind == ArgumentKind::count || kind == ArgumentKind::real || kind == ArgumentKind::numbers;
 }
 
+/// Returns " from 1 to 1024", " above 0" and the like, with a leading blank; "" for all numbers.
 std::string range_text(Interval range) {
   const auto end = [](double x) { return x == kCounts.max ? std::string("2^53") : fmt::format("{:.10g}", x); };
   const bool below = std::isfinite(range.min), above = std::isfinite(range.max);
@@ -57,6 +62,7 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   return numbers;
 }
 
+/// A flag is included, because Python passes True and False.
 std::string needed(const JobParam& p) {
   const std::string unit = p.unit.empty() ? "" : fmt::format(" ({})", p.unit);
   if (!p.choices.empty()) return fmt::format("one of {}", fmt::join(p.choices, ", "));
@@ -84,7 +90,7 @@ std::string command_spelling(std::string_view name) { return "--" + std::string(
 
 std::string python_spelling(std::string_view name) {
   std::string result(name);
-  if (name == "with") result += '_';  // a keyword of the language
+  if (name == "with") result += '_';  // `with` is a keyword of Python
   std::ranges::replace(result, '-', '_');
   return result;
 }
@@ -111,6 +117,7 @@ std::string relations(const JobParam& p) {
   return text;
 }
 
+/// Sentences are in a fixed order, so that all parameters read alike.
 std::string documented(const JobParam& p) {
   std::string text(p.doc);
   const auto add = [&text](const std::string& sentence) { text += ' ' + sentence + '.'; };
@@ -127,12 +134,14 @@ const JobParam* Arguments::find_param(std::string_view name) const {
   return found == declared_.end() ? nullptr : *found;
 }
 
+/// Parses and checks the words of one parameter. Throws InputError.
 Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::string>& words) const {
   Value value{words, {}, 0};
   const auto refuse = [&](const std::string& word) {
     fail({}, "{}: {} {} needed; \"{}\" was given", p.positional ? std::string(p.name) : spelling_(p.name), needed(p),
          p.kind == ArgumentKind::numbers && p.values > 0 ? "are" : "is", word);
   };
+  // Several words of a list of numbers are concatenated: --angles 0 --angles 8.
   const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
   const size_t takes = p.kind == ArgumentKind::texts ? p.values : repeats ? 0 : 1;
   if (takes > 0 && words.size() != takes)
@@ -159,6 +168,7 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
   return value;
 }
 
+/// A later call replaces the earlier values, as in scripts that append options.
 void Arguments::set(std::string_view name, const std::vector<std::string>& words) {
   const JobParam* param = find_param(name);
   if (!param) {
@@ -169,6 +179,7 @@ void Arguments::set(std::string_view name, const std::vector<std::string>& words
   values_.insert_or_assign(param->name, parse(*param, words));
 }
 
+/// Relations are checked after all parameters are set, because their order is arbitrary.
 void Arguments::check() const {
   for (const JobParam* p : params()) {
     if (p->required && !given(p->name))
@@ -180,6 +191,7 @@ void Arguments::check() const {
   }
 }
 
+/// Returns the record of a parameter. Throws std::logic_error for an undeclared name or another kind.
 const JobParam& Arguments::declared(std::string_view name, ArgumentKind kind) const {
   const JobParam* param = find_param(name);
   if (!param || param->kind != kind)
@@ -187,6 +199,7 @@ const JobParam& Arguments::declared(std::string_view name, ArgumentKind kind) co
   return *param;
 }
 
+/// Returns the given value, else the parsed default, else an empty value.
 Arguments::Value Arguments::value(const JobParam& param) const {
   if (const auto found = values_.find(param.name); found != values_.end()) return found->second;
   if (param.default_value.empty()) return {};

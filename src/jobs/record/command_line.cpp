@@ -4,6 +4,7 @@
 
 namespace frond {
 
+/// Positional and optional parameters are separated, because help and man pages list them in two sections.
 CommandParams command_params(const JobInfo& job) {
   CommandParams params{std::string(job.name), {}, {&kHelpParam}};
   for (const JobParam* p : params_of(job)) (p->positional ? params.arguments : params.options).push_back(p);
@@ -13,6 +14,7 @@ CommandParams command_params(const JobInfo& job) {
 
 CommandParams frond_params() { return {"", {}, {&kHelpParam, &kVersionParam}}; }
 
+/// Short names come first, as in the manual pages of GNU programs.
 std::vector<std::string> option_names(const JobParam& p) {
   std::vector<std::string> short_names, long_names{"--" + std::string(p.name)};
   for (const std::string& alias : split(std::string(p.aliases), ','))
@@ -24,6 +26,7 @@ std::vector<std::string> option_names(const JobParam& p) {
   return short_names;
 }
 
+/// A parameter without a type is named after its kind.
 std::string value_name(const JobParam& p) {
   if (!p.type.empty()) return std::string(p.type);
   constexpr const char* kNames[] = {"", "INT", "INT", "NUMBER", "NUMBERS", "TEXT", "TEXT"};

@@ -8,7 +8,7 @@
 namespace frond {
 namespace {
 
-/// "leaf=abm" or "leaf=abm,mode=analog".
+/// Parses "leaf=abm" or "leaf=abm,mode=analog". Throws InputError.
 MaterialSwap parse_swap(const std::string& text, const Arguments& args) {
   const std::string option = args.spelled("swap");
   const size_t equals = text.find('=');
@@ -29,6 +29,7 @@ std::vector<std::string> materials_of(const JobRun& run) {
   return texts;
 }
 
+/// Jobs declare different subsets of the parameters; undeclared ones are skipped.
 SceneOverrides overrides_of(const Arguments& args) {
   SceneOverrides overrides;
   if (has(args, "swap"))
@@ -51,9 +52,10 @@ SceneDescription described_scene(const JobRun& run) {
   return description;
 }
 
+/// A single file is always a scene, so that an incomplete one is reported as such.
 std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files) {
   std::vector<std::vector<std::filesystem::path>> scenes;
-  bool is_open = false;  // the last scene has no world yet
+  bool is_open = false;  // the last scene lacks WorldBegin
   for (const std::string& file : files) {
     if (!is_open) scenes.emplace_back();
     scenes.back().emplace_back(file);
@@ -62,6 +64,7 @@ std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std:
   return scenes;
 }
 
+/// Text that begins with a digit is a list of bands; other text names a strategy.
 std::string wavelengths_text(const Arguments& args) {
   const std::string text = args.text("wavelengths");
   if (text.empty() || std::string_view("0123456789.").find(text[0]) == std::string_view::npos) return text;
@@ -72,6 +75,7 @@ std::string wavelengths_text(const Arguments& args) {
   return fmt::format("bands,wavelengths={}", fmt::join(*numbers, ","));
 }
 
+/// Checked before the measurement, which may take hours.
 void check_chart_param(const JobRun& run, std::string_view name) {
   if (run.args.given(name)) check_chart(run.args.text(name));
 }

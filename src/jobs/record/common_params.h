@@ -4,18 +4,18 @@
 #include "scene/format/unsupported.h"
 #include "scene/overrides.h"
 
-/// Parameters that several jobs have, with one spelling and one meaning, and how they are read.
+/// Parameters that several jobs share, with one name and one meaning, and the functions that evaluate them.
 namespace frond {
 
 inline constexpr JobParam kSceneParam(
     "scene", ArgumentKind::text, "Scene file (pbrt-v4 format).",
     {.type = "SCENE", .path = PathUse::read, .decides = true, .positional = true, .required = true});
-/// Positional: files to read; `count` of them, or any number.
+/// Returns a positional parameter for files to read: `count` files, or any number if 0.
 constexpr JobParam files_param(std::string_view name, std::string_view doc, size_t count = 0) {
   return JobParam(name, ArgumentKind::texts, doc,
                   {.type = "FILE", .values = count, .path = PathUse::read, .positional = true, .required = true});
 }
-/// -o, --output: a file to write.
+/// Returns -o, --output: a file to write.
 constexpr JobParam output_param(std::string_view doc, bool required, std::string_view excludes = "") {
   return JobParam("output", ArgumentKind::text, doc,
                   {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = required, .excludes = excludes});
@@ -26,7 +26,7 @@ inline constexpr JobParam kSwapParam(
     {.type = "SWAP", .decides = true});
 inline constexpr JobParam kIntegratorParam(
     "integrator", ArgumentKind::text,
-    "PLUGIN[,parameter=value...]: integrator; one of the scene's kind keeps the scene's other parameters.",
+    "PLUGIN[,parameter=value...]: integrator; one of the scene's type keeps the scene's other parameters.",
     {.type = "INTEGRATOR", .decides = true});
 inline constexpr JobParam kSeedParam("seed", ArgumentKind::seed, "Seed of all random numbers.", {.decides = true});
 inline constexpr JobParam kIgnoreUnsupportedParam(
@@ -36,13 +36,13 @@ inline constexpr JobParam kIgnoreUnsupportedParam(
     {.type = "KINDS", .decides = true, .implied = "all"});
 inline constexpr JobParam kStrictParam("strict", ArgumentKind::flag, "Treat warnings as errors.");
 inline constexpr JobParam kTimeLimitParam("time-limit", ArgumentKind::real,
-                                          "Time after which the job ends with the result it has by then.",
+                                          "Time after which the job ends and returns its partial result.",
                                           {.unit = "s", .range = kAboveZero});
 inline constexpr JobParam kCsvParam("csv", ArgumentKind::text, "CSV file to write; - is standard output.",
                                     {.type = "FILE", .path = PathUse::write});
 inline constexpr JobParam kJsonParam("json", ArgumentKind::text, "JSON file to write; - is standard output.",
                                      {.type = "FILE", .path = PathUse::write});
-/// A chart: .svg or .png. `doc` says of what.
+/// Returns a parameter for a chart to write, .svg or .png. `doc` names the chart's content.
 constexpr JobParam chart_param(std::string_view name, std::string_view doc, std::string_view aliases = "") {
   return JobParam(name, ArgumentKind::text, doc, {.type = "CHART", .aliases = aliases, .path = PathUse::write});
 }
@@ -53,18 +53,21 @@ inline constexpr JobParam kMaterialParam("material", ArgumentKind::texts,
 inline constexpr JobParam kWithParam("with", ArgumentKind::texts, "NAME[,parameter=value...]: one more material.",
                                      {.type = "MATERIAL", .decides = true});
 
-/// The job's material and those of --with, in the grammar of material_text.
+/// Returns the job's material and those of --with, in the grammar of material_text.
 std::vector<std::string> materials_of(const JobRun& run);
-/// Overrides by --swap, --wavelengths, --integrator, --filter, --seed and --quick, as far as the job has them.
+/// Returns the overrides by --swap, --wavelengths, --integrator, --filter, --seed and --quick; the job may declare a
+/// subset.
 SceneOverrides overrides_of(const Arguments& args);
+/// Returns the features that --ignore-unsupported lists. Throws InputError for an unknown one.
 Unsupported unsupported_of(const Arguments& args);
-/// The scene file with the overrides written into it.
+/// Reads the scene file and applies the overrides. Throws InputError or Problems with all errors of the scene.
 SceneDescription described_scene(const JobRun& run);
-/// Scenes from files: a scene may be in several files, of which the last one has its world.
+/// Groups files into scenes: a scene may consist of several files, the last of which contains WorldBegin.
 std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std::string>& files);
-/// "smpte", "bands,wavelengths=450,550" or numbers alone, 450,550 or 400:700:10, which are bands.
+/// Returns --wavelengths as a plug-in and its parameters: "smpte", "bands,wavelengths=450,550". Numbers alone, 450,550
+/// or 400:700:10, become bands.
 std::string wavelengths_text(const Arguments& args);
-/// Refuses a chart that cannot be written, if it is asked for.
+/// Throws InputError if the chart is given and its file name has no extension of a chart format.
 void check_chart_param(const JobRun& run, std::string_view name);
 
 }  // namespace frond

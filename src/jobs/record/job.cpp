@@ -15,24 +15,26 @@ namespace {
 using enum ArgumentKind;
 
 constexpr JobParam kSession[] = {
-    JobParam("quiet", flag, "Print errors and requested data only.", {.aliases = "q"}),
-    JobParam("plugin", texts,
-             "Shared object with further plug-ins. Those in the folders of FROND_PLUGIN_PATH are always loaded.",
-             {.type = "FILE", .path = PathUse::read, .decides = true}),
+    JobParam("quiet", flag, "Print only errors and requested data.", {.aliases = "q"}),
+    JobParam(
+        "plugin", texts,
+        "Shared object with further plug-ins. Shared objects in the folders of FROND_PLUGIN_PATH are always loaded.",
+        {.type = "FILE", .path = PathUse::read, .decides = true}),
     JobParam("threads", count, "Number of threads; by default one for each processor. Results do not depend on it.",
              {.range = {1, 1024}, .aliases = "nthreads"}),
     JobParam("cache", text, "Folder for computed tables; by default $XDG_CACHE_HOME/frond, or ~/.cache/frond.",
              {.type = "FOLDER", .path = PathUse::write}),
-    JobParam("no-cache", flag, "Keep no computed tables on disk."),
+    JobParam("no-cache", flag, "Store no computed tables on disk."),
 };
 
+/// File names identify a measurement without their folders, so that it can be moved.
 std::string file_name(const JobParam& p, const std::string& word) {
   return p.path == PathUse::none ? word : std::filesystem::path(word).filename().string();
 }
 
 bool is_path(const JobParam& p, const std::string& word) { return p.path != PathUse::none && word != "-"; }
 
-/// Refuses outputs that cannot be written, and more than one "-".
+/// Throws InputError if an output cannot be written, or if two outputs are "-".
 void check_outputs(const JobRun& run, std::span<const JobParam> params) {
   std::string_view first;
   for (const JobParam& p : params) {
@@ -48,6 +50,7 @@ void check_outputs(const JobRun& run, std::span<const JobParam> params) {
   }
 }
 
+/// Writes --csv and --json.
 void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) {
   for (const JobParam& p : job.params) {
     if (p.path != PathUse::write || !run.args.given(p.name)) continue;
@@ -60,9 +63,10 @@ void write_outputs(const JobInfo& job, const JobRun& run, const Result& result) 
 
 }  // namespace
 
+/// --csv and --json are written after the log's check, so that strict mode does not write them on warnings.
 Result run_job(const JobInfo& job, const JobRun& run) {
   run.args.check();
-  if (!job.extends) check_outputs(run, job.params);  // else they are of the jobs that it starts
+  if (!job.extends) check_outputs(run, job.params);  // otherwise the jobs that it starts write the outputs
   StrictLog& log = run.context.log();
   log.begin(run.args.declares("strict") && run.args.flag("strict"));
   Result result = job.run(run);
@@ -83,6 +87,7 @@ void JobRun::check_stop() const {
   if (control.stop.stop_requested()) throw Stopped();
 }
 
+/// kSession is sorted so that each SessionUse is a prefix of it.
 std::span<const JobParam> session_params(SessionUse use) {
   constexpr size_t kUsed[] = {1, 2, 3, std::size(kSession)};
   return std::span(kSession).first(kUsed[size_t(use)]);
@@ -94,6 +99,7 @@ std::filesystem::path default_cache() {
   return {};
 }
 
+/// Missing declarations keep the defaults: no plug-ins, one thread for each processor, no cache.
 SessionOptions session_options(const Arguments& args) {
   SessionOptions options;
   if (args.declares("plugin")) options.plugins = args.texts("plugin");
@@ -105,6 +111,7 @@ SessionOptions session_options(const Arguments& args) {
   return options;
 }
 
+/// A parameter of the job hides a parameter of the same name in the extended job.
 std::vector<const JobParam*> params_of(const JobInfo& job) {
   std::vector<const JobParam*> all;
   const auto add = [&all](std::span<const JobParam> params) {
@@ -117,6 +124,7 @@ std::vector<const JobParam*> params_of(const JobInfo& job) {
   return all;
 }
 
+/// Linear search: there are some twenty jobs.
 const JobInfo& find_job(std::string_view name) {
   std::vector<std::string_view> names;
   for (const JobInfo* job : all_jobs()) {
@@ -126,6 +134,7 @@ const JobInfo& find_job(std::string_view name) {
   fail({}, "there is no command \"{}\"{}", name, suggestion(name, names));
 }
 
+/// Positional words come first; options follow in the order of the records, so that equal runs give equal text.
 std::string identifying_command(const JobInfo& job, const Arguments& args) {
   std::string positional, options;
   for (const JobParam* p : args.params()) {
@@ -168,7 +177,8 @@ std::string material_text(const std::vector<std::string>& words, const Log& log)
       fail({}, "a parameter looks like name=value: \"{}\" in {}", word, fmt::join(words, " "));
     auto parts = split(word, ' ');
     std::erase(parts, "");
-    // "abm specimen=maize" is a name and its parameters; a blank elsewhere is part of a value, such as a file's path.
+    // A blank separates words only in "abm specimen=maize", a name and its parameters; elsewhere it is part of a value,
+    // such as a file's path.
     const bool is_split =
         parts.size() > 1 && parts[0].find_first_of("=,") == std::string::npos && is_parameter(parts[1]);
     if (!is_split) parts = {word};

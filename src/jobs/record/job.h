@@ -12,36 +12,37 @@
 #include "render/session.h"
 #include "report/table.h"
 
-/// A job is what one command does: `frond brf`, frond.brf(). It is defined once, by a record of its parameters and a
-/// function. The command line, man pages, shell completion, docs/commands.md and the Python module are made from the
-/// records.
+/// A job is the work of one command, for `frond brf` and frond.brf() alike. It is defined by one record of its
+/// parameters and one function. The command line, man pages, shell completion, docs/commands.md and the Python module
+/// are made from the records.
 namespace frond {
 
-/// What a job leaves behind, beside the files that it has written.
+/// Result of a job, apart from the files that it has written.
 struct Result {
-  std::vector<Table> tables = {};        ///< the first one is what --csv writes
+  std::vector<Table> tables = {};        ///< --csv writes the first one
   std::vector<Fact> facts = {};          ///< single values
-  std::vector<std::string> notes = {};   ///< comments of CSV: who measured what
+  std::vector<std::string> notes = {};   ///< comment lines of the CSV file: materials, conventions, provenance
   std::string text = {};                 ///< for a terminal
-  std::string json = {};                 ///< what --json writes, where that is not made of notes, facts and tables
-  std::vector<std::string> errors = {};  ///< what is wrong with the input, for standard error; the code is 1
-  bool is_requested = false;             ///< the text is what was asked for, by --json for one: --quiet keeps it
-  int code = 0;                          ///< of the program: 0 done, 1 something is wrong, 2 a law is broken
-  bool stopped = false;                  ///< by the control's stop token; what was done is kept
+  std::string json = {};                 ///< content of --json; if empty, it is made of notes, facts and tables
+  std::vector<std::string> errors = {};  ///< errors in the input, for standard error; the exit code is then 1
+  bool is_requested = false;             ///< `text` is requested data, as by --json: --quiet prints it too
+  int code = 0;                          ///< exit code of the program: 0 done, 1 error, 2 a law is broken
+  bool stopped = false;                  ///< by the control's stop token; the partial result is kept
 };
 
-/// What a job works with. The session is made when it is first asked for: some jobs do without.
+/// Services of a job. The session is created on first use, because some jobs do not need one.
 class JobContext {
  public:
-  /// `to` must outlive it.
+  /// `to` must outlive this object.
   JobContext(const Log& to, SessionOptions options) : options_(std::move(options)), log_(to) {}
 
+  /// Returns the session; creates it on first use. Throws InputError, for instance for a plug-in that cannot be loaded.
   Session& session() {
     if (!session_) session_.emplace(log_, options_);
     return *session_;
   }
   const SessionOptions& options() const { return options_; }
-  /// The session's log. `log().begin(true)` makes warnings errors.
+  /// Returns the session's log. `log().begin(true)` turns warnings into errors.
   StrictLog& log() { return log_; }
 
  private:
@@ -58,18 +59,18 @@ struct JobRun {
 
   Session& session() const { return context.session(); }
   const Log& log() const { return context.log(); }
-  /// The control, with a deadline `seconds` after now if they are above 0.
+  /// Returns the control, with a deadline `seconds` after now if `seconds` is above 0.
   RenderControl control_until(double seconds) const;
-  /// Throws Stopped if the front end asks for an end: for jobs that call it between measurements.
+  /// Throws Stopped if the front end has requested a stop. Jobs call it between measurements.
   void check_stop() const;
 };
 
-/// Ends a job whose partial result is of no use.
+/// Ends a job whose partial result is useless.
 struct Stopped : std::runtime_error {
   Stopped() : std::runtime_error("stopped") {}
 };
 
-/// Which parameters of the session a job has beside its own.
+/// Session parameters that a job has in addition to its own.
 enum class SessionUse : uint8_t {
   none,     ///< quiet
   plugins,  ///< quiet, plugin
@@ -92,44 +93,46 @@ struct JobInfo {
         extends(extended) {}
 
   std::string_view name;
-  std::string_view group;    ///< heading of `frond --help`: "Render", "Leaf models", "Measure", ...
+  std::string_view group;    ///< heading in `frond --help`: "Render", "Leaf models", "Measure", ...
   std::string_view doc;      ///< one sentence
-  std::string_view details;  ///< further sentences, for --help, man pages and docstrings; may be empty
+  std::string_view details;  ///< further sentences for --help, man pages and docstrings; may be empty
   std::span<const JobParam> params;
   SessionUse session;
   Result (*run)(const JobRun&);
-  const JobInfo* extends;  ///< another job whose parameters this one takes too, and passes on; nullptr: none
+  const JobInfo* extends;  ///< job whose parameters this job also accepts, and passes on; nullptr: none
 };
 
-/// All parameters of a job: its own, those of the job that it extends, and those of its session.
+/// Returns all parameters of a job: its own, those of the extended job, and those of its session.
 std::vector<const JobParam*> params_of(const JobInfo& job);
 
-/// Those of quiet, plugin, threads, cache and no-cache that SessionUse names.
+/// Returns the parameters among quiet, plugin, threads, cache and no-cache that `use` names.
 std::span<const JobParam> session_params(SessionUse use);
-/// The session that such arguments ask for. The cache's folder is that given, else the user's, or none with no-cache.
+/// Returns the session's options from the arguments. The cache folder is --cache, else default_cache(), or none with
+/// --no-cache.
 SessionOptions session_options(const Arguments& args);
-/// The user's folder for computed tables: $XDG_CACHE_HOME/frond, else ~/.cache/frond; empty where neither is set.
+/// Returns the user's folder for computed tables: $XDG_CACHE_HOME/frond, else ~/.cache/frond; empty if neither variable
+/// is set.
 std::filesystem::path default_cache();
 
-/// All jobs, group by group. The only list of them.
+/// Returns all jobs, sorted by group. This is the only list of them.
 std::span<const JobInfo* const> all_jobs();
-/// Throws InputError that names the nearest one.
+/// Throws InputError for an unknown name; the message suggests the nearest one.
 const JobInfo& find_job(std::string_view name);
 
-/// Checks the arguments and the outputs, runs the job, writes --csv and --json.
+/// Checks the arguments and outputs, runs the job, and writes --csv and --json. Throws InputError.
 Result run_job(const JobInfo& job, const JobRun& run);
 
-/// The arguments that decide the result, as a command line: what identifies a measurement or a part. Files stand by
-/// their names without folders.
+/// Returns the arguments that decide the result as a command line: the identity of a measurement or a part. Files are
+/// written without their folders.
 std::string identifying_command(const JobInfo& job, const Arguments& args);
-/// Arguments for these parameters as words of a command line, with absolute paths: for a job that runs in another
+/// Returns the arguments for `params` as words of a command line with absolute paths, for a job that runs in another
 /// folder.
 std::vector<std::string> absolute_words(const Arguments& args, std::span<const JobParam* const> params);
 
 // Helpers that jobs share.
 
-/// A material in text: NAME[,parameter=value...]. The old form, in several words or in one with blanks, `abm
-/// specimen=maize`, is accepted with a note.
+/// Returns a material as NAME[,parameter=value...]. The older form with blanks, `abm specimen=maize`, in one word or
+/// several, is accepted with a note to `log`.
 std::string material_text(const std::vector<std::string>& words, const Log& log);
 
 }  // namespace frond

@@ -2,13 +2,13 @@
 
 namespace frond {
 
-/// An option of pbrt-v4's command line that frond render accepts with a warning, or refuses with what frond has
-/// instead.
+/// An option of pbrt-v4's command line. `frond render` ignores it with a warning, or refuses it and names frond's
+/// equivalent.
 struct PbrtOption {
   const char* name;
-  const char* value;  ///< what it takes; "": nothing
+  const char* value;  ///< name of its value; "": a flag
   bool is_refused;
-  const char* doc;
+  const char* doc;  ///< reason, or frond's equivalent; "": none
 };
 
 inline constexpr PbrtOption kPbrtOptions[] = {

@@ -5,7 +5,7 @@
 namespace frond {
 namespace {
 
-/// Without what stands in quotes, and without numbers.
+/// Returns the message without quoted text and digits. Warnings of one kind differ only in these.
 std::string kind_of(std::string_view message) {
   std::string kind;
   bool is_quoted = false;
@@ -16,9 +16,10 @@ std::string kind_of(std::string_view message) {
   return kind;
 }
 
+/// Returns the text of the counts.
 std::string more(size_t repeats, size_t alike) {
   std::string text;
-  if (repeats > 0) text += fmt::format(" and at {} more place{}", repeats, repeats == 1 ? "" : "s");
+  if (repeats > 0) text += fmt::format(" and at {} more location{}", repeats, repeats == 1 ? "" : "s");
   if (alike > 0) text += fmt::format(" and {} more like it", alike);
   return text;
 }
@@ -32,12 +33,14 @@ void StrictLog::begin(bool is_strict) {
   warnings_.clear(), by_message_.clear(), by_kind_.clear();
 }
 
+/// The first occurrence is logged at once, so that a long run shows its warnings early.
 void StrictLog::warn(const Location& where, std::string_view message) const {
   if (is_strict_) return problems_.add(InputError(where, std::string(message) + " (an error in strict mode)"));
   if (const auto known = by_message_.find(message); known != by_message_.end()) {
     ++warnings_[known->second].repeats;
     return;
   }
+  // Further warnings of this kind are counted with the last one shown.
   std::vector<size_t>& alike = by_kind_[kind_of(message)];
   if (alike.size() == kMostAlike) {
     ++warnings_[alike.back()].alike;
@@ -49,6 +52,7 @@ void StrictLog::warn(const Location& where, std::string_view message) const {
   to_.warn(where, message);
 }
 
+/// Counts are reset, so that each is logged once.
 void StrictLog::show_repeats() const {
   for (Warning& w : warnings_) {
     if (w.repeats > 0 || w.alike > 0) to_.warn(w.first, w.message + ": here" + more(w.repeats, w.alike));

@@ -9,24 +9,24 @@
 
 namespace frond {
 
-/// A log that passes messages on to another one, each warning once: a warning that is repeated at many places is shown
-/// at the first, then how often it was repeated; of warnings that differ in names and numbers alone the first 20 are
-/// shown. In strict mode warnings are errors, which are collected.
+/// A log that forwards messages to another log and limits repetition. A repeated warning is shown once, followed by its
+/// count; of warnings that differ only in names and numbers, the first kMostAlike are shown. In strict mode warnings
+/// are collected as errors.
 class StrictLog final : public Log {
  public:
-  /// `to` must outlive it.
+  /// `to` must outlive this object.
   explicit StrictLog(const Log& to) : to_(to) {}
   ~StrictLog() override { show_repeats(); }
   StrictLog(const StrictLog&) = delete;
   StrictLog& operator=(const StrictLog&) = delete;
 
-  /// Forgets earlier warnings; from now on warnings are errors if `is_strict`.
+  /// Forgets earlier warnings; subsequent warnings are errors if `is_strict`.
   void begin(bool is_strict);
   void info(std::string_view message) const override { to_.info(message); }
   void warn(const Location& where, std::string_view message) const override;
-  /// Shows what was repeated; throws the warnings of strict mode.
+  /// Logs the counts of repeated warnings. Throws the collected warnings of strict mode.
   void check() const;
-  /// The log that messages are passed on to: a warning there is none of the scene's, so never an error.
+  /// Returns the log that messages are forwarded to. Warnings sent to it directly are never errors.
   const Log& target() const { return to_; }
 
  private:
@@ -35,7 +35,7 @@ class StrictLog final : public Log {
     Location first;
     std::string message;
     size_t repeats = 0;
-    size_t alike = 0;  ///< warnings like this one that are not shown
+    size_t alike = 0;  ///< number of similar warnings that are not shown
   };
   void show_repeats() const;
 
@@ -43,8 +43,8 @@ class StrictLog final : public Log {
   bool is_strict_ = false;
   mutable Problems problems_;
   mutable std::vector<Warning> warnings_;
-  mutable std::map<std::string, size_t, std::less<>> by_message_;            ///< places in the warnings
-  mutable std::map<std::string, std::vector<size_t>, std::less<>> by_kind_;  ///< of those shown
+  mutable std::map<std::string, size_t, std::less<>> by_message_;            ///< message to index in warnings_
+  mutable std::map<std::string, std::vector<size_t>, std::less<>> by_kind_;  ///< kind_of(message) to indices
 };
 
 }  // namespace frond

@@ -25,7 +25,7 @@ std::string TimedHit::name(BsdfCall call) const {
 
 namespace {
 
-/// Google Benchmark's JSON as a text, and the times in it.
+/// Reporter that collects Google Benchmark's JSON output and the CPU times of all repetitions.
 class Recorder final : public benchmark::BenchmarkReporter {
  public:
   Recorder() {
@@ -49,7 +49,7 @@ class Recorder final : public benchmark::BenchmarkReporter {
   std::map<std::string, Moments> times_;
 };
 
-/// call(bsdf, wo, draw, rng) is what is timed.
+/// Registers a benchmark of call(bsdf, wo, draw, rng) on one BSDF.
 template <class Call>
 void add_call(const TimedHit& timed, BsdfCall which, const Call& call) {
   benchmark::RegisterBenchmark(timed.name(which).c_str(), [&timed, call](benchmark::State& state) {
@@ -62,7 +62,7 @@ void add_call(const TimedHit& timed, BsdfCall which, const Call& call) {
   });
 }
 
-/// With the BSDF made anew each time.
+/// Registers the benchmark of a complete hit: the BSDF is created in every iteration.
 void add_hit(const TimedHit& timed) {
   benchmark::RegisterBenchmark(timed.name(BsdfCall::hit).c_str(), [&timed](benchmark::State& state) {
     const Vec3 wo = viewer_at(timed.hit.theta_deg);
@@ -79,6 +79,7 @@ void add_hit(const TimedHit& timed) {
   });
 }
 
+/// Registers the benchmarks of all calls of a hit, in the order of BsdfCall.
 void add_all(const TimedHit& timed) {
   add_call(timed, BsdfCall::sample,
            [](const Bsdf& bsdf, const Vec3& wo, const CallDraws::Draw& draw, RandomStream& rng) {
@@ -93,7 +94,8 @@ void add_all(const TimedHit& timed) {
   add_hit(timed);
 }
 
-/// Google Benchmark's settings are its command line. As many words as it has, for it keeps the first.
+/// Configures Google Benchmark, which takes its settings only from a command line. All settings are always passed,
+/// because it keeps values of an earlier call.
 void set(const TimingEffort& effort) {
   static char program[] = "frond";
   std::string repetitions = fmt::format("--benchmark_repetitions={}", effort.repetitions),
@@ -106,6 +108,7 @@ void set(const TimingEffort& effort) {
 
 }  // namespace
 
+/// Benchmarks are registered globally in Google Benchmark, and cleared afterwards.
 CallTimes time_calls(std::span<const TimedHit> hits, const TimingEffort& effort) {
   set(effort);
   for (const TimedHit& hit : hits) add_all(hit);
@@ -123,7 +126,7 @@ CallTimes time_calls(std::span<const TimedHit> hits, const TimingEffort& effort)
 #else
 
 CallTimes time_calls(std::span<const TimedHit>, const TimingEffort&) {
-  fail({}, "this frond was built without Google Benchmark (Debian: libbenchmark-dev), which frond bench takes");
+  fail({}, "this frond was built without Google Benchmark (Debian: libbenchmark-dev), which frond bench requires");
 }
 
 #endif

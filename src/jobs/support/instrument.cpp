@@ -13,6 +13,7 @@ MaterialsUnderTest::MaterialsUnderTest(const JobRun& run)
   for (const std::string& text : materials_of(run))
     materials_.emplace_back(text, session.registry(), wavelengths_nm_, session.pool(), run.log(),
                             run.context.options().cache);
+  // Errors of any material and angle are reported before the first ray.
   Arena arena;
   for (size_t i = 0; i < size(); ++i) {
     const LitMaterial e = lit_material(i);
@@ -22,6 +23,7 @@ MaterialsUnderTest::MaterialsUnderTest(const JobRun& run)
   }
 }
 
+/// The seed depends on the material's text, so that adding a material does not change the results of others.
 LitMaterial MaterialsUnderTest::lit_material(size_t i) const {
   const size_t wavelength = i % wavelengths_nm_.size(), angle = i / wavelengths_nm_.size() % angles_deg_.size();
   const MeasuredMaterial& m = material(i);
@@ -31,6 +33,7 @@ LitMaterial MaterialsUnderTest::lit_material(size_t i) const {
           as_rendered_};
 }
 
+/// `rays_each` is the largest number of rays of a measurement; the fraction is a lower bound with --se.
 RayProgress MaterialsUnderTest::progress(size_t i, int64_t rays_each) const {
   return [this, i, rays_each](int64_t rays) {
     run_.check_stop();
@@ -46,10 +49,11 @@ std::vector<std::string> MaterialsUnderTest::notes(std::string_view instrument) 
   std::vector<std::string> notes{fmt::format("frond {} {}", FROND_VERSION, instrument)};
   for (const MeasuredMaterial& m : materials_) notes.push_back("material: " + m.label());
   notes.push_back(fmt::format("seed: {}", run_.args.seed("seed")));
-  notes.push_back(as_rendered_
-                      ? "As rendered: light comes along wi and is seen along wo, whichever the model calls incident."
-                      : "Light comes in along the direction that the material's model calls incident, whatever its "
-                        "\"incident\" says.");
+  notes.push_back(
+      as_rendered_
+          ? "As rendered: light arrives along wi and leaves along wo, whichever of them the model takes as incident."
+          : "Light comes in along the direction that the material's model calls incident, whatever its "
+            "\"incident\" says.");
   if (std::ranges::count(angles_deg_, 90) > 0)
     notes.push_back(
         "At 90 degrees light meets neither side: that figure is the limit from the front, cos theta = 1e-7.");

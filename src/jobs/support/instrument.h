@@ -7,7 +7,7 @@
 #include "jobs/record/common_params.h"
 #include "render/measured_material.h"
 
-/// What the jobs of both instruments share: parameters, materials under test, progress.
+/// Parameters, materials under test and progress, shared by the jobs of both instruments.
 namespace frond {
 
 inline constexpr JobParam kAnglesParam(
@@ -22,26 +22,27 @@ inline constexpr JobParam kRenderedParam(
     {.decides = true});
 inline constexpr Interval kRayCounts{2, kCounts.max};
 
-/// The materials under test and the beams on them, made and checked before the first ray.
+/// The materials under test and the beams on them. They are created and checked before the first ray.
 class MaterialsUnderTest {
  public:
-  /// Throws InputError for materials that do not exist or, as rendered, have a delta lobe.
+  /// Throws InputError for a material that does not exist, or that has a delta lobe with --rendered.
   explicit MaterialsUnderTest(const JobRun& run);
 
   const std::vector<double>& angles_deg() const { return angles_deg_; }
   const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
   const std::vector<MeasuredMaterial>& materials() const { return materials_; }
-  /// Of measurements: wavelengths run fastest, then angles, then materials.
+  /// Number of measurements. Wavelengths vary fastest, then angles, then materials.
   size_t size() const { return materials_.size() * per_material(); }
   size_t per_material() const { return angles_deg_.size() * wavelengths_nm_.size(); }
 
-  /// Of measurement i. Random numbers depend on material, angle and wavelength, not on i.
+  /// Returns material and beam of measurement i. Its random numbers depend on material, angle and wavelength, not on i.
   LitMaterial lit_material(size_t i) const;
   const MeasuredMaterial& material(size_t i) const { return materials_[i / per_material()]; }
 
-  /// For the measurement's call of `shoot`: shows the progress, and throws Stopped where the front end asks for an end.
+  /// Returns the progress callback for `shoot` in measurement i. It throws Stopped if the front end has requested a
+  /// stop.
   RayProgress progress(size_t i, int64_t rays_each) const;
-  /// Comments of CSV: who measured what, and which direction is the incident one.
+  /// Returns comment lines of the CSV file: instrument, materials, and which direction is the incident one.
   std::vector<std::string> notes(std::string_view instrument) const;
 
  private:

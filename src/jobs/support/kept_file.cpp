@@ -6,14 +6,16 @@
 
 namespace frond {
 
+/// A complete result takes precedence over a checkpoint.
 std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
   std::error_code error;
   const auto& path = std::filesystem::exists(names_.finished, error) ? names_.finished : names_.checkpoint;
   if (!std::filesystem::exists(path, error)) return {};
-  if (!resume) fail({}, "\"{}\" is there already: --resume goes on from it; delete it to begin anew", path.string());
+  if (!resume) fail({}, "\"{}\" already exists: --resume continues from it; delete it to start again", path.string());
   return path;
 }
 
+/// The checkpoint is removed only after the complete result has been written.
 void KeptFile::keep(bool is_complete, bool is_result,
                     const std::function<void(const std::filesystem::path&)>& write) const try {
   write(is_complete ? names_.finished : names_.checkpoint);

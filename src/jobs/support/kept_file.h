@@ -11,26 +11,27 @@
 
 namespace frond {
 
-/// The file in which a job keeps its partial result, and from which it resumes. It is locked while this object lives.
+/// The file in which a job keeps its partial result, and from which it resumes. It is locked during the lifetime of
+/// this object.
 class KeptFile {
  public:
   struct Names {
-    std::filesystem::path finished;    ///< what is complete
-    std::filesystem::path checkpoint;  ///< what is not; may be the same
+    std::filesystem::path finished;    ///< path of a complete result
+    std::filesystem::path checkpoint;  ///< path of a partial result; may equal `finished`
   };
 
-  /// Throws Busy.
+  /// Throws Busy if another process holds the lock.
   KeptFile(Names names, std::stop_token stop, const Log& log)
       : names_(std::move(names)), stop_(std::move(stop)), log_(log), lock_(names_.finished) {}
 
-  /// The partial result of an earlier run. Throws InputError where there is one and `resume` is false.
+  /// Returns the path of an earlier run's result, or nullopt. Throws InputError if there is one and `resume` is false.
   std::optional<std::filesystem::path> found(bool resume) const;
   bool was_stopped() const { return stop_.stop_requested(); }
   const std::filesystem::path& checkpoint() const { return names_.checkpoint; }
-  /// Keeps the result so far, by `write`, which gets the path. A write of a complete result that fails is a warning,
-  /// unless the file is the result itself.
+  /// Calls `write` with the path for the result so far. A failure to write a complete result is a warning, unless the
+  /// file is the result itself (`is_result`).
   void keep(bool is_complete, bool is_result, const std::function<void(const std::filesystem::path&)>& write) const;
-  /// Logs where the partial result of a stopped job is, and how to resume it.
+  /// Logs the path of a stopped job's partial result, and how to resume it.
   void report_stop() const;
 
  private:
@@ -40,7 +41,7 @@ class KeptFile {
   PartLock lock_;
 };
 
-/// From one checkpoint to the next: "checkpoint", or 60.
+/// Returns the interval between checkpoints in s: parameter "checkpoint", or 60.
 double checkpoint_seconds(const Arguments& args);
 
 }  // namespace frond

@@ -20,10 +20,11 @@ std::optional<std::array<double, 2>> period_of(const Arguments& args) {
   return v.empty() ? std::nullopt : std::optional(std::array{v[0], v[1]});
 }
 
+/// The same file serves as checkpoint and as complete result, because the result proper is the CSV file.
 std::optional<KeptFile::Names> kept_names_of(const Arguments& args) {
   if (!args.given("checkpoint") && !args.flag("resume")) return {};
   if (args.text("csv") == "-")
-    fail({}, "{} and {} keep a file beside that of {}: standard output has none", args.spelled("checkpoint"),
+    fail({}, "{} and {} save a file beside the file of {}, which cannot be standard output", args.spelled("checkpoint"),
          args.spelled("resume"), args.spelled("csv"));
   const std::string part = args.text("csv") + ".part";
   check_replaceable(part);

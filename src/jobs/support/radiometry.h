@@ -6,7 +6,7 @@
 #include "jobs/support/kept_file.h"
 #include "radiometry/brf.h"
 
-/// What the jobs brf and flux share: parameters of a measurement in a scene, with checkpoints beside the CSV file.
+/// Parameters shared by the jobs brf and flux: the measurement in a scene, and checkpoints beside the CSV file.
 namespace frond {
 
 inline constexpr JobParam kRadiometryWavelengthsParam(
@@ -14,7 +14,7 @@ inline constexpr JobParam kRadiometryWavelengthsParam(
     {.type = "WAVELENGTHS", .default_value = "450,550,670,800", .unit = "nm", .decides = true});
 inline constexpr JobParam kTargetParam(
     "target", ArgumentKind::numbers,
-    "x0,x1,y0,y1,z: horizontal rectangle that is measured; by default one period, or the whole scene, at its top.",
+    "x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.",
     {.type = "X0,X1,Y0,Y1,Z", .values = 5, .decides = true});
 inline constexpr JobParam kPeriodParam("period", ArgumentKind::numbers,
                                        "Lengths along x and y after which the scene is repeated periodically.",
@@ -30,9 +30,11 @@ inline constexpr JobParam kCheckpointParam(
 inline constexpr JobParam kResumeParam("resume", ArgumentKind::flag,
                                        "Resume from CSV.part if it is there; keep one too.", {.needs = "csv"});
 
+/// Returns --target, or nullopt for the default.
 std::optional<Target> target_of(const Arguments& args);
+/// Returns --period in scene units, or nullopt.
 std::optional<std::array<double, 2>> period_of(const Arguments& args);
-/// The file beside that of csv; nothing where neither checkpoint nor resume is given.
+/// Returns the names of the partial result beside --csv; nullopt if neither --checkpoint nor --resume is given.
 std::optional<KeptFile::Names> kept_names_of(const Arguments& args);
 
 }  // namespace frond

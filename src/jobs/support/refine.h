@@ -8,18 +8,19 @@
 
 namespace frond {
 
-/// How much is measured: a fixed amount, or amounts that double until an error is small enough.
+/// Amount of a measurement: fixed, or doubled until an error is small enough.
 struct RefineLimits {
-  uint64_t amount = 0;      ///< of paths, samples or rays; the first one of a refinement
-  uint64_t most = 0;        ///< the last one of a refinement
-  double target_error = 0;  ///< 0: the fixed amount
+  uint64_t amount = 0;      ///< number of paths, samples or rays; of a refinement, the first amount
+  uint64_t most = 0;        ///< largest amount of a refinement
+  double target_error = 0;  ///< 0: measure the fixed amount
 };
 
+/// Reason why a refinement ended.
 enum class RefineEnd : uint8_t { done, stopped, time_over };
 
-/// Calls `measure(amount)`, which brings what is measured up to that amount, until `error()` is at most the target, the
-/// amount is the most, or the control ends it. `present`: the amount that an earlier run has measured, which then went
-/// through the same amounts.
+/// Calls `measure(amount)`, which extends the measurement to that amount, until `error()` is at most the target, the
+/// amount reaches `limits.most`, or the control stops it. `present` is the amount that an earlier run has measured;
+/// that run used the same sequence of amounts, so both give the same result.
 template <class Measure, class Error>
 RefineEnd refine(RefineLimits limits, uint64_t present, const RenderControl& control, Measure&& measure,
                  Error&& error) {

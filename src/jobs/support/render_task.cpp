@@ -13,12 +13,13 @@
 namespace frond {
 namespace {
 
-/// Flags that stand for options of the scene.
+/// Flags that set an Option of the scene.
 constexpr std::pair<const char*, const char*> kSceneOptions[] = {
     {"disable-pixel-jitter", "disablepixeljitter"},
     {"disable-texture-filtering", "disabletexturefiltering"},
     {"disable-wavelength-jitter", "disablewavelengthjitter"}};
 
+/// Flags override Options of the same name in the scene file.
 void set_scene_options(const Arguments& args, SceneDescription& description) {
   for (const auto& [flag, option] : kSceneOptions) {
     if (!args.flag(flag)) continue;
@@ -27,7 +28,7 @@ void set_scene_options(const Arguments& args, SceneDescription& description) {
   }
 }
 
-/// The crop that the arguments ask for; the scene's if they do not. Throws InputError where it holds no pixel.
+/// Returns the crop of the arguments, or of the scene. Throws InputError if it contains no pixel.
 Crop crop_of(const Arguments& args, const FilmSettings& film, const Log& log) {
   const char* name = args.given("pixel") ? "pixel" : args.given("pixels") ? "pixels" : "crop";
   std::vector<double> bounds = args.numbers(name);
@@ -44,7 +45,7 @@ Crop crop_of(const Arguments& args, const FilmSettings& film, const Log& log) {
   return crop;
 }
 
-/// Of --samples 64:128. Throws InputError.
+/// Parses --samples 64:128. Throws InputError.
 SampleRange range_of(const Arguments& args) {
   const std::string text = args.text("samples");
   const auto ends = split(text, ':');
@@ -55,8 +56,7 @@ SampleRange range_of(const Arguments& args) {
   };
   if (ends.size() != 2 || !read(ends[0], range.begin) || !read(ends[1], range.end) || range.empty() ||
       range.end > 1u << 30)
-    fail({}, "{} takes FIRST:END, such as 64:128 for the 64 samples from number 64 on: \"{}\"", args.spelled("samples"),
-         text);
+    fail({}, "{} takes FIRST:END, such as 64:128 for samples 64 to 127: \"{}\"", args.spelled("samples"), text);
   return range;
 }
 
@@ -67,7 +67,7 @@ void RenderTask::read(const std::vector<std::filesystem::path>& files) {
   Session& session = run_.session();
   description_ = session.read(files, unsupported_of(run_.args), problems);
   set_scene_options(run_.args, description_);
-  // Where the file has errors, those of the scene are reported as well.
+  // If files have errors, the errors of the scene are reported as well.
   if (!problems.empty() && !description_.files.empty()) problems.attempt([&] { session.check(description_); });
   problems.check();
   apply_arguments();
@@ -79,10 +79,11 @@ void RenderTask::read_text(const std::string& text, const std::string& name) {
   apply_arguments();
 }
 
+/// Applies overrides and the crop. The crop is evaluated at full size and then halved for --quick.
 void RenderTask::apply_arguments() {
   const Arguments& args = run_.args;
   Session& session = run_.session();
-  FilmSettings film = session.film(description_);  // at full size: crops are given in its pixels
+  FilmSettings film = session.film(description_);  // at full size, because crops refer to its pixels
   apply_overrides(overrides_of(args), description_, session.registry(), run_.log());
   film.crop = crop_of(args, film, run_.log());
   if (args.flag("quick")) film = halved(film);
@@ -97,6 +98,7 @@ void RenderTask::apply_arguments() {
               .command = identifying_command(kRenderJob, args)};
 }
 
+/// Channels are checked first, because the selection of models may take minutes.
 void RenderTask::choose(const ImageOutput* output) {
   Session& session = run_.session();
   if (output) output->check_channels(make_wavelengths(description_, session.registry())->film_space());
@@ -106,6 +108,7 @@ void RenderTask::choose(const ImageOutput* output) {
   pilot_ = std::move(chosen->scene);
 }
 
+/// Consumes the description: shapes may be large.
 void RenderTask::load(const ImageOutput* output) {
   const Arguments& args = run_.args;
   scene_.emplace(run_.session().load(std::move(description_), request_, pilot_.get()));
@@ -123,6 +126,7 @@ RenderPart RenderTask::empty_part() const {
   return part;
 }
 
+/// With --max-rms, --spp is the largest number of samples of a pixel.
 RenderStatistics RenderTask::render(RenderPart& part, const RenderControl& control,
                                     const std::function<void(const PartHeader&)>& plan_changed) const {
   Session& session = run_.session();

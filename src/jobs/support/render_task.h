@@ -10,25 +10,25 @@
 
 namespace frond {
 
-/// A render as the arguments of the job `render` ask for it: reading, the choice of models, loading, rendering. What
-/// becomes of the film is the caller's.
+/// A render as described by the arguments of the job `render`: reads the scene, selects leaf models, builds the scene,
+/// renders. The caller writes the film.
 class RenderTask {
  public:
-  /// `run` must outlive it. `adaptive`: its films know their noise, whether --max-rms is given or not.
+  /// `run` must outlive this object. `adaptive`: films estimate their noise even if --max-rms is not given.
   explicit RenderTask(const JobRun& run, bool adaptive = false)
       : run_(run), is_adaptive_(adaptive || run.args.given("max-rms")) {}
 
-  /// A scene that may be in several files. Throws all that is wrong with it.
+  /// Reads a scene, which may consist of several files. Throws Problems with all errors.
   void read(const std::vector<std::filesystem::path>& files);
-  /// A scene that is a string; errors call it `name`, and files that it names are found from there.
+  /// Reads a scene from a string. Errors name it `name`; relative paths in the scene are resolved against `name`.
   void read_text(const std::string& text, const std::string& name);
-  /// File that the scene's film names.
+  /// Returns the file name of the scene's film.
   const std::string& film_file() const { return film_file_; }
 
-  /// Chooses the models of open leaves. `output`, which may be nullptr, is to hold the image: what it cannot hold is
-  /// refused first.
+  /// Selects the models of open leaves. `output` may be nullptr; otherwise throws InputError first if the image cannot
+  /// be written in its format.
   void choose(const ImageOutput* output);
-  /// The choice of models; empty where no leaf is open.
+  /// Returns the selection; empty if the scene has no open leaf.
   const std::optional<choose::Choice>& choice() const { return choice_; }
   /// Builds the scene. Throws InputError.
   void load(const ImageOutput* output);
@@ -36,9 +36,9 @@ class RenderTask {
   const LoadedScene& scene() const { return *scene_; }
   SampleRange samples() const { return samples_; }  ///< of each pixel
   bool is_adaptive() const { return is_adaptive_; }
-  /// A part without samples.
+  /// Returns a part without samples.
   RenderPart empty_part() const;
-  /// Renders what the part lacks of the samples that are asked for. `plan_changed` may be empty.
+  /// Renders the requested samples that the part lacks. `plan_changed` may be empty.
   RenderStatistics render(RenderPart& part, const RenderControl& control,
                           const std::function<void(const PartHeader&)>& plan_changed = {}) const;
 
@@ -51,7 +51,7 @@ class RenderTask {
   std::string film_file_;
   ImageRequest request_;
   std::optional<choose::Choice> choice_;
-  std::shared_ptr<const Scene> pilot_;  ///< shares its geometry
+  std::shared_ptr<const Scene> pilot_;  ///< shares its geometry with scene_
   std::optional<LoadedScene> scene_;
   SampleRange samples_;
 };

@@ -25,6 +25,7 @@ RenderViews::RenderViews(const Arguments& args) : display_(display_of(args)) {
     fail({}, "{}: neither standard error nor standard output is a terminal to draw on", args.spelled("preview"));
 }
 
+/// Called after the scene is built, when the film's bands and colour space are known.
 void RenderViews::check(const ImageFormat& format) {
   if (!terminal_) return;
   const std::string space = format.space.empty() ? preview_space(format.bands) : format.space;
@@ -34,7 +35,7 @@ void RenderViews::check(const ImageFormat& format) {
 
 void RenderViews::begin(const Film& film, const ImageFormat& format, const std::string& output, const Log& log) {
   if (server_) {
-    // The process tells a render from those before it, which the viewer keeps.
+    // tev keeps images by name: the process id distinguishes this render from earlier ones.
     const std::string name = std::filesystem::path(output).filename().string();
     tev_viewer_.emplace(*server_, fmt::format("{} ({})", name, getpid()));
     on_server_.emplace(film, format, *tev_viewer_, log);

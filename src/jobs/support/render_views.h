@@ -11,23 +11,25 @@
 
 namespace frond {
 
-/// Of --display and --view.
+/// Returns the choice of --display and --view; tev is not a display.
 DisplayChoice display_of(const Arguments& args);
 
-/// Where a render is shown while it runs, by --display-server and --preview.
+/// Viewers of a render in progress: --display-server and --preview.
 class RenderViews {
  public:
-  /// Throws InputError for an address that is none, and for a preview where there is no terminal.
+  /// Throws InputError for an invalid address, and for a preview without a terminal.
   explicit RenderViews(const Arguments& args);
 
-  /// Throws InputError for a preview of bands that have no colours, or by a display that does not go with them.
+  /// Throws InputError if a preview cannot show the format: bands without colours, or a display of another colour
+  /// space.
   void check(const ImageFormat& format);
-  /// `film` and `log` must outlive it; the log is called from other threads. `output`: where the film goes.
+  /// Starts the viewers. `film` and `log` must outlive this object; the log is called from other threads. `output` is
+  /// the image's path.
   void begin(const Film& film, const ImageFormat& format, const std::string& output, const Log& log);
-  /// The preview as it is in the end.
+  /// Draws the final image in the terminal.
   void finish_preview();
-  /// The image in the viewer as it is in the end, for which it is given a few seconds. `in_halves`: as the file has
-  /// it.
+  /// Sends the final image to the viewer; waits a few seconds at most. `in_halves`: rounded to half precision as in the
+  /// file.
   void finish_display(bool in_halves);
 
  private:

@@ -12,6 +12,7 @@
 
 namespace frond {
 
+/// Standard error is preferred, because standard output may be redirected to a file.
 std::FILE* output_terminal() {
   for (std::FILE* stream : {stderr, stdout})
     if (isatty(fileno(stream)) != 0) return stream;
@@ -23,6 +24,7 @@ TerminalViewer::TerminalViewer(std::FILE* terminal, std::string space, DisplayCh
   colors_.check_display(space_, display_.display, display_.view);
 }
 
+/// Each character cell shows two pixels, one above the other.
 void TerminalViewer::show(const Image& image) {
   winsize size{};
   const bool is_known = ioctl(fileno(terminal_), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0;
@@ -30,7 +32,8 @@ void TerminalViewer::show(const Image& image) {
   std::array<size_t, 3> rgb{};
   constexpr std::array kNames{"R", "G", "B"};
   for (size_t c = 0; c < 3; ++c) rgb[c] = image.channel(kNames[c]).value();
-  // What is above a terminal's first line cannot be drawn over; the last two are for how far the render is.
+  // Lines that have scrolled off the terminal's top cannot be overwritten. The last two lines are left for the
+  // progress.
   Image shown = fitted_image(image.selected(rgb, {"R", "G", "B"}), columns, std::max(1, rows - 2));
   colors_.display(shown.pixels, space_, display_.display, display_.view);
   std::string text = lines_ > 0 ? fmt::format("\r\x1b[{}A", lines_) : "\r\x1b[K";

@@ -8,13 +8,13 @@
 
 namespace frond {
 
-/// Standard error where it is a terminal, or else standard output; nullptr where neither is.
+/// Returns standard error if it is a terminal, else standard output if it is one, else nullptr.
 std::FILE* output_terminal();
 
-/// An image on a terminal, drawn over and over in the same place.
+/// Draws an image on a terminal, repeatedly in the same place.
 class TerminalViewer final : public Viewer {
  public:
-  /// The image's R, G and B, linear in `space`, go through this display.
+  /// R, G and B of the image are linear in the colour space `space`; `display` maps them to the terminal's sRGB.
   TerminalViewer(std::FILE* terminal, std::string space, DisplayChoice display);
 
   void show(const Image& image) override;
@@ -25,8 +25,8 @@ class TerminalViewer final : public Viewer {
   std::string space_;
   DisplayChoice display_;
   ColorManager colors_;
-  int columns_ = 0, rows_ = 0;  ///< of the terminal when it was drawn on last
-  int lines_ = 0;               ///< of what was drawn
+  int columns_ = 0, rows_ = 0;  ///< size of the terminal when last drawn
+  int lines_ = 0;               ///< number of lines last drawn
 };
 
 }  // namespace frond

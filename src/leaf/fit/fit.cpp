@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Grade = OpticsSurface::Grade;
 
-/// What follows another number, and which.
+/// A parameter that follows a fitted one in a constant ratio.
 struct Companion {
   std::string_view name;
   double TissueParams::*number;
@@ -40,7 +40,7 @@ double depth_of(const TissueParams& p, double lambda_nm) {
   return p.thickness_m * p.mesophyll_fraction * absorption_coefficient(p, lambda_nm);
 }
 
-/// One kind of leaf (structure, sieve), and which of its numbers are free.
+/// One kind of leaf (structure, sieve), and its free parameters.
 class LeafSpace {
  public:
   LeafSpace(const FitRequest& request, Structure structure, bool sieve)
@@ -79,7 +79,7 @@ class LeafSpace {
     return p;
   }
 
-  // Logarithms of numbers are drawn out to the whole line by the logistic function.
+  // The logistic function maps the search variables q, on the whole line, to logarithms within the range.
   TissueParams at(const VectorXd& q) const {
     TissueParams p = origin_;
     for (Index i = 0; i < count(); ++i) p = with(p, variable(i), std::exp(log_at(i, q[i])));
@@ -88,14 +88,14 @@ class LeafSpace {
   VectorXd of(const TissueParams& p) const {
     VectorXd q(count());
     for (Index i = 0; i < count(); ++i) {
-      constexpr double kEdge = 0.03;  // nearer to the ends nothing moves
+      constexpr double kEdge = 0.03;  // nearer to the ends the derivative vanishes
       const double s = (std::log(p.*variable(i).number) - low(i)) / width(i), c = std::clamp(s, kEdge, 1 - kEdge);
       q[i] = std::log(c / (1 - c));
     }
     return q;
   }
   double log_at(Index i, double q) const { return low(i) + width(i) / (1 + std::exp(-q)); }
-  /// Of the logarithm, by q.
+  /// Derivative of the logarithm with respect to q.
   double slope(Index i, double q) const {
     const double s = 1 / (1 + std::exp(-q));
     return width(i) * s * (1 - s);
@@ -111,7 +111,7 @@ class LeafSpace {
   double low(Index i) const { return std::log(variable(i).range.min); }
   double width(Index i) const { return std::log(variable(i).range.max) - low(i); }
 
-  static constexpr double kLittle = 30;  ///< 1/m: hardly anything beside water and protein
+  static constexpr double kLittle = 30;  ///< 1/m: small beside the absorption of water and protein
 
   const Specimen& specimen_;
   TissueParams origin_;
@@ -119,7 +119,7 @@ class LeafSpace {
   std::vector<Follower> followers_;
 };
 
-/// Least squares up to `kFar`, beyond it by the distance: the residual whose square is that.
+/// Huber's loss: returns the residual whose square is quadratic up to `kFar` and linear beyond it.
 struct Huber {
   static constexpr double kFar = 0.06;
   static double value(double x) {
@@ -132,7 +132,7 @@ struct Huber {
   }
 };
 
-/// Measurements against the leaves of a space.
+/// Residuals between measurements and the leaves of a space.
 class Problem {
  public:
   using Scalar = double;
@@ -157,7 +157,7 @@ class Problem {
   int values() const { return static_cast<int>(rows_ + space_.count()); }
   Index rows() const { return rows_; }
 
-  /// Residuals, then what is expected of the numbers.
+  /// Residuals of the measurements, followed by those of the prior.
   int operator()(const VectorXd& q, VectorXd& f) const {
     const TissueParams p = space_.at(q);
     const OpticsSurface& surface = surface_of(p, grade_);
@@ -186,10 +186,11 @@ class Problem {
     return 0;
   }
 
-  /// Of the model's R and T, or of the residuals that least squares see, by the logarithms of the free numbers.
+  /// Derivatives of the model's R and T, or of the residuals that least squares use, with respect to the logarithms of
+  /// the free parameters.
   void jacobian(const TissueParams& p, MatrixXd& j, bool of_residuals) const {
     constexpr double kStep = 0.02, kSmall = 1e-5;
-    // How structures differ is smooth: coarse tables tell it.
+    // R and T are smooth in the structure's parameters, so coarse tables suffice here.
     const OpticsSurface &surface = surface_of(p, grade_), &coarse = surface_of(p, Grade::coarse);
     for (Index c = 0; c < space_.count(); ++c) {
       const FitVariable& variable = space_.variable(c);
@@ -220,7 +221,7 @@ class Problem {
     }
   }
 
-  /// Weight of a logarithm's distance from the specimen's, in units of reflectance.
+  /// Weight of a logarithm's distance from the prior, in units of reflectance.
   double expectation() const { return request_.has_prior ? 0.03 : 3e-4; }
 
  private:
@@ -238,20 +239,20 @@ class Problem {
   bool structure_is_free_;
   const ThreadPool& pool_;
   std::vector<double> theta_deg_;
-  std::vector<size_t> angle_;  ///< of each reading
+  std::vector<size_t> angle_;  ///< of each measurement
   double first_nm_ = kConstantsRange_nm.max, last_nm_ = kConstantsRange_nm.min;
   Index rows_ = 0;
   mutable std::map<std::pair<Grade, Aspects>, std::unique_ptr<OpticsSurface>> surfaces_;
 };
 
-/// Where a search ended.
+/// End of a search.
 struct Candidate {
   std::unique_ptr<LeafSpace> space;
   VectorXd q;
-  double cost;  ///< sum of squares, with what is expected
+  double cost;  ///< sum of squares, with the prior's
 };
 
-/// `done`: relative change of the sum of squares.
+/// `done`: relative change of the sum of squares at which the search stops.
 double search(const Problem& problem, VectorXd& q, int most_evaluations, double done) {
   Eigen::LevenbergMarquardt<Problem> solver(const_cast<Problem&>(problem));
   solver.parameters.ftol = done, solver.parameters.xtol = done;
@@ -260,10 +261,10 @@ double search(const Problem& problem, VectorXd& q, int most_evaluations, double 
   return solver.fnorm * solver.fnorm;
 }
 
-/// Structures that a search begins with, beside the specimen's.
+/// Structures at which a search starts, besides the specimen's.
 constexpr std::array<std::array<double, 3>, 3> kStarts{{{5, 5, 1}, {2, 2, 1}, {12, 8, 4}}};
 
-/// The best of each kind of leaf with chemistry alone free, the likeliest first.
+/// The best leaf of each kind with only its chemistry free, the best one first.
 std::vector<Candidate> first_candidates(const FitRequest& request, const ThreadPool& pool) {
   constexpr int kEvaluations = 40;
   constexpr double kRoughly = 1e-3;
@@ -292,7 +293,7 @@ std::vector<Candidate> first_candidates(const FitRequest& request, const ThreadP
   return best;
 }
 
-/// Correlation of neighbours, along the spectrum.
+/// Correlation of neighbouring residuals along the spectrum.
 double neighbours(const std::vector<double>& residuals) {
   double product = 0, square = 0;
   for (size_t i = 0; i + 1 < residuals.size(); ++i) product += residuals[i] * residuals[i + 1];
@@ -306,7 +307,7 @@ double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// R and T at the measurements, solved anew.
+/// R and T at the measurements, solved with the fitted parameters.
 void solve_measurements(const FitRequest& request, FitResult& result, const ThreadPool& pool) {
   constexpr int kNodes = 4;
   const TissueModel model(result.params);
@@ -341,8 +342,7 @@ void judge(const FitRequest& request, const Problem& problem, const LeafSpace& s
   const double variance = error * error * (1 + rho) / (1 - rho);
   MatrixXd j(problem.rows(), n);
   problem.jacobian(result.params, j, false);
-  // With next to nothing known beforehand, a number that the data do not tell has a large error, and not an endless
-  // one.
+  // The almost flat prior makes the error of a parameter that the measurements do not determine large but finite.
   constexpr double kVague = 10;
   MatrixXd information = j.transpose() * j / variance;
   for (Index i = 0; i < n; ++i) {
@@ -384,7 +384,7 @@ std::optional<double> rmse_between(const FitRequest& request, const FitResult& r
 }
 
 FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool) {
-  constexpr size_t kKept = 2;  // kinds of leaves whose structure is searched, too
+  constexpr size_t kKept = 2;  // kinds of leaves whose structure is fitted too
   constexpr int kCoarse = 12, kCoarseOfSecond = 6, kFine = 8;
   constexpr double kRoughly = 1e-2, kDone = 1e-3;
   std::vector<Candidate> candidates = first_candidates(request, pool);

@@ -11,24 +11,25 @@
 
 namespace frond::leaf {
 
-/// What was measured of a leaf at one wavelength and angle: directional-hemispherical reflectance and transmittance.
+/// Measured directional-hemispherical reflectance and transmittance of a leaf at one wavelength and angle.
 struct LeafMeasurement {
   double lambda_nm;            ///< within kConstantsRange_nm
   double theta_deg;            ///< in [0, 180]; above 90 the abaxial side is lit
-  std::optional<double> r, t;  ///< one of them at least
+  std::optional<double> r, t;  ///< shares of 1; at least one of the two
 };
 
-/// A number of a leaf that measurements can tell.
+/// A parameter of a leaf that `fit_leaf` can estimate from measurements.
 struct FitVariable {
   std::string_view name;  ///< a leaf material's parameter
+  /// The member of TissueParams to fit, and the range to search; units as in TissueParams.
   double TissueParams::*number;
   Interval range;
-  bool is_structure = false;
+  bool is_structure = false;  ///< an aspect ratio: it shapes the lobes; the others act through the optical depth
 };
 
-/// Chlorophyll a stands for both: they absorb alike here, b follows by the specimen's ratio; so does lignin cellulose.
-/// `mesophyllfraction` is the specimen's: it acts by its product with the thickness alone. The cuticle shapes reflected
-/// light and takes nothing from it.
+/// Chlorophyll a is fitted for both chlorophylls, which absorb alike here: b follows by the specimen's ratio. Likewise
+/// lignin follows cellulose. `mesophyllfraction` is kept at the specimen's value, since it acts only through its
+/// product with the thickness. The cuticle is not fitted: it shapes reflected light and absorbs nothing.
 inline constexpr FitVariable kFitVariables[] = {
     {"thickness", &TissueParams::thickness_m, {2e-6, 1e-2}},
     {"chlorophylla", &TissueParams::chlorophyll_a, {1e-3, 100}},
@@ -41,55 +42,62 @@ inline constexpr FitVariable kFitVariables[] = {
     {"palisadeaspect", &TissueParams::palisade_aspect, {0.7, 20}, true},  // of bifacial leaves
 };
 
+/// Input of `fit_leaf`.
 struct FitRequest {
   std::vector<LeafMeasurement> measurements;
-  std::optional<Structure> structure = {};  ///< none: the better one
-  std::optional<bool> sieve = {};           ///< likewise
-  /// Where the search begins, and what is not told by the data; of the structure that is tried where it is none.
+  std::optional<Structure> structure = {};  ///< none: both are fitted, the better one is returned
+  std::optional<bool> sieve = {};           ///< sieve and detour effects; none: likewise
+  /// Start of the search, and the values that the measurements do not determine. nullptr: a specimen of the structure
+  /// that is being fitted.
   const Specimen* like = nullptr;
-  /// Expect numbers within a factor of e^0.3 or so of `like`: else hardly anything is expected.
+  /// Use `like` as a prior with a standard deviation of about 0.3 in each parameter's logarithm; otherwise the prior is
+  /// almost flat.
   bool has_prior = false;
+  /// A parameter that is kept at a given value.
   struct Fixed {
     std::string name;  ///< of kFitVariables, or mesophyllfraction, chlorophyllb, lignin
     double value;
   };
   std::vector<Fixed> fixed = {};
-  /// Least standard error that a reading is believed to have.
+  /// Lower bound of the standard error that is assumed for a measured R or T.
   double least_error = 0.002;
 };
 
-/// What the data say of one variable.
+/// Estimate of one parameter.
 struct FittedNumber {
   const FitVariable* variable;
   double value;
   double relative_error = 0;  ///< standard error of its logarithm; 0 if fixed
   bool is_fixed = false;
   bool is_at_bound = false;
-  /// Told by the data: not fixed, within its range, and to a factor of e^0.5.
+  /// Whether the measurements determine the parameter: it is not fixed, lies within its range, and its relative error
+  /// is below 0.5.
   bool is_identified() const { return !is_fixed && !is_at_bound && relative_error < 0.5; }
 };
 
+/// Output of `fit_leaf`.
 struct FitResult {
   TissueParams params;
-  const Specimen* specimen = nullptr;  ///< whose structure it has
+  const Specimen* specimen = nullptr;  ///< the specimen that the search began with
   std::vector<FittedNumber> numbers;
-  std::vector<std::vector<double>> correlations;  ///< of those that are not fixed, in their order
+  std::vector<std::vector<double>> correlations;  ///< of the parameters that are not fixed, in the order of `numbers`
+  /// R and T of the fitted leaf at one measurement.
   struct Fitted {
     double r, t;
-    bool is_outlier;  ///< further off than the rest can explain: it counts for less
+    bool is_outlier;  ///< its residual is too large for the others' spread: it has less weight
   };
-  std::vector<Fitted> fitted;  ///< [measurement], solved anew
-  double rmse = 0, rmse_r = 0, rmse_t = 0;
+  std::vector<Fitted> fitted;               ///< [measurement], solved with the fitted parameters
+  double rmse = 0, rmse_r = 0, rmse_t = 0;  ///< root mean square of the residuals: all, R alone, T alone
 };
 
-/// Root mean square of what is left between the wavelengths, R and T together; none where there are no measurements.
+/// Root mean square of the residuals at wavelengths within `nm`, R and T together; none if there are no measurements.
 std::optional<double> rmse_between(const FitRequest& request, const FitResult& result, const Interval& nm);
 
-/// The leaf whose solved walk comes nearest to the measurements, by Levenberg and Marquardt's method from several
-/// starts: least squares, but for measurements that are far off, which count by their distance (Huber 1964). Its
-/// chemistry acts through one optical depth at each wavelength (OpticsSurface), so that derivatives are exact. Standard
-/// errors are those of the linearised problem, widened for residuals that go together along the spectrum. There are as
-/// many measurements as free numbers at least. Deterministic.
+/// Returns the leaf whose solved walk fits the measurements best, by the method of Levenberg and Marquardt from several
+/// starts: least squares, except that outliers are weighted by their distance (Huber 1964). The chemistry acts through
+/// one optical depth at each wavelength (OpticsSurface), so derivatives are exact. Standard errors are those of the
+/// linearised problem, widened for residuals that are correlated along the spectrum. Requires at least as many
+/// measurements as free parameters. Deterministic.
 FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool);
 
 }  // namespace frond::leaf

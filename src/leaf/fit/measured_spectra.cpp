@@ -95,10 +95,10 @@ class Reader {
   MeasuredSpectra finish() {
     if (columns_.empty()) fail(where_, "there are no spectra in this file");
     if (how_.leaf.empty() && leaves_.size() > 1)
-      fail(first_row_, "the file has {} leaves: {} chooses one of {}", leaves_.size(), how_.leaf_option,
+      fail(first_row_, "the file has {} leaves: {} selects one of {}", leaves_.size(), how_.leaf_option,
            fmt::join(leaves_, ", "));
     if (!how_.leaf.empty() && !leaves_.contains(how_.leaf)) {
-      if (leaves_.empty()) fail(first_row_, "the file names no leaves: {} has no effect", how_.leaf_option);
+      if (leaves_.empty()) fail(first_row_, "the file has no names of leaves: {} has no effect", how_.leaf_option);
       const std::string_view meant = nearest(how_.leaf, std::vector<std::string_view>(leaves_.begin(), leaves_.end()));
       fail(first_row_, "there is no leaf \"{}\" in this file{}", how_.leaf,
            meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant));
@@ -108,9 +108,9 @@ class Reader {
   }
 
  private:
-  static constexpr double kPercent = 1.5;  ///< values above it are no shares
+  static constexpr double kPercent = 1.5;  ///< larger values are no shares
 
-  /// True: these were the names.
+  /// Returns true if the line held column names.
   bool begin(const std::vector<Field>& fields) {
     first_row_ = where_;
     if (to_number(fields[0].text, *separator_)) {
@@ -125,7 +125,7 @@ class Reader {
     for (const Field& f : fields) columns_.push_back(column_of(f.text));
     for (const Column once : {Column::wavelength, Column::r, Column::t, Column::theta, Column::side, Column::leaf})
       if (std::ranges::count(columns_, once) > 1)
-        fail(where_, "two columns are called alike: wavelength, R, T, theta_deg, side and leaf are there once at most");
+        fail(where_, "two columns have the same name: wavelength, R, T, theta_deg, side and leaf occur at most once");
     if (std::ranges::count(columns_, Column::wavelength) == 0)
       fail(where_, "there is no column of wavelengths: \"wavelength_nm\", \"nm\" or \"wavelength\"");
     if (std::ranges::count(columns_, Column::r) + std::ranges::count(columns_, Column::t) == 0)
@@ -186,12 +186,12 @@ class Reader {
     return *number < kMicrometres ? *number * 1000 : *number;
   }
 
-  /// None where a field is empty or says that there is no number.
+  /// None if a field is empty or marks a missing number.
   std::optional<double> value(const Field& field, std::string_view what) {
     const std::string word = lower(field.text);
     if (word.empty() || word == "nan" || word == "na" || word == "null" || word == "-") return {};
     const auto number = to_number(field.text, *separator_);
-    constexpr double kLeast = -5, kMost = 150;  // noise about 0, and percents
+    constexpr double kLeast = -5, kMost = 150;  // range accepted: noise about 0, and percentages
     if (!number || !(*number >= kLeast && *number <= kMost)) refuse_share(field.where, what, field.text);
     largest_ = std::max(largest_, *number);
     return number;

@@ -10,29 +10,29 @@
 
 namespace frond::leaf {
 
-/// How a file of measured spectra is read.
+/// Options of the reader of measured spectra.
 struct SpectraMeasurement {
-  std::string leaf = {};               ///< whose rows count, where the file has several leaves; empty: it has one
-  double theta_deg = 8;                ///< of incidence, where no column says it
-  std::string leaf_option = "--leaf";  ///< how messages name the choice of a leaf
+  std::string leaf = {};               ///< leaf to read from a file with several leaves; empty: the file has one
+  double theta_deg = 8;                ///< angle of incidence if no column gives it
+  std::string leaf_option = "--leaf";  ///< option that selects the leaf, for messages
 };
 
-/// A file of measured spectra.
+/// Content of a file of measured spectra.
 struct MeasuredSpectra {
   std::vector<LeafMeasurement> measurements;
   size_t left_out = 0;         ///< rows beyond kConstantsRange_nm, or without a number
-  bool is_in_percent = false;  ///< so that all was divided by 100
+  bool is_in_percent = false;  ///< the file is in percent; `measurements` are divided by 100
 };
 
-/// As instruments export it: rows of numbers between commas, semicolons, tabs or spaces, after lines of comment (#) and
-/// one of names or none. Names, in any case and with a unit behind them or not: wavelength (nm, lambda, wvl), R
-/// (reflectance, refl), T (transmittance, trans), theta_deg (angle), side (adaxial or upper, abaxial or lower), leaf
-/// (material, sample); other columns are passed over. Without names: wavelength, R and, if there are three, T.
-/// Wavelengths below 100 are in micrometres, values above 1.5 in percent. Decimals may have a comma where fields are
-/// not separated by one. Throws InputError with `name`, line and column.
+/// Reads text as instruments export it: rows of numbers separated by commas, semicolons, tabs or spaces, after lines of
+/// comment (#) and at most one line of column names. Names, in any case and with or without a unit behind them:
+/// wavelength (nm, lambda, wvl), R (reflectance, refl), T (transmittance, trans), theta_deg (angle), side (adaxial or
+/// upper, abaxial or lower), leaf (material, sample); other columns are ignored. Without names: wavelength, R and, if
+/// there are three columns, T. Wavelengths below 100 are in micrometres, values above 1.5 in percent. Decimals may have
+/// a comma if fields are not separated by one. Throws InputError with `name`, line and column.
 MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how);
 
-/// The same of a file; InputError at `where` if it cannot be read.
+/// Reads a file by `parse_measured_spectra`. Throws InputError, also if the file cannot be read.
 MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraMeasurement& how);
 
 }  // namespace frond::leaf

@@ -10,14 +10,14 @@
 namespace frond::leaf {
 namespace {
 
-// Depths are even in x = log(depth + kOffset): there R and T are smooth, from no absorption to all.
+// Depths are even in x = log(depth + kOffset), in which R and T are smooth from no absorption to complete absorption.
 constexpr double kOffset = 0.02, kDeepest = 50;
 
 double place(double depth) { return std::log(depth + kOffset); }
 double first_place() { return place(0); }
 double step(size_t count) { return (place(kDeepest) - first_place()) / static_cast<double>(count - 1); }
 
-/// Between them the refractive indices are nearly linear, and so are R and T at one depth.
+/// Between these wavelengths the refractive indices are nearly linear, and so are R and T at one depth.
 std::vector<double> index_nodes(double first_nm, double last_nm, OpticsSurface::Grade grade) {
   static constexpr double kCoarse[] = {400, 480, 610, 850, 1300, 1900, 2140, 2320},
                           kFine[] = {400,  440,  480,  515,  555,  610,  680,  760,  850,  1000,

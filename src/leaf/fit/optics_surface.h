@@ -7,23 +7,25 @@
 
 namespace frond::leaf {
 
-/// Reflectance and transmittance of a leaf of one structure, and how fast they change with its optical depth: all that
-/// the leaf's chemistry can do to them. By a table over depth and refractive indices, which follow the wavelength.
+/// Reflectance and transmittance of a leaf of one structure, and their derivatives with respect to its optical depth,
+/// through which alone the leaf's chemistry acts. Interpolates in a table over depth and wavelength, which determines
+/// the refractive indices.
 class OpticsSurface {
  public:
-  /// How fine: `coarse` is good to 1e-3, `fine` to 1e-4.
+  /// Accuracy of R and T: `coarse` 1e-3, `fine` 1e-4.
   enum class Grade { coarse, fine };
 
-  /// Of `params` the structure counts, the walls' aspects and the sieve. Angles of incidence as in Shares; wavelengths
-  /// from `first_nm` to `last_nm`.
+  /// Uses the structure, the aspect ratios of the walls and the sieve effect of `params`. Angles of incidence as in
+  /// `solve` (leaf/solve/solver.h), degrees in [0, 180]; wavelengths from `first_nm` to `last_nm`.
   OpticsSurface(const TissueParams& params, const std::vector<double>& theta_deg, double first_nm, double last_nm,
                 Grade grade, const ThreadPool& pool);
 
+  /// R and T at one angle, wavelength and depth.
   struct Value {
-    double r, t;              ///< all that is reflected, all that is transmitted
-    double r_slope, t_slope;  ///< by the optical depth
+    double r, t;              ///< shares of the incident light that are reflected and transmitted
+    double r_slope, t_slope;  ///< derivatives with respect to the optical depth
   };
-  /// `angle` counts in `theta_deg`; the optical depth is that of a straight way through the mesophyll.
+  /// `angle` is an index in `theta_deg`; `depth` is the optical depth of the mesophyll along the leaf's normal.
   Value at(size_t angle, double lambda_nm, double depth) const;
 
  private:

@@ -8,7 +8,7 @@ namespace frond::leaf {
 
 namespace {
 
-/// Of lobes whose exponent is no whole number.
+/// Quadrature for lobes whose exponent is not an integer.
 struct Place {
   double share;  ///< phi over phi_max
   double weight;

@@ -13,12 +13,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A part of the range of k: cosines from `from` to `to` in the medium of index n.
+/// A segment of the range of k: cosines from `from` to `to` in the medium of index n.
 struct Segment {
   double n, from, to;
 };
 
-/// Ascending in k, cut at each medium's index, where its critical angles are.
+/// Segments ascending in k, cut at each medium's index, where its critical angles are.
 std::vector<Segment> segments(const Tissue& tissue) {
   std::vector<double> indices(tissue.n.begin(), tissue.n.end());
   std::sort(indices.begin(), indices.end());
@@ -101,7 +101,7 @@ VectorXd Chain::chance(size_t medium, bool up, bool refracts) const {
   });
 }
 
-// A node without a counterpart in the next medium is past the critical angle and never gets there.
+// A node without a counterpart in the next medium is past the critical angle: its transmittance is 0.
 MatrixXd Chain::branch(size_t mode, size_t medium, bool up, bool refracts) const {
   const size_t to = refracts ? next(medium, up) : medium;
   const Index common = std::min(count(medium), count(to));
@@ -111,12 +111,13 @@ MatrixXd Chain::branch(size_t mode, size_t medium, bool up, bool refracts) const
   else
     matrix.topLeftCorner(common, common).setIdentity();
   VectorXd taken = chance(medium, up, refracts);
-  // Nothing would ever end a ray there. None gets there, but the system needs a solution for it too.
-  if (!refracts) taken.tail(held_for_ever(medium)).setZero();
+  // A ray in such a state would never end. No ray reaches it, but the linear system requires a row for it that is not
+  // singular.
+  if (!refracts) taken.tail(totally_reflected(medium)).setZero();
   return taken.asDiagonal() * matrix;
 }
 
-Index Chain::held_for_ever(size_t medium) const {
+Index Chain::totally_reflected(size_t medium) const {
   const bool smooth = !lobe(medium, true, false) && !lobe(medium, false, false);
   return smooth ? std::max(Index{0}, count(medium) - std::max(count(medium - 1), count(medium + 1))) : 0;
 }

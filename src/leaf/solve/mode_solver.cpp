@@ -9,7 +9,7 @@ using Eigen::MatrixXd;
 
 constexpr size_t kFirst = Chain::kFirst, kLast = Chain::kLast;
 
-/// The leaf's sides in each other's place.
+/// The tissue turned upside down.
 MatrixXd swapped(const MatrixXd& outcome) {
   const Index half = outcome.cols() / 2;
   MatrixXd result(outcome.rows(), outcome.cols());
@@ -27,7 +27,7 @@ ModeSolver::ModeSolver(const Chain& chain, size_t mode, const Sources& sources) 
     }
 }
 
-/// `above`: the part of the mesophyll that lies over the air space, where that moves.
+/// `above`: share of the mesophyll above the air space, where that moves.
 ModeSolver::Survivals ModeSolver::survivals(const Tissue& tissue, double above) const {
   Survivals result;
   for (size_t m = kFirst; m <= kLast; ++m) {
@@ -46,8 +46,8 @@ MatrixXd ModeSolver::source(const Survivals& survival, size_t medium, bool up) c
   return survival[medium].asDiagonal() * s;
 }
 
-/// Eliminates media from the top. Throughout, what awaits an upward ray is P (what awaits a downward one) + q, with all
-/// that lies above accounted for.
+/// Eliminates media from the top. Invariant: the value of an upward ray is P (value of a downward ray) + q, with all
+/// media above eliminated.
 Prospects ModeSolver::solve(const Survivals& survival) const {
   std::array<MatrixXd, Tissue::kMedia> x, y;
   MatrixXd p = survival[kFirst].asDiagonal() * reflect_[kFirst][true];
@@ -68,9 +68,9 @@ Prospects ModeSolver::solve(const Survivals& survival) const {
   return {downward, upward};
 }
 
-// Over the places of the air space: grazing rays make the integrand behave like p ln p at both ends, and the change of
-// variable p = s^2 (3 - 2 s) takes that away. Such a leaf is the same seen from below, with 1 - p for p: so half of the
-// places tell the whole.
+// Mean over the air space's position p: grazing rays make the integrand behave like p ln p at both ends, which the
+// change of variable p = s^2 (3 - 2 s) removes. Turned upside down the leaf is the same with 1 - p for p, so half of
+// the positions suffice.
 Prospects ModeSolver::solve(const Tissue& tissue, int places) const {
   if (!tissue.air_space_moves) return solve(survivals(tissue, 1));
   MatrixXd sum = MatrixXd::Zero(chain_.count(kFirst), sources_.ways);
@@ -78,7 +78,8 @@ Prospects ModeSolver::solve(const Tissue& tissue, int places) const {
     constexpr double kMiddle = 0.5, kRounding = 1e-12;
     if (s > kMiddle + kRounding) break;
     const Prospects part = solve(survivals(tissue, s * s * (3 - 2 * s)));
-    const double w = weight * 6 * s * (1 - s) * (s > kMiddle - kRounding ? 0.5 : 1);  // the middle is its own mirror
+    const double w =
+        weight * 6 * s * (1 - s) * (s > kMiddle - kRounding ? 0.5 : 1);  // the middle is its own mirror image
     sum += w * (part.from_above + swapped(part.from_below));
   }
   return {sum, swapped(sum)};

@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 
 constexpr size_t kFirst = Chain::kFirst, kLast = Chain::kLast;
 
-/// An epidermis's side of the outer interface: how light that has just come in is spread among the nodes, and how light
-/// that a lobe is about to send out spreads over directions that are no nodes. Both epidermes have one index and one
+/// An epidermis at the outer interface: the distribution over nodes of light that has just come in, and the density,
+/// over directions that are no nodes, of light that a lobe scatters outward. Both epidermes have one index and one
 /// lobe.
 class Port {
  public:
@@ -26,13 +26,13 @@ class Port {
     kept_ = lobes_[0].transpose() * epidermis().weight;
   }
 
-  /// Rows: the directions that light comes in along, inside; columns: nodes. Shares.
+  /// Shares: rows are the inner directions of incoming light, columns are nodes.
   MatrixXd entrance(size_t mode) const {
     return kept_.cwiseInverse().asDiagonal() * lobes_[mode].transpose() * epidermis().weight.asDiagonal();
   }
 
-  /// Light leaves unperturbed through the outer interface, but every direction inside an epidermis was drawn from a
-  /// lobe: so the event before the last one has a density toward any direction at all.
+  /// Light leaves unperturbed through the outer interface, but every direction inside an epidermis is drawn from a
+  /// lobe: so the event before the last one has a density toward every direction.
   Sources exits(size_t mode) const {
     const Index ways = lobes_[mode].cols();
     Sources sources{.ways = 2 * ways};
@@ -56,7 +56,7 @@ class Port {
   VectorXd kept_;
 };
 
-/// Of directions inside that refract into those of the given sines.
+/// Cosines of the directions inside that refract into those of the given sines.
 VectorXd inner_cosines(std::span<const double> sines, double n) {
   VectorXd mu(static_cast<Index>(sines.size()));
   for (Index i = 0; i < mu.size(); ++i) {
@@ -81,7 +81,7 @@ LeafModes::Grid row_by_row(const MatrixXd& matrix) {
   return grid;
 }
 
-/// Beyond it the modes of lobes of this exponent are nothing.
+/// Number of modes beyond which those of a lobe of this exponent are negligible.
 size_t most_modes(double exponent) { return static_cast<size_t>(16 + 3 * std::sqrt(exponent)); }
 
 }  // namespace
@@ -106,7 +106,7 @@ LeafModes solve_modes(const Tissue& tissue, std::span<const double> sines, doubl
   const auto ways = static_cast<Index>(sines.size());
 
   LeafModes result({sines.begin(), sines.end()});
-  std::array<bool, 2> open{true, true};  // whether light that returns, that crosses, has modes left
+  std::array<bool, 2> open{true, true};  // whether reflected, transmitted light has modes left
   for (size_t m = 0; m < most && (open[0] || open[1]); ++m) {
     const Sources exits = port.exits(m);
     const Prospects inside = ModeSolver(chain, m, exits).solve(tissue, 2 * nodes);
@@ -124,7 +124,7 @@ LeafModes solve_modes(const Tissue& tissue, std::span<const double> sines, doubl
       }
     }
     for (const bool crosses : {false, true}) {
-      // The modes left out shrink at least threefold from each to the next.
+      // Each omitted mode is at most a third of the one before it.
       open[crosses] = open[crosses] && (m == 0 || largest[crosses] * std::numbers::pi > tolerance / 2);
       if (open[crosses])
         for (const bool from_below : {false, true})

@@ -20,7 +20,7 @@ double MonotoneCubic::parabola_slope(size_t middle, size_t at) const {
   return left + bend * (2 * x_[at] - x_[middle - 1] - x_[middle]);
 }
 
-/// At most three times the flatter neighbour's slope, and 0 where the points turn.
+/// Fritsch and Carlson's bound: at most three times the flatter neighbour's slope, and 0 at extrema.
 double MonotoneCubic::bounded_slope(size_t i) const {
   const size_t last = x_.size() - 1;
   if (last == 1) return secant(0);

@@ -5,12 +5,12 @@
 
 namespace frond::leaf {
 
-/// Cubic through given points, without overshoot: where the points rise it rises, between two equal ones it is level
-/// (Fritsch and Carlson 1980; slopes of the parabola through three neighbours, bounded). Fourth order where the points
-/// are smooth and the bounds do not bite. Beyond the ends the last value holds.
+/// Monotone cubic interpolation without overshoot: it rises where the points rise and is constant between two equal
+/// ones (Fritsch and Carlson 1980; slopes of the parabola through three neighbours, bounded). Fourth order where the
+/// points are smooth and the bounds are inactive. Constant beyond the ends.
 class MonotoneCubic {
  public:
-  /// x ascends; one point at least.
+  /// x ascends; at least one point.
   MonotoneCubic(std::vector<double> x, std::vector<double> y);
 
   double operator()(double x) const;

@@ -30,7 +30,7 @@ ReducedBasis columns_themselves(std::vector<Column> columns) {
   return basis;
 }
 
-/// Gram and Schmidt, with the column that is worst described for the next function.
+/// Greedy Gram-Schmidt: the next function is the residual of the column with the largest error.
 ReducedBasis greedy_basis(std::vector<Column> columns, const Measure& error, double most, size_t most_functions) {
   ReducedBasis basis;
   basis.weights.resize(columns.size());
@@ -49,7 +49,7 @@ ReducedBasis greedy_basis(std::vector<Column> columns, const Measure& error, dou
   return basis;
 }
 
-/// The same space by its principal axes, those of the largest weights first.
+/// The same space by its principal axes, in order of decreasing weights.
 ReducedBasis principal_basis(const ReducedBasis& basis) {
   const auto count = static_cast<Eigen::Index>(basis.functions.size());
   Eigen::MatrixXd weights(static_cast<Eigen::Index>(basis.weights.size()), count);
@@ -71,7 +71,7 @@ ReducedBasis principal_basis(const ReducedBasis& basis) {
   return result;
 }
 
-/// Drops functions from the end, but one, as long as no column misses them by more than `most`.
+/// Drops functions from the end, except the first, as long as no column's error exceeds `most`.
 void shorten(ReducedBasis& basis, const Measure& error, double most) {
   size_t count = basis.functions.size();
   std::vector<Column> missing(basis.weights.size(), Column(basis.functions[0].size(), 0.0));
@@ -90,7 +90,7 @@ void shorten(ReducedBasis& basis, const Measure& error, double most) {
 ReducedBasis reduce_basis(std::vector<Column> columns, const Measure& error, double most, size_t most_functions) {
   constexpr size_t kFew = 4;
   if (columns.size() <= kFew) return columns_themselves(std::move(columns));
-  constexpr double kGreedyShare = 0.1;  // of the error, for a space that hardly lacks anything
+  constexpr double kGreedyShare = 0.1;  // of the error: the greedy space is almost complete
   ReducedBasis greedy = greedy_basis(std::move(columns), error, kGreedyShare * most, most_functions);
   if (greedy.functions.empty()) return greedy;
   ReducedBasis basis = principal_basis(greedy);

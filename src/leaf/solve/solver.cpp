@@ -13,9 +13,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr size_t kFirst = Chain::kFirst, kLast = Chain::kLast;
-constexpr Eigen::Index kAdaxial = 0, kAbaxial = 1;  ///< ways out
+constexpr Eigen::Index kAdaxial = 0, kAbaxial = 1;  ///< exits
 
-/// Rays that meet the outer interface leave with the chance to pass it.
+/// Rays that meet the outer interface leave with the probability to be transmitted there.
 Sources leaving(const Chain& chain) {
   Sources sources{.ways = 2};
   sources.up[kFirst] = MatrixXd::Zero(chain.count(kFirst), 2);
@@ -25,7 +25,7 @@ Sources leaving(const Chain& chain) {
   return sources;
 }
 
-/// Where a lobe sends rays among the nodes; the cut is made good by the sum, which keeps energy exactly.
+/// Distribution of a lobe's rays over the nodes; division by the sum replaces the cut and conserves energy exactly.
 VectorXd spread(const Lobe& lobe, double mu_axis, const Directions& to) {
   const VectorXd axis = VectorXd::Constant(1, mu_axis);
   const VectorXd row = lobe_modes(lobe.exponent(), axis, to.mu, 1)[0].row(0).transpose().cwiseProduct(to.weight);
@@ -42,13 +42,13 @@ int solver_nodes(const Tissue& tissue) {
 
 namespace {
 
-/// All that does not depend on the depth.
+/// Everything that does not depend on the depth.
 class LeafSolver {
  public:
   LeafSolver(const Tissue& tissue, std::span<const double> theta_deg, int nodes)
       : chain_(tissue, nodes, 1), sources_(leaving(chain_)), solver_(chain_, 0, sources_), places_(2 * nodes) {
     const Lobe& lobe = *tissue.lobe(0, false, true);
-    std::map<double, size_t> known;  // both epidermes are of one index: each angle serves both sides
+    std::map<double, size_t> known;  // both epidermes have one index: each angle serves both sides
     for (const double theta : theta_deg) {
       const bool above = theta <= 90;
       const double from_normal = above ? theta : 180 - theta;
@@ -60,7 +60,7 @@ class LeafSolver {
     }
   }
 
-  /// The tissue that it was made for, or one that differs in depth.
+  /// `tissue`: the constructor's, or one that differs in depth alone.
   std::vector<Shares> solve(const Tissue& tissue) const {
     const Prospects inside = solver_.solve(tissue, places_);
     std::vector<Shares> result;
@@ -85,7 +85,7 @@ class LeafSolver {
   Sources sources_;
   ModeSolver solver_;
   int places_;
-  std::vector<VectorXd> rows_;  ///< where rays that enter go
+  std::vector<VectorXd> rows_;  ///< distribution over the nodes of rays that enter
   std::vector<Ray> rays_;       ///< [angle]
 };
 

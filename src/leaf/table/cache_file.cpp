@@ -30,21 +30,21 @@ std::string_view without_checksum(std::string_view text) {
 }
 
 std::optional<std::string> read_cached(const std::filesystem::path& path, const Log& log) try {
-  std::error_code error;  // a cache that cannot be looked into is none
+  std::error_code error;  // a cache that cannot be accessed counts as empty
   if (path.empty() || !std::filesystem::is_regular_file(path, error)) return {};
   return read_file_bytes(path, {});
-} catch (const InputError& error) {  // among them that another process has just deleted it
-  log.warn({}, fmt::format("{}: what it holds is made anew", error.what()));
+} catch (const InputError& error) {  // for example, another process has just deleted it
+  log.warn({}, fmt::format("{}: its content is computed again", error.what()));
   return {};
 }
 
 void write_cached(const std::filesystem::path& path, const std::string& text, const Log& log) try {
-  std::error_code error;  // then the folder is missing, which the next line tells
+  std::error_code error;  // the next line reports a missing folder
   std::filesystem::create_directories(path.parent_path(), error);
   replace_file(path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
   limit_cache(path, kLeafFiles, log);
 } catch (const InputError& error) {
-  log.warn({}, fmt::format("{}: what it would keep is made anew next time", error.what()));
+  log.warn({}, fmt::format("{}: the result is not cached", error.what()));
 }
 
 }  // namespace frond::leaf

@@ -10,19 +10,20 @@
 
 namespace frond::leaf {
 
-/// Files that keep results: text with a checksum as its last line.
-
-/// Where the cache in `folder` keeps what `header` describes; empty where that is empty: nothing is kept.
+/// Cache files hold text with a checksum as its last line. Returns the path of the file in `folder` for the result that
+/// `header` describes; empty if `folder` is empty: no cache.
 std::filesystem::path cache_path(const std::filesystem::path& folder, std::string_view header,
                                  std::string_view extension);
 
+/// Returns the text with its checksum appended.
 std::string with_checksum(std::string text);
-/// The text before the checksum; empty where that is missing or wrong.
+/// Returns the text before the checksum; empty if the checksum is missing or wrong.
 std::string_view without_checksum(std::string_view text);
 
-/// None where there is no such file. One that cannot be read costs a warning.
+/// Reads a cache file; none if it does not exist. A file that cannot be read causes a warning.
 std::optional<std::string> read_cached(const std::filesystem::path& path, const Log& log);
-/// Makes room for it where files lie unused (system/cache_limit.h). A folder that does not take it costs a warning.
+/// Writes a cache file and deletes the least recently used ones beyond the cache's limit (system/cache_limit.h). A
+/// folder that cannot be written to causes a warning.
 void write_cached(const std::filesystem::path& path, const std::string& text, const Log& log);
 
 }  // namespace frond::leaf

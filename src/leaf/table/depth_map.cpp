@@ -13,7 +13,7 @@ double between(const std::vector<double>& curve, const WavelengthGrid::Cell& cel
 
 DepthMap::DepthMap(const TissueParams& constant, const std::vector<Varying>& varying)
     : thickness_{constant.thickness_m, nullptr}, fraction_{constant.mesophyll_fraction, nullptr} {
-  // Absorption is a sum over concentrations: each one's curve is what it adds to a leaf without the varying ones.
+  // Absorption is a sum over concentrations: each one's curve is its increment to a leaf without the varying ones.
   TissueParams base = constant;
   std::vector<const Varying*> concentrations;
   for (const Varying& v : varying) {

@@ -10,27 +10,28 @@
 
 namespace frond::leaf {
 
-/// Optical depth of the mesophyll, on a leaf whose chemistry or thickness follows textures. Concentrations, thickness
-/// and mesophyll fraction act on light through this one number.
+/// Optical depth of the mesophyll of a leaf whose chemistry or thickness follows textures. Concentrations, thickness
+/// and mesophyll fraction affect light through this one number.
 class DepthMap {
  public:
-  /// A number of TissueParams that a texture replaces.
+  /// A parameter of TissueParams that a texture replaces.
   struct Varying {
     std::function<double&(TissueParams&)> number;
     std::shared_ptr<const FloatTexture> texture;
   };
-  /// `constant` holds for whatever is not in `varying`.
+  /// `constant` gives the parameters that are not in `varying`.
   DepthMap(const TissueParams& constant, const std::vector<Varying>& varying);
 
   /// Whether the depth is the same everywhere.
   bool is_constant() const { return curves_.empty() && !thickness_.texture && !fraction_.texture; }
 
-  /// Lane by lane, in every lane in use.
+  /// Returns the optical depth along the normal, for each lane in use.
   std::array<double, kLanes> at(const TexturePoint& point, const SampledWavelengths& lambda) const;
-  /// Bounds of what `at` returns at a wavelength.
+  /// Bounds of the depth over the leaf at a wavelength (nm).
   Interval range(double lambda_nm) const;
 
  private:
+  /// A number that multiplies the absorption coefficient: constant or a texture.
   struct Factor {
     double constant;
     std::shared_ptr<const FloatTexture> texture;  ///< nullptr: constant

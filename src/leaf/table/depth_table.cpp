@@ -7,7 +7,7 @@ namespace frond::leaf {
 DepthTable make_depth_table(const TissueModel& model, const std::vector<double>& theta_deg,
                             const std::vector<double>& wavelengths_nm, const DepthAxis& depths,
                             const ThreadPool& pool) {
-  constexpr size_t kBlock = 16;  // depths that share what depends on the indices alone
+  constexpr size_t kBlock = 16;  // depths that share one solver's matrices
   const std::vector<double>& all = depths.depths();
   const size_t blocks = (all.size() + kBlock - 1) / kBlock, angles = theta_deg.size();
   DepthTable table{theta_deg, wavelengths_nm, depths};

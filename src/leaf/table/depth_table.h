@@ -6,9 +6,9 @@
 
 namespace frond::leaf {
 
-/// Rs, Rd and T of leaves that differ in the optical depth of their mesophyll alone. Pigments, water, thickness and the
-/// mesophyll's part of it act on light through this one number, so that a leaf on which they vary needs no table for
-/// each of its points. The wavelength enters beside it through the refractive indices alone.
+/// Rs, Rd and T of leaves that differ in the optical depth of their mesophyll alone. Pigments, water, thickness and
+/// mesophyll fraction affect light through this one number, so one table serves all points of a leaf on which they
+/// vary. The wavelength enters only through the refractive indices.
 struct DepthTable {
   std::vector<double> theta_deg;  ///< ascending, in [0, 180]
   std::vector<double> wavelengths_nm;
@@ -16,7 +16,7 @@ struct DepthTable {
   std::vector<Shares> shares = {};  ///< [wavelength][depth][angle]
 };
 
-/// Solved. `model` gives all but the depth.
+/// Solves the table by `solve_depths`; `model` gives everything except the depth.
 DepthTable make_depth_table(const TissueModel& model, const std::vector<double>& theta_deg,
                             const std::vector<double>& wavelengths_nm, const DepthAxis& depths, const ThreadPool& pool);
 

@@ -13,7 +13,7 @@ std::vector<double> exit_weights(double index, size_t cells, Measure measure) {
   static const std::vector<QuadratureNode> rule = gauss_legendre(16);
   std::vector<double> weights(cells + 3, 0.0);
   for (const auto& [x, weight] : rule) {
-    const double mu = x * x;  // dense at grazing, where the chance to leave is like a square root
+    const double mu = x * x;  // dense at grazing, where transmittance is like a square root
     const Crossing out = fresnel(mu, 1 / index);
     const double over = measure == Measure::plain ? 1 : out.cos_t;
     const double whole = weight * 2 * x * mu * 2 * std::numbers::pi * (1 - out.reflectance) / over;

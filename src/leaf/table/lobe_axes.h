@@ -9,7 +9,7 @@
 
 namespace frond::leaf {
 
-/// Four of the nodes of an axis of cosines, even in their square root from 0 to 1, and their weights in the cubic
+/// Four neighbouring nodes of an axis of cosines, even in their square root from 0 to 1, and their weights in the cubic
 /// through them.
 struct CosineNodes {
   static constexpr int kCells = 64;
@@ -18,7 +18,7 @@ struct CosineNodes {
   size_t first;
 
   CosineNodes() = default;
-  /// In [0, 1].
+  /// `cosine` in [0, 1].
   explicit CosineNodes(float cosine) {
     const float x = std::sqrt(cosine) * kCells;
     const int below = std::clamp(static_cast<int>(x) - 1, 0, kCells - 3);
@@ -29,6 +29,7 @@ struct CosineNodes {
     weight += t * (Float4{-2, -3, 6, -1} + t * (Float4{3, -6, 3, 0} + t * Float4{-1, 3, -3, 1})) * (1.f / 6);
   }
 
+  /// Cosines of all nodes, ascending.
   static std::vector<double> cosines() {
     std::vector<double> result;
     for (int k = 0; k <= kCells; ++k) result.push_back(std::pow(static_cast<double>(k) / kCells, 2));
@@ -36,10 +37,11 @@ struct CosineNodes {
   }
 };
 
-/// Exponents of a surface's lobe: one, or as many as a texture needs, even in log(1 + e).
+/// Axis of the exponents of a surface's lobe: one, or several for a texture, even in log(1 + e).
 class ExponentAxis {
  public:
   ExponentAxis() = default;
+  /// Covers `exponents` in steps of at most 0.05 in log(1 + e).
   explicit ExponentAxis(const Interval& exponents) : exponents_{exponents.min} {
     constexpr double kStep = 0.05;
     const double width = std::log1p(exponents.max) - std::log1p(exponents.min);
@@ -51,9 +53,10 @@ class ExponentAxis {
 
   const std::vector<double>& exponents() const { return exponents_; }
 
+  /// Position of an exponent between two nodes.
   struct Position {
     size_t below = 0, above = 0;
-    float t = 0;  ///< of the way from one to the other
+    float t = 0;  ///< fraction of the distance from `below` to `above`
   };
   Position position(float exponent) const {
     const float last = static_cast<float>(exponents_.size() - 1);

@@ -14,8 +14,8 @@ using std::numbers::pi;
 
 namespace {
 
-/// Angles that the integrals take: a lobe of exponent e is about 1 / sqrt(e) wide, and one of exponent 0 is cut off
-/// where it is as bright as anywhere.
+/// Number of angles of the quadrature: a lobe of exponent e is about 1 / sqrt(e) wide, and one of exponent 0 is cut off
+/// at its full brightness.
 int angle_count(double exponent) {
   constexpr double kSmooth = 0.1;
   return exponent < kSmooth ? 200 : 48 + static_cast<int>(3 * std::sqrt(exponent));

@@ -9,7 +9,7 @@
 namespace frond::leaf {
 namespace {
 
-/// One side of the leaf in one column.
+/// Shares of one side of the leaf in one column.
 class Side {
  public:
   Side(const std::vector<double>& theta_deg, std::span<const Shares> column, bool abaxial) {
@@ -32,7 +32,8 @@ class Side {
     all_.emplace(theta, std::move(all));
   }
 
-  /// theta_deg from this side's normal. Absorption is interpolated as the shares are: none stays none.
+  /// theta_deg from this side's normal. Absorptance is interpolated like the shares, so that a lossless leaf stays
+  /// lossless.
   Shares at(double theta_deg) const {
     const Shares s{(*surface_)(theta_deg), (*subsurface_)(theta_deg), (*transmitted_)(theta_deg)};
     const double all = sum(s), scale = all > 0 ? (*all_)(theta_deg) / all : 0;

@@ -9,30 +9,33 @@
 
 namespace frond::leaf {
 
-/// Rs, Rd and T lane by lane.
+/// Rs, Rd and T for each lane.
 struct SampledShares {
   SampledSpectrum surface, subsurface, transmitted;
 };
 
-/// A table made ready for the render loop: linear between nodes that are even in sqrt |cos theta|, where they are dense
-/// toward grazing and need no arc cosine. The table's angles are carried over to the nodes by cubic interpolation, each
-/// side by its own: those up to 90 degrees and those from there on. Where these do not reach, the nearest holds.
+/// A leaf table in the form that a render looks up: linear between nodes that are even in sqrt |cos theta|, where they
+/// are dense toward grazing and require no arc cosine. The table's angles are resampled to the nodes by cubic
+/// interpolation, separately for angles up to 90 degrees and from 90 degrees on. Constant beyond the table's first and
+/// last angle.
 class TableLookup {
  public:
   TableLookup() = default;
-  /// Lanes of paths are the table's wavelengths, one by one; at most kLanes.
+  /// For paths whose lanes are the table's wavelengths, one by one; at most kLanes.
   static TableLookup for_lanes(const Table& table);
-  /// Lanes are anywhere between the table's wavelengths, which are two at least, and ascend.
+  /// For paths whose lanes vary: the table's wavelengths ascend and are at least two.
   static TableLookup for_spectra(const Table& table);
-  /// The same two for a leaf whose depth varies.
+  /// The same for a leaf whose optical depth varies.
   static TableLookup for_lanes(const DepthTable& table);
   static TableLookup for_spectra(const DepthTable& table);
 
+  /// The columns of a path's lanes and their weights.
   TableSelection select(const SampledWavelengths& lambda) const;
-  /// With the leaf's optical depth in each lane.
+  /// The same for a table with depths, at the leaf's optical depth in each lane.
   TableSelection select(const SampledWavelengths& lambda, const std::array<double, kLanes>& optical_depth) const;
 
-  /// cos_theta in [-1, 1], of the incident direction to the adaxial normal. Lanes not in use: undefined.
+  /// Returns the shares of 1 in each lane. cos_theta in [-1, 1]: cosine of the incident direction to the adaxial
+  /// normal. Lanes not in use are undefined.
   SampledShares operator()(float cos_theta, const TableSelection& selection) const {
     const auto [node, t] = position(cos_theta);
     if (selection.lane_count == 0) return mix(lanes_[node], lanes_[node + 1], t);
@@ -41,19 +44,19 @@ class TableLookup {
 
   static constexpr size_t kCells = 128;
   static constexpr size_t kNodes = 2 * (kCells + 1);  ///< adaxial side, then abaxial, each from grazing to the normal
-  /// Where a cosine in [-1, 1] lies.
+  /// Position of a cosine in [-1, 1] on the axis of nodes.
   struct Position {
-    size_t node;  ///< the one below; the next is the one above
-    float t;      ///< of the way between them
+    size_t node;  ///< the node below; the next is the one above
+    float t;      ///< fraction of the distance between them
   };
   static Position position(float cos_theta) {
     const float x = std::sqrt(std::min(std::abs(cos_theta), 1.f)) * kCells;
     const auto cell = std::min(static_cast<size_t>(x), kCells - 1);
     return {(cos_theta < 0 ? kCells + 1 : 0) + cell, x - static_cast<float>(cell)};
   }
-  /// Wavelengths and depths; where lanes are wavelengths, kLanes, of which those not in use hold 0.
+  /// Number of (wavelength, depth) columns; kLanes where lanes are wavelengths (lanes not in use hold 0).
   size_t columns() const { return lanes_.empty() ? columns_.size() / kNodes : kLanes; }
-  /// Of one of `columns` at one of kNodes.
+  /// Returns the shares of one column at one of kNodes nodes.
   Shares shares(size_t column, size_t node) const {
     const auto lane = static_cast<int>(column);
     if (!lanes_.empty())

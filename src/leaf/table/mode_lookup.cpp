@@ -8,7 +8,7 @@
 namespace frond::leaf {
 namespace {
 
-/// Share of the tolerance that the functions of SeriesLookup may leave out, and their small terms once more.
+/// Share of the tolerance for each of the two truncations of SeriesLookup.
 constexpr double kTableShare = 1.0 / 8;
 
 }  // namespace
@@ -24,7 +24,7 @@ ModeLookup::ModeLookup(const ModeTableRequest& request, const ModeTable& spectru
   add_ways(spectrum);
 }
 
-/// By mode 0, interpolated as a look-up does.
+/// Uses mode 0, interpolated as a look-up does.
 void ModeLookup::add_ways(const ModeTable& spectrum) {
   const size_t side = cells_ + 3;
   const Measure measure = spectrum.is_reciprocal ? Measure::plain : Measure::over_inner_cosine;

@@ -7,8 +7,7 @@
 namespace frond::leaf {
 namespace {
 
-/// Where a row or a column of the grid is bent most: the fourth difference about node i, from `at(i - 2)` to
-/// `at(i + 2)`.
+/// Largest fourth difference along a row or a column of the grid: about node i, from `at(i - 2)` to `at(i + 2)`.
 template <class At>
 double fourth_difference(const At& at, size_t i) {
   return at(i - 2) - 4 * at(i - 1) + 6 * at(i) - 4 * at(i + 1) + at(i + 2);
@@ -16,10 +15,10 @@ double fourth_difference(const At& at, size_t i) {
 
 double cosine(double sine) { return std::sqrt(std::max(0.0, 1 - sine * sine)); }
 
-/// In the middle of a cell the cubic through four points is off by 3/128 of the fourth difference.
+/// In the middle of a cell the cubic through four points has an error of 3/128 of the fourth difference.
 constexpr double kMiddle = 3.0 / 128;
 
-/// Of pi f, summed over the modes.
+/// Error of pi f, summed over the modes.
 double interpolation_error(const std::vector<LeafModes::Grid>& series, const std::vector<double>& sines,
                            const Tissue& tissue) {
   const size_t count = sines.size();
@@ -43,7 +42,7 @@ double interpolation_error(const LeafModes& modes, const Tissue& tissue) {
   return largest;
 }
 
-/// The leaf in each column of the spectrum.
+/// The leaf in each column of the table.
 std::vector<Tissue> tissues_of(const ModeTableRequest& request, const TissueModel& model) {
   std::vector<Tissue> tissues;
   for (const double nm : request.wavelengths_nm) {
@@ -58,14 +57,15 @@ LeafModes solve(const ModeTableRequest& request, const Tissue& tissue, int cells
   return solve_modes(tissue, grid_sines(cells), request.tolerance, nodes);
 }
 
-/// Cells that leave half of the tolerance to missing modes, where `cells` leave `error`: it goes by their fourth power.
+/// Number of cells for an error of half the tolerance (the other half is for missing modes), given the error with
+/// `cells`: it falls with their fourth power.
 int cells_for(double tolerance, int cells, double error) {
   constexpr int kLeast = 4;
   const double wish = cells * std::pow(2 * error / tolerance, 0.25);
   return static_cast<int>(std::clamp<double>(std::ceil(wish), kLeast, kMostCells));
 }
 
-/// By the leaf that absorbs least: there f is largest.
+/// Judged by the column that absorbs least, where f is largest.
 int first_guess(const ModeTableRequest& request, const std::vector<Tissue>& tissues) {
   constexpr int kCells = 8;
   const Tissue& tissue = *std::ranges::min_element(tissues, {}, [](const Tissue& t) { return t.optical_depth[2]; });

@@ -16,14 +16,14 @@
 namespace frond::leaf {
 namespace {
 
-/// What `to_text` wrote under the same header; none if it is anything else.
+/// Parses text that `to_text` wrote under the same header; none if it is anything else.
 std::optional<ModeTable> parse(std::string_view text, std::string_view header, const ModeTableRequest& request) {
   if (!text.starts_with(header)) return {};
   try {
     ModeTableFile file = parse_mode_table_file(text, "");
     const size_t columns = request.wavelengths_nm.size() * std::max<size_t>(1, request.depths.depths().size());
     if (file.columns.size() == columns) return std::move(file.spectrum);
-  } catch (const InputError&) {  // no more than damaged
+  } catch (const InputError&) {  // a damaged file is replaced
   }
   return {};
 }
@@ -38,7 +38,7 @@ std::string summary(const ModeTableRequest& request, std::string_view name, cons
 
 std::string describe(const ModeTableRequest& request) {
   std::string text =
-      fmt::format("# leaf modes (docs/table_format.md)\n{}# solver {}, modes {}, constants {:016x}, tolerance {}\n",
+      fmt::format("# mode table (docs/file_formats.md)\n{}# solver {}, modes {}, constants {:016x}, tolerance {}\n",
                   describe(request.params), kSolverVersion, kModesVersion, constants_hash(), request.tolerance);
   text += fmt::format("# wavelengths_nm {}\n", list_text(request.wavelengths_nm));
   if (request.nodes > 0) text += fmt::format("# nodes {}\n", request.nodes);
@@ -56,7 +56,7 @@ ModeTable cached_mode_table(const ModeTableRequest& request, std::string_view na
       log.info(summary(request, name, *spectrum) + ", from the cache");
       return std::move(*spectrum);
     }
-    log.warn({}, fmt::format("{} is damaged, its modes are made anew", path.string()));
+    log.warn({}, fmt::format("{} is damaged, its mode table is computed again", path.string()));
   }
   const auto start = std::chrono::steady_clock::now();
   ModeTable spectrum = make_mode_table(request, pool);

@@ -8,16 +8,16 @@
 
 namespace frond::leaf {
 
-/// `make_mode_table`, kept on disk in `cache_dir` (empty: not kept) under a hash of all that it depends on. A file
-/// that is damaged is made anew; one that cannot be written costs a warning. Says through `log` what it took, with
-/// `name`.
+/// Returns `make_mode_table`'s result, cached on disk in `cache_dir` (empty: no cache) under a hash of everything that
+/// it depends on. A damaged file is replaced; a file that cannot be written causes a warning. Reports the work in `log`
+/// under `name`.
 ModeTable cached_mode_table(const ModeTableRequest& request, std::string_view name, const ThreadPool& pool,
                             const Log& log, const std::filesystem::path& cache_dir);
 
-/// Everything that a spectrum depends on, as comments of its file.
+/// Returns everything that a mode table depends on, as the comments at the head of its file.
 std::string describe(const ModeTableRequest& request);
 
-/// One line for people: what the spectrum holds and how good it is.
+/// Returns one line for the log: content and accuracy of the table.
 std::string summary(const ModeTableRequest& request, std::string_view name, const ModeTable& spectrum);
 
 }  // namespace frond::leaf

@@ -28,7 +28,7 @@ std::string counted(size_t count, std::string_view what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// The words of a text line by line, without comments and empty lines.
+/// Splits a text into lines of words, without comments and empty lines.
 class Lines {
  public:
   Lines(std::string_view text, const std::string& name)
@@ -39,9 +39,9 @@ class Lines {
   bool at_end() const { return words_.empty(); }
   const Word& first() const { return words_[0]; }
   const Location& end() const { return here_; }
-  /// The line's words, of which there must be as many.
+  /// Returns the line's words; requires this number of them.
   std::vector<Word> take(size_t count, std::string_view what) {
-    if (at_end()) fail(here_, "the file ends where {} should follow", what);
+    if (at_end()) fail(here_, "the file ends before {}", what);
     if (words_.size() != count)
       fail(words_[std::min(count, words_.size() - 1)].where, "{} in place of {}", counted(words_.size(), "word"), what);
     std::vector<Word> line = std::exchange(words_, {});
@@ -100,7 +100,7 @@ size_t count_in(const Word& word, std::string_view what, size_t high) {
   return value;
 }
 
-/// One mode, of which the file has the sines from 0 on; the node at a negative one is its mirror image.
+/// One mode. The file has the sines from 0 on; nodes at negative sines are mirror images.
 LeafModes::Grid read_mode(Lines& lines, size_t mode, size_t side) {
   LeafModes::Grid grid(side * side);
   const double mirror = mode % 2 == 1 ? -1 : 1;
@@ -109,7 +109,7 @@ LeafModes::Grid read_mode(Lines& lines, size_t mode, size_t side) {
         lines.take(side - 1, fmt::format("the {} numbers of mode {} for an angle of incidence", side - 1, mode));
     for (size_t o = 1; o < side; ++o) {
       const double value = number<double>(row[o - 1], "a mode");
-      if (!std::isfinite(value)) fail(row[o - 1].where, "{} is no number that light could have", row[o - 1].text);
+      if (!std::isfinite(value)) fail(row[o - 1].where, "{} is not a finite number", row[o - 1].text);
       if (mode == 0 && value < 0)
         fail(row[o - 1].where, "mode 0 is a mean over azimuth and not below 0, {} was given", value);
       grid[i * side + o] = value;
@@ -140,8 +140,8 @@ ModeTableColumn read_column(Lines& lines, ModeTable& spectrum) {
   return column;
 }
 
-/// Of the light that has passed the surface no more may leave again than there was, but for what interpolation and the
-/// rule by which it is added up make of it.
+/// Checks that no more light leaves than has passed the surface, apart from the errors of interpolation and of the
+/// quadrature rule.
 void check_energy(const ModeTableFile& file, size_t column) {
   const ModeTable& all = file.spectrum;
   const ModeTable alone{all.cells, {all.index[column]}, {all.modes[column]}};
@@ -159,7 +159,7 @@ void check_energy(const ModeTableFile& file, size_t column) {
       const double sum = static_cast<double>(ways.back + ways.across);
       if (sum > 1 + kRule + 2 * all.error)
         fail(file.columns[column].where,
-             "of light that enters the {} side at {:.1f} degrees {:.4f} leaves the leaf: more than there was",
+             "of light that enters the {} side at {:.1f} degrees {:.4f} leaves the leaf: more than has entered",
              kSides[below], std::asin(sine) * 180 / std::numbers::pi, sum);
     }
 }
@@ -175,14 +175,14 @@ void write_series(std::string& text, const LeafModes& modes, bool below, bool cr
 }
 
 LeafModes::Grid blend(const LeafModes::Grid& a, const LeafModes::Grid& b, double t) {
-  const size_t size = std::max(a.size(), b.size());  // of modes that one of them does not have: 0
+  const size_t size = std::max(a.size(), b.size());  // a mode that one of them lacks is 0
   LeafModes::Grid result(size);
   for (size_t i = 0; i < size; ++i) result[i] = (1 - t) * (a.empty() ? 0 : a[i]) + t * (b.empty() ? 0 : b[i]);
   return result;
 }
 
 LeafModes blend(const LeafModes& a, const LeafModes& b, double t) {
-  if (t == 0 || t == 1) return t == 0 ? a : b;  // without modes that are nothing
+  if (t == 0 || t == 1) return t == 0 ? a : b;  // so that modes of weight 0 are not added
   LeafModes result(a.sines());
   for (const bool below : {false, true})
     for (const bool crosses : {false, true}) {
@@ -194,7 +194,7 @@ LeafModes blend(const LeafModes& a, const LeafModes& b, double t) {
   return result;
 }
 
-/// By wavelength, and by depth within it.
+/// Sorts columns by wavelength, then by depth.
 std::vector<ModeTableColumn> columns_of(const ModeTableRequest& request) {
   const TissueModel model(request.params);
   std::vector<ModeTableColumn> columns;
@@ -205,12 +205,12 @@ std::vector<ModeTableColumn> columns_of(const ModeTableRequest& request) {
   return columns;
 }
 
-/// A render's leaf has one column for each.
+/// Requires one column for each wavelength: a render's leaf without depths.
 void check_wavelengths(const ModeTableFile& file) {
   for (size_t i = 0; i < file.columns.size(); ++i)
     for (size_t j = 0; j < i; ++j)
       if (file.columns[i].lambda_nm == file.columns[j].lambda_nm)
-        fail(file.columns[i].where, "{} nm comes twice, the first time in line {}", file.columns[i].lambda_nm,
+        fail(file.columns[i].where, "{} nm is given twice, first in line {}", file.columns[i].lambda_nm,
              file.columns[j].where.line);
 }
 
@@ -236,7 +236,7 @@ std::string to_text(const ModeTableRequest& request, const ModeTable& spectrum, 
 
 ModeTableFile parse_mode_table_file(std::string_view text, const std::string& name) {
   const Location start{std::make_shared<const std::string>(name), 1, 1};
-  if (text.find('\0') != text.npos) fail(start, "this is no text: a leaf's modes are a text file");
+  if (text.find('\0') != text.npos) fail(start, "not a text file: a mode table is a text file");
   Lines lines(text, name);
   ModeTableFile file;
   const auto cells = lines.take(2, "cells N");
@@ -253,7 +253,7 @@ ModeTableFile parse_mode_table_file(std::string_view text, const std::string& na
 }
 
 ModeTableFile read_mode_table_file(const std::filesystem::path& path, const Location& where) {
-  ModeTableFile file = parse_mode_table_file(read_file_bytes(path, where, "leaf modes"), path.string());
+  ModeTableFile file = parse_mode_table_file(read_file_bytes(path, where, "mode table"), path.string());
   check_wavelengths(file);
   return file;
 }

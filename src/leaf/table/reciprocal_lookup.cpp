@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kNodes = TableLookup::kNodes, kSide = TableLookup::kCells + 1;
 using Column = std::array<Shares, kNodes>;
 
-/// Of the nodes of a side.
+/// Cosines of the nodes of a side.
 std::vector<double> node_cosines() {
   std::vector<double> cosines;
   for (size_t k = 0; k < kSide; ++k) {
@@ -23,7 +23,7 @@ std::vector<double> node_cosines() {
   return cosines;
 }
 
-/// Of the nodes of a side, in 2 int ... cos theta sin theta dtheta: the mean under diffuse light.
+/// Weights of the nodes of a side in 2 int ... cos theta sin theta dtheta: the mean under diffuse light.
 const std::array<double, kSide>& mean_weights() {
   static const auto weights = [] {
     std::array<double, kSide> w{};
@@ -45,12 +45,12 @@ std::array<double, 2> means(const Value& value) {
   return sums;
 }
 
-/// d, and of Rd + T what leaves on the side of incidence.
+/// d, and the share of Rd + T that leaves on the side of incidence.
 struct SubsurfaceFactors {
   std::array<double, kNodes> d, back;
 };
 
-/// With the means over a side of d, d Rd and d T, d follows from Rd and T at each direction.
+/// Given the means over a side of d, d Rd and d T, d follows from Rd and T at each direction.
 SubsurfaceFactors subsurface_factors(const Column& column) {
   constexpr int kMostSteps = 500;
   constexpr double kDone = 1e-13;
@@ -66,7 +66,7 @@ SubsurfaceFactors subsurface_factors(const Column& column) {
       const size_t here = i / kSide, there = 1 - here;
       const double r = column[i].subsurface, t = column[i].transmitted;
       const double returns = (r * all[here] + reflected[here]) / 2, passes = (t * all[there] + transmitted[there]) / 2;
-      if (!(returns + passes > 0) || !(r + t > 0)) {  // black, or along the surface
+      if (!(returns + passes > 0) || !(r + t > 0)) {  // black, or at grazing
         d[i] = back[i] = 0;
         continue;
       }
@@ -90,7 +90,7 @@ std::vector<double> surface_factors(LobeScaler& lobe, const Column& column, size
   return factors;
 }
 
-/// Whether what is reflected at the surface is the same on two sides.
+/// Whether two sides have the same Rs.
 bool equal_surfaces(const Shares* a, const Shares* b) {
   return std::equal(a, a + kSide, b, [](const Shares& x, const Shares& y) { return x.surface == y.surface; });
 }
@@ -118,7 +118,7 @@ ReciprocalLookup::ReciprocalLookup(const TableLookup& shares, const Interval& ex
   }
   for (const double exponent : axis_.exponents()) {
     LobeScaler lobe(exponent, node_cosines());
-    const Shares* last = nullptr;  // the side that `factors` are for: depths and mostly sides have one surface
+    const Shares* last = nullptr;  // the side that `factors` are for: depths, and mostly both sides, share one surface
     std::vector<double> factors;
     for (const Column& column : columns)
       for (const size_t first : {size_t{0}, kSide}) {

@@ -5,24 +5,26 @@
 
 namespace frond::leaf {
 
-/// What makes a leaf of three lobes reciprocal, by direction and column of a TableLookup:
-///   f_r(i, o) = s(i) p(i, o) s(o) + d(i) (Rd(i) + Rd(o)) / (2 pi) d(o) on one side, p the surface's lobe before its
-///   cut, f_r(i, o) = d(i) (T(i) + T(o)) / (2 pi) d(o) to the other,
-/// such that of light from every direction the first lobe scatters Rs, and the other two Rd + T
-/// (docs/reciprocal_leaf.md).
+/// Factors that make a leaf of three lobes reciprocal, by direction and column of a TableLookup. On one side
+///   f_r(i, o) = s(i) p(i, o) s(o) + d(i) (Rd(i) + Rd(o)) / (2 pi) d(o),
+/// where p is the surface's lobe before its cut, and to the other side
+///   f_r(i, o) = d(i) (T(i) + T(o)) / (2 pi) d(o).
+/// s and d are such that, for light from every direction, the first lobe scatters Rs and the other two Rd + T
+/// (docs/leaf_models.md).
 class ReciprocalLookup {
  public:
-  /// `exponents` of the surface's lobe.
+  /// `exponents`: range of the surface lobe's exponents.
   ReciprocalLookup(const TableLookup& shares, const Interval& exponents);
 
+  /// The factors for one direction.
   struct Factors {
     SampledSpectrum surface, subsurface;  ///< s and d by lane; lanes not in use: undefined
-    SampledSpectrum back;                 ///< of Rd + T, what leaves on the side of incidence
+    SampledSpectrum back;                 ///< share of Rd + T that leaves on the side of incidence
   };
   using Position = ExponentAxis::Position;
   Position position(float exponent) const { return axis_.position(exponent); }
 
-  /// cos_theta in [-1, 1], as in TableLookup, whose `select` makes the selection.
+  /// Returns the factors. cos_theta in [-1, 1] as in TableLookup, whose `select` makes the selection.
   Factors operator()(float cos_theta, const Position& exponent, const TableSelection& selection) const {
     const auto [node, t] = TableLookup::position(cos_theta);
     if (selection.lane_count > 0) return sum_columns(node, t, exponent, selection);

@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Grid = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-/// Light that comes in on one side and leaves on one, as in LeafModes.
+/// One of the four series: the side that is lit and the side that light leaves by, as in LeafModes.
 struct Route {
   bool from_below, crosses;
   Route back() const { return {from_below != crosses, crosses}; }
@@ -33,7 +33,7 @@ Grid grid(const LeafModes& modes, const Route& route, size_t mode) {
   return {modes.series(route.from_below, route.crosses)[mode].data(), side, side};
 }
 
-/// f / ((1 - F_i) (1 - F_o)) of one mode, the mean of both ways round: rows are directions where the route begins.
+/// f / ((1 - F_i) (1 - F_o)) of one mode, the mean over exchanged directions; rows are incident directions.
 MatrixXd both_ways(const LeafModes& modes, const VectorXd& inner, const Route& route, size_t mode) {
   const auto over = inner.cwiseInverse().asDiagonal();
   const MatrixXd there = grid(modes, route, mode) * over, back = grid(modes, route.back(), mode) * over;
@@ -44,7 +44,7 @@ VectorXd as_vector(const std::vector<double>& v) {
   return Eigen::Map<const VectorXd>(v.data(), static_cast<Index>(v.size()));
 }
 
-/// Share that comes out again of light that has come in, by direction: those above the leaf, then those below.
+/// Share of the light that has come in that leaves again, by direction: those above the leaf, then those below.
 VectorXd outgoing(const LeafModes& modes, double index, size_t cells) {
   const VectorXd weight = as_vector(exit_weights(index, cells, Measure::over_inner_cosine));
   VectorXd share(2 * weight.size());
@@ -53,7 +53,7 @@ VectorXd outgoing(const LeafModes& modes, double index, size_t cells) {
   return share;
 }
 
-/// d with d_i sum over j of k_ij d_j = share_i, k not far from symmetric up to factors of its columns.
+/// Solves d_i sum over j of k_ij d_j = share_i for d, where k is close to symmetric up to factors of its columns.
 std::optional<VectorXd> scaling(const MatrixXd& k, const VectorXd& share) {
   constexpr int kMostSteps = 1000;
   constexpr double kNothing = 1e-12, kDone = 1e-12, kGoodEnough = 1e-9;

@@ -15,7 +15,7 @@ size_t longest_series(const std::vector<LeafModes>& modes, bool from_below, bool
   return longest;
 }
 
-/// All modes of each column in a row: [mode][place].
+/// All modes of each column in one row: [mode][node of both sines].
 std::vector<std::vector<double>> rows_of(const ModeTable& spectrum, bool from_below, bool crosses, size_t modes,
                                          size_t places) {
   std::vector<std::vector<double>> rows;
@@ -27,7 +27,7 @@ std::vector<std::vector<double>> rows_of(const ModeTable& spectrum, bool from_be
   return rows;
 }
 
-/// Largest sum over the modes of a row, which is one of pi f: what stands before the series is about 1 at most.
+/// Largest sum over the modes of a row: an error of pi f, since the factor before the series is at most about 1.
 double largest_sum(const std::vector<double>& row, size_t places) {
   double largest = 0;
   for (size_t i = 0; i < places; ++i) {
@@ -59,7 +59,7 @@ void SeriesLookup::set_weights(const ReducedBasis& basis) {
       weights_[c * blocks_ + k / 4][k % 4] = static_cast<float>(basis.weights[c][k]);
 }
 
-/// Of pi f, at each place: what a mode of the block's functions adds in the column where it adds most.
+/// Contribution to pi f, at each node, of one mode of the block's functions, in the column where it is largest.
 std::vector<double> SeriesLookup::size_of(const ReducedBasis& basis, size_t block, size_t mode) const {
   const size_t first = 4 * block, end = std::min(first + 4, basis.functions.size());
   std::vector<double> sizes(places(), 0.0);
@@ -72,7 +72,7 @@ std::vector<double> SeriesLookup::size_of(const ReducedBasis& basis, size_t bloc
   return sizes;
 }
 
-/// Of what it adds in a cell: the cubics' weights have a sum of absolute values of 25/16 at most.
+/// Bound of this contribution in a cell: the absolute values of the cubics' weights sum to at most 25/16.
 double SeriesLookup::around(const std::vector<double>& size, size_t incident, size_t leaving) const {
   double largest = 0;
   for (size_t i = incident; i < incident + 4; ++i)
@@ -80,7 +80,8 @@ double SeriesLookup::around(const std::vector<double>& size, size_t incident, si
   return largest * 25 / 16;
 }
 
-/// In each cell as many modes as it takes to leave out less than the tolerance in all blocks together; one at least.
+/// Sets the number of modes in each cell, at least one, such that the omitted ones sum to less than the tolerance over
+/// all blocks.
 void SeriesLookup::set_needed(const ReducedBasis& basis, double tolerance) {
   needed_.resize(cells_ * cells_ * blocks_);
   for (size_t b = 0; b < blocks_; ++b) {

@@ -10,7 +10,7 @@
 
 namespace frond::leaf {
 
-/// The four nodes of a grid around a sine in [0, 1], and their weights in the cubic through them.
+/// Four neighbouring nodes of a grid around a sine in [0, 1], and their weights in the cubic through them.
 struct SineNodes {
   Float4 weight;
   size_t first;
@@ -27,17 +27,17 @@ struct SineNodes {
   }
 };
 
-/// The series of a ModeTable for one side lit and one way out, as a render looks them up. All columns are mixtures
-/// of a few functions of direction, four of which share a register: what a look-up costs hardly depends on the number
-/// of columns and lanes, and the table stays in the processor's nearest cache.
+/// The series of a mode table for one lit side and one exit side, in the form that a render looks up. Columns are
+/// linear combinations of a few functions of direction, four of which share a SIMD register: the cost of a look-up
+/// hardly depends on the number of columns and lanes, and the table fits into the processor's first-level cache.
 class SeriesLookup {
  public:
   SeriesLookup() = default;
-  /// What is left out of the columns by the functions, and of the functions where a term of theirs is small, is at most
-  /// `tolerance` of pi f each.
+  /// Two truncations have an error of at most `tolerance` of pi f each: columns by functions, and functions by their
+  /// larger modes.
   SeriesLookup(const ModeTable& spectrum, bool from_below, bool crosses, double tolerance);
 
-  /// In the lanes that look at `columns`; not below 0.
+  /// Returns the sum of the series in the lanes of `columns`; at least 0.
   Float4 at(const SineNodes& incident, const SineNodes& leaving, float cos_phi, const TableSelection& columns) const {
     const Sums sums = functions_at(incident, leaving, cos_phi);
     Float4 lanes{};
@@ -46,13 +46,14 @@ class SeriesLookup {
           mixture(sums, columns.lanes[static_cast<size_t>(lane)], static_cast<size_t>(columns.columns_per_lane));
     return larger(lanes, Float4{});
   }
-  /// The same where the lanes are the table's columns, one by one: then these are the functions.
+  /// The same if the lanes are the table's columns, one by one: the columns are then the functions.
   Float4 at(const SineNodes& incident, const SineNodes& leaving, float cos_phi) const {
     const Cosines cosines(cos_phi, modes_);
     const Block block{first_term(incident, leaving), needed(incident, leaving)[0]};
     return larger(sum_block(block, cosines, incident.weight, leaving.weight), Float4{});
   }
 
+  /// Memory in bytes.
   size_t bytes() const { return values_.size() * sizeof(Float4) + weights_.size() * sizeof(Float4); }
 
  private:
@@ -68,7 +69,7 @@ class SeriesLookup {
   std::vector<double> size_of(const ReducedBasis& basis, size_t block, size_t mode) const;
   double around(const std::vector<double>& size, size_t incident, size_t leaving) const;
 
-  /// cos m phi, by Chebyshev's recurrence.
+  /// cos m phi for all m, by Chebyshev's recurrence.
   struct Cosines {
     std::array<float, kMostModes> of;
     Cosines(float cos_phi, size_t modes) {
@@ -77,7 +78,7 @@ class SeriesLookup {
     }
   };
   struct Block {
-    const Float4* terms;  ///< of the first of sixteen nodes
+    const Float4* terms;  ///< of the first of the sixteen nodes
     size_t modes;
   };
 
@@ -126,7 +127,7 @@ class SeriesLookup {
   std::array<size_t, kMostBlocks> most_modes_{};  ///< of a block, in any cell
   size_t terms_ = 0;                              ///< sum of these
   std::vector<Float4> values_;                    ///< [incident node][leaving node][block][mode]
-  std::vector<uint8_t> needed_;                   ///< modes, by [incident cell][leaving cell][block]
+  std::vector<uint8_t> needed_;                   ///< number of modes, by [incident cell][leaving cell][block]
 };
 
 }  // namespace frond::leaf

@@ -12,7 +12,7 @@ std::vector<double> arriving(LobeScaler& lobe, double index) {
   return lobe([index](double cosine) { return fresnel(cosine, 1 / index).reflectance; });
 }
 
-/// Coefficients of the one with these values at -1, -1/3, 1/3 and 1.
+/// Coefficients of the cubic with these values at -1, -1/3, 1/3 and 1.
 Float4 cubic(double a, double b, double c, double d) {
   const double even = (a + d) / 2, odd = (d - a) / 2, inner_even = (b + c) / 2, inner_odd = (c - b) / 2;
   const double square = (even - inner_even) * 9 / 8, cube = (odd - 3 * inner_odd) * 9 / 8;
@@ -23,7 +23,7 @@ Float4 cubic(double a, double b, double c, double d) {
 }  // namespace
 
 SurfaceScaling::SurfaceScaling(const Interval& exponents, const Interval& indices) : axis_(exponents) {
-  constexpr double kLeastWidth = 1e-6;  // below it, one index
+  constexpr double kLeastWidth = 1e-6;  // narrower ranges count as one index
   const double middle = (indices.min + indices.max) / 2, width = (indices.max - indices.min) / 2;
   middle_ = static_cast<float>(middle);
   per_width_ = width > kLeastWidth ? static_cast<float>(1 / width) : 0;

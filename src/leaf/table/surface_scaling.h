@@ -4,17 +4,18 @@
 
 namespace frond::leaf {
 
-/// What makes a surface's lobe reciprocal (LobeScaler) where it reflects by Fresnel's formula: a table over cosine,
-/// index of refraction and exponent. Cubics in the index, which varies little over a leaf's spectrum.
+/// Factors that make a surface's lobe reciprocal (LobeScaler) where it reflects by Fresnel's formula: a table over
+/// cosine, index of refraction and exponent. Cubic in the index, which varies little over a leaf's spectrum.
 class SurfaceScaling {
  public:
   SurfaceScaling() = default;
+  /// Tabulates over these ranges.
   SurfaceScaling(const Interval& exponents, const Interval& indices);
 
   using Position = ExponentAxis::Position;
   Position position(float exponent) const { return axis_.position(exponent); }
 
-  /// I of LobeScaler for a direction of this cosine to the normal, by lane.
+  /// Returns I of LobeScaler for a direction of this cosine to the normal, in each lane.
   Float4 at(const Position& exponent, float cosine, Float4 index) const {
     const CosineNodes nodes(std::min(cosine, 1.f));
     Float4 c = row(exponent.below, nodes);
@@ -30,7 +31,7 @@ class SurfaceScaling {
   }
 
   ExponentAxis axis_;
-  float middle_ = 0, per_width_ = 0;  ///< of the indices; from the middle to either end
+  float middle_ = 0, per_width_ = 0;  ///< middle of the indices; 1 / (half their range)
   std::vector<Float4> cubics_;        ///< [exponent][cosine]: coefficients
 };
 

@@ -12,7 +12,7 @@
 namespace frond::leaf {
 namespace {
 
-/// The paper's virtual spectrophotometer: counts of where rays go.
+/// The paper's virtual spectrophotometer: counts rays by their fate.
 Shares measure(const Tissue& tissue, double theta_deg, int rays, uint64_t key) {
   if (theta_deg == 90) return {.surface = 1};  // Fresnel's limit at grazing; a ray along the leaf never meets it
   const double theta = theta_deg * std::numbers::pi / 180;
@@ -55,7 +55,7 @@ void fill_by_monte_carlo(Table& table, const TissueModel& model, const TableRequ
   table.error = largest_difference(table.standard_errors, std::vector<Shares>(table.shares.size()));
 }
 
-/// First, middle and last: where the error of solutions is judged.
+/// Indices of the first, middle and last wavelength, where the error of solutions is estimated.
 std::vector<size_t> samples_of(size_t count) {
   const std::set<size_t> samples{0, count / 2, count - 1};
   return {samples.begin(), samples.end()};

@@ -4,7 +4,7 @@
 
 namespace frond::leaf {
 
-/// Bins about as narrow as the closest wavelengths: then few steps are left from a bin's beginning.
+/// Bins about as narrow as the closest wavelengths, so that few steps remain from a bin's start.
 WavelengthAxis::WavelengthAxis(const std::vector<double>& wavelengths_nm)
     : nm_(wavelengths_nm.begin(), wavelengths_nm.end()) {
   assert(nm_.size() > 1);
@@ -27,7 +27,7 @@ WavelengthAxis::WavelengthAxis(const std::vector<double>& wavelengths_nm)
 }
 
 DepthAxis::DepthAxis(double least, double most, double step) {
-  // Light that is weakened by so little is not told from what is not: below it, linear from 0.
+  // Depth below which absorption is negligible: linear from 0 there.
   constexpr double kLeastShare = 1e-5, kLeastDepth = 1e-9;
   if (least < kLeastShare * most) {
     depths_.push_back(0);

@@ -10,20 +10,22 @@
 
 namespace frond::leaf {
 
-/// A place between two nodes of an axis.
+/// Position between two nodes of an axis.
 struct AxisCell {
   uint32_t below;
-  float t;  ///< of the way to the next node, in [0, 1]
+  float t;  ///< fraction of the distance to the next node, in [0, 1]
 };
 
-/// Wavelengths of a table, whatever their spacing.
+/// Wavelengths of a table, with any spacing.
 class WavelengthAxis {
  public:
   WavelengthAxis() = default;
-  /// Two at least, ascending.
+  /// At least two, ascending.
   explicit WavelengthAxis(const std::vector<double>& wavelengths_nm);
 
+  /// Whether the axis has no nodes.
   bool empty() const { return nm_.empty(); }
+  /// Returns the cell that contains a wavelength; the first or last one beyond the ends, where t is clamped.
   AxisCell cell(float nm) const {
     const auto bin = static_cast<size_t>(std::clamp((nm - nm_[0]) * bins_per_nm_, 0.f, last_bin_));
     uint32_t below = first_in_bin_[bin];
@@ -32,15 +34,15 @@ class WavelengthAxis {
   }
 
  private:
-  std::vector<float> nm_, per_width_;   ///< of the cell that begins there
-  std::vector<uint32_t> first_in_bin_;  ///< wavelength below the beginning of each of many even steps
+  std::vector<float> nm_, per_width_;   ///< 1 / width of the cell that begins there
+  std::vector<uint32_t> first_in_bin_;  ///< index of the wavelength below the start of each of many even steps
   float bins_per_nm_ = 0, last_bin_ = 0;
 };
 
 /// Step of the natural logarithm of depth in tables of modes: linear interpolation leaves errors of pi f below 3e-4.
 inline constexpr double kDepthStep = 0.15;
 
-/// Optical depths of a table, even in their logarithm, after 0 where they begin there.
+/// Optical depths of a table, even in their logarithm; a first node 0 is added if the range starts at 0.
 class DepthAxis {
  public:
   DepthAxis() = default;
@@ -49,6 +51,7 @@ class DepthAxis {
 
   bool empty() const { return depths_.empty(); }
   const std::vector<double>& depths() const { return depths_; }
+  /// Returns the cell that contains a depth; beyond the ends t is clamped.
   AxisCell cell(double depth) const {
     const auto d = static_cast<float>(depth);
     if (d <= first_) return {0, zero_ == 0 ? 0.f : std::max(0.f, d / first_)};
@@ -60,12 +63,13 @@ class DepthAxis {
  private:
   std::vector<double> depths_;
   float first_ = 0, log_first_ = 0, per_step_ = 0, last_ = 1;
-  uint32_t zero_ = 0;  ///< 1 where depth 0 is a node of its own
+  uint32_t zero_ = 0;  ///< 1 if depth 0 is a node of its own
 };
 
-/// What of a table the lanes of a path look at: each a weighted sum of columns. Found once for a hit, whatever the
+/// The columns that the lanes of a path use: each lane is a weighted sum of columns. Computed once per hit, for any
 /// number of directions.
 struct TableSelection {
+  /// Columns of one lane and their weights; the first columns_per_lane are used.
   struct Lane {
     std::array<uint32_t, 4> column{};
     std::array<float, 4> weight{};
@@ -75,10 +79,11 @@ struct TableSelection {
   int columns_per_lane = 0;  ///< at most 4
 };
 
-/// Of a table of columns [wavelength][depth]; an empty axis of wavelengths: the lanes are they, one by one.
+/// Selection in a table of columns [wavelength][depth]. An empty axis of wavelengths: lanes are the wavelengths, one by
+/// one.
 TableSelection select_columns(const WavelengthAxis& wavelengths, const DepthAxis& depths,
                               const SampledWavelengths& lambda, const std::array<double, kLanes>& optical_depth);
-/// Of a table of columns [wavelength].
+/// Selection in a table of columns [wavelength].
 TableSelection select_columns(const WavelengthAxis& wavelengths, const SampledWavelengths& lambda);
 
 }  // namespace frond::leaf

@@ -72,7 +72,7 @@ bool unseal(std::string_view text, std::string_view header, Table& table) {
   try {
     table = parse_table(body, "");
     return true;
-  } catch (const InputError&) {  // no more than damaged
+  } catch (const InputError&) {  // a damaged file is replaced
     return false;
   }
 }
@@ -88,7 +88,7 @@ Table cached_table(const TableRequest& request, std::string_view name, const Thr
       log.info(summary(request, name, table) + ", from the cache");
       return table;
     }
-    log.warn({}, fmt::format("{} is damaged, its table is made anew", path.string()));
+    log.warn({}, fmt::format("{} is damaged, its table is computed again", path.string()));
   }
   const auto start = std::chrono::steady_clock::now();
   table = make_table(request, pool);

@@ -17,7 +17,7 @@ namespace {
 enum Column : size_t { kTheta, kWavelength, kRs, kRd, kT, kRsError, kRdError, kTError, kColumns };
 constexpr std::string_view kNames[kColumns] = {"theta_deg", "wavelength_nm", "Rs", "Rd", "T", "Rs_se", "Rd_se", "T_se"};
 constexpr size_t kRequired = kT + 1;
-/// What instruments write beside these, and follows from them.
+/// Columns that instruments write in addition and that follow from the others.
 constexpr std::string_view kPassedOver[] = {"R", "A", "R_se", "A_se"};
 constexpr std::string_view kErrorComment = "# error ";
 
@@ -58,7 +58,7 @@ struct Row {
   Shares errors() const { return {value[kRsError], value[kRdError], value[kTError]}; }
 };
 
-/// Which column each field of a row belongs to; kColumns: passed over.
+/// Column of each field of a row; kColumns: ignored.
 class Header {
  public:
   explicit Header(const std::vector<Field>& fields) {
@@ -71,7 +71,7 @@ class Header {
     for (size_t c = 0; c < kRequired; ++c)
       if (!has_[c]) fail(fields[0].where, "there is no column \"{}\"; {}", kNames[c], expected());
     if (has_errors() != (has_[kRdError] && has_[kTError]) || has_[kRdError] != has_[kTError])
-      fail(fields[0].where, "of Rs_se, Rd_se and T_se all are given or none");
+      fail(fields[0].where, "the columns Rs_se, Rd_se and T_se come together or not at all");
   }
 
   bool has_errors() const { return has_[kRsError]; }
@@ -191,7 +191,7 @@ Table parse_table(std::string_view text, const std::string& name) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   Location here{std::make_shared<const std::string>(name), 1, 1};
-  if (text.find('\0') != text.npos) fail(here, "this is no text: a leaf's table is a CSV file");
+  if (text.find('\0') != text.npos) fail(here, "not a text file: a leaf table is a CSV file");
   std::optional<Header> header;
   std::vector<Spectrum> spectra;
   std::map<double, size_t> known;

@@ -7,14 +7,14 @@
 
 namespace frond::leaf {
 
-/// The format that docs/table_format.md describes. `header` is a number of lines that each begin with `#`; numbers read
-/// back to the bit.
+/// Returns the table in the format of docs/file_formats.md. `header`: lines that each begin with `#`. Numbers are
+/// written such that they are read to the same bits.
 std::string to_csv(const Table& table, std::string_view header);
 
-/// Throws InputError with `name`, line and column of what is wrong.
+/// Parses a table. Throws InputError with `name`, line and column of the fault.
 Table parse_table(std::string_view text, const std::string& name);
 
-/// Throws InputError as `parse_table` does, or at `where` if the file cannot be read.
+/// Reads a table. Throws InputError as `parse_table` does, or at `where` if the file cannot be read.
 Table read_table(const std::filesystem::path& path, const Location& where);
 
 }  // namespace frond::leaf

@@ -9,19 +9,23 @@
 
 namespace frond::leaf {
 
-/// Even steps of wavelength over all for which the constants stand. Their nodes lie on it: linear interpolation between
-/// loses nothing.
+/// Grid of wavelengths, even over the whole range of the constants. The constants' nodes lie on it, so linear
+/// interpolation between its nodes is exact.
 struct WavelengthGrid {
   double first_nm, step_nm;
   size_t count;
 
+  /// Number of nodes.
   constexpr size_t size() const { return count; }
+  /// Wavelength of node i, nm.
   constexpr double nm(size_t i) const { return first_nm + static_cast<double>(i) * step_nm; }
 
+  /// Position of a wavelength on the grid.
   struct Cell {
     size_t below;
-    double t;  ///< of the way to the next node
+    double t;  ///< fraction of the distance to the next node; above 1 beyond the last one
   };
+  /// Returns the cell that contains a wavelength (nm); the first cell for shorter ones.
   constexpr Cell cell(double lambda_nm) const {
     const double x = std::max(0.0, (lambda_nm - first_nm) / step_nm);
     const size_t below = std::min(static_cast<size_t>(x), count - 2);
@@ -31,8 +35,8 @@ struct WavelengthGrid {
 inline constexpr WavelengthGrid kAbsorptionGrid{360, 5, 429};
 static_assert(kAbsorptionGrid.nm(0) == kConstantsRange_nm.min && kAbsorptionGrid.nm(428) == kConstantsRange_nm.max);
 
-/// Of the mesophyll, 1/m: the sum over pigments, proteins, fibres and water of concentration times specific absorption,
-/// and what else absorbs.
+/// Returns the absorption coefficient of the mesophyll, 1/m: the sum over pigments, proteins, fibres and water of
+/// concentration times specific absorption, plus `other_absorption`.
 double absorption_coefficient(const TissueParams& params, double lambda_nm);
 
 /// The same at every wavelength of kAbsorptionGrid.

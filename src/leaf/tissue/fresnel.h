@@ -4,13 +4,13 @@
 
 namespace frond::leaf {
 
-/// What happens at a plane between two clear media.
+/// Reflection and refraction at a plane between two clear media.
 struct Crossing {
   double reflectance;  ///< of unpolarised light; 1 past the critical angle
   double cos_t;        ///< cosine of the refracted direction, 0 past the critical angle
 };
 
-/// Fresnel and Snell for light at `cos_i` > 0 from the normal; eta = n_from / n_to.
+/// Returns Fresnel's reflectance and Snell's direction for light at `cos_i` > 0 from the normal; eta = n_from / n_to.
 inline Crossing fresnel(double cos_i, double eta) {
   const double cos2_t = 1 - eta * eta * (1 - cos_i * cos_i);
   if (!(cos2_t > 0)) return {1, 0};

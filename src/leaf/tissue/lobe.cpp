@@ -21,7 +21,7 @@ double integrate_edge(double from, double to, double exponent) {
   return sum * half;
 }
 
-/// -1 where pow is cheaper than multiplications.
+/// Returns -1 if pow is cheaper than multiplications.
 int small_whole(double exponent) {
   const bool small = exponent == std::floor(exponent) && exponent <= 64;
   return small ? static_cast<int>(exponent) : -1;
@@ -42,8 +42,8 @@ Lobe::Lobe(double exponent)
       maxima_(maxima(exponent)) {}
 
 double Lobe::kept_exactly(double cos_axis) const {
-  // The integral of `edge` in theta, over the whole of it: a regularised incomplete beta function of sin^2 theta. Its
-  // complement, taken at cos^2 theta, keeps digits at grazing.
+  // The integral of `edge` in theta, divided by that up to 90 degrees: a regularised incomplete beta function of sin^2
+  // theta. Its complement, at cos^2 theta, keeps precision at grazing.
   constexpr boost::math::policies::policy<boost::math::policies::promote_double<false>> kInDouble;
   const double c2 = std::min(1.0, cos_axis * cos_axis);
   return 0.5 + 0.5 * boost::math::ibeta(0.5, (exponent_ + 1) / 2, c2, kInDouble);

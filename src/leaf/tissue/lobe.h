@@ -11,8 +11,9 @@
 
 namespace frond::leaf {
 
-/// How a rough cell wall spreads light around an ideal direction: density proportional to cos^e of the angle to it
-/// (Lafortune and Willems 1994; eq. 2 of Baranoski and Rokne 1998), cut off at the plane of the wall by drawing again.
+/// Scattering by a rough cell wall around an ideal direction: density proportional to cos^e of the angle to it
+/// (Lafortune and Willems 1994; eq. 2 of Baranoski and Rokne 1998). Directions beyond the plane of the wall are
+/// rejected and drawn again.
 class Lobe {
  public:
   /// exponent >= 0; 1 is the cosine lobe.
@@ -20,19 +21,19 @@ class Lobe {
 
   double exponent() const { return exponent_; }
 
-  /// 1/sr at cos_alpha from the axis, before the cut.
+  /// Density, 1/sr, at cos_alpha from the axis, before the cut.
   double density(double cos_alpha) const { return cos_alpha > 0 ? peak_ * power(cos_alpha) : 0; }
 
-  /// Share of the lobe on its axis's side of the wall, in [1/2, 1]; cos_axis in [0, 1] is the axis's to the wall's
-  /// normal. What is left after the cut has density() / kept(). Quick for a TabulatedLobe alone.
+  /// Returns the share of the lobe on the axis's side of the wall, in [1/2, 1]; cos_axis in [0, 1]: cosine of the axis
+  /// to the wall's normal. After the cut the density is density() / kept(). Fast for a TabulatedLobe only.
   double kept(double cos_axis) const { return table_ ? table_->at(cos_axis) : kept_exactly(cos_axis); }
 
-  /// For directions after the cut; nullptr but in a CutLobe.
+  /// Quantiles of the directions after the cut; nullptr unless this is a CutLobe.
   const LobeQuantiles* quantiles() const { return quantiles_; }
 
-  /// Cosine to the axis from one uniform number.
+  /// Cosine to the axis from one uniform number, before the cut.
   float cos_from_uniform(float uniform) const { return std::pow(uniform, static_cast<float>(1 / (exponent_ + 1))); }
-  /// The same, quicker but not monotonous: `uniform` is one uniform number, the stream gives what more is needed.
+  /// The same, faster but not monotonic in `uniform`; further random numbers are taken from `rng`.
   double sample_cos(double uniform, RandomStream& rng) const {
     if (maxima_ == 0) return std::pow(uniform, 1 / (exponent_ + 1));
     // The k-th root of a uniform number is distributed like the largest of k of them, which costs less than pow.
@@ -45,7 +46,7 @@ class Lobe {
   }
 
  protected:
-  /// What is kept, at x = sqrt(1 - cos_axis) in equal steps.
+  /// `kept` at even steps of x = sqrt(1 - cos_axis).
   class KeptTable {
    public:
     explicit KeptTable(double exponent);
@@ -88,7 +89,7 @@ class Lobe {
   const KeptTable* table_ = nullptr;  ///< not owned
 };
 
-/// A lobe that is asked often for what the cut keeps. Plain lobes that are copied from it must not outlive it.
+/// A lobe with a table of `kept`, for frequent calls. Copies as a plain Lobe must not outlive it.
 class TabulatedLobe : public Lobe {
  public:
   explicit TabulatedLobe(double exponent) : TabulatedLobe(exponent, std::make_shared<const KeptTable>(exponent)) {}
@@ -100,7 +101,7 @@ class TabulatedLobe : public Lobe {
   std::shared_ptr<const KeptTable> table_;
 };
 
-/// A lobe that many directions are drawn from after the cut.
+/// A lobe with a table of quantiles, for drawing many directions after the cut.
 class CutLobe final : public TabulatedLobe {
  public:
   explicit CutLobe(double exponent) : TabulatedLobe(exponent), owned_(std::make_shared<const LobeQuantiles>(exponent)) {

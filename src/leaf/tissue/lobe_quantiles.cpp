@@ -8,7 +8,8 @@ namespace {
 
 constexpr boost::math::policies::policy<boost::math::policies::promote_double<false>> kInDouble;
 
-/// x by the share beyond, and its derivative. (1 - s) / 2 has the beta distribution of a and a.
+/// x as a function of the share beyond, and its derivative. (1 - s) / 2 has the beta distribution of parameters a and
+/// a.
 struct Node {
   double x, slope;
   Node(double a, double beyond) {

@@ -9,19 +9,19 @@
 
 namespace frond::leaf {
 
-/// The inverse of F(s), the integral of (1 - s^2)^(a - 1) from -1 to s over the whole up to 1. Cubics between nodes
-/// that are even in each octave of what lies beyond s, since there s goes like a power of it: to 1e-6, but for the
+/// Inverse of F(s), the integral of (1 - s^2)^(a - 1) from -1 to s, divided by that from -1 to 1. Cubics between nodes
+/// that are even in each octave of 1 - F, since 1 - s is about a power of it there. Error 1e-6, except for the
 /// outermost 2^-24 of either end.
 class PowerQuantile {
  public:
   /// a > 0.
   explicit PowerQuantile(double a);
 
-  /// A sine and its cosine.
+  /// A sine s and its cosine.
   struct Angle {
     float sine, cosine;
   };
-  /// F in [0, 1].
+  /// Returns the s at which F is `share`, in [0, 1].
   Angle at(float share) const {
     const float beyond = 2 * std::min(share, 1 - share);
     const auto bits = std::bit_cast<uint32_t>(std::max(beyond, kLeast));
@@ -40,10 +40,10 @@ class PowerQuantile {
   std::vector<Float4> cells_;  ///< of x over the cell: powers 0 to 3
 };
 
-/// Directions of a lobe cos^e that is cut off by a plane, without trials. Across the plane that the axis and the normal
-/// span a direction goes up by beta, and its projection lies in that plane at psi from the axis: cos alpha = cos beta
-/// cos psi, the solid angle is cos beta dbeta dpsi, and the cut is at one psi whatever beta. So both angles are
-/// independent, and the powers of their sines' densities are (1 - s^2) to e / 2 and to (e - 1) / 2.
+/// Draws directions of a lobe cos^e that is cut by a plane, without rejection. A direction has an elevation beta over
+/// the plane that the axis and the normal span, and its projection into that plane is at psi from the axis: cos alpha =
+/// cos beta cos psi, the solid angle is cos beta dbeta dpsi, and the cut is at one psi for every beta. So both angles
+/// are independent, and the densities of their sines are (1 - s^2) to the powers e / 2 and (e - 1) / 2.
 struct LobeQuantiles {
   explicit LobeQuantiles(double exponent) : across(exponent / 2 + 1), along(exponent / 2 + 0.5) {}
   PowerQuantile across, along;

@@ -6,19 +6,20 @@
 
 namespace frond::leaf {
 
-/// A leaf, ready to use.
+/// A named set of leaf parameters.
 struct Specimen {
   std::string_view name, doc;
-  std::string_view source;  ///< where its numbers come from, and how good they are
+  std::string_view source;  ///< source of the parameters, and their accuracy
   TissueParams params;
 };
 
-/// Apart from the specimens, which hold vectors: g++ 12 takes an array of such for no constant where UBSan is on.
+/// Separate from the specimens, which contain vectors: with UBSan g++ 12 does not accept an array of those as a
+/// constant.
 inline constexpr std::string_view kSpecimenNames[] = {"soybean", "maize", "lettuce",       "tomato",     "walnut",
                                                       "grape",   "toyon", "soybean-lopex", "maize-lopex"};
 
-/// The first two: Baranoski 2006 (Remote Sensing of Environment 100:335-347); Baranoski and Eng 2007 (IEEE TGRS
-/// 45:2593-2599).
+/// Sources of the first two: Baranoski 2006 (Remote Sensing of Environment 100:335-347); Baranoski and Eng 2007 (IEEE
+/// TGRS 45:2593-2599).
 inline const Specimen kSpecimens[] = {
     {kSpecimenNames[0],
      "Soybean, a bifacial leaf.",
@@ -52,8 +53,8 @@ inline const Specimen kSpecimens[] = {
       .epidermis_aspect = 5,
       .spongy_aspect = 5,
       .palisade_aspect = 5}},  // a unifacial leaf has no palisade: unused
-    // By frond fit, whose page tells which of these numbers the measurements tell (docs/fit.md). The cuticle, which
-    // they do not tell, is that of the leaves above.
+    // Fitted by `frond fit`; docs/fit.md says which parameters the measurements determine. They do not determine the
+    // cuticle, which is that of the leaves above.
     {kSpecimenNames[2],
      "Lettuce, as a bifacial leaf with the sieve effect.",
      "Fitted to a leaf of LOPEX93: RMSE 0.0110.",
@@ -184,7 +185,7 @@ inline const Specimen kSpecimens[] = {
 
 static_assert(std::size(kSpecimens) == std::size(kSpecimenNames));
 
-/// nullptr where there is none of that name.
+/// Returns the specimen of this name; nullptr if there is none.
 inline const Specimen* find_specimen(std::string_view name) {
   for (const Specimen& specimen : kSpecimens)
     if (specimen.name == name) return &specimen;

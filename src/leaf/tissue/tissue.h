@@ -9,34 +9,37 @@
 
 namespace frond::leaf {
 
-/// How the walls in a leaf spread light. Not owned.
+/// Lobes of a leaf's walls. Not owned.
 struct LeafLobes {
   const Lobe *cuticle, *epidermis, *spongy, *palisade;
 };
 
-/// Where they do: [interface][ray goes up][refracted]; nullptr: the ideal direction is kept.
+/// Lobes by [interface][ray goes up][refracted]; nullptr: the ideal direction is kept.
 using InterfaceLobes = std::array<std::array<std::array<const Lobe*, 2>, 2>, 6>;
 
-/// A leaf at one wavelength, as a ray meets it. Interfaces 0 to 5 count from the adaxial side. Medium i lies above
-/// interface i: 0 is the air over the leaf, 6 the air under it, both of index 1; the epidermes, media 1 and 5, are
-/// alike, and so are both parts of a mesophyll in which the air space moves. The lobes belong to the TissueModel that
-/// made it.
+/// A leaf at one wavelength as a stack of media and interfaces. Interfaces 0 to 5 count from the adaxial side. Medium i
+/// lies above interface i: 0 is the air over the leaf, 6 the air under it, both of index 1; the epidermes, media 1 and
+/// 5, are alike, and so are both parts of a mesophyll in which the air space moves. The lobes belong to the TissueModel
+/// that made it.
 struct Tissue {
   static constexpr size_t kInterfaces = std::tuple_size_v<InterfaceLobes>, kMedia = 7, kBeneath = 6;
 
   std::array<double, kMedia> n;              ///< refractive indices
-  std::array<double, kMedia> optical_depth;  ///< of a straight way through; where the air space moves, of both together
+  std::array<double, kMedia> optical_depth;  ///< along the normal; where the air space moves, of both parts together
   const InterfaceLobes* lobes;               ///< not owned
   /// The air space (medium 3) lies anywhere in the mesophyll: media 2 and 4 share the depth as p to 1 - p, p uniform.
   bool air_space_moves;
   bool sieve_and_detour;
 
+  /// Index of the cuticle, which is the epidermis's.
   double n_cuticle() const { return n[1]; }
+  /// Lobe of a ray that meets the interface going up or down; nullptr: none.
   const Lobe* lobe(size_t interface, bool up, bool refracted) const { return (*lobes)[interface][up][refracted]; }
+  /// Lobe of the outer surface's reflection.
   const Lobe& surface_lobe() const { return *lobe(0, false, false); }
 };
 
-/// A leaf at all wavelengths. Must outlive the tissues that it makes; copies share their lobes.
+/// A leaf at all wavelengths. Must outlive the tissues that it makes; copies share its lobes.
 class TissueModel {
  public:
   explicit TissueModel(const TissueParams& params);
@@ -44,13 +47,13 @@ class TissueModel {
   const TissueParams& params() const { return params_; }
   LeafLobes leaf_lobes() const& { return {&lobes_->cuticle, &lobes_->epidermis, &lobes_->spongy, &lobes_->palisade}; }
   const InterfaceLobes& lobes() const& { return lobes_->at_interfaces; }
-  /// Others, where this leaf has its own.
+  /// Returns other lobes in the arrangement of this leaf's structure.
   InterfaceLobes arrange(const LeafLobes& lobes) const;
 
-  /// lambda_nm within kConstantsRange_nm. Quick enough for the render loop.
+  /// Returns the leaf at lambda_nm, within kConstantsRange_nm. Fast enough for the render loop.
   Tissue at(double lambda_nm) const&;
   Tissue at(double lambda_nm) && = delete;
-  /// With another optical depth of the mesophyll, or other lobes: for leaves that vary from place to place.
+  /// The same with another optical depth of the mesophyll and other lobes, for leaves that vary over their surface.
   Tissue at(double lambda_nm, double optical_depth, const InterfaceLobes& lobes) const;
 
  private:
@@ -58,7 +61,7 @@ class TissueModel {
     TabulatedLobe cuticle, epidermis, spongy, palisade;
     InterfaceLobes at_interfaces{};
   };
-  /// What varies with the wavelength.
+  /// Everything that depends on the wavelength.
   struct Optics {
     double n_cuticle, n_mesophyll, n_antidermal_wall, depth;
   };
@@ -67,10 +70,11 @@ class TissueModel {
 
   TissueParams params_;
   std::shared_ptr<Lobes> lobes_;
-  std::vector<Optics> optics_;  ///< at kAbsorptionGrid: linear between, like the constants that they come from
+  std::vector<Optics> optics_;  ///< at kAbsorptionGrid; linear in between, like the constants
 };
 
-/// Share of light that the mesophyll lets through, for a ray at |cos| `c` from the normal: Beer's law.
+/// Returns the share of light that the mesophyll transmits, for a ray at |cos| `c` from the normal: Beer's law; with
+/// the sieve and detour effects cos(c) replaces c (Baranoski and Eng 2007).
 inline double survival(double optical_depth, double c, bool sieve_and_detour) {
   return optical_depth > 0 ? std::exp(-optical_depth / (sieve_and_detour ? std::cos(c) : c)) : 1;
 }

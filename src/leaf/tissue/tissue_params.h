@@ -6,13 +6,13 @@
 
 namespace frond::leaf {
 
-/// How the cells of a leaf are layered (Baranoski 2006; Baranoski and Eng 2007).
+/// Layers of cells of a leaf (Baranoski 2006; Baranoski and Eng 2007).
 enum class Structure : uint8_t {
   bifacial,   ///< palisade cells above, spongy cells below, an air space under both
-  unifacial,  ///< one kind of mesophyll on both sides of an air space, whose place varies from ray to ray
+  unifacial,  ///< one kind of mesophyll on both sides of an air space, whose depth varies from ray to ray
 };
 
-/// One beyond those of every green leaf, such as the anthocyanins of petals and autumn leaves.
+/// A pigment that green leaves lack, such as the anthocyanins of petals and autumn leaves.
 struct Pigment {
   double concentration = 0;                 ///< in the mesophyll, kg/m^3
   std::vector<double> specific_absorption;  ///< m^2/kg, at kAbsorptionGrid
@@ -20,14 +20,14 @@ struct Pigment {
   friend bool operator==(const Pigment&, const Pigment&) = default;
 };
 
-/// A leaf in the terms of its biology.
+/// Biological parameters of a leaf: structure and chemistry.
 struct TissueParams {
   Structure structure = Structure::bifacial;
   double thickness_m = 0;
-  double mesophyll_fraction = 0;  ///< of the thickness, in [0, 1]: the part that absorbs
+  double mesophyll_fraction = 0;  ///< share of the thickness that absorbs, in [0, 1]
   /// Concentrations in the mesophyll, kg/m^3.
   double chlorophyll_a = 0, chlorophyll_b = 0, carotenoids = 0, protein = 0, cellulose = 0, lignin = 0;
-  double other_absorption = 0;  ///< 1/m, at every wavelength alike: of all else in the mesophyll
+  double other_absorption = 0;  ///< 1/m, independent of wavelength: absorption by anything else
   std::vector<Pigment> pigments = {};
   /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
   double cuticle_aspect = 0, epidermis_aspect = 0, spongy_aspect = 0, palisade_aspect = 0;

@@ -3,15 +3,15 @@
 #include "leaf/walk/batch_lanes.h"
 #include "leaf/walk/batch_slots.h"
 
-/// One event of the walk for a register of rays, as walk.cpp has it for one ray: absorption on the way, Fresnel and
-/// Snell, a draw from the lobe. Every lane goes through all of it, and masks choose what holds.
+/// One event of the walk for a SIMD register of rays; walk.cpp has it for one ray: absorption in the medium, Fresnel
+/// and Snell, a draw from the lobe. Every lane executes all of it, and masks select the results.
 namespace frond::leaf::batch {
 namespace {
 
-/// Nothing closer than this to the plane of an interface is divided by.
+/// Lower bound of cosines to an interface that are divided by.
 constexpr float kLeastCosine = 1e-12f;
 
-/// A register's width of Slots.
+/// As many of the Slots as a register has lanes.
 struct Rays {
   Floats cos_theta, sin_theta, cos_phi, sin_phi;
   Ints up, state, draws_again;
@@ -40,16 +40,15 @@ struct Rays {
   }
 };
 
-/// What roulette leaves of small weights.
+/// Returns the weights after Russian roulette of those below 0.1.
 inline Floats play_roulette(Floats weight, Floats uniform) {
   constexpr float kThreshold = 0.1f;
   const Floats lifted = uniform * kThreshold < weight ? all(kThreshold) : all(0);
   return weight >= kThreshold ? weight : lifted;
 }
 
-/// The way through the medium to the interface. Returns -log2 of uniform numbers for the lobe: an exponential variable
-/// that exceeds the depth exceeds it by an exponential variable, so what is left of the one that decides over
-/// absorption serves once more.
+/// Passes the medium up to the interface. Returns -log2 of uniform numbers for the lobe: the excess of an exponential
+/// variable over the depth is an exponential variable again, so what remains of the draw for absorption is reused.
 template <bool kWeighted, bool kSieve>
 Floats pass_medium(const Tables& tables, Rays& rays) {
   const Floats depth = pick(tables.depth, rays.state) + pick(tables.depth_slope, rays.state) * rays.air_space;
@@ -64,7 +63,7 @@ Floats pass_medium(const Tables& tables, Rays& rays) {
   }
 }
 
-/// Share of unpolarised light that is reflected where it is not all of it.
+/// Fresnel reflectance of unpolarised light below the critical angle.
 inline Floats reflectance(Floats cos_i, Floats cos_t, Floats eta) {
   const Floats s = eta * cos_i - cos_t, s_sum = eta * cos_i + cos_t;
   const Floats p = cos_i - eta * cos_t, p_sum = cos_i + eta * cos_t;
@@ -72,7 +71,7 @@ inline Floats reflectance(Floats cos_i, Floats cos_t, Floats eta) {
   return 0.5f * (rs * rs + rp * rp);
 }
 
-/// Reflects or refracts those rays that do not draw again, and finds their lobes.
+/// Reflects or refracts the rays that do not draw again, and finds their lobes.
 inline void cross_interface(const Tables& tables, Rays& rays) {
   const Floats eta = pick(tables.eta, rays.state), sin_t = eta * rays.sin_theta, eta_cos = eta * rays.cos_theta;
   // In this form cos_t keeps its precision where light is grazing on either side.
@@ -89,8 +88,8 @@ inline void cross_interface(const Tables& tables, Rays& rays) {
   rays.narrowness = rays.draws_again ? rays.narrowness : reflects ? after_reflection : after_refraction;
 }
 
-/// Turns rays to a draw from the lobe around them where that stays on their side of the interface; the others will draw
-/// again. Without a lobe, narrowness 0 draws the axis itself.
+/// Turns rays into directions drawn from their lobes if those stay on the same side of the interface; the other rays
+/// will draw again. Narrowness 0, no lobe, draws the axis itself.
 inline void perturb(Rays& rays, Floats exponential) {
   const Floats cos_a = exp2_of(-exponential * rays.narrowness);
   const Floats sin_a = square_root(larger(1.f - cos_a * cos_a, all(0)));
@@ -112,7 +111,7 @@ inline void perturb(Rays& rays, Floats exponential) {
   rays.draws_again = ~kept;
 }
 
-/// Moves on to the next interface. The mask returned says whose walk has ended; these keep their state.
+/// Advances to the next interface. Returns the mask of the rays whose walk has ended, which keep their state.
 inline Ints arrive(Rays& rays) {
   const Ints next = rays.up ? (rays.state | 1) - 2 : (rays.state & ~1) + 2;
   const Ints outside = (next < 0) | (next >= static_cast<int32_t>(kStates));
@@ -133,7 +132,7 @@ Ints event(const Tables& tables, Slots& slots, size_t i) {
   return ended;
 }
 
-/// Flattened, so that no register passes through memory between functions.
+/// Flattened, so that registers are not spilled between functions.
 template <bool kWeighted, bool kSieve>
 [[gnu::flatten]] uint64_t step(const Tables& tables, Slots& slots, size_t count) {
   static_assert(Slots::kCount % kLanes == 0 && Slots::kCount <= 64);

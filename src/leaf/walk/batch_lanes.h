@@ -9,9 +9,9 @@
 #include <emmintrin.h>
 #endif
 
-/// Registers of floats and integers by the compilers' own vector types, as wide as the including file is compiled for.
-/// Arithmetic of + - * / and square roots, which IEEE 754 rounds in one way, so that every width gives the same bits.
-/// The name space is unnamed because each including file needs functions of its own, for its own instructions.
+/// SIMD registers of floats and integers as the compilers' vector types, as wide as the including file is compiled for.
+/// Only + - * / and square roots are used, which IEEE 754 rounds in one way, so that every width gives the same bits.
+/// The namespace is unnamed because each including file requires functions of its own, for its own instructions.
 namespace frond::leaf::batch {
 namespace {
 
@@ -27,7 +27,7 @@ typedef float Floats __attribute__((vector_size(4 * kLanes)));
 typedef int32_t Ints __attribute__((vector_size(4 * kLanes)));  // masks too: -1 for true
 typedef uint32_t Bits __attribute__((vector_size(4 * kLanes)));
 
-/// From and to columns of Slots, aligned.
+/// Aligned loads and stores of columns of Slots.
 template <class Register, class T>
 Register load(const T* from) {
   Register value;
@@ -56,7 +56,7 @@ inline Floats square_root(Floats x) {
 #endif
 }
 
-/// table[index] for a table of sixteen, lane by lane.
+/// Returns table[index] of a table of sixteen, lane by lane.
 inline Floats pick(const float* table, Ints index) {
 #if defined(__AVX512F__)
   return _mm512_maskz_permutexvar_ps(0xffff, reinterpret_cast<__m512i>(index), _mm512_load_ps(table));
@@ -71,7 +71,7 @@ inline Floats pick(const float* table, Ints index) {
 #endif
 }
 
-/// Bit i: lane i of the mask.
+/// Returns the mask as bits: bit i is lane i.
 inline uint64_t bits_of(Ints mask) {
 #if defined(__AVX512F__)
   return _mm512_cmplt_epi32_mask(reinterpret_cast<__m512i>(mask), _mm512_setzero_si512());
@@ -95,7 +95,7 @@ Floats polynomial(const float (&coefficients)[kTerms], Floats x) {
   return sum;
 }
 
-/// x > 0, normal.
+/// log2 x for x > 0, normal.
 inline Floats log2_of(Floats x) {
   constexpr int32_t kRootHalf = 0x3f3504f3;
   constexpr float kTerms[] = {1.44269502f,  -0.721352935f, 0.480916709f, -0.360225171f,
@@ -105,7 +105,7 @@ inline Floats log2_of(Floats x) {
   return to_floats(bits >> 23) + t * polynomial(kTerms, t);
 }
 
-/// x <= 0; exactly 1 at 0, and 0 below -126.
+/// 2^x for x <= 0; exactly 1 at 0, and 0 below -126.
 inline Floats exp2_of(Floats x) {
   constexpr float kRounder = 12582912;  // 1.5 * 2^23: adding it rounds to a whole number, found in the lowest bits
   constexpr float kTerms[] = {1, 0.693147182f, 0.240221068f, 0.0555035695f, 0.00967603177f, 0.00133908633f};
@@ -115,7 +115,7 @@ inline Floats exp2_of(Floats x) {
   return x < -126.f ? all(0) : reinterpret_cast<Floats>(scaled);
 }
 
-/// Of x in [0, 1].
+/// cos x for x in [0, 1], radians.
 inline Floats cos_of(Floats x) {
   constexpr float kTerms[] = {1, -0.49999997f, 0.0416664556f, -0.00138829579f, 2.41210728e-05f};
   return polynomial(kTerms, x * x);
@@ -125,7 +125,7 @@ struct CirclePoint {
   Floats cosine, sine;
 };
 
-/// A uniform point of the unit circle from 32 random bits.
+/// Returns a uniform point of the unit circle from 32 random bits.
 inline CirclePoint circle_point(Bits bits) {
   // 31 bits are half an angle, in units of 45 degrees: between them they make half a circle. One bit chooses the half.
   constexpr float kSine[] = {0.785398185f, -0.0807454363f, 0.00249000685f, -3.59542901e-05f};

@@ -15,7 +15,8 @@ using batch::Tables;
 
 float narrowness(const Lobe* lobe) { return lobe ? static_cast<float>(1 / (lobe->exponent() + 1)) : 0; }
 
-/// As many powers of two. Beyond all measure nothing gets through anyway, and infinities would not mix.
+/// An optical depth in powers of two. Clamped: infinities would give NaN, and nothing is transmitted at such depths
+/// anyway.
 float depth_in_octaves(double depth) { return static_cast<float>(std::min(depth, 1e30) * std::numbers::log2e); }
 
 Tables tables_of(const Tissue& tissue) {
@@ -57,16 +58,16 @@ class Batch {
       uint64_t ended = step(tables_, slots_, live_);
       if (live_ < Slots::kCount) ended &= (uint64_t{1} << live_) - 1;
       if (!traps_.empty()) ended |= trapped();
-      // From the last on: then the slot that moves into a gap is never one that has ended.
+      // From the last to the first: the slot that moves into a gap is then never one that has ended.
       for (; ended != 0; ended ^= std::bit_floor(ended)) finish(static_cast<size_t>(std::bit_width(ended)) - 1);
     }
   }
 
  private:
-  /// A medium that can hold a ray for ever.
+  /// A medium in which total reflection can keep a ray without end.
   struct Trap {
     int32_t state_down, state_up;
-    float sin_theta;  ///< beyond it, or within rounding of it, neither interface lets any light through
+    float sin_theta;  ///< above it, or within rounding of it, neither interface transmits light
   };
   static std::vector<Trap> find_traps(const Tissue& tissue) {
     constexpr double kRounding = 1e-6;  // of the sine's square
@@ -80,7 +81,7 @@ class Batch {
     }
     return traps;
   }
-  /// Ends the rays that are caught, as absorbed.
+  /// Ends the rays that are kept in such a medium, as absorbed.
   uint64_t trapped() {
     uint64_t bits = 0;
     for (size_t i = 0; i < live_; ++i)
@@ -122,7 +123,7 @@ class Batch {
 
   Fate fate(size_t i) const {
     if (slots_.weight[i] == 0) return Fate::absorbed;
-    // From the states that rays start in, only reflection leads out.
+    // Rays leave from their start states by reflection alone.
     if (slots_.state[i] == batch::kEntersDown || slots_.state[i] == batch::kEntersUp) return Fate::surface;
     return (slots_.up[i] != 0) == up_ ? Fate::transmitted : Fate::reflected;
   }

@@ -60,7 +60,7 @@ std::array<double, K> estimate_subsurface_f_lanes(const std::array<const Tissue*
   return sum;
 }
 
-/// Calls `act` with the tissues as an array of their number.
+/// Calls `act` with the tissues as an std::array of their number.
 template <class Act>
 auto with_lanes(std::span<const Tissue* const> tissues, const Act& act) {
   const auto first = [&]<size_t K>(std::integral_constant<size_t, K>) {

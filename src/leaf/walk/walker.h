@@ -11,7 +11,7 @@
 
 namespace frond::leaf {
 
-/// A uniform point of the unit disk without its centre.
+/// Point of the unit disk, not its centre; r2 is the square of the radius.
 struct DiskPoint {
   double x, y, r2;
 };
@@ -26,8 +26,8 @@ inline DiskPoint sample_disk(RandomStream& rng) {
   }
 }
 
-/// A direction of the lobe around `axis`, on the axis's side of the interface. The disk's point gives the angle to the
-/// axis by its radius, of which the square is uniform, and the azimuth by its place.
+/// Draws a direction of the lobe around `axis`, on the axis's side of the interface. The disk's point gives the angle
+/// to the axis by its radius, whose square is uniform, and the azimuth by its direction.
 inline Vec3d perturb(const Lobe& lobe, const Vec3d& axis, bool up, DiskPoint p, RandomStream& rng) {
   const Framed frame = Framed::around(axis);
   for (;; p = sample_disk(rng)) {
@@ -38,10 +38,10 @@ inline Vec3d perturb(const Lobe& lobe, const Vec3d& axis, bool up, DiskPoint p, 
   }
 }
 
-/// The direction in the epidermis that refracts into `wi`, and its Fresnel reflectance, by the reversal of Snell's law.
+/// The direction in the epidermis that refracts into `wi`, and its Fresnel reflectance, by Snell's law reversed.
 struct InnerDirection {
   Vec3d w;
-  double reflectance, cos_theta;  ///< cos_theta 0: there is none
+  double reflectance, cos_theta;  ///< cos_theta 0: there is no such direction
 
   InnerDirection(const Vec3d& wi, double n_cuticle) {
     const Crossing exit = fresnel(std::abs(wi.z), 1 / n_cuticle);
@@ -49,20 +49,19 @@ struct InnerDirection {
     reflectance = exit.reflectance;
     cos_theta = exit.cos_t;
   }
-  /// (1 - F) / (n^2 cos theta): makes f of a density per solid angle inside. Outside a density is cos theta_i times as
-  /// large, which f divides by again.
+  /// Returns (1 - F) / (n^2 cos theta), which converts a density per solid angle inside to f. The density outside is
+  /// cos theta_i times as large, and f divides by that cosine again.
   double factor(double n_cuticle) const {
     return cos_theta > 0 ? (1 - reflectance) / (n_cuticle * n_cuticle * cos_theta) : 0;
   }
 };
 
-/// A ray on its way through the leaf, at K wavelengths at once.
+/// State of a walk through the leaf, at K wavelengths at once.
 ///
-/// The hero's random numbers draw the path: which branch it takes at each interface, the directions that are drawn from
-/// lobes, and the one that it leaves by. Each wavelength has a density with which it would have drawn the same path,
-/// and its weight is that over the mean of them all (the balance heuristic of Veach and Guibas 1995; hero wavelengths
-/// after Wilkie et al. 2014). Where an interface does not perturb, the path has no direction of its own, and every
-/// wavelength has the one that its own index refracts into.
+/// The hero's random numbers draw the path: the branch at each interface, the directions from lobes, and the direction
+/// outside. Each wavelength has a density with which it would have drawn the same path; its weight is that density over
+/// the mean of all K (the balance heuristic of Veach and Guibas 1995; hero wavelengths after Wilkie et al. 2014). Where
+/// an interface does not perturb, each wavelength follows the direction that its own index refracts into.
 template <size_t K>
 class Walker {
  public:
@@ -83,12 +82,12 @@ class Walker {
   bool inside() const { return medium_ != 0 && medium_ != Tissue::kBeneath; }
   bool up() const { return up_; }
   size_t medium() const { return medium_; }
-  /// The hero's.
+  /// Direction of the hero.
   const Vec3d& direction() const { return v_[hero_]; }
-  /// The ideal one, before a lobe spreads it, at one wavelength.
+  /// Ideal direction at one wavelength, before a lobe perturbs it.
   const Vec3d& axis(size_t lane) const { return v_[lane]; }
 
-  /// Shares of the ray that are left, over the densities with which any hero would have drawn it.
+  /// Weights: remaining shares of the ray, times each wavelength's density over the mean of all densities.
   Values weights() const {
     if constexpr (K == 1) return share_;
     double sum = 0;
@@ -98,14 +97,14 @@ class Walker {
     return w;
   }
 
-  /// At the interface ahead.
+  /// Reflectance and refraction at the next interface.
   Crossings ahead() const {
     Crossings c;
     for (size_t i = 0; i < K; ++i) c[i] = fresnel(std::abs(v_[i].z), eta(i));
     return c;
   }
 
-  /// Reflects or refracts and then perturbs. `connect(lobe)` sees the ray before its direction is drawn.
+  /// Reflects or refracts and then perturbs. Calls `connect(lobe)` before the direction is drawn.
   template <class Connect>
   void scatter(bool refracts, const Crossings& crossings, DiskPoint p, const Connect& connect) {
     for (size_t i = 0; i < K && K > 1; ++i)
@@ -113,7 +112,8 @@ class Walker {
     turn(refracts, crossings, p, connect);
   }
 
-  /// Refracts into the leaf whatever the chance of it, which becomes part of the weight. False where the hero cannot.
+  /// Refracts into the leaf; the probability of that becomes part of the weight. Returns false if the hero is totally
+  /// reflected.
   template <class Connect>
   bool enter(const Crossings& crossings, DiskPoint p, const Connect& connect) {
     for (size_t i = 0; i < K; ++i) {
@@ -125,8 +125,8 @@ class Walker {
     return true;
   }
 
-  /// One event. False where the ray is absorbed, or never leaves: between two interfaces that mirror it and let nothing
-  /// through it goes to and fro until it is absorbed, in a clear medium without end.
+  /// Executes one event. Returns false if the ray is absorbed or can never leave: between two interfaces that reflect
+  /// it totally without perturbing it, it continues until it is absorbed, without end in a clear medium.
   template <class Connect>
   bool step(const Connect& connect) {
     if (!pass_medium()) return false;
@@ -136,7 +136,8 @@ class Walker {
     return total_mirrors_ < 2;
   }
 
-  /// Once the ray is out: what belongs to the path is the direction outside, in place of the last one drawn inside.
+  /// Call when the ray is out: replaces the density of the last direction drawn inside by that of the direction
+  /// outside, which is the one that all wavelengths share.
   void leave() {
     if constexpr (K > 1) {
       const Vec3d wi = direction();
@@ -151,13 +152,13 @@ class Walker {
     }
   }
 
-  /// Of directions drawn around `axis`, cut off at the interface.
+  /// Density, 1/sr, of directions drawn around `axis` and cut at the interface.
   static double lobe_density(const Lobe& lobe, const Vec3d& axis, const Vec3d& w) {
     return lobe.density(dot(axis, w)) / lobe.kept(std::abs(axis.z));
   }
 
  private:
-  /// The path before its last direction was drawn.
+  /// State before the last direction was drawn.
   struct Draw {
     const Lobe* lobe;
     std::array<Vec3d, K> axis;
@@ -170,14 +171,14 @@ class Walker {
   static double chance(bool refracts, const Crossing& c) { return refracts ? 1 - c.reflectance : c.reflectance; }
   double hero_chance(bool refracts, const Crossings& c) const { return chance(refracts, c[hero_]); }
 
-  /// Where the air space moves, media 2 and 4 share the mesophyll.
+  /// Optical depth of the current medium. Where the air space moves, media 2 and 4 share the mesophyll.
   double depth(size_t lane) const {
     const double whole = tissues_[lane]->optical_depth[medium_];
     if (!tissue().air_space_moves) return whole;
     return medium_ == 2 ? whole * above_ : whole * (1 - above_);
   }
 
-  /// To the interface ahead. False where the ray is absorbed.
+  /// Passes the medium up to the next interface. Returns false if the ray is absorbed.
   bool pass_medium() {
     Values survives;
     bool clear = true;
@@ -195,7 +196,8 @@ class Walker {
     return survives_roulette();
   }
 
-  /// Its chance is a function of the path alone, not of the hero.
+  /// Russian roulette. Its probability is a function of the path alone, not of the hero, so it cancels in the balance
+  /// heuristic.
   bool survives_roulette() {
     constexpr double kThreshold = 0.1;
     double weight = 0;
@@ -234,7 +236,7 @@ class Walker {
     v_.fill(drawn);
   }
 
-  /// Rarely inside one medium: a direction that was drawn is every wavelength's.
+  /// Rare inside one medium: all wavelengths share a direction that was drawn.
   bool axes_differ() const {
     for (size_t i = 0; i < K; ++i)
       if (v_[i] != direction()) return true;
@@ -252,9 +254,9 @@ class Walker {
   RandomStream& rng_;
   std::array<Vec3d, K> v_;
   Values density_;  ///< of the path, relative to the hero's
-  Values share_;    ///< what is left of the ray: absorption, and chances that were not drawn
+  Values share_;    ///< remaining share of the ray: absorption, and probabilities that were not drawn
   Draw last_;
-  double above_ = 0;  ///< share of the mesophyll that lies above the air space, where that moves
+  double above_ = 0;  ///< share of the mesophyll above the air space, where that moves
   size_t hero_, medium_;
   int total_mirrors_ = 0;  ///< total reflections in a row that kept the angle
   Absorption absorption_;

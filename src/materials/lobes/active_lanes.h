@@ -4,7 +4,7 @@
 
 namespace frond {
 
-/// 1 in active lanes, 0 elsewhere.
+/// Returns 1 in active lanes, 0 elsewhere.
 inline SampledSpectrum lane_mask(const SampledWavelengths& lambda) {
   SampledSpectrum mask;
   for (size_t i = 0; i < kLanes; ++i) mask[int(i)] = static_cast<float>(lambda.active[i]);

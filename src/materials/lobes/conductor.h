@@ -5,14 +5,14 @@
 
 namespace frond {
 
-/// Indices of refraction (eta + i k) of what absorbs, over that of what is before it; lane by lane.
+/// Complex index of refraction eta + i k of an absorbing medium, over the index of the medium before it; lane by lane.
 struct ConductorIndices {
   SampledSpectrum eta, k;
 
-  /// Nothing is so large that its square's square does not fit.
+  /// Clamped, so that fourth powers stay finite in float.
   ConductorIndices(const SampledSpectrum& eta_, const SampledSpectrum& k_) : eta(bounded(eta_)), k(bounded(k_)) {}
 
-  /// Those with index 1 that reflect so much at normal incidence.
+  /// Returns eta = 1 and the k that gives this reflectance at normal incidence, clamped to [0, 0.9999].
   static ConductorIndices of_reflectance(const SampledSpectrum& r_) {
     const Float4 r = r_.v < 0.9999f ? larger(r_.v, Float4{}) : Float4{0.9999f, 0.9999f, 0.9999f, 0.9999f};
     return {SampledSpectrum(1), SampledSpectrum(2 * square_root(r / (1 - r)))};
@@ -25,7 +25,8 @@ struct ConductorIndices {
   }
 };
 
-/// A metal, smooth or rough, alike on both sides: what is not reflected is absorbed.
+/// A metal, smooth or rough, the same on both sides: Trowbridge-Reitz facets with Fresnel reflectance. The rest of the
+/// light is absorbed.
 class ConductorBsdf final : public Bsdf {
  public:
   /// `mask`: 1 in active lanes, 0 elsewhere.
@@ -36,6 +37,7 @@ class ConductorBsdf final : public Bsdf {
   Lobes flags() const override { return Lobes::reflection | (is_smooth() ? Lobes::specular : Lobes::glossy); }
 
   SampledSpectrum f(const Vec3& wo_, const Vec3& wi_, RandomStream&) const override { return f(wo_, wi_); }
+  /// f and sample without a random stream, for LayeredBsdf.
   SampledSpectrum f(const Vec3& wo_, const Vec3& wi_) const {
     if (!scatters(wo_, wi_)) return {};
     const Vec3 wo = upwards(wo_), wi = upwards(wi_), m = normalize_any(wo + wi);

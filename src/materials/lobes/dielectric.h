@@ -6,7 +6,7 @@
 
 namespace frond {
 
-/// Index of refraction below a surface over that above, at the wavelengths of a path.
+/// Index of refraction below a surface over that above, for the lanes of a path, clamped to [1e-3, 1e3].
 class LaneIndices {
  public:
   LaneIndices(const SampledSpectrum& eta, const SampledWavelengths& lambda) {
@@ -23,20 +23,21 @@ class LaneIndices {
 
   /// Whether lanes differ.
   bool disperses() const { return disperses_; }
-  /// Lanes that are active, and how many.
+  /// The i-th active lane, and the number of active lanes.
   int lane(int i) const { return lanes_[size_t(i)]; }
   int count() const { return count_; }
-  /// Of the i-th active one.
+  /// Index of the i-th active lane.
   float of(int i) const { return eta_[lane(i)]; }
   const SampledSpectrum& eta() const { return eta_; }
+  /// 1 in active lanes, 0 elsewhere.
   const SampledSpectrum& mask() const { return mask_; }
-  /// No light is turned.
+  /// Whether all indices are so close to 1 that no light is refracted.
   bool are_all_one() const {
     for (int i = 0; i < count_; ++i)
       if (std::abs(of(i) - 1) >= kAlmostOne) return false;
     return true;
   }
-  /// None so close to 1 that what a rough border refracts cannot be told from what it lets through.
+  /// Moves indices away from 1: closer to it, reflection and refraction by rough facets cannot be computed in float.
   void move_off_one() {
     for (int i = 0; i < count_; ++i)
       if (float& eta = eta_[lane(i)]; std::abs(eta - 1) < kAlmostOne) eta = eta < 1 ? 1 - kAlmostOne : 1 + kAlmostOne;
@@ -51,8 +52,8 @@ class LaneIndices {
   bool disperses_ = false;
 };
 
-/// The border of a dielectric without roughness. What is reflected keeps all lanes; where they are refracted by
-/// different angles, one of them goes on, chosen as often as it is let through.
+/// Smooth interface of a dielectric (Fresnel 1823). Reflection keeps all lanes; if lanes are refracted by different
+/// angles, one of them continues, chosen in proportion to its transmittance.
 class SmoothDielectricBsdf final : public Bsdf {
  public:
   explicit SmoothDielectricBsdf(const LaneIndices& indices) : indices_(indices) {}
@@ -82,6 +83,7 @@ class SmoothDielectricBsdf final : public Bsdf {
   }
 
  private:
+  /// All lanes have one index and one direction.
   std::optional<BsdfSample> refract_all(const Vec3& wo, float chance) const {
     const DielectricInterface border({0, 0}, indices_.of(0));
     const auto way = border.refract(wo, {0, 0, 1});
@@ -93,6 +95,7 @@ class SmoothDielectricBsdf final : public Bsdf {
                       .eta = border.eta_beyond(wo)};
   }
 
+  /// Draws one lane, in proportion to its transmittance; the sample is black in the other lanes.
   std::optional<BsdfSample> refract_one(const Vec3& wo, const SampledSpectrum& reflected, RandomStream& rng) const {
     float all = 0;
     for (int i = 0; i < indices_.count(); ++i) all += 1 - reflected[indices_.lane(i)];
@@ -117,8 +120,8 @@ class SmoothDielectricBsdf final : public Bsdf {
   LaneIndices indices_;
 };
 
-/// The border of a dielectric with roughness. Where lanes are refracted by different angles, directions are those of a
-/// lane drawn at random, and the density is the mean of theirs.
+/// Rough interface of a dielectric (Walter et al. 2007). If lanes are refracted by different angles, directions are
+/// drawn for one lane at random, and the density is the mean over lanes.
 class RoughDielectricBsdf final : public Bsdf {
  public:
   RoughDielectricBsdf(const TrowbridgeReitz& facets, LaneIndices indices) : facets_(facets), indices_(indices) {
@@ -167,7 +170,7 @@ class RoughDielectricBsdf final : public Bsdf {
   }
 
  private:
-  /// One for all lanes, or one for each.
+  /// Number of interfaces: one for all lanes, or one for each.
   int models() const { return indices_.disperses() ? indices_.count() : std::min(indices_.count(), 1); }
   DielectricInterface border(int i) const { return {facets_, indices_.of(i)}; }
 
@@ -175,7 +178,8 @@ class RoughDielectricBsdf final : public Bsdf {
   LaneIndices indices_;
 };
 
-/// A pane so thin that light leaves it where it came in, reflected between its faces to and fro; not refracted.
+/// A pane without thickness: specular reflection and transmission, summed over all interreflections of its two faces
+/// (geometric series); not refracted.
 class ThinDielectricBsdf final : public Bsdf {
  public:
   explicit ThinDielectricBsdf(const LaneIndices& indices) : indices_(indices) {}

@@ -7,10 +7,10 @@
 
 namespace frond {
 
-/// Closer than this to the surface, directions scatter nothing: floats should not be divided by less.
+/// Whether a direction is so close to the surface that f is taken as 0, which avoids division by tiny cosines.
 inline bool is_grazing(const Vec3& w) { return std::abs(w.z) < 1e-15f; }
 
-/// A border between two dielectrics at one wavelength, smooth or rough (Walter et al. 2007). Directions and f as of a
+/// Interface between two dielectrics at one wavelength, smooth or rough (Walter et al. 2007). Directions and f as in a
 /// Bsdf, for radiance.
 class DielectricInterface {
  public:
@@ -19,13 +19,14 @@ class DielectricInterface {
 
   bool is_smooth() const { return facets_.is_smooth(); }
   const TrowbridgeReitz& facets() const { return facets_; }
-  /// On the far side of `w`, over that on its own.
+  /// Index of refraction on the far side of `w`, over that on its own side.
   float eta_beyond(const Vec3& w) const { return w.z > 0 ? eta_ : 1 / eta_; }
 
-  /// What a rough one's facets do that turn wo into wi: f before Fresnel's factor, the density of `wi` where one such
-  /// facet is taken for granted, and that factor.
+  /// Terms of a rough interface for the facets that scatter wo into wi: f without Fresnel's factor, the density of `wi`
+  /// given that the ray is reflected (or refracted), and Fresnel's reflectance.
   struct Pair {
     float f = 0, pdf = 0, fresnel = 0;
+    /// Reflectance or transmittance of the facet.
     float share(bool reflects) const { return reflects ? fresnel : 1 - fresnel; }
   };
   Pair pair(Vec3 wo, Vec3 wi) const {
@@ -35,22 +36,24 @@ class DielectricInterface {
     return wi.z > 0 ? reflected(wo, wi, eta) : refracted(wo, wi, eta);
   }
 
-  /// A way on by one of the two.
+  /// A sampled direction, given that the ray is reflected (or refracted).
   struct Way {
     Vec3 wi;
     float weight;  ///< f |cos theta_i| / pdf
-    float pdf;     ///< where this one of the two is taken for granted; of a smooth one it is 1
+    float pdf;     ///< 1/sr, given the branch; 1 if smooth
   };
 
-  /// A facet that is seen from wo; a smooth one's is the surface.
+  /// Draws the normal of a facet visible from wo; +z if smooth.
   Vec3 facet(const Vec3& wo, Vec2 u) const {
     if (is_smooth()) return {0, 0, 1};
     return facets_.sample_visible({wo.x, wo.y, std::abs(wo.z)}, u);
   }
+  /// Reflectance of a facet of normal `m`.
   float fresnel(const Vec3& wo, const Vec3& m) const {
     return fresnel_dielectric(dot({wo.x, wo.y, std::abs(wo.z)}, m), eta_beyond(wo));
   }
 
+  /// Reflects wo by a facet; nothing if the result is below the surface.
   std::optional<Way> reflect(const Vec3& wo_, const Vec3& m) const {
     const Vec3 wo{wo_.x, wo_.y, std::abs(wo_.z)};
     const float cosine = dot(wo, m), share = fresnel_dielectric(cosine, eta_beyond(wo_));
@@ -65,6 +68,7 @@ class DielectricInterface {
     return way;
   }
 
+  /// Refracts wo by a facet; nothing under total reflection or if the result is above the surface.
   std::optional<Way> refract(const Vec3& wo_, const Vec3& m) const {
     const float eta = eta_beyond(wo_);
     const Vec3 wo{wo_.x, wo_.y, std::abs(wo_.z)};
@@ -91,7 +95,7 @@ class DielectricInterface {
   }
 
   Pair refracted(const Vec3& wo, const Vec3& wi, float eta) const {
-    // In double: both ways round it is the same, even where a cosine is small.
+    // In double, so that f is reciprocal even if a cosine is small.
     Vec3d m = normalize_any(to_double(wo) + double(eta) * to_double(wi));
     if (m.z < 0) m = -m;
     const float cosine = float(dot(to_double(wo), m)), beyond = float(-dot(to_double(wi), m));
@@ -101,13 +105,14 @@ class DielectricInterface {
             fresnel_between(cosine, beyond, eta)};
   }
 
-  /// Solid angle of facets' normals over that of directions refracted by them; cosines of both directions to the facet.
+  /// Jacobian of refraction: solid angle of facet normals over that of refracted directions (Walter et al. 2007);
+  /// cosines of both directions to the facet.
   static float spread(float cosine, float beyond, float eta) {
     const float whole = cosine / eta - beyond;
     return beyond / (whole * whole);
   }
 
-  /// Of the facets seen from one, share that is seen from the other too.
+  /// Share of the facets visible from wo that are visible from wi too: G2 / G1.
   float passes(const Vec3& wo, const Vec3& wi) const {
     return 4 * wi.z * facets_.seen_from_both(wo, wi) / facets_.visibility(wo);
   }

@@ -4,11 +4,11 @@
 
 namespace frond {
 
-/// What a leaf's model, which is not reciprocal, takes for its incident ray.
+/// Incident direction of a leaf model, which is not reciprocal by itself.
 enum class Incident : uint8_t {
-  traced,      ///< wo, the one that a path arrives along: as published
+  traced,      ///< wo, which a path arrives along: as published
   light,       ///< wi
-  reciprocal,  ///< none: the reciprocal leaf nearest to the model (docs/reciprocal_leaf.md)
+  reciprocal,  ///< neither: the reciprocal leaf closest to the model (docs/leaf_models.md)
 };
 
 }  // namespace frond

@@ -5,10 +5,11 @@
 
 namespace frond {
 
-/// Reflects and transmits light evenly into all directions, alike on both sides (Lambert 1760).
+/// Lambertian reflection and transmission, the same on both sides (Lambert 1760). f = reflectance / pi or transmittance
+/// / pi.
 class LambertianBsdf final : public Bsdf {
  public:
-  /// Both in [0, 1] lane by lane, with a sum of at most 1.
+  /// Both in [0, 1], their sum at most 1 in each lane.
   LambertianBsdf(const SampledSpectrum& reflectance, const SampledSpectrum& transmittance)
       : reflectance_(reflectance), transmittance_(transmittance) {
     const float r = reflectance.max(), t = transmittance.max();

@@ -5,27 +5,28 @@
 
 namespace frond {
 
-/// The medium between a coat and what it covers. Its extinction coefficient is 1, so its thickness is optical.
+/// The medium between a coat and its base. The extinction coefficient is 1, so `thickness` is an optical thickness.
 struct CoatMedium {
   float thickness;
-  SampledSpectrum albedo;  ///< black: it absorbs and does not scatter
+  SampledSpectrum albedo;  ///< single-scattering albedo; 0: the medium only absorbs
   float g;                 ///< mean cosine of scattering (Henyey and Greenstein 1941)
 };
 
-/// How far walks between the layers go.
+/// Limits of the walks between the layers.
 struct LayerWalks {
-  int max_depth;  ///< events below the coat, the way out not counted
-  int samples;    ///< walks of one call of f
+  int max_depth;  ///< events below the coat, without the exit
+  int samples;    ///< walks per call of f
 };
 
 namespace detail {
 
-/// Density of the cosine between directions of travel before and after, 1/sr.
+/// Henyey and Greenstein's phase function, 1/sr; `cosine`: between the directions of travel before and after.
 inline float henyey_greenstein(float cosine, float g) {
   const float square = 1 + g * g - 2 * g * cosine;
   return 0.25f * kInvPi * (1 - g * g) / (square * std::sqrt(square));
 }
 
+/// Draws a direction of travel after scattering, given that before.
 inline Vec3 sample_henyey_greenstein(const Vec3& w, float g, Vec2 u) {
   float cosine = 1 - 2 * u.x;
   if (std::abs(g) > 1e-3f) {
@@ -38,7 +39,7 @@ inline Vec3 sample_henyey_greenstein(const Vec3& w, float g, Vec2 u) {
 
 }  // namespace detail
 
-/// Lambert's reflection as the lower layer.
+/// Base of a LayeredBsdf: a Lambertian surface.
 class DiffuseBase {
  public:
   explicit DiffuseBase(const SampledSpectrum& reflectance) : reflectance_(reflectance) {}
@@ -54,14 +55,14 @@ class DiffuseBase {
     if (is_grazing(wi)) return {};
     return BsdfSample{f(wo, wi), wi, pdf(wo, wi), Lobes::reflection | Lobes::diffuse};
   }
-  /// Facets that reflect about as it does, seen through a border of this index and roughness; none.
+  /// Facets whose reflection approximates the base's lobe seen through the coat; none for a diffuse base.
   std::optional<TrowbridgeReitz> seen_through(const TrowbridgeReitz&, float) const { return {}; }
 
  private:
   SampledSpectrum reflectance_;
 };
 
-/// A metal as the lower layer.
+/// Base of a LayeredBsdf: a metal.
 class ConductorBase {
  public:
   ConductorBase(const TrowbridgeReitz& facets, const ConductorIndices& indices, const SampledSpectrum& mask)
@@ -72,8 +73,8 @@ class ConductorBase {
   SampledSpectrum f(const Vec3& wo, const Vec3& wi) const { return metal_.f(wo, wi); }
   float pdf(const Vec3& wo, const Vec3& wi) const { return metal_.pdf(wo, wi); }
   std::optional<BsdfSample> sample(const Vec3& wo, Vec2 u) const { return metal_.sample(wo, u); }
-  /// By how far slopes turn light that comes near the normal: its own twice, eta times as far outside; the coat's by
-  /// eta - 1, on the way in and on the way out.
+  /// As above. Width of the lobe for light near the normal: twice the metal's slope, times eta outside; the coat's
+  /// slope times eta - 1, on entry and on exit.
   std::optional<TrowbridgeReitz> seen_through(const TrowbridgeReitz& coat, float eta) const {
     if (coat.is_smooth() && is_smooth()) return {};
     const auto width = [&](float own, float above) {
@@ -87,10 +88,10 @@ class ConductorBase {
   ConductorBsdf metal_;
 };
 
-/// A dielectric coat over something that reflects, with a medium in between; alike on both sides. f is estimated by
-/// random walks between the layers that know depth alone (Guo, Hasan and Zhao 2018), connected to both directions; the
-/// two ways to meet at a vertex are combined by the power heuristic. Where the coat's index varies over the lanes, a
-/// call takes that of one, drawn at random, and sees that one alone.
+/// A dielectric coat over a reflecting base with a medium in between, the same on both sides. f is estimated by
+/// position-free random walks between the layers (Guo, Hasan and Zhao 2018), connected to both directions; at a vertex
+/// both sampling techniques are combined by the power heuristic. If the coat's index varies over the lanes, each call
+/// draws one lane and evaluates that one alone.
 template <class Base>
 class LayeredBsdf final : public Bsdf {
  public:
@@ -130,7 +131,7 @@ class LayeredBsdf final : public Bsdf {
     auto s = walk_out(coat, turned ? -wo_ : wo_, uc, u, rng);
     if (!s || is_grazing(s->wi)) return {};
     if (turned) s->wi = -s->wi;
-    // The weight stands; what it is divided by does not matter.
+    // The weight f |cos| / pdf is exact for any pdf > 0; `pdf` is the approximate density of light sampling.
     s->pdf = any(s->flags & Lobes::specular) ? 1 : pdf(wo_, s->wi);
     s->f *= s->pdf / std::abs(s->wi.z);
     s->pdf_is_approximate = true;
@@ -138,7 +139,8 @@ class LayeredBsdf final : public Bsdf {
     return s;
   }
 
-  /// The coat's reflection, the base's lobe as it looks through the coat, and a cosine for the rest.
+  /// Approximate: a mixture of the coat's reflection, the base's lobe seen through the coat, and a cosine lobe for the
+  /// rest.
   float pdf(const Vec3& wo_, const Vec3& wi_) const override {
     if (!same_side(wo_, wi_) || is_grazing(wo_) || is_grazing(wi_) || indices_.count() == 0) return 0;
     const Vec3 wo = wo_.z < 0 ? -wo_ : wo_, wi = wo_.z < 0 ? -wi_ : wi_;
@@ -154,11 +156,12 @@ class LayeredBsdf final : public Bsdf {
  private:
   static constexpr float kLobeShare = 0.9f;
 
-  /// The coat at one wavelength, and the lanes that it stands for, each times how seldom it is chosen.
+  /// The coat at one wavelength; `lanes`: 1 / probability in the lanes that it applies to, 0 elsewhere.
   struct Coat {
     DielectricInterface border;
     SampledSpectrum lanes;
   };
+  /// One coat for all lanes, or that of a lane drawn uniformly.
   Coat draw_coat(RandomStream& rng) const {
     if (!indices_.disperses()) return {{coat_, indices_.of(0)}, indices_.mask()};
     const int chosen = std::min(int(rng.uniform() * float(indices_.count())), indices_.count() - 1);
@@ -171,9 +174,10 @@ class LayeredBsdf final : public Bsdf {
     const float x = rng.uniform(), y = rng.uniform();
     return {x, y};
   }
+  /// Beer's law along w, by optical distance along the normal.
   float transmittance(float distance, const Vec3& w) const { return std::exp(-distance / std::abs(w.z)); }
 
-  /// Density of directions reflected by facets that are seen from wo; what goes below the surface is folded up.
+  /// Density of directions reflected by facets visible from wo; directions below the surface are mirrored to above it.
   static float density_folded(const TrowbridgeReitz& facets, const Vec3& wo, const Vec3& wi) {
     const auto density = [&](const Vec3& w) {
       const Vec3 m = normalize_any(wo + w);
@@ -182,14 +186,14 @@ class LayeredBsdf final : public Bsdf {
     return (density(wi) + density({wi.x, wi.y, -wi.z})) * facets.visibility(wo) / 4;
   }
 
-  /// Where a walk is: at height z over the base, on its way along w.
+  /// State of a walk: height z over the base, direction of travel w.
   struct Walk {
     float z;
     Vec3 w;
     SampledSpectrum weight;
   };
 
-  /// To the next event. True: it is in the medium, and the weight has its albedo.
+  /// Advances to the next event. Returns true for scattering in the medium, whose albedo the weight then includes.
   bool advance(Walk& at, RandomStream& rng) const {
     const float end = at.w.z > 0 ? medium_.thickness : 0, way = std::abs(end - at.z);
     if (medium_.albedo.is_black()) {
@@ -203,7 +207,7 @@ class LayeredBsdf final : public Bsdf {
     return false;
   }
 
-  /// Roulette of walks that carry little; false where one ends.
+  /// Russian roulette of walks of small weight; returns false if the walk ends.
   static bool survives(Walk& at, int depth, RandomStream& rng) {
     constexpr int kSafe = 4;
     constexpr float kLittle = 0.25f;
@@ -214,10 +218,10 @@ class LayeredBsdf final : public Bsdf {
     return true;
   }
 
-  /// What smooth layers do to light between them that goes up along a direction in the end.
+  /// Factors of specular reflection between smooth layers, for light that finally travels up along one direction.
   struct Mirrors {
-    SampledSpectrum base;  ///< once reflected by the base and up to the coat
-    SampledSpectrum both;  ///< reflected by the coat, then so by the base
+    SampledSpectrum base;  ///< reflected once by the base and transmitted up to the coat
+    SampledSpectrum both;  ///< reflected by the coat, then as `base`
   };
   Mirrors mirrors_along(const DielectricInterface& border, const Vec3& up) const {
     Mirrors m;
@@ -227,8 +231,8 @@ class LayeredBsdf final : public Bsdf {
     return m;
   }
 
-  /// What is scattered in the medium and comes to go along `up` by mirrors alone, which no direction drawn elsewhere
-  /// can meet: first down to the base, or first up to the coat. At most so many events more.
+  /// Light scattered in the medium that reaches direction `up` through specular reflections alone, which no sampled
+  /// direction can hit: first down to the base, or first up to the coat. At most `events` further events.
   SampledSpectrum by_mirrors(const Mirrors& between, const Walk& at, const Vec3& up, int events) const {
     constexpr float kNegligible = 1e-7f;
     const auto scattered = [&](const Vec3& w) { return detail::henyey_greenstein(dot(at.w, w), medium_.g); };
@@ -245,21 +249,22 @@ class LayeredBsdf final : public Bsdf {
     return sum;
   }
 
-  /// Estimate of what goes from wi to wo by way of the base or the medium.
+  /// Estimate of f for light that passes the base or the medium.
   SampledSpectrum walk_between(const Coat& coat, const Vec3& wo, const Vec3& wi, RandomStream& rng) const {
     const DielectricInterface& border = coat.border;
     const auto in = border.refract(wo, border.facet(wo, pair_of(rng)));
     const auto out = border.refract(wi, border.facet(wi, pair_of(rng)));
     if (!in || is_grazing(in->wi)) return {};
-    // Where facets let nothing through, rough ones may still be met from below.
+    // Rough facets may still be hit from below if this sample has no transmitted direction.
     const bool connects = out && !is_grazing(out->wi);
     if (!connects && coat_.is_smooth()) return {};
     const Vec3 up = connects ? -out->wi : Vec3{0, 0, 1};
     const float eta = border.eta_beyond(wi);
-    const float out_weight = connects ? out->weight * eta * eta : 0;  // it is used the other way round
+    const float out_weight = connects ? out->weight * eta * eta : 0;  // eta^2: used in the reverse direction
     const bool smooth = coat_.is_smooth();
-    // Light from wi by the way out that was drawn, against a direction `w` drawn elsewhere.
+    // MIS weight of the connection to wi through the coat, against a density `pdf` of sampling `up` elsewhere.
     const auto against = [&](float pdf) { return smooth || !connects ? 1 : power_heuristic(out->pdf, pdf); };
+    // Light of a walk that goes up and leaves through the rough coat toward wi, with its MIS weight.
     const auto escaped = [&](const Walk& at, float pdf, bool is_delta) -> SampledSpectrum {
       if (smooth || !(at.w.z > 0)) return {};
       const auto pair = border.pair(-at.w, wi);
@@ -302,7 +307,7 @@ class LayeredBsdf final : public Bsdf {
     return sum;
   }
 
-  /// A walk from wo until it leaves; f holds its weight.
+  /// Walks from wo until the walk leaves; f holds its weight.
   std::optional<BsdfSample> walk_out(const Coat& coat, const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const {
     const DielectricInterface& border = coat.border;
     const Lobes coat_lobe = coat_.is_smooth() ? Lobes::specular : Lobes::glossy;

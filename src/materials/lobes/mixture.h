@@ -5,7 +5,7 @@
 
 namespace frond {
 
-/// Lets everything straight through: a surface that is not there.
+/// Transmits all light without a change of direction: an invisible surface.
 class PassThroughBsdf final : public Bsdf {
  public:
   explicit PassThroughBsdf(const SampledWavelengths& lambda) : share_(lane_mask(lambda)) {}
@@ -22,7 +22,8 @@ class PassThroughBsdf final : public Bsdf {
   SampledSpectrum share_;
 };
 
-/// Two BSDFs, the second with share `amount`, the first with the rest: an exact mixture, not a choice at each hit.
+/// Linear combination of two BSDFs, the second with share `amount`, the first with the rest; evaluated exactly, not by
+/// a random choice at each hit.
 class MixtureBsdf final : public Bsdf {
  public:
   MixtureBsdf(const Bsdf& first, const Bsdf& second, float amount)
@@ -42,7 +43,7 @@ class MixtureBsdf final : public Bsdf {
     auto s = (takes_second ? second_ : first_).sample(wo, rest, u, rng);
     if (!s) return s;
     if (stochastic_ || s->pdf_is_approximate || any(s->flags & Lobes::specular)) {
-      // Chosen as often as its share: the weight f / pdf of the chosen one stands.
+      // Drawn with probability `share`: the weight f / pdf of the drawn BSDF is unchanged.
       s->f *= share;
       s->pdf *= share;
       s->pdf_is_approximate = stochastic_ || s->pdf_is_approximate;
@@ -57,12 +58,12 @@ class MixtureBsdf final : public Bsdf {
     return (1 - amount_) * first_.pdf(wo, wi) + amount_ * second_.pdf(wo, wi);
   }
 
-  /// Where two differ, there is none: what is asked of it has to be asked of the parts.
+  /// Index of the transmitting BSDF. If both transmit with different indices the mixture has none.
   SampledSpectrum index_ratio() const override {
     return any(first_.flags() & Lobes::transmission) ? first_.index_ratio() : second_.index_ratio();
   }
 
-  /// Each may have its own idea of what is incident.
+  /// Per ray, since the two may use different incident directions.
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
     for (size_t i = 0; i < rays.size(); ++i)
       (rng.uniform() < amount_ ? second_ : first_).scatter(incident, rng, rays.subspan(i, 1));

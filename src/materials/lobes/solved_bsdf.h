@@ -10,20 +10,21 @@
 
 namespace frond {
 
-/// A solved leaf where it was hit, at the wavelengths of the path. What is pointed to outlives the BSDF.
+/// Data of a SolvedBsdf: a solved leaf at a hit, at the wavelengths of the path. Objects pointed to must outlive the
+/// BSDF.
 struct SolvedHit {
   const leaf::ModeLookup* table;
   const leaf::ModeLookup::Selection* selection;
   const leaf::Lobe* surface;
   SampledSpectrum active;  ///< 1 in active lanes, 0 elsewhere
   Incident incident;
-  const leaf::SurfaceScaling* scaling = nullptr;  ///< of a reciprocal leaf, whose table is, too
-  leaf::SurfaceScaling::Position exponent = {};   ///< likewise: of the surface's lobe
+  const leaf::SurfaceScaling* scaling = nullptr;  ///< of a reciprocal leaf, whose table is reciprocal too
+  leaf::SurfaceScaling::Position exponent = {};   ///< likewise: position of the surface lobe's exponent
 };
 
-/// A leaf by the solution of its walk: the surface's lobe, exactly, and the light that has been inside by its modes
-/// over azimuth. Directions are drawn from the surface's lobe and a cosine lobe on either side, in the proportions of
-/// the light that goes these ways.
+/// A leaf by the solution of its walk: the surface's lobe in closed form, and the light that has been inside by its
+/// Fourier modes over azimuth. Directions are drawn from the surface's lobe and a cosine lobe on either side, in
+/// proportion to the light in each.
 class SolvedBsdf final : public Bsdf {
  public:
   explicit SolvedBsdf(const SolvedHit& hit) : hit_(hit), surface_(hit.surface) {}
@@ -53,7 +54,7 @@ class SolvedBsdf final : public Bsdf {
     return leaf_scatters(wo, wi) ? leaf_pdf(wo, wi, surface_.spread(wo, wi)) : 0;
   }
 
-  /// What the model says of its incident direction, whichever way round a path asks.
+  /// Scatters light along the model's own incident direction, whichever direction paths use.
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
     SolvedHit hit = hit_;
     if (from_light()) hit.incident = Incident::traced;
@@ -70,20 +71,20 @@ class SolvedBsdf final : public Bsdf {
     float surface, reflected, transmitted;
   };
 
-  /// What depends on the incident direction alone.
+  /// Terms that depend on the incident direction alone.
   struct Incidence {
     Vec3 direction{std::numeric_limits<float>::quiet_NaN(), 0, 0};
     float sine;
     leaf::SineNodes nodes;
     Float4 reflectance;  ///< of the surface; 0 in lanes that are not active
     Float4 enters;       ///< 1 - reflectance, likewise
-    Float4 surface;      ///< of a reciprocal leaf: what scales the surface's lobe for this direction
+    Float4 surface;      ///< of a reciprocal leaf: scale of the surface's lobe for this direction
   };
 
-  /// Light of some direction outside at the surface, where it always finds a way through.
+  /// Transmission of the surface for a direction outside, never totally reflected.
   struct Passage {
     Float4 through;      ///< 1 - F, Fresnel
-    Float4 over_cosine;  ///< the same over the cosine inside
+    Float4 over_cosine;  ///< the same over the cosine inside, mu'
   };
 
   static float sine2(const Vec3& w) { return std::min(w.x * w.x + w.y * w.y, 1.f); }
@@ -97,7 +98,7 @@ class SolvedBsdf final : public Bsdf {
     return {q * part, n * part};
   }
 
-  /// f, pdf and sample come in turn for one direction: looked up once.
+  /// Cached, since f, pdf and sample are called in turn for one direction.
   const Incidence& incidence_at(const Vec3& incident) const {
     if (incidence_.direction != incident) set(incidence_, incident);
     return incidence_;
@@ -114,7 +115,7 @@ class SolvedBsdf final : public Bsdf {
       in.surface = in.reflectance / hit_.scaling->at(hit_.exponent, std::abs(incident.z), hit_.selection->index.v);
   }
 
-  /// Each way keeps a little, so that no direction is left without density.
+  /// Each lobe keeps at least 1 % of the probability, so that no direction with f > 0 has density 0.
   const Choice& choice_at(const Vec3& wo) const {
     if (choice_.cos_theta == wo.z) return choice_;
     choice_.cos_theta = wo.z;
@@ -133,12 +134,12 @@ class SolvedBsdf final : public Bsdf {
     return choice_;
   }
 
-  /// Nothing where f is black.
+  /// Completes a sample; nothing if f is black.
   std::optional<BsdfSample> sampled(const Vec3& wo, Vec3 wi, Lobes from) const {
     std::optional<BsdfSample> result;
     const float lobe = surface_.spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
     if (density == 0) return result;
-    // Made in its place: a copy would wait for its parts to be stored.
+    // Constructed in place: a copy would wait for the stores of its parts.
     BsdfSample& sample = result.emplace();
     sample.f = SampledSpectrum(leaf_f(wo, wi, lobe));
     sample.wi = wi;
@@ -147,7 +148,7 @@ class SolvedBsdf final : public Bsdf {
     return result;
   }
 
-  /// To the last bit the same both ways round.
+  /// Bitwise equal if the directions are exchanged.
   Float4 reciprocal_f(const Vec3& wo, const Vec3& wi, float lobe) const {
     const Incidence& a = incidence_at(wo);
     Incidence b;
@@ -158,7 +159,7 @@ class SolvedBsdf final : public Bsdf {
     return lobe == 0 ? subsurface : subsurface + a.surface * b.surface * lobe;
   }
 
-  /// Of the azimuth from straight ahead; `sines`: their product.
+  /// Cosine of the azimuth from straight ahead; `sines`: product of the two directions' sines.
   static float cos_phi(const Vec3& wo, const Vec3& wi, float sines) {
     return sines > 0 ? std::clamp(-(wo.x * wi.x + wo.y * wi.y) / sines, -1.f, 1.f) : 1;
   }
@@ -172,6 +173,7 @@ class SolvedBsdf final : public Bsdf {
     return subsurface + in.reflectance * (lobe * surface_.made_good(incident.z) / std::abs(leaving.z));
   }
 
+  /// The Fourier series of leaf/solve/modes.h, by lane.
   Float4 subsurface_f(const Incidence& in, const Vec3& incident, const Vec3& leaving) const {
     const Float4 leaves = passage(leaving).over_cosine;
     const float sine_o = std::sqrt(sine2(leaving));

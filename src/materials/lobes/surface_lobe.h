@@ -9,15 +9,15 @@
 
 namespace frond {
 
-/// Closer than this to a leaf's plane, directions scatter nothing: floats should not be divided by less.
+/// Least |cos theta| of a direction that a leaf scatters, which avoids division by tiny cosines.
 inline constexpr float kLeastCosine = 1e-20f;
 
 inline bool leaf_scatters(const Vec3& wo, const Vec3& wi) {
   return std::abs(wo.z) >= kLeastCosine && std::abs(wi.z) >= kLeastCosine;
 }
 
-/// (cos, sin) of 2 pi u, u in [0, 1]: by Taylor series of half the angle, to 1e-6, quicker than a call; of unit length,
-/// by a Newton step.
+/// Returns (cos, sin) of 2 pi u, u in [0, 1]: Taylor series of half the angle, error 1e-6, normalised by a Newton step;
+/// faster than library calls.
 inline Vec2 unit_circle(float u) {
   const float a = kPi * (u - 0.5f), a2 = a * a;
   const float s =
@@ -27,31 +27,32 @@ inline Vec2 unit_circle(float u) {
   return d * (1.5f - 0.5f * (d.x * d.x + d.y * d.y));
 }
 
-/// The lobe about the mirror direction that a leaf's surface reflects into: a power of the cosine, cut off at the
-/// surface, what is left scaled so that its whole is 1. The part of a BSDF that is the surface's own is
-/// F spread(wo, wi) made_good(incident) / |cos theta| of the direction of leaving.
+/// Lobe of a leaf's surface about the mirror direction: a power of the cosine, cut off at the surface and normalised
+/// after the cut. The surface's share of the BSDF is F spread(wo, wi) made_good(incident) / |cos theta|, with the
+/// cosine of the exitant direction.
 class SurfaceLobe {
  public:
-  /// Not owned; nullptr where nobody will ask.
+  /// `lobe` is not owned; nullptr only if no function is called.
   explicit SurfaceLobe(const leaf::Lobe* lobe) : lobe_(lobe) {}
 
-  /// Before its cut, 1/sr: the same both ways round. 0 where the directions are not on one side.
+  /// Density before the cut, 1/sr, symmetric in its directions; 0 if they are on different sides.
   float spread(const Vec3& wo, const Vec3& wi) const {
     return wo.z * wi.z > 0 ? static_cast<float>(lobe_->density(dot(mirror(wo), wi))) : 0;
   }
 
-  /// What makes good the cut, by the cosine of the direction that is mirrored.
+  /// Normalisation after the cut, given the cosine of the mirrored direction.
   float made_good(float cos_theta) const { return cut_at(cos_theta).made_good; }
 
-  /// Of `sample`, 1/sr.
+  /// Density of `sample`, 1/sr.
   float pdf(const Vec3& wo, const Vec3& wi) const { return spread(wo, wi) * made_good(wo.z); }
 
+  /// Draws a direction on wo's side.
   Vec3 sample(const Vec3& wo, Vec2 u, RandomStream& rng) const {
     return lobe_->quantiles() ? sample_angles(wo, u, *lobe_->quantiles()) : sample_by_trials(wo, u, rng);
   }
 
  private:
-  /// What depends on the direction that is mirrored.
+  /// Terms that depend on the mirrored direction alone.
   struct Cut {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
     float kept, made_good;
@@ -75,7 +76,7 @@ class SurfaceLobe {
             std::copysign(std::max(up, kLeastCosine), wo.z)};
   }
 
-  /// The first try takes `u`; where the cut refuses it, others follow by numbers that are cheaper to make.
+  /// Rejection: the first trial uses `u`, later ones cheaper random numbers.
   Vec3 sample_by_trials(const Vec3& wo, Vec2 u, RandomStream& rng) const {
     const Frame frame = Frame::around(mirror(wo));
     const float side = std::copysign(1.f, wo.z);
@@ -91,7 +92,7 @@ class SurfaceLobe {
   static Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 
   const leaf::Lobe* lobe_;
-  mutable Cut cut_;  ///< asked in turn for one
+  mutable Cut cut_;  ///< cached, since calls come in turn for one direction
 };
 
 }  // namespace frond

@@ -10,26 +10,26 @@
 
 namespace frond {
 
-/// A leaf where it was hit, at the wavelengths of the path. What is pointed to outlives the BSDF.
+/// Data of a ThreeLobeBsdf: a leaf at a hit, at the wavelengths of the path. Objects pointed to must outlive the BSDF.
 struct LeafHit {
   const leaf::TableLookup* table;
   leaf::TableSelection selection;  ///< the table's columns for this hit
   const leaf::Lobe* surface;
   SampledSpectrum active;                              ///< 1 in active lanes, 0 elsewhere
-  const leaf::ReciprocalLookup* reciprocal = nullptr;  ///< of a leaf that is
-  leaf::ReciprocalLookup::Position exponent = {};      ///< likewise: of the surface's lobe
+  const leaf::ReciprocalLookup* reciprocal = nullptr;  ///< of a reciprocal leaf
+  leaf::ReciprocalLookup::Position exponent = {};      ///< likewise: position of the surface lobe's exponent
 };
 
-/// How a leaf is asked.
+/// Options of a ThreeLobeBsdf.
 struct LeafManner {
-  /// False: `f` and `pdf` leave the surface lobe out, and `sample` returns it as if it were a delta lobe, so that light
-  /// sampling never sees it.
+  /// False: `f` and `pdf` omit the surface lobe, and `sample` returns it as a delta lobe, which excludes it from light
+  /// sampling.
   bool surface_direct = true;
   Incident incident = Incident::traced;
 };
 
-/// A leaf as three lobes, each scaled by its share of the light (Baranoski and Rokne): the mirror direction spread by a
-/// power of the cosine (Rs), a cosine lobe on the side of incidence (Rd) and one on the other side (T).
+/// A leaf as three lobes, each scaled by its share of the light (Baranoski and Rokne): a power of the cosine about the
+/// mirror direction (Rs), a cosine lobe on the side of incidence (Rd) and one on the other side (T).
 class ThreeLobeBsdf final : public Bsdf {
  public:
   ThreeLobeBsdf(const LeafHit& hit, const LeafManner& manner) : hit_(hit), manner_(manner), surface_(hit.surface) {}
@@ -61,7 +61,7 @@ class ThreeLobeBsdf final : public Bsdf {
     return leaf_scatters(wo, wi) ? leaf_pdf(wo, wi, spread(wo, wi)) : 0;
   }
 
-  /// What the model says of its incident direction, whichever way round a path asks.
+  /// Scatters light along the model's own incident direction, whichever direction paths use.
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
     LeafManner manner = manner_;
     if (from_light()) manner.incident = Incident::traced;
@@ -75,12 +75,12 @@ class ThreeLobeBsdf final : public Bsdf {
     float surface, subsurface, transmitted;
   };
 
-  /// What depends on the incident direction alone.
+  /// Terms that depend on the incident direction alone.
   struct Incidence {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
     leaf::SampledShares shares;  ///< 0 in lanes that are not active
   };
-  /// Of a reciprocal leaf, what either direction has to say.
+  /// Terms of a reciprocal leaf for one of the two directions.
   struct Mutual {
     float cos_theta = std::numeric_limits<float>::quiet_NaN();
     leaf::SampledShares shares;
@@ -93,7 +93,7 @@ class ThreeLobeBsdf final : public Bsdf {
   bool is_reciprocal() const { return manner_.incident == Incident::reciprocal; }
   Lobes way_round() const { return from_light() ? Lobes::from_light : Lobes::none; }
 
-  /// f, pdf and sample come in turn for one direction: looked up once.
+  /// Cached, since f, pdf and sample are called in turn for one direction.
   const leaf::SampledShares& shares_at(float cos_theta) const {
     if (incidence_.cos_theta == cos_theta) return incidence_.shares;
     incidence_.cos_theta = cos_theta;
@@ -114,7 +114,7 @@ class ThreeLobeBsdf final : public Bsdf {
       transmitted = sum(shares_at(wo.z).subsurface) + sum(shares_at(wo.z).transmitted) - subsurface;
       transmitted = std::max(transmitted, 0.f);
     } else if (from_light()) {
-      // Light comes from everywhere: about the mean over a hemisphere, on either side.
+      // The incident direction is not known yet: shares at the mean cosine over a hemisphere, on either side.
       constexpr float kMeanCosine = 2.f / 3;
       const float mean = wo.z > 0 ? kMeanCosine : -kMeanCosine;
       subsurface = sum(shares_at(mean).subsurface);
@@ -130,7 +130,7 @@ class ThreeLobeBsdf final : public Bsdf {
     return choice_;
   }
 
-  /// Of the surface lobe; 0 where `f` leaves it out.
+  /// Value of the surface lobe; 0 if `f` omits it.
   float spread(const Vec3& wo, const Vec3& wi) const { return manner_.surface_direct ? surface_.spread(wo, wi) : 0; }
 
   Mutual mutual_at(float cos_theta) const {
@@ -171,13 +171,13 @@ class ThreeLobeBsdf final : public Bsdf {
     return lobe == 0 ? subsurface : subsurface + choice.surface * lobe * surface_.made_good(wo.z);
   }
 
-  /// Both on one side. Nothing where f is black.
+  /// Completes a sample on wo's side; nothing if f is black.
   std::optional<BsdfSample> reflected(const Vec3& wo, Vec3 wi, Lobes from) const {
     const float lobe = spread(wo, wi), density = leaf_pdf(wo, wi, lobe);
     return density == 0 ? std::nullopt : made(leaf_f(wo, wi, lobe), wi, density, from);
   }
 
-  /// Made in its place: a copy would wait for its parts to be stored.
+  /// Constructed in place: a copy would wait for the stores of its parts.
   static std::optional<BsdfSample> made(const SampledSpectrum& f, Vec3 wi, float density, Lobes from) {
     std::optional<BsdfSample> result;
     BsdfSample& sample = result.emplace();
@@ -195,7 +195,7 @@ class ThreeLobeBsdf final : public Bsdf {
     return reflected(wo, wi, kLobe);
   }
 
-  /// f of the surface lobe where wi, drawn from it, counts as a delta lobe's only direction.
+  /// f of the surface lobe if wi, drawn from it, is treated as the only direction of a delta lobe.
   SampledSpectrum as_delta(const Vec3& wo, const Vec3& wi) const {
     const float drawn = surface_.made_good(wo.z);
     if (is_reciprocal()) return mutual_of(wo).factors.surface * mutual_at(wi.z).factors.surface * (1 / drawn);

@@ -5,12 +5,11 @@
 
 namespace frond {
 
-/// Distribution of the normals of a rough surface's facets (Trowbridge and Reitz 1975; "GGX"), whose slopes along x and
-/// y have the widths alpha, with Smith's shadowing, height correlated (Heitz 2014). Directions lie on the side of +z.
+/// Distribution of facet normals of a rough surface (Trowbridge and Reitz 1975; "GGX") with slope widths alpha along x
+/// and y, and Smith's shadowing, height correlated (Heitz 2014). Directions lie on the side of +z.
 class TrowbridgeReitz {
  public:
-  /// Below `kSmooth` in both, nobody sees that it is rough; else neither is less than that, or than a thousandth of the
-  /// other.
+  /// Smooth if both widths are below `kSmooth`; else each is at least kSmooth and a thousandth of the other.
   TrowbridgeReitz(float alpha_x, float alpha_y) {
     const float larger = std::min(std::max(alpha_x, alpha_y), kRoughest);
     const float least = larger < kSmooth ? 0 : std::max(kSmooth, 1e-3f * larger);
@@ -21,23 +20,24 @@ class TrowbridgeReitz {
   bool is_smooth() const { return std::max(x_, y_) < kSmooth; }
   Vec2 alpha() const { return {x_, y_}; }
 
-  /// Area of facets of this normal, over the surface's, 1/sr.
+  /// D(m): area density of facets of this normal, relative to the surface's area, 1/sr.
   float density(const Vec3& m) const {
     if (m.z <= 0) return 0;
     const float x = m.x / x_, y = m.y / y_, square = x * x + y * y + m.z * m.z;
     return kInvPi / (x_ * y_ * square * square);
   }
-  /// Of a direction stretched as the facets are: cos theta (1 + 2 Lambda) of Smith's function.
+  /// Length of the stretched direction: cos theta (1 + 2 Lambda) of Smith's function.
   float stretch(const Vec3& w) const {
     const float x = x_ * w.x, y = y_ * w.y;
     return std::sqrt(w.z * w.z + x * x + y * y);
   }
-  /// Share of facets that are seen from both, over 4 cos theta_a cos theta_b.
+  /// G2 / (4 cos theta_a cos theta_b): share of facets visible from both.
   float seen_from_both(const Vec3& a, const Vec3& b) const { return 0.5f / (a.z * stretch(b) + b.z * stretch(a)); }
-  /// Density of `sample_visible` over `density` and |dot(w, m)|.
+  /// Density of `sample_visible`, divided by `density` and |dot(w, m)|.
   float visibility(const Vec3& w) const { return 2 / (w.z + stretch(w)); }
 
-  /// A normal, as often as its facets are seen from `w` (Heitz 2018), by spherical caps (Dupuy and Benyoub 2023).
+  /// Draws a normal in proportion to its facets' visibility from `w` (Heitz 2018), by spherical caps (Dupuy and Benyoub
+  /// 2023).
   Vec3 sample_visible(const Vec3& w, Vec2 u) const {
     const Vec3 stretched = normalize_any(Vec3{x_ * w.x, y_ * w.y, w.z});
     const float phi = 2 * kPi * u.x, z = 1 - u.y * (1 + stretched.z);

@@ -12,11 +12,11 @@ struct SideShares {
   SampledSpectrum reflected, transmitted;
 };
 
-/// Reflects and transmits light evenly into all directions, each side by shares of its own. Not reciprocal where the
-/// two sides transmit differently: the side of the direction that is called incident decides.
+/// Lambertian reflection and transmission with different shares for each side. Not reciprocal if the sides transmit
+/// differently: the side of the incident direction decides.
 class TwoSidedLambertianBsdf final : public Bsdf {
  public:
-  /// Of light on the front (+z) and on the back; in each, the sum of both shares is 1 at most.
+  /// Shares of light on the front (+z) and on the back; on each side their sum is at most 1.
   TwoSidedLambertianBsdf(const SideShares& front, const SideShares& back, bool from_light)
       : sides_{front, back}, from_light_(from_light) {
     for (const size_t side : {0u, 1u})
@@ -57,7 +57,7 @@ class TwoSidedLambertianBsdf final : public Bsdf {
  private:
   static size_t side_of(const Vec3& w) { return w.z < 0 ? 1 : 0; }
 
-  /// What a path that arrives at a side does; both are kept, as 1 less a tiny one is 1.
+  /// Probabilities of a path that arrives on one side; both are stored, since 1 minus a tiny float is 1.
   struct Chances {
     float reflect, transmit;
   };

@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint64_t kBlock = FilmTile::kBlock;
 
-/// Of a pixel's mean, over colours.
+/// Variance of a pixel's mean, averaged over colours.
 double noise_of(const Film& film, int x, int y) {
   const Triple v = film.block_variance(x, y);
   return (v[0] + v[1] + v[2]) / 3;
@@ -18,11 +18,11 @@ double noise_of(const Film& film, int x, int y) {
 
 double pixels_of(const Crop& c) { return double(c.width()) * double(c.height()); }
 
-/// What there is to know of a tile for dealing out samples.
+/// Statistics of a tile for the allocation of samples.
 struct TileNoise {
   double pixels, samples;
-  double variance;  ///< of one sample, mean over its pixels
-  double cost;      ///< rays of a path, and as much again for what goes with them
+  double variance;  ///< variance of one sample, mean over the tile's pixels
+  double cost;      ///< rays per path, plus one for the cost of the path itself
 };
 
 TileNoise noise_of(const Film& film, size_t i) {
@@ -41,7 +41,7 @@ TileNoise noise_of(const Film& film, size_t i) {
   return {pixels, samples, noise / pixels * samples, double(tile.rays()) / (pixels * samples) + 1};
 }
 
-/// Half a tile's own variance, half the mean of those around it and its own.
+/// Average of each tile's variance and of the mean variance of the 3 x 3 tiles around it.
 std::vector<double> smoothed(const std::vector<TileNoise>& tiles, size_t columns) {
   std::vector<double> result;
   const auto rows = tiles.size() / columns;
@@ -84,7 +84,7 @@ SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples) {
   std::vector<TileNoise> tiles;
   for (size_t i = 0; i < film.tiles(); ++i) tiles.push_back(noise_of(film, i));
   const std::vector<double> variance = smoothed(tiles, film.columns());
-  // A little less noise than asked for, so that it is met when the bound is looked at.
+  // The target applies to the upper bound: the goal for the estimate is lower by their present ratio.
   const NoiseEstimate now = image_noise(film, noise_z());
   const double sharpness = now.mean_square > 0 ? now.mean_square / now.upper : 1;
   const double goal = max_rms * max_rms * sharpness * pixels_of(film.settings().crop);
@@ -120,7 +120,7 @@ SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples) {
     return false;
   };
   SamplePlan plan = plan_for(goal);
-  // The look before has not been content with what the plan takes for enough.
+  // The noise test has just failed: a plan without more samples is too optimistic, and the goal is lowered.
   constexpr double kStricter = 0.8, kStrictest = 1e-6;
   for (double part = kStricter; !has_more(plan) && part > kStrictest; part *= kStricter) plan = plan_for(goal * part);
   return plan;

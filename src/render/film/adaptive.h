@@ -4,43 +4,47 @@
 
 namespace frond {
 
-/// How much noise an image has: the mean square over its pixels and colours, in the film's units.
+/// Estimated noise of an image: the mean of the variance over pixels and colours, in squared film units.
 struct NoiseEstimate {
   double mean_square = 0;
-  double upper = 0;  ///< it is no more than that, with the confidence asked for
+  double upper = 0;  ///< upper confidence bound of mean_square
 
+  /// Square roots, in film units.
   double rms() const;
   double upper_rms() const;
 };
 
-/// Of a film that has blocks. `z`: standard errors up to the upper bound; a pixel's own estimate is taken to be
-/// uncertain by all of itself, and as many of them as share their samples to be wrong together.
+/// Noise of a film with block statistics. The upper bound is `z` standard errors above the estimate. The relative
+/// standard error of each pixel's variance is taken as 1. With splatting, the errors of Splatting::correlated_pixels
+/// pixels are taken as fully correlated.
 NoiseEstimate image_noise(const Film& film, double z);
 
-/// Confidence that an image's noise is no more than what was asked for, all looks at it together.
+/// Confidence that the noise of a finished adaptive render is at most the target, over all of its noise tests.
 inline constexpr double kNoiseConfidence = 0.95;
-/// How often the noise may be looked at: each time the samples double at most, from 2 blocks to 2^30 samples.
+/// Largest number of noise tests: at most one for each doubling of the samples, from 2 blocks to 2^30 samples.
 inline constexpr size_t kNoiseLooks = 26;
-/// Standard errors for each look.
+/// Number of standard errors for one noise test (Sidak's correction for kNoiseLooks tests).
 double noise_z();
 
-/// What an adaptive render is to have next, tile by tile.
+/// Next step of an adaptive render.
 struct SamplePlan {
-  std::vector<uint64_t> tile_ends;  ///< whole blocks
-  uint64_t predicted_paths = 0;     ///< of the whole render, until its noise is down
+  std::vector<uint64_t> tile_ends;  ///< samples per pixel of each tile, whole blocks
+  uint64_t predicted_paths = 0;     ///< number of paths of the whole render until it meets the target
 };
 
-/// First: two blocks everywhere, the fewest that tell noise.
+/// Number of samples of the first plan: two blocks, the fewest from which noise can be estimated.
 inline constexpr uint64_t kLeastAdaptive = 2 * FilmTile::kBlock;
+/// First plan: kLeastAdaptive samples in each pixel.
 SamplePlan first_plan(const Film& film);
 
-/// Where samples do most against the image's noise: to bring it down to `max_rms`, tile t gets so many that the last
-/// ray in each takes as much of it away, n_t proportional to sqrt(variance / rays) (Neyman's allocation). At most twice
-/// of what it has, so that the next look sees what came of it, and the whole blocks of `most`. Tiles whose noise is not
-/// known well learn from their neighbours: half of it is the mean of the nine.
+/// Plan that reduces the noise of the image to `max_rms` at the lowest cost. The number of samples n_t of tile t is
+/// proportional to sqrt(variance / rays), so that one more ray reduces the noise equally in all tiles (Neyman
+/// allocation). It is at most twice the present number, so that the next noise test sees the effect, and at most `most`
+/// rounded down to whole blocks. The variance of a tile is the average of its own estimate and of the mean over the 3 x
+/// 3 tiles around it.
 ///
-/// What a tile gets depends on the samples that it has: a pixel's mean is not free of bias, of at most the covariance
-/// of its own noise with its tile's share of samples (docs/adaptive.md measures it).
+/// The number of samples of a tile depends on its samples. A pixel's mean is therefore biased, by at most the
+/// covariance of its noise with its share of the tile's samples (measured in docs/rendering.md).
 SamplePlan next_plan(const Film& film, double max_rms, uint64_t most);
 
 }  // namespace frond

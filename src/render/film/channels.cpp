@@ -11,7 +11,7 @@ Triple single(double value) { return {value, 0, 0}; }
 using Kind = ChannelInfo::Kind;
 using Space = ChannelInfo::Space;
 
-/// Names as Blender, Nuke and Open Image Denoise know them.
+/// The names are those that Blender, Nuke and Open Image Denoise expect.
 constexpr ChannelInfo kChannels[] = {
     {"albedo",
      {"albedo.R", "albedo.G", "albedo.B"},

@@ -12,49 +12,51 @@
 
 namespace frond {
 
-/// What channels are made of: what a sample's camera ray met first, and from where.
+/// Input of a channel: the first hit of a sample's camera ray.
 struct CameraHit {
   const FirstHit& first;
-  const Ray& ray;
-  Vec3 axis;      ///< of the camera, unit
-  Triple albedo;  ///< of the hit, as a colour; 1 where all is given back
+  const Ray& ray;  ///< the camera ray
+  Vec3 axis;       ///< viewing direction of the camera, unit
+  Triple albedo;   ///< albedo of the hit as a colour; 1 for a surface without absorption
 };
 
-/// A channel, or up to three, that an image may have beside its colours. A new one is a row of the table in
-/// channels.cpp; what it takes and FirstHit has not, the integrator adds there.
+/// Additional channel of an image, of one to three values. A new channel is a row of the table in channels.cpp; if it
+/// needs data that FirstHit lacks, the integrator must provide them there.
 struct ChannelInfo {
-  /// What becomes of a pixel's samples: the mean of those that met something; what the one nearest to the pixel's
-  /// centre says, for ids are no quantities; how many samples there are.
+  /// How a pixel's value follows from its samples: mean over the samples with a hit; value of the sample nearest to the
+  /// pixel's centre, for ids; number of samples.
   enum class Kind : uint8_t { mean, nearest, sample_count };
-  /// How values follow the space that an image's features are in; points and vectors have three.
+  /// How values are transformed to camera space (FilmSettings::features_in_camera_space); a point or vector has three.
   enum class Space : uint8_t { none, point, vector };
 
-  std::string_view name;                ///< as --channels takes it
-  std::array<std::string_view, 3> exr;  ///< as the file calls them; empty: there are no more
+  std::string_view name;                ///< name for --channels
+  std::array<std::string_view, 3> exr;  ///< names of the values in the EXR file; unused ones are empty
   Kind kind;
   Space space;
   std::string_view doc;
-  Triple (*value)(const CameraHit&);  ///< of one sample; nullptr for sample_count
+  Triple (*value)(const CameraHit&);  ///< value of one sample; nullptr for sample_count
 
+  /// Number of values.
   constexpr size_t size() const { return exr[1].empty() ? 1 : exr[2].empty() ? 2 : 3; }
 };
 
-/// Most values that all channels together can have, by kind.
+/// Upper limits of the number of values of all channels of kind mean, and of kind nearest.
 inline constexpr size_t kMostMeans = 24, kMostIds = 8;
 
+/// Table of all channels.
 std::span<const ChannelInfo> all_channels();
 
-/// Some channels, each once, in the order of the table.
+/// Selection of channels, without duplicates, in the order of the table.
 class ChannelList {
  public:
   ChannelList() = default;
-  /// By names; throws InputError that lists them.
+  /// Channels with these names. Throws an InputError that lists the known names.
   explicit ChannelList(const std::vector<std::string>& names, const Location& where = {});
 
   const std::vector<const ChannelInfo*>& infos() const { return infos_; }
   std::vector<std::string> names() const;
   bool has(std::string_view name) const;
-  /// Values of the channels that are means, and of those that are ids; of all of them together.
+  /// Total number of values of the channels of kind mean, and of kind nearest.
   size_t means() const { return means_; }
   size_t ids() const { return ids_; }
 

@@ -12,17 +12,17 @@ namespace {
 
 double variance_of_mean(double sum, double square, double n, double weight) {
   if (n < 2 || weight == 0) return 0;
-  const double spread = std::max(square - sum * sum / n, 0.0);  // rounding, where all samples are alike
-  return spread * n / ((n - 1) * weight * weight);              // the mean divides by the weights
+  const double spread = std::max(square - sum * sum / n, 0.0);  // rounding can make it negative if samples are equal
+  return spread * n / ((n - 1) * weight * weight);              // the mean is the sum over the weights
 }
 
-/// Samples that are shared may lie a little outside of the image.
+/// Index of a tile's row or column. With splatting, pixels outside the image, with negative coordinates, have samples.
 int floor_to_tile(int pixel) {
   static_assert(Film::kTile == 16);
   return pixel >> 4;
 }
 
-/// Samples and what follows from them: how many, their mean, and the sum of squared distances from it.
+/// Number of samples, their mean, and the sum of squared deviations from it.
 struct SampleMoments {
   double count, mean, spread;
 };
@@ -77,7 +77,7 @@ Film::Hold Film::hold(const Crop& pixels) const {
   for (size_t row = first; row <= last; row += columns())
     for (size_t i = row; i <= row + width; ++i) is_needed[i % kLocks] = true;
   Hold held;
-  for (size_t lock = 0; lock < kLocks; ++lock)  // in one order: no two threads wait for each other
+  for (size_t lock = 0; lock < kLocks; ++lock)  // always in the same order, against deadlocks
     if (is_needed[lock]) held.emplace_back((*locks_)[lock]);
   return held;
 }
@@ -148,7 +148,7 @@ double Film::splatted_variance(int x, int y, double mean, double weight, const M
   for_each_reaching_pixel(x, y, [&](const FilmTile& tile, int px, int py, double samples) {
     const SampleMoments m = moments(tile, px, py);
     if (m.count == 0) return;
-    // Of one sample's w (L - mean), w and L independent of each other.
+    // Variance of w (L - mean) of one sample, with w and L independent.
     const double w = format_.splatting->mean(x - px, y - py), ww = format_.splatting->square(x - px, y - py),
                  share = m.count / (samples * samples), step = m.mean - mean;
     variance += share * (ww - w * w) * step * step;
@@ -160,7 +160,7 @@ double Film::splatted_variance(int x, int y, double mean, double weight, const M
     spread += m.spread, degrees += m.count - 1;
   });
   if (degrees == 0) return 0;
-  variance += of_single_samples * spread / degrees;  // what a single sample does not tell its neighbours do
+  variance += of_single_samples * spread / degrees;  // a pixel with one sample takes the variance of its neighbours
   return variance / (weight * weight);
 }
 
@@ -242,7 +242,7 @@ Triple Film::block_variance(int x, int y) const {
 double Film::own_weight(int x, int y, size_t band) const {
   const FilmTile::Pixel& p = pixel(x, y);
   if (p.samples == 0) return 0;
-  // Few samples see a band, and filter weights may be negative: those of all samples say what one weighs.
+  // Few samples carry a band, and filter weights can be negative: the mean weight of all samples is more accurate.
   const auto n = double(tiles_[tile_at(x, y)].band(x, y, band).samples);
   return n * (double(p.weight) / FilmTile::kWeightsOfOne) / double(p.samples);
 }
@@ -312,7 +312,7 @@ uint64_t Film::not_finite() const {
 
 void check_memory(const FilmFormat& format, size_t films, const Location& where, std::string_view advice) {
   constexpr double kImageBytes = 64,
-                   kBandBytes = 48;  // of the image that is made of a pixel in the end, and its file
+                   kBandBytes = 48;  // memory for the final image and its file, for each pixel
   const Crop& crop = format.settings.crop;
   const double pixel = sizeof(FilmTile::Pixel) + kImageBytes +
                        double(format.bands) * (sizeof(FilmTile::BandSums) + kBandBytes) +

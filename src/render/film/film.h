@@ -10,64 +10,66 @@
 
 namespace frond {
 
-/// The tiles of an image's crop; of shared samples, also of the pixels around whose samples reach into it. Its tiles
-/// lie on a grid that begins at pixel (0, 0) of the whole image, so that those of its parts match.
+/// Film: sums over the samples of an image's crop, in tiles. With splatting it has tiles also for the pixels around the
+/// crop whose samples reach into it. The tiles lie on a grid that begins at pixel (0, 0) of the whole image, so that
+/// the tiles of all parts match.
 class Film {
  public:
-  static constexpr int kTile = 16;
+  static constexpr int kTile = 16;  ///< width and height of a tile, pixels
 
-  /// Throws InputError, with the place of the directive, if the pixels need more memory than the machine has.
+  /// Throws InputError, at the location of the film's directive, if the pixels need more memory than the machine has.
   explicit Film(const FilmFormat& format, const Location& where = {});
 
   const FilmFormat& format() const { return format_; }
   const FilmSettings& settings() const { return format_.settings; }
   size_t bands() const { return format_.bands; }
+  /// Pixels whose samples the film takes.
   const Crop& sampled() const { return format_.sampled(); }
 
+  /// Number of tiles; they are numbered row by row.
   size_t tiles() const { return tiles_.size(); }
-  /// Of the grid, whose rows follow each other.
+  /// Number of tiles in a row.
   size_t columns() const { return size_t(columns_); }
   const FilmTile& tile(size_t i) const { return tiles_[i]; }
   Crop tile_pixels(size_t i) const { return tiles_[i].pixels(); }
-  /// A copy that no thread is at work on.
+  /// Copy of tile `i`. Thread-safe.
   FilmTile snapshot(size_t i) const;
-  /// What tile `i` holds. Thread-safe.
+  /// Samples that tile `i` contains. Thread-safe.
   Coverage coverage(size_t i) const;
-  /// Adds what another thread, or machine, has rendered of tile `i`. Thread-safe. False where there is some of it
-  /// already.
+  /// Adds the sums of `part` to tile `i`. Returns false, without a change, if they have samples in common. Thread-safe.
   bool merge(size_t i, const FilmTile& part);
-  /// Holds off `merge` from all tiles that have a part in these pixels of the image, while it lives: what is read of
-  /// the pixels meanwhile is of whole items.
+  /// Blocks `merge` for all tiles that contribute to these pixels of the image, until the result is destroyed. Values
+  /// of the pixels that are read meanwhile include complete work items only.
   using Hold = std::vector<std::unique_lock<std::mutex>>;
   [[nodiscard]] Hold hold(const Crop& pixels) const;
-  /// The tile of a pixel.
+  /// Index of the tile that contains a pixel.
   size_t tile_at(int x, int y) const;
-  /// Adds one sample. No two threads at a time.
+  /// Adds one sample. Not thread-safe.
   void add(int x, int y, const SensorResponse& sensor, double weight, bool leaf) {
     const FilmTile::Sample sample{sensor, weight, leaf};
     tiles_[tile_at(x, y)].add(format_, x, y, {&sample, 1});
   }
 
-  /// Mean colour; of shared samples that weighed by the filter.
+  /// Colour of a pixel: the mean of its samples, with splatting weighted by the filter.
   Triple mean(int x, int y) const;
-  /// Estimated variance of `mean`; 0 with less than two samples. With low-discrepancy samples it is an upper bound: it
-  /// does not know that they repel each other. Of shared samples it follows from how each pixel's own differ, by the
-  /// weights that they have in the mean; there it takes a sample's place for independent of what it sees in its pixel.
+  /// Estimated variance of `mean`; 0 for fewer than two samples. For low-discrepancy samples it is an upper bound, as
+  /// it ignores their negative correlation. With splatting it is computed from the variances of the samples in each
+  /// pixel and their mean weights; the position of a sample in its pixel is taken as independent of its value.
   Triple variance(int x, int y) const;
-  /// The same from how blocks of samples differ, of a film that has them: they know in part how samples repel each
-  /// other.
+  /// Estimated variance of `mean` from the differences between blocks of samples, for a film with block statistics. It
+  /// accounts for the negative correlation of low-discrepancy samples in part.
   Triple block_variance(int x, int y) const;
-  /// What of it, mean over colours, the samples of one tile make, of shared samples.
+  /// With splatting: contribution of the samples of one tile to `block_variance`, mean over colours.
   double block_variance_by(size_t tile, int x, int y) const;
-  /// Mean of the samples that saw a band, and its estimated variance, 0 with less than two of them.
+  /// Mean of the samples that carry a band, its estimated variance, 0 for fewer than two samples, and their number.
   struct BandMean {
     double mean = 0, variance = 0;
     uint64_t samples = 0;
   };
   BandMean band_mean(int x, int y, size_t band) const;
-  /// The mean alone, which takes far less time.
+  /// The mean of band_mean alone, at a much lower cost.
   double band(int x, int y, size_t band) const;
-  /// Values of the film's channels: means over the samples that met something, and ids; 0 where none did.
+  /// Values of the additional channels: means over the samples with a hit, and ids; 0 if there is no hit.
   struct FeatureMeans {
     std::array<double, kMostMeans> means{};
     std::array<double, kMostIds> ids{};
@@ -75,17 +77,18 @@ class Film {
   };
   FeatureMeans features(int x, int y) const;
   uint64_t samples(int x, int y) const { return pixel(x, y).samples; }
-  /// Fraction of the samples that saw a leaf first.
+  /// Share of the pixel's samples whose first hit is a leaf.
   double leaf_fraction(int x, int y) const;
+  /// Share of all samples of the crop whose first hit is a leaf.
   double foliar_ratio() const;
-  /// Samples of all pixels that were no finite numbers, or too bright.
+  /// Number of samples in all pixels that were not finite, or too bright for the film's exponent.
   uint64_t not_finite() const;
 
   friend bool operator==(const Film& a, const Film& b) { return a.tiles_ == b.tiles_; }
 
  private:
-  /// Shared samples that reach a pixel: sum of values times weights, and of weights. Each tile's count by how many
-  /// samples its pixels have, so that those which have more do not draw the pixel's centre to their side.
+  /// With splatting: sums of weighted values and of weights that reach a pixel. The sums of each tile are divided by
+  /// its samples per pixel, so that tiles with more samples do not shift the centre of the filter to their side.
   struct Gathered {
     Triple sum{};
     double weight = 0;
@@ -98,9 +101,9 @@ class Film {
   void for_each_reaching_pixel(int x, int y, const Each& each) const;
   Gathered gathered(int x, int y) const;
   Gathered gathered(int x, int y, size_t band) const;
-  /// What those of a pixel's own samples weigh that saw a band.
+  /// Weight of the samples of a pixel that carry a band.
   double own_weight(int x, int y, size_t band) const;
-  /// The sum of weights, or what it is on average where negative ones leave too little of it.
+  /// `weight`, or its expected value if negative filter weights make it smaller than a quarter of that.
   template <class Count>
   double enough_weight(int x, int y, double weight, const Count& count) const;
   template <class Moments>
@@ -112,11 +115,11 @@ class Film {
   double unit_;
   std::vector<FilmTile> tiles_;
   static constexpr size_t kLocks = 64;
-  std::unique_ptr<std::array<std::mutex, kLocks>> locks_;  ///< of tiles in turn
+  std::unique_ptr<std::array<std::mutex, kLocks>> locks_;  ///< tile i uses lock i % kLocks
 };
 
-/// Refuses, by InputError at `where`, so many films and the images that are made of them where this machine has not
-/// the memory: Linux promises it, and ends the program when it comes to use it. `advice` ends the message.
+/// Throws an InputError at `where` if so many films, and the images made from them, need more memory than the machine
+/// has. (Linux grants the allocation and terminates the process when it uses the memory.) `advice` ends the message.
 void check_memory(const FilmFormat& format, size_t films, const Location& where, std::string_view advice);
 
 }  // namespace frond

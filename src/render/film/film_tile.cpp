@@ -8,20 +8,20 @@
 namespace frond {
 namespace {
 
-/// Of the values that a sum and the sum of squares can take.
+/// Largest magnitude of a value that fits both in the sum and in the sum of squares.
 constexpr double kBrightest = 0x1p28;
 static_assert(kBrightest <= ExactSum<60>::kLargestTerm && kBrightest * kBrightest <= ExactSum<40>::kLargestTerm);
 
-/// From -1022 to 1023; std::ldexp is a call.
+/// 2^exponent for exponents from -1022 to 1023, without the function call of std::ldexp.
 double power_of_two(int exponent) { return std::bit_cast<double>(uint64_t(1023 + exponent) << 52); }
 
-/// Whether no lane is larger in magnitude, or no number.
+/// True if no lane exceeds the bound in magnitude or is NaN.
 bool is_within(const Double4& v, double bound) {
   const Double4 size = v < 0 ? -v : v;
   return size[0] <= bound && size[1] <= bound && size[2] <= bound && size[3] <= bound;
 }
 
-/// Samples that sums in doubles may have.
+/// Largest number of samples in an exact sum of doubles.
 constexpr size_t kAtOnce = SplatSums::kMost;
 
 double held(double value) {
@@ -29,7 +29,7 @@ double held(double value) {
   return std::isfinite(value) ? std::clamp(value, -kMost, kMost) : 0;
 }
 
-/// What the film sums of a sample's response: in its colours, in its units, cut off where that is too much.
+/// Converts a sample's sensor response to the film's colours and units, and clamps it.
 class Exposure {
  public:
   explicit Exposure(const FilmFormat& format)
@@ -41,13 +41,14 @@ class Exposure {
       columns_[c] = Double4{format.color.row[0][c], format.color.row[1][c], format.color.row[2][c], 0};
   }
 
-  /// False where not all of it could be kept.
+  /// Returns false if the value was not finite or was clamped to kBrightest.
   bool expose(const FilmTile::Sample& sample, Double4& value) const {
     const std::array<double, kLanes>& response = sample.sensor.value;
     value = Double4{response[0], response[1], response[2], response[3]};
     const bool is_finite = std::isfinite((value[0] + value[1]) + (value[2] + value[3]));
     if (!is_finite) value = Double4{};
-    const double largest = std::max({value[0], value[1], value[2], value[3]}) * exposure_;  // of the sensor, as in pbrt
+    // As in pbrt, the limit applies to the sensor's response.
+    const double largest = std::max({value[0], value[1], value[2], value[3]}) * exposure_;
     if (has_colors_) value = columns_[0] * value[0] + columns_[1] * value[1] + columns_[2] * value[2];
     value *= sample.weight * unit_ * (largest > most_ ? most_ / largest : 1);
     if (is_within(value, kBrightest)) return is_finite;
@@ -62,11 +63,11 @@ class Exposure {
   std::array<Double4, 3> columns_;
 };
 
-/// Sums of a few samples' colours that are not very bright, in doubles: each is rounded to a multiple of a unit, and
-/// its square too, so that their sums are exact.
+/// Exact sums of the colours of a few samples of moderate brightness, in doubles: colours and their squares are rounded
+/// to multiples of a unit. It is faster than ExactSum.
 class ModestSums {
  public:
-  /// False, and nothing changes, where a sample is too bright.
+  /// Returns false, without a change, if the sample is too bright.
   bool add(const Double4& color) {
     if (!is_within(color, kMost)) return false;
     add_rounded(color, kUnit, sum_);
@@ -81,11 +82,11 @@ class ModestSums {
   }
 
  private:
-  static constexpr double kMost = 4;  ///< kAtOnce of this do not leave the range of whole numbers
+  static constexpr double kMost = 4;  ///< kAtOnce values up to this have a sum that a double represents exactly
   static constexpr int kBits = 44;
   static constexpr double kUnit = 0x1p-44, kSquareUnit = 0x1p-40;
   static_assert(double(kAtOnce) * kMost / kUnit <= 0x1p53 && double(kAtOnce) * kMost * kMost / kSquareUnit <= 0x1p53);
-  /// To the nearest.
+  /// Adds the value, rounded to the nearest multiple of `unit`.
   static void add_rounded(const Double4& value, double unit, Double4& sum) {
     const double rounds = 0x1.8p52 * unit;
     sum += value + rounds - rounds;
@@ -226,7 +227,8 @@ void FilmTile::add_bands(size_t at, const SensorResponse& sensor, const Double4&
   }
 }
 
-/// Calls each(index, column, row) for the pixels of the image that a pixel's samples reach, counted from -reach.
+/// Calls each(index, column, row) for all pixels of the image that samples of the pixel (x, y) reach. Column and row
+/// are 0 at the offset -reach.
 template <class Each>
 void FilmTile::for_each_reached(int x, int y, const Each& each) {
   const int left = x - reach_x_, top = y - reach_y_;

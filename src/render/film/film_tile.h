@@ -15,127 +15,135 @@
 
 namespace frond {
 
-/// What a film holds, and in which units.
+/// Contents of a film and its units.
 struct FilmFormat {
   FilmSettings settings;
-  size_t bands = 0;           ///< of a sensor; 0: the film has three colours
-  ChannelList channels = {};  ///< of what camera rays met first, summed up too
-  bool blocks = false;  ///< how blocks of a pixel's samples differ is summed up too: whole blocks have to be rendered
-  /// Values are kept in units of 2^exponent: near the image's typical value, of which samples may be 10^-13 to
-  /// 10^8. Brighter ones are cut off there, and counted; squares forget what is below 10^-6.
+  size_t bands = 0;           ///< number of spectral bands; 0: the film has three colours
+  ChannelList channels = {};  ///< additional channels, from the first hits of camera rays
+  bool blocks = false;        ///< the film has block statistics: only whole blocks of samples can be rendered
+  /// Sums are in units of 2^exponent, which is close to the image's typical value. In these units, values of samples
+  /// can range from 10^-13 to 10^8. Brighter values are clamped and counted; in sums of squares, values below 10^-6 are
+  /// lost.
   int exponent = 0;
-  Matrix3 color = Matrix3::diagonal({1, 1, 1});  ///< from a path's response to the film's colours
-  Triple white = {1, 1, 1};  ///< the film's colours of a path of radiance 1: what an albedo of 1 is measured by
-  std::optional<Splatting> splatting = {};  ///< nothing: a pixel has its own samples alone
+  Matrix3 color = Matrix3::diagonal({1, 1, 1});  ///< from a path's sensor response to the film's colours
+  Triple white = {1, 1, 1};                 ///< mean film colours of paths of radiance 1: the colours of an albedo of 1
+  std::optional<Splatting> splatting = {};  ///< empty: each sample counts in one pixel
 
-  /// Pixels whose samples are in the sums.
+  /// Pixels whose samples are taken.
   const Crop& sampled() const { return splatting ? splatting->sampled : settings.crop; }
 };
 
-/// Values of a film's channels, of one sample that met something.
+/// Values of a film's additional channels for one sample with a hit.
 struct Features {
   std::array<double, kMostMeans> means;
   std::array<double, kMostIds> ids;
   float from_center = 0;  ///< distance of the sample from the pixel's centre, pixels
-  uint64_t sample = 0;
+  uint64_t sample = 0;    ///< index of the sample
 
   Features(const ChannelList& channels, const CameraHit& hit);
 };
 
-/// Sums over the samples of some pixels, exact and so the same in any order: of three colours, or of a sensor's bands,
-/// of which a sample need not see all. Where samples are shared, also what they give to these pixels and to those
-/// around that they reach: a tile has what its own samples give, all of it, and nothing of other tiles' samples.
+/// Tile of a film: sums over the samples of a rectangle of pixels, of three colours or of spectral bands; a sample need
+/// not carry all bands. Sums are exact and do not depend on the order of samples. With splatting, the tile also has
+/// sums for the pixels around it that its samples reach: all contributions of its own samples, and none of other
+/// tiles'. Not thread-safe. Part files store the arrays of these structures byte by byte: they have no padding.
 class FilmTile {
  public:
+  /// Sums over the samples of a pixel.
   struct Pixel {
-    std::array<ExactSum<60>, 3> sum{};     ///< of colours
-    std::array<ExactSum<40>, 3> square{};  ///< of colours
-    int64_t weight = 0;                    ///< in units of 2^-30
-    uint64_t samples = 0, leaf = 0;
-    uint64_t not_finite = 0;  ///< of these samples; also those too bright for the film
+    std::array<ExactSum<60>, 3> sum{};     ///< sums of colours
+    std::array<ExactSum<40>, 3> square{};  ///< sums of squared colours
+    int64_t weight = 0;                    ///< sum of filter weights, in units of 2^-30
+    uint64_t samples = 0, leaf = 0;        ///< number of samples, and of samples whose first hit is a leaf
+    uint64_t not_finite = 0;               ///< number of samples that were not finite, or too bright for the film
     Pixel& operator+=(const Pixel& other);
     friend bool operator==(const Pixel&, const Pixel&) = default;
   };
-  /// Of those samples of a pixel that saw a band.
+  /// Sums over the samples of a pixel that carry a band.
   struct BandSums {
     ExactSum<60> sum;
     ExactSum<40> square;
-    uint64_t samples = 0, unused = 0;  // no padding: its bytes are kept in files
+    uint64_t samples = 0, unused = 0;
     BandSums& operator+=(const BandSums& other);
     friend bool operator==(const BandSums&, const BandSums&) = default;
   };
-  /// Of those samples of a pixel that met something; their sums are with the tile, one for each value.
+  /// Number of samples of a pixel with a hit, and the sample whose ids are stored.
   struct Hits {
     uint64_t count = 0;
-    uint64_t nearest_sample = ~uint64_t{0};  ///< the first of those nearest to the pixel's centre, whose ids hold
-    double nearest_distance = INFINITY;      ///< pixels
+    uint64_t nearest_sample = ~uint64_t{0};  ///< sample nearest to the pixel's centre
+    double nearest_distance = INFINITY;      ///< its distance from the centre, pixels
     friend bool operator==(const Hits&, const Hits&) = default;
   };
 
-  /// Of a pixel's blocks of kBlock samples, which are spread more evenly than any samples: from how much their means
-  /// differ follows what noise there is.
+  /// Number of samples in a block. The noise of a pixel is estimated from the differences between blocks, as the
+  /// low-discrepancy samples within a block are not independent.
   static constexpr uint64_t kBlock = 16;
+  /// Sums over the blocks of a pixel.
   struct BlockSums {
-    std::array<ExactSum<40>, 3> square{};  ///< of a block's mean
+    std::array<ExactSum<40>, 3> square{};  ///< sums of the squares of a block's mean colour
     uint64_t blocks = 0, unused = 0;
     BlockSums& operator+=(const BlockSums& other);
     friend bool operator==(const BlockSums&, const BlockSums&) = default;
   };
 
-  /// What the tile's samples give to a pixel that they reach, each times its weight.
+  /// With splatting: sums over the tile's samples that reach a pixel.
   struct Splat {
-    std::array<ExactSum<60>, 3> sum{};  ///< of colours
-    int64_t weight = 0, unused = 0;     ///< in units of 2^-30
+    std::array<ExactSum<60>, 3> sum{};  ///< sums of colours times weights
+    int64_t weight = 0, unused = 0;     ///< sum of weights, in units of 2^-30
     Splat& operator+=(const Splat& other);
     friend bool operator==(const Splat&, const Splat&) = default;
   };
-  /// The same of those samples that saw a band.
+  /// Like Splat, over the samples that carry a band.
   struct BandSplat {
     ExactSum<60> sum;
     int64_t weight = 0, unused = 0;
     BandSplat& operator+=(const BandSplat& other);
     friend bool operator==(const BandSplat&, const BandSplat&) = default;
   };
-  /// Over blocks of kBlock samples of each of the tile's pixels, which give b and weigh c in a pixel that they reach,
-  /// on average of these samples: how b - m c differs from block to block, m the pixel's value, tells its noise.
+  /// With splatting: sums over blocks, each of kBlock samples of every pixel of the tile. For a pixel that the block
+  /// reaches, b is its sum of colours times weights and c its sum of weights, both divided by kBlock. The noise of the
+  /// pixel follows from the differences of b - m c between blocks, where m is the pixel's value.
   struct SplatBlocks {
-    std::array<ExactSum<40>, 3> square{};   ///< of b
-    std::array<ExactSum<40>, 3> product{};  ///< of b c
-    ExactSum<40> weight_square{};           ///< of c
+    std::array<ExactSum<40>, 3> square{};   ///< sums of b^2
+    std::array<ExactSum<40>, 3> product{};  ///< sums of b c
+    ExactSum<40> weight_square{};           ///< sum of c^2
     uint64_t blocks = 0, unused = 0;
     SplatBlocks& operator+=(const SplatBlocks& other);
     friend bool operator==(const SplatBlocks&, const SplatBlocks&) = default;
   };
 
-  /// Units that a weight of 1 has.
+  /// Fixed-point representation of a weight of 1.
   static constexpr double kWeightsOfOne = 0x1p30;
 
   FilmTile(const FilmFormat& format, const Crop& pixels);
-  /// Black again, of other pixels.
+  /// Resets all sums to 0 and sets the tile's pixels.
   void clear(const Crop& pixels);
 
-  /// What a path says of a pixel.
+  /// Contribution of a path to its pixel.
   struct Sample {
     SensorResponse sensor;
-    double weight = 1;  ///< by the filter
-    bool leaf = false;  ///< the camera ray met a leaf
-    Vec2 place = {};    ///< in its pixel, [0, 1)^2: what it weighs in others, where samples are shared
+    double weight = 1;  ///< filter weight
+    bool leaf = false;  ///< the first hit is a leaf
+    Vec2 place = {};    ///< position in the pixel, [0, 1)^2; used with splatting
   };
-  /// Adds samples of a pixel; the same whether together or one by one. A response that is no finite number counts as
-  /// black, one too bright for the film as the brightest that it can hold; both are counted. `kernel`: of a film of
-  /// shared samples, all of weight 1.
+  /// Adds samples of a pixel. The result does not depend on how samples are divided between calls. A response that is
+  /// not finite counts as black, one too bright for the film is clamped; both are counted in `not_finite`. `kernel`
+  /// must be set with splatting; then all weights must be 1.
   void add(const FilmFormat& format, int x, int y, std::span<const Sample> samples,
            const SplatKernel* kernel = nullptr);
-  /// What a sample's camera ray met, of a film that has channels for it.
+  /// Adds the values of additional channels for one sample.
   void add(int x, int y, const Features& features);
-  /// That the last kBlock samples of a pixel, which began at `before`, are a block of a film that has blocks.
+  /// Adds the last kBlock samples of a pixel as a block; `before` holds the pixel's sums before these samples.
   void add_block(int x, int y, const Pixel& before);
-  /// The same of shared samples: the last kBlock samples of each of the tile's pixels, before which it had `before`.
+  /// With splatting: adds the last kBlock samples of each of the tile's pixels as a block; `before` holds the tile's
+  /// `splats` before these samples.
   void add_block(const std::vector<Splat>& before);
+  /// Adds to the number of rays.
   void add_rays(uint64_t rays) { rays_ += rays; }
-  /// The sums of pixels that lie in this tile. False, and nothing changes, where both hold a sample of the same pixel.
+  /// Adds the sums of another tile, whose pixels must lie in this one. Returns false, without a change, if the tiles
+  /// have samples in common.
   bool merge(const FilmTile& other);
-  /// Says that all these samples have been added.
+  /// Records that the samples of an item have been added; false, without a change, if some were recorded before.
   bool cover(const WorkItem& item) { return coverage_.add(item); }
 
   const Crop& pixels() const { return crop_; }
@@ -143,11 +151,11 @@ class FilmTile {
   const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
   const BandSums& band(int x, int y, size_t band) const { return bands_[index(x, y) * band_count_ + band]; }
   const Hits& hits(int x, int y) const { return hits_[index(x, y)]; }
-  /// Of a channel's value, by its place among those that are means, or ids.
+  /// Sum of value `i` of the channels of kind mean, and value `i` of those of kind nearest.
   const ExactSum<40>& mean_sum(int x, int y, size_t i) const { return mean_sums_[index(x, y) * mean_count_ + i]; }
   double id(int x, int y, size_t i) const { return ids_[index(x, y) * id_count_ + i]; }
   const BlockSums& blocks(int x, int y) const { return blocks_[index(x, y)]; }
-  /// Pixels of the image that its samples reach; none where samples are not shared.
+  /// Pixels of the image that the tile's samples reach; empty without splatting.
   const Crop& reached() const { return reached_; }
   const Splat& splat(int x, int y) const { return splats_[reached_index(x, y)]; }
   const std::vector<Splat>& splats() const { return splats_; }
@@ -155,14 +163,14 @@ class FilmTile {
     return band_splats_[reached_index(x, y) * band_count_ + band];
   }
   const SplatBlocks& splat_blocks(int x, int y) const { return splat_blocks_[reached_index(x, y)]; }
-  /// On average of its pixels.
+  /// Number of samples, averaged over its pixels.
   double samples_per_pixel() const;
-  /// Traced for its samples.
+  /// Number of rays traced for its samples.
   uint64_t rays() const { return rays_; }
   friend bool operator==(const FilmTile&, const FilmTile&) = default;
 
  private:
-  friend class PartFile;  // keeps them as they are
+  friend class PartFile;  // reads and writes the arrays
 
   bool shares_samples() const { return reach_x_ >= 0; }
   void add_features(size_t at, const FilmTile& other, size_t from);
@@ -181,18 +189,18 @@ class FilmTile {
   Crop crop_, reached_{};
   size_t band_count_, mean_count_, id_count_;
   bool has_blocks_;
-  int reach_x_ = -1, reach_y_ = -1;  ///< of a sample; below 0: samples are not shared
-  int width_, height_;               ///< of the image
+  int reach_x_ = -1, reach_y_ = -1;  ///< SplatAxis::reach; -1 without splatting
+  int width_, height_;               ///< full resolution of the image
   uint64_t rays_ = 0;
   std::vector<Pixel> pixels_;
   std::vector<BandSums> bands_;            ///< [pixel][band]
-  std::vector<Hits> hits_;                 ///< [pixel], where there are means or ids
+  std::vector<Hits> hits_;                 ///< [pixel], if there are means or ids
   std::vector<ExactSum<40>> mean_sums_;    ///< [pixel][value]
   std::vector<double> ids_;                ///< [pixel][value]
   std::vector<BlockSums> blocks_;          ///< [pixel]
-  std::vector<Splat> splats_;              ///< [pixel that is reached]
-  std::vector<BandSplat> band_splats_;     ///< [pixel that is reached][band]
-  std::vector<SplatBlocks> splat_blocks_;  ///< [pixel that is reached]
+  std::vector<Splat> splats_;              ///< [pixel in reached_]
+  std::vector<BandSplat> band_splats_;     ///< [pixel in reached_][band]
+  std::vector<SplatBlocks> splat_blocks_;  ///< [pixel in reached_]
   Coverage coverage_;
 };
 

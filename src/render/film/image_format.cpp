@@ -10,7 +10,7 @@
 namespace frond {
 namespace {
 
-/// Values of an image, pixel by pixel, in the order of its channels.
+/// Writes the values of an image pixel by pixel, in the order of its channels.
 class PixelWriter {
  public:
   PixelWriter(const Film& film, const ImageFormat& format)
@@ -28,7 +28,7 @@ class PixelWriter {
       for (size_t c = 0; c < channel->size(); ++c) names_.emplace_back(channel->exr[c]);
   }
   const std::vector<std::string>& names() const { return names_; }
-  /// Of what is seen.
+  /// Names of the colours, or of the bands and their preview colours.
   std::vector<std::string> image_names() const {
     if (!format_.space.empty()) return {names_.begin(), names_.begin() + 3};
     std::vector<std::string> names(names_.begin(), names_.begin() + ptrdiff_t(format_.bands.size()));
@@ -57,7 +57,7 @@ class PixelWriter {
   }
 
  private:
-  /// Brighter values than the file can hold become its largest, not infinite.
+  /// Clamps values to the largest finite value of the file's format.
   void put(double value) { *to_++ = float(std::clamp(value, -largest_, largest_)); }
   void put(const Triple& values) {
     for (const double v : values) put(v);
@@ -110,7 +110,8 @@ class PixelWriter {
     }
   }
 
-  /// `w` 1: a point, 0: a vector. Cameras are placed without shear, so that normals are vectors.
+  /// Transforms a point (w = 1) or a vector (w = 0). Camera transformations have no shear: normals transform as
+  /// vectors.
   Triple mapped(const Vec3d& v, double w) const {
     Triple result{};
     for (size_t i = 0; i < 3; ++i) {
@@ -150,7 +151,7 @@ bool renew_image(const Film& film, const ImageFormat& format, const std::stop_to
   for (size_t i = 0; i < film.tiles(); ++i) {
     if (stop.stop_requested()) return false;
     const Crop pixels = intersection(film.tile_pixels(i), crop);
-    if (pixels.width() <= 0 || pixels.height() <= 0) continue;  // others reach into the image
+    if (pixels.width() <= 0 || pixels.height() <= 0) continue;  // a tile outside the image, needed for splatting
     const Film::Hold hold = film.hold(pixels);
     for (int y = pixels.y0; y < pixels.y1; ++y)
       for (int x = pixels.x0; x < pixels.x1; ++x) writer.write_image(x, y, &image.at(x - crop.x0, y - crop.y0, 0));

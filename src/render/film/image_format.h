@@ -12,24 +12,24 @@
 
 namespace frond {
 
-/// What a film's channels are called and mean in the image that is made of it.
+/// Names and meanings of the channels of an image made from a film.
 struct ImageFormat {
-  std::string space;             ///< linear name of the film's colours; empty: they are bands
-  std::vector<Band> bands = {};  ///< of a film of bands
-  /// Rows of an affine map from world space to that of positions and normals.
+  std::string space;             ///< linear name of the colour space; empty if the channels are bands
+  std::vector<Band> bands = {};  ///< the bands, if the film has bands
+  /// First three rows of the matrix from world space to the space of positions and normals.
   std::array<std::array<double, 4>, 3> from_world{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-  std::map<std::string, std::string> attributes = {};
+  std::map<std::string, std::string> attributes = {};  ///< for the header of the image file
 };
 
-/// Colours, their variances and `leaf`, or those of bands in the layout of image/spectral_layout.h; and the channels
-/// that the format asks for.
+/// Image of a film: colours, or bands in the layout of image/spectral_layout.h, their variances, `leaf`, and the film's
+/// additional channels.
 Image film_image(const Film& film, const ImageFormat& format);
 
-/// What film_image has of what is seen: colours, or bands and the colours that stand for them; no variances, no further
-/// channels. Black.
+/// Black image for a viewer. Its channels are the colours, or the bands and their preview colours, of film_image,
+/// without variances and additional channels.
 Image empty_image(const Film& film, const ImageFormat& format);
-/// Fills it with what the film holds by now. Others may render meanwhile: each tile is that of whole items. False where
-/// `stop` was asked for first.
+/// Updates such an image from a film that other threads may be adding to; each tile contains complete work items only.
+/// Returns false if `stop` was requested before the end.
 bool renew_image(const Film& film, const ImageFormat& format, const std::stop_token& stop, Image& image);
 
 }  // namespace frond

@@ -7,10 +7,10 @@
 namespace frond {
 namespace {
 
-/// Half the place of a sample in its pixel between two that integrals take.
+/// Number of positions in the midpoint rule of integrals over a pixel.
 constexpr int kSteps = 1024;
 
-/// Mean over evenly spread places in a pixel.
+/// Mean of value(u) over positions u in a pixel, by the midpoint rule.
 template <class F>
 double mean_over_pixel(const F& value) {
   double sum = 0;
@@ -24,8 +24,8 @@ bool can_splat(const Filter& filter) {
   return radius.x > 0 && radius.y > 0 && radius.x <= kWidest && radius.y <= kWidest && !filter.stays_in_pixel();
 }
 
-/// Variance of a pixel whose own samples are drawn by the filter's magnitude, over what a box filter of one pixel
-/// makes: (integral of |f| / integral of f)^2, along an axis.
+/// Variance of a pixel with importance sampling of the filter, relative to a box filter of one pixel, along an axis:
+/// (integral of |f| / integral of f)^2.
 double noise_of_importance(double radius, const auto& value) {
   double sum = 0, magnitude = 0;
   for (int i = 0; i < kSteps; ++i) {

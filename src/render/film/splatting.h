@@ -12,31 +12,31 @@
 
 namespace frond {
 
-/// Along one axis: what a sample weighs in the pixels that it reaches.
+/// Statistics of the weights of splatted samples along one axis.
 struct SplatAxis {
-  int reach = 0;  ///< pixels on either side of its own
-  /// For each of these pixels, from -reach to reach: the mean of the weight, and of its square, over samples that are
-  /// spread evenly in their own.
+  int reach = 0;  ///< number of pixels that a sample reaches on either side of its own
+  /// For each offset from -reach to reach: the mean of the weight and of its square over samples that are uniform in
+  /// their pixel.
   std::vector<double> mean = {}, square = {};
   bool operator==(const SplatAxis&) const = default;
 };
 
-/// That samples are shared: each lies in a pixel of its own, and is added, weighed by the filter, to all pixels within
-/// the filter's reach. A pixel's value is sum(w L) / sum(w). As in Mitsuba, and in pbrt up to version 3.
+/// Parameters of splatting: each sample is added, weighted by the filter, to all pixels within the filter's radius. The
+/// value of a pixel is sum(w L) / sum(w), as in Mitsuba and in pbrt up to version 3.
 struct Splatting {
   std::array<SplatAxis, 2> axes;  ///< x, y
   bool has_negative_weights = false;
-  /// Pixels that share the noise of one: the sum of the magnitudes of its correlation with all of them. Where pixels
-  /// are summed up as if they were independent, variances are too small by this factor at most.
+  /// Sum of the magnitudes of the correlations of a pixel's noise with all pixels, itself included. The variance of a
+  /// sum of pixels is at most this factor times that of independent pixels.
   double correlated_pixels = 1;
-  Crop sampled{};  ///< pixels whose samples are taken; of a whole image more than the film's crop, by the reach
+  Crop sampled{};  ///< pixels whose samples are taken; for a whole image the film's crop, widened by the reach
 
-  /// Of a weight's mean and mean square, for the pixel that lies so many pixels from a sample's own.
+  /// Mean of the weight, and of its square, of a sample in the pixel at this offset from the sample's own.
   double mean(int dx, int dy) const { return of(axes[0].mean, dx, 0) * of(axes[1].mean, dy, 1); }
   double square(int dx, int dy) const { return of(axes[0].square, dx, 0) * of(axes[1].square, dy, 1); }
   int reach_x() const { return axes[0].reach; }
   int reach_y() const { return axes[1].reach; }
-  /// Pixels whose samples reach some pixels of the image, as far as they are taken.
+  /// Pixels in `sampled` whose samples reach some of these pixels.
   Crop reaching(const Crop& pixels) const;
   bool operator==(const Splatting&) const = default;
 
@@ -46,24 +46,24 @@ struct Splatting {
   }
 };
 
-/// Most pixels that a sample reaches on either side of its own.
+/// Upper limit of SplatAxis::reach.
 inline constexpr int kMostReach = 8;
 
-/// With so many pixels more on all sides.
+/// The rectangle enlarged by x pixels to the left and right and by y pixels at the top and bottom.
 Crop widened(const Crop& pixels, int x, int y);
-/// What both have.
+/// Pixels in both rectangles; width or height are 0 or negative if there are none.
 Crop intersection(const Crop& a, const Crop& b);
 
-/// What a sample weighs in the pixels around it: along x times along y.
+/// Tabulated filter: the weights of a sample in the pixels around it, as products of a weight along x and one along y.
 class SplatKernel {
  public:
   explicit SplatKernel(const Filter& filter);
 
   static constexpr int kMostWidth = 2 * kMostReach + 1;
   struct Weights {
-    std::array<float, kMostWidth> x, y;  ///< from -reach on
+    std::array<float, kMostWidth> x, y;  ///< element 0 is at the offset -reach
 
-    /// Of pixels that are counted from -reach; a multiple of kWeightUnit.
+    /// Weight of a pixel, a multiple of kWeightUnit. Column and row are 0 at the offset -reach.
     float at(size_t column, size_t row) const {
       constexpr float kRounds = 0x1.8p23f * kWeightUnit;
       return x[column] * y[row] + kRounds - kRounds;
@@ -71,21 +71,22 @@ class SplatKernel {
   };
   static constexpr float kWeightUnit = 0x1p-20f;
 
-  /// For a sample at `u` in its pixel, [0, 1)^2.
+  /// Weights of a sample at the position `u` in its pixel, [0, 1)^2.
   Weights at(Vec2 u) const {
     Weights w;
     axes_[0].interpolate(u.x, w.x.data());
     axes_[1].interpolate(u.y, w.y.data());
     return w;
   }
+  /// Number of pixels that a sample reaches in x and in y: 2 reach + 1.
   int width() const { return axes_[0].width; }
   int height() const { return axes_[1].width; }
-  /// What there is to know of it; `sampled` is empty.
+  /// Statistics of the weights; `sampled` is empty.
   Splatting splatting() const;
 
  private:
-  /// The filter along an axis, tabulated at kNodes + 1 places of a sample in its pixel, scaled so that no weight
-  /// exceeds 1, nor the sum of a sample's weights does in the mean.
+  /// The filter along an axis, tabulated at kNodes + 1 positions of a sample in its pixel. It is scaled so that no
+  /// weight, nor the mean of the sum of a sample's weights, exceeds 1.
   struct Axis {
     static constexpr int kNodes = 256;
     int reach, width;
@@ -102,10 +103,10 @@ class SplatKernel {
     }
     double weight(double u, int pixel) const;
     SplatAxis described() const;
-    /// Sum over all lags of the magnitude of the autocorrelation of a sample's weights.
+    /// Sum over all lags of the magnitude of the autocorrelation of the weights.
     double correlated_pixels() const;
     bool has_negative_weights() const;
-    /// Variance of a pixel whose samples all have variance 1, times their number.
+    /// Variance of a pixel times its number of samples, for samples of variance 1.
     double noise() const;
   };
   friend bool splats(const Filter& filter);
@@ -113,36 +114,39 @@ class SplatKernel {
   std::array<Axis, 2> axes_;
 };
 
-/// A sample's values as whole numbers, so that sums of them times weights are exact: multiples of 2^(exponent - 26).
+/// Values of a sample, rounded to multiples of 2^(exponent - 26), so that sums of their products with weights are
+/// exact.
 struct SplatValue {
   static constexpr int kBits = 26;
   static constexpr int kLeastExponent = -14, kStep = 4;
 
   explicit SplatValue(const Double4& values);
 
-  int exponent;       ///< kLeastExponent + n kStep; all values are less than 2^exponent
-  Double4 multiples;  ///< at most 2^26 in magnitude
+  int exponent;       ///< kLeastExponent + n kStep; all values are below 2^exponent
+  Double4 multiples;  ///< integers of at most 2^26 in magnitude
 
-  /// Of a sum of multiples times weights: a number of units of 2^(shift - 60).
+  /// Converts a sum of multiples times weights to units of 2^(shift - 60).
   static int64_t whole(double sum) { return static_cast<int64_t>(sum * (1 / double(SplatKernel::kWeightUnit))); }
   int shift() const { return exponent - kLeastExponent; }
 };
 
-/// What samples of one pixel, of the same exponent, give to each pixel that they reach.
+/// Sums of the weighted values that samples of one pixel, of the same exponent, contribute to each pixel around it.
 class SplatSums {
  public:
-  /// Of nothing yet: `restart` comes first. The room for the widest kernel is not cleared, which would take longer than
-  /// a few samples do.
+  /// Call `restart` before `add`. The constructor does not clear the array for the widest kernel: that would take
+  /// longer than adding a few samples.
   explicit SplatSums(const SplatKernel* kernel) : kernel_(kernel) {}
 
+  /// Resets the sums to 0 and sets the exponent of the samples that follow.
   void restart(int exponent);
   std::optional<int> exponent() const { return exponent_; }
-  /// Of a sample at `u` in its pixel, [0, 1)^2. At most kMost of them.
+  /// Adds a sample at the position `u` in its pixel, [0, 1)^2; at most kMost samples between two calls of `restart`.
   void add(Vec2 u, const SplatValue& value);
   static constexpr int kMost = 64;
   static_assert(kMost * double(1 << SplatValue::kBits) / double(SplatKernel::kWeightUnit) <= 0x1p53);
 
-  /// What a pixel, counted from -reach, gets: units of 2^(shift - 60), and of 2^-30.
+  /// Sum of a colour, in units of 2^(shift - 60), and sum of weights, in units of 2^-30, of the pixel in this column
+  /// and row, which are 0 at the offset -reach.
   int64_t sum(size_t column, size_t row, size_t color) const {
     const Sums& sums = sums_[at(column, row)];
     return SplatValue::whole(color < 2 ? sums.red_green[color] : sums.blue_weight[0]);
@@ -151,7 +155,7 @@ class SplatSums {
   int64_t weight(size_t column, size_t row) const { return int64_t(sums_[at(column, row)].blue_weight[1] * 0x1p30); }
 
  private:
-  /// Of colours times weights, and of weights: two and two, which a register holds.
+  /// Sums of three colours times weights and of weights, as two SIMD registers of two doubles.
   using Double2 = double __attribute__((vector_size(16)));
   struct Sums {
     Double2 red_green, blue_weight;
@@ -164,8 +168,8 @@ class SplatSums {
   std::array<Sums, size_t(SplatKernel::kMostWidth) * SplatKernel::kMostWidth> sums_;
 };
 
-/// Whether samples are to be shared: as the scene says, or else where that makes less noise than to draw each pixel's
-/// own from the filter, were all of an image's samples independent and alike.
+/// True if the scene states splatting for the filter, or states nothing and splatting has less noise than importance
+/// sampling of the filter for independent samples of equal variance.
 bool splats(const Filter& filter);
 
 }  // namespace frond

@@ -10,16 +10,17 @@
 
 namespace frond {
 
-/// How paths ended after so many scattering events; from kDepths - 1 on together in the last one.
+/// Histogram of path lengths: the number of paths that ended after 0, 1, ... scattering events. The last element counts
+/// all paths with kDepths - 1 or more events.
 struct PathEnds {
   static constexpr size_t kDepths = 64;
-  std::array<uint64_t, kDepths> escaped{}, absorbed{};  ///< left the scene; were absorbed or cut off
+  std::array<uint64_t, kDepths> escaped{}, absorbed{};  ///< left the scene; were absorbed or terminated
 
   void add(const PathResult& path) {
     const size_t depth = std::min(size_t(path.scatterings), kDepths - 1);
     ++(path.escaped ? escaped : absorbed)[depth];
   }
-  /// Paths that went on after so many scattering events, below kDepths.
+  /// Number of paths with at least `events` scattering events; `events` < kDepths.
   uint64_t alive_after(size_t events) const {
     return std::accumulate(escaped.begin() + events, escaped.end(), uint64_t{0}) +
            std::accumulate(absorbed.begin() + events, absorbed.end(), uint64_t{0});
@@ -30,7 +31,7 @@ struct PathEnds {
   }
 };
 
-/// What a render took.
+/// Statistics of a render: numbers of paths and rays, and times.
 struct RenderStatistics {
   uint64_t paths = 0, rays = 0;
   double wall_seconds = 0, cpu_seconds = 0;

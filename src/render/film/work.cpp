@@ -11,7 +11,7 @@ auto order_of(const WorkItem& a) {
   return std::tuple(a.pixels.y0, a.pixels.x0, a.pixels.y1, a.pixels.x1, a.samples.begin, a.samples.end);
 }
 
-/// What is left of `whole` without `hole`, which lies inside it.
+/// Adds the samples of `whole` outside of `hole`, which lies inside it, to `rest`.
 void add_rest(const WorkItem& whole, const WorkItem& hole, std::vector<WorkItem>& rest) {
   const auto add = [&rest](Crop pixels, SampleRange samples) {
     if (const WorkItem piece{pixels, samples}; !piece.empty()) rest.push_back(piece);
@@ -25,7 +25,7 @@ void add_rest(const WorkItem& whole, const WorkItem& hole, std::vector<WorkItem>
   add(h, {hole.samples.end, whole.samples.end});
 }
 
-/// The two as one, where that is a box too.
+/// Union of the two items if it is a single item.
 std::optional<WorkItem> joined(const WorkItem& a, const WorkItem& b) {
   const Crop &p = a.pixels, &q = b.pixels;
   const bool same_columns = p.x0 == q.x0 && p.x1 == q.x1, same_rows = p.y0 == q.y0 && p.y1 == q.y1,
@@ -74,7 +74,7 @@ bool Coverage::add(const WorkItem& item) {
     if (const auto both = joined(grown, *other)) {
       grown = *both;
       items_.erase(other);
-      other = items_.begin();  // what has grown may go with those before
+      other = items_.begin();  // the larger item can be adjacent to earlier ones
     } else {
       ++other;
     }

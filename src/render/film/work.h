@@ -7,7 +7,7 @@
 
 namespace frond {
 
-/// Samples of a pixel, by their indices; the end is not in it.
+/// Range of sample indices of a pixel: begin <= index < end.
 struct SampleRange {
   uint64_t begin = 0, end = 0;
 
@@ -16,8 +16,8 @@ struct SampleRange {
   friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
 
-/// Some samples of some pixels. Work items can be done in any order, on any machine, in parts of any shape: the film
-/// that comes out is the same.
+/// Range of samples of a rectangle of pixels. The resulting film does not depend on how a render is divided into work
+/// items, on their order, or on the machines that render them.
 struct WorkItem {
   Crop pixels;
   SampleRange samples;
@@ -29,19 +29,19 @@ struct WorkItem {
   friend bool operator==(const WorkItem&, const WorkItem&) = default;
 };
 
-/// What both have.
+/// Samples in both items; empty if there are none.
 WorkItem intersection(const WorkItem& a, const WorkItem& b);
 
-/// Items that have nothing in common with each other; neighbours are put together.
+/// Set of samples, as disjoint work items; adjacent items are joined.
 class Coverage {
  public:
-  /// False, and nothing changes, where some of it is covered already.
+  /// Adds the samples of an item. Returns false, without a change, if the set already contains some of them.
   bool add(const WorkItem& item);
-  /// What of `item` is not covered, in pieces.
+  /// Samples of `item` that the set does not contain, as disjoint items.
   std::vector<WorkItem> missing(const WorkItem& item) const;
 
   const std::vector<WorkItem>& items() const { return items_; }
-  /// Whether both cover the same: in which pieces hangs on the order in which they came.
+  /// True if both contain the same samples. Their items can differ, as they depend on the order of additions.
   friend bool operator==(const Coverage& a, const Coverage& b) { return a.has_all_of(b) && b.has_all_of(a); }
 
  private:

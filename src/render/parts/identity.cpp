@@ -24,7 +24,7 @@ uint64_t hash_materials(const SceneSettings& description) {
   return hash;
 }
 
-/// Embree's hits differ in their last bits from one to the next.
+/// Instruction set that Embree uses; its intersections differ in the last bits between instruction sets.
 const char* instruction_set() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2")) return "avx2";

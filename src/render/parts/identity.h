@@ -11,8 +11,8 @@
 
 namespace frond {
 
-/// All that decides a pixel's value but which of its samples there are, field by field: the program, the scene, the
-/// files that it names, wavelengths, seed. Renders of one identity can be added up.
+/// Identity of a render: everything that decides the value of a pixel's samples, as a list of fields (program, scene,
+/// files that the scene names, wavelengths, seed). Parts can be merged if their identities are equal.
 class Identity {
  public:
   struct Field {
@@ -21,9 +21,10 @@ class Identity {
   };
   void add(std::string name, std::string value) { fields_.push_back({std::move(name), std::move(value)}); }
   const std::vector<Field>& fields() const { return fields_; }
+  /// Hash of all fields.
   uint64_t hash() const;
 
-  /// What differs first, for people: `seed: 1 here, 2 there`. Empty where nothing does.
+  /// Message about the first field that differs: `seed: 1 here, 2 there`; empty if the identities are equal.
   std::string difference(const Identity& other, const std::string& here, const std::string& there) const;
 
   friend bool operator==(const Identity&, const Identity&) = default;
@@ -32,18 +33,18 @@ class Identity {
   std::vector<Field> fields_;
 };
 
-/// What decides an image's pixels beside its description.
+/// Settings that decide an image's pixels in addition to the scene's description.
 struct ImageFacts {
   std::vector<std::filesystem::path> plugins;  ///< shared objects
   uint64_t seed;
-  ParsedPlugin wavelengths;  ///< the description's, with its parameters
+  ParsedPlugin wavelengths;  ///< the wavelength strategy with its parameters
   FilmFormat format;
   std::string color_space;
-  std::string command;  ///< what asks for the image
+  std::string command;  ///< ImageRequest::command
 };
 
-/// The identity of such an image of the description. Reads every file that the description names, and frond's own
-/// code.
+/// Identity of an image of the scene. Reads every file that the description names, and frond's own program files.
+/// Throws InputError if a file cannot be read.
 Identity identity_of(const SceneDescription& description, const ImageFacts& facts);
 
 }  // namespace frond

@@ -28,7 +28,7 @@ uint64_t hash_words(std::span<const std::byte> bytes, uint64_t seed) {
   uint64_t hash = hash_key(seed, bytes.size());
   size_t at = 0;
   for (; at + sizeof(uint64_t) <= bytes.size(); at += sizeof(uint64_t)) {
-    uint64_t word;  // by words: tables of instances have gigabytes
+    uint64_t word;  // words instead of bytes, for speed: instance tables have gigabytes
     std::memcpy(&word, bytes.data() + at, sizeof word);
     hash = mix64(hash ^ word) + 1;
   }

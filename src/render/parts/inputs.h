@@ -10,21 +10,20 @@
 
 namespace frond {
 
-/// The files that the parameters of the scene and of its wavelength strategy name (meshes, images, spectra), as far as
-/// they exist.
+/// Existing files that parameters of the scene and of its wavelength strategy name: meshes, images, spectra.
 std::vector<std::filesystem::path> input_files(const SceneDescription& scene, const ParsedPlugin& wavelengths);
 
-/// The plug-ins that load_registry loads.
+/// Shared objects that load_registry loads.
 std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plugins);
 
-/// Over the files that hold frond's own code: the library, and what it opens for image files.
+/// Hash of frond's own code: the library, and the shared object for image files.
 uint64_t hash_program(uint64_t seed);
 
-/// As hash_file, of code that is loaded: read, not mapped once more, for perf learns of mappings and not of their end,
-/// and then finds no stack that goes through it.
+/// Like hash_file, for a shared object that is loaded. It reads the file instead of mapping it: a second mapping
+/// confuses perf, which records mappings but not their end and then cannot resolve stacks through the library.
 uint64_t hash_library(const std::filesystem::path& path, uint64_t seed);
 
-/// Over the bytes, going on from `seed`. Throws InputError when they cannot be read.
+/// Hash of a file's bytes, combined with `seed`. Throws InputError if the file cannot be read.
 uint64_t hash_file(const std::filesystem::path& path, uint64_t seed);
 
 }  // namespace frond

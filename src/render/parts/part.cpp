@@ -27,7 +27,7 @@ void for_each_pixel(const Crop& c, const Each& each) {
     for (int x = c.x0; x < c.x1; ++x) each(x, y);
 }
 
-/// What two parts have in common, in a tile.
+/// Samples that two tiles have in common.
 std::optional<WorkItem> common(const FilmTile& a, const FilmTile& b) {
   for (const WorkItem& i : a.coverage().items())
     for (const WorkItem& j : b.coverage().items())
@@ -41,7 +41,7 @@ std::string text_of(const WorkItem& item) {
 
 bool contains(const Crop& c, int x, int y) { return x >= c.x0 && x < c.x1 && y >= c.y0 && y < c.y1; }
 
-/// Says which two of the files have something in common: the one that did not fit, and one of those before it.
+/// Throws an InputError with the file at index `last`, an earlier file, and the samples that they have in common.
 [[noreturn]] void fail_with_overlap(const std::vector<std::filesystem::path>& files, size_t last) {
   const Film b = read_part(files[last]).film;
   for (size_t i = 0; i < last; ++i) {
@@ -72,7 +72,7 @@ SampleCount sample_count(const Film& film) {
 
 std::string what_is_missing(const RenderPart& part) {
   const uint64_t most = sample_count(part.film).most;
-  std::string beside;  // shared samples of pixels outside of the image
+  std::string beside;  // missing samples of pixels outside of the image, with splatting
   for (size_t i = 0; i < part.film.tiles(); ++i) {
     const FilmTile& tile = part.film.tile(i);
     uint64_t end = part.header.adaptive ? 0 : most;
@@ -92,19 +92,19 @@ bool lacks_neighbors(const Film& film) {
 }
 
 RenderPart merge_parts(const std::vector<std::filesystem::path>& files) {
-  // Heads first: what does not go together is told before anything is read whole. Then one part at a time.
+  // All headers first, so that parts that do not match are reported early. Then one whole part at a time.
   const PartHead first = read_part_head(files.front());
   PartHeader header = first.header;
   header.statistics = {};
-  if (files.size() > 1) header.tile_ends.clear(), header.round = 0;  // what one of them was about to have
+  if (files.size() > 1) header.tile_ends.clear(), header.round = 0;  // the plan of a single part
   FilmFormat format = first.film;
   for (const auto& file : files) {
     const PartHead head = read_part_head(file);
     const std::string difference =
         first.header.identity.difference(head.header.identity, files.front().string(), file.string());
-    if (!difference.empty()) fail({}, "these are no parts of one render. {}", difference);
+    if (!difference.empty()) fail({}, "these are not parts of the same render. {}", difference);
     if (head.film.blocks != format.blocks)
-      fail({}, "\"{}\" was made with --max-rms, \"{}\" without: they do not add up",
+      fail({}, "\"{}\" was rendered with --max-rms, \"{}\" without: they cannot be merged",
            (format.blocks ? files.front() : file).string(), (format.blocks ? file : files.front()).string());
     format.settings.crop = around(format.settings.crop, head.film.settings.crop);
     if (format.splatting) format.splatting->sampled = around(format.sampled(), head.film.sampled());

@@ -9,45 +9,47 @@
 
 namespace frond {
 
-/// What there is to know of a render beside its sums.
+/// Header of a part: all data except its film.
 struct PartHeader {
   Identity identity;
   ImageFormat image;
-  std::string command;   ///< the command line without samples and pixels, which follow from the film
-  Crop scene_crop{};     ///< what the scene asks for
-  int pixel_scale = 1;   ///< from the film's pixels to the command line's: 2 where --quick has halved them
-  uint64_t request = 0;  ///< samples of each pixel that were asked for; adaptive renders may have other numbers
+  std::string command;   ///< command line without samples and pixels, which follow from the film
+  Crop scene_crop{};     ///< crop that the scene states
+  int pixel_scale = 1;   ///< pixels of the command line per pixel of the film: 2 with --quick, else 1
+  uint64_t request = 0;  ///< requested samples per pixel; adaptive renders can have other numbers
   bool adaptive = false;
-  std::vector<uint64_t> tile_ends = {};  ///< of an adaptive render: what it is about to have, by tile
-  int round = 0;                         ///< of an adaptive render: how often that was decided
+  std::vector<uint64_t> tile_ends = {};  ///< adaptive render: samples per pixel of each tile in the current plan
+  int round = 0;                         ///< adaptive render: number of plans before the current one
   RenderStatistics statistics = {};
 };
 
-/// Some or all of a render: any of its work items, summed up. Two of one identity, which have no sample in common, add
-/// up to one; the order does not matter.
+/// Part of a render: the sums over any of its work items. Parts with equal identities and without common samples can be
+/// merged in any order.
 struct RenderPart {
   PartHeader header;
   Film film;
 };
 
-/// Samples that each pixel has; 0, 0 for a film without pixels.
+/// Smallest and largest number of samples of a pixel.
 struct SampleCount {
   uint64_t least = 0, most = 0;
 };
+/// Counts the samples of all pixels that the film takes samples of.
 SampleCount sample_count(const Film& film);
 
-/// Whether there is a pixel whose samples do not begin at 0, have holes, or, in a render that is not adaptive, end
-/// before another's: then what is missing, for people. Else "".
+/// Message about missing samples: a pixel whose samples do not begin at index 0, have gaps, or, unless the render is
+/// adaptive, end before those of another pixel. Empty if none are missing.
 std::string what_is_missing(const RenderPart& part);
 
-/// Whether pixels at the crop's edges lack shared samples of those beside it, which other parts of the image have.
+/// With splatting: true if pixels at the edges of the crop lack contributions of samples next to it, which other parts
+/// of the image contain.
 bool lacks_neighbors(const Film& film);
 
-/// Adds parts up; the film's crop is the rectangle around all of theirs. Throws InputError that names the two files and
-/// what they have in common, or the field in which they differ.
+/// Merges part files; the film's crop is the bounding rectangle of their crops. Throws an InputError with the two files
+/// and the samples that they have in common, or the field of the identity in which they differ.
 RenderPart merge_parts(const std::vector<std::filesystem::path>& files);
 
-/// The same with what is written down of it: its command line and its samples.
+/// Image format of a part, with the attributes that follow from its film: command line, samples, noise.
 ImageFormat finished_image(const RenderPart& part);
 
 }  // namespace frond

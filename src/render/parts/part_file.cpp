@@ -18,7 +18,7 @@ namespace frond {
 
 using Json = nlohmann::ordered_json;
 
-/// The sums of a tile, as they are in memory.
+/// The arrays of a tile, which are stored as in memory.
 class PartFile {
  public:
   static_assert(std::has_unique_object_representations_v<FilmTile::Pixel>, "no byte of a file is left to chance");
@@ -28,7 +28,7 @@ class PartFile {
   static_assert(std::has_unique_object_representations_v<FilmTile::SplatBlocks>);
   static_assert(sizeof(FilmTile::Hits) == 24);
 
-  /// calls each(pointer, bytes) for every array.
+  /// Calls each(pointer, bytes) for every array.
   template <class Tile, class Each>
   static void for_each_array(Tile& tile, const Each& each) {
     const auto array = [&each](auto& values) { each(values.data(), values.size() * sizeof(values[0])); };
@@ -247,7 +247,7 @@ class Decompressor {
     get(&value, sizeof value);
     return value;
   }
-  /// The checksum is looked at with the last byte: nothing is believed before.
+  /// Checks that all data were read. Decoding the last byte checks the checksum, so that no data may be used before.
   void finish() {
     char none;
     ZSTD_outBuffer out{&none, 0, 0};
@@ -303,9 +303,9 @@ uint64_t take_number(std::string_view& bytes) {
   return number;
 }
 
-/// Its size, which stands at the front behind the magic word.
+/// Size of the header, which follows the magic number.
 uint64_t take_header_size(std::string_view& bytes, const fs::path& path) {
-  if (!bytes.starts_with(kMagic.substr(0, 11))) fail({}, "\"{}\" is no part of a render", path.string());
+  if (!bytes.starts_with(kMagic.substr(0, 11))) fail({}, "\"{}\" is not a part file", path.string());
   if (!bytes.starts_with(kMagic))
     fail({}, "\"{}\" is a part in another version of the format: this frond reads version 3", path.string());
   bytes.remove_prefix(kMagic.size());
@@ -313,7 +313,7 @@ uint64_t take_header_size(std::string_view& bytes, const fs::path& path) {
   return take_number(bytes);
 }
 
-/// Takes the header off the front.
+/// Parses the header and removes it from `bytes`.
 Json take_header(std::string_view& bytes, const fs::path& path) {
   const uint64_t size = take_header_size(bytes, path);
   if (bytes.size() < sizeof(uint64_t) || size > bytes.size() - sizeof(uint64_t)) fail_to_read(path, "is cut short");
@@ -325,10 +325,10 @@ Json take_header(std::string_view& bytes, const fs::path& path) {
 
 void check_readable(const fs::path& path) {
   std::error_code error;
-  if (!fs::is_regular_file(path, error) || !std::ifstream(path)) read_file_bytes(path, {});  // which says why not
+  if (!fs::is_regular_file(path, error) || !std::ifstream(path)) read_file_bytes(path, {});  // throws with the reason
 }
 
-/// A part's front, with the whole header and no more.
+/// Reads the beginning of a part file up to the end of the header.
 std::string read_front(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string front(kMagic.size() + sizeof(uint64_t), '\0');

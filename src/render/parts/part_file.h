@@ -4,25 +4,25 @@
 
 namespace frond {
 
-/// Writes a part, whole or not at all (docs/part_format.md). May be called while threads add to its film: then it has
-/// some of their work items, each of them whole. Throws InputError with the system's reason.
+/// Writes a part to a file (docs/many_machines.md), atomically. Threads may add to the film meanwhile: the file then
+/// contains complete work items only. Throws InputError with the system's message.
 void write_part(const std::filesystem::path& path, const PartHeader& header, const Film& film);
 
-/// The same in memory.
+/// Returns the contents of a part file, in memory.
 std::vector<unsigned char> encode_part(const PartHeader& header, const Film& film);
-/// `path` is what errors call it.
+/// Reads the contents of a part file from memory; error messages name it `path`. Throws as read_part does.
 RenderPart decode_part(std::string_view bytes, const std::filesystem::path& path);
 
-/// What a part's file says before its sums.
+/// Beginning of a part file, before the sums.
 struct PartHead {
   PartHeader header;
   FilmFormat film;
 };
 
-/// Nothing of the sums is looked at. Throws as read_part does.
+/// Reads the header without the sums. Throws as read_part does.
 PartHead read_part_head(const std::filesystem::path& path);
 
-/// Throws InputError for what is no part, cut short or damaged, and of another version of the format.
+/// Reads a part. Throws InputError if the file is not a part, truncated, damaged, or of another version of the format.
 RenderPart read_part(const std::filesystem::path& path);
 
 }  // namespace frond

@@ -9,11 +9,12 @@
 namespace frond {
 namespace {
 
-/// The part of the plane z = 1 that the film covers; pbrt's rule: the shorter axis spans [-1, 1].
+/// The part of the plane z = 1 that the film covers. As in pbrt, the shorter axis spans [-1, 1].
 struct Screen {
   float x0, x1, y0, y1;
 };
 
+/// Returns the screen window of the parameters. A degenerate window is an error; one with too few values is ignored.
 Screen screen_of(const Params& p, const CameraPlacement& film) {
   const float width = float(film.width), height = float(film.height);
   const float aspect = p.given("frameaspectratio") ? float(p.real("frameaspectratio")) : width / height;
@@ -27,7 +28,7 @@ Screen screen_of(const Params& p, const CameraPlacement& film) {
   return aspect > 1 ? Screen{-aspect, aspect, -1, 1} : Screen{-1, 1, -1 / aspect, 1 / aspect};
 }
 
-/// Film pixels to screen coordinates, and the thin lens that both cameras share.
+/// Maps film pixels to screen coordinates, and models the thin lens of both projective cameras.
 class ProjectiveCamera : public Camera {
  public:
   ProjectiveCamera(const Params& p, const CameraPlacement& placement, float scale)
@@ -43,6 +44,8 @@ class ProjectiveCamera : public Camera {
 
  protected:
   Vec2 screen_point(Vec2 film) const { return {origin_.x + film.x * step_.x, origin_.y + film.y * step_.y}; }
+  /// Converts a camera-space ray to world space. A lens moves the origin within its disk; the point in focus is
+  /// unchanged.
   Ray to_world(Vec3 o, Vec3 d, Vec2 lens) const {
     if (lens_radius_ > 0) {
       const Vec3 focus = o + d * (focal_distance_ / d.z);
@@ -59,6 +62,7 @@ class ProjectiveCamera : public Camera {
   float lens_radius_, focal_distance_;
 };
 
+/// Pinhole or thin-lens camera. "fov" is the angle of the shorter axis.
 class PerspectiveCamera final : public ProjectiveCamera {
  public:
   PerspectiveCamera(const Params& p, const CameraPlacement& film)
@@ -69,6 +73,7 @@ class PerspectiveCamera final : public ProjectiveCamera {
   }
 };
 
+/// Parallel projection along +z. The screen window is in camera-space units.
 class OrthographicCamera final : public ProjectiveCamera {
  public:
   OrthographicCamera(const Params& p, const CameraPlacement& film) : ProjectiveCamera(p, film, 1) {}
@@ -80,7 +85,7 @@ class OrthographicCamera final : public ProjectiveCamera {
 
 constexpr std::string_view kMappings[] = {"equalarea", "equirectangular"};
 
-/// All directions from a point, +y at the zenith.
+/// Camera for all directions around a point, with the zenith at +y.
 class SphericalCamera final : public Camera {
  public:
   SphericalCamera(const Params& p, const CameraPlacement& film)
@@ -91,6 +96,7 @@ class SphericalCamera final : public Camera {
     for (const std::string_view name : {"frameaspectratio", "screenwindow", "lensradius", "focaldistance"})
       if (p.given(name)) p.warn(name, fmt::format("\"{}\" has no effect on a spherical camera", name));
   }
+  /// All rays start at the camera's position, because a panorama has no lens.
   Ray ray(Vec2 film, Vec2) const override {
     const Vec2 uv{film.x / width_, film.y / height_};
     return {world_from_camera_.point({}), normalize_any(world_from_camera_.vector(direction(uv)))};
@@ -98,6 +104,7 @@ class SphericalCamera final : public Camera {
   bool uses_lens() const override { return false; }
 
  private:
+  /// Returns the camera-space direction of a point of the film, +y up, by either map of "mapping".
   Vec3 direction(Vec2 uv) const {
     if (equal_area_) {
       const Vec3 d = sphere_from_square(wrapped_on_square(uv));
@@ -116,10 +123,10 @@ constexpr Interval kPositive{1e-30, 1e30};
 constexpr Param kFrameAspect{.name = "frameaspectratio",
                              .kind = ParamKind::real,
                              .range = {1e-3, 1e3},
-                             .doc = "Width over height; the film's by default."};
+                             .doc = "Aspect ratio, width over height; by default the film's."};
 constexpr Param kScreenWindow{.name = "screenwindow",
                               .kind = ParamKind::real,
-                              .doc = "x0 x1 y0 y1 of the screen; the shorter axis spans -1 to 1 by default.",
+                              .doc = "Screen window x0 x1 y0 y1; by default the shorter axis spans -1 to 1.",
                               .list = true};
 constexpr Param kLensRadius{.name = "lensradius",
                             .kind = ParamKind::real,
@@ -130,14 +137,14 @@ constexpr Param kFocalDistance{.name = "focaldistance",
                                .kind = ParamKind::real,
                                .default_value = 1e6,
                                .range = kPositive,
-                               .doc = "Distance of the plane in focus."};
+                               .doc = "Distance of the plane of focus."};
 constexpr Param kShutterOpen{.name = "shutteropen",
                              .kind = ParamKind::real,
                              .default_value = 0.0,
                              .unit = "s",
-                             .doc = "When the exposure begins; how long it is is a factor of the image."};
+                             .doc = "Start of the exposure; the duration of the exposure scales the image."};
 constexpr Param kShutterClose{
-    .name = "shutterclose", .kind = ParamKind::real, .default_value = 1.0, .unit = "s", .doc = "When it ends."};
+    .name = "shutterclose", .kind = ParamKind::real, .default_value = 1.0, .unit = "s", .doc = "End of the exposure."};
 constexpr Param kPerspective[] = {kFrameAspect,
                                   kScreenWindow,
                                   kLensRadius,
@@ -155,7 +162,7 @@ constexpr Param kOrthographic[] = {kFrameAspect,   kScreenWindow, kLensRadius,
 constexpr Param kSpherical[] = {{.name = "mapping",
                                  .kind = ParamKind::string,
                                  .default_value = std::string_view("equalarea"),
-                                 .doc = "From the film to directions; equal-area wants a square film.",
+                                 .doc = "Map from the film to directions; equal-area requires a square film.",
                                  .choices = kMappings},
                                 kFrameAspect,
                                 kScreenWindow,
@@ -164,7 +171,7 @@ constexpr Param kSpherical[] = {{.name = "mapping",
                                 kShutterOpen,
                                 kShutterClose};
 
-/// What it does is done to the film: nothing moves.
+/// Checks the shutter times. The exposure's duration scales the film; there is no motion.
 void check_shutter(const Params& p) {
   const double open = p.real("shutteropen"), close = p.real("shutterclose");
   if (close < open) p.warn("shutterclose", "the shutter closes before it opens: the two are exchanged");
@@ -182,7 +189,8 @@ std::unique_ptr<Camera> make_camera(const Params& p, const CameraPlacement& film
 extern const CameraInfo perspective_camera{{"camera", "perspective", "Pinhole or thin lens.", "pbrt-v4", kPerspective},
                                            make_camera<PerspectiveCamera>};
 extern const CameraInfo spherical_camera{
-    {"camera", "spherical", "All directions around a point.", "pbrt-v4", kSpherical}, make_camera<SphericalCamera>};
+    {"camera", "spherical", "Camera for all directions around a point.", "pbrt-v4", kSpherical},
+    make_camera<SphericalCamera>};
 extern const CameraInfo orthographic_camera{
     {"camera", "orthographic", "Parallel projection.", "pbrt-v4", kOrthographic}, make_camera<OrthographicCamera>};
 

@@ -7,9 +7,10 @@
 namespace frond {
 namespace {
 
-/// A radiometer far away: each column of the film is a direction, and sees the same rectangle.
+/// Distant radiometer: each column of the film is a direction; all columns see the same rectangle.
 class DistantCamera final : public Camera {
  public:
+  /// Throws InputError unless the film has one column for each direction.
   DistantCamera(const Params& p, const CameraPlacement& placement) : world_from_camera_(placement.world_from_camera) {
     const std::vector<double> zenith = p.reals("zenith"), azimuth = p.reals("azimuth"), target = p.reals("target");
     if (target.size() != 5)
@@ -32,6 +33,7 @@ class DistantCamera final : public Camera {
     distance_ = float(p.real("distance"));
   }
 
+  /// The point on the target is a lens sample, so that it is stratified independently of the pixel position.
   Ray ray(Vec2 film, Vec2 lens) const override {
     const auto column = size_t(std::clamp(film.x, 0.f, float(toward_.size() - 1)));
     const Vec3 on_target = corner_ + Vec3{lens.x * size_.x, lens.y * size_.y, 0};
@@ -45,6 +47,7 @@ class DistantCamera final : public Camera {
  private:
   static constexpr double kDegree = std::numbers::pi / 180;
 
+  /// Returns the direction from zenith and azimuth in radians.
   static Vec3 direction(double zenith, double azimuth) {
     return {float(std::sin(zenith) * std::cos(azimuth)), float(std::sin(zenith) * std::sin(azimuth)),
             float(std::cos(zenith))};
@@ -61,24 +64,24 @@ constexpr Param kDistant[] = {
     {.name = "zenith",
      .kind = ParamKind::real,
      .unit = "degrees",
-     .doc = "Of the directions that the sensor looks from, from +z; a negative one lies on the other side of z.",
+     .doc = "Zenith angles of the view directions, from +z; negative angles are on the opposite side.",
      .list = true,
      .required = true},
     {.name = "azimuth",
      .kind = ParamKind::real,
      .unit = "degrees",
-     .doc = "From +x toward +y; one for each direction, or one for all: 0 by default.",
+     .doc = "Azimuths from +x toward +y, one for each direction or one for all; by default 0.",
      .list = true},
     {.name = "target",
      .kind = ParamKind::real,
-     .doc = "x0 x1 y0 y1 z: the rectangle that is seen, evenly.",
+     .doc = "Rectangle that is seen, x0 x1 y0 y1 z; sampled uniformly.",
      .list = true,
      .required = true},
     {.name = "distance",
      .kind = ParamKind::real,
      .default_value = 0.0,
      .range = kAtLeastZero,
-     .doc = "How far from the target rays begin: there must be nothing above."}};
+     .doc = "Distance from the target at which rays start; the scene must be below."}};
 
 std::unique_ptr<Camera> make_distant(const Params& p, const CameraPlacement& film) {
   return std::make_unique<DistantCamera>(p, film);
@@ -87,7 +90,7 @@ std::unique_ptr<Camera> make_distant(const Params& p, const CameraPlacement& fil
 }  // namespace
 
 extern const CameraInfo distant_camera{
-    {"camera", "distant", "Parallel rays from far away, a direction for each column of the film.", "", kDistant},
+    {"camera", "distant", "Distant sensor: parallel rays, one direction for each column of the film.", "", kDistant},
     make_distant};
 
 }  // namespace frond

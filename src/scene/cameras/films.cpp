@@ -26,49 +26,46 @@ constexpr auto kRgb = std::to_array<Param>({
     {.name = "cropwindow",
      .kind = ParamKind::real,
      .range = {0, 1},
-     .doc = "x0 x1 y0 y1 of what to render, as fractions.",
+     .doc = "Crop x0 x1 y0 y1 as fractions of the film.",
      .list = true},
-    {.name = "pixelbounds",
-     .kind = ParamKind::integer,
-     .doc = "x0 x1 y0 y1 of what to render, in pixels.",
-     .list = true},
+    {.name = "pixelbounds", .kind = ParamKind::integer, .doc = "Crop x0 x1 y0 y1 in pixels.", .list = true},
     {.name = "filename",
      .kind = ParamKind::string,
      .default_value = std::string_view("frond.exr"),
-     .doc = "Output; -o goes before it."},
-    {.name = "savefp16", .kind = ParamKind::boolean, .default_value = false, .doc = "EXR with 16-bit floats."},
+     .doc = "Output file; -o overrides it."},
+    {.name = "savefp16", .kind = ParamKind::boolean, .default_value = false, .doc = "Write EXR with 16-bit floats."},
     {.name = "diagonal",
      .kind = ParamKind::real,
      .default_value = 35.0,
      .unit = "mm",
      .range = kAtLeastZero,
-     .doc = "Film size; no camera of ours depends on it."},
+     .doc = "Film diagonal; frond's cameras do not depend on it."},
     {.name = "iso",
      .kind = ParamKind::real,
      .default_value = 100.0,
      .range = kAtLeastZero,
-     .doc = "Film speed; 100 and 1 s leave radiance as it is."},
+     .doc = "Film speed; 100 with an exposure of 1 s leaves radiance unchanged."},
     {.name = "exposuretime",
      .kind = ParamKind::real,
      .default_value = 1.0,
      .unit = "s",
      .range = kAtLeastZero,
-     .doc = "Exposure."},
+     .doc = "Exposure time."},
     {.name = "sensor",
      .kind = ParamKind::string,
      .default_value = std::string_view("cie1931"),
-     .doc = "Response of the film, where its wavelengths are \"hero\".",
+     .doc = "Sensor response of the film, for wavelengths \"hero\".",
      .choices = kFilmSensors},
     {.name = "whitebalance",
      .kind = ParamKind::real,
      .default_value = 0.0,
      .unit = "K",
      .range = {0, 1e5},
-     .doc = "Colour temperature of the daylight that is to be white; 0: of cameras 6500 K, of cie1931 none."},
+     .doc = "Colour temperature of daylight that becomes white; 0: 6500 K for cameras, no white balance for cie1931."},
     {.name = "maxcomponentvalue",
      .kind = ParamKind::real,
      .range = kAtLeastZero,
-     .doc = "Clamps samples and so biases the image; none by default."},
+     .doc = "Upper limit of a sample's components, which biases the image; by default none."},
 });
 
 constexpr std::string_view kCoordinateSystems[] = {"camera", "world"};
@@ -78,16 +75,17 @@ constexpr auto kGbuffer = [] {
   params.back() = {.name = "coordinatesystem",
                    .kind = ParamKind::string,
                    .default_value = std::string_view("camera"),
-                   .doc = "Space of positions and normals.",
+                   .doc = "Coordinate system of positions and normals.",
                    .choices = kCoordinateSystems};
   return params;
 }();
 
+/// Returns the crop of "cropwindow", which takes precedence as in pbrt, or of "pixelbounds", or the whole film.
 Crop crop_in(const Params& p, int width, int height) {
   auto window = p.reals("cropwindow");
   auto bounds = p.integers("pixelbounds");
   if (!window.empty() && !bounds.empty()) {
-    p.warn("pixelbounds", "\"cropwindow\" is given too, and counts");
+    p.warn("pixelbounds", "\"cropwindow\" is given too and is used");
     bounds.clear();
   }
   if (window.size() == 4 && put_in_order(window))
@@ -108,6 +106,7 @@ Crop crop_in(const Params& p, int width, int height) {
   return crop;
 }
 
+/// Settings that both films share.
 FilmSettings make_rgb_film(const Params& p) {
   FilmSettings s;
   s.width = p.integer("xresolution");
@@ -119,10 +118,11 @@ FilmSettings make_rgb_film(const Params& p) {
   s.max_component =
       p.given("maxcomponentvalue") ? p.real("maxcomponentvalue") : std::numeric_limits<double>::infinity();
   (void)p.real("diagonal");
-  (void)p.string("sensor"), (void)p.real("whitebalance");  // make_wavelengths reads them
+  (void)p.string("sensor"), (void)p.real("whitebalance");  // make_wavelengths uses these parameters
   return s;
 }
 
+/// A gbuffer film has all feature channels of frond, not only those of pbrt-v4.
 FilmSettings make_gbuffer_film(const Params& p) {
   FilmSettings s = make_rgb_film(p);
   s.channels = {"albedo", "normal", "depth", "position", "material", "instance", "samples"};
@@ -132,15 +132,18 @@ FilmSettings make_gbuffer_film(const Params& p) {
 
 }  // namespace
 
+/// Ends are rounded up, so that adjacent windows neither overlap nor leave gaps.
 Crop crop_of_fractions(std::span<const double> window, int width, int height) {
   const auto at = [](double fraction, int size) { return int(std::ceil(fraction * size)); };
   return {at(window[0], width), at(window[2], height), at(window[1], width), at(window[3], height)};
 }
 
+/// May be empty, if the bounds lie outside of the film.
 Crop crop_of_pixels(std::span<const int> bounds, int width, int height) {
   return {std::max(bounds[0], 0), std::max(bounds[2], 0), std::min(bounds[1], width), std::min(bounds[3], height)};
 }
 
+/// Sizes are rounded up, so that no part of the image is lost.
 FilmSettings halved(FilmSettings s) {
   s.width = (s.width + 1) / 2;
   s.height = (s.height + 1) / 2;
@@ -151,7 +154,7 @@ FilmSettings halved(FilmSettings s) {
 
 extern const FilmInfo rgb_film{{"film", "rgb", "Three colour channels.", "pbrt-v4", kRgb}, make_rgb_film};
 extern const FilmInfo gbuffer_film{
-    {"film", "gbuffer", "Three colour channels, and all that camera rays meet first.", "pbrt-v4", kGbuffer},
+    {"film", "gbuffer", "Three colour channels, and data of the first hit of camera rays.", "pbrt-v4", kGbuffer},
     make_gbuffer_film};
 
 }  // namespace frond

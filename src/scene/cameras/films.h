@@ -6,7 +6,8 @@
 
 namespace frond {
 
-/// Ends the wrong way round, as some exporters write them, are exchanged: x0, x1, y0, y1. Says whether any were.
+/// Sorts each pair of bounds x0, x1, y0, y1, because some exporters write them in the wrong order. Returns whether any
+/// pair was exchanged.
 template <class Bounds>
 bool put_in_order(Bounds& bounds) {
   bool is_changed = false;
@@ -15,12 +16,12 @@ bool put_in_order(Bounds& bounds) {
   return is_changed;
 }
 
-/// Pixels of a window x0 x1 y0 y1 that is given as fractions of a film, ends rounded up as in pbrt.
+/// Returns the pixels of a window x0 x1 y0 y1 given as fractions of the film; ends are rounded up as in pbrt.
 Crop crop_of_fractions(std::span<const double> window, int width, int height);
-/// As far as it lies on the film.
+/// Returns the part of the bounds (pixels) that lies on the film.
 Crop crop_of_pixels(std::span<const int> bounds, int width, int height);
 
-/// The same image at half the resolution; the crop keeps a pixel at least.
+/// Returns the settings at half the resolution; the crop keeps at least one pixel.
 FilmSettings halved(FilmSettings settings);
 
 }  // namespace frond

@@ -8,17 +8,18 @@ namespace frond {
 namespace {
 
 constexpr Interval kPositive{1e-6, 1e6};
-/// So that a pixel's samples reach no further than half a tile.
+/// Limits the radius of splatting, so that a sample reaches at most half a tile.
 constexpr float kWidestSplat = 8.5f;
 
-/// The quantile of a triangle on [-1, 1].
+/// Quantile of the triangle distribution on [-1, 1].
 float sample_tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(std::max(0.f, 2 - 2 * u)); }
 
+/// Filter radius along x and y, pixels.
 Vec2 radius_of(const Params& p) {
   return {static_cast<float>(p.real("xradius")), static_cast<float>(p.real("yradius"))};
 }
 
-/// All of ours are products of a function along x and one along y, of the same shape.
+/// Base of all filters: the product of a function of x and the same function of y.
 class ProductFilter : public Filter {
  public:
   explicit ProductFilter(const Params& p) : radius_(radius_of(p)) {
@@ -34,10 +35,11 @@ class ProductFilter : public Filter {
   std::optional<Reconstruction> reconstruction() const final { return reconstruction_; }
 
  protected:
-  /// At an offset within the radius; pixels.
+  /// Returns the value at an offset within the radius; both in pixels.
   virtual double value(double offset, double radius) const = 0;
 
  private:
+  /// Returns the value along one axis; 0 beyond the radius.
   float along(float offset, float radius) const {
     return std::abs(offset) > radius ? 0 : float(value(double(offset), double(radius)));
   }
@@ -45,6 +47,7 @@ class ProductFilter : public Filter {
   std::optional<Reconstruction> reconstruction_;
 };
 
+/// Samples are uniform over the radius, with weight 1.
 class BoxFilter final : public ProductFilter {
  public:
   using ProductFilter::ProductFilter;
@@ -54,6 +57,7 @@ class BoxFilter final : public ProductFilter {
   double value(double, double) const override { return 1; }
 };
 
+/// Samples are exactly proportional to the filter, so that all weights are 1.
 class TriangleFilter final : public ProductFilter {
  public:
   using ProductFilter::ProductFilter;
@@ -63,15 +67,16 @@ class TriangleFilter final : public ProductFilter {
   double value(double offset, double radius) const override { return 1 - std::abs(offset) / radius; }
 };
 
-/// Tabulated once per axis and sampled by its absolute value.
+/// Tabulates the function once for each axis and samples it by its absolute value.
 class TabulatedFilter final : public ProductFilter {
  public:
   using Shape = std::function<double(double offset, double radius)>;
   TabulatedFilter(const Params& p, Shape shape)
       : ProductFilter(p), shape_(std::move(shape)), x_(radius().x, shape_), y_(radius().y, shape_) {
     if (!x_.is_usable() || !y_.is_usable())
-      fail(p.where(), "this filter weighs nothing within its radius; other parameters are needed");
+      fail(p.where(), "this filter is 0 within its radius; change its parameters");
   }
+  /// Returns an offset and its weight. The weight is negative in the negative lobes of a filter.
   Sample sample(Vec2 u) const override {
     const auto [x, wx] = x_.sample(u.x);
     const auto [y, wy] = y_.sample(u.y);
@@ -129,6 +134,7 @@ double mitchell(double x, double b, double c) {
 
 double sinc(double x) { return std::abs(x) < 1e-5 ? 1 : std::sin(M_PI * x) / (M_PI * x); }
 
+/// The value at the radius is subtracted, as in pbrt, so that the filter has no step at its end.
 std::unique_ptr<Filter> make_gaussian(const Params& p) {
   const double sigma = p.real("sigma");
   return std::make_unique<TabulatedFilter>(p, [sigma](double x, double radius) {
@@ -137,12 +143,14 @@ std::unique_ptr<Filter> make_gaussian(const Params& p) {
   });
 }
 
+/// Mitchell's filter has a width of 4 of its own units, hence the factor.
 std::unique_ptr<Filter> make_mitchell(const Params& p) {
   const double b = p.real("B"), c = p.real("C");
   return std::make_unique<TabulatedFilter>(p,
                                            [b, c](double x, double radius) { return mitchell(2 * x / radius, b, c); });
 }
 
+/// Lanczos window: a sinc of `tau` cycles.
 std::unique_ptr<Filter> make_sinc(const Params& p) {
   const double tau = p.real("tau");
   return std::make_unique<TabulatedFilter>(p, [tau](double x, double) { return sinc(x) * sinc(x / tau); });
@@ -153,24 +161,25 @@ std::unique_ptr<Filter> make_filter(const Params& p) {
   return std::make_unique<T>(p);
 }
 
+/// Radius along one axis.
 constexpr Param radius(std::string_view name, double value) {
   return {.name = name,
           .kind = ParamKind::real,
           .default_value = value,
           .unit = "pixels",
           .range = kPositive,
-          .doc = "Half the filter's width."};
+          .doc = "Radius: half the filter's width."};
 }
 
 constexpr std::string_view kReconstructions[] = {"auto", "splatting", "importance"};
-constexpr Param kReconstruction{
-    .name = "reconstruction",
-    .kind = ParamKind::string,
-    .default_value = std::string_view("auto"),
-    .doc =
-        "Pixels share samples, which the filter weighs, or draw samples of their own from it; auto: what makes less "
-        "noise (docs/filters.md).",
-    .choices = kReconstructions};
+constexpr Param kReconstruction{.name = "reconstruction",
+                                .kind = ParamKind::string,
+                                .default_value = std::string_view("auto"),
+                                .doc =
+                                    "splatting: a sample counts in all pixels within the radius; importance: each "
+                                    "pixel samples the filter; auto: less "
+                                    "noise (docs/rendering.md).",
+                                .choices = kReconstructions};
 
 constexpr Param kBox[] = {radius("xradius", 0.5), radius("yradius", 0.5), kReconstruction};
 constexpr Param kTriangle[] = {radius("xradius", 2), radius("yradius", 2), kReconstruction};
@@ -186,26 +195,34 @@ constexpr Param kGaussian[] = {radius("xradius", 1.5),
 constexpr Param kMitchell[] = {
     radius("xradius", 2),
     radius("yradius", 2),
-    {.name = "B", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Blur."},
-    {.name = "C", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Ringing."},
+    {.name = "B", .kind = ParamKind::real, .default_value = 1.0 / 3, .range = {0, 1}, .doc = "Coefficient B (blur)."},
+    {.name = "C",
+     .kind = ParamKind::real,
+     .default_value = 1.0 / 3,
+     .range = {0, 1},
+     .doc = "Coefficient C (ringing)."},
     kReconstruction};
-constexpr Param kSinc[] = {
-    radius("xradius", 4),
-    radius("yradius", 4),
-    {.name = "tau", .kind = ParamKind::real, .default_value = 3.0, .range = kPositive, .doc = "Cycles of the window."},
-    kReconstruction};
+constexpr Param kSinc[] = {radius("xradius", 4),
+                           radius("yradius", 4),
+                           {.name = "tau",
+                            .kind = ParamKind::real,
+                            .default_value = 3.0,
+                            .range = kPositive,
+                            .doc = "Number of cycles of the window."},
+                           kReconstruction};
 
 }  // namespace
 
-extern const FilterInfo box_filter{{"pixel filter", "box", "Equal weight over a rectangle.", "", kBox},
+extern const FilterInfo box_filter{{"pixel filter", "box", "Box: equal weight over a rectangle.", "", kBox},
                                    make_filter<BoxFilter>};
-extern const FilterInfo triangle_filter{{"pixel filter", "triangle", "Weight that falls linearly.", "", kTriangle},
-                                        make_filter<TriangleFilter>};
+extern const FilterInfo triangle_filter{
+    {"pixel filter", "triangle", "Triangle: weight that falls linearly.", "", kTriangle}, make_filter<TriangleFilter>};
 extern const FilterInfo gaussian_filter{
-    {"pixel filter", "gaussian", "Gaussian, lowered to end at zero.", "", kGaussian}, make_gaussian};
+    {"pixel filter", "gaussian", "Gaussian, shifted to end at zero.", "", kGaussian}, make_gaussian};
 extern const FilterInfo mitchell_filter{
-    {"pixel filter", "mitchell", "Cubic with negative lobes.", "Mitchell and Netravali 1988", kMitchell},
+    {"pixel filter", "mitchell", "Cubic filter with negative lobes.", "Mitchell and Netravali 1988", kMitchell},
     make_mitchell};
-extern const FilterInfo sinc_filter{{"pixel filter", "sinc", "Windowed sinc.", "Lanczos window", kSinc}, make_sinc};
+extern const FilterInfo sinc_filter{{"pixel filter", "sinc", "Sinc with a Lanczos window.", "Lanczos window", kSinc},
+                                    make_sinc};
 
 }  // namespace frond

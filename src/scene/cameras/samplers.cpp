@@ -16,9 +16,10 @@ constexpr Param kSamplerParams[] = {
      .kind = ParamKind::integer,
      .default_value = 0,
      .range = {0, 2147483647},
-     .doc = "Seed; --seed and the option of that name go before it."},
+     .doc = "Seed; --seed and Option \"seed\" override it."},
 };
 
+/// Number of samples and seed, which all samplers have.
 class SamplerBase : public Sampler {
  public:
   SamplerBase(const Params& p, std::optional<uint64_t> seed)
@@ -32,6 +33,7 @@ class SamplerBase : public Sampler {
   uint64_t seed_;
 };
 
+/// Independent random numbers, a pure function of seed, pixel, sample and dimension.
 class IndependentSampler final : public SamplerBase {
  public:
   using SamplerBase::SamplerBase;
@@ -47,11 +49,13 @@ class IndependentSampler final : public SamplerBase {
   }
 
  private:
+  /// Each sample and dimension has its own stream, so that a sample does not depend on which others are rendered.
   RandomStream stream(const PixelSamples& samples, uint32_t i, uint32_t dimension) const {
     return RandomStream(hash_key(sample_key(seed(), samples.x, samples.y, samples.first + i), dimension));
   }
 };
 
+/// Reverses the order of 32 bits by swapping halves.
 constexpr uint32_t reverse_bits(uint32_t v) {
   v = v << 16 | v >> 16;
   v = (v & 0x00ff00ffu) << 8 | (v >> 8 & 0x00ff00ffu);
@@ -60,8 +64,8 @@ constexpr uint32_t reverse_bits(uint32_t v) {
   return (v & 0x55555555u) << 1 | (v >> 1 & 0x55555555u);
 }
 
-/// Owen scrambling of a number whose bits are reversed, as a hash in which each bit depends on lower bits only: Laine
-/// and Karras 2011, with the constants of Vegdahl 2021, "Building a Better LK Hash".
+/// Owen scrambling of a bit-reversed number, by a hash in which each bit depends only on lower bits: Laine and Karras
+/// 2011, with the constants of Vegdahl 2021, "Building a Better LK Hash".
 constexpr uint32_t owen_hash(uint32_t v, uint32_t seed) {
   v ^= v * 0x3d20adeau;
   v += seed;
@@ -70,8 +74,8 @@ constexpr uint32_t owen_hash(uint32_t v, uint32_t seed) {
   return v ^ v * 0x53a22864u;
 }
 
-/// Second dimension of Sobol's sequence before the bit reversal: Pascal's triangle modulo 2 times the index. That
-/// matrix is [[P, P], [0, P]] in its own halves, hence five steps.
+/// Second dimension of Sobol's sequence before the bit reversal: Pascal's triangle modulo 2 times the index. The matrix
+/// has the block form [[P, P], [0, P]] recursively, hence five steps.
 constexpr uint32_t sobol_second(uint32_t v) {
   v ^= v >> 16;
   v ^= (v & 0xff00ff00u) >> 8;
@@ -82,22 +86,24 @@ constexpr uint32_t sobol_second(uint32_t v) {
 
 constexpr float to_unit(uint32_t v) { return static_cast<float>(v >> 8) * 0x1p-24f; }
 
-/// How one dimension of one pixel is scrambled.
+/// Scrambling of one dimension of one pixel.
 struct Scramble {
   uint32_t order, seed_first, seed_second;
 
-  /// Where in the sequence a sample stands, bits reversed.
+  /// Returns the position of a sample in the sequence, with reversed bits.
   uint32_t place(uint32_t index) const { return reverse_bits(owen_hash(reverse_bits(index), order)); }
   float first(uint32_t place) const { return to_unit(reverse_bits(owen_hash(place, seed_first))); }
   float second(uint32_t place) const { return to_unit(reverse_bits(owen_hash(sobol_second(place), seed_second))); }
 };
 
-/// Samples that are made at once: the compiler makes vectors of loops of this length.
+/// Number of samples generated at once: the compiler vectorizes loops of this length.
 constexpr uint32_t kBlock = 16;
 
+/// Generates kBlock samples of one dimension.
 [[gnu::always_inline]] inline void make_block(const Scramble& s, uint32_t index, float* u) {
   for (uint32_t i = 0; i < kBlock; ++i) u[i] = s.first(s.place(index + i));
 }
+/// Generates kBlock samples of a pair of dimensions. x and y are separate arrays for vectorization.
 [[gnu::always_inline]] inline void make_block(const Scramble& s, uint32_t index, Vec2* u) {
   std::array<float, kBlock> x, y;
   for (uint32_t i = 0; i < kBlock; ++i) {
@@ -108,7 +114,7 @@ constexpr uint32_t kBlock = 16;
   for (uint32_t i = 0; i < kBlock; ++i) u[i] = {x[i], y[i]};
 }
 
-/// The same once more for wider instructions, chosen at run time: whole numbers, so the same bits.
+/// Same code for wider instructions, selected at run time. Integer operations give identical bits.
 template <class T>
 void block_any(const Scramble& s, uint32_t index, T* u) {
   make_block(s, index, u);
@@ -131,13 +137,14 @@ void block(const Scramble& s, uint32_t index, T* u) {
 #endif
 
 void one(const Scramble& s, uint32_t index, float& u) { u = s.first(s.place(index)); }
+/// Generates a single sample; used for the remainder of a block.
 void one(const Scramble& s, uint32_t index, Vec2& u) {
   const uint32_t place = s.place(index);
   u = {s.first(place), s.second(place)};
 }
 
-/// The first two dimensions of Sobol's sequence, Owen-scrambled, padded: every dimension shuffles the sample order anew
-/// (Burley 2020, "Practical Hash-based Owen Scrambling").
+/// The first two dimensions of Sobol's sequence, Owen-scrambled and padded: every dimension or pair shuffles the sample
+/// order (Burley 2020, "Practical Hash-based Owen Scrambling").
 class PaddedSobolSampler final : public SamplerBase {
  public:
   using SamplerBase::SamplerBase;
@@ -149,7 +156,7 @@ class PaddedSobolSampler final : public SamplerBase {
   void get(const PixelSamples& samples, uint32_t dimension, T* u) const {
     for (uint32_t at = 0; at < samples.count;) {
       const uint64_t index = samples.first + at;
-      const auto first = uint32_t(index);  // sequences of 2^32 samples follow each other
+      const auto first = uint32_t(index);  // sequences of 2^32 samples are concatenated
       const auto end = uint32_t(std::min<uint64_t>(samples.count, at + ((uint64_t{1} << 32) - first)));
       const Scramble s = scramble(samples, index >> 32, dimension);
       uint32_t i = at;
@@ -158,6 +165,7 @@ class PaddedSobolSampler final : public SamplerBase {
       at = end;
     }
   }
+  /// Returns independent seeds for the order and for both dimensions, from the pixel and the dimension.
   Scramble scramble(const PixelSamples& samples, uint64_t sequence, uint32_t dimension) const {
     const uint64_t pixel = sample_key(seed(), samples.x, samples.y, sequence);
     const uint64_t key = mix64(pixel + (uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull), seeds = mix64(key);

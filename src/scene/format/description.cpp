@@ -6,6 +6,7 @@ namespace frond {
 
 namespace fs = std::filesystem;
 
+/// Candidates are tried in order: first with the name as written, then with slashes for backslashes.
 fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
   if (name.empty() || fs::path(name).is_absolute() || !where.file) return name;
   std::vector<fs::path> folders;
@@ -14,7 +15,7 @@ fs::path SceneSettings::resolve(const std::string& name, const Location& where) 
   folders.push_back(fs::path(*where.file).parent_path());
   if (!files.empty() && is_of_command_line) folders.push_back(files.front().parent_path());
   folders.emplace_back();
-  std::string slashed = name;  // as exporters on Windows mean it
+  std::string slashed = name;  // exporters on Windows write backslashes
   std::ranges::replace(slashed, '\\', '/');
   std::error_code error;
   for (const std::string& spelling : {name, slashed})

@@ -15,14 +15,16 @@
 
 namespace frond {
 
-/// A scene file as plain data: names are resolved to places in the lists below, nothing is built. In every ParsedPlugin
-/// `where` is the place of the plugin's quoted name; it is empty for plugins that the file leaves to their defaults.
+/// A scene file as plain data. Names are resolved to indices into the lists below; no object is created. `where` of a
+/// ParsedPlugin is the location of its quoted name; it is empty for defaults.
 
+/// A material of the scene file.
 struct MaterialDescription {
-  std::string name;     ///< of MakeNamedMaterial; empty for `Material`
-  ParsedPlugin plugin;  ///< "string type" of MakeNamedMaterial is its name and no parameter
+  std::string name;     ///< name of MakeNamedMaterial; empty for `Material`
+  ParsedPlugin plugin;  ///< for MakeNamedMaterial its name is the value of "string type"
 };
 
+/// A texture of the scene file.
 struct TextureDescription {
   enum class Value : uint8_t { real, spectrum };
   std::string name;
@@ -31,26 +33,28 @@ struct TextureDescription {
   Transform world_from_texture;
 };
 
+/// A shape with its graphics state.
 struct ShapeDescription {
   ParsedPlugin plugin;
   Transform world_from_object;
   bool reverse_orientation = false;
-  size_t material = 0;               ///< in SceneDescription::materials
-  std::optional<size_t> area_light;  ///< in SceneDescription::area_lights
+  size_t material = 0;               ///< index in SceneDescription::materials
+  std::optional<size_t> area_light;  ///< index in SceneDescription::area_lights
 };
 
+/// A light that is not an area light.
 struct LightDescription {
   ParsedPlugin plugin;
   Transform world_from_light;
 };
 
-/// ObjectInstance by ObjectInstance: there may be very many.
+/// Instances by ObjectInstance, in compact form because there may be many millions.
 struct InstanceList {
   std::shared_ptr<std::vector<AffineMap>> maps = std::make_shared<std::vector<AffineMap>>();
-  std::vector<uint32_t> objects = {};  ///< in SceneDescription::objects
+  std::vector<uint32_t> objects = {};  ///< index in SceneDescription::objects, by instance
 };
 
-/// ObjectBegin ... ObjectEnd. A point of a shape lands in the world by its own transform, then by the instance's.
+/// ObjectBegin ... ObjectEnd. A point of a shape is transformed by the shape's transform, then by the instance's.
 struct ObjectDescription {
   std::string name;
   Location where;
@@ -58,46 +62,46 @@ struct ObjectDescription {
   InstanceList instances;
 };
 
-/// What a scene file says but for the shapes, which may be large, and what overrides have made of it
-/// (scene/overrides.h).
+/// Content of a scene file except shapes, which may be large, with overrides applied (scene/overrides.h).
 struct SceneSettings {
-  // Options, with what holds where the file says nothing.
+  // Options, initialized with their defaults.
   ParsedPlugin camera{"perspective", {}, {}};
   ParsedPlugin film{"rgb", {}, {}};
   ParsedPlugin sampler{"paddedsobol", {}, {}};
   ParsedPlugin integrator{"path", {}, {}};
   ParsedPlugin filter{"gaussian", {}, {}};
-  std::string color_space = "srgb";  ///< of the film; an rgb has its own
+  std::string color_space = "srgb";  ///< of the film; parameters of type rgb store their own
   Location color_space_where;
-  /// `Option "type name" value`; without a type it follows from the value: bool, integer, float or string.
+  /// `Option "type name" value`. A missing type is derived from the value: bool, integer, float or string.
   std::vector<ParsedParam> options;
-  std::optional<uint64_t> seed;  ///< of all random numbers; empty: that of the options, or else the sampler's own
-  bool is_quick = false;         ///< a first look: half the film's resolution, a sixteenth of the samples
+  std::optional<uint64_t> seed;  ///< overrides the seed of Options and of the sampler
+  bool is_quick = false;         ///< preview: half the film's resolution, a sixteenth of the samples
   Transform camera_from_world;
 
-  std::map<std::string, Transform> coordinate_systems;  ///< "camera", "world" and the file's own
-  std::vector<TextureDescription> textures;             ///< in the file's order; names are unique for each value type
-  std::vector<MaterialDescription> materials;           ///< the first is what holds before any `Material`: "diffuse"
+  std::map<std::string, Transform> coordinate_systems;  ///< "camera", "world" and those that the file defines
+  std::vector<TextureDescription> textures;             ///< in file order; names are unique for each value type
+  std::vector<MaterialDescription> materials;           ///< index 0 is the default before any `Material`: "diffuse"
 
-  std::vector<std::filesystem::path> files;  ///< the main file and what it includes, in the order of reading
-  uint64_t content_hash = 0;                 ///< over the bytes of `files`, in order
+  std::vector<std::filesystem::path> files;  ///< the main file and included files, in reading order
+  uint64_t content_hash = 0;                 ///< hash of the bytes of `files`, in order
   std::vector<LightDescription> lights;
   std::vector<ParsedPlugin> area_lights;
 
-  /// What `Attribute` gives defaults of, (target, name) of each parameter and where the first stands.
+  /// Defaults set by `Attribute`: (target, parameter name), with the first location.
   std::map<std::pair<std::string, std::string>, Location> attributes;
 
-  /// What directives that could not be read would have given a name to: what misses it is no error of its own.
+  /// Names that unreadable directives would have defined: a missing name among them is not a second error.
   std::set<std::string, std::less<>> unread;
-  bool is_incomplete = false;  ///< a file that another one includes could not be read: any name may have been there
+  bool is_incomplete = false;  ///< an included file could not be read: it may have defined any name
   bool may_be_unread(std::string_view name) const { return is_incomplete || unread.contains(name); }
 
-  /// A file name in the scene as a path: relative to the main file, as in pbrt, or else to the file that names it, or
-  /// else to where the program runs, which a name on the command line is relative to first. Backslashes are as good as
-  /// slashes where no file is called so.
+  /// Resolves a file name: relative to the main file as in pbrt, else relative to the file that contains the name, else
+  /// relative to the working directory. A name given on the command line is relative to the working directory first.
+  /// Backslashes are taken as slashes if no such file exists.
   std::filesystem::path resolve(const std::string& name, const Location& where) const;
 };
 
+/// A complete scene file.
 struct SceneDescription : SceneSettings {
   std::vector<ShapeDescription> shapes;
   std::vector<ObjectDescription> objects;

@@ -10,19 +10,19 @@
 namespace frond {
 namespace {
 
-/// "file:line:column" in the middle of a message.
+/// Returns "file:line:column" for use within a message.
 std::string place(const Location& where) {
   const std::string text = where.text();
   return text.substr(0, text.size() - std::min<size_t>(text.size(), 2));  // without ": "
 }
 
-/// pbrt's older names of a surface that is not there become the one of today.
+/// Maps pbrt's older names of material "interface" to the current one.
 ParsedPlugin with_name_of_interface(ParsedPlugin material) {
   if (material.name.empty() || material.name == "none") material.name = "interface";
   return material;
 }
 
-/// Takes "string type" out of the parameters of MakeNamedMaterial and makes it the plugin's name.
+/// Moves parameter "string type" of MakeNamedMaterial to the plug-in's name.
 ParsedPlugin typed_by_parameter(const std::string& name, ParsedPlugin plugin) {
   const auto type =
       std::find_if(plugin.params.begin(), plugin.params.end(), [](const ParsedParam& p) { return p.name == "type"; });
@@ -38,10 +38,12 @@ ParsedPlugin typed_by_parameter(const std::string& name, ParsedPlugin plugin) {
 
 }  // namespace
 
+/// Index 0 is pbrt's default material.
 DescriptionBuilder::DescriptionBuilder(SceneDescription& scene, const Log& log) : scene_(scene), log_(log) {
   new_material({"", {"diffuse", {}, {}}});
 }
 
+/// Resets the transform. The current colour space becomes the film's, unless Film has already set it.
 void DescriptionBuilder::world_begin(const Location& where) {
   if (in_world_) fail(where, "WorldBegin is given twice");
   in_world_ = true;
@@ -51,18 +53,21 @@ void DescriptionBuilder::world_begin(const Location& where) {
   name_transform("world", where);
 }
 
+/// Name of the directive that opened a block, for messages.
 std::string_view DescriptionBuilder::name_of(Opener opener) {
   constexpr std::array<std::string_view, 4> kNames{"AttributeBegin", "TransformBegin", "ObjectBegin", "Import"};
   return kNames[static_cast<size_t>(opener)];
 }
 
+/// Name of the directive that closes the block, for messages.
 std::string_view DescriptionBuilder::ender_of(Opener opener) {
   constexpr std::array<std::string_view, 4> kNames{"AttributeEnd", "TransformEnd", "ObjectEnd", "the end of the file"};
   return kNames[static_cast<size_t>(opener)];
 }
 
+/// Missing names are reported only if all files could be read.
 void DescriptionBuilder::finish(const Location& where, Problems& problems) {
-  if (problems.empty()) {  // else what is missing may have been there
+  if (problems.empty()) {  // otherwise the missing item may have been in the unreadable part
     if (!in_world_) fail(where, "the file ends before WorldBegin");
     if (!saved_.empty())
       fail(saved_.back().where, "{} without {}", name_of(saved_.back().by), ender_of(saved_.back().by));
@@ -79,7 +84,7 @@ void DescriptionBuilder::finish(const Location& where, Problems& problems) {
       });
 }
 
-/// A name that no shape needs may stay unknown, as in pbrt.
+/// Reports unknown materials. As in pbrt, a name that no shape uses is only a warning.
 void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
   std::vector<bool> is_used(scene_.materials.size(), false);
   const auto use = [&](const std::vector<ShapeDescription>& shapes) {
@@ -104,17 +109,19 @@ void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
   }
 }
 
+/// Saves the state and the coordinate systems, which the imported file may change.
 void DescriptionBuilder::import_begin(const Location& where) {
   if (!in_world_) fail(where, "Import belongs after WorldBegin");
   push(Opener::import, where);
   saved_.back().coordinate_systems = scene_.coordinate_systems;
 }
 
+/// Restores the state saved by import_begin. Blocks that the file left open are errors.
 void DescriptionBuilder::import_end() {
   while (saved_.back().by != Opener::import) {
     const Saved open = std::move(saved_.back());
     saved_.pop_back();
-    if (saved_.back().by == Opener::import) {  // the outermost is told
+    if (saved_.back().by == Opener::import) {  // only the outermost import is reported
       scene_.coordinate_systems = std::move(saved_.back().coordinate_systems);
       pop();
       fail(open.where, "{} without {}", name_of(open.by), ender_of(open.by));
@@ -124,7 +131,7 @@ void DescriptionBuilder::import_end() {
   pop();
 }
 
-/// Names as pbrt takes them: case, - and _ do not count.
+/// Names are matched as in pbrt: case, - and _ are ignored.
 void DescriptionBuilder::option(ParsedParam param) {
   std::string name;
   for (const char c : param.name)
@@ -133,6 +140,7 @@ void DescriptionBuilder::option(ParsedParam param) {
   set_param(scene_.options, std::move(param));
 }
 
+/// Also defines the coordinate system "camera", from the current transform.
 void DescriptionBuilder::camera(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) fail(plugin.where, "the camera's transform cannot be inverted");
   set_option_plugin(&SceneDescription::camera, "Camera", std::move(plugin));
@@ -158,21 +166,24 @@ void DescriptionBuilder::set_film_space() {
   scene_.color_space_where = state_.color_space_where;
 }
 
+/// Throws InputError for an unknown name.
 void DescriptionBuilder::color_space(const std::string& name, const Location& where) {
   state_.color_space = frond::color_space(name, where).name;
   state_.color_space_where = where;
 }
 
+/// The colour space of a parameter is that of the graphics state at its directive.
 void DescriptionBuilder::note_color_space(std::vector<ParsedParam>& params) const {
   for (ParsedParam& p : params)
     if (p.type == "rgb") p.color_space = state_.color_space;
 }
 
+/// Multiplies the current transform from the right, as pbrt does.
 void DescriptionBuilder::concat(const Transform& transform, std::string_view directive, const Location& where) {
   set_transform(state_.transform * transform, directive, where);
 }
 
-/// pbrt goes on where a transform cannot be inverted: what stands under it has no volume.
+/// As in pbrt, a singular transform is not an error: shapes under it have no volume.
 void DescriptionBuilder::set_transform(const Transform& transform, std::string_view directive, const Location& where) {
   if (!state_.is_transform_active) return;
   const bool was_valid = state_.transform.is_valid();
@@ -184,6 +195,7 @@ void DescriptionBuilder::set_transform(const Transform& transform, std::string_v
                           directive));
 }
 
+/// An unknown name is a warning, as in pbrt; the transform is unchanged.
 void DescriptionBuilder::recall_transform(const std::string& name, const Location& where) {
   const auto& systems = scene_.coordinate_systems;
   if (const auto found = systems.find(name); found != systems.end()) {
@@ -196,6 +208,7 @@ void DescriptionBuilder::recall_transform(const std::string& name, const Locatio
                                suggestion(name, names)));
 }
 
+/// Warns once: files written for pbrt-v3 expect the material to be kept.
 void DescriptionBuilder::transform_begin(const Location& where) {
   if (!has_warned_of_transform_begin_)
     log_.warn(
@@ -206,6 +219,7 @@ void DescriptionBuilder::transform_begin(const Location& where) {
   push(Opener::transform, where);
 }
 
+/// An end without a beginning is a warning, as in pbrt.
 void DescriptionBuilder::end(std::string_view directive, std::string_view beginner, const Location& where) {
   if (saved_.empty() || saved_.back().by == Opener::import)
     return log_.warn(where, fmt::format("{} without {} is left out", directive, beginner));
@@ -214,8 +228,9 @@ void DescriptionBuilder::end(std::string_view directive, std::string_view beginn
   pop();
 }
 
+/// Later values of the same parameter replace earlier ones.
 void DescriptionBuilder::attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params) {
-  if (target == "medium") return;  // there are none
+  if (target == "medium") return;  // media are not supported
   const auto found = std::find(kTargets.begin(), kTargets.end(), target);
   if (found == kTargets.end())
     fail(where, "unknown target \"{}\" of Attribute{}", target, suggestion(target, {kTargets.begin(), kTargets.end()}));
@@ -228,6 +243,7 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
   }
 }
 
+/// Appends the defaults of Attribute for parameters that the plug-in does not give itself.
 ParsedPlugin DescriptionBuilder::with_defaults(ParsedPlugin plugin, Target target) const {
   note_color_space(plugin.params);
   const size_t own = plugin.params.size();
@@ -239,16 +255,19 @@ ParsedPlugin DescriptionBuilder::with_defaults(ParsedPlugin plugin, Target targe
   return plugin;
 }
 
+/// Returns the index of the new material.
 size_t DescriptionBuilder::new_material(MaterialDescription material) {
   scene_.materials.push_back(std::move(material));
   return scene_.materials.size() - 1;
 }
 
+/// Returns the entry of a name. A first use before the definition creates an undefined material.
 DescriptionBuilder::Name& DescriptionBuilder::material_called(const std::string& name, const Location& where) {
   if (const auto found = materials_.find(name); found != materials_.end()) return found->second;
   return materials_.emplace(name, Name{new_material({name, {}}), where}).first->second;
 }
 
+/// Returns the entry of a name, which may be used before its ObjectBegin.
 DescriptionBuilder::Name& DescriptionBuilder::object_called(const std::string& name, const Location& where) {
   if (const auto found = objects_.find(name); found != objects_.end()) return found->second;
   scene_.objects.push_back({name, {}, {}, {}});
@@ -263,6 +282,7 @@ void DescriptionBuilder::named_material(const std::string& name, const Location&
   state_.material = material_called(name, where).index;
 }
 
+/// Fills the entry that earlier uses of the name refer to.
 void DescriptionBuilder::make_named_material(const std::string& name, ParsedPlugin plugin) {
   const Location where = plugin.where;
   Name& entry = material_called(name, where);
@@ -272,6 +292,7 @@ void DescriptionBuilder::make_named_material(const std::string& name, ParsedPlug
   scene_.materials[entry.index].plugin = with_defaults(std::move(plugin), Target::material);
 }
 
+/// float and spectrum textures have separate names, as in pbrt.
 void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, ParsedPlugin plugin) {
   using Value = TextureDescription::Value;
   if (value.text != "float" && value.text != "spectrum")
@@ -284,12 +305,14 @@ void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, Parsed
                              state_.transform.is_valid() ? state_.transform : Transform()});
 }
 
+/// AreaLightSource "" ends the emission of subsequent shapes.
 void DescriptionBuilder::area_light(ParsedPlugin plugin) {
   if (plugin.name.empty()) return state_.area_light.reset();
   scene_.area_lights.push_back(with_defaults(std::move(plugin), Target::light));
   state_.area_light = scene_.area_lights.size() - 1;
 }
 
+/// Shapes under a singular transform have no volume and are dropped.
 void DescriptionBuilder::shape(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) return;
   auto& shapes = state_.open_object ? scene_.objects[*state_.open_object].shapes : scene_.shapes;
@@ -309,6 +332,7 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
                     state_.material, area_light});
 }
 
+/// Lights are never part of instances, as in pbrt.
 void DescriptionBuilder::light(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) return;
   if (state_.open_object)
@@ -316,6 +340,7 @@ void DescriptionBuilder::light(ParsedPlugin plugin) {
   scene_.lights.push_back({with_defaults(std::move(plugin), Target::light), state_.transform});
 }
 
+/// Objects cannot be defined within objects; instances may be nested.
 void DescriptionBuilder::object_begin(const std::string& name, const Location& where) {
   if (state_.open_object)
     fail(where, "ObjectBegin inside object \"{}\"; ObjectInstance places one object in another",
@@ -339,6 +364,7 @@ void DescriptionBuilder::open_object(size_t index, const Location& where) {
   state_.open_object = index;
 }
 
+/// Restores the state of ObjectBegin, as pbrt does.
 void DescriptionBuilder::object_end(const Location& where) {
   if (!state_.open_object) {
     const std::string message = "ObjectEnd without ObjectBegin";
@@ -350,6 +376,7 @@ void DescriptionBuilder::object_end(const Location& where) {
   pop();
 }
 
+/// Inside an object, the instance becomes part of that object.
 void DescriptionBuilder::object_instance(const std::string& name, const Location& where) {
   if (!state_.transform.is_valid()) return;
   const AffineMap map{state_.transform.rows()};

@@ -11,14 +11,14 @@
 
 namespace frond {
 
-/// A quoted word of the scene and its place.
+/// A quoted string of the scene file, with its location.
 struct Quoted {
   std::string text;
   Location where;
 };
 
-/// What the directives of a scene file mean, once they are read: keeps the graphics state (transform, material, ...)
-/// and writes down what comes under it. Every method throws InputError where the directive makes no sense.
+/// Executes the directives of a scene file: maintains the graphics state (transform, material, ...) and appends to the
+/// description. All methods throw InputError for directives that are invalid in the current state.
 class DescriptionBuilder {
  public:
   DescriptionBuilder(SceneDescription& scene, const Log& log);
@@ -26,10 +26,10 @@ class DescriptionBuilder {
   bool in_world() const { return in_world_; }
   bool is_incomplete() const { return scene_.is_incomplete; }
   void world_begin(const Location& where);
-  /// End of the main file: everything must be closed and every name known. `where` is that end.
+  /// Ends the main file: reports open blocks and unknown names to `problems`. `where` is the end of the file.
   void finish(const Location& where, Problems& problems);
 
-  // Import: the state goes in, and does not come out
+  // Import: the file starts with the current state; its changes are discarded at its end.
   void import_begin(const Location& where);
   void import_end();
 
@@ -45,16 +45,17 @@ class DescriptionBuilder {
   void set_transform(const Transform& transform, std::string_view directive, const Location& where);
   void name_transform(const std::string& name, const Location&) { scene_.coordinate_systems[name] = state_.transform; }
   void recall_transform(const std::string& name, const Location& where);
-  /// Whether transforms change anything: those that are for the end of a motion alone do not.
+  /// Enables transforms. They are disabled for ActiveTransform EndTime, because motion is not supported.
   void activate_transforms(bool active) { state_.is_transform_active = active; }
 
   // Graphics state
   void attribute_begin(const Location& where) { push(Opener::attribute, where); }
   void attribute_end(const Location& where) { end("AttributeEnd", "AttributeBegin", where); }
-  /// As AttributeBegin, also for the material: pbrt-v4 has it so.
+  /// Same as AttributeBegin, material included, as in pbrt-v4.
   void transform_begin(const Location& where);
   void transform_end(const Location& where) { end("TransformEnd", "TransformBegin", where); }
   void attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params);
+  /// The setting is part of the graphics state.
   void reverse_orientation() { state_.reverse_orientation = !state_.reverse_orientation; }
   void material(ParsedPlugin plugin);
   void named_material(const std::string& name, const Location& where);
@@ -66,13 +67,13 @@ class DescriptionBuilder {
   void shape(ParsedPlugin plugin);
   void light(ParsedPlugin plugin);
   void object_begin(const std::string& name, const Location& where);
-  /// In place of an ObjectBegin that is wrong: what comes up to its ObjectEnd goes into an object that nobody can name.
+  /// Replaces an invalid ObjectBegin: everything up to its ObjectEnd is added to an object without a name.
   void refused_object_begin(const Location& where);
   void object_end(const Location& where);
   void object_instance(const std::string& name, const Location& where);
 
  private:
-  /// Kinds of plugins that `Attribute` gives defaults to, in the order of kTargets.
+  /// Kinds of plug-ins with defaults by `Attribute`, in the order of kTargets.
   enum class Target : uint8_t { shape, light, material, texture };
   static constexpr std::array<std::string_view, 4> kTargets{"shape", "light", "material", "texture"};
 
@@ -92,9 +93,9 @@ class DescriptionBuilder {
     Opener by;
     Location where;
     State state;
-    std::map<std::string, Transform> coordinate_systems;  ///< of an import
+    std::map<std::string, Transform> coordinate_systems;  ///< before an import
   };
-  /// A name that may be used before it is defined.
+  /// A name that may be used before its definition.
   struct Name {
     size_t index;
     Location first_use;
@@ -106,12 +107,12 @@ class DescriptionBuilder {
   static std::string_view ender_of(Opener opener);
   void push(Opener by, const Location& where) { saved_.push_back({by, where, state_, {}}); }
   void pop() { state_ = std::move(saved_.back().state), saved_.pop_back(); }
-  /// As pbrt, either takes what the other begins.
+  /// As in pbrt, AttributeEnd also closes TransformBegin, and TransformEnd AttributeBegin.
   void end(std::string_view directive, std::string_view beginner, const Location& where);
   void settle_unknown_materials(Problems& problems);
   ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
   void note_color_space(std::vector<ParsedParam>& params) const;
-  /// The colour space that holds here is the film's.
+  /// Sets the film's colour space to the current one.
   void set_film_space();
   void open_object(size_t index, const Location& where);
   size_t new_material(MaterialDescription material);

@@ -9,7 +9,7 @@ namespace {
 
 using Kind = Token::Kind;
 
-/// One directive being carried out.
+/// A directive that is being executed.
 struct Directive {
   std::string_view name;
   Location where;
@@ -20,12 +20,12 @@ struct Directive {
   Location location(const Token& token) const { return context.tokens.where(token); }
   DescriptionBuilder& scene() { return context.scene; }
 
-  /// A plugin's quoted name and its parameters.
+  /// Reads a plug-in's quoted name and its parameters.
   ParsedPlugin plugin() {
     const Token token = quoted();
     return {text(token), location(token), parameters()};
   }
-  /// What is given twice counts as it is given last, as in pbrt.
+  /// Reads parameters. As in pbrt, the last one of a name counts.
   std::vector<ParsedParam> parameters() {
     std::vector<ParsedParam> params = context.parameters.read(context.tokens);
     for (size_t i = 1; i < params.size(); ++i) {
@@ -44,6 +44,7 @@ struct Directive {
     for (double& value : values) value = number_at(context.tokens, context.tokens.next(), usage(N));
     return values;
   }
+  /// Reads a bracket. Throws InputError, which states the syntax.
   void bracket(Kind kind) {
     const Token token = context.tokens.next();
     if (token.kind != kind) fail(location(token), "{} takes 16 numbers in brackets, {} was given", name, token.shown());
@@ -58,6 +59,7 @@ Vec3 vec3_at(const std::array<double, N>& v, size_t i) {
 
 void scale(Directive d) { d.scene().concat(Transform::scale(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }
 
+/// A rotation by 0 about a zero axis is the identity, which some exporters write.
 void rotate(Directive d) {
   const auto v = d.numbers<4>();
   const Vec3 axis = vec3_at(v, 1);
@@ -66,7 +68,7 @@ void rotate(Directive d) {
 }
 
 void look_at(Directive d) {
-  constexpr double kParallel = 1e-6;  // sine of the least angle between up and the view: float's resolution
+  constexpr double kParallel = 1e-6;  // sine of the smallest angle between up and view, by float's resolution
   const auto v = d.numbers<9>();
   const Vec3d view{v[3] - v[0], v[4] - v[1], v[5] - v[2]}, up{v[6], v[7], v[8]};
   if (view == Vec3d{}) fail(d.where, "LookAt: eye and target are the same point");
@@ -76,7 +78,7 @@ void look_at(Directive d) {
   d.scene().concat(Transform::look_at(vec3_at(v, 0), vec3_at(v, 3), vec3_at(v, 6)), d.name, d.where);
 }
 
-/// 16 numbers, column after column, in brackets.
+/// Reads 16 numbers in brackets, in column-major order.
 Transform matrix(Directive& d) {
   d.bracket(Kind::open_bracket);
   const auto m = d.numbers<16>();
@@ -95,17 +97,20 @@ Transform matrix(Directive& d) {
   return Transform(rows);
 }
 
+/// Texture "name" "float|spectrum" "class" parameters.
 void texture(Directive d) {
   const Token name = d.quoted(), value = d.quoted();
   d.scene().texture({d.text(name), d.location(name)}, {d.text(value), d.location(value)}, d.plugin());
 }
 
+/// The quoted string is the material's name; its class is parameter "string type".
 void make_named_material(Directive d) {
   ParsedPlugin plugin = d.plugin();
   const std::string name = plugin.name;
   d.scene().make_named_material(name, std::move(plugin));
 }
 
+/// Attribute "target" parameters.
 void attribute(Directive d) {
   const Token target = d.quoted();
   d.scene().attribute(d.text(target), d.location(target), d.parameters());
@@ -113,6 +118,7 @@ void attribute(Directive d) {
 
 void option(Directive d) { d.scene().option(d.context.parameters.read_option(d.context.tokens)); }
 
+/// Accelerators are ignored: Embree builds its own. An unknown one is a warning.
 void accelerator(Directive d) {
   constexpr std::string_view kOfPbrt[] = {"bvh", "kdtree"};
   const ParsedPlugin plugin = d.plugin();
@@ -120,6 +126,7 @@ void accelerator(Directive d) {
     d.context.log.warn(plugin.where, fmt::format("unknown accelerator \"{}\": Embree brings its own", plugin.name));
 }
 
+/// Both names may be empty, which means vacuum. A medium is an unsupported feature.
 void medium_interface(Directive d) {
   const bool is_empty = d.text(d.quoted()).empty();
   const bool is_outside_empty = d.context.tokens.peek().kind != Kind::string || d.text(d.quoted()).empty();
@@ -127,6 +134,7 @@ void medium_interface(Directive d) {
   d.context.unsupported.handle("media", d.where, d.name, "is left out", d.context.log);
 }
 
+/// Motion is not supported: only the transform at the start time is used.
 void active_transform(Directive d) {
   const Token which = d.context.tokens.next();
   if (which.text == "All") return d.scene().activate_transforms(true);
@@ -141,7 +149,7 @@ void option_plugin(Directive d) {
   d.scene().set_option_plugin(option, d.name, d.plugin());
 }
 
-/// Directives that take one name, or one plugin, or nothing.
+/// Functions for directives that take one name, one plug-in, or nothing.
 template <void (DescriptionBuilder::*act)(const std::string&, const Location&)>
 void with_name(Directive d) {
   const Token name = d.quoted();
@@ -158,6 +166,7 @@ void alone(Directive d) {
 
 enum class Block : uint8_t { options, world, any };
 
+/// A directive, the block that it is allowed in, and its function.
 struct DirectiveEntry {
   std::string_view name;
   Block block;
@@ -185,7 +194,8 @@ constexpr DirectiveEntry kDirectives[] = {
     {"LightSource", Block::world, with_plugin<&Builder::light>},
     {"LookAt", Block::any, look_at},
     {"MakeNamedMaterial", Block::world, make_named_material},
-    {"MakeNamedMedium", Block::any, [](Directive d) { (void)d.plugin(); }},  // MediumInterface asks for it
+    {"MakeNamedMedium", Block::any,
+     [](Directive d) { (void)d.plugin(); }},  // MediumInterface reports the unsupported feature
     {"Material", Block::world, with_plugin<&Builder::material>},
     {"MediumInterface", Block::any, medium_interface},
     {"NamedMaterial", Block::world, with_name<&Builder::named_material>},
@@ -203,17 +213,19 @@ constexpr DirectiveEntry kDirectives[] = {
     {"Transform", Block::any, [](Directive d) { d.scene().set_transform(matrix(d), d.name, d.where); }},
     {"TransformBegin", Block::world, alone<&Builder::transform_begin>},
     {"TransformEnd", Block::world, alone<&Builder::transform_end>},
-    {"TransformTimes", Block::options, [](Directive d) { (void)d.numbers<2>(); }},  // ActiveTransform asks for it
+    {"TransformTimes", Block::options,
+     [](Directive d) { (void)d.numbers<2>(); }},  // ActiveTransform reports the unsupported feature
     {"Translate", Block::any,
      [](Directive d) { d.scene().concat(Transform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},
     {"WorldBegin", Block::any, alone<&Builder::world_begin>},
 };
 
-/// pbrt --upgrade of pbrt-v4 reads pbrt-v3's files alone.
+/// Directives of pbrt-v2. pbrt-v4's "pbrt --upgrade" reads files of pbrt-v3 only.
 constexpr std::string_view kOfPbrt2[] = {"AreaLight",        "Exterior", "Interior",    "LightSourceBegin",
                                          "Renderer",         "Search",   "SearchPath",  "SurfaceIntegrator",
                                          "VolumeIntegrator", "Volume",   "VolumeRegion"};
 
+/// Recognizes files of older versions of pbrt, and numbers that follow a complete list.
 [[noreturn]] void fail_unknown(const Token& token, const Location& where) {
   if (token.kind != Kind::word || parse_number(token.text))
     fail(where, "a directive is needed, {} was given", token.shown());
@@ -231,6 +243,7 @@ constexpr std::string_view kOfPbrt2[] = {"AreaLight",        "Exterior", "Interi
   fail(where, "unknown directive {}; did you mean {}?", token.shown(), match);
 }
 
+/// Binary search: the table is sorted by name.
 const DirectiveEntry* find_directive(const Token& token) {
   if (token.kind != Kind::word) return nullptr;
   const auto found =
@@ -257,6 +270,7 @@ bool is_directive(std::string_view word) {
   return word == "Include" || word == "Import" || find_directive(token);
 }
 
+/// Throws InputError for a directive in the wrong block.
 void carry_out(const Token& name, DirectiveContext& context) {
   const Location where = context.tokens.where(name);
   const DirectiveEntry* entry = find_directive(name);

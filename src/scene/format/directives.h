@@ -11,7 +11,7 @@
 
 namespace frond {
 
-/// What a directive reads its arguments from and writes its meaning to.
+/// Input and output of a directive.
 struct DirectiveContext {
   Tokenizer& tokens;
   ParameterReader& parameters;
@@ -20,14 +20,14 @@ struct DirectiveContext {
   const Unsupported& unsupported;
 };
 
-/// Reads the arguments of directive `name`, whose word has been taken from the tokens, and carries it out; all but
-/// Include and Import, which are the parser's. Throws InputError, for unknown directives too.
+/// Reads the arguments of directive `name`, whose word has been consumed, and executes it. Include and Import are
+/// handled by the parser. Throws InputError, also for unknown directives.
 void carry_out(const Token& name, DirectiveContext& context);
 
-/// Whether a word is one, Include and Import too.
+/// Whether the word is a directive, including Include and Import.
 bool is_directive(std::string_view word);
 
-/// The quoted string that must come next; `directive` asks for it.
+/// Returns the quoted string that must follow. Throws InputError, which names the directive.
 Token read_quoted(Tokenizer& tokens, std::string_view directive);
 
 }  // namespace frond

@@ -9,9 +9,10 @@ namespace {
 
 using Kind = Token::Kind;
 
-/// What values of a type are written as.
+/// Syntax of the values of a type.
 enum class Values : uint8_t { numbers, integers, booleans, strings, numbers_or_strings };
 
+/// A parameter type and the syntax of its values.
 struct ValueType {
   std::string_view name;
   Values values;
@@ -25,6 +26,7 @@ constexpr ValueType kTypes[] = {
     {"normal", Values::numbers},   {"normal3", Values::numbers},  {"spectrum", Values::numbers_or_strings},
     {"blackbody", Values::numbers}};
 
+/// Returns the syntax of a type. Throws InputError for unknown types, and for types of older versions of pbrt.
 Values values_of(std::string_view type, const Location& where) {
   if (type == "color" || type == "xyz")
     fail(where,
@@ -40,6 +42,7 @@ Values values_of(std::string_view type, const Location& where) {
   fail(where, "unknown parameter type \"{}\"{}", type, suggestion(type, names));
 }
 
+/// Name of a value's syntax, for messages.
 std::string_view needed(Values values) {
   switch (values) {
     case Values::numbers:
@@ -56,11 +59,12 @@ std::string_view needed(Values values) {
   return {};
 }
 
+/// Throws InputError for a value of the wrong type.
 [[noreturn]] void fail_value(const Location& where, const ParsedParam& p, Values values, const Token& got) {
   fail(where, "\"{}\" is {}: {} is needed, {} was given", p.name, p.type, needed(values), got.shown());
 }
 
-/// The type that the first value of an untyped option shows.
+/// Returns the type of an untyped option's first value.
 std::string_view type_from(const Token& value, std::string_view name, const Location& where) {
   if (value.kind == Kind::string) return "string";
   if (value.text == "true" || value.text == "false") return "bool";
@@ -69,10 +73,12 @@ std::string_view type_from(const Token& value, std::string_view name, const Loca
   return value.text.find_first_of(".eE") == value.text.npos ? "integer" : "float";
 }
 
+/// The quoted declaration of a parameter, such as "float scale".
 struct Declaration {
   std::string_view type, name;  ///< type empty: one word alone
 };
 
+/// Splits a declaration into type and name. Throws InputError for other numbers of words.
 Declaration split(const std::string& text, const Location& where) {
   constexpr std::string_view kBlanks = " \t";
   const std::string_view all = text;
@@ -91,6 +97,7 @@ Declaration split(const std::string& text, const Location& where) {
 
 bool is_int(double x) { return x == std::floor(x) && std::abs(x) <= std::numeric_limits<int>::max(); }
 
+/// Throws InputError for a number beyond the range of float, in which scenes are stored.
 double in_range(double value, const Tokenizer& tokens, const Token& token) {
   constexpr float kLargest = std::numeric_limits<float>::max();
   if (std::abs(value) > double(kLargest))
@@ -98,12 +105,13 @@ double in_range(double value, const Tokenizer& tokens, const Token& token) {
   return value;
 }
 
+/// Returns nullopt if the token is not a number.
 std::optional<double> number_of(const Tokenizer& tokens, const Token& token) {
   const auto value = token.kind == Kind::word ? parse_number(token.text) : std::nullopt;
   return value ? std::optional(in_range(*value, tokens, token)) : std::nullopt;
 }
 
-/// Calls `append` for `first`, or for each value up to the bracket that closes it.
+/// Calls `append` for `first`, or for each value up to the closing bracket.
 template <class Append>
 void for_each_value(Tokenizer& tokens, const Token& first, const Append& append) {
   if (first.kind != Kind::open_bracket) return append(first);
@@ -117,6 +125,7 @@ void for_each_value(Tokenizer& tokens, const Token& first, const Append& append)
   }
 }
 
+/// Reads one quoted string, or a list of them in brackets.
 std::vector<std::string> read_strings(Tokenizer& tokens, const Token& first, const ParsedParam& p) {
   std::vector<std::string> values;
   for_each_value(tokens, first, [&](const Token& value) {
@@ -126,7 +135,7 @@ std::vector<std::string> read_strings(Tokenizer& tokens, const Token& first, con
   return values;
 }
 
-/// Quoted "true" and "false", as older files have them, count as well.
+/// Also accepts quoted "true" and "false", which older files contain.
 std::vector<bool> read_booleans(Tokenizer& tokens, const Token& first, const ParsedParam& p) {
   std::vector<bool> values;
   for_each_value(tokens, first, [&](const Token& value) {
@@ -143,6 +152,7 @@ double number_at(const Tokenizer& tokens, const Token& token, std::string_view w
   fail(tokens.where(token), "{}: a number is needed, {} was given", who, token.shown());
 }
 
+/// Ends at the first token that is not a quoted string.
 std::vector<ParsedParam> ParameterReader::read(Tokenizer& tokens) {
   std::vector<ParsedParam> params;
   while (tokens.peek().kind == Kind::string) params.push_back(read_one(tokens, false));
@@ -151,6 +161,7 @@ std::vector<ParsedParam> ParameterReader::read(Tokenizer& tokens) {
 
 ParsedParam ParameterReader::read_option(Tokenizer& tokens) { return read_one(tokens, true); }
 
+/// Reads declaration and values of one parameter.
 ParsedParam ParameterReader::read_one(Tokenizer& tokens, bool type_is_optional) {
   const Token declaration = tokens.next();
   ParsedParam p;
@@ -169,6 +180,7 @@ ParsedParam ParameterReader::read_one(Tokenizer& tokens, bool type_is_optional) 
   return p;
 }
 
+/// Stores the values as numbers, strings or booleans, depending on the type.
 void ParameterReader::read_values(Tokenizer& tokens, const Token& first, bool are_quoted, ParsedParam& p) {
   const Values kind = values_of(p.type, p.where);
   if (kind == Values::strings || (kind == Values::numbers_or_strings && are_quoted))

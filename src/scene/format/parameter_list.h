@@ -7,12 +7,12 @@
 
 namespace frond {
 
-/// Reads the parameters of one directive: all that follows up to the next bare word.
+/// Reads the parameter list of a directive: everything up to the next unquoted word.
 class ParameterReader {
  public:
-  /// Throws InputError for unknown types and for values that are not of their type.
+  /// Throws InputError for unknown types and for values of another type.
   std::vector<ParsedParam> read(Tokenizer& tokens);
-  /// The value of `Option`, whose declaration may lack the type.
+  /// Reads the parameter of `Option`, whose declaration may omit the type.
   ParsedParam read_option(Tokenizer& tokens);
 
  private:
@@ -20,10 +20,10 @@ class ParameterReader {
   void read_values(Tokenizer& tokens, const Token& first, bool are_quoted, ParsedParam& p);
   std::vector<double> read_numbers(Tokenizer& tokens, const Token& first, const ParsedParam& p, bool are_integers);
 
-  std::vector<double> numbers_;  // kept from list to list, so that a parameter holds just what it needs
+  std::vector<double> numbers_;  // reused buffer: parameters then allocate their exact size
 };
 
-/// A word as a number that a scene can use. Throws InputError when it is none or beyond the range of float.
+/// Returns a word as a number within the range of float. Throws InputError.
 double number_at(const Tokenizer& tokens, const Token& token, std::string_view who);
 
 }  // namespace frond

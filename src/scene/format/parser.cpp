@@ -14,15 +14,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads files and, where they say so, others.
+/// Reads scene files and the files that they include.
 class SceneReader {
  public:
   SceneReader(SceneDescription& scene, const Log& log, const Unsupported& unsupported, Problems& problems)
       : scene_(scene), log_(log), unsupported_(unsupported), problems_(problems), builder_(scene, log) {}
 
+  /// Reads the main file, or one of several consecutive files.
   void read_main(const std::string& text, const fs::path& path) {
     problems_.attempt([&] { end_ = read(text, path, nullptr); });
   }
+  /// Reports what is missing at the end of the last file.
   void finish() {
     problems_.attempt([this] { builder_.finish(end_, problems_); });
   }
@@ -47,13 +49,14 @@ class SceneReader {
   Location end_;
 };
 
+/// Returns the canonical path, to detect cycles through links; the path itself if that fails.
 fs::path real_path(const fs::path& path) {
   std::error_code error;
   const fs::path result = fs::weakly_canonical(path, error);
   return error ? path : result;
 }
 
-/// Returns the place of the end.
+/// Reads one file. Returns the location of its end.
 Location SceneReader::read(const std::string& bytes, const fs::path& path, Tokenizer* outer) {
   scene_.files.push_back(path);
   scene_.content_hash = hash_bytes(bytes, scene_.content_hash);
@@ -71,6 +74,7 @@ Location SceneReader::read(const std::string& bytes, const fs::path& path, Token
   return tokens.where(tokens.peek());
 }
 
+/// Executes one directive. On an error, continues at the next one.
 void SceneReader::read_directive(Tokenizer& tokens, DirectiveContext& context) {
   const Token word = tokens.next(), argument = tokens.peek();
   try {
@@ -88,12 +92,14 @@ void SceneReader::read_directive(Tokenizer& tokens, DirectiveContext& context) {
   }
 }
 
+/// Included tokens continue the including file: state changes persist.
 void SceneReader::include(Tokenizer& tokens) {
   Location where;
   const fs::path path = next_file(tokens, "Include", where);
   read(read_file_bytes(path, where), path, &tokens);
 }
 
+/// An imported file has its own tokenizer and state. If it is unreadable, the scene is incomplete.
 void SceneReader::import(Tokenizer& tokens, const Location& where) {
   Location name_where;
   const fs::path path = next_file(tokens, "Import", name_where);
@@ -102,6 +108,7 @@ void SceneReader::import(Tokenizer& tokens, const Location& where) {
   builder_.import_end();
 }
 
+/// Reads and resolves the file name of Include or Import.
 fs::path SceneReader::next_file(Tokenizer& tokens, std::string_view directive, Location& where) const {
   const Token name = read_quoted(tokens, directive);
   where = tokens.where(name);
@@ -110,6 +117,7 @@ fs::path SceneReader::next_file(Tokenizer& tokens, std::string_view directive, L
   return path;
 }
 
+/// Throws InputError for an include cycle or for too deep nesting.
 void SceneReader::check_include(const fs::path& path, const Location& where) const {
   if (open_files_.size() >= kDeepest) fail(where, "includes are nested more than {} deep", kDeepest);
   const auto is_same = [target = real_path(path)](const fs::path& open) { return real_path(open) == target; };
@@ -137,6 +145,7 @@ SceneDescription parse_scene(const std::vector<fs::path>& paths, const Log& log,
   return scene;
 }
 
+/// Throws all errors together.
 SceneDescription parse_scene(const fs::path& path, const Log& log, const Unsupported& unsupported) {
   Problems problems;
   SceneDescription scene = parse_scene(std::vector{path}, log, unsupported, problems);
@@ -146,7 +155,7 @@ SceneDescription parse_scene(const fs::path& path, const Log& log, const Unsuppo
 
 namespace {
 
-/// `main` has the files that have been looked at, the main one first.
+/// `main` lists the files already searched, the main file first.
 bool holds_world(SceneSettings& main, const fs::path& path) {
   if (std::ranges::find(main.files, path) != main.files.end()) return false;
   main.files.push_back(path);
@@ -173,6 +182,7 @@ bool holds_world(SceneSettings& main, const fs::path& path) {
 
 }  // namespace
 
+/// An unreadable file counts as a scene, so that its error is reported for that scene.
 bool holds_world(const fs::path& path) {
   if (path == "-") return false;
   bool holds = false;

@@ -11,22 +11,21 @@
 
 namespace frond {
 
-/// Reads a scene file of pbrt-v4's format and everything that it includes; "-" is standard input. Goes on after an
-/// error at the next directive: all of them are thrown at the end (core/problems.h), with file, line and column, for
-/// whatever is wrong, unknown, or of pbrt-v4 but not supported here. Files may be compressed (gzip).
+/// Reads a scene file in pbrt-v4's format with all included files; "-" is standard input. After an error, the parser
+/// continues at the next directive and throws all errors at the end (core/problems.h), with file, line and column.
+/// Features of pbrt-v4 that are not supported are errors. Files may be compressed (gzip).
 SceneDescription parse_scene(const std::filesystem::path& path, const Log& log, const Unsupported& unsupported = {});
 
-/// A scene in one file or in several that are read one after the other, as pbrt does. Errors go to `problems`, and what
-/// could be read is returned.
+/// Reads a scene from one or several consecutive files, as pbrt does. Adds errors to `problems`, and returns what could
+/// be read.
 SceneDescription parse_scene(const std::vector<std::filesystem::path>& paths, const Log& log,
                              const Unsupported& unsupported, Problems& problems);
 
-/// Whether this file or one that it includes holds WorldBegin: then it is a scene, else a piece of one. Whatever else
-/// is wrong there; one that cannot be read is a scene of its own, but standard input, which can be read once, is a
-/// piece.
+/// Whether the file, or a file that it includes, contains WorldBegin, and thus completes a scene. Other errors are
+/// ignored. An unreadable file counts as a scene; standard input does not, because it can be read only once.
 bool holds_world(const std::filesystem::path& path);
 
-/// As the first from text; `name` is what errors call it, and what Include resolves against.
+/// Same as parse_scene for text; `name` is used in errors and to resolve Include.
 SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log,
                                   const Unsupported& unsupported = {});
 

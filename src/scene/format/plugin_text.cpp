@@ -9,6 +9,7 @@
 namespace frond {
 namespace {
 
+/// Returns nullopt for text that is not a number as a whole.
 std::optional<double> number(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -16,6 +17,7 @@ std::optional<double> number(const std::string& text) {
   return value;
 }
 
+/// Parses a comma-separated list. Throws InputError.
 std::vector<double> numbers(const std::string& name, const std::string& text, const Location& where) {
   std::vector<double> values;
   for (const std::string& part : split(text, ',')) {
@@ -26,7 +28,8 @@ std::vector<double> numbers(const std::string& name, const std::string& text, co
   return values;
 }
 
-/// One number: that at every wavelength. Three: rgb. Pairs: wavelengths (nm) and values. Else a name or an .spd file.
+/// Sets a spectrum: one number is constant, three are rgb, pairs are wavelengths (nm) and values; other text is a name
+/// or an .spd file.
 void set_spectrum(const std::string& text, const Location& where, ParsedParam& p) {
   p.type = "spectrum";
   if (!number(split(text, ',')[0])) {
@@ -39,7 +42,7 @@ void set_spectrum(const std::string& text, const Location& where, ParsedParam& p
   p.values = std::move(values);
 }
 
-/// The value as a scene file would have it.
+/// Returns the parameter as a scene file would contain it.
 ParsedParam typed(const Param& declared, const std::string& text, const Location& where) {
   ParsedParam p{"", std::string(declared.name), where, where, {}};
   switch (declared.kind) {
@@ -72,14 +75,15 @@ ParsedParam typed(const Param& declared, const std::string& text, const Location
 
 }  // namespace
 
+/// A word without "=" continues the previous parameter's list.
 PluginText parse_plugin_text(const std::string& text, const Location& where) {
   const auto parts = split(text, ',');
   PluginText result{parts[0], {}};
-  if (result.name.empty()) fail(where, "a plugin's name and parameters look like NAME,parameter=value: {}", text);
+  if (result.name.empty()) fail(where, "a plug-in with parameters is written NAME,parameter=value: {}", text);
   for (size_t i = 1; i < parts.size(); ++i) {
     const size_t equals = parts[i].find('=');
     if (equals == std::string::npos && !parts[i].empty() && !result.params.empty()) {
-      result.params.back().second += ',' + parts[i];  // a list goes on
+      result.params.back().second += ',' + parts[i];  // a list continues
       continue;
     }
     if (equals == std::string::npos || equals == 0 || equals + 1 == parts[i].size())
@@ -99,6 +103,7 @@ const ParsedParam* find_param(const std::vector<ParsedParam>& params, std::strin
   return found == params.end() ? nullptr : &*found;
 }
 
+/// Used to decide whether two scenes can share an object.
 bool same_plugin(const ParsedPlugin& a, const ParsedPlugin& b) {
   return a.name == b.name && std::ranges::equal(a.params, b.params, [](const ParsedParam& p, const ParsedParam& q) {
            return p.type == q.type && p.name == q.name && p.values == q.values && p.color_space == q.color_space;
@@ -127,6 +132,7 @@ void set_params(const PluginText& text, const PluginInfo& info, const Location& 
   }
 }
 
+/// A plug-in of another name loses the old parameters, which it may not have.
 void override_plugin(const PluginText& text, const PluginInfo& info, const Location& where, ParsedPlugin& plugin) {
   if (plugin.name != text.name) plugin = {text.name, where, {}};
   set_params(text, info, where, plugin);

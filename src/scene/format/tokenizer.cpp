@@ -10,6 +10,7 @@ namespace {
 
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
 
+/// Characters that end an unquoted word.
 constexpr std::array<bool, 256> word_enders() {
   std::array<bool, 256> ends{};
   for (const char c : {' ', '\t', '\n', '\r', '\f', '\v', '"', '[', ']', '#'})
@@ -21,6 +22,7 @@ constexpr std::array<bool, 256> kEndsWord = word_enders();
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 constexpr std::string_view kEscapes = "bfnrt\\\"'", kMeanings = "\b\f\n\r\t\\\"'";
 
+/// Computes the location only when an error needs it, because counting lines is expensive.
 Location location_of(const std::shared_ptr<const std::string>& file, std::string_view text, size_t offset) {
   const std::string_view before = text.substr(0, offset);
   const size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
@@ -28,14 +30,17 @@ Location location_of(const std::shared_ptr<const std::string>& file, std::string
           static_cast<int>(offset - line_start) + 1};
 }
 
+/// Directives begin with a capital letter; parameters are quoted.
 bool is_capital(const Token& token) {
   return token.kind == Token::Kind::word && token.text[0] >= 'A' && token.text[0] <= 'Z';
 }
 
+/// Whether only blanks precede the word on its line.
 bool begins_line(const Token& word) {
   return std::all_of(word.text.data() - (word.column - 1), word.text.data(), is_blank);
 }
 
+/// Throws InputError for binary and UTF-16 files, at the first offending byte.
 void check_is_text(std::string_view text, const std::shared_ptr<const std::string>& file) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     fail({file, 1, 1}, "this file is UTF-16 text; scene files are UTF-8");
@@ -45,6 +50,7 @@ void check_is_text(std::string_view text, const std::shared_ptr<const std::strin
 
 }  // namespace
 
+/// At most 40 characters, control characters replaced.
 std::string Token::shown() const {
   constexpr size_t kLongest = 40;
   std::string shown(text.substr(0, kLongest));
@@ -68,9 +74,10 @@ Tokenizer::Tokenizer(std::string_view text, std::shared_ptr<const std::string> f
   at_ = line_start_ = text.data();
   end_ = at_ + text.size();
   next_ = scan();
-  if (outer_) outer_->last_capital_ = {};  // what is taken from there later may end a directive of this file
+  if (outer_) outer_->last_capital_ = {};  // an earlier word there is no recovery point for this file
 }
 
+/// Remembers capitalized words as recovery points.
 Token Tokenizer::next() {
   if (at_end() && outer_) return outer_->next();
   const Token token = next_;
@@ -79,6 +86,7 @@ Token Tokenizer::next() {
   return token;
 }
 
+/// Creates a token at the current position.
 Token Tokenizer::token_at(const char* start) const {
   Token token;
   token.line = line_;
@@ -87,6 +95,7 @@ Token Tokenizer::token_at(const char* start) const {
   return token;
 }
 
+/// Skips blanks and comments, and counts lines: LF, CR LF, or a lone CR.
 void Tokenizer::skip_blanks() {
   for (; at_ != end_; ++at_) {
     if (*at_ == '#') at_ = std::find_if(at_, end_, [](char c) { return c == '\n' || c == '\r'; });
@@ -96,6 +105,7 @@ void Tokenizer::skip_blanks() {
   }
 }
 
+/// Scans the next token of this file.
 Token Tokenizer::scan() {
   skip_blanks();
   const char* start = at_;
@@ -113,6 +123,7 @@ Token Tokenizer::scan() {
   return token;
 }
 
+/// Strings end on their line. Escapes are only marked here, and resolved by text_of.
 Token Tokenizer::scan_string() {
   Token token = token_at(at_);
   token.kind = Token::Kind::string;
@@ -128,6 +139,7 @@ Token Tokenizer::scan_string() {
   return token;
 }
 
+/// Rescans from a word.
 void Tokenizer::go_back_to(const Token& word) {
   at_ = word.text.data();
   line_ = word.line;
@@ -136,6 +148,7 @@ void Tokenizer::go_back_to(const Token& word) {
   next_ = scan();
 }
 
+/// If a capitalized word came after the failed token, it may be the directive that the error swallowed.
 void Tokenizer::skip_to_directive(const Token& failed, bool (*is_directive)(std::string_view)) {
   const bool came_later = failed.from != this || last_capital_.text.data() > failed.text.data();
   if (last_capital_.from == this && came_later && is_directive(last_capital_.text)) return go_back_to(last_capital_);
@@ -144,12 +157,13 @@ void Tokenizer::skip_to_directive(const Token& failed, bool (*is_directive)(std:
     is_broken_ = false;
     try {
       next_ = scan();
-    } catch (const InputError&) {  // it follows from the one that is told
+    } catch (const InputError&) {  // a consequence of the error that is being reported
     }
   }
   if (outer_) outer_->skip_to_directive(failed, is_directive);
 }
 
+/// Throws InputError for an unknown escape.
 std::string Tokenizer::text_of(const Token& string) const {
   if (!string.has_escapes) return std::string(string.text);
   std::string text;
@@ -165,11 +179,12 @@ std::string Tokenizer::text_of(const Token& string) const {
   return text;
 }
 
+/// std::from_chars is independent of the locale, unlike strtod.
 std::optional<double> parse_number(std::string_view word) {
   const size_t signs = word.starts_with('+') || word.starts_with('-') ? 1 : 0;
   const char first = word.size() > signs ? word[signs] : '\0';
-  if (first != '.' && (first < '0' || first > '9')) return {};  // from_chars would take "nan" and "inf"
-  if (word[0] == '+') word.remove_prefix(1);                    // and no plus sign
+  if (first != '.' && (first < '0' || first > '9')) return {};  // from_chars would accept "nan" and "inf"
+  if (word[0] == '+') word.remove_prefix(1);                    // from_chars rejects a plus sign
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || error == std::errc::invalid_argument) return {};

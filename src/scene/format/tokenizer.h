@@ -12,37 +12,37 @@ namespace frond {
 
 class Tokenizer;
 
-/// A piece of a scene file. `text` points into the file: a word, or a string without its quotes.
+/// A token of a scene file. `text` points into the file: a word, or a string without quotes.
 struct Token {
   enum class Kind : uint8_t { end, word, string, open_bracket, close_bracket };
   Kind kind = Kind::end;
   bool has_escapes = false;
   int line = 1, column = 1;
   std::string_view text;
-  const Tokenizer* from = nullptr;  ///< whose file it stands in
+  const Tokenizer* from = nullptr;  ///< tokenizer of the file that contains the token
 
-  /// As error messages show it.
+  /// Returns the token as error messages quote it.
   std::string shown() const;
 };
 
-/// Cuts a scene file's text into tokens, without a copy or an allocation for any of them. Behind the end of a file
-/// that another one includes come that one's: a directive may begin in the one and end in the other, as in pbrt.
+/// Splits a scene file into tokens without copies or allocations. At the end of an included file the tokens of the
+/// including file follow: as in pbrt, a directive may begin in one and end in the other.
 class Tokenizer {
  public:
-  /// All must outlive the tokens. `outer`: what includes this file, or nullptr. Throws InputError when the text is
-  /// binary.
+  /// Arguments must outlive the tokens. `outer`: the including file's tokenizer, or nullptr. Throws InputError for
+  /// binary data.
   Tokenizer(std::string_view text, std::shared_ptr<const std::string> file, Tokenizer* outer = nullptr);
 
   const Token& peek() const { return at_end() && outer_ ? outer_->peek() : next_; }
-  /// Of this file.
+  /// Whether this file has no further token.
   bool at_end() const { return next_.kind == Token::Kind::end; }
-  /// The token that `peek` showed. Throws InputError when the one after it is malformed.
+  /// Returns the token of `peek`. Throws InputError if the token after it is malformed.
   Token next();
   Location where(const Token& token) const { return {token.from->file_, token.line, token.column}; }
-  /// After an error in what began with `failed`: goes on at the next directive, or word that looks like one and begins
-  /// a line. Where the error is that one came too early, that is the next.
+  /// Recovers from an error in a directive that began with `failed`: continues at the next directive, or at a word at a
+  /// line's beginning that looks like one. A directive that came too early is itself the next.
   void skip_to_directive(const Token& failed, bool (*is_directive)(std::string_view));
-  /// A string's text with its escapes resolved.
+  /// Returns a string's text with escapes resolved.
   std::string text_of(const Token& string) const;
 
  private:
@@ -58,13 +58,13 @@ class Tokenizer {
   const char* end_;
   const char* line_start_;
   int line_ = 1;
-  bool is_broken_ = false;  ///< `next_` could not be read
+  bool is_broken_ = false;  ///< `next_` is malformed
   Token next_;
-  Token last_capital_;  ///< of the words taken: the last that may be a directive
+  Token last_capital_;  ///< the last word consumed that may be a directive
 };
 
-/// A decimal number as scene files and PLY write it; nothing for any other word ("nan", "inf", hexadecimal). Too large
-/// for double: infinity.
+/// Parses a decimal number as in scene files and PLY. Returns nullopt for other words ("nan", "inf", hexadecimal), and
+/// infinity beyond the range of double.
 std::optional<double> parse_number(std::string_view word);
 
 }  // namespace frond

@@ -14,6 +14,7 @@ const std::vector<std::string_view>& Unsupported::kinds() {
   return all;
 }
 
+/// Throws InputError for an unknown kind.
 Unsupported::Unsupported(const std::string& kinds_given) {
   for (const std::string& kind : split(kinds_given, ',')) {
     if (kind == "all")

@@ -10,18 +10,19 @@
 
 namespace frond {
 
-/// Features of pbrt-v4 that are not here: errors, unless the user lets them be left out, or something else stand in for
-/// them, with a warning.
+/// Policy for features of pbrt-v4 that are not supported: errors by default; kinds that the user lists are omitted or
+/// replaced, with a warning.
 class Unsupported {
  public:
-  Unsupported() = default;  ///< nothing is let pass
-  /// `kinds` is "all", or some of kinds() with commas between. Throws InputError.
+  Unsupported() = default;  ///< all features are errors
+  /// `kinds`: "all", or names of kinds() separated by commas. Throws InputError.
   explicit Unsupported(const std::string& kinds);
+  /// Returns the names of all kinds.
   static const std::vector<std::string_view>& kinds();
 
   bool lets_pass(std::string_view kind) const { return passing_.contains(kind); }
-  /// Warns where the kind is let pass; else throws InputError, with the option that would. `feature` is what is asked
-  /// for, `instead` what is done for it: "Camera "realistic"" and "is replaced by "perspective"".
+  /// Warns if the kind is listed; otherwise throws InputError, which names the option --ignore-unsupported. `feature`
+  /// and `instead` describe the feature and its replacement: "Camera "realistic"" and "is replaced by "perspective"".
   void handle(std::string_view kind, const Location& where, std::string_view feature, std::string_view instead,
               const Log& log) const;
 

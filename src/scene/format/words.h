@@ -5,7 +5,7 @@
 
 namespace frond {
 
-/// The parts between separators, empty ones too; at least one.
+/// Returns the parts between separators, including empty ones; at least one.
 inline std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   size_t start = 0;

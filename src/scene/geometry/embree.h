@@ -7,7 +7,7 @@
 #include "core/texture.h"
 #include "core/vec.h"
 
-// The one place that knows which Embree this is: 3 and 4 differ in includes, in the default ray mask and in how a
+// The only file that depends on Embree's version: 3 and 4 differ in include paths, in the default ray mask and in how a
 // query's context is passed.
 #if FROND_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -19,21 +19,21 @@
 
 namespace frond::embree {
 
-/// A row of some instances of objects.
+/// A level of instancing: a row of a set of instances.
 struct Instance {
   const void* set;
   uint32_t row;
 };
 
-/// What is known of one ray of a query beside what Embree knows.
+/// State of one ray of a query, in addition to Embree's.
 struct Lane {
   uint64_t key;
-  Vec3 p;  ///< where the analytic shape that last reported a hit was met, in its object's space
-  /// Instances, from outside in, of the nearest hit so far. How many the hit is in its instID[0] says (level_of).
+  Vec3 p;  ///< last hit reported by an analytic shape, in its object's space
+  /// Instances of the nearest hit so far, outermost first. Their number is stored in the hit's instID[0] (level_of).
   std::array<Instance, InstanceRows::kMost> hit;
 };
 
-/// A query's context: Embree's own first, so that a filter function gets ours by a cast.
+/// Context of a query. Embree's context is the first member, so that filter functions can cast to Query.
 struct Query {
 #if FROND_EMBREE_MAJOR >= 4
   RTCRayQueryContext base;
@@ -42,17 +42,18 @@ struct Query {
   RTCIntersectContext base;
   explicit Query(Lane* of) : lane(of) { rtcInitIntersectContext(&base); }
 #endif
-  Lane* lane;  ///< as many as the query has rays
-  /// The instances, from outside in, that traversal is in.
+  Lane* lane;  ///< array with one element for each ray of the query
+  /// Instances that traversal is currently inside, outermost first.
   std::array<Instance, InstanceRows::kMost> inside;
   uint32_t depth = 0;
 
+  /// Enters an instance. The depth is stored in instID[0], which Embree copies into hits.
   void enter(const Instance& instance) {
     inside[depth] = instance;
     base.instID[0] = ++depth;
   }
   void leave() { base.instID[0] = --depth == 0 ? RTC_INVALID_GEOMETRY_ID : depth; }
-  /// A key of the instance that traversal is in.
+  /// Returns a key of the current instance path.
   uint64_t instance_key() const {
     uint64_t key = RTC_INVALID_GEOMETRY_ID;
     for (uint32_t i = 0; i < depth; ++i) key = hash_key(key, inside[i].row);
@@ -60,6 +61,7 @@ struct Query {
   }
 };
 
+/// Number of instance levels of a hit.
 inline uint32_t level_of(const RTCHit& hit) { return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? 0 : hit.instID[0]; }
 
 #if FROND_EMBREE_MAJOR >= 4
@@ -73,6 +75,7 @@ Arguments arguments_of(Query& query, void (*init)(Arguments*), RTCRayQueryFlags 
 }
 #endif
 
+/// Traces a single ray.
 inline void intersect(RTCScene scene, RTCRayHit& ray, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4
   auto arguments = arguments_of(query, rtcInitIntersectArguments, RTC_RAY_QUERY_FLAG_INCOHERENT);
@@ -82,7 +85,7 @@ inline void intersect(RTCScene scene, RTCRayHit& ray, Query& query) {
 #endif
 }
 
-/// Rays that go nearly the same way; those whose `valid` is not -1 are left alone.
+/// Traces a coherent packet; rays whose `valid` is not -1 are ignored.
 inline void intersect(const int* valid, RTCScene scene, RTCRayHit8& rays, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4
   auto arguments = arguments_of(query, rtcInitIntersectArguments, RTC_RAY_QUERY_FLAG_COHERENT);
@@ -93,7 +96,7 @@ inline void intersect(const int* valid, RTCScene scene, RTCRayHit8& rays, Query&
 #endif
 }
 
-/// Sets ray.tfar to minus infinity if anything is in the way.
+/// Sets ray.tfar to minus infinity if the ray is occluded.
 inline void occluded(RTCScene scene, RTCRay& ray, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4
   auto arguments = arguments_of(query, rtcInitOccludedArguments, RTC_RAY_QUERY_FLAG_INCOHERENT);
@@ -103,7 +106,7 @@ inline void occluded(RTCScene scene, RTCRay& ray, Query& query) {
 #endif
 }
 
-/// The same of rays that go nearly the same way.
+/// Same for a coherent packet.
 inline void occluded(const int* valid, RTCScene scene, RTCRay8& rays, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4
   auto arguments = arguments_of(query, rtcInitOccludedArguments, RTC_RAY_QUERY_FLAG_COHERENT);

@@ -11,12 +11,12 @@ namespace {
 
 Float4 to_float4(const Vec3& v) { return Float4{v.x, v.y, v.z, 0}; }
 
-/// Whether a ray passes a box. Instances' boxes in the world are wider than those in their own space: most of the rays
-/// that pass the one miss the other.
+/// Whether a ray hits a box. The world-space box of an instance is larger than its object-space box, so most rays that
+/// hit the former miss the latter.
 bool passes(Float4 origin, Float4 direction, float t_max, const Bounds& box) {
   const Float4 inverse = 1 / direction;
   const Float4 a = (to_float4(box.min) - origin) * inverse, b = (to_float4(box.max) - origin) * inverse;
-  // NaN, where a ray runs along a face, may be in or out: boxes are a little wider than what is in them.
+  // NaN occurs if a ray lies in a face's plane. Either result is correct, because boxes are slightly enlarged.
   const Float4 near = b < a ? b : a, far = a < b ? b : a;
   const Float4 start{}, end = start + t_max;
   const Float4 enter = start < near ? near : start, leave = far < end ? far : end;
@@ -28,7 +28,7 @@ using Float8 = float __attribute__((vector_size(32), may_alias));
 Float8& lanes(float* x) { return *reinterpret_cast<Float8*>(x); }
 const Float8& lanes(const float* x) { return *reinterpret_cast<const Float8*>(x); }
 
-/// Both may be the same rays.
+/// Transforms a packet of rays. `in` and `out` may be the same object.
 void transform(const AffineMap::Inverse& map, const RTCRay8& in, RTCRay8& out) {
   const auto& [x, y, z, t] = map;
   const Float8 px = lanes(in.org_x) - t[0], py = lanes(in.org_y) - t[1], pz = lanes(in.org_z) - t[2];
@@ -47,7 +47,7 @@ void transform(const AffineMap::Inverse& map, const RTCRay8& in, RTCRay8& out) {
   std::memcpy(out.flags, in.flags, sizeof out.flags);
 }
 
-/// As `passes` of one ray. Whether any does.
+/// Tests a packet. Sets `passing` for each ray; returns whether any ray hits.
 bool passes(const RTCRay8& rays, const Bounds& box, const int* valid, int* passing) {
   Float8 enter{}, leave = lanes(rays.tfar);
   const auto clip = [&](const float* origins, const float* directions, float low, float high) {
@@ -66,9 +66,10 @@ bool passes(const RTCRay8& rays, const Bounds& box, const int* valid, int* passi
   return any != 0;
 }
 
-/// What Embree asks of instances of objects: the ray is taken into the object's space, and the search goes on there.
+/// Embree's callbacks for instances of objects: they transform the ray into the object's space and continue traversal
+/// there.
 struct Callbacks {
-  /// False where the ray misses the object's box.
+  /// Returns false if the ray misses the object's box.
   static bool to_object(const embree::Instance& instance, const RTCRay& ray, RTCRay& inner) {
     const GeometryInstances& set = *static_cast<const GeometryInstances*>(instance.set);
     Float4 origin = embree::origin(ray), direction = embree::direction(ray);
@@ -82,6 +83,7 @@ struct Callbacks {
     return passes(embree::origin(inner), embree::direction(inner), ray.tfar, set.object(instance.row).bounds);
   }
 
+  /// Embree's intersection callback, for single rays and for packets.
   static void intersect(const RTCIntersectFunctionNArguments* args) {
     const auto& set = *static_cast<const GeometryInstances*>(args->geometryUserPtr);
     auto& query = *reinterpret_cast<embree::Query*>(args->context);
@@ -93,6 +95,7 @@ struct Callbacks {
     }
   }
 
+  /// Embree's occlusion callback, for single rays and for packets.
   static void occluded(const RTCOccludedFunctionNArguments* args) {
     const auto& set = *static_cast<const GeometryInstances*>(args->geometryUserPtr);
     auto& query = *reinterpret_cast<embree::Query*>(args->context);
@@ -104,6 +107,7 @@ struct Callbacks {
     }
   }
 
+  /// Intersects one ray with an instance. On a hit, the instance path is stored in the ray's lane.
   static void intersect(const embree::Instance& instance, RTCRayHit& ray, embree::Query& query) {
     const auto& set = *static_cast<const GeometryInstances*>(instance.set);
     RTCRayHit nested;
@@ -130,6 +134,7 @@ struct Callbacks {
     query.leave();
   }
 
+  /// Tests one ray against an instance for occlusion.
   static void occluded(const embree::Instance& instance, RTCRay& ray, embree::Query& query) {
     const auto& set = *static_cast<const GeometryInstances*>(instance.set);
     RTCRay nested;
@@ -146,7 +151,7 @@ struct Callbacks {
     query.leave();
   }
 
-  /// The rays of a packet in the object's space, and which of them pass its box. False where none does.
+  /// Transforms a packet and tests the object's box. Returns false if all rays miss.
   static bool to_object(const embree::Instance& instance, const int* valid, const RTCRay8& rays, RTCRay8& inner,
                         int* passing) {
     const GeometryInstances& set = *static_cast<const GeometryInstances*>(instance.set);
@@ -161,6 +166,7 @@ struct Callbacks {
     return passes(inner, set.object(instance.row).bounds, valid, passing);
   }
 
+  /// Intersects a packet. Rays that miss the object's box are masked out.
   static void intersect(const embree::Instance& instance, const int* valid, RTCRayHit8& rays, embree::Query& query) {
     RTCRayHit8 inner;
     alignas(32) std::array<int, RayPacket::kWidth> passing;
@@ -181,6 +187,7 @@ struct Callbacks {
     }
   }
 
+  /// Tests a packet for occlusion.
   static void occluded(const embree::Instance& instance, const int* valid, RTCRay8& rays, embree::Query& query) {
     RTCRay8 inner;
     alignas(32) std::array<int, RayPacket::kWidth> passing;
@@ -194,6 +201,7 @@ struct Callbacks {
       if (passing[i] && inner.tfar[i] < 0) rays.tfar[i] = -INFINITY;
   }
 
+  /// World bounds of an instance: the transformed outline is tighter than a transformed box.
   static void bounds(const RTCBoundsFunctionArguments* args) {
     const auto& set = *static_cast<const GeometryInstances*>(args->geometryUserPtr);
     const Instances& i = set.instances;
@@ -203,13 +211,14 @@ struct Callbacks {
       const Vec3 p = map.point(corner);
       b.add(i.is_placed ? i.placement.point(p) : p);
     }
-    b = widened(b);  // points are rounded on their way out, rays on their way in
+    b = widened(b);  // points are rounded by the map, rays by its inverse
     *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
   }
 };
 
 }  // namespace
 
+/// `set` is stored as user data and must outlive the geometry.
 RTCGeometry embree::new_geometry(RTCDevice device, const GeometryInstances& set) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, unsigned(set.instances.table->size()));

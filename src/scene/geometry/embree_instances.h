@@ -5,7 +5,7 @@
 
 namespace frond::embree {
 
-/// Instances of objects for Embree, which they must outlive. Their queries are those of this folder: Query.
+/// Returns an Embree geometry of instances. `set` must outlive it. Queries must use the context Query.
 RTCGeometry new_geometry(RTCDevice device, const GeometryInstances& set);
 
 }  // namespace frond::embree

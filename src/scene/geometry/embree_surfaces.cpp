@@ -7,17 +7,18 @@
 namespace frond::embree {
 namespace {
 
-/// On a mesh, in the space of the object that it is part of.
+/// Returns a texture lookup point on a mesh, in the space of the containing object.
 TexturePoint texture_point(const Surface& surface, const RTCHit& hit) {
   const Triangle t(*std::get<MeshPtr>(surface.geometry), hit.primID, {hit.u, hit.v});
   return {.uv = t.uv(), .p = t.p(), .n = normalize_any(Vec3{hit.Ng_x, hit.Ng_y, hit.Ng_z})};
 }
+/// Returns a texture lookup point on an analytic shape, in the space of the containing object.
 TexturePoint texture_point(const AnalyticShape& shape, unsigned primitive, const ShapePoint& at) {
   return {.uv = shape.uv(primitive, at.at), .p = at.p, .n = normalize_any(at.ng)};
 }
 
-/// Whether a ray passes a partly transparent surface: decided for each ray and primitive, in whatever order Embree
-/// asks. `layer` counts the sheets of one primitive along the ray.
+/// Stochastic alpha test: decided by a hash of the ray and the primitive, so that it does not depend on Embree's
+/// traversal order. `layer` counts the crossings of one primitive along the ray.
 bool passes(const Surface& surface, const Target& target, const TexturePoint& at, const Query& query, const Lane& lane,
             unsigned layer = 0) {
   const float alpha = surface.alpha->evaluate(at);
@@ -32,6 +33,7 @@ Query& query_of(Context* context) {
   return *reinterpret_cast<Query*>(context);
 }
 
+/// Embree's filter callback: rejects hits on meshes that fail the alpha test.
 void filter_alpha(const RTCFilterFunctionNArguments* args) {
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
   const Query& query = query_of(args->context);
@@ -43,6 +45,7 @@ void filter_alpha(const RTCFilterFunctionNArguments* args) {
   }
 }
 
+/// Embree's intersection callback for analytic shapes.
 void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
   Query& query = query_of(args->context);
@@ -56,6 +59,7 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
   }
 }
 
+/// Embree's occlusion callback for analytic shapes.
 void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
   const Query& query = query_of(args->context);
@@ -67,18 +71,20 @@ void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
   }
 }
 
+/// Embree's bounds callback for analytic shapes.
 void bounds_analytic(const RTCBoundsFunctionArguments* args) {
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
   const Bounds b = std::get<AnalyticShapePtr>(surface.geometry)->bounds(args->primID);
   *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
 }
 
+/// Creates a triangle geometry, which shares the mesh's index buffer.
 RTCGeometry mesh_geometry(RTCDevice device, const Surface& surface) {
   const TriangleMesh& mesh = *std::get<MeshPtr>(surface.geometry);
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                              sizeof(mesh.triangles[0]), mesh.triangles.size());
-  // Embree reads 16 bytes at the last vertex: a copy that it pads itself.
+  // Embree reads 16 bytes for the last vertex; its own buffer is padded.
   void* vertices =
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.p.size());
   std::copy(mesh.p.begin(), mesh.p.end(), static_cast<Vec3*>(vertices));
@@ -89,6 +95,7 @@ RTCGeometry mesh_geometry(RTCDevice device, const Surface& surface) {
   return geometry;
 }
 
+/// Creates a user geometry with one primitive for each primitive of the shape.
 RTCGeometry analytic_geometry(RTCDevice device, const Surface& surface) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, std::get<AnalyticShapePtr>(surface.geometry)->count());
@@ -109,11 +116,12 @@ std::optional<ShapePoint> meet(const Surface& surface, const Target& target, con
        ++layer) {
     const float behind = point->t;
     point = shape.intersect(target.primitive, ray, behind);
-    if (point && !(point->t > behind)) return {};  // a shape that does not keep to its contract
+    if (point && !(point->t > behind)) return {};  // ignores a shape that returns a point before `behind`
   }
   return point;
 }
 
+/// Embree has no field for the hit point; it is stored in the ray's lane.
 void report(const ShapePoint& point, const Target& target, RTCRayHitN* rays, unsigned n, unsigned i, Query& query) {
   RTCRayN_tfar(RTCRayHitN_RayN(rays, n), n, i) = point.t;
   query.lane[i].p = point.p;
@@ -124,6 +132,7 @@ void report(const ShapePoint& point, const Target& target, RTCRayHitN* rays, uns
   RTCHitN_instID(hit, n, i, 0) = query.base.instID[0];
 }
 
+/// The surface is stored as user data and must outlive the geometry.
 RTCGeometry new_geometry(RTCDevice device, const Surface& surface) {
   RTCGeometry geometry = std::holds_alternative<MeshPtr>(surface.geometry) ? mesh_geometry(device, surface)
                                                                            : analytic_geometry(device, surface);

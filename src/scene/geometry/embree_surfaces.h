@@ -9,16 +9,16 @@
 
 namespace frond::embree {
 
-/// One surface for Embree, which it must outlive. Its queries are those of this folder: Query.
+/// Returns an Embree geometry of a surface, which must outlive it. Queries must use the context Query.
 RTCGeometry new_geometry(RTCDevice device, const Surface& surface);
 
 inline Ray to_ray(const RTCRay& r) { return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar}; }
-/// Fourth lanes are 0.
+/// The fourth lane is 0.
 inline Float4 origin(const RTCRay& r) { return Float4{r.org_x, r.org_y, r.org_z, 0}; }
 inline Float4 direction(const RTCRay& r) { return Float4{r.dir_x, r.dir_y, r.dir_z, 0}; }
 
-/// Fourth lanes have to be 0. Written in halves of 16 bytes, as Embree reads it: it would wait for four numbers written
-/// one by one.
+/// The fourth lanes must be 0. The ray is written in two halves of 16 bytes, as Embree loads it; four single stores
+/// would stall store forwarding.
 inline RTCRay from_vectors(Float4 o, Float4 d, float t_max) {
   RTCRay ray;
   static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
@@ -28,21 +28,21 @@ inline RTCRay from_vectors(Float4 o, Float4 d, float t_max) {
   ray.tfar = t_max, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
   return ray;
 }
+/// Converts a ray, with all mask bits set.
 inline RTCRay from_ray(const Ray& r) {
   return from_vectors(Float4{r.o.x, r.o.y, r.o.z, 0}, Float4{r.d.x, r.d.y, r.d.z, 0}, r.t_max);
 }
 
-/// Which of Embree's things a hit is on.
+/// Geometry and primitive of a hit, in Embree's numbering.
 struct Target {
   unsigned geometry, primitive;
 };
 
-/// The point where an analytic surface stops a ray of the query, if it does: behind a sheet that lets it pass there may
-/// be another.
+/// Returns the nearest point at which an analytic surface stops the ray, if any. Points with alpha 0 are skipped.
 std::optional<ShapePoint> meet(const Surface& surface, const Target& target, const Ray& ray, const Query& query,
                                const Lane& lane);
 
-/// Makes that point the nearest of ray i of N.
+/// Stores the point as the hit of ray i of N.
 void report(const ShapePoint& point, const Target& target, RTCRayHitN* rays, unsigned n, unsigned i, Query& query);
 
 }  // namespace frond::embree

@@ -12,24 +12,27 @@
 namespace frond {
 namespace {
 
+/// Returns the bounds that Embree computed.
 Bounds bounds_of(RTCScene scene) {
   RTCBounds b;
   rtcGetSceneBounds(scene, &b);
   return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
 }
 
-/// How far offset_origin lifts rays off, as a share of a hit's extent.
+/// Offset of spawned rays by offset_origin, as a share of the extent of a hit's coordinates.
 constexpr float kLiftOfExtent = 0x1p-17f;
 
 Vec3 face_forward(const Vec3& n, const Vec3& reference) { return dot(n, reference) < 0 ? -n : n; }
 
-/// Where the surface is so small, or its vertex normals so contrary, that there is no normal, the next best: no NaN.
+/// Sets the shading frame. Falls back to another direction if the surface is too small, or its vertex normals cancel,
+/// so that there is no NaN.
 void set_frame(Hit& hit, const Vec3* ns, const Vec3& direction) {
   const Vec3 geometric = normalize_any(hit.ng), shading = ns ? normalize_any(*ns) : geometric;
   hit.ng = geometric == Vec3{} ? -direction : geometric;
   hit.shading = Frame::around(shading == Vec3{} ? hit.ng : face_forward(shading, hit.ng));
 }
 
+/// Converts a packet to Embree's structure of arrays.
 RTCRay8 from_packet(const RayPacket& packet) {
   RTCRay8 rays;
   for (size_t i = 0; i < RayPacket::kWidth; ++i) {
@@ -38,7 +41,7 @@ RTCRay8 from_packet(const RayPacket& packet) {
     rays.dir_x[i] = r.d.x, rays.dir_y[i] = r.d.y, rays.dir_z[i] = r.d.z;
     rays.tfar[i] = r.t_max;
   }
-  std::ranges::fill(rays.tnear, 0x1p-126f);  // a camera may stand in the plane of what it does not see
+  std::ranges::fill(rays.tnear, 0x1p-126f);  // a camera may lie in the plane of a surface that it does not see
   std::ranges::fill(rays.time, 0.f);
   std::ranges::fill(rays.mask, ~0u);
   std::ranges::fill(rays.id, 0u);
@@ -46,7 +49,7 @@ RTCRay8 from_packet(const RayPacket& packet) {
   return rays;
 }
 
-/// What Embree, and we, know of a packet's rays.
+/// Embree's and our state of a packet's rays.
 struct PacketQuery {
   alignas(32) std::array<int, RayPacket::kWidth> valid;
   std::array<embree::Lane, RayPacket::kWidth> lanes;
@@ -60,7 +63,7 @@ struct PacketQuery {
   }
 };
 
-/// In the space of the object that the surface is part of. Whether the shading normal is not the geometric one.
+/// Fills a hit in the space of the containing object. Returns whether shading and geometric normal differ.
 bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hit& hit, Vec3& ns) {
   hit.extent = 0;
   if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry)) {
@@ -84,6 +87,7 @@ bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hi
   return !(ns == Vec3{});
 }
 
+/// Returns derivatives of the surface at a hit, in the space of the containing object.
 SurfaceDerivatives derivatives_of(const Surface& surface, const RTCHit& at, const embree::Lane& lane) {
   if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry))
     return Triangle(**mesh, at.primID, {at.u, at.v}).derivatives();
@@ -91,13 +95,13 @@ SurfaceDerivatives derivatives_of(const Surface& surface, const RTCHit& at, cons
       ->derivatives({lane.p, {at.Ng_x, at.Ng_y, at.Ng_z}, {at.u, at.v}, 0, at.primID});
 }
 
-/// Out of an object into the space where an instance of it stands. Normals grow in length with what they are of.
+/// Transforms derivatives from an object's space to the instance's. Normal derivatives scale with the normal.
 void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDerivatives& d) {
   d.dpdu = map.vector(d.dpdu), d.dpdv = map.vector(d.dpdv);
   d.dndu = inverse.normal_out(d.dndu), d.dndv = inverse.normal_out(d.dndv);
 }
 
-/// A hit's, and its frame along them.
+/// Sets the derivatives of a hit, and its frame along dpdu.
 [[gnu::noinline]] void set_derivatives(const Surface& surface, const RTCHit& at, const embree::Lane& lane,
                                        uint32_t level, Hit& hit) {
   SurfaceDerivatives d = derivatives_of(surface, at, lane);
@@ -112,13 +116,13 @@ void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDeriv
   hit.shading = Frame::along(hit.shading.z, d.dpdu);
 }
 
-/// A normal that a map may be applied to: no product of it overflows or vanishes.
+/// Rescales a normal so that products with a map's entries neither overflow nor underflow.
 Vec3 of_moderate_length(const Vec3& n) {
   const float square = dot(n, n);
   return square > 1e-16f && square < 1e16f ? n : normalize_any(n);
 }
 
-/// Out of an object into the space where an instance of it stands. `ns` is nullptr where it is that of the hit.
+/// Transforms a hit from an object's space to the instance's. `ns` is nullptr if the hit has only its geometric normal.
 void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Vec3* ns) {
   hit.p = map.point(hit.p);
   hit.extent = map.largest_stretch() * hit.extent + largest_coordinate(map.translation());
@@ -131,8 +135,9 @@ void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Ve
 void embree::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
 void embree::Release::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
 
+/// Objects are built in order, because instances refer to earlier objects.
 Geometry::Geometry(std::vector<ObjectParts> objects, ObjectParts world, int threads) {
-  // AVX-512 gains nothing for single rays, and changes the last bits of hits.
+  // AVX-512 is not faster for single rays, and changes the last bits of hits.
   device_.reset(rtcNewDevice(fmt::format("max_isa=avx2,threads={}", threads).c_str()));
   if (!device_) fail({}, "Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
   for (ObjectParts& parts : objects) {
@@ -146,18 +151,20 @@ Geometry::Geometry(std::vector<ObjectParts> objects, ObjectParts world, int thre
 
 Geometry::~Geometry() = default;
 
+/// Embree reports errors through the device, not by return values.
 void Geometry::check() const {
   if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
     fail({}, "Embree cannot build the scene: {}",
          error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : fmt::format("error {}", int(error)));
 }
 
+/// Builds one object's Embree scene. `first_id` is 1 if the object has surfaces of its own.
 std::unique_ptr<GeometryObject> Geometry::build(ObjectParts parts, uint64_t first_id) {
   auto object = std::make_unique<GeometryObject>(GeometryObject{.parts = std::move(parts)});
   if (!object->parts.instances.empty()) object->ids = first_id;
   object->scene.reset(rtcNewScene(device_.get()));
   RTCScene scene = object->scene.get();
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips between triangles
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // avoids missed hits between adjacent triangles
   attach(*object);
   rtcCommitScene(scene);
   check();
@@ -170,6 +177,7 @@ std::unique_ptr<GeometryObject> Geometry::build(ObjectParts parts, uint64_t firs
   return object;
 }
 
+/// Attaches surfaces first, then instances, so that an Embree geometry ID below the number of surfaces is a surface.
 void Geometry::attach(GeometryObject& object) {
   unsigned id = 0;
   const auto add = [&](RTCGeometry geometry) {
@@ -202,6 +210,7 @@ void Geometry::attach(GeometryObject& object) {
   for (const GeometryInstances& set : object.instances) add(embree::new_geometry(device_.get(), set));
 }
 
+/// Merges columns of the same name from all tables.
 std::vector<InstanceColumn> Geometry::columns() const {
   std::vector<InstanceColumn> all;
   const auto add = [&all](const GeometryObject& object) {
@@ -233,6 +242,7 @@ bool Geometry::closest(const Ray& ray, embree::Query& context, RTCRayHit& query)
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
+/// Embree's query, followed by the evaluation of the hit.
 bool Geometry::intersect(const Ray& ray, uint64_t key, DetailedMaterials detailed, GeometryHit& met, Hit& hit) const {
   RTCRayHit query;
   embree::Lane lane;
@@ -315,6 +325,7 @@ uint32_t Geometry::occluded(const RayPacket& packet) const {
   return hits;
 }
 
+/// Embree sets tfar to minus infinity if the ray is occluded.
 bool Geometry::occluded(const Ray& ray, uint64_t key) const {
   RTCRay query = embree::from_ray(ray);
   embree::Lane lane;

@@ -8,7 +8,7 @@
 #include "core/world.h"
 #include "scene/geometry/instance_table.h"
 
-// Embree's, by name alone: who includes this header need not have Embree.
+// Forward declarations, so that this header does not require Embree.
 struct RTCDeviceTy;
 struct RTCSceneTy;
 struct RTCRayHit;
@@ -20,6 +20,7 @@ namespace frond {
 namespace embree {
 struct Lane;
 struct Query;
+/// Deleter for Embree's reference-counted objects.
 struct Release {
   void operator()(RTCDeviceTy* device) const;
   void operator()(RTCSceneTy* scene) const;
@@ -28,50 +29,50 @@ using Device = std::unique_ptr<RTCDeviceTy, Release>;
 using Scene = std::unique_ptr<RTCSceneTy, Release>;
 }  // namespace embree
 
-/// A shape, and which of the scene's things it is made of: places in lists, which are not the geometry's.
+/// A shape with indices of its material and area light in the scene's description.
 struct Surface {
   ShapeGeometry geometry;
-  uint32_t material = 0;                      ///< in the scene's description
-  std::optional<uint32_t> area_light = {};    ///< in the scene's description
+  uint32_t material = 0;                      ///< index in the scene's description
+  std::optional<uint32_t> area_light = {};    ///< index in the scene's description
   std::shared_ptr<const FloatTexture> alpha;  ///< null: opaque
 };
 
-/// Instances of objects: one for each row of the table.
+/// Instances of objects, one for each row of the table.
 struct Instances {
   std::shared_ptr<const InstanceTable> table;
-  std::vector<uint32_t> objects;  ///< by row; a single one: the same for all
-  AffineMap placement;            ///< of the whole table
+  std::vector<uint32_t> objects;  ///< object index by row; a single element applies to all rows
+  AffineMap placement;            ///< transform of the whole table
   bool is_placed = false;         ///< false: `placement` is the identity
 };
 
-/// What stands together, and is placed as one: surfaces, and instances of other objects.
+/// Content of an object or of the world: surfaces, and instances of other objects.
 struct ObjectParts {
   std::vector<Surface> surfaces;
   std::vector<Instances> instances;
 };
 
-/// What a ray met: which things the numbers stand for, the scene knows.
+/// A hit as indices, which the scene resolves.
 struct GeometryHit {
   float t = 0;                      ///< along the ray
-  uint32_t material = 0;            ///< as of a Surface
-  std::optional<uint32_t> surface;  ///< of Geometry::surfaces, where the shape stands for itself
-  uint32_t primitive = 0;           ///< of the surface
-  uint64_t instance = 0;            ///< the instance, counted from 1; 0: the shape stands for itself
+  uint32_t material = 0;            ///< as in Surface
+  std::optional<uint32_t> surface;  ///< index in Geometry::surfaces; empty for instances
+  uint32_t primitive = 0;           ///< index within the surface
+  uint64_t instance = 0;            ///< number of the instance, from 1; 0: the surface is not part of an object
 };
 
 struct GeometryObject;
 
-/// Materials, by their index, whose hits need derivatives; nullptr: none.
+/// Flags of materials, by index, whose hits need derivatives; nullptr: none.
 struct DetailedMaterials {
   const uint8_t* flags = nullptr;
   bool contains(uint32_t material) const { return flags && flags[material] != 0; }
 };
 
-/// Ray queries over surfaces and instances of objects, by Embree. It knows no material and no light: scenes that differ
-/// in those share one.
+/// Ray queries over surfaces and instances of objects, implemented by Embree. Independent of materials and lights, so
+/// that scenes which differ only in these can share it.
 class Geometry {
  public:
-  /// Objects may hold instances of objects before them. Throws InputError when Embree cannot build, or they are nested
+  /// Objects may contain instances of earlier objects. Throws InputError if Embree fails, or if instances are nested
   /// more than InstanceRows::kMost deep.
   Geometry(std::vector<ObjectParts> objects, ObjectParts world, int threads);
   ~Geometry();
@@ -79,22 +80,22 @@ class Geometry {
   Geometry& operator=(const Geometry&) = delete;
 
   bool intersect(const Ray& ray, uint64_t key, DetailedMaterials detailed, GeometryHit& met, Hit& hit) const;
-  /// Embree's part of `intersect` alone.
+  /// Embree's part of `intersect`, without the evaluation of the hit.
   bool closest(const Ray& ray, uint64_t key, RTCRayHit& query) const;
   bool occluded(const Ray& ray, uint64_t key) const;
-  /// As World's of packets. Sets the points' hits alone.
+  /// Same as World::intersect of packets. Sets only `hit` of the points.
   uint32_t intersect(const RayPacket& packet, DetailedMaterials detailed, GeometryHit* met, SurfacePoint* points) const;
   uint32_t closest(const RayPacket& packet, RTCRayHit8& query) const;
   uint32_t occluded(const RayPacket& packet) const;
   Bounds bounds() const;
 
-  /// Surfaces that stand for themselves, which alone can give off light.
+  /// Surfaces outside of objects. Only these can emit light.
   const std::vector<Surface>& surfaces() const;
-  /// The largest id of a GeometryHit.
+  /// Returns the largest GeometryHit::instance.
   uint64_t instances() const;
-  /// Columns of all tables, each name once: its range is that of all of that name.
+  /// Returns the columns of all tables by name; the range covers all columns of that name.
   std::vector<InstanceColumn> columns() const;
-  /// Areas of what has a number, of one of its sides, by the number less 1.
+  /// Returns one-sided areas by instance number minus 1, in scene units squared.
   std::vector<float> areas() const;
 
  private:

@@ -6,12 +6,12 @@
 namespace frond {
 namespace {
 
-/// Goes through all instances, and those in them.
+/// Traverses all instances recursively.
 class Areas {
  public:
   explicit Areas(std::vector<float>& areas) : areas_(areas) {}
 
-  /// `first`: the number of the object's own surfaces; those of instances in it count from there.
+  /// `first`: number of the object's own surfaces; contained instances follow.
   void visit(const GeometryObject& object, const Transform& to_world, uint64_t first) {
     if (first > 0)
       for (const Surface& s : object.parts.surfaces) areas_[first - 1] += float(area(s, to_world));
@@ -27,13 +27,14 @@ class Areas {
   }
 
  private:
+  /// Converts to a Transform, which has an inverse.
   static Transform transform_of(const AffineMap& map) {
     Transform::RowsDouble rows;
     for (size_t i = 0; i < 3; ++i) std::ranges::copy(map.rows[i], rows[i].begin());
     return Transform(rows);
   }
 
-  /// Of a similar image the area is that of the surface times a factor.
+  /// Returns the area of a transformed surface. If the transform preserves angles, it is the own area times a factor.
   double area(const Surface& surface, const Transform& t) {
     if (const auto scale = AffineMap{t.rows()}.area_scale()) {
       const auto [known, is_new] = own_.try_emplace(&surface, 0);
@@ -43,6 +44,7 @@ class Areas {
     return area_under(surface, t);
   }
 
+  /// Sums the areas of transformed triangles, or integrates over an analytic shape.
   static double area_under(const Surface& surface, const Transform& t) {
     double sum = 0;
     if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry)) {
@@ -52,7 +54,7 @@ class Areas {
       }
       return sum;
     }
-    // By how much the map stretches the surface, on average over its points: exact where it is flat.
+    // Mean factor of the map on areas, over points of the surface; exact for flat surfaces.
     constexpr int kPoints = 64;
     const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
     const AffineMap map{t.rows()};
@@ -71,6 +73,7 @@ class Areas {
 
 }  // namespace
 
+/// Traverses the whole scene once.
 std::vector<float> Geometry::areas() const {
   std::vector<float> areas(instances());
   Areas(areas).visit(*world_, Transform(), 0);

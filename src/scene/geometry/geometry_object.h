@@ -7,43 +7,43 @@
 
 namespace frond {
 
-/// Instances of objects, as their callbacks need them.
+/// Data of instances for Embree's callbacks.
 struct GeometryInstances {
-  /// Inverse maps are kept of so many instances at most: 64 MB.
+  /// Up to this number of instances, inverse maps are stored (64 MB); beyond it they are computed for each ray.
   static constexpr size_t kMostKept = 1 << 20;
 
   const Instances& instances;
-  std::vector<const GeometryObject*> objects;  ///< by row; a single one: the same for all
-  uint64_t first_id = 0;           ///< of what the first row holds, in the object that these instances are part of
-  std::vector<uint64_t> ids = {};  ///< by row, from first_id; empty: all rows hold as many
-  std::vector<AffineMap::Inverse> inverses = {};  ///< of the table's maps; empty: they are made when they are needed
-  AffineMap::Inverse from_placement = {};         ///< where there is one
+  std::vector<const GeometryObject*> objects;  ///< by row; a single element applies to all rows
+  uint64_t first_id = 0;                       ///< first instance number, within the containing object
+  std::vector<uint64_t> ids = {};              ///< by row, relative to first_id; empty: all rows contain equally many
+  std::vector<AffineMap::Inverse> inverses = {};  ///< of the table's maps; empty: computed on demand
+  AffineMap::Inverse from_placement = {};         ///< valid if instances.is_placed
 
   const GeometryObject& object(size_t row) const { return *objects[objects.size() == 1 ? 0 : row]; }
-  /// `made`: where it is put if it is not kept.
+  /// `made`: storage for an inverse that is computed on demand.
   const AffineMap::Inverse& inverse(size_t row, AffineMap::Inverse& made) const {
     return inverses.empty() ? made = instances.table->map(row).inverse() : inverses[row];
   }
 };
 
-/// What stands together, as Embree and we know it.
+/// An object: its parts and its Embree scene.
 struct GeometryObject {
   ObjectParts parts;
   std::vector<GeometryInstances> instances = {};
   embree::Scene scene = {};
-  Bounds bounds = {};              ///< a little wider than it is
-  std::vector<Vec3> outline = {};  ///< it lies within the hull of these points
-  /// How many ids an instance of it takes: one for each instance in it that holds no others, and one for its own
-  /// surfaces.
+  Bounds bounds = {};              ///< slightly enlarged, for rounding errors
+  std::vector<Vec3> outline = {};  ///< the object lies within the convex hull of these points
+  /// Number of instance numbers that an instance of the object takes: one for each contained instance without further
+  /// instances, and one for the object's own surfaces.
   uint64_t ids = 1;
-  uint32_t depth = 0;  ///< of instances in it
-  /// All that it is, where that is one analytic primitive: then nothing has to be traversed.
+  uint32_t depth = 0;  ///< nesting depth of the contained instances
+  /// The object's only primitive if it is analytic: no traversal is needed then.
   const Surface* only_primitive = nullptr;
 };
 
 inline float largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// By as much as rounding may have moved what lies within.
+/// Returns the bounds enlarged by the possible rounding error of points within.
 inline Bounds widened(const Bounds& b) {
   const float slack = 0x1p-20f * std::max(largest_coordinate(b.min), largest_coordinate(b.max));
   const Vec3 by{slack, slack, slack};

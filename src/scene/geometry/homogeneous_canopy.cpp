@@ -31,13 +31,14 @@ uint64_t HomogeneousCanopy::leaves() const {
   return uint64_t(std::llround(leaf_area_index * size[0] * size[1] / (leaf_area * scale * scale)));
 }
 
+/// A distribution without density is horizontal: all angles are 0.
 LeafPlacer::LeafPlacer(const HomogeneousCanopy& canopy) : canopy_(canopy) {
   constexpr int kSteps = 1 << 14;
   if (!canopy.angles->density) {
     angle_at_ = {0, 0};
     return;
   }
-  // The cumulative distribution by the midpoint rule, then its inverse at even steps.
+  // Cumulative distribution by the midpoint rule, then its inverse at equal steps.
   std::vector<double> cumulative{0};
   const double step = kPiD / 2 / kSteps;
   for (int i = 0; i < kSteps; ++i) cumulative.push_back(cumulative.back() + canopy.angles->density((i + 0.5) * step));
@@ -51,6 +52,7 @@ LeafPlacer::LeafPlacer(const HomogeneousCanopy& canopy) : canopy_(canopy) {
   }
 }
 
+/// Returns a position uniform in the layer or in the ball.
 Vec3d LeafPlacer::position(RandomStream& random) const {
   const auto between = [&random](double a, double b) { return std::lerp(a, b, random.uniform_double()); };
   if (canopy_.ball == 0) {
@@ -62,11 +64,13 @@ Vec3d LeafPlacer::position(RandomStream& random) const {
   return Vec3d{ring * std::cos(phi), ring * std::sin(phi), z} * r;
 }
 
+/// Cells have the size of the minimum distance, so that only neighbouring cells need to be searched.
 LeafPlacer::Cell LeafPlacer::cell_of(const Vec3d& p) const {
   const auto at = [this](double x) { return int64_t(std::floor(x / canopy_.apart)); };
   return {at(p.x), at(p.y), at(p.z)};
 }
 
+/// Searches the 27 cells around the position.
 bool LeafPlacer::takes_room(const Vec3d& p) {
   if (canopy_.apart == 0) return true;
   const Cell middle = cell_of(p);
@@ -80,6 +84,7 @@ bool LeafPlacer::takes_room(const Vec3d& p) {
   return true;
 }
 
+/// Each leaf has its own random stream. Positions too close to others are rejected and redrawn.
 AffineMap LeafPlacer::place(std::span<float> values) {
   constexpr int kMostTries = 100000;
   RandomStream random(hash_key(canopy_.seed, next_++));

@@ -14,27 +14,28 @@
 
 namespace frond {
 
-/// How leaves lean: a distribution of the angle between a leaf's normal and the vertical.
+/// Leaf angle distribution: density of the angle between a leaf's normal and the vertical.
 struct LeafAngles {
   std::string_view name;
-  /// Density over the angle (radians, 0 to pi/2), up to a factor.
+  /// Density over the angle (radians, 0 to pi/2), not normalized.
   double (*density)(double theta);
 };
-/// Those of de Wit 1965 as Goel and Strebel 1984 write them (Agronomy Journal 76:800-802), and the spherical one.
+/// Returns de Wit's distributions (1965), as written by Goel and Strebel 1984 (Agronomy Journal 76:800-802), the
+/// spherical one and the horizontal one.
 std::span<const LeafAngles> leaf_angle_distributions();
 
-/// Leaves at random in a layer, or in a ball.
+/// A canopy of randomly placed leaves in a layer, or in a ball.
 struct HomogeneousCanopy {
-  double leaf_area_index = 3;              ///< one-sided area of leaves over that of ground
-  uint64_t count = 0;                      ///< of leaves, in place of what the leaf area index asks for
-  const LeafAngles* angles = nullptr;      ///< azimuths are even
-  double leaf_area = 3.14159265358979323;  ///< of the object that is copied, at scale 1: that of a unit disk
+  double leaf_area_index = 3;              ///< one-sided leaf area over ground area
+  uint64_t count = 0;                      ///< number of leaves, instead of leaf_area_index; 0: not given
+  const LeafAngles* angles = nullptr;      ///< azimuths are uniform
+  double leaf_area = 3.14159265358979323;  ///< one-sided area of the object at scale 1; default: a unit disk
   double scale = 0.05;                     ///< of each instance
   std::array<double, 2> size = {10, 10};   ///< of the plot, along x and y
-  std::array<double, 2> heights = {0, 1};  ///< of the leaves' middles
-  double ball = 0;                         ///< radius of a ball around the origin, in place of the plot; 0: the plot
-  double apart = 0;                        ///< least distance of leaves' middles; 0: none knows of another
-  /// Numbers that textures may ask for, even between two bounds.
+  std::array<double, 2> heights = {0, 1};  ///< of the leaves' centres
+  double ball = 0;                         ///< radius of a ball around the origin, instead of a plot; 0: plot
+  double apart = 0;                        ///< minimum distance between leaves' centres; 0: independent positions
+  /// A random number of each leaf, uniform in `range`, for Texture "instance".
   struct Column {
     std::string name;
     Interval range;
@@ -42,15 +43,15 @@ struct HomogeneousCanopy {
   std::vector<Column> columns = {};
   uint64_t seed = 0;
 
-  /// To the nearest whole one.
+  /// Returns the number of leaves, rounded to the nearest integer.
   uint64_t leaves() const;
 };
 
-/// Draws leaves, one after the other: the same ones of the same seed.
+/// Generates leaves one by one. Equal seeds give equal leaves.
 class LeafPlacer {
  public:
   explicit LeafPlacer(const HomogeneousCanopy& canopy);
-  /// The next leaf; its columns' numbers go into `values`. Throws InputError where there is no room for it.
+  /// Returns the next leaf and sets its columns' values. Throws InputError if there is no free position for it.
   AffineMap place(std::span<float> values);
 
  private:
@@ -60,13 +61,13 @@ class LeafPlacer {
   };
 
   Vec3d position(RandomStream& random) const;
-  /// Whether leaves that are there leave room; then one is there.
+  /// Whether the position is far enough from all earlier leaves; if so, it is recorded.
   bool takes_room(const Vec3d& p);
   Cell cell_of(const Vec3d& p) const;
 
   const HomogeneousCanopy& canopy_;
   std::vector<double> angle_at_;                                  ///< quantiles of the leaf angle
-  std::unordered_map<Cell, std::vector<Vec3d>, CellHash> there_;  ///< where leaves keep apart
+  std::unordered_map<Cell, std::vector<Vec3d>, CellHash> there_;  ///< positions by cell, if leaves keep a distance
   uint64_t next_ = 0;
 };
 

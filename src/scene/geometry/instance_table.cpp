@@ -11,6 +11,7 @@ namespace {
 constexpr std::string_view kNumber = "<f4";
 constexpr size_t kMapNumbers = 12;
 
+/// The map is the field "transform", or the rows of a plain array.
 bool is_map(const NpyField& field) {
   return field.count() == kMapNumbers && (field.name.empty() || field.name == "transform");
 }
@@ -28,7 +29,7 @@ InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& 
   const NpyLayout layout = read_npy_layout(file_->bytes(), path.string(), where);
   bool found = false;
   for (const NpyField& field : layout.fields) {
-    if (field.name.empty() && field.type.find('V') != std::string::npos) continue;  // what fills records up
+    if (field.name.empty() && field.type.find('V') != std::string::npos) continue;  // padding of a record
     if (field.type != kNumber)
       fail(where, "{}: \"{}\" holds {}: numbers are {} (numpy.float32)", path.string(),
            field.name.empty() ? "the array" : field.name, field.type, kNumber);
@@ -43,7 +44,7 @@ InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& 
   if (!found)
     fail(where, "{}: no field \"transform\" of {} numbers: the three rows of a matrix, four numbers each",
          path.string(), kMapNumbers);
-  constexpr size_t kMost = 0xfffffffe;  // of one geometry, in Embree
+  constexpr size_t kMost = 0xfffffffe;  // limit of one geometry in Embree
   if (layout.rows > kMost)
     fail(where, "{}: {} rows, {} is the limit: tables of tables hold more", path.string(), layout.rows, kMost);
   first_ = file_->bytes().data() + layout.begin;
@@ -52,6 +53,7 @@ InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& 
   check(path, where, pool);
 }
 
+/// Checks blocks of rows in parallel; the error names the first invalid row.
 void InstanceTable::check(const std::filesystem::path& path, const Location& where, const ThreadPool& pool) {
   constexpr size_t kBlock = 1 << 16;
   std::mutex mutex;

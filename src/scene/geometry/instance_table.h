@@ -11,16 +11,17 @@
 
 namespace frond {
 
-/// Instances of objects, a row for each: an affine map, and numbers that textures may ask for. Rows are those of a
-/// file, mapped into memory, or the table's own.
+/// Table of instances: an affine map for each row, and numbers for Texture "instance". Rows are a memory-mapped file,
+/// or own data.
 class InstanceTable {
  public:
   explicit InstanceTable(std::shared_ptr<const std::vector<AffineMap>> maps);
-  /// Of a NumPy file: an array of shape (rows, 12) or (rows, 3, 4), or records with a field "transform" of 12 numbers
-  /// and any other single ones; all of them "<f4". Throws InputError at `where`, for maps that cannot be inverted too.
+  /// Maps a NumPy file: an array of shape (rows, 12) or (rows, 3, 4), or records with a field "transform" of 12 numbers
+  /// and any number of scalar fields; all "<f4". Throws InputError at `where`, also for maps without an inverse.
   InstanceTable(const std::filesystem::path& path, const Location& where, const ThreadPool& pool);
 
   size_t size() const { return size_; }
+  /// Returns the map of a row. It is copied, because rows of a file may not be aligned.
   AffineMap map(size_t row) const {
     AffineMap map;
     std::memcpy(map.rows.data(), bytes(row) + map_offset_, sizeof map.rows);
@@ -30,7 +31,7 @@ class InstanceTable {
   const std::byte* bytes(size_t row) const { return first_ + row * stride_; }
 
  private:
-  /// Says where a map is wrong, and finds the bounds of the columns.
+  /// Throws InputError for an invalid map, and computes the ranges of the columns.
   void check(const std::filesystem::path& path, const Location& where, const ThreadPool& pool);
 
   std::shared_ptr<const std::vector<AffineMap>> own_;

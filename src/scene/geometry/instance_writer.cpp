@@ -16,13 +16,14 @@ InstanceWriter::InstanceWriter(const std::filesystem::path& path, size_t rows, c
     const bool is_name = !name.empty() && name != "transform" && std::ranges::all_of(name, [](unsigned char c) {
       return std::isalnum(c) || c == '_' || c == '-' || c == '.';
     });
-    if (!is_name) fail({}, "\"{}\" is no name of a column: letters, digits, _ - and . make one", name);
+    if (!is_name) fail({}, "\"{}\" is not a column name: use letters, digits, _ - and .", name);
     fields.push_back({.name = name, .type = "<f4", .shape = {}});
   }
   const std::string header = npy_header(fields, rows);
   file_.write({reinterpret_cast<const unsigned char*>(header.data()), header.size()});
 }
 
+/// Rows are buffered, so that memory does not grow with their number.
 void InstanceWriter::add(const AffineMap& map, std::span<const float> values) {
   constexpr size_t kBuffer = 1 << 18;
   assert(values.size() == columns_ && rows_left_ > 0);
@@ -37,6 +38,7 @@ void InstanceWriter::flush() {
   buffer_.clear();
 }
 
+/// All rows announced to the constructor must have been added.
 void InstanceWriter::finish() {
   assert(rows_left_ == 0);
   flush();

@@ -9,14 +9,14 @@
 
 namespace frond {
 
-/// Writes a file that an InstanceTable reads, row by row.
+/// Writes an InstanceTable's file row by row.
 class InstanceWriter {
  public:
-  /// Throws InputError where the file cannot be written, or a name is none that a NumPy header can have.
+  /// Throws InputError if the file cannot be written, or if a name is not allowed in a NumPy header.
   InstanceWriter(const std::filesystem::path& path, size_t rows, const std::vector<std::string>& columns);
-  /// As many values as there are columns.
+  /// Appends a row with one value for each column.
   void add(const AffineMap& map, std::span<const float> values);
-  /// After the last row.
+  /// Completes the file. Call after the last row.
   void finish();
 
  private:
@@ -27,8 +27,8 @@ class InstanceWriter {
   std::vector<float> buffer_;
 };
 
-/// A map from the orientation of its third axis, a turn about it (radians), and a scale: a leaf's, whose front faces
-/// +z.
+/// Returns a map from the direction of its z axis, a rotation about it (radians), and a scale. The front of a leaf
+/// faces +z.
 AffineMap oriented_map(const Vec3d& position, const Vec3d& normal, double spin, double scale);
 
 }  // namespace frond

@@ -11,7 +11,7 @@ using Json = nlohmann::json;
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 
-/// What is read, for messages.
+/// Name and location of the data, for messages.
 struct Source {
   std::string_view name;
   const Location& where;
@@ -19,7 +19,7 @@ struct Source {
   [[noreturn]] void refuse(std::string_view why) const { fail(where, "{}: {}", name, why); }
 };
 
-/// A Python literal of names, numbers, lists and tuples as JSON.
+/// Converts a Python literal of names, numbers, lists and tuples to JSON.
 std::string to_json(std::string_view python) {
   std::string json;
   bool quoted = false;
@@ -29,7 +29,7 @@ std::string to_json(std::string_view python) {
       json += c;
       continue;
     }
-    if (c == ')' || c == ']' || c == '}')  // a comma may stand before them
+    if (c == ')' || c == ']' || c == '}')  // Python allows a comma before a closing bracket
       while (!json.empty() && (json.back() == ' ' || json.back() == ',')) json.pop_back();
     json += c == '\'' ? '"' : c == '(' ? '[' : c == ')' ? ']' : c;
     for (const auto& [word, value] : {std::pair{"True", "true"}, std::pair{"False", "false"}})
@@ -38,22 +38,25 @@ std::string to_json(std::string_view python) {
   return json;
 }
 
+/// Returns the size in a type such as "<f4"; 0 if there is none.
 size_t size_of_type(const std::string& type) {
   const size_t digits = type.find_first_of("0123456789");
   return digits == std::string::npos || type.size() > digits + 4 ? 0 : size_t(std::stoul(type.substr(digits)));
 }
 
+/// numpy writes a shape of one dimension as a number or as a tuple.
 std::vector<size_t> shape_of(const Json& json) {
   return json.is_number() ? std::vector<size_t>{json.get<size_t>()} : json.get<std::vector<size_t>>();
 }
 
-/// ["name", "type"] or ["name", "type", shape].
+/// Parses ["name", "type"] or ["name", "type", shape].
 NpyField field_of(const Json& json) {
   NpyField field{.name = json.at(0), .type = json.at(1), .shape = {}};
   if (json.size() > 2) field.shape = shape_of(json.at(2));
   return field;
 }
 
+/// Returns the fields and rows of a header. Throws InputError for Fortran order and scalars.
 NpyLayout layout_of(const Json& header, const Source& source) {
   NpyLayout layout;
   std::vector<size_t> shape = shape_of(header.at("shape"));
@@ -91,6 +94,7 @@ size_t NpyField::count() const {
 
 size_t NpyField::bytes() const { return count() * size_of_type(type); }
 
+/// Format versions 1.0 to 3.0 differ in the size of the header's length field.
 NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name, const Location& where) {
   const Source source{name, where};
   constexpr size_t kShort = 10, kLong = 12;
@@ -115,6 +119,7 @@ NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name
   return layout;
 }
 
+/// The header is padded so that the data are aligned, as numpy.save does.
 std::string npy_header(std::span<const NpyField> fields, size_t rows) {
   std::string descr;
   for (const NpyField& field : fields) {

@@ -10,30 +10,30 @@
 
 namespace frond {
 
-/// What stands in each row of a NumPy file.
+/// A field of a NumPy file's rows.
 struct NpyField {
   std::string name;           ///< empty: the rows of a plain array
-  std::string type;           ///< as NumPy writes it: "<f4"
-  std::vector<size_t> shape;  ///< empty: one number
-  size_t offset = 0;          ///< bytes from the beginning of a row
+  std::string type;           ///< NumPy's notation: "<f4"
+  std::vector<size_t> shape;  ///< empty: a scalar
+  size_t offset = 0;          ///< bytes from the beginning of the row
 
-  /// How many numbers it has.
+  /// Returns the number of scalars.
   size_t count() const;
   size_t bytes() const;
 };
 
-/// How a file that numpy.save wrote is laid out: rows one after another, of the same fields.
+/// Layout of a .npy file: consecutive rows with equal fields.
 struct NpyLayout {
   std::vector<NpyField> fields;
   size_t rows = 0, row_bytes = 0;
-  size_t begin = 0;  ///< of the first row in the file
+  size_t begin = 0;  ///< offset of the first row in the file, bytes
 };
 
-/// Throws InputError at `where` for what is no such file, is cut short, or has its columns one after another
-/// (fortran_order). Text in the message calls it `name`.
+/// Throws InputError at `where` for a file that is not a .npy file, is truncated, or is in Fortran order. `name` names
+/// the data in messages.
 NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name, const Location& where);
 
-/// What such a file begins with; its rows follow. Offsets are those that follow from the fields' order.
+/// Returns a file's header, which the rows follow. Offsets follow from the order of the fields.
 std::string npy_header(std::span<const NpyField> fields, size_t rows);
 
 }  // namespace frond

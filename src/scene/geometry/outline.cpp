@@ -6,7 +6,7 @@
 namespace frond {
 namespace {
 
-/// The convex hull of some points of a plane, by its lower and its upper chain (Andrew 1979).
+/// Returns the convex hull of points in a plane, by monotone chains (Andrew 1979).
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   std::ranges::sort(points, {}, [](const Vec2& p) { return std::pair(p.x, p.y); });
   std::vector<Vec2> hull;
@@ -27,7 +27,8 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
   return hull;
 }
 
-/// Few points whose hull holds all of these: a prism along the axis on which they reach least far. Leaves are flat.
+/// Returns few points whose convex hull contains all points: a prism along the axis of smallest extent, because leaves
+/// are flat.
 std::vector<Vec3> few_around(const std::vector<Vec3>& points, const Bounds& bounds) {
   constexpr size_t kFew = 16;
   if (points.size() <= kFew) return points;
@@ -47,6 +48,7 @@ std::vector<Vec3> few_around(const std::vector<Vec3>& points, const Bounds& boun
 
 }  // namespace
 
+/// Objects with instances of their own use their box.
 std::vector<Vec3> outline_of(const ObjectParts& parts, const Bounds& bounds) {
   if (!parts.instances.empty()) return bounds.corners();
   std::vector<Vec3> points;

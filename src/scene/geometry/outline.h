@@ -4,8 +4,7 @@
 
 namespace frond {
 
-/// Points around an object, within whose hull it lies: the tighter they are, the fewer of its instances a ray has to
-/// look into.
+/// Returns points whose convex hull contains the object. A tighter hull makes rays enter fewer instances.
 std::vector<Vec3> outline_of(const ObjectParts& parts, const Bounds& bounds);
 
 }  // namespace frond

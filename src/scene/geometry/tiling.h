@@ -7,35 +7,34 @@
 
 namespace frond {
 
-/// A scene that is repeated periodically along x and y.
+/// Periodic repetition of a scene along x and y.
 class Tiling {
  public:
-  /// `period`: along x and y, above 0. `bounds`: of the scene; they may be larger than a period.
+  /// `period`: along x and y, above 0. `bounds`: of the scene; may exceed a period.
   Tiling(Vec2 period, const Bounds& bounds);
 
-  /// The scene, repeated in a cell: where it has been moved to, and where a ray goes there.
+  /// A repetition of the scene: its offset, and the ray in its space.
   struct Repeat {
     Vec3 shift;
-    Ray ray;         ///< in the space of the repeat, from where it enters its cell to where it leaves it
-    float distance;  ///< along the ray, of where it enters
+    Ray ray;         ///< limited to the segment within the cell
+    float distance;  ///< distance along the ray to the start of the segment
   };
-  /// Calls `meets(repeat)` for those that reach into the cells that a ray passes, cell by cell from the nearest, until
-  /// a cell had one for which it returned true; then so does this. A ray that has passed kMostCells in vain has left
-  /// the scene.
+  /// Calls `meets(repeat)` for all repetitions that overlap the cells along the ray, nearest cell first. Returns true
+  /// after the first cell with a call that returned true. After kMostCells cells the ray counts as leaving the scene.
   template <class Meets>
   bool march(const Ray& ray, const Meets& meets) const;
 
  private:
   static constexpr int kMostCells = 10000;
 
-  /// Along x or y.
+  /// Repetition along x or y.
   struct Axis {
     double period, least;
-    int overlap;  ///< how many repeats before a cell's own reach into it
+    int overlap;  ///< number of preceding repetitions that overlap a cell
 
-    /// A whole number, maybe a very large one.
+    /// Index of the cell of x: an integer, possibly very large.
     double cell(double x) const { return std::floor((x - least) / period); }
-    /// Where a ray leaves a cell; infinity where it never does.
+    /// Returns the distance at which a ray leaves the cell; infinity if it does not.
     double exit(double o, double d, double cell) const {
       if (d == 0) return INFINITY;
       return (least + period * (d > 0 ? cell + 1 : cell) - o) / d;
@@ -58,7 +57,7 @@ bool Tiling::march(const Ray& ray, const Meets& meets) const {
     end = std::min(end, std::max(a, b));
   }
   if (!(t < end)) return false;
-  // The way through a cell, a little longer than it is: what lies on its border must not be missed.
+  // The segment within a cell is slightly enlarged, so that surfaces on its border are not missed.
   const double slack = 1e-5 * std::max(x_.period, y_.period) / std::max(1e-30, length(d));
   double i = x_.cell(o.x + t * d.x), j = y_.cell(o.y + t * d.y);
   for (int cells = 0; cells < kMostCells && t < end; ++cells) {

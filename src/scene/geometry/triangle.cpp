@@ -2,6 +2,7 @@
 
 namespace frond {
 
+/// Computed in double precision, because texture coordinates may be nearly degenerate.
 SurfaceDerivatives Triangle::derivatives() const {
   const Vec3 &p0 = mesh_.p[index_[0]], e1 = mesh_.p[index_[1]] - p0, e2 = mesh_.p[index_[2]] - p0;
   auto [s, t] = default_sides();
@@ -21,7 +22,7 @@ SurfaceDerivatives Triangle::derivatives() const {
   const Vec3 n = ns(), &n0 = mesh_.n[index_[0]], d1 = mesh_.n[index_[1]] - n0, d2 = mesh_.n[index_[2]] - n0;
   const float size = length(n);
   if (!(size > 0)) return d;
-  // Of the unit normal: what is along it goes.
+  // Derivative of the normalized normal: its component along the normal is removed.
   const auto across = [&](const Vec3& dn) { return (dn - n * (dot(n, dn) / (size * size))) / size; };
   d.dndu = across(along(d1, d2, t.y, -s.y)), d.dndv = across(along(d1, d2, -t.x, s.x));
   return d;

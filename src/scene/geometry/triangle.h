@@ -5,33 +5,33 @@
 
 namespace frond {
 
-/// A point of a mesh's triangle, at barycentrics of its second and third corner.
+/// A point on a triangle of a mesh, given by the barycentrics of the second and third corner.
 class Triangle {
  public:
   Triangle(const TriangleMesh& mesh, unsigned primitive, Vec2 b)
       : mesh_(mesh), index_(mesh.triangles[primitive]), primitive_(primitive), b_(b) {}
 
   Vec3 p() const { return interpolate(mesh_.p); }
-  /// Of any length, on the front.
+  /// Geometric normal of the front, not normalized.
   Vec3 ng() const {
     const Vec3& p0 = mesh_.p[index_[0]];
     return cross(mesh_.p[index_[1]] - p0, mesh_.p[index_[2]] - p0);
   }
-  /// Shading normal, of any length.
+  /// Shading normal, not normalized.
   Vec3 ns() const { return mesh_.n.empty() ? ng() : interpolate(mesh_.n); }
-  /// Without texture coordinates the corners have (0, 0), (1, 0) and (1, 1), and those of quadrilaterals (0, 1) too, as
+  /// Texture coordinates. Without any, the corners have (0, 0), (1, 0) and (1, 1), and quadrilaterals also (0, 1), as
   /// in pbrt-v4.
   Vec2 uv() const {
     if (!mesh_.uv.empty()) return interpolate(mesh_.uv);
     const auto [s, t] = default_sides();
     return s * b_.x + t * b_.y;
   }
-  /// Where (u, v) says nothing of directions on the triangle, some that do.
+  /// Returns derivatives by (u, v), or arbitrary tangents if (u, v) is degenerate.
   SurfaceDerivatives derivatives() const;
   const std::array<uint32_t, 3>& corners() const { return index_; }
 
  private:
-  /// Texture coordinates of the second and third corner, where the mesh has none; the first has (0, 0).
+  /// Default texture coordinates of the second and third corner; the first has (0, 0).
   std::array<Vec2, 2> default_sides() const {
     const bool is_second_half = primitive_ >= mesh_.halves_from && ((primitive_ - mesh_.halves_from) & 1);
     const Vec2 s = is_second_half ? Vec2{1, 1} : Vec2{1, 0}, t = is_second_half ? Vec2{0, 1} : Vec2{1, 1};

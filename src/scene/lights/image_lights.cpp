@@ -13,11 +13,12 @@ namespace {
 
 constexpr double kPiD = std::numbers::pi;
 
-/// A light at a point of which an image says what it gives off along each direction.
+/// Point light whose intensity an image specifies by direction.
 class ImagePointLight : public Light {
  public:
   explicit ImagePointLight(const Transform& world_from_light)
       : directions_(world_from_light), position_(world_from_light.point({})) {}
+  /// A point within kLeastSquare of the light receives nothing, because the division would overflow.
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
     const Vec3 d = position_ - p;
     const float distance2 = dot(d, d), distance = std::sqrt(distance2);
@@ -31,7 +32,7 @@ class ImagePointLight : public Light {
   std::optional<LightBounds> bounds() const override { return LightBounds{.min = position_, .max = position_}; }
 
  protected:
-  /// Along a direction of the light's own space, unit.
+  /// Returns the intensity along a unit direction of the light's space.
   virtual SampledSpectrum intensity(const Vec3& w, const SampledWavelengths& lambda) const = 0;
   const DirectionMap& directions() const { return directions_; }
 
@@ -40,7 +41,7 @@ class ImagePointLight : public Light {
   Vec3 position_;
 };
 
-/// A slide before a point: its image falls along +z, upright, x to the right of the image.
+/// Projects an image from a point along +z, upright, with x to the right.
 class ProjectionLight final : public ImagePointLight {
  public:
   ProjectionLight(const Params& p, const Transform& world_from_light)
@@ -59,20 +60,21 @@ class ProjectionLight final : public ImagePointLight {
   double power(float) const override { return double(scale_) * flux_; }
   std::optional<LightBounds> bounds() const override {
     LightBounds bounds = *ImagePointLight::bounds();
-    // It faces all of its image; the reach leaves room for rounding at the rim.
+    // Bounds of a cone around the whole image; the margin covers rounding at its edge.
     bounds.axis = axis_, bounds.cos_spread = std::max(-1.f, cos_corner_), bounds.cos_reach = 1 - 0x1p-10f;
     return bounds;
   }
   const Spectrum& emission() const override { return *image_.white(); }
 
  private:
+  /// Returns 0 outside of the image.
   SampledSpectrum intensity(const Vec3& w, const SampledWavelengths& lambda) const override {
     if (!(w.z > 0)) return {};
     const Vec2 uv{(w.x / (w.z * half_width_) + 1) / 2, (1 - w.y / (w.z * half_height_)) / 2};
     if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) return {};
     return image_.nearest(uv, lambda) * scale_;
   }
-  /// Photometric, of texels that are constant over their solid angles.
+  /// Photometric flux; texels are constant over their solid angles.
   double flux() const {
     const int width = image_.width(), height = image_.height();
     double sum = 0;
@@ -94,7 +96,7 @@ class ProjectionLight final : public ImagePointLight {
   Vec3 axis_;
 };
 
-/// A spectrum in all directions, times the grey of an image over the sphere, whose pole is +y.
+/// A spectrum times the grey value of an image over the sphere, whose pole is +y.
 class GoniometricLight final : public ImagePointLight {
  public:
   GoniometricLight(const Params& p, const Transform& world_from_light)
@@ -120,6 +122,7 @@ class GoniometricLight final : public ImagePointLight {
   const Spectrum& emission() const override { return *spectrum_; }
 
  private:
+  /// y and z are exchanged, as in pbrt-v4.
   SampledSpectrum intensity(const Vec3& w, const SampledWavelengths& lambda) const override {
     const Vec2 uv = square_from_sphere({w.x, w.z, w.y});
     const auto cell = [this](float t) { return size_t(std::clamp(int(t * float(size_)), 0, size_ - 1)); };
@@ -129,40 +132,41 @@ class GoniometricLight final : public ImagePointLight {
   SpectrumPtr spectrum_;
   int size_;
   std::vector<float> texels_;
-  double steradians_;  ///< times the texels
+  double steradians_;  ///< integral of the texels over solid angle, sr
   float scale_;
 };
 
 constexpr Param kProjection[] = {{.name = "filename",
                                   .kind = ParamKind::string,
-                                  .doc = "The image; its longer side reaches beyond \"fov\".",
+                                  .doc = "Image; \"fov\" is the angle of its shorter side.",
                                   .required = true},
                                  {.name = "fov",
                                   .kind = ParamKind::real,
                                   .default_value = 90.0,
                                   .unit = "degrees",
                                   .range = {1e-3, 179.999},
-                                  .doc = "Angle of the image along its shorter side."},
+                                  .doc = "Angle of the image's shorter side."},
                                  kLightPower,
                                  kLightScale};
 constexpr Param kGoniometric[] = {
     {.name = "filename",
      .kind = ParamKind::string,
-     .doc = "Square image in the equal-area map of pbrt-v4, with y and z exchanged; of colours, the mean counts.",
+     .doc = "Square image in pbrt-v4's equal-area map, with y and z exchanged; the mean of its channels is used.",
      .required = true},
     {.name = "I",
      .kind = ParamKind::illuminant,
      .default_value = std::array<double, 3>{1, 1, 1},
-     .doc = "Radiant intensity, times the image; spectra are normalised to luminance 1."},
+     .doc = "Radiant intensity, multiplied by the image; spectra are normalised to luminance 1."},
     kLightPower,
     kLightScale};
 
 }  // namespace
 
 extern const LightInfo projection_light{
-    {"light", "projection", "An image that is thrown along +z.", "pbrt-v4", kProjection}, make_light<ProjectionLight>};
+    {"light", "projection", "Projector: an image projected along +z.", "pbrt-v4", kProjection},
+    make_light<ProjectionLight>};
 extern const LightInfo goniometric_light{
-    {"light", "goniometric", "A point whose light an image distributes.", "pbrt-v4", kGoniometric},
+    {"light", "goniometric", "Point light with an image of its intensity over directions.", "pbrt-v4", kGoniometric},
     make_light<GoniometricLight>};
 
 }  // namespace frond

@@ -12,16 +12,19 @@ namespace {
 
 using Rgb = std::array<float, 3>;
 
+/// Returns the colour of a texel of an image with three channels.
 Rgb rgb_at(const Image& image, size_t texel) {
   return {image.pixels[3 * texel], image.pixels[3 * texel + 1], image.pixels[3 * texel + 2]};
 }
 
-/// Colours whose brightest channel is 1/2 as smooth reflectances, between fits on a grid: photographs have millions of
-/// colours, of which a fit takes 25 us each. Off by 1e-3 of the brightest channel at most, mostly much less.
+/// Table of smooth reflectances for colours with a brightest channel of 1/2, interpolated between fits on a grid,
+/// because a fit takes 25 us and photographs have millions of colours. The error is at most 1e-3 of the brightest
+/// channel, and mostly much less.
 class FitTable {
  public:
   explicit FitTable(const ColorSpace& space) : space_(space), nodes_(3 * kNodes * kNodes) {}
 
+  /// Interpolates the polynomials' coefficients bilinearly. `c` has any scale.
   SigmoidPolynomial at(const Rgb& c) {
     const size_t largest = size_t(std::max_element(c.begin(), c.end()) - c.begin());
     const Place x(c[(largest + 1) % 3] / c[largest]), y(c[(largest + 2) % 3] / c[largest]);
@@ -37,7 +40,7 @@ class FitTable {
 
  private:
   static constexpr size_t kNodes = 65;
-  /// On a grid that is finer towards pure colours.
+  /// Position on a grid that is finer toward saturated colours.
   struct Place {
     explicit Place(float share) {
       const double x = std::sqrt(double(share)) * (kNodes - 1);
@@ -47,6 +50,7 @@ class FitTable {
     double fraction;
   };
 
+  /// Fits a node on first use: an image needs few of the nodes.
   const Triple& fitted(size_t largest, size_t i, size_t j) {
     std::optional<Triple>& node = nodes_[(largest * kNodes + j) * kNodes + i];
     if (!node) {
@@ -59,12 +63,13 @@ class FitTable {
   }
 
   const ColorSpace& space_;
-  std::vector<std::optional<Triple>> nodes_;  ///< [brightest channel][next but one][next]
+  std::vector<std::optional<Triple>> nodes_;  ///< index: [brightest channel][second channel][third channel]
 };
 
-/// An image's colours, numbered as they come: a hash table of the first texel of each.
+/// Numbers the distinct colours of an image, by a hash table of the first texel of each.
 class ColorNumbers {
  public:
+  /// The table has at least 1.5 slots for each texel, so that probing terminates quickly.
   explicit ColorNumbers(const Image& image) : image_(image) {
     slots_.resize(std::bit_ceil(image.pixels.size() / 3 * 3 / 2 + 1), kFree);
   }
@@ -73,6 +78,7 @@ class ColorNumbers {
     uint32_t number;
     bool is_new;
   };
+  /// Returns the number of the texel's colour, by linear probing.
   Number of(uint32_t texel) {
     const Rgb c = rgb_at(image_, texel);
     size_t slot = hash(c) & (slots_.size() - 1);
@@ -86,32 +92,35 @@ class ColorNumbers {
  private:
   static constexpr uint32_t kFree = UINT32_MAX;
 
+  /// Hash of the bit patterns.
   static size_t hash(const Rgb& c) {
     uint64_t h = 0;
-    // 0 and -0 are equal, and have to have one hash.
+    // 0 and -0 compare equal and must have the same hash.
     for (const float v : c) h = (h ^ std::bit_cast<uint32_t>(v + 0.f)) * 0x9e3779b97f4a7c15u, h ^= h >> 29;
     return size_t(h);
   }
 
   const Image& image_;
-  std::vector<uint32_t> slots_;  ///< numbers
-  std::vector<uint32_t> first_;  ///< by number, a texel of that colour
+  std::vector<uint32_t> slots_;  ///< colour numbers
+  std::vector<uint32_t> first_;  ///< by colour number: the first texel
 };
 
 }  // namespace
 
+/// 8-bit files are decoded from sRGB; others are linear.
 ColorImage read_light_image(const Params& p) {
   ImageFile file = read_rgb(p.file("filename"), p.where("filename"));
   if (file.is_encoded) decode_srgb(file.image);
   float lowest = 0;
   for (float& v : file.image.pixels) lowest = std::min(lowest, v), v = std::max(v, 0.f);
   if (lowest < 0)
-    p.warn("filename", fmt::format("the image holds values down to {}: light is not negative, 0 is taken", lowest));
+    p.warn("filename", fmt::format("the image holds values down to {}: negative values are set to 0", lowest));
   const ColorSpace* space = color_space_of(file);
-  if (!space) p.warn("filename", "the image has a colour space of its own that is not known: sRGB is taken");
+  if (!space) p.warn("filename", "the image's colour space is unknown: sRGB is used");
   return {std::move(file.image), space ? space : find_color_space("srgb")};
 }
 
+/// Negative luminances, which wide-gamut colours may have, are set to 0.
 std::vector<float> luminances_of(const ColorImage& file) {
   const Triple& y = file.space->xyz_from_rgb.row[1];
   std::vector<float> result;
@@ -133,7 +142,7 @@ LightImage::LightImage(const ColorImage& file)
     const auto [number, is_new] = numbers.of(i);
     texels_.push_back(number);
     if (!is_new) continue;
-    // Twice the brightest channel leaves the reflectance room on both sides.
+    // Scaling by twice the brightest channel keeps the reflectance away from 0 and 1.
     const double peak = 2 * double(std::max({c[0], c[1], c[2]}));
     if (peak == 0) {
       colors_.push_back({SigmoidPolynomial({0, 0, 0}), 0});
@@ -152,6 +161,7 @@ double LightImage::mean_luminance() const {
   return sum / double(luminances_.size());
 }
 
+/// Returns the index of a texel, clamped to the image.
 size_t LightImage::texel(int x, int y) const {
   return size_t(std::clamp(y, 0, height_ - 1)) * size_t(width_) + size_t(std::clamp(x, 0, width_ - 1));
 }
@@ -163,11 +173,13 @@ SampledSpectrum LightImage::share(size_t texel, const SampledWavelengths& lambda
   return s;
 }
 
+/// (u, v) is clamped to the unit square.
 SampledSpectrum LightImage::nearest(Vec2 uv, const SampledWavelengths& lambda) const {
   const auto cell = [](float t, int size) { return int(std::clamp(t, 0.f, 1.f) * float(size)); };
   return white_->sample(lambda) * share(texel(cell(uv.x, width_), cell(uv.y, height_)), lambda);
 }
 
+/// Texel centres are at half-integer positions.
 SampledSpectrum LightImage::bilinear(Vec2 uv, const SampledWavelengths& lambda) const {
   const float x = std::clamp(uv.x, 0.f, 1.f) * float(width_) - 0.5f;
   const float y = std::clamp(uv.y, 0.f, 1.f) * float(height_) - 0.5f;

@@ -9,35 +9,35 @@
 
 namespace frond {
 
-/// An image as a light's file has it: linear R, G and B, not negative.
+/// A light's image: linear R, G and B, not negative.
 struct ColorImage {
   Image image;
-  const ColorSpace* space;  ///< the file's own; sRGB where it says none
+  const ColorSpace* space;  ///< of the file; sRGB if the file states none
 };
 
-/// Of its pixels, row by row.
+/// Returns the luminance of each pixel, row by row.
 std::vector<float> luminances_of(const ColorImage& image);
 
-/// Of the parameter "filename". Values below 0 count as 0, with a warning.
+/// Reads the image of parameter "filename". Values below 0 are set to 0 with a warning.
 ColorImage read_light_image(const Params& p);
 
-/// An image whose texels give off light: each of its colours is a multiple of a smooth reflectance times D65 of
-/// luminance 1, found once, at load. Rows run down; v = 0 is the top.
+/// An emissive image. Each colour is converted at load time to a multiple of a smooth reflectance times D65 of
+/// luminance 1. Rows run down; v = 0 is the top.
 class LightImage {
  public:
   explicit LightImage(const ColorImage& image);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Of the texels, row by row.
+  /// Luminances of the texels, row by row.
   const std::vector<float>& luminances() const { return luminances_; }
   double mean_luminance() const;
-  /// What white texels give off.
+  /// Spectrum emitted by white texels.
   const SpectrumPtr& white() const { return white_; }
 
-  /// The texel that (u, v) lies in, or the nearest to it.
+  /// Returns the emission of the texel at (u, v), clamped to the image.
   SampledSpectrum nearest(Vec2 uv, const SampledWavelengths& lambda) const;
-  /// Between the centres of texels; beyond them the edge goes on.
+  /// Returns the emission interpolated between texel centres, clamped to the image.
   SampledSpectrum bilinear(Vec2 uv, const SampledWavelengths& lambda) const;
 
  private:
@@ -47,11 +47,11 @@ class LightImage {
   };
 
   size_t texel(int x, int y) const;
-  /// Relative to the white.
+  /// Returns the texel's emission relative to white.
   SampledSpectrum share(size_t texel, const SampledWavelengths& lambda) const;
 
   int width_, height_;
-  std::vector<uint32_t> texels_;  ///< places in the colours
+  std::vector<uint32_t> texels_;  ///< indices in colors_
   std::vector<Color> colors_;
   std::vector<float> luminances_;
   SpectrumPtr white_;

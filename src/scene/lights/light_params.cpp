@@ -14,6 +14,7 @@ std::optional<double> stated_total(const Params& p, std::string_view name) {
   return {};
 }
 
+/// `unit_total` is the total at scale 1. Throws InputError if it is 0.
 float light_scale(const Params& p, std::string_view total, double unit_total) {
   const std::optional<double> stated = stated_total(p, total);
   if (!stated) return float(p.real("scale"));

@@ -9,7 +9,7 @@
 
 namespace frond {
 
-/// Squared distance below which a point on a surface counts as the light's own: what divides by it would overflow.
+/// Squared distance below which a point is taken to lie on the light itself; a division by it would overflow.
 inline constexpr float kLeastSquare = 1e-30f;
 
 inline constexpr Param kLightScale{
@@ -17,13 +17,13 @@ inline constexpr Param kLightScale{
 inline constexpr Param kLightPower{.name = "power",
                                    .kind = ParamKind::real,
                                    .unit = "lm",
-                                   .doc = "Total power, in place of the light's own; 0 or less states none."};
+                                   .doc = "Total power, to which the light is scaled; 0 or less: not given."};
 
-/// What the scene says of a light's total, "power" or "illuminance". As in pbrt-v4 0 or less states none; a warning
-/// tells.
+/// Returns the light's stated total, "power" or "illuminance". As in pbrt-v4, values <= 0 state none; they cause a
+/// warning.
 std::optional<double> stated_total(const Params& p, std::string_view name);
 
-/// "scale", times what makes the light's total match where the scene states one.
+/// Returns "scale", times the factor that makes the total match the stated one, if any.
 float light_scale(const Params& p, std::string_view total, double unit_total);
 
 }  // namespace frond

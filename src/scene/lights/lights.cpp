@@ -13,13 +13,14 @@ namespace {
 
 constexpr double kPiD = std::numbers::pi;
 
-/// Transform of a light placed by "from" (and "to"), as pbrt composes it.
+/// Returns the direction of a light with "from" and "to", with the transform that pbrt composes.
 Vec3 direction_of(const Params& p, const Transform& world_from_light) {
   const Vec3 from = p.vec3("from"), to = p.vec3("to");
   if (from == to) fail(p.where("to"), "\"from\" and \"to\" are the same point: the light has no direction");
   return normalize_any(world_from_light.vector(normalize_any(to - from)));
 }
 
+/// Parallel light. Its illuminance on a facing surface equals the radiance parameter.
 class DistantLight final : public Light {
  public:
   DistantLight(const Params& p, const Transform& world_from_light)
@@ -29,6 +30,7 @@ class DistantLight final : public Light {
   }
   bool is_delta() const override { return true; }
   bool is_distant() const override { return true; }
+  /// Power through a disk of the scene's radius.
   double power(float r) const override {
     return photometric(*spectrum_) * double(scale_) * kPiD * double(r) * double(r);
   }
@@ -40,12 +42,14 @@ class DistantLight final : public Light {
   Vec3 wi_;
 };
 
+/// Uniform intensity; the total power is 4 pi times the intensity.
 class PointLight final : public Light {
  public:
   PointLight(const Params& p, const Transform& world_from_light)
       : spectrum_(p.spectrum("I")),
         scale_(light_scale(p, "power", 4 * kPiD)),
         position_(world_from_light.point(p.vec3("from"))) {}
+  /// A point within kLeastSquare of the light receives nothing, because the division would overflow.
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
     const Vec3 d = position_ - p;
     const float distance2 = dot(d, d), distance = std::sqrt(distance2);
@@ -63,7 +67,7 @@ class PointLight final : public Light {
   Vec3 position_;
 };
 
-/// Full intensity within the cone less its rim, none outside; a smoothstep of the cosine between.
+/// Full intensity inside the inner cone, 0 outside the outer cone, and a smoothstep of the cosine between.
 class SpotLight final : public Light {
  public:
   SpotLight(const Params& p, const Transform& world_from_light)
@@ -78,6 +82,7 @@ class SpotLight final : public Light {
     cos_inner_ = float(std::cos((cone - delta) * kPiD / 180));
     scale_ = light_scale(p, "power", solid_angle());
   }
+  /// Returns nullopt outside of the cone.
   std::optional<LightSample> sample(const Vec3& p, Vec2, const SampledWavelengths& lambda) const override {
     const Vec3 d = position_ - p;
     const float distance2 = dot(d, d), distance = std::sqrt(distance2);
@@ -89,7 +94,7 @@ class SpotLight final : public Light {
   bool is_delta() const override { return true; }
   double power(float) const override { return photometric(*spectrum_) * double(scale_) * solid_angle(); }
   std::optional<LightBounds> bounds() const override {
-    // It faces all of its cone; the reach leaves room for rounding at the rim.
+    // Bounds of the cone; the margin covers rounding at its edge.
     return LightBounds{
         .min = position_, .max = position_, .axis = axis_, .cos_spread = cos_outer_, .cos_reach = 1 - 0x1p-10f};
   }
@@ -97,6 +102,7 @@ class SpotLight final : public Light {
 
  private:
   double solid_angle() const { return 2 * kPiD * ((1 - double(cos_inner_)) + double(cos_inner_ - cos_outer_) / 2); }
+  /// Relative intensity at an angle from the axis.
   float intensity(float cos_theta) const {
     if (cos_theta <= cos_outer_) return 0;
     if (cos_theta >= cos_inner_) return 1;
@@ -109,12 +115,12 @@ class SpotLight final : public Light {
   float cos_outer_, cos_inner_, scale_;
 };
 
-/// What all lights of one directive share.
+/// Properties that all lights of one AreaLightSource directive share.
 struct DiffuseEmission {
   SpectrumPtr spectrum;
-  std::optional<LightImage> image;  ///< over (u, v), in place of an even radiance
-  double mean = 1;                  ///< of the image's luminance
-  double luminance = 0;             ///< of unscaled radiance, on average
+  std::optional<LightImage> image;  ///< over (u, v), instead of uniform radiance
+  double mean = 1;                  ///< mean luminance of the image
+  double luminance = 0;             ///< mean luminance of the unscaled emission
   double scale = 1;
   std::optional<double> power;  ///< of each light
   bool two_sided = false;
@@ -136,6 +142,7 @@ struct DiffuseEmission {
   double sides() const { return two_sided ? 2 : 1; }
 };
 
+/// Emits the same radiance from all points of a surface, or the radiance of an image over (u, v).
 class DiffuseAreaLight final : public AreaLight {
  public:
   DiffuseAreaLight(std::shared_ptr<const DiffuseEmission> emission, std::unique_ptr<const EmittingSurface> surface)
@@ -147,6 +154,7 @@ class DiffuseAreaLight final : public AreaLight {
       scale_ = float(emission_->scale * *emission_->power /
                      (emission_->sides() * kPiD * surface_->area() * emission_->mean));
   }
+  /// Samples the surface by area.
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
     const auto [on_light, uv, weight] = surface_->sample(u);
     const Vec3 d = on_light.p - p;
@@ -155,11 +163,13 @@ class DiffuseAreaLight final : public AreaLight {
     const Vec3 wi = d / distance;
     const EmittingPoint at{on_light.p, on_light.ng, uv};
     const float density = pdf_along(at.ng, wi, distance);
-    // Not the density, which `pdf` would have to know too: where points are not quite even, what they give makes up.
+    // Not divided by the density, which `pdf` would have to reproduce: the weight corrects the sampling's
+    // non-uniformity.
     const SampledSpectrum emitted = radiance(at, -wi, lambda) * weight;
     if (!std::isfinite(density) || emitted.is_black()) return {};
     return LightSample{emitted, wi, distance, density};
   }
+  /// The opacity accounts for surfaces with alpha below 1.
   SampledSpectrum radiance(const EmittingPoint& at, const Vec3& w, const SampledWavelengths& lambda) const override {
     if (!emission_->two_sided && !(dot(at.ng, w) > 0)) return {};
     const SampledSpectrum emitted = emission_->image ? emission_->image->bilinear({at.uv.x, 1 - at.uv.y}, lambda)
@@ -169,9 +179,10 @@ class DiffuseAreaLight final : public AreaLight {
   float pdf(const Vec3& from, const EmittingPoint& at) const override {
     const Vec3 d = at.p - from;
     const float density = pdf_along(at.ng, normalize_any(d), length(d));
-    return density > 0 ? density : 0;  // no number where the points are one
+    return density > 0 ? density : 0;  // NaN if both points coincide
   }
   bool is_delta() const override { return !surface_->is_met(); }
+  /// Diffuse emission: pi times radiance times area, for each emitting side.
   double power(float) const override {
     return emission_->luminance * double(scale_) * kPiD * surface_->area() * emission_->sides();
   }
@@ -183,6 +194,7 @@ class DiffuseAreaLight final : public AreaLight {
   const Spectrum& emission() const override { return *emission_->spectrum; }
 
  private:
+  /// Converts the density over area to solid angle.
   float pdf_along(const Vec3& ng, const Vec3& wi, float distance) const {
     return distance * distance / (std::abs(dot(ng, wi)) * area_);
   }
@@ -193,6 +205,7 @@ class DiffuseAreaLight final : public AreaLight {
   float scale_ = 0;
 };
 
+/// Creates the lights of all shapes of a directive, which share spectrum and image.
 class DiffuseAreaEmission final : public AreaEmission {
  public:
   explicit DiffuseAreaEmission(const Params& p) : emission_(std::make_shared<const DiffuseEmission>(p)) {}
@@ -209,7 +222,7 @@ constexpr Default kWhite = std::array<double, 3>{1, 1, 1};
 constexpr Param kRadiance{.name = "L",
                           .kind = ParamKind::illuminant,
                           .default_value = kWhite,
-                          .doc = "Emission; spectra are normalised to luminance 1."};
+                          .doc = "Emitted radiance; spectra are normalised to luminance 1."};
 constexpr Param kIntensity{.name = "I",
                            .kind = ParamKind::illuminant,
                            .default_value = kWhite,
@@ -219,15 +232,16 @@ constexpr Param kFrom{
 constexpr Param kTo{.name = "to",
                     .kind = ParamKind::point3,
                     .default_value = std::array<double, 3>{0, 0, 1},
-                    .doc = "What the light points at."};
-constexpr Param kDistant[] = {kRadiance,
-                              kLightScale,
-                              kFrom,
-                              kTo,
-                              {.name = "illuminance",
-                               .kind = ParamKind::real,
-                               .unit = "lx",
-                               .doc = "Illuminance of a surface that faces the light; 0 or less states none."}};
+                    .doc = "Point that the light is directed at."};
+constexpr Param kDistant[] = {
+    kRadiance,
+    kLightScale,
+    kFrom,
+    kTo,
+    {.name = "illuminance",
+     .kind = ParamKind::real,
+     .unit = "lx",
+     .doc = "Illuminance of a surface that faces the light, to which the light is scaled; 0 or less: not given."}};
 constexpr Param kPoint[] = {kIntensity, kLightScale, kLightPower, kFrom};
 constexpr Param kSpot[] = {kIntensity,
                            kLightScale,
@@ -239,31 +253,33 @@ constexpr Param kSpot[] = {kIntensity,
                             .default_value = 30.0,
                             .unit = "degrees",
                             .range = {1e-3, 180},
-                            .doc = "From the axis to the cone's edge."},
+                            .doc = "Angle between the axis and the cone's edge."},
                            {.name = "conedeltaangle",
                             .kind = ParamKind::real,
                             .default_value = 5.0,
                             .unit = "degrees",
                             .range = {0, 180},
-                            .doc = "Width of the soft rim."}};
+                            .doc = "Width of the smooth transition at the edge."}};
 constexpr Param kDiffuseArea[] = {
     kRadiance,
-    {.name = "filename", .kind = ParamKind::string, .doc = "Image over (u, v), its top at v = 1; in place of L."},
+    {.name = "filename", .kind = ParamKind::string, .doc = "Image over (u, v), top at v = 1, instead of L."},
     kLightScale,
     kLightPower,
-    {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Both sides give off light."}};
+    {.name = "twosided", .kind = ParamKind::boolean, .default_value = false, .doc = "Emit from both sides."}};
 
 std::unique_ptr<AreaEmission> make_diffuse_area(const Params& p) { return std::make_unique<DiffuseAreaEmission>(p); }
 
 }  // namespace
 
-extern const LightInfo distant_light{{"light", "distant", "Parallel light.", "pbrt-v4", kDistant},
+extern const LightInfo distant_light{{"light", "distant", "Directional light.", "pbrt-v4", kDistant},
                                      make_light<DistantLight>};
-extern const LightInfo point_light{{"light", "point", "The same intensity in every direction.", "pbrt-v4", kPoint},
-                                   make_light<PointLight>};
-extern const LightInfo spot_light{{"light", "spot", "A cone with a soft rim.", "pbrt-v4", kSpot},
+extern const LightInfo point_light{
+    {"light", "point", "Point light with the same intensity in every direction.", "pbrt-v4", kPoint},
+    make_light<PointLight>};
+extern const LightInfo spot_light{{"light", "spot", "Spotlight: a cone with a smooth edge.", "pbrt-v4", kSpot},
                                   make_light<SpotLight>};
 extern const AreaLightInfo diffuse_area_light{
-    {"area light", "diffuse", "The same radiance in every direction.", "pbrt-v4", kDiffuseArea}, make_diffuse_area};
+    {"area light", "diffuse", "Area light with the same radiance in every direction.", "pbrt-v4", kDiffuseArea},
+    make_diffuse_area};
 
 }  // namespace frond

@@ -12,10 +12,11 @@
 namespace frond {
 namespace {
 
-/// A rectangle that light from outside comes through, on the way against its axis. Directions through it are a window
-/// of the square of their angles along its sides (Bitterli et al. 2015, "Portal-Masked Environment Map Sampling").
+/// A rectangle through which light from outside enters, opposite to its axis. Visible directions are a window of the
+/// square of the angles along its sides (Bitterli et al. 2015, "Portal-Masked Environment Map Sampling").
 class Portal {
  public:
+  /// Throws InputError unless the corners form a rectangle, to pbrt-v4's tolerance.
   explicit Portal(const Params& p) {
     const std::vector<Vec3> corners = p.vec3s("portal");
     const Location where = p.where("portal");
@@ -26,7 +27,7 @@ class Portal {
     constexpr float kTolerance = 1e-3f;  // pbrt-v4's
     if (!(std::abs(dot(x, far_x) - 1) < kTolerance && std::abs(dot(y, far_y) - 1) < kTolerance &&
           std::abs(dot(x, y)) < kTolerance && std::abs(dot(far_x, far_y)) < kTolerance))
-      fail(where, "\"portal\" is no rectangle: its corners are needed in turn");
+      fail(where, "\"portal\" is not a rectangle with corners in cyclic order");
     first_ = corners[0], opposite_ = corners[2];
     frame_ = {x, y, normalize_any(cross(x, y))};
     area_ = length(to_double(right)) * length(to_double(up));
@@ -34,9 +35,9 @@ class Portal {
 
   struct Direction {
     Vec3 w;            ///< unit, world space
-    float steradians;  ///< for each unit of the square
+    float steradians;  ///< per unit area of the square
   };
-  /// On the side where light comes from.
+  /// Returns the coordinates of a direction on the outer side; nullopt on the inner side.
   std::optional<Vec2> square_of(const Vec3& w, float* steradians = nullptr) const {
     const Vec3 d = frame_.to_local(w);
     if (!(d.z > 0)) return {};
@@ -44,12 +45,13 @@ class Portal {
     const auto at = [&](float t) { return std::clamp(std::atan2(t, d.z) * kInvPi + 0.5f, 0.f, 1.f); };
     return Vec2{at(d.x), at(d.y)};
   }
+  /// Inverse of square_of. The square's axes are angles, which spread directions more evenly than tangents.
   Direction direction_of(Vec2 uv) const {
     const auto tangent = [](float t) { return std::tan((t - 0.5f) * kPi); };
     const Vec3 d = normalize_any(Vec3{tangent(uv.x), tangent(uv.y), 1});
     return {frame_.to_world(d), jacobian(d)};
   }
-  /// What can be seen through it from a point; nothing from behind.
+  /// Returns the window visible from a point; nullopt behind the portal.
   std::optional<WindowedDistribution::Window> window_at(const Vec3& from) const {
     const auto a = square_of(normalize_any(first_ - from)), b = square_of(normalize_any(opposite_ - from));
     if (!a || !b) return {};
@@ -67,7 +69,7 @@ class Portal {
   double area_ = 0;
 };
 
-/// Seen through a portal, and nowhere else.
+/// An environment visible only through a portal.
 class PortalEnvironment final : public EnvironmentLight {
  public:
   PortalEnvironment(const Params& p, float scale)
@@ -77,6 +79,7 @@ class PortalEnvironment final : public EnvironmentLight {
   PortalEnvironment(const Params& p, const Transform& world_from_light)
       : PortalEnvironment(p, world_from_light, read_sphere_image(p)) {}
 
+  /// Samples the visible window by luminance and solid angle.
   std::optional<LightSample> sample(const Vec3& p, Vec2 u, const SampledWavelengths& lambda) const override {
     const auto window = portal_.window_at(p);
     if (!window) return {};
@@ -87,6 +90,7 @@ class PortalEnvironment final : public EnvironmentLight {
     if (!(density > 0 && std::isfinite(density))) return {};
     return LightSample{at(s->uv, lambda), w, INFINITY, density};
   }
+  /// Returns 0 for directions that miss the portal.
   SampledSpectrum radiance(const Vec3& from, const Vec3& direction, const SampledWavelengths& lambda) const override {
     const auto uv = portal_.square_of(direction);
     const auto window = uv ? portal_.window_at(from) : std::nullopt;
@@ -100,7 +104,7 @@ class PortalEnvironment final : public EnvironmentLight {
     return density > 0 && std::isfinite(density) ? density : 0;
   }
   bool is_delta() const override { return false; }
-  /// What comes through the portal hangs on the place.
+  /// The visible part of the environment depends on the position.
   bool is_distant() const override { return false; }
   double power(float) const override { return double(scale_) * portal_.area() * flux_; }
   const Spectrum& emission() const override { return image_ ? *image_->white() : *spectrum_; }
@@ -122,7 +126,7 @@ class PortalEnvironment final : public EnvironmentLight {
 
   static Vec2 center(int i, int n) { return {(float(i % n) + 0.5f) / float(n), (float(i / n) + 0.5f) / float(n)}; }
 
-  /// The part of the image on the portal's side, by the portal's angles, as large as the image.
+  /// Resamples the image's outer half by the portal's angles, at the same resolution.
   LightImage rectified(const ColorImage& file, const Transform& light_from_world) const {
     const int n = file.image.width;
     Image result(n, n, {"R", "G", "B"});
@@ -142,6 +146,7 @@ class PortalEnvironment final : public EnvironmentLight {
     }
     return LightImage({std::move(result), file.space});
   }
+  /// Weights of cells: luminance times solid angle at the centre.
   std::vector<float> weights(int n) const {
     std::vector<float> result;
     for (int i = 0; i < n * n; ++i)
@@ -157,15 +162,16 @@ class PortalEnvironment final : public EnvironmentLight {
   SpectrumPtr spectrum_;
   float scale_;
   WindowedDistribution directions_;
-  double flux_ = 0;  ///< of each unit of the portal's area
+  double flux_ = 0;  ///< per unit area of the portal
 };
 
 }  // namespace
 
+/// A uniform environment needs no image.
 std::unique_ptr<Light> make_portal_light(const Params& p, const Transform& world_from_light) {
   if (p.given("filename")) return std::make_unique<PortalEnvironment>(p, world_from_light);
-  // To pbrt-v4 this is an image of one texel, whose centre is the pole: by its measure of illuminance 2 pi of
-  // radiance 1.
+  // pbrt-v4 treats this as an image of one texel centred on the pole; by its measure radiance 1 gives the illuminance 2
+  // pi.
   const float scale = light_scale(p, "illuminance", 2 * std::numbers::pi);
   if (scale != float(p.real("scale")))
     p.warn("illuminance", "as in pbrt-v4, the radiance is half of what gives this illuminance without a portal");

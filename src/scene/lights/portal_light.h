@@ -6,7 +6,7 @@
 
 namespace frond {
 
-/// Light from all around, an image's or the same from everywhere, that comes through a rectangle alone.
+/// Returns an infinite light (an image or uniform) that enters only through a rectangle.
 std::unique_ptr<Light> make_portal_light(const Params& p, const Transform& world_from_light);
 
 }  // namespace frond

@@ -5,7 +5,7 @@
 namespace frond {
 namespace {
 
-/// In double: the squares of what small and large triangles give do not fit into floats.
+/// In double precision, because squares of the edges of very small or large triangles exceed the range of float.
 Vec3d edge_cross(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
   const Vec3 a = mesh.p[t[1]] - mesh.p[t[0]], b = mesh.p[t[2]] - mesh.p[t[0]];
   return cross(Vec3d{a.x, a.y, a.z}, Vec3d{b.x, b.y, b.z});
@@ -13,11 +13,13 @@ Vec3d edge_cross(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
 
 }  // namespace
 
+/// Triangles of a mesh, or primitives of an analytic shape.
 unsigned primitives_of(const ShapeGeometry& geometry) {
   if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry)) return (*shape)->count();
   return unsigned(std::get<MeshPtr>(geometry)->triangles.size());
 }
 
+/// Halves of split quadrilaterals are consecutive, from TriangleMesh::halves_from on.
 Primitives face_of(const ShapeGeometry& geometry, unsigned primitive) {
   if (const auto* mesh = std::get_if<MeshPtr>(&geometry))
     if (const size_t cut = (*mesh)->halves_from; primitive >= cut) {
@@ -56,6 +58,7 @@ double ShapeEmitter::area_of(unsigned i) const {
   return length(edge_cross(mesh, mesh.triangles[i])) / 2;
 }
 
+/// Triangles are sampled uniformly by the square-root map.
 ShapePoint ShapeEmitter::sample(unsigned primitive, Vec2 u) const {
   if (const auto* shape = std::get_if<AnalyticShapePtr>(&geometry_)) return (*shape)->sample(primitive, u);
   const TriangleMesh& mesh = *std::get<MeshPtr>(geometry_);
@@ -66,6 +69,7 @@ ShapePoint ShapeEmitter::sample(unsigned primitive, Vec2 u) const {
   return {p, to_float(normalize_any(n)), {b1, b2}, 0, primitive, length(n) / 2};
 }
 
+/// Chooses a primitive by area; the remaining fraction of the random number is reused.
 EmittingSurface::Sample ShapeEmitter::sample(Vec2 u) const {
   Sample s;
   double own_area = area_;
@@ -84,6 +88,7 @@ EmittingSurface::Sample ShapeEmitter::sample(Vec2 u) const {
   return s;
 }
 
+/// Bounds of positions and normals, for the light hierarchy.
 LightBounds ShapeEmitter::bounds() const {
   Bounds box;
   LightBounds result;

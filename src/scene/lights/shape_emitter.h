@@ -9,18 +9,18 @@
 
 namespace frond {
 
-/// Of a surface's triangles, patches or the like these; the end is not among them.
+/// Range of a surface's primitives; `end` is excluded.
 struct Primitives {
   unsigned first, end;
   unsigned count() const { return end - first; }
 };
 
-/// Those of the triangle, patch or the like that a shape's file has there: of a quadrilateral that was cut the halves.
+/// Returns the primitives of one face of the shape's file; a quadrilateral that was split has two.
 Primitives face_of(const ShapeGeometry& geometry, unsigned primitive);
-/// How many triangles, patches or the like a shape's file has.
+/// Returns the number of faces in the shape's file.
 unsigned faces_of(const ShapeGeometry& geometry);
 
-/// All of a shape, or some of its primitives, triangles included.
+/// The emitting part of a shape: all of it, or a range of its primitives.
 class ShapeEmitter final : public EmittingSurface {
  public:
   explicit ShapeEmitter(const Surface& surface);
@@ -30,24 +30,25 @@ class ShapeEmitter final : public EmittingSurface {
   double area() const override { return area_; }
   LightBounds bounds() const override;
   bool is_met() const override { return is_met_; }
+  /// Returns the alpha at a point; 1 without alpha texture.
   float opacity(const EmittingPoint& at) const override {
     return alpha_ ? alpha_->evaluate({.uv = at.uv, .p = at.p, .n = at.ng}) : 1;
   }
 
  private:
   double area_of(unsigned primitive) const;
-  /// Uniform numbers in, a point out; its area is set.
+  /// Returns a point for uniform numbers; sets its area.
   ShapePoint sample(unsigned primitive, Vec2 u) const;
 
   ShapeGeometry geometry_;
-  std::shared_ptr<const FloatTexture> alpha_;  ///< null: opaque, or never met
+  std::shared_ptr<const FloatTexture> alpha_;  ///< nullptr: opaque
   bool is_met_ = true;
   Primitives primitives_;
-  std::optional<Distribution1D> by_area_;  ///< of several primitives
+  std::optional<Distribution1D> by_area_;  ///< empty for a single primitive
   double area_ = 0;
 };
 
-/// How many triangles, patches or the like it has.
+/// Returns the number of triangles, patches or other primitives.
 unsigned primitives_of(const ShapeGeometry& geometry);
 
 }  // namespace frond

@@ -9,7 +9,7 @@
 namespace frond {
 namespace {
 
-/// pbrt-v4's measure of an image's illuminance on the upper half of its own space. It is half of the illuminance.
+/// pbrt-v4's measure of the illuminance of an image's upper half. It is half of the actual illuminance.
 double illuminance_of(const ColorImage& file) {
   const std::vector<float> luminances = luminances_of(file);
   const auto width = size_t(file.image.width);
@@ -35,6 +35,7 @@ ColorImage read_sphere_image(const Params& p) {
   return file;
 }
 
+/// As in pbrt-v4, the actual illuminance is twice the stated one, which a warning reports.
 float sphere_image_scale(const Params& p, const ColorImage& file) {
   const std::optional<double> stated = stated_total(p, "illuminance");
   if (!stated) return float(p.real("scale"));

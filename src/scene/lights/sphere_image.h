@@ -5,10 +5,11 @@
 
 namespace frond {
 
-/// A light's image over all directions, by pbrt-v4's equal-area map of the sphere: a square one, or an error.
+/// Reads a light's image over all directions in pbrt-v4's equal-area parameterization. Throws InputError unless it is
+/// square.
 ColorImage read_sphere_image(const Params& p);
 
-/// "scale", or what brings the image to "illuminance".
+/// Returns "scale", or the factor that gives the image the stated "illuminance".
 float sphere_image_scale(const Params& p, const ColorImage& file);
 
 }  // namespace frond

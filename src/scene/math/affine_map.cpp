@@ -8,6 +8,7 @@
 
 namespace frond {
 
+/// Inverts by cofactors in double precision.
 PreciseTransform::PreciseTransform(const Transform& t) {
   const Transform::Rows& m = t.rows();
   const auto column = [&m](size_t j) { return Vec3d{double(m[0][j]), double(m[1][j]), double(m[2][j])}; };
@@ -17,6 +18,7 @@ PreciseTransform::PreciseTransform(const Transform& t) {
   row_x_ = yz * scale, row_y_ = cross(z_, x_) * scale, row_z_ = cross(x_, y_) * scale;
 }
 
+/// Scales from 1e-9 to 1e9 keep ray coordinates within the range of float.
 std::string problem_of(const AffineMap& map) {
   constexpr Interval kScale{1e-9, 1e9};
   Transform::RowsDouble rows;

@@ -11,45 +11,47 @@
 
 namespace frond {
 
-/// What places an instance of an object: as a Transform, without its inverse, for there may be very many of them.
+/// Transform of an instance, without a stored inverse to save memory.
 struct AffineMap {
   Transform::Rows rows;
 
   Vec3 translation() const { return {rows[0][3], rows[1][3], rows[2][3]}; }
   Vec3 vector(const Vec3& v) const { return {dot(row(0), v), dot(row(1), v), dot(row(2), v)}; }
   Vec3 point(const Vec3& p) const { return vector(p) + translation(); }
-  /// By the cofactors: the inverse transpose, times the factor by which areas with this unit normal grow.
+  /// Transforms a normal by the cofactor matrix: the inverse transpose times the determinant. The length of the result
+  /// is the factor on areas with this unit normal.
   Vec3 normal(const Vec3& n) const {
     const Vec3 c0 = cross(row(1), row(2)), c1 = cross(row(2), row(0)), c2 = cross(row(0), row(1));
     const float sign = dot(row(0), c0) < 0 ? -1.f : 1.f;
     return Vec3{dot(c0, n), dot(c1, n), dot(c2, n)} * sign;
   }
-  /// Into the object's own space; distances along rays stay the same. Fourth lanes are 0.
+  /// Transform into the object's space. Distances along rays are preserved. The fourth lanes are 0.
   struct Inverse {
-    Float4 x, y, z;      ///< where the axes go
-    Float4 translation;  ///< that of the map, which comes off first
+    Float4 x, y, z;      ///< images of the axes
+    Float4 translation;  ///< of the map; subtracted first
 
     Float4 vector(Float4 v) const { return x * v[0] + y * v[1] + z * v[2]; }
     Float4 point(Float4 p) const { return vector(p - translation); }
-    /// A normal back out of it, not unit.
+    /// Transforms a normal from the object's space; not normalized.
     Vec3 normal_out(const Vec3& n) const {
       const auto along = [&n](Float4 axis) { return axis[0] * n.x + axis[1] * n.y + axis[2] * n.z; };
       return {along(x), along(y), along(z)};
     }
   };
+  /// Inverts by cofactors. The map must be invertible (problem_of).
   Inverse inverse() const {
     const Vec3 x = column(0), y = column(1), z = column(2), yz = cross(y, z), t = translation();
     const float scale = 1 / dot(x, yz);
     const Vec3 a = yz * scale, b = cross(z, x) * scale, c = cross(x, y) * scale;
     return {Float4{a.x, b.x, c.x, 0}, Float4{a.y, b.y, c.y, 0}, Float4{a.z, b.z, c.z, 0}, Float4{t.x, t.y, t.z, 0}};
   }
-  /// Bound of the image's largest coordinate over the point's, without translation.
+  /// Returns a bound of the ratio of the largest coordinates after and before the map, without translation.
   float largest_stretch() const {
     float largest = 0;
     for (const auto& r : rows) largest = std::max(largest, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
     return largest;
   }
-  /// By how much all areas grow, where shapes keep their angles, up to rounding; nothing where they do not.
+  /// Returns the factor on areas if the map preserves angles up to rounding; else nullopt.
   std::optional<float> area_scale() const {
     const Vec3 x = column(0), y = column(1), z = column(2);
     const float xx = dot(x, x), slack = 1e-4f * xx;
@@ -64,8 +66,8 @@ struct AffineMap {
   Vec3 column(size_t j) const { return {rows[0][j], rows[1][j], rows[2][j]}; }
 };
 
-/// A transform and its inverse in double, of those same floats: there and back again is where it was, even where a
-/// shape's own coordinates are much larger than those in the scene.
+/// A transform and its inverse in double precision. The composition of both is the identity up to double rounding, even
+/// for shapes whose own coordinates are much larger than those of the scene.
 class PreciseTransform {
  public:
   explicit PreciseTransform(const Transform& t);
@@ -76,12 +78,12 @@ class PreciseTransform {
   Vec3d inverse_vector(const Vec3d& v) const { return {dot(row_x_, v), dot(row_y_, v), dot(row_z_, v)}; }
 
  private:
-  Vec3d x_, y_, z_, translation_;  ///< where the axes and the origin go
-  Vec3d row_x_, row_y_, row_z_;    ///< of the inverse
+  Vec3d x_, y_, z_, translation_;  ///< images of the axes and the origin
+  Vec3d row_x_, row_y_, row_z_;    ///< rows of the inverse
 };
 
-/// What is wrong with a map: it has no inverse, or scales so much that a ray's numbers would overflow or vanish in the
-/// object's space; "" where nothing is.
+/// Returns the reason why a map is invalid: it has no inverse, or its scale would make ray coordinates overflow or
+/// underflow in the object's space; "" if it is valid.
 std::string problem_of(const AffineMap& map);
 
 }  // namespace frond

@@ -4,8 +4,8 @@
 
 namespace frond {
 
-/// Directions of a light's own space, which an image is given over, in the world and back. A map that is no rotation
-/// crowds them together or spreads them, so densities over solid angles change too.
+/// Maps directions between world space and a light's space, in which its image is defined. A map that is not a rotation
+/// changes densities over solid angle.
 class DirectionMap {
  public:
   explicit DirectionMap(const Transform& world_from_light)
@@ -17,13 +17,13 @@ class DirectionMap {
     volume_ = std::abs(dot(cross(x, y), z));
   }
 
-  /// Or mirrors; lengths do not matter.
+  /// Whether the map preserves angles; reflections and scales are allowed.
   bool is_rotation() const { return is_rotation_; }
-  /// Unit.
+  /// Returns a unit vector.
   Vec3 to_world(const Vec3& w) const { return normalize_any(world_from_light_.vector(w)); }
   Vec3 to_light(const Vec3& w) const { return normalize_any(light_from_world_.vector(w)); }
-  /// By how much solid angles around a unit direction of the light's space grow: of a cone's base only what lies
-  /// across the image of its axis counts, and at that one's distance.
+  /// Returns the factor on solid angles around a unit direction of the light's space: the determinant over the cubed
+  /// stretch of the direction.
   float spread(const Vec3& w) const {
     if (is_rotation_) return 1;
     const float stretch = length(world_from_light_.vector(w));

@@ -4,6 +4,7 @@
 
 namespace frond {
 
+/// The last entry is set to 1 exactly, so that every u < 1 finds a cell.
 Distribution1D::Distribution1D(const std::vector<float>& weights) : cdf_(weights.size() + 1, 0.0) {
   for (size_t i = 0; i < weights.size(); ++i) cdf_[i + 1] = cdf_[i] + static_cast<double>(weights[i]);
   sum_ = cdf_.back();
@@ -16,6 +17,7 @@ Distribution1D::Distribution1D(const std::vector<float>& weights) : cdf_(weights
   }
 }
 
+/// The fraction is kept below 1 after rounding.
 Distribution1D::Sample Distribution1D::sample(float u) const {
   const double x = static_cast<double>(u);
   size_t cell = guide_[static_cast<size_t>(x * static_cast<double>(guide_.size()))];
@@ -27,6 +29,7 @@ Distribution1D::Sample Distribution1D::sample(float u) const {
 
 namespace {
 
+/// Returns the conditional distributions of the rows.
 std::vector<Distribution1D> make_rows(const std::vector<float>& weights, int width) {
   std::vector<Distribution1D> rows;
   for (auto row = weights.begin(); row != weights.end(); row += width)
@@ -34,12 +37,14 @@ std::vector<Distribution1D> make_rows(const std::vector<float>& weights, int wid
   return rows;
 }
 
+/// Returns the weights of the marginal distribution.
 std::vector<float> row_sums(const std::vector<Distribution1D>& rows) {
   std::vector<float> sums;
   for (const Distribution1D& row : rows) sums.push_back(static_cast<float>(row.sum()));
   return sums;
 }
 
+/// Returns the cell of a coordinate, clamped to the valid range.
 size_t cell_of(float x, size_t cells) {
   return std::min(cells - 1, static_cast<size_t>(std::max(0.f, x * static_cast<float>(cells))));
 }
@@ -49,6 +54,7 @@ size_t cell_of(float x, size_t cells) {
 Distribution2D::Distribution2D(const std::vector<float>& weights, int width)
     : rows_(make_rows(weights, width)), marginal_(row_sums(rows_)) {}
 
+/// Samples the row by the marginal, then the cell within the row.
 Distribution2D::Sample Distribution2D::sample(Vec2 u) const {
   const auto [y, fy, py] = marginal_.sample(u.y);
   const auto [x, fx, px] = rows_[y].sample(u.x);
@@ -74,11 +80,13 @@ WindowedDistribution::WindowedDistribution(const std::vector<float>& weights, in
   }
 }
 
+/// Returns the window in units of cells, clamped to the square.
 WindowedDistribution::Box WindowedDistribution::box(const Window& w) const {
   const auto at = [](float t, int cells) { return std::clamp(double(t), 0.0, 1.0) * cells; };
   return {at(w.min.x, width_), at(w.max.x, width_), at(w.min.y, height_), at(w.max.y, height_)};
 }
 
+/// Interpolates the summed-area table bilinearly: exact for a piecewise constant density.
 double WindowedDistribution::below(double x, double y) const {
   const int i = std::min(int(x), width_ - 1), j = std::min(int(y), height_ - 1);
   const double fx = x - i, fy = y - j;
@@ -87,18 +95,21 @@ double WindowedDistribution::below(double x, double y) const {
   return std::lerp(std::lerp(low[0], low[1], fx), std::lerp(high[0], high[1], fx), fy);
 }
 
+/// Returns the integral over a box.
 double WindowedDistribution::sum(const Box& b) const {
   return below(b.x1, b.y1) - below(b.x0, b.y1) - below(b.x1, b.y0) + below(b.x0, b.y0);
 }
 
 namespace {
 
+/// A position and the cell that contains it.
 struct Place {
   double at;
   int cell;
 };
 
-/// Where in [first, last] a sum that grows linearly from whole number to whole number reaches a share u of its last.
+/// Returns the position in [first, last] at which a sum, piecewise linear between integers, reaches the share u of its
+/// last value.
 template <class Sum>
 Place place_in(double first, double last, double u, const Sum& sum) {
   const double target = u * sum(last);
@@ -117,6 +128,7 @@ Place place_in(double first, double last, double u, const Sum& sum) {
 
 }  // namespace
 
+/// Samples x by the window's column sums, then y within that column of cells.
 std::optional<WindowedDistribution::Sample> WindowedDistribution::sample(Vec2 u, const Window& window) const {
   const Box b = box(window);
   const double total = sum(b);

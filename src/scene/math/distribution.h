@@ -8,16 +8,15 @@
 
 namespace frond {
 
-/// Piecewise constant density over n cells, sampled by inverting its cumulative sum with a guide table (Chen
-/// and Asau 1974).
+/// Piecewise constant density over n cells, sampled by inversion with a guide table (Chen and Asau 1974).
 class Distribution1D {
  public:
   struct Sample {
     size_t cell;
-    float fraction;  ///< place within the cell, [0, 1): may be used as a fresh uniform number
+    float fraction;  ///< position within the cell, [0, 1); uniform, so it can be reused as a random number
     float pdf;       ///< probability of the cell
   };
-  /// Weights are finite and not negative; if all are zero the density is uniform.
+  /// Weights must be finite and >= 0; if all are zero, the density is uniform.
   explicit Distribution1D(const std::vector<float>& weights);
 
   Sample sample(float u) const;
@@ -27,7 +26,7 @@ class Distribution1D {
 
  private:
   std::vector<double> cdf_;
-  std::vector<uint32_t> guide_;  ///< cell at each nth of the unit interval: the search starts there
+  std::vector<uint32_t> guide_;  ///< first cell to search for each nth of the unit interval
   double sum_ = 0;
 };
 
@@ -38,7 +37,7 @@ class Distribution2D {
     Vec2 uv;
     float pdf;  ///< per unit area of the square
   };
-  /// Row-major weights, `width` to a row.
+  /// Row-major weights, `width` in each row.
   Distribution2D(const std::vector<float>& weights, int width);
 
   Sample sample(Vec2 u) const;
@@ -49,8 +48,8 @@ class Distribution2D {
   Distribution1D marginal_;
 };
 
-/// Piecewise constant density over any window of the unit square, by a summed-area table (Bitterli et al. 2015,
-/// "Portal- Masked Environment Map Sampling").
+/// Piecewise constant density over a window of the unit square, by a summed-area table (Bitterli et al. 2015,
+/// "Portal-Masked Environment Map Sampling").
 class WindowedDistribution {
  public:
   struct Window {
@@ -61,12 +60,12 @@ class WindowedDistribution {
     Vec2 uv;
     float pdf;  ///< per unit area of the square
   };
-  /// Row-major weights, `width` to a row: finite and not negative.
+  /// Row-major weights, `width` in each row; finite and >= 0.
   WindowedDistribution(const std::vector<float>& weights, int width);
 
-  /// Nothing where the weights in the window are 0.
+  /// Returns nullopt if all weights in the window are 0.
   std::optional<Sample> sample(Vec2 u, const Window& window) const;
-  /// 0 outside the window.
+  /// Returns 0 outside the window.
   float pdf(Vec2 uv, const Window& window) const;
 
  private:
@@ -74,12 +73,13 @@ class WindowedDistribution {
     double x0, x1, y0, y1;  ///< in cells
   };
   Box box(const Window& window) const;
+  /// Returns the interpolated summed-area table.
   double below(double x, double y) const;
   double sum(const Box& b) const;
   double weight(int x, int y) const { return sum({double(x), double(x + 1), double(y), double(y + 1)}); }
 
   int width_, height_;
-  std::vector<double> sums_;  ///< of the cells below and left of each corner
+  std::vector<double> sums_;  ///< summed-area table: sum of the cells below and left of each corner
 };
 
 }  // namespace frond

@@ -4,12 +4,12 @@
 
 namespace frond {
 
-/// Equal-area map between the unit square and the sphere: the octahedron's faces side by side (Clarberg 2008, "Fast
-/// Equal-Area Mapping of the (Hemi)Sphere using SIMD").
+/// Equal-area map from the unit square to the sphere (Clarberg 2008, "Fast Equal-Area Mapping of the (Hemi)Sphere using
+/// SIMD").
 Vec3 sphere_from_square(Vec2 uv);
-/// Of a unit direction.
+/// Inverse of sphere_from_square, for a unit direction.
 Vec2 square_from_sphere(const Vec3& d);
-/// The place in the square that lies where one beyond its edge would: edges are sewn to themselves, half by half.
+/// Wraps a point beyond the square's edge to the point of the square with the same direction (octahedral wrapping).
 Vec2 wrapped_on_square(Vec2 uv);
 
 }  // namespace frond

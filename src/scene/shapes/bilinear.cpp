@@ -9,7 +9,7 @@
 namespace frond {
 namespace {
 
-/// One patch: corners at (u, v) = (0,0), (1,0), (0,1), (1,1).
+/// A patch with corners at (u, v) = (0,0), (1,0), (0,1), (1,1).
 struct Patch {
   std::array<Vec3d, 4> p;
 
@@ -22,7 +22,7 @@ struct Patch {
   Vec3d along_u(double u, size_t first) const { return p[first] * (1 - u) + p[first + 1] * u; }
 };
 
-/// Real roots of a + b x + c x^2, without cancellation.
+/// Returns the real roots of a + b x + c x^2, without cancellation.
 std::array<double, 2> quadratic_roots(double a, double b, double c) {
   if (c == 0) return {-a / b, NAN};
   const double discriminant = b * b - 4 * a * c;
@@ -31,18 +31,20 @@ std::array<double, 2> quadratic_roots(double a, double b, double c) {
   return {q / c, q != 0 ? a / q : NAN};
 }
 
-/// A place in [0, 1] with a density that goes evenly from `a` to `b`.
+/// Samples [0, 1] with a density that changes linearly from `a` to `b`.
 double sample_linear(double u, double a, double b) {
   const double root = std::sqrt((1 - u) * a * a + u * b * b);
   return a + root > 0 ? std::min(u * (a + b) / (a + root), 1.0) : u;
 }
 
+/// Bilinear patches over shared corners, in world space.
 class BilinearMesh final : public AnalyticShape {
  public:
   explicit BilinearMesh(PatchMesh mesh, bool flip)
       : AnalyticShape(mesh.n.empty()), mesh_(std::move(mesh)), flip_(flip) {}
 
   unsigned count() const override { return unsigned(mesh_.patches.size()); }
+  /// A patch lies within the convex hull of its corners.
   Bounds bounds(unsigned i) const override {
     Bounds bounds;
     for (const uint32_t k : mesh_.patches[i]) bounds.add(mesh_.p[k]);
@@ -54,7 +56,7 @@ class BilinearMesh final : public AnalyticShape {
     return points;
   }
 
-  /// Reshetov 2019, "Cool Patches": the u where the ray meets the line between the patch's two u-curves, then v and t.
+  /// Reshetov 2019, "Cool Patches": u at which the ray hits the line between the patch's two u-curves, then v and t.
   std::optional<ShapePoint> intersect(unsigned i, const Ray& ray, float t_min) const override {
     const Patch patch = patch_of(i);
     const Vec3d o = to_double(ray.o), d = to_double(ray.d);
@@ -75,8 +77,8 @@ class BilinearMesh final : public AnalyticShape {
     return at(i, patch, best_u, best_v, float(best_t));
   }
 
-  /// By a density that is bilinear between what the corners' areas ask for: near the area's own, and no less than it
-  /// but for a factor, as the normal is bilinear too. pbrt-v4 samples alike.
+  /// Samples a density bilinear in the area elements at the corners. The ratio to the true area element is bounded,
+  /// because the normal is bilinear too. pbrt-v4 uses the same density.
   ShapePoint sample(unsigned i, Vec2 u) const override {
     const Patch patch = patch_of(i);
     const std::array<double, 4> w = corner_areas(patch);
@@ -88,7 +90,8 @@ class BilinearMesh final : public AnalyticShape {
     point.area = density > 0 ? length(patch.normal(at_u, v)) * mean / density : 0;
     return point;
   }
-  /// By Gauss's rule of four points over 4 x 4 cells; flat ones, whose normal is even, need none.
+  /// Integrates by Gauss's rule of four points over 4 x 4 cells. Flat patches with a constant normal need one
+  /// evaluation.
   double area(unsigned i) const override {
     constexpr std::array kNodes{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
     constexpr std::array kWeights{0.17392742256872692, 0.32607257743127305, 0.32607257743127305, 0.17392742256872692};
@@ -107,13 +110,14 @@ class BilinearMesh final : public AnalyticShape {
 
   Vec2 uv(unsigned i, Vec2 at) const override { return between(texture_of(i), at); }
 
+  /// Interpolates the corners' normals; not normalized.
   Vec3 shading_normal(unsigned i, Vec2 at) const override {
     std::array<Vec3, 4> n;
     for (size_t k = 0; k < 4; ++k) n[k] = mesh_.n[mesh_.patches[i][k]];
     return between(n, at);
   }
 
-  /// By the patch's parameters, then by the inverse of how texture coordinates change with those.
+  /// Derivatives by the patch's parameters, converted to texture coordinates by the inverse Jacobian.
   SurfaceDerivatives derivatives(const ShapePoint& point) const override {
     const Patch patch = patch_of(point.primitive);
     const auto q = texture_of(point.primitive);
@@ -136,16 +140,19 @@ class BilinearMesh final : public AnalyticShape {
   static T between(const std::array<T, 4>& q, Vec2 at) {
     return (q[0] * (1 - at.x) + q[1] * at.x) * (1 - at.y) + (q[2] * (1 - at.x) + q[3] * at.x) * at.y;
   }
+  /// Area elements at the corners, for sampling.
   static std::array<double, 4> corner_areas(const Patch& patch) {
     return {length(patch.normal(0, 0)), length(patch.normal(1, 0)), length(patch.normal(0, 1)),
             length(patch.normal(1, 1))};
   }
 
+  /// Returns a patch in double precision.
   Patch patch_of(unsigned i) const {
     Patch patch;
     for (size_t k = 0; k < 4; ++k) patch.p[k] = to_double(mesh_.p[mesh_.patches[i][k]]);
     return patch;
   }
+  /// Returns the corners' texture coordinates.
   std::array<Vec2, 4> texture_of(unsigned i) const {
     if (mesh_.uv.empty()) return {{{0, 0}, {1, 0}, {0, 1}, {1, 1}}};
     std::array<Vec2, 4> q;
@@ -153,7 +160,7 @@ class BilinearMesh final : public AnalyticShape {
     return q;
   }
 
-  /// Of the unit shading normal, by the patch's parameters.
+  /// Derivatives of the unit shading normal by the patch's parameters.
   std::array<Vec3d, 2> normal_changes(const Patch& patch, const ShapePoint& point, const Vec3d& du,
                                       const Vec3d& dv) const {
     const double u = double(point.at.x), v = double(point.at.y);
@@ -175,10 +182,11 @@ class BilinearMesh final : public AnalyticShape {
     return {a, b};
   }
 
+  /// Returns the point at (u, v).
   ShapePoint at(unsigned i, const Patch& patch, double u, double v, float t) const {
     const Vec3 n = to_float(normalize_any(patch.normal(u, v)));
     ShapePoint point{to_float(patch.at(u, v)), flip_ ? -n : n, {float(u), float(v)}, t, i};
-    // Shading normals decide the front, as in pbrt-v4.
+    // The shading normals determine the front, as in pbrt-v4.
     if (!mesh_.n.empty() && dot(shading_normal(i, point.at), n) != 0)
       point.ng = dot(shading_normal(i, point.at), n) < 0 ? -n : n;
     return point;
@@ -192,19 +200,23 @@ constexpr Param kBilinear[] = {
     {.name = "P", .kind = ParamKind::point3, .doc = "Corners.", .list = true, .required = true},
     {.name = "N",
      .kind = ParamKind::normal3,
-     .doc = "Shading normals, one for each corner; they also decide the front.",
+     .doc = "Shading normals, one for each corner; they also determine the front.",
      .list = true},
     {.name = "uv", .kind = ParamKind::point2, .doc = "Texture coordinates, one for each corner.", .list = true},
     {.name = "indices",
      .kind = ParamKind::integer,
      .doc = "Four corners for each patch: (0,0), (1,0), (0,1), (1,1).",
      .list = true},
-    {.name = "faceIndices", .kind = ParamKind::integer, .doc = "pbrt-v4's numbers of faces: not used.", .list = true},
+    {.name = "faceIndices",
+     .kind = ParamKind::integer,
+     .doc = "Accepted for compatibility with pbrt-v4; ignored.",
+     .list = true},
     {.name = "emissionfilename",
      .kind = ParamKind::string,
-     .doc = "pbrt-v4's image to sample emission by: not used, as emission is the same without."},
+     .doc = "Accepted for compatibility with pbrt-v4; ignored: the emission does not depend on it."},
     kAlphaParam};
 
+/// Four corners without indices are a single patch, as in pbrt-v4.
 MadeShape make_bilinear(const Params& p, const ShapePlacement& placement) {
   PatchMesh mesh{.p = p.vec3s("P"), .n = p.vec3s("N"), .uv = p.vec2s("uv"), .patches = {}};
   auto indices = p.integers("indices");

@@ -20,7 +20,7 @@ Vec3T<T> between(const Vec3T<T>& a, const Vec3T<T>& b, T t) {
   return a * (1 - t) + b * t;
 }
 
-/// De Casteljau's points: those of the parts before and after t are 0 1 2 3 and 3 4 5 6.
+/// De Casteljau subdivision at t: the two halves have the points 0 1 2 3 and 3 4 5 6.
 std::array<Vec3d, 7> split(const Cubicd& c, double t) {
   const Vec3d a = between(c[0], c[1], t), m = between(c[1], c[2], t), b = between(c[2], c[3], t);
   const Vec3d l = between(a, m, t), r = between(m, b, t);
@@ -29,10 +29,11 @@ std::array<Vec3d, 7> split(const Cubicd& c, double t) {
 Cubicd first_part(const std::array<Vec3d, 7>& s) { return {s[0], s[1], s[2], s[3]}; }
 Cubicd second_part(const std::array<Vec3d, 7>& s) { return {s[3], s[4], s[5], s[6]}; }
 
+/// Returns the tangent, scaled as the derivative by t.
 Vec3d derivative(const Cubicd& c, double t) {
   const Vec3d a = between(c[0], c[1], t), m = between(c[1], c[2], t), b = between(c[2], c[3], t);
   const Vec3d d = between(m, b, t) - between(a, m, t);
-  // Where control points fall together, the way from end to end.
+  // If control points coincide, the direction from end to end is used.
   return (dot(d, d) > 0 ? d : c[3] - c[0]) * 3.0;
 }
 
@@ -42,9 +43,9 @@ Cubicd to_double(const Cubic& c) {
 
 enum class CurveKind : uint8_t { flat, cylinder, ribbon };
 
-/// One Bezier curve after the other, along which the width goes evenly from the first end to the last. A ray meets the
-/// strip that faces it (a ribbon: that lies as its normals say), as far as it is narrow (Nakamaru and Ohno 2002, as in
-/// pbrt-v4); "cylinder" has the normals of a tube across the strip.
+/// A chain of Bezier curves whose width changes linearly from the first end to the last. A ray hits the strip that
+/// faces it (for a ribbon: the strip oriented by its normals) if it passes within the width (Nakamaru and Ohno 2002, as
+/// in pbrt-v4). "cylinder" has the normals of a tube across the strip.
 class Curves final : public AnalyticShape {
  public:
   Curves(std::vector<Cubic> segments, Vec2 widths, CurveKind kind, std::vector<Vec3> normals,
@@ -65,6 +66,7 @@ class Curves final : public AnalyticShape {
 
   unsigned count() const override { return unsigned(segments_.size()) * kPieces; }
 
+  /// Bounds of the control points, enlarged by half of the larger width.
   Bounds bounds(unsigned primitive) const override {
     const Piece piece = piece_of(primitive);
     const float r = float(std::max(width(piece.segment, piece.u0), width(piece.segment, piece.u1)) / 2);
@@ -79,11 +81,12 @@ class Curves final : public AnalyticShape {
     return bounds;
   }
 
+  /// The curve is transformed to ray space, split recursively, and tested as line segments.
   std::optional<ShapePoint> intersect(unsigned primitive, const Ray& ray, float t_min) const override {
     const Piece piece = piece_of(primitive);
     const Vec3d o = precise_.inverse_point(frond::to_double(ray.o));
     const Vec3d d = precise_.inverse_vector(frond::to_double(ray.d));
-    // With the ray along z, and the curve more or less along x: boxes around it are narrow.
+    // Ray space with the ray along z and the curve roughly along x gives tight bounding boxes.
     const double ray_length = length(d);
     const Framed ray_space = Framed::along(d / ray_length, piece.curve[3] - piece.curve[0]);
     Search search{.curves = *this,
@@ -104,12 +107,13 @@ class Curves final : public AnalyticShape {
                       primitive};
   }
 
-  /// Rays start clear of the strip that would face them: as far off as in pbrt-v4, a width along each axis.
+  /// Rays start outside of the strip that would face them, at pbrt-v4's distance: a width along each axis.
   float clearance(const ShapePoint& at) const override {
     const double w = width(at.primitive / kPieces, double(at.at.x)) * double(scale_);
     return float(w) * (std::abs(at.ng.x) + std::abs(at.ng.y) + std::abs(at.ng.z));
   }
 
+  /// u runs along the segment, v across the strip.
   SurfaceDerivatives derivatives(const ShapePoint& point) const override {
     const size_t segment = point.primitive / kPieces;
     const double u = double(point.at.x);
@@ -119,7 +123,7 @@ class Curves final : public AnalyticShape {
     return {to_scene_.vector(to_float(dpdu)), to_scene_.vector(to_float(dpdv)), {}, {}};
   }
 
-  /// On a strip that faces anywhere.
+  /// Samples a strip with a random orientation about the curve.
   ShapePoint sample(unsigned primitive, Vec2 u) const override {
     const Piece piece = piece_of(primitive);
     const double t = double(u.x), own_u = piece.u0 + (piece.u1 - piece.u0) * t, w = width(piece.segment, own_u);
@@ -129,16 +133,17 @@ class Curves final : public AnalyticShape {
     const double area = length(along) * w * double(scale_) * double(scale_);
     return {to_scene_.point(to_float(p)), to_scene_normal(frame.y), {float(own_u), u.y}, 0, primitive, area};
   }
+  /// Mean area of sampled strips.
   double area(unsigned primitive) const override {
     constexpr int kSteps = 16;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) sum += sample(primitive, {(float(i) + 0.5f) / kSteps, 0.5f}).area;
     return sum / kSteps;
   }
-  std::string_view cannot_emit() const override { return "a curve turns towards who looks at it"; }
+  std::string_view cannot_emit() const override { return "a curve faces each ray"; }
 
  private:
-  /// Of each Bezier curve, for boxes that are closer to it.
+  /// Number of pieces of each Bezier curve, for tighter bounding boxes.
   static constexpr unsigned kPieces = 4;
 
   struct Piece {
@@ -146,6 +151,7 @@ class Curves final : public AnalyticShape {
     double u0, u1;
     Cubicd curve;
   };
+  /// Returns a piece of a segment by subdivision at both ends.
   Piece piece_of(unsigned primitive) const {
     const unsigned k = primitive % kPieces;
     Piece piece{primitive / kPieces, double(k) / kPieces, double(k + 1) / kPieces, {}};
@@ -155,11 +161,12 @@ class Curves final : public AnalyticShape {
     return piece;
   }
 
+  /// Width at a parameter of a segment, interpolated along the whole chain.
   double width(size_t segment, double u) const {
     return std::lerp(double(widths_.x), double(widths_.y), (double(segment) + u) / double(segments_.size()));
   }
 
-  /// A ribbon's, from one end of the segment to the other by the shortest way around; unit.
+  /// Normal of a ribbon, interpolated along the segment by the shorter rotation; unit.
   Vec3d ribbon_normal(size_t segment, double u) const {
     const Vec3d a = frond::to_double(normals_[segment]), b = frond::to_double(normals_[segment + 1]);
     const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0)), sine = std::sin(angle);
@@ -167,9 +174,9 @@ class Curves final : public AnalyticShape {
     return (a * std::sin((1 - u) * angle) + b * std::sin(u * angle)) / sine;
   }
 
-  /// How often to halve a curve until its pieces are straight to some 20th of the width. Wang 1984: n pieces of a curve
-  /// of degree d are within d (d - 1) / 8 of its largest second difference over n^2. Rounded down, as pbrt-v4 does: how
-  /// many pieces there are can be seen.
+  /// Number of subdivisions until the pieces deviate from straight lines by at most about 1/20 of the width. Wang 1984:
+  /// n pieces of a curve of degree d deviate by at most d (d - 1) / 8 of its largest second difference over n^2.
+  /// Rounded down as in pbrt-v4, because the number of pieces is visible.
   int depth_for(const Cubicd& c) const {
     double largest = 0;
     for (size_t i = 1; i <= 2; ++i) {
@@ -188,12 +195,12 @@ class Curves final : public AnalyticShape {
     double u, v, width;
   };
 
-  /// The nearest point where the z axis meets a curve.
+  /// Search for the nearest intersection of the z axis with a curve.
   struct Search {
     const Curves& curves;
     size_t segment;
-    Vec3d direction;        ///< of the ray, unit, in the curve's space
-    double nearest, least;  ///< along z
+    Vec3d direction;        ///< direction of the ray in the curve's space, unit
+    double nearest, least;  ///< range along z
     bool found = false;
     CurveHit hit{};
 
@@ -214,7 +221,7 @@ class Curves final : public AnalyticShape {
              z1 + radius >= least;
     }
 
-    /// A curve that is all but straight: between the perpendiculars at its ends, and within its width.
+    /// Intersects an almost straight piece: between the perpendiculars at its ends, and within its width.
     void meet(const Cubicd& c, double u0, double u1) {
       const auto beyond = [](const Vec3d& end, const Vec3d& inner) {
         return -end.y * (inner.y - end.y) - end.x * (inner.x - end.x) < 0;
@@ -236,7 +243,7 @@ class Curves final : public AnalyticShape {
     }
   };
 
-  /// In the curve's space; of any length.
+  /// Returns a normal in the curve's space, not normalized.
   Vec3d normal_at(const CurveHit& hit, const Framed& ray_space, size_t segment) const {
     const Vec3d dpdu = derivative(to_double(segments_[segment]), hit.u);
     if (kind_ == CurveKind::ribbon) return cross(dpdu, cross(ribbon_normal(segment, hit.u), dpdu));
@@ -251,26 +258,28 @@ class Curves final : public AnalyticShape {
     return n * std::cos(angle) - across * std::sin(angle);
   }
 
+  /// Returns a unit normal, flipped by ReverseOrientation.
   Vec3 to_scene_normal(const Vec3d& n) const {
     const Vec3 ng = normalize_any(to_scene_.normal(to_float(normalize_any(n))));
     return flip_ ? -ng : ng;
   }
 
-  std::vector<Cubic> segments_;  ///< in the curve's own space
-  std::vector<Vec3> normals_;    ///< of a ribbon, at the segments' ends, unit
+  std::vector<Cubic> segments_;  ///< in object space
+  std::vector<Vec3> normals_;    ///< of a ribbon, at the ends of segments; unit
   Vec2 widths_;
   CurveKind kind_;
   Transform to_scene_, from_scene_;
   PreciseTransform precise_;
   bool flip_;
-  float scale_;  ///< of lengths, on average
+  float scale_;  ///< mean scale factor of lengths
 };
 
+/// Raises a quadratic Bezier curve to a cubic one, exactly.
 Cubic raised(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {a, between(a, b, 2.f / 3), between(c, b, 2.f / 3), c};
 }
 
-/// Bezier curves of a chain that share their ends, or of a uniform B-spline.
+/// Returns the Bezier curves of a chain with shared end points, or of a uniform B-spline.
 std::vector<Cubic> segments_of(const std::vector<Vec3>& p, size_t degree, bool is_spline) {
   std::vector<Cubic> segments;
   for (size_t i = 0; i + degree < p.size(); i += is_spline ? 1 : degree) {
@@ -295,27 +304,28 @@ constexpr Param kCurve[] = {
     {.name = "type",
      .kind = ParamKind::string,
      .default_value = std::string_view("flat"),
-     .doc = "A strip that faces each ray; one that is shaded as a tube; or one that lies as \"N\" says.",
+     .doc = "flat: strip that faces each ray; cylinder: the same, shaded as a tube; ribbon: strip oriented by \"N\".",
      .choices = kKinds},
     {.name = "basis",
      .kind = ParamKind::string,
      .default_value = std::string_view("bezier"),
-     .doc = "What the control points are.",
+     .doc = "Basis of the control points.",
      .choices = kBases},
-    {.name = "degree", .kind = ParamKind::integer, .default_value = 3, .range = {2, 3}, .doc = "Of the curve."},
+    {.name = "degree", .kind = ParamKind::integer, .default_value = 3, .range = {2, 3}, .doc = "Degree of the curve."},
     {.name = "width", .kind = ParamKind::real, .default_value = 1.0, .range = kWidth, .doc = "Width."},
-    {.name = "width0", .kind = ParamKind::real, .range = kWidth, .doc = "Where it begins; \"width\" by default."},
-    {.name = "width1", .kind = ParamKind::real, .range = kWidth, .doc = "Where it ends; \"width\" by default."},
+    {.name = "width0", .kind = ParamKind::real, .range = kWidth, .doc = "Width at the start; by default \"width\"."},
+    {.name = "width1", .kind = ParamKind::real, .range = kWidth, .doc = "Width at the end; by default \"width\"."},
     {.name = "N",
      .kind = ParamKind::normal3,
-     .doc = "A ribbon's normals: where it begins, and at the end of each segment.",
+     .doc = "Normals of a ribbon: at the start, and at the end of each segment.",
      .list = true},
     {.name = "splitdepth",
      .kind = ParamKind::integer,
      .default_value = 3,
-     .doc = "pbrt-v4's pieces for its acceleration structure: not used."},
+     .doc = "Accepted for compatibility with pbrt-v4; ignored."},
     kAlphaParam};
 
+/// The number of control points must match degree and basis.
 MadeShape make_curve(const Params& p, const ShapePlacement& placement) {
   const std::vector<Vec3> points = p.vec3s("P");
   const bool is_spline = p.string("basis") == "bspline";

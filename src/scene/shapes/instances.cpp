@@ -1,19 +1,20 @@
 #include "core/shape.h"
 
-// Instances of an object by the million.
+// Shape "instances": instances of an object from a table with millions of rows.
 
 namespace frond {
 namespace {
 
-constexpr Param kInstances[] = {{.name = "object",
-                                 .kind = ParamKind::string,
-                                 .doc = "The name of the object that is copied (ObjectBegin).",
-                                 .required = true},
-                                {.name = "filename",
-                                 .kind = ParamKind::string,
-                                 .doc = "Table of the instances: a NumPy file (.npy), a row for each, of \"transform\" "
-                                        "(the three rows of a matrix) and any other numbers, all of them float32.",
-                                 .required = true}};
+constexpr Param kInstances[] = {
+    {.name = "object",
+     .kind = ParamKind::string,
+     .doc = "Name of the object to place (ObjectBegin).",
+     .required = true},
+    {.name = "filename",
+     .kind = ParamKind::string,
+     .doc = "Instance table: a NumPy file (.npy) with one row for each instance: \"transform\" "
+            "(the three rows of a matrix) and any other numbers, all of them float32.",
+     .required = true}};
 
 MadeShape make_instances(const Params& p, const ShapePlacement&) {
   return ObjectInstances{.object = p.string("object"), .table = p.file("filename")};
@@ -22,6 +23,7 @@ MadeShape make_instances(const Params& p, const ShapePlacement&) {
 }  // namespace
 
 extern const ShapeInfo instances_shape{
-    {"shape", "instances", "Instances of an object, a row of a table for each.", "", kInstances}, make_instances};
+    {"shape", "instances", "Instances of an object, from a table with one row for each.", "", kInstances},
+    make_instances};
 
 }  // namespace frond

@@ -9,19 +9,20 @@
 namespace frond {
 namespace {
 
+/// Transforms vertices and normals to world space.
 void place_corners(std::vector<Vec3>& p, std::vector<Vec3>& n, const ShapePlacement& placement) {
   for (Vec3& at : p) at = placement.to_scene.point(at);
   place_normals(n, placement);
 }
 
-/// Winding counter-clockwise about the front; positions and normals are in the scene's space already.
+/// Winding is counter-clockwise seen from the front; positions and normals are in world space.
 ShapeGeometry oriented(TriangleMesh mesh, const ShapePlacement& placement) {
   orient_mesh(mesh, placement);
   return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
-/// The two ways from a quadrilateral's first corner to its third add up to the same: what is bilinear between such
-/// corners is linear.
+/// Whether both paths from a quadrilateral's first corner to its third have the same sum: bilinear interpolation is
+/// then linear.
 template <class T>
 bool is_linear(const std::array<T, 4>& q, float slack) {
   const T twist = q[0] - q[1] + q[2] - q[3];
@@ -32,7 +33,7 @@ bool is_linear(const std::array<T, 4>& q, float slack) {
     return length(twist) <= slack * std::max(length(sides), length(q[3] - q[1]));
 }
 
-/// A parallelogram with everything on it linear: two triangles make the same image as a patch, and faster.
+/// Whether the patch is a parallelogram with linear attributes: two triangles then give the same image and are faster.
 bool is_flat(const TriangleMesh& mesh, const std::array<uint32_t, 4>& quad) {
   const auto four = [&quad](const auto& values) {
     return std::array{values[quad[0]], values[quad[1]], values[quad[2]], values[quad[3]]};
@@ -41,7 +42,7 @@ bool is_flat(const TriangleMesh& mesh, const std::array<uint32_t, 4>& quad) {
          (mesh.n.empty() || length(four(mesh.n)[0] - four(mesh.n)[1] + four(mesh.n)[2] - four(mesh.n)[3]) <= 1e-4f);
 }
 
-/// Triangles, and bilinear patches of quadrilaterals as in pbrt-v4.
+/// Returns triangles, and bilinear patches for quadrilaterals as in pbrt-v4.
 std::vector<ShapeGeometry> surfaces_of(PlyMesh file, const ShapePlacement& placement) {
   TriangleMesh& mesh = file.mesh;
   place_corners(mesh.p, mesh.n, placement);
@@ -67,6 +68,7 @@ std::vector<ShapeGeometry> surfaces_of(PlyMesh file, const ShapePlacement& place
   return surfaces;
 }
 
+/// Throws InputError for an incomplete triangle or an index out of range.
 void check_indices(const Params& p, const std::vector<int>& indices, size_t vertices) {
   if (indices.size() % 3 != 0)
     fail(p.where("indices"), "a triangle mesh takes 3 indices for each triangle, {} given", indices.size());
@@ -75,6 +77,7 @@ void check_indices(const Params& p, const std::vector<int>& indices, size_t vert
       fail(p.where("indices"), "index {} is out of range: there are {} vertices", i, vertices);
 }
 
+/// Three vertices without indices are a single triangle, as in pbrt-v4.
 MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
   TriangleMesh mesh{.p = p.vec3s("P"), .n = p.vec3s("N"), .uv = p.vec2s("uv"), .triangles = {}};
   auto indices = p.integers("indices");
@@ -92,6 +95,7 @@ MadeShape make_triangle_mesh(const Params& p, const ShapePlacement& placement) {
   return std::vector{oriented(std::move(mesh), placement)};
 }
 
+/// Errors in the file are reported at the parameter that names it.
 MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
   try {
     PlyMesh file = read_ply(p.file("filename"));
@@ -105,7 +109,7 @@ MadeShape make_ply_mesh(const Params& p, const ShapePlacement& placement) {
   }
 }
 
-/// Loop's subdivision of a triangle mesh, at its limit.
+/// Loop subdivision of a triangle mesh to its limit surface.
 MadeShape make_loop_subdivision(const Params& p, const ShapePlacement& placement) {
   const std::vector<Vec3> cage = p.vec3s("P");
   const std::vector<int> indices = p.integers("indices");
@@ -116,7 +120,7 @@ MadeShape make_loop_subdivision(const Params& p, const ShapePlacement& placement
     faces.push_back({uint32_t(indices[i]), uint32_t(indices[i + 1]), uint32_t(indices[i + 2])});
   p.string("scheme");
   const int levels = p.integer("levels");
-  constexpr double kMostTriangles = 20e6, kBytesEach = 150;  // measured, with Embree's
+  constexpr double kMostTriangles = 20e6, kBytesEach = 150;  // bytes for each triangle, measured, including Embree's
   if (const double count = double(faces.size()) * std::pow(4.0, levels); count > kMostTriangles)
     fail(p.where("levels"), "{} levels make {:.3g} triangles, of some {:.0f} GB: {:.0f} million are the limit", levels,
          count, std::ceil(count * kBytesEach / 1e9), kMostTriangles / 1e6);
@@ -131,16 +135,19 @@ constexpr Param kTriangleMesh[] = {
     {.name = "P", .kind = ParamKind::point3, .doc = "Vertices.", .list = true, .required = true},
     {.name = "N",
      .kind = ParamKind::normal3,
-     .doc = "Shading normals, one for each vertex; they also decide the front.",
+     .doc = "Shading normals, one for each vertex; they also determine the front.",
      .list = true},
     {.name = "uv", .kind = ParamKind::point2, .doc = "Texture coordinates, one for each vertex.", .list = true},
-    {.name = "indices", .kind = ParamKind::integer, .doc = "Three vertices for each triangle.", .list = true},
-    {.name = "S", .kind = ParamKind::vector3, .doc = "pbrt-v4's tangents: not used.", .list = true},
-    {.name = "faceIndices", .kind = ParamKind::integer, .doc = "pbrt-v4's numbers of faces: not used.", .list = true},
+    {.name = "indices", .kind = ParamKind::integer, .doc = "Vertex indices, three for each triangle.", .list = true},
+    {.name = "S", .kind = ParamKind::vector3, .doc = "Accepted for compatibility with pbrt-v4; ignored.", .list = true},
+    {.name = "faceIndices",
+     .kind = ParamKind::integer,
+     .doc = "Accepted for compatibility with pbrt-v4; ignored.",
+     .list = true},
     kAlphaParam};
 constexpr Param kPlyMesh[] = {{.name = "filename",
                                .kind = ParamKind::string,
-                               .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals, which are "
+                               .doc = "PLY file, ASCII or binary, of triangles and quadrilaterals, which become "
                                       "bilinear patches; .ply.gz: compressed.",
                                .required = true},
                               kAlphaParam};
@@ -148,28 +155,27 @@ constexpr Param kLoopSubdivision[] = {
     {.name = "P", .kind = ParamKind::point3, .doc = "Vertices of the control mesh.", .list = true, .required = true},
     {.name = "indices",
      .kind = ParamKind::integer,
-     .doc = "Three vertices for each triangle.",
+     .doc = "Vertex indices, three for each triangle.",
      .list = true,
      .required = true},
     {.name = "levels",
      .kind = ParamKind::integer,
      .default_value = 3,
      .range = {0, 12},
-     .doc = "How often each triangle becomes four; vertices then lie on the limit surface."},
+     .doc = "Number of subdivisions, each into four triangles; vertices are then moved to the limit surface."},
     {.name = "scheme",
      .kind = ParamKind::string,
      .default_value = std::string_view("loop"),
-     .doc = "Loop's, whatever it says, as in pbrt-v4."},
+     .doc = "Accepted for compatibility with pbrt-v4; ignored: the scheme is Loop's."},
     kAlphaParam};
 
 }  // namespace
 
-extern const ShapeInfo triangle_mesh_shape{{"shape", "trianglemesh", "Triangles.", "pbrt-v4", kTriangleMesh},
+extern const ShapeInfo triangle_mesh_shape{{"shape", "trianglemesh", "Triangle mesh.", "pbrt-v4", kTriangleMesh},
                                            make_triangle_mesh};
 extern const ShapeInfo ply_mesh_shape{
     {"shape", "plymesh", "Triangles and bilinear patches from a PLY file.", "pbrt-v4", kPlyMesh}, make_ply_mesh};
 extern const ShapeInfo loop_subdivision_shape{
-    {"shape", "loopsubdiv", "The smooth surface that Loop's subdivision leads to.", "pbrt-v4", kLoopSubdivision},
-    make_loop_subdivision};
+    {"shape", "loopsubdiv", "Limit surface of Loop subdivision.", "pbrt-v4", kLoopSubdivision}, make_loop_subdivision};
 
 }  // namespace frond

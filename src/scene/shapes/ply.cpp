@@ -12,9 +12,10 @@
 namespace frond {
 namespace {
 
-/// Where a vertex property goes: x y z, nx ny nz, u v; or nowhere.
+/// Slot of a vertex property: x y z, nx ny nz, u v; or none.
 constexpr size_t kSlots = 8, kNoSlot = kSlots;
 
+/// Returns the slot of a property name. Several names of texture coordinates are in use.
 size_t slot_of(std::string_view name) {
   constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
   for (size_t i = 0; i < std::size(kNames); ++i)
@@ -24,11 +25,12 @@ size_t slot_of(std::string_view name) {
   return kNoSlot;
 }
 
-/// Which slots the vertices of a file fill: whole groups, each by the first property that has such a name.
+/// Slots that the vertices of a file fill: complete groups only, each from the first property with such a name.
 struct VertexLayout {
-  std::vector<size_t> slots;  ///< one for each property
+  std::vector<size_t> slots;  ///< by property
   bool has_normals = false, has_uv = false;
 
+  /// Incomplete groups of normals or texture coordinates are dropped.
   explicit VertexLayout(const PlyElement& element) {
     std::array<bool, kSlots + 1> filled{};
     for (const PlyProperty& p : element.properties) {
@@ -45,6 +47,7 @@ struct VertexLayout {
   }
 };
 
+/// Returns the index of the list of vertex indices. Throws InputError if it is missing.
 size_t index_property(const PlyElement& element) {
   for (size_t i = 0; i < element.properties.size(); ++i) {
     const PlyProperty& p = element.properties[i];
@@ -55,15 +58,16 @@ size_t index_property(const PlyElement& element) {
   fail(element.where, "element \"face\" needs property \"vertex_indices\"");
 }
 
+/// Throws InputError at the end of the header if the element is missing.
 const PlyElement& element_called(const PlyHeader& header, std::string_view name, const Location& end) {
   for (const PlyElement& element : header.elements)
     if (element.name == name) return element;
   fail(end, "the header declares no element \"{}\"", name);
 }
 
-/// Where the mesh is among the file's elements; checked before any of the body is read.
+/// Location of the mesh among the file's elements; checked before the body is read.
 struct MeshLayout {
-  uint64_t vertices;  ///< how many the header declares
+  uint64_t vertices;  ///< number that the header declares
   VertexLayout vertex;
   size_t indices;  ///< property of a face
 
@@ -75,11 +79,12 @@ struct MeshLayout {
 };
 
 template <class Source>
-class ModeTableReader {
+class BodyReader {
  public:
-  ModeTableReader(Source& source, const PlyHeader& header, const MeshLayout& layout, PlyMesh& result)
+  BodyReader(Source& source, const PlyHeader& header, const MeshLayout& layout, PlyMesh& result)
       : source_(source), header_(header), layout_(layout), result_(result), mesh_(result.mesh) {}
 
+  /// Elements are read in file order; unknown ones are skipped.
   void read() {
     for (const PlyElement& element : header_.elements) {
       start(element);
@@ -95,7 +100,7 @@ class ModeTableReader {
   }
 
  private:
-  /// Believes a count only as far as the file's size goes, before anything is allocated.
+  /// Checks a count against the file's size before memory is allocated.
   void start(const PlyElement& element) {
     element_ = &element;
     row_ = 0;
@@ -117,6 +122,7 @@ class ModeTableReader {
     }
   }
 
+  /// Values that have no slot are read and discarded.
   void read_vertices() {
     const VertexLayout& layout = layout_.vertex;
     const size_t count = static_cast<size_t>(element_->count);
@@ -138,6 +144,7 @@ class ModeTableReader {
         });
   }
 
+  /// Memory is reserved for no more faces than the rest of the file can contain.
   void read_faces() {
     const size_t indices = layout_.indices;
     const size_t least = 3 * Source::least_bytes(element_->properties[indices].type);
@@ -146,6 +153,7 @@ class ModeTableReader {
     for_each_row([&](const PlyProperty& p, size_t i) { i == indices ? read_face(p) : skip(p); }, [] {});
   }
 
+  /// Quadrilaterals are stored as such; other polygons are counted and skipped.
   void read_face(const PlyProperty& p) {
     const double corners = number(*p.count_type);
     if (corners != 3 && corners != 4) {
@@ -160,6 +168,7 @@ class ModeTableReader {
       result_.quads.push_back(c);
   }
 
+  /// Throws InputError for an index that is not an integer or out of range.
   uint32_t index(PlyType type) {
     const double value = number(type);
     if (!(value >= 0 && value < static_cast<double>(layout_.vertices)) || value != std::floor(value))
@@ -167,6 +176,7 @@ class ModeTableReader {
     return static_cast<uint32_t>(value);
   }
 
+  /// Throws InputError if the file ends or the value is malformed.
   double number(PlyType type) {
     double value = 0;
     if (!source_.next(type, value)) fail_row(source_.problem());
@@ -175,12 +185,14 @@ class ModeTableReader {
 
   void skip(const PlyProperty& p) { skip_values(p, p.count_type ? number(*p.count_type) : 1); }
 
+  /// Throws InputError for a count that the rest of the file cannot contain.
   void skip_values(const PlyProperty& p, double count) {
     if (!(count >= 0 && count <= static_cast<double>(source_.bytes_left())) || count != std::floor(count))
       fail_row(fmt::format("\"{}\" is a list of {} values, which the file does not hold", p.name, count));
     if (!source_.skip(p.type, static_cast<size_t>(count))) fail_row(source_.problem());
   }
 
+  /// Throws InputError with element, row and position.
   [[noreturn]] void fail_row(const std::string& message) const {
     source_.fail_here(fmt::format("{} {}: {}", element_->name, row_, message));
   }
@@ -202,7 +214,7 @@ PlyMesh read_ply_text(std::string_view bytes, const std::string& name) {
   const Location end{file, header.lines, 1};
   const MeshLayout layout(element_called(header, "vertex", end), element_called(header, "face", end));
   PlyMesh result;
-  const auto read_from = [&](auto source) { ModeTableReader(source, header, layout, result).read(); };
+  const auto read_from = [&](auto source) { BodyReader(source, header, layout, result).read(); };
   if (header.format == PlyFormat::ascii)
     read_from(ply::AsciiSource(bytes, header, file));
   else

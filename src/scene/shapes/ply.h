@@ -8,21 +8,20 @@
 
 namespace frond {
 
-/// What a PLY file holds: its triangles, and quadrilaterals over the same vertices, corners in their order around.
+/// Content of a PLY file: triangles, and quadrilaterals over the same vertices with corners in cyclic order.
 struct PlyMesh {
   TriangleMesh mesh;
   std::vector<std::array<uint32_t, 4>> quads;
-  size_t ignored = 0;  ///< faces of fewer or more corners, which are left out
+  size_t ignored = 0;  ///< number of faces with other numbers of corners, which are skipped
 };
 
-/// Triangles and quadrilaterals of a PLY file: ASCII or binary of either byte order, or what gzip has made of that;
-/// `vertex` with x y z, optionally nx ny nz and a pair of texture coordinates (u v, s t, texture_u texture_v, texture_s
-/// texture_t); `face` with vertex_indices or vertex_index. Whatever else the file holds is read over. Memory stays
-/// within a small multiple of the file's size. Throws InputError with line and column (header, ASCII) or byte offset
-/// (binary).
+/// Reads triangles and quadrilaterals from a PLY file: ASCII, or binary in either byte order, or compressed by gzip;
+/// `vertex` with x y z, optionally nx ny nz and texture coordinates (u v, s t, texture_u texture_v, texture_s
+/// texture_t); `face` with vertex_indices or vertex_index. Other content is skipped. Memory is a small multiple of the
+/// file's size. Throws InputError with line and column (header, ASCII) or byte offset (binary).
 PlyMesh read_ply(const std::filesystem::path& path);
 
-/// The same from bytes in memory; `name` is what errors call the file.
+/// Same for bytes in memory; `name` names the file in errors.
 PlyMesh read_ply_text(std::string_view bytes, const std::string& name);
 
 }  // namespace frond

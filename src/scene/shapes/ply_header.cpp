@@ -6,17 +6,19 @@
 namespace frond {
 namespace {
 
+/// A word of a header line, with its location.
 struct Word {
   std::string_view text;
   Location where;
 };
 
-/// Hands out the header's lines, cut into words.
+/// Reads the header's lines, split into words.
 class HeaderLines {
  public:
   HeaderLines(std::string_view bytes, std::shared_ptr<const std::string> file)
       : bytes_(bytes), file_(std::move(file)) {}
 
+  /// Returns the words of the next line. Throws InputError if the header does not end.
   std::vector<Word> next() {
     if (at_ == bytes_.size()) fail(here(1), "the header does not end: there is no end_header");
     const size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
@@ -31,6 +33,7 @@ class HeaderLines {
  private:
   Location here(size_t column) const { return {file_, std::max(line_, 1), static_cast<int>(column)}; }
 
+  /// Splits a line at blanks. A CR at the end is a blank.
   std::vector<Word> split(std::string_view line) const {
     constexpr std::string_view kBlanks = " \t\r";
     std::vector<Word> words;
@@ -51,6 +54,7 @@ class HeaderLines {
 
 constexpr size_t kLongestShown = 40;
 
+/// Text for messages: limited in length, other than printable ASCII replaced.
 std::string shown(std::string_view text) {
   std::string result(text.substr(0, kLongestShown));
   std::replace_if(
@@ -58,12 +62,14 @@ std::string shown(std::string_view text) {
   return result;
 }
 
+/// Throws InputError unless the line has `count` words; `usage` describes them.
 void check_words(const std::vector<Word>& line, size_t count, std::string_view usage) {
   if (line.size() == count) return;
   const Word& wrong = line[std::min(count, line.size() - 1)];
   fail(wrong.where, "a header line of {} words is needed: {}", count, usage);
 }
 
+/// Both the original names (char, float) and the sized ones (int8, float32) are in use.
 PlyType type_of(const Word& word) {
   constexpr std::string_view kNames[] = {"char", "uchar", "short", "ushort", "int",   "uint",   "float",   "double",
                                          "int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
@@ -95,6 +101,7 @@ PlyElement element_of(const std::vector<Word>& line) {
   return {std::string(line[1].text), count, {}, line[0].where};
 }
 
+/// A scalar property, or a list with a type for its length.
 PlyProperty property_of(const std::vector<Word>& line) {
   if (line.size() > 1 && line[1].text == "list") {
     check_words(line, 5, "property list, type of the length, type of the values, name");

@@ -16,7 +16,7 @@ namespace frond::ply {
 
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-/// Values of a binary body, one after the other.
+/// Reads the values of a binary body in sequence.
 class BinarySource {
  public:
   BinarySource(std::string_view bytes, const PlyHeader& header, std::shared_ptr<const std::string> file)
@@ -26,10 +26,11 @@ class BinarySource {
         swap_((header.format == PlyFormat::little_endian) != (std::endian::native == std::endian::little)),
         file_(std::move(file)) {}
 
-  /// Least bytes that one value takes.
+  /// Returns the minimum size of a value, bytes.
   static size_t least_bytes(PlyType type) { return size_of(type); }
   static constexpr size_t kMissingEnd = 0;
   size_t bytes_left() const { return bytes_.size() - at_; }
+  /// Whether only blanks are left, which some writers append.
   bool at_end() {
     value_at_ = at_;
     return std::all_of(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), bytes_.end(), is_blank);
@@ -37,7 +38,7 @@ class BinarySource {
 
   bool start_row() { return true; }
   bool end_row() { return true; }
-  /// False when there is no value; `problem` says why.
+  /// Reads a value. Returns false if there is none; `problem` returns the reason.
   bool next(PlyType type, double& value) {
     value_at_ = at_;
     if (size_of(type) > bytes_left()) return false;
@@ -45,6 +46,7 @@ class BinarySource {
     at_ += size_of(type);
     return true;
   }
+  /// Skips values without converting them.
   bool skip(PlyType type, size_t count) {
     value_at_ = at_;
     if (count > bytes_left() / size_of(type)) return false;
@@ -52,7 +54,7 @@ class BinarySource {
     return true;
   }
   std::string problem() const { return "the file ends too early"; }
-  /// At the last value asked for.
+  /// Throws InputError at the last value read.
   [[noreturn]] void fail_here(const std::string& message) const {
     fail({}, "{}: byte {}: {}", *file_, value_at_, message);
   }
@@ -93,29 +95,32 @@ class BinarySource {
   std::shared_ptr<const std::string> file_;
 };
 
-/// Values of an ASCII body: a row of an element is a line.
+/// Reads the values of an ASCII body. A row of an element is a line.
 class AsciiSource {
  public:
   AsciiSource(std::string_view bytes, const PlyHeader& header, std::shared_ptr<const std::string> file)
       : bytes_(bytes), at_(header.bytes), line_start_(at_), line_(header.lines + 1), file_(std::move(file)) {}
 
-  static size_t least_bytes(PlyType) { return 2; }  // a digit and what parts it from the next
-  static constexpr size_t kMissingEnd = 1;          // of the last line
+  static size_t least_bytes(PlyType) { return 2; }  // a digit and a separator
+  static constexpr size_t kMissingEnd = 1;          // the last line may lack its end
   size_t bytes_left() const { return bytes_.size() - at_; }
   bool at_end() {
     skip_empty_lines();
     return !find_word();
   }
 
+  /// Moves to the next line that is not blank.
   bool start_row() {
     skip_empty_lines();
     return find_word() || refuse("the file ends too early");
   }
+  /// A row must not have further values.
   bool end_row() {
     if (find_word()) return refuse("the row has more values than the element has properties");
     if (at_ < bytes_.size()) ++at_, ++line_, line_start_ = at_;
     return true;
   }
+  /// Reads a value. Returns false if there is none; `problem` returns the reason.
   bool next(PlyType, double& value) {
     if (!find_word()) return refuse(at_ == bytes_.size() ? "the file ends too early" : "the row ends too early");
     const auto number = parse_number(word_);
@@ -137,6 +142,7 @@ class AsciiSource {
   }
 
  private:
+  /// Records the reason, and returns false.
   bool refuse(std::string problem) {
     problem_ = std::move(problem);
     return false;
@@ -145,7 +151,7 @@ class AsciiSource {
     for (; at_ < bytes_.size() && is_blank(bytes_[at_]); ++at_)
       if (bytes_[at_] == '\n') ++line_, line_start_ = at_ + 1;
   }
-  /// The next word on this line, without taking it.
+  /// Finds the next word on this line without consuming it.
   bool find_word() {
     while (at_ < bytes_.size() && bytes_[at_] != '\n' && is_blank(bytes_[at_])) ++at_;
     size_t end = at_;

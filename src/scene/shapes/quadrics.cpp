@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTau = 2 * M_PI;
 
-/// Shared by shapes given in a space of their own: the transform, the side that is the front, the sweep angle.
+/// Base of shapes defined in object space: transform, orientation and sweep angle.
 class Quadric : public AnalyticShape {
  public:
   Quadric(const Params& p, const ShapePlacement& placement)
@@ -35,23 +35,23 @@ class Quadric : public AnalyticShape {
   }
 
  protected:
-  /// Uniform over the area in the shape's own space; the normal there is unit.
+  /// A sample uniform over the area in object space; the normal is unit.
   struct Sample {
     ShapePoint point;
     Vec3d normal;
   };
   virtual Sample sample_own(Vec2 u) const = 0;
-  /// In the shape's own space.
+  /// Returns the area in object space.
   virtual double own_area() const = 0;
 
-  /// Unit.
+  /// Returns a unit normal.
   Vec3 to_scene_normal(const Vec3d& n) const {
     const Vec3 ng = normalize_any(to_scene_.normal(to_float(normalize_any(n))));
     return flip_ ? -ng : ng;
   }
-  /// Rounded in the scene's space alone: rays that leave a hit are lifted off by its coordinates there.
+  /// Rounds only in world space, because ray origins are offset by a hit's coordinates there.
   Vec3 to_scene_point(const Vec3d& p) const { return to_float(precise_.point(p)); }
-  /// From those of the shape's own space, at a point with unit normal `n` there.
+  /// Converts derivatives from object space, at a point with unit normal `n` there.
   SurfaceDerivatives to_scene_derivatives(const Vec3d& n, const Vec3d& dpdu, const Vec3d& dpdv, const Vec3d& dndu,
                                           const Vec3d& dndv) const {
     const Vec3 grown = to_scene_.normal(to_float(n));
@@ -65,15 +65,16 @@ class Quadric : public AnalyticShape {
   }
   Vec3d local_point(const Vec3& p) const { return precise_.inverse_point(to_double(p)); }
   Vec3d local_vector(const Vec3& v) const { return precise_.inverse_vector(to_double(v)); }
+  /// Bounds of a transformed box.
   Bounds transformed_box(const Vec3d& lo, const Vec3d& hi) const {
     Bounds bounds;
     for (int corner = 0; corner < 8; ++corner)
       bounds.add(to_scene_point({corner & 1 ? lo.x : hi.x, corner & 2 ? lo.y : hi.y, corner & 4 ? lo.z : hi.z}));
     return bounds;
   }
-  /// As a float, which is what a search that goes on from there compares with.
+  /// Compares as float, as a search that continues behind the hit does.
   static bool within(double t, float t_min, const Ray& ray) { return float(t) > t_min && float(t) < ray.t_max; }
-  /// Azimuth in [0, 2 pi).
+  /// Returns the azimuth in [0, 2 pi).
   static double azimuth(const Vec3d& p) {
     const double phi = std::atan2(p.y, p.x);
     return phi < 0 ? phi + kTau : phi;
@@ -82,7 +83,7 @@ class Quadric : public AnalyticShape {
   const Transform& to_scene() const { return to_scene_; }
 
  private:
-  /// By how much the transform enlarges areas with this unit normal.
+  /// Returns the transform's factor on areas with this unit normal.
   double stretch(const Vec3d& n) const { return double(length(AffineMap{to_scene_.rows()}.normal(to_float(n)))); }
 
   Transform to_scene_;
@@ -91,6 +92,7 @@ class Quadric : public AnalyticShape {
   double phi_max_;
 };
 
+/// Sphere around the origin, optionally cut at two heights and at a sweep angle.
 class Sphere final : public Quadric {
  public:
   Sphere(const Params& p, const ShapePlacement& placement) : Quadric(p, placement), radius_(p.real("radius")) {
@@ -101,13 +103,15 @@ class Sphere final : public Quadric {
       fail(p.where("zmin"), "the sphere is empty: zmin {} and zmax {} with radius {}", z0, z1, radius_);
   }
 
+  /// Ignores the sweep angle.
   Bounds bounds(unsigned) const override {
     return transformed_box({-radius_, -radius_, z_min_}, {radius_, radius_, z_max_});
   }
 
   std::optional<ShapePoint> intersect(unsigned, const Ray& ray, float t_min) const override {
     const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
-    // Distance of the line from the centre first: the discriminant then does not cancel for far origins.
+    // The line's distance from the centre is computed first, so that the discriminant does not cancel for distant
+    // origins.
     const double dd = dot(d, d), b = -dot(o, d) / dd;
     const Vec3d closest = o + d * b;
     const double discriminant = radius_ * radius_ - dot(closest, closest);
@@ -123,6 +127,7 @@ class Sphere final : public Quadric {
     return {};
   }
 
+  /// z is uniform, by Archimedes' theorem.
   Sample sample_own(Vec2 u) const override {
     const double z = z_min_ + double(u.x) * (z_max_ - z_min_), phi = double(u.y) * phi_max();
     const double r = std::sqrt(std::max(0.0, radius_ * radius_ - z * z));
@@ -131,6 +136,7 @@ class Sphere final : public Quadric {
   }
   double own_area() const override { return phi_max() * radius_ * (z_max_ - z_min_); }
 
+  /// As in pbrt-v4: u is the azimuth, v the polar angle.
   SurfaceDerivatives derivatives(const ShapePoint& point) const override {
     const Vec3d p = local_point(point.p);
     const double ring = std::hypot(p.x, p.y), sweep = std::acos(z_max_ / radius_) - std::acos(z_min_ / radius_);
@@ -140,6 +146,7 @@ class Sphere final : public Quadric {
   }
 
  private:
+  /// Returns the point with its parameters, in world space.
   ShapePoint at(const Vec3d& p, double phi, float t) const {
     const double theta = std::acos(std::clamp(p.z / radius_, -1.0, 1.0));
     const double bottom = std::acos(z_min_ / radius_), top = std::acos(z_max_ / radius_);
@@ -150,6 +157,7 @@ class Sphere final : public Quadric {
   double radius_, z_min_ = 0, z_max_ = 0;
 };
 
+/// Flat disk at a height, optionally with a hole and a sweep angle.
 class Disk final : public Quadric {
  public:
   Disk(const Params& p, const ShapePlacement& placement)
@@ -166,6 +174,7 @@ class Disk final : public Quadric {
     return transformed_box({-radius_, -radius_, height_}, {radius_, radius_, height_});
   }
 
+  /// The hit point's z is set exactly, so that it lies in the plane.
   std::optional<ShapePoint> intersect(unsigned, const Ray& ray, float t_min) const override {
     const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
     if (d.z == 0) return {};
@@ -179,7 +188,7 @@ class Disk final : public Quadric {
     return at(p, r, phi, float(t));
   }
 
-  /// A polygon around it.
+  /// Returns a polygon around the disk.
   std::vector<Vec3> outline(unsigned) const override {
     constexpr int kCorners = 16;
     std::vector<Vec3> points;
@@ -190,6 +199,7 @@ class Disk final : public Quadric {
     return points;
   }
 
+  /// The squared radius is uniform.
   Sample sample_own(Vec2 u) const override {
     const double r = std::sqrt(inner_ * inner_ + double(u.x) * (radius_ * radius_ - inner_ * inner_));
     const double phi = double(u.y) * phi_max();
@@ -197,6 +207,7 @@ class Disk final : public Quadric {
   }
   double own_area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_); }
 
+  /// As in pbrt-v4, v decreases from the hole to the rim.
   SurfaceDerivatives derivatives(const ShapePoint& point) const override {
     const Vec3d p = local_point(point.p);
     const double r = std::hypot(p.x, p.y);
@@ -213,6 +224,7 @@ class Disk final : public Quadric {
   Vec3 ng_;
 };
 
+/// Open cylinder around the z axis.
 class Cylinder final : public Quadric {
  public:
   Cylinder(const Params& p, const ShapePlacement& placement)
@@ -223,7 +235,7 @@ class Cylinder final : public Quadric {
     if (z_min_ == z_max_) fail(p.where("zmax"), "the cylinder is empty: zmin and zmax are {}", z_min_);
   }
 
-  /// Those of its rims, which a map makes ellipses of: closer than those of a box that is turned with it.
+  /// Bounds of the transformed rims, which are ellipses: tighter than a transformed box.
   Bounds bounds(unsigned) const override {
     Bounds bounds;
     const Transform::Rows& rows = to_scene().rows();
@@ -235,6 +247,7 @@ class Cylinder final : public Quadric {
     }
     return bounds;
   }
+  /// Corners of the transformed box.
   std::vector<Vec3> outline(unsigned) const override {
     std::vector<Vec3> points;
     for (const double z : {z_min_, z_max_})
@@ -243,11 +256,12 @@ class Cylinder final : public Quadric {
     return points;
   }
 
+  /// Rays parallel to the axis miss.
   std::optional<ShapePoint> intersect(unsigned, const Ray& ray, float t_min) const override {
     const Vec3d o = local_point(ray.o), d = local_vector(ray.d);
     const double dd = d.x * d.x + d.y * d.y;
     if (dd == 0) return {};
-    // As of a sphere: from where the line is closest to the axis.
+    // As for the sphere: starts from the point of the line nearest to the axis.
     const double b = -(o.x * d.x + o.y * d.y) / dd, x = o.x + b * d.x, y = o.y + b * d.y;
     const double discriminant = radius_ * radius_ - (x * x + y * y);
     if (discriminant < 0) return {};
@@ -298,8 +312,8 @@ constexpr Param kPhiMax{.name = "phimax",
 constexpr Interval kLength{1e-30, 1e30};
 constexpr Param kSphere[] = {
     {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Radius."},
-    {.name = "zmin", .kind = ParamKind::real, .doc = "Lower cut; the whole sphere by default."},
-    {.name = "zmax", .kind = ParamKind::real, .doc = "Upper cut; the whole sphere by default."},
+    {.name = "zmin", .kind = ParamKind::real, .doc = "Lower end along z; by default the whole sphere."},
+    {.name = "zmax", .kind = ParamKind::real, .doc = "Upper end along z; by default the whole sphere."},
     kPhiMax,
     kAlphaParam};
 constexpr Param kDisk[] = {
@@ -309,14 +323,14 @@ constexpr Param kDisk[] = {
      .default_value = 0.0,
      .range = kAtLeastZero,
      .doc = "Radius of the hole."},
-    {.name = "height", .kind = ParamKind::real, .default_value = 0.0, .doc = "Place along z."},
+    {.name = "height", .kind = ParamKind::real, .default_value = 0.0, .doc = "Position along z."},
     kPhiMax,
     kAlphaParam};
 
 constexpr Param kCylinder[] = {
     {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Radius."},
-    {.name = "zmin", .kind = ParamKind::real, .default_value = -1.0, .doc = "Lower end."},
-    {.name = "zmax", .kind = ParamKind::real, .default_value = 1.0, .doc = "Upper end."},
+    {.name = "zmin", .kind = ParamKind::real, .default_value = -1.0, .doc = "Lower end along z."},
+    {.name = "zmax", .kind = ParamKind::real, .default_value = 1.0, .doc = "Upper end along z."},
     kPhiMax,
     kAlphaParam};
 

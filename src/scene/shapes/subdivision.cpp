@@ -12,11 +12,11 @@ namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
 
-/// The edge of face f from its corner k to the next is 3 f + k.
+/// Edge 3 f + k of face f leads from its corner k to the next one.
 uint32_t next(uint32_t edge) { return edge % 3 == 2 ? edge - 2 : edge + 1; }
 uint32_t previous(uint32_t edge) { return edge % 3 == 0 ? edge + 2 : edge - 1; }
 
-/// Triangles and which of their edges lie on one another. Positions are in double: they are averaged again and again.
+/// Triangles with adjacency. Positions are double, because they are averaged repeatedly.
 class ControlMesh {
  public:
   using Faces = std::vector<std::array<uint32_t, 3>>;
@@ -24,9 +24,10 @@ class ControlMesh {
   ControlMesh(std::vector<Vec3d> p, Faces faces) : p_(std::move(p)), faces_(std::move(faces)) { connect(); }
 
   const Faces& faces() const { return faces_; }
-  /// Where no surface follows from the mesh.
+  /// The reason why the mesh has no limit surface; "" if it has one.
   const std::string& problem() const { return problem_; }
 
+  /// Returns the mesh after one subdivision step: moved vertices, and new ones on the edges.
   ControlMesh refined() const {
     std::vector<Vec3d> p(p_.size());
     for (uint32_t v = 0; v < p_.size(); ++v)
@@ -48,6 +49,7 @@ class ControlMesh {
     return {std::move(p), std::move(faces)};
   }
 
+  /// Moves vertices to the limit surface, and computes their normals.
   void put_on_limit(TriangleMesh& result) const {
     std::vector<Vec3d> limit(p_.size());
     for (uint32_t v = 0; v < p_.size(); ++v)
@@ -64,9 +66,10 @@ class ControlMesh {
   static double beta(size_t valence) { return valence == 3 ? 3. / 16 : 3. / (8 * double(valence)); }
   uint32_t start_of(uint32_t edge) const { return faces_[edge / 3][edge % 3]; }
   uint32_t end_of(uint32_t edge) const { return start_of(next(edge)); }
-  /// Of a vertex that some face has.
+  /// `v` must be used by a face.
   bool is_boundary(uint32_t v) const { return is_boundary_[v]; }
 
+  /// Finds opposite half-edges by sorting. An edge with more than two faces is an error.
   void connect() {
     struct Edge {
       uint32_t low, high, edge;
@@ -106,7 +109,7 @@ class ControlMesh {
     find_first_edges();
   }
 
-  /// Of a vertex on the boundary the one that runs along it, so that its faces follow from there.
+  /// For boundary vertices, chooses the edge along the boundary, from which all faces of the vertex can be visited.
   void find_first_edges() {
     std::vector<uint32_t> count(p_.size(), 0);
     for (uint32_t e = 0; e < opposite_.size(); ++e) {
@@ -128,7 +131,7 @@ class ControlMesh {
     }
   }
 
-  /// The edges that start at a vertex, face after face around it.
+  /// Calls `visit` for the edges that start at a vertex, in order around it.
   template <class Visit>
   void for_each_edge(uint32_t v, const Visit& visit) const {
     uint32_t e = first_[v];
@@ -138,7 +141,7 @@ class ControlMesh {
     } while (e != kNone && e != first_[v]);
   }
 
-  /// Neighbours in order; on the boundary from one end to the other.
+  /// Returns the neighbours in order; for boundary vertices from one end to the other.
   std::vector<uint32_t> ring(uint32_t v) const {
     std::vector<uint32_t> ring;
     if (first_[v] == kNone) return ring;
@@ -160,17 +163,19 @@ class ControlMesh {
     for (const uint32_t i : around) sum += p_[i] * w;
     return sum;
   }
+  /// Boundary rule: weights the two neighbours along the boundary.
   Vec3d weighed_along(uint32_t v, double weight) const {
     const std::vector<uint32_t> around = ring(v);
     return p_[v] * (1 - 2 * weight) + (p_[around.front()] + p_[around.back()]) * weight;
   }
+  /// Position of the new vertex on an edge; on the boundary, its midpoint.
   Vec3d middle_of(uint32_t e) const {
     const Vec3d &a = p_[start_of(e)], &b = p_[end_of(e)];
     if (opposite_[e] == kNone) return (a + b) * 0.5;
     return (a + b) * (3. / 8) + (p_[start_of(previous(e))] + p_[start_of(previous(opposite_[e]))]) * (1. / 8);
   }
 
-  /// By how much the neighbour i of n in the ring of a vertex on the boundary pulls the tangent that leads inward.
+  /// Returns the weight of neighbour i of n in the inward tangent of a boundary vertex.
   static double inward_pull(size_t i, size_t n) {
     static constexpr double kOfFew[3][4] = {{1, 1}, {0, 1, 0}, {-1, 2, 2, -1}};
     if (n <= 4) return kOfFew[n - 2][i];
@@ -178,8 +183,8 @@ class ControlMesh {
     return i == 0 || i == n - 1 ? -std::sin(angle) : 2 * (1 - std::cos(angle)) * std::sin(double(i) * angle);
   }
 
-  /// From two tangents: sums of the ways to the neighbours, each with its pull. Not unit. As in pbrt-v4 it is on the
-  /// side from which faces wind clockwise, which thereby is the surface's front.
+  /// Returns the normal from two tangents, which are weighted sums of the vectors to the neighbours; not normalized. As
+  /// in pbrt-v4 it points to the side from which faces wind clockwise, which becomes the front.
   Vec3d normal(uint32_t v, const std::vector<Vec3d>& limit) const {
     const std::vector<uint32_t> around = ring(v);
     const size_t n = around.size();
@@ -195,8 +200,8 @@ class ControlMesh {
 
   std::vector<Vec3d> p_;
   Faces faces_;
-  std::vector<uint32_t> opposite_;  ///< by edge, the other one on it; kNone on the boundary
-  std::vector<uint32_t> first_;     ///< by vertex, an edge that starts there; kNone: no face has it
+  std::vector<uint32_t> opposite_;  ///< by edge: the opposite half-edge; kNone on the boundary
+  std::vector<uint32_t> first_;     ///< by vertex: an edge that starts there; kNone: unused
   std::vector<bool> is_boundary_;
   std::string problem_;
 };

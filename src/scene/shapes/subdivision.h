@@ -8,10 +8,10 @@
 
 namespace frond {
 
-/// A control mesh's faces cut into four so many times by Loop's rules, with vertices then put on the limit surface, and
-/// the normals that it has there (Loop 1987; boundaries as Hoppe et al. 1994; in this form Pharr et al., Physically
-/// Based Rendering, section 3.8). Says what is wrong with the mesh, and leaves `result` alone, where no surface follows
-/// from it; "" otherwise. Vertices that no face has are left out.
+/// Loop subdivision of a control mesh: splits faces `levels` times, then moves vertices to the limit surface and
+/// computes limit normals (Loop 1987; boundaries as in Hoppe et al. 1994; in this form Pharr et al., Physically Based
+/// Rendering, section 3.8). Unused vertices are dropped. Returns the error, with `result` unchanged, if the mesh is
+/// invalid; "" otherwise.
 std::string subdivide(const std::vector<Vec3>& cage, const std::vector<std::array<uint32_t, 3>>& faces, int levels,
                       TriangleMesh& result);
 

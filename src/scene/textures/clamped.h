@@ -4,7 +4,7 @@
 
 namespace frond {
 
-/// To [0, 1], number by number.
+/// Clamps each component to [0, 1]. NaN becomes 0.
 inline Float4 clamped_to_unit(Float4 v) {
   constexpr Float4 kOne{1, 1, 1, 1};
   const Float4 positive = larger(Float4{}, v);

@@ -3,11 +3,12 @@
 namespace frond {
 namespace {
 
+/// Infinite vectors are replaced by the first finite one.
 void keep_shorter(Vec3& shortest, const Vec3& v) {
   if (dot(v, v) < dot(shortest, shortest)) shortest = v;
 }
 
-/// By least squares: the (u, v) whose change moves the point nearest to where `step` leads.
+/// Least-squares change of (u, v) that moves the point by `step`.
 Vec2 uv_of(const SurfaceDerivatives& d, const Vec3& step) {
   const float uu = dot(d.dpdu, d.dpdu), uv = dot(d.dpdu, d.dpdv), vv = dot(d.dpdv, d.dpdv);
   const float du = dot(d.dpdu, step), dv = dot(d.dpdv, step), det = uu * vv - uv * uv;
@@ -20,7 +21,7 @@ Vec2 uv_of(const SurfaceDerivatives& d, const Vec3& step) {
 Footprint::Footprint(const Camera& camera, const CameraPlacement& placement, bool between_samples)
     : camera_from_world_(placement.world_from_camera.inverse()), is_point_(false) {
   const float pixels = between_samples ? 0.125f : 1.f;
-  // The shortest steps from corner to corner of the film: textures are rather too sharp than blurred.
+  // Uses the shortest steps over the film, so that textures are sharp rather than blurred.
   constexpr int kPlaces = 512;
   const Vec2 lens{0.5f, 0.5f};
   const auto direction = [this](const Ray& ray) { return normalize_any(camera_from_world_.vector(ray.d)); };
@@ -46,7 +47,7 @@ void Footprint::set(Hit& hit) const {
     at.dp_dx = at.dp_dy = {}, at.duv_dx = at.duv_dy = {};
     return;
   }
-  // In a space where the camera looks along z at the point, rays a step aside meet the plane that touches the surface.
+  // In a space where the camera looks along z at the point, rays of neighbouring samples intersect the tangent plane.
   const Vec3 p = camera_from_world_.point(hit.p);
   const float distance = length(p);
   const Frame frame = Frame::around(distance > 0 ? p / distance : Vec3{0, 0, 1});

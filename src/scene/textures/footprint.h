@@ -5,22 +5,22 @@
 
 namespace frond {
 
-/// How far apart the camera's samples fall on a surface, over which textures are filtered: an eighth of a pixel,
-/// however many samples there are. One made by nothing does not filter. As if the camera looked at each point straight,
-/// also where mirrors lie between: pbrt 4th ed., 10.1.
+/// Approximates the distance between camera samples on a surface, over which textures are filtered: an eighth of a
+/// pixel, independent of the number of samples. The camera is assumed to see each point directly, also behind mirrors
+/// (pbrt 4th ed., 10.1). A default-constructed footprint does not filter.
 class Footprint {
  public:
   Footprint() = default;
-  /// `between_samples`: over an eighth of a pixel; else of a whole one, where each has its samples at its centre.
+  /// `between_samples`: an eighth of a pixel; otherwise a whole pixel, for samples at pixel centres.
   Footprint(const Camera& camera, const CameraPlacement& placement, bool between_samples = true);
-  /// What textures may know of a hit that has its derivatives.
+  /// Sets the footprint of a hit that has derivatives.
   void set(Hit& hit) const;
 
  private:
-  /// From one sample to the next along an axis of the film.
+  /// Change of a camera ray from one sample to the next along an axis of the film.
   struct Step {
     Vec3 origin{INFINITY, INFINITY, INFINITY};     ///< camera space
-    Vec3 direction{INFINITY, INFINITY, INFINITY};  ///< of a unit vector along z
+    Vec3 direction{INFINITY, INFINITY, INFINITY};  ///< relative to a unit vector along z
   };
   Transform camera_from_world_;
   Step x_, y_;

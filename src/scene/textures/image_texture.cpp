@@ -17,6 +17,7 @@ namespace {
 constexpr std::string_view kFilters[] = {"bilinear", "point", "trilinear", "ewa", "EWA"};
 constexpr std::string_view kWraps[] = {"repeat", "black", "clamp", "octahedralsphere"};
 
+/// Anisotropy is limited, because the cost of a lookup grows with it.
 MipMap::Options options_of(const Params& p) {
   using Filter = MipMap::Filter;
   using Wrap = MipMap::Wrap;
@@ -33,6 +34,7 @@ MipMap::Options options_of(const Params& p) {
           .max_anisotropy = float(std::clamp(p.real("maxanisotropy"), 1.0, kMostAnisotropy))};
 }
 
+/// Parses sRGB, linear or "gamma X". Throws InputError.
 ColorEncoding parse_encoding(const Params& p) {
   using Curve = ColorEncoding::Curve;
   const std::string text = p.string("encoding");
@@ -47,8 +49,8 @@ ColorEncoding parse_encoding(const Params& p) {
        text);
 }
 
-/// Of files of this name, whatever the scene says, as in pbrt-v4: images of floats are linear, those of bytes but PNG
-/// are for a display. Nothing for others.
+/// Returns the encoding that the file type determines, as in pbrt-v4: float images are linear, 8-bit images except PNG
+/// are sRGB; nullopt for others.
 std::optional<ColorEncoding> fixed_encoding(std::string_view extension) {
   constexpr std::string_view kOfFloats[] = {".exr", ".hdr", ".pfm"},
                              kOfBytes[] = {".jpg", ".jpeg", ".tga", ".bmp", ".gif", ".pgm", ".ppm"};
@@ -57,7 +59,7 @@ std::optional<ColorEncoding> fixed_encoding(std::string_view extension) {
   return {};
 }
 
-/// What the file's name or the scene says; nothing where the file's values decide.
+/// Returns the encoding by file type or parameter; nullopt if it depends on the file's values.
 std::optional<ColorEncoding> known_encoding(const Params& p, const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -72,28 +74,31 @@ std::optional<ColorEncoding> known_encoding(const Params& p, const std::filesyst
   return {};
 }
 
+/// Used if neither file type nor parameter determines the encoding.
 ColorEncoding default_encoding(const ImageFile& file) {
   return {file.is_encoded ? ColorEncoding::Curve::srgb : ColorEncoding::Curve::linear};
 }
 
-/// Scaled first, then inverted.
+/// Scaling, applied before inversion.
 struct Scaling {
   float scale;
   bool invert;
   explicit Scaling(const Params& p) : scale(float(p.real("scale"))), invert(p.boolean("invert")) {}
   float operator()(float v) const { return invert ? std::max(0.f, 1 - scale * v) : scale * v; }
   Float4 operator()(Float4 v) const { return invert ? larger(Float4{}, 1.f - scale * v) : scale * v; }
+  /// Returns the range of scaled values.
   Interval operator()(const Interval& values) const {
     const double a = double((*this)(float(values.min))), b = double((*this)(float(values.max)));
     return {std::min(a, b), std::max(a, b)};
   }
 };
 
+/// Throws InputError for a scale that overflows.
 [[noreturn]] void refuse_scale(const Params& p) {
   fail(p.where("scale"), "\"scale\" {} makes values of the image infinite", p.real("scale"));
 }
 
-/// One channel of what is there: see the documentation of "imagemap".
+/// Returns one channel; see the documentation of "imagemap".
 Image one_channel(const Params& p, const Image& image) {
   const std::string filter = p.string("filter");
   if (image.channels.size() == 1) return image;
@@ -116,11 +121,11 @@ Image one_channel(const Params& p, const Image& image) {
   return image.selected(rgb, {"R", "G", "B"});
 }
 
-/// A file as textures look it up, whatever they make of its values.
+/// An image file, independent of how textures interpret its values.
 struct LoadedImage {
   MipMap map;
   Interval values{INFINITY, -INFINITY};
-  bool is_red_alone = false;  ///< of three channels
+  bool is_red_alone = false;  ///< three channels, of which only red is used
 
   explicit LoadedImage(MipMap m, bool is_red = false) : map(std::move(m)), is_red_alone(is_red) {
     const int channels = map.channels();
@@ -131,6 +136,7 @@ struct LoadedImage {
   }
 };
 
+/// Channels are decoded before they are averaged.
 Image mean_of_channels(const Image& image, const ColorEncoding& encoding) {
   Image mean(image.width, image.height, {"Y"});
   for (size_t i = 0; i < mean.pixels.size(); ++i) {
@@ -140,6 +146,7 @@ Image mean_of_channels(const Image& image, const ColorEncoding& encoding) {
   return mean;
 }
 
+/// Loads an image for a float texture.
 LoadedImage load_numbers(const Params& p, const std::filesystem::path& path, std::optional<ColorEncoding> known) {
   const ImageFile file = read_finite(path, p.where("filename"));
   const ColorEncoding encoding = known ? *known : default_encoding(file);
@@ -152,7 +159,7 @@ LoadedImage load_numbers(const Params& p, const std::filesystem::path& path, std
   return LoadedImage(MipMap(mean_of_channels(image, encoding), {}, false, options));
 }
 
-/// Of linear colours in a space that the file names.
+/// Converts linear colours from the file's colour space.
 void convert_to_srgb(const ColorSpace& from, Image& image) {
   const Matrix3 m = find_color_space("srgb")->rgb_from_xyz * from.xyz_from_rgb;
   for (size_t i = 0; i + 2 < image.pixels.size(); i += 3) {
@@ -162,15 +169,16 @@ void convert_to_srgb(const ColorSpace& from, Image& image) {
   }
 }
 
+/// Loads an image for a spectrum texture. 8-bit files keep their bytes, to save memory.
 LoadedImage load_colors(const Params& p, const std::filesystem::path& path, std::optional<ColorEncoding> known) {
   ImageFile file = read_rgb(path, p.where("filename"));
   const ColorSpace* space = color_space_of(file);
-  if (!space) p.warn("filename", "the image has a colour space of its own that is not known: sRGB is taken");
+  if (!space) p.warn("filename", "the image's colour space is unknown: sRGB is used");
   if (space && space->name != "srgb" && !file.eight_bit) convert_to_srgb(*space, file.image);
   return LoadedImage(MipMap(file.image, known ? *known : default_encoding(file), file.eight_bit, options_of(p)));
 }
 
-/// Once for all textures of a scene that look it up alike.
+/// Loads once for all textures of a scene with equal parameters.
 template <class Load>
 std::shared_ptr<const LoadedImage> loaded(const Params& p, SharedWork* shared, std::string_view what,
                                           const Load& load) {
@@ -184,6 +192,7 @@ std::shared_ptr<const LoadedImage> loaded(const Params& p, SharedWork* shared, s
   return (shared ? *shared : own).get<LoadedImage>(key, [&] { return load(p, path, encoding); });
 }
 
+/// Image as float texture.
 class ImageFloat final : public FloatTexture {
  public:
   ImageFloat(const Params& p, const TexturePlacement& placement)
@@ -199,6 +208,7 @@ class ImageFloat final : public FloatTexture {
   bool needs_details() const override { return true; }
 
  private:
+  /// Wrap mode black adds 0 to the range.
   void set_range(const Params& p) {
     range_ = scaling_(image_->values);
     if (!std::isfinite(range_.min) || !std::isfinite(range_.max)) refuse_scale(p);
@@ -213,7 +223,7 @@ class ImageFloat final : public FloatTexture {
   Interval range_{};
 };
 
-/// Colours are filtered as they are, and what comes out becomes a smooth reflectance.
+/// Filters RGB values, and converts the result to a smooth reflectance.
 class ImageSpectrum final : public SpectrumTexture {
  public:
   ImageSpectrum(const Params& p, const TexturePlacement& placement)
@@ -224,13 +234,15 @@ class ImageSpectrum final : public SpectrumTexture {
     const Interval values = scaling_(image_->values);
     if (!std::isfinite(values.min) || !std::isfinite(values.max)) refuse_scale(p);
     if (values.min < 0 || values.max > 1)
-      p.warn("filename", fmt::format("the image holds the value {:.3g}, a reflectance lies in 0 to 1: it is clamped",
+      p.warn("filename", fmt::format("the image holds the value {:.3g}, reflectances are clamped to 0 to 1",
                                      values.min < 0 ? values.min : values.max));
   }
+  /// RGB is converted to a smooth reflectance after filtering, by a table.
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
     return table_.sample(color(image_->map.at(mapping_.at(at))), lambda);
   }
   Interval range_nm() const override { return {360, 830}; }
+  /// Computed on first use, because it needs all texels.
   float max_value() const override {
     std::call_once(max_found_, [this] {
       Float4 last{-1, 0, 0, 0};
@@ -260,32 +272,33 @@ class ImageSpectrum final : public SpectrumTexture {
 constexpr Param kImageMap[] = {
     {.name = "filename",
      .kind = ParamKind::string,
-     .doc = "Image file: EXR, PNG, JPEG, HDR or whatever OpenImageIO reads.",
+     .doc = "Image file: EXR, PNG, JPEG, HDR or another format of OpenImageIO.",
      .required = true},
     {.name = "filter",
      .kind = ParamKind::string,
      .default_value = std::string_view("bilinear"),
-     .doc = "Between texels; all take the level of a MIP map that the footprint asks for.",
+     .doc = "Filter between texels. All filters select the MIP map level by the footprint.",
      .choices = kFilters},
     {.name = "maxanisotropy",
      .kind = ParamKind::real,
      .default_value = 8.0,
      .range = kAtLeastZero,
-     .doc = "Of filter ewa: longest footprint over its width; 256 at most."},
+     .doc = "Maximum ratio of footprint length to width, for filter ewa; limited to 256."},
     {.name = "wrap",
      .kind = ParamKind::string,
      .default_value = std::string_view("repeat"),
-     .doc = "Beyond the image's edge.",
+     .doc = "Lookup beyond the image's edge.",
      .choices = kWraps},
     {.name = "encoding",
      .kind = ParamKind::string,
-     .doc = "Of the file's values: sRGB, linear or \"gamma X\"; sRGB by default for 8 bits and PNG, else linear. No "
+     .doc = "Encoding of the file's values: sRGB, linear or \"gamma X\"; by default sRGB for 8 bits and PNG, else "
+            "linear. No "
             "effect on EXR, HDR, PFM; JPEG, TGA and BMP are sRGB."},
     {.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor."},
     {.name = "invert",
      .kind = ParamKind::boolean,
      .default_value = false,
-     .doc = "One minus the scaled value, 0 at least."},
+     .doc = "Use one minus the scaled value, clamped to 0."},
 };
 constexpr auto kImageParams = with_mapping(kImageMap);
 
@@ -297,12 +310,12 @@ std::unique_ptr<Base> make(const Params& p, const TexturePlacement& placement) {
 }  // namespace
 
 extern const FloatTextureInfo image_float_texture{{"float texture", "imagemap",
-                                                   "An image's alpha, or where there is none the mean of its channels; "
-                                                   "filter point, and ewa without alpha: the first.",
+                                                   "Image: its alpha, or without alpha the mean of its channels; "
+                                                   "with filter point, or ewa without alpha, the first channel.",
                                                    "pbrt-v4", kImageParams},
                                                   make<FloatTexture, ImageFloat>};
 extern const SpectrumTextureInfo image_spectrum_texture{
-    {"spectrum texture", "imagemap", "An image's colours as smooth reflectances.", "Jakob and Hanika 2019",
+    {"spectrum texture", "imagemap", "Image: its colours as smooth reflectance spectra.", "Jakob and Hanika 2019",
      kImageParams},
     make<SpectrumTexture, ImageSpectrum>};
 

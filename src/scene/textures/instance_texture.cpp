@@ -3,11 +3,12 @@
 #include "core/error.h"
 #include "core/texture.h"
 
-// A texture that follows the numbers of instances of an object.
+// Texture "instance": a column of the instance table of an object.
 
 namespace frond {
 namespace {
 
+/// Returns the column's value of the innermost instance that has the column.
 class InstanceTexture final : public FloatTexture {
  public:
   explicit InstanceTexture(const Params& p) : column_(p.string("column")) {
@@ -20,6 +21,7 @@ class InstanceTexture final : public FloatTexture {
     elsewhere_ = p.given("default") ? p.real("default") : range_.min;
     if (!range_.contains(elsewhere_)) fail(p.where("default"), "\"default\" {} is outside \"range\"", elsewhere_);
   }
+  /// Values are clamped to "range", which bounds them for materials that compute tables.
   float evaluate(const TexturePoint& at) const override {
     const double value = double(at.instance.find(column_).value_or(float(elsewhere_)));
     return float(std::clamp(value, range_.min, range_.max));
@@ -33,15 +35,15 @@ class InstanceTexture final : public FloatTexture {
 };
 
 constexpr Param kInstanceTexture[] = {
-    {.name = "column", .kind = ParamKind::string, .doc = "Which number of the table.", .required = true},
+    {.name = "column", .kind = ParamKind::string, .doc = "Column of the instance table.", .required = true},
     {.name = "range",
      .kind = ParamKind::real,
-     .doc = "The least and the largest value; what lies beyond is taken as that.",
+     .doc = "Minimum and maximum; values beyond are clamped.",
      .list = true,
      .required = true},
     {.name = "default",
      .kind = ParamKind::real,
-     .doc = "Value where a surface is no instance with such a number; the least of \"range\" by default."}};
+     .doc = "Value on surfaces that are not instances with this column; by default the minimum of \"range\"."}};
 
 std::unique_ptr<FloatTexture> make_instance_texture(const Params& p, const TexturePlacement&) {
   return std::make_unique<InstanceTexture>(p);
@@ -50,7 +52,7 @@ std::unique_ptr<FloatTexture> make_instance_texture(const Params& p, const Textu
 }  // namespace
 
 extern const FloatTextureInfo instance_float_texture{
-    {"float texture", "instance", "A number of the table that an instance of an object comes from.", "",
+    {"float texture", "instance", "Number from the instance table, for each instance of an object.", "",
      kInstanceTexture},
     make_instance_texture};
 

@@ -9,17 +9,19 @@
 namespace frond {
 namespace {
 
+/// Returns the non-negative remainder.
 int modulo(int i, int n) {
   const int r = i % n;
   return r < 0 ? r + n : r;
 }
 
-/// A row's or column's share of new ones, each of which covers as much of the old as any other.
+/// Contribution of old rows or columns to a new one; all new ones cover equal shares.
 struct Share {
   int first;
   std::array<float, 4> weights{};
 };
 
+/// Returns the weights for resampling `from` texels to `to`; sizes need not be powers of two.
 std::vector<Share> shares(int from, int to) {
   std::vector<Share> all;
   const double width = double(from) / to;
@@ -37,8 +39,9 @@ std::vector<Share> shares(int from, int to) {
 float larger_part(Vec2 v) { return std::max(std::abs(v.x), std::abs(v.y)); }
 float length_of(Vec2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
-/// Gaussian over the square of the distance from an ellipse's centre, 0 at its rim: Heckbert 1989.
+/// Gaussian by squared distance from the ellipse's centre, 0 at the edge (Heckbert 1989).
 constexpr size_t kEllipseSteps = 128;
+/// Weights by squared distance, so that no square root is needed.
 std::array<float, kEllipseSteps> make_ellipse_weights() {
   std::array<float, kEllipseSteps> w{};
   for (size_t i = 0; i < w.size(); ++i) w[i] = std::exp(-2 * float(i) / float(w.size() - 1)) - std::exp(-2.f);
@@ -48,6 +51,7 @@ const std::array<float, kEllipseSteps> kEllipseWeights = make_ellipse_weights();
 
 }  // namespace
 
+/// Decodes one value.
 float ColorEncoding::decode(float v) const {
   switch (curve) {
     case Curve::srgb:
@@ -75,6 +79,7 @@ MipMap::MipMap(const Image& image, const ColorEncoding& encoding, bool eight_bit
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back()));
 }
 
+/// Box filter over linear values.
 MipMap::Level MipMap::halved(const Level& from) const {
   Level to{std::max(1, from.width / 2), std::max(1, from.height / 2), {}, {}};
   to.values.reserve(size_t(to.width) * size_t(to.height) * size_t(channels_));
@@ -91,6 +96,7 @@ MipMap::Level MipMap::halved(const Level& from) const {
   return to;
 }
 
+/// Returns the linear value of a stored texel.
 Float4 MipMap::value(const Level& level, size_t index) const {
   if (channels_ == 1) return Float4{level.bytes.empty() ? level.values[index] : decoded_[level.bytes[index]], 0, 0, 0};
   if (level.bytes.empty()) {
@@ -101,6 +107,7 @@ Float4 MipMap::value(const Level& level, size_t index) const {
   return Float4{decoded_[v[0]], decoded_[v[1]], decoded_[v[2]], 0};
 }
 
+/// Applies the wrap mode to coordinates outside of the image.
 Float4 MipMap::texel(const Level& level, int x, int y) const {
   const int w = level.width, h = level.height;
   if (x < 0 || y < 0 || x >= w || y >= h) switch (options_.wrap) {
@@ -109,7 +116,8 @@ Float4 MipMap::texel(const Level& level, int x, int y) const {
       case Wrap::repeat:
         x = modulo(x, w), y = modulo(y, h);
         break;
-      case Wrap::octahedral_sphere:  // beyond an edge comes the same edge, from its other end
+      case Wrap::octahedral_sphere:  // beyond an edge comes the same edge, from its other end  ///< beyond an edge the
+                                     // same edge continues in reverse direction
         if (x < 0 || x >= w) x = x < 0 ? -x - 1 : 2 * w - 1 - x, y = h - 1 - y;
         if (y < 0 || y >= h) y = y < 0 ? -y - 1 : 2 * h - 1 - y, x = w - 1 - x;
         [[fallthrough]];
@@ -120,6 +128,7 @@ Float4 MipMap::texel(const Level& level, int x, int y) const {
   return value(level, size_t(y) * size_t(w) + size_t(x));
 }
 
+/// Interpolates between four texel centres.
 Float4 MipMap::bilinear(const Level& level, Vec2 st) const {
   const float x = st.x * float(level.width) - 0.5f, y = st.y * float(level.height) - 0.5f;
   const float x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;
@@ -129,19 +138,20 @@ Float4 MipMap::bilinear(const Level& level, Vec2 st) const {
   return (1 - fy) * above + fy * below;
 }
 
+/// Coordinates are reduced first, because large values lose precision.
 Float4 MipMap::at(const TextureCoordinates& place) const {
   Vec2 st{place.st.x, 1 - place.st.y};
   if (options_.wrap == Wrap::repeat) {
     st = {st.x - std::floor(st.x), st.y - std::floor(st.y)};
   } else {
-    constexpr float kFar = 8;  // as far beyond the edges as matters
+    constexpr float kFar = 8;  // largest distance from the edges that matters
     st = {std::clamp(st.x, -kFar, kFar), std::clamp(st.y, -kFar, kFar)};
   }
   if (!std::isfinite(st.x) || !std::isfinite(st.y)) return Float4{};
   return filtered({st, {place.dst_dx.x, -place.dst_dx.y}, {place.dst_dy.x, -place.dst_dy.y}});
 }
 
-/// The level is that whose texels are half as wide as the footprint: pbrt 4th ed., 10.4.3.
+/// Selects the level whose texels are half as wide as the footprint (pbrt 4th ed., 10.4.3).
 Float4 MipMap::filtered(const TextureCoordinates& place) const {
   if (options_.filter == Filter::ewa) return of_ellipse(place);
   const float texels = 2 * std::max(larger_part(place.dst_dx), larger_part(place.dst_dy)) * size_;
@@ -158,8 +168,8 @@ Float4 MipMap::filtered(const TextureCoordinates& place) const {
   return (1 - t) * bilinear(levels_[at], place.st) + t * bilinear(levels_[at + 1], place.st);
 }
 
-/// Over the ellipse that the footprint is in texture space, between the two levels on which it is about a texel wide,
-/// and no longer than the anisotropy allows: Heckbert 1989, pbrt 4th ed., 10.4.4.
+/// Filters over the footprint's ellipse, between the two levels on which its minor axis is about a texel, with limited
+/// anisotropy (Heckbert 1989; pbrt 4th ed., 10.4.4).
 Float4 MipMap::of_ellipse(const TextureCoordinates& place) const {
   const float along_x = length_of(place.dst_dx), along_y = length_of(place.dst_dy);
   const float length = std::max(along_x, along_y), narrow = std::min(along_x, along_y);
@@ -173,7 +183,7 @@ Float4 MipMap::of_ellipse(const TextureCoordinates& place) const {
   return (1 - t) * ellipse(finer, place.st, p, q) + t * ellipse(finer + 1, place.st, p, q);
 }
 
-/// Weighs texels by a Gaussian whose covariance is that of the axes p and q and of a texel's own extent, cut off at 1.
+/// Weights texels by a Gaussian with the covariance of the axes p and q plus a texel's extent, truncated at 1.
 Float4 MipMap::ellipse(size_t index, Vec2 st, Vec2 p, Vec2 q) const {
   if (index >= levels_.size()) return value(levels_.back(), 0);
   const Level& level = levels_[index];
@@ -181,7 +191,7 @@ Float4 MipMap::ellipse(size_t index, Vec2 st, Vec2 p, Vec2 q) const {
   const float xx = w * w * (p.x * p.x + q.x * q.x) + 1, yy = h * h * (p.y * p.y + q.y * q.y) + 1;
   const float xy = w * h * (p.x * p.y + q.x * q.y), determinant = xx * yy - xy * xy;
   const float reach_x = std::sqrt(xx), reach_y = std::sqrt(yy);
-  constexpr float kMost = 1 << 12;  // no ellipse of that anisotropy and level is so wide
+  constexpr float kMost = 1 << 12;  // upper bound of an ellipse's width at this anisotropy and level
   if (!(reach_x < kMost && reach_y < kMost && determinant > 0)) return bilinear(level, st);
   constexpr auto kLast = float(kEllipseSteps - 1);
   Float4 sum{};

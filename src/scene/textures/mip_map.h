@@ -9,16 +9,16 @@
 
 namespace frond {
 
-/// From an image file's values to linear ones.
+/// Conversion of an image file's values to linear values.
 struct ColorEncoding {
   enum class Curve : uint8_t { linear, srgb, power };
   Curve curve = Curve::linear;
-  float gamma = 1;  ///< of `power`
+  float gamma = 1;  ///< exponent of `power`
   float decode(float v) const;
 };
 
-/// An image, its half, quarter and so on, of one channel or three: what a texture looks up over a footprint. Texels are
-/// the file's own, whatever its size.
+/// MIP map of an image with one or three channels, for lookups over a footprint. The finest level is the image itself,
+/// of any size.
 class MipMap {
  public:
   enum class Filter : uint8_t { point, bilinear, trilinear, ewa };
@@ -30,13 +30,13 @@ class MipMap {
   };
 
   MipMap() = default;
-  /// `eight_bit`: the values are whole 255ths, which are kept in a byte each.
+  /// `eight_bit`: the values are multiples of 1/255, which are stored as bytes.
   MipMap(const Image& image, const ColorEncoding& encoding, bool eight_bit, const Options& options);
 
-  /// Linear values; v runs up, the image's rows run down.
+  /// Returns filtered linear values. v increases upward; the image's rows run down.
   Float4 at(const TextureCoordinates& place) const;
   int channels() const { return channels_; }
-  /// Calls use(values) for each texel of the image.
+  /// Calls use(values) for each texel of the finest level.
   template <class Use>
   void each(const Use& use) const {
     for (int y = 0; y < levels_[0].height; ++y)
@@ -46,7 +46,7 @@ class MipMap {
  private:
   struct Level {
     int width = 0, height = 0;
-    std::vector<uint8_t> bytes;  ///< encoded; empty: `values`
+    std::vector<uint8_t> bytes;  ///< encoded; empty: `values` is used
     std::vector<float> values;
   };
   Level halved(const Level& level) const;
@@ -60,8 +60,8 @@ class MipMap {
   Options options_;
   int channels_ = 1;
   std::vector<Level> levels_;
-  std::vector<float> decoded_;  ///< of bytes
-  float size_ = 1;              ///< the longer side, texels
+  std::vector<float> decoded_;  ///< linear value of each byte
+  float size_ = 1;              ///< longer side in texels
 };
 
 }  // namespace frond

@@ -7,7 +7,7 @@
 namespace frond {
 namespace {
 
-/// Perlin's permutation.
+/// Perlin's permutation table.
 constexpr std::array<uint8_t, 256> kPermutation{
     151, 160, 137, 91,  90,  15,  131, 13,  201, 95,  96,  53,  194, 233, 7,   225, 140, 36,  103, 30,  69,  142,
     8,   99,  37,  240, 21,  10,  23,  190, 6,   148, 247, 120, 234, 75,  0,   26,  197, 62,  94,  252, 219, 203,
@@ -24,7 +24,7 @@ constexpr std::array<uint8_t, 256> kPermutation{
 
 int permuted(int i) { return kPermutation[size_t(i & 255)]; }
 
-/// The offset's product with one of the directions to a cube's edges.
+/// Returns the dot product of the offset and a gradient toward an edge of the cube.
 float along_gradient(int x, int y, int z, const Vec3& offset) {
   const int h = permuted(permuted(permuted(x) + y) + z) & 15;
   const float u = h < 8 || h == 12 || h == 13 ? offset.x : offset.y;
@@ -34,12 +34,13 @@ float along_gradient(int x, int y, int z, const Vec3& offset) {
 
 float eased(float t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 float mixed(float t, float a, float b) { return (1 - t) * a + t * b; }
+/// Cubic interpolation from 0 to 1.
 float smooth_step(float x, float from, float to) {
   const float t = std::clamp((x - from) / (to - from), 0.f, 1.f);
   return t * t * (3 - 2 * t);
 }
 
-/// Octaves that the footprint leaves.
+/// Returns the number of octaves above the footprint's limit.
 float octaves_left(const SolidCoordinates& at, int octaves) {
   const float square = std::max(dot(at.dp_dx, at.dp_dx), dot(at.dp_dy, at.dp_dy));
   return std::clamp(-1 - std::log2(square) / 2, 0.f, float(octaves));
@@ -47,6 +48,7 @@ float octaves_left(const SolidCoordinates& at, int octaves) {
 
 }  // namespace
 
+/// Coordinates are reduced modulo the period; values that are not finite count as 0.
 float perlin_noise(const Vec3& p) {
   const auto in_period = [](float x) { return std::isfinite(x) ? std::fmod(x, 256.f) : 0.f; };
   const Vec3 at{in_period(p.x), in_period(p.y), in_period(p.z)};
@@ -65,11 +67,11 @@ float perlin_noise(const Vec3& p) {
 
 namespace {
 
-/// `value` of the noise of each octave; `absent` in place of what the footprint leaves out.
+/// Sums `value` of each octave's noise; omitted octaves contribute `absent`.
 template <class Value>
 float sum_of_octaves(const SolidCoordinates& at, float gain, int octaves, float absent, const Value& value) {
   const float left = octaves_left(at, octaves);
-  const int last = int(left);  // which fades away
+  const int last = int(left);  // this octave fades out
   float sum = 0, weight = 1, frequency = 1;
   for (int i = 0; i <= last; ++i, frequency *= 1.99f) {
     if (i > 0) weight *= gain;
@@ -90,6 +92,7 @@ float turbulence(const SolidCoordinates& at, float gain, int octaves) {
   return sum_of_octaves(at, gain, octaves, kMean, [](float noise) { return std::abs(noise); });
 }
 
+/// Sum of the octaves' largest amplitudes.
 double largest_sum(double gain, int octaves) {
   double sum = 0, weight = 1;
   for (int i = 0; i <= octaves; ++i, weight *= std::abs(gain)) sum += weight;

@@ -4,16 +4,16 @@
 
 namespace frond {
 
-/// Perlin's gradient noise, "Improving Noise" 2002: 0 at points of whole numbers, between -1 and 1, of period 256.
+/// Perlin's gradient noise ("Improving Noise", 2002): 0 at integer points, range -1 to 1, period 256.
 float perlin_noise(const Vec3& p);
 
-/// Noise at frequencies that grow by 1.99, each `gain` times as strong as the last. Those whose waves are shorter than
-/// twice the footprint are left out: pbrt 4th ed., 10.7 of the online edition.
+/// Sum of noise octaves whose frequencies grow by 1.99 and whose amplitudes fall by `gain`. Octaves with wavelengths
+/// below twice the footprint are omitted (pbrt 4th ed., 10.7 of the online edition).
 float fractal_noise(const SolidCoordinates& at, float gain, int octaves);
-/// Of magnitudes: what is left out counts with its mean, 0.2, and the first of that twice, as in pbrt-v4.
+/// Sum of magnitudes of octaves. Omitted octaves count as their mean, 0.2; the first of them twice, as in pbrt-v4.
 float turbulence(const SolidCoordinates& at, float gain, int octaves);
 
-/// What neither exceeds.
+/// Returns an upper bound of both functions.
 double largest_sum(double gain, int octaves);
 
 }  // namespace frond

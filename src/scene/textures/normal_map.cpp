@@ -10,12 +10,13 @@
 namespace frond {
 namespace {
 
+/// Whether the vector can be normalized.
 bool is_usable(const Vec3& v) {
   const float square = dot(v, v);
   return square > 0 && std::isfinite(square);
 }
 
-/// Leaves the hit as it is where there is no such normal.
+/// Leaves the hit unchanged if the normal is invalid.
 void set_normal(Hit& hit, const Vec3& n, const Vec3& dpdu, const Vec3& dpdv) {
   const Vec3 unit = normalize_any(n);
   if (!is_usable(unit) || !is_usable(dpdu) || !is_usable(dpdv)) return;
@@ -23,13 +24,14 @@ void set_normal(Hit& hit, const Vec3& n, const Vec3& dpdu, const Vec3& dpdv) {
   hit.derivatives.dpdu = dpdu, hit.derivatives.dpdv = dpdv;
 }
 
-/// The surface's part of its derivatives: none along the shading normal.
+/// Removes the component along the shading normal.
 Vec3 along_surface(const Vec3& v, const Vec3& n) { return v - n * dot(n, v); }
 
-/// As if the surface were moved along its normals by a texture: Blinn 1978; pbrt 4th ed., 10.5.3.
+/// Bump mapping: normals of the surface displaced along its normals by a texture (Blinn 1978; pbrt 4th ed., 10.5.3).
 class BumpMap final : public NormalBend {
  public:
   explicit BumpMap(std::shared_ptr<const FloatTexture> displacement) : displacement_(std::move(displacement)) {}
+  /// Differentiates the displacement by finite differences over the footprint.
   void bend(Hit& hit) const override {
     const Vec3 n = hit.shading.z, u = along_surface(hit.derivatives.dpdu, n),
                v = along_surface(hit.derivatives.dpdv, n);
@@ -53,10 +55,11 @@ class BumpMap final : public NormalBend {
   std::shared_ptr<const FloatTexture> displacement_;
 };
 
-/// Normals from an image, whose z is the surface's shading normal and whose x runs along u: pbrt 4th ed., 10.5.2.
+/// Normal mapping: normals from an image in the frame of the shading normal (z) and dpdu (x) (pbrt 4th ed., 10.5.2).
 class NormalMap final : public NormalBend {
  public:
   explicit NormalMap(const ImageFile& file) : image_(file.image, {}, file.eight_bit, {}) {}
+  /// The map is looked up without filtering, as in pbrt-v4.
   void bend(Hit& hit) const override {
     const Float4 c = image_.at({hit.at.uv, {}, {}});
     const Vec3 local = normalize_any(Vec3{2 * c[0] - 1, 2 * c[1] - 1, 2 * c[2] - 1});
@@ -74,26 +77,29 @@ constexpr Param kBends[] = {
     {.name = "displacement",
      .kind = ParamKind::float_texture,
      .default_value = 0.0,
-     .doc = "Bump map: normals are bent as if the surface were moved by this much along them, in scene units."},
+     .doc = "Bump map: normals of the surface displaced by this height along them, in scene units."},
     {.name = "normalmap",
      .kind = ParamKind::string,
-     .doc = "Image of normals in the frame of (u, v): 2 c - 1 of its linear R, G and B. In place of \"displacement\"."},
+     .doc = "Image of normals in the frame of (u, v): 2 c - 1 of its linear R, G and B. Overrides \"displacement\"."},
 };
 
 bool is_of_bend(const ParsedParam& p) { return std::ranges::find(kBends, p.name, &Param::name) != std::end(kBends); }
 
-/// A BSDF whose frame is another than that in which it is asked. Its own normal alone decides what is seen and lit.
+/// Adapts a BSDF with another shading frame to the frame of its caller. The BSDF's own normal determines the sides of
+/// directions.
 class BentBsdf final : public Bsdf {
  public:
   BentBsdf(const Bsdf& bsdf, const Frame& outer, const Frame& bent)
       : bsdf_(bsdf), to_bent_{bent.to_local(outer.x), bent.to_local(outer.y), bent.to_local(outer.z)} {}
 
   Lobes flags() const override { return bsdf_.flags(); }
+  /// The ratio of cosines corrects for the geometry term of the outer frame.
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const override {
     if (wi.z == 0) return {};
     const Vec3 i = to_bent_.to_world(wi);
     return bsdf_.f(to_bent_.to_world(wo), i, rng) * std::abs(i.z / wi.z);
   }
+  /// Transforms the sampled direction and its value to the outer frame.
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
     auto s = bsdf_.sample(to_bent_.to_world(wo), uc, u, rng);
     if (!s) return s;
@@ -107,6 +113,7 @@ class BentBsdf final : public Bsdf {
     return bsdf_.pdf(to_bent_.to_world(wo), to_bent_.to_world(wi));
   }
   SampledSpectrum index_ratio() const override { return bsdf_.index_ratio(); }
+  /// Weights are shares of the incident light, which do not depend on the frame.
   void scatter(const Vec3& incident, RandomStream& rng, std::span<Scattered> rays) const override {
     bsdf_.scatter(to_bent_.to_world(incident), rng, rays);
     for (Scattered& ray : rays) ray.direction = to_bent_.to_local(ray.direction);
@@ -114,9 +121,10 @@ class BentBsdf final : public Bsdf {
 
  private:
   const Bsdf& bsdf_;
-  Frame to_bent_;  ///< the outer frame's axes, seen in the bent one
+  Frame to_bent_;  ///< axes of the outer frame in the bent one
 };
 
+/// Material with a normal map of its own.
 class BentMaterial final : public Material {
  public:
   BentMaterial(std::shared_ptr<Material> material, std::shared_ptr<const NormalBend> bend)
@@ -139,7 +147,7 @@ class BentMaterial final : public Material {
 
 }  // namespace
 
-extern const PluginInfo normal_bend_params{"material", "", "Normals of any material.", "pbrt-v4", kBends};
+extern const PluginInfo normal_bend_params{"material", "", "Normal and bump maps of any material.", "pbrt-v4", kBends};
 
 ParsedPlugin split_bend(const ParsedPlugin& material, bool of_bend) {
   ParsedPlugin part = material;

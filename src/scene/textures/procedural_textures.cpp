@@ -12,16 +12,17 @@
 namespace frond {
 namespace {
 
-// ---- Two textures, one share ----
+// ---- Mixtures of two textures ----
 
 Interval hull(const Interval& a, const Interval& b) { return {std::min(a.min, b.min), std::max(a.max, b.max)}; }
 
-/// Takes the second's share, 0 to 1, from `Share`, which reads its own parameters.
+/// Mixes two textures. `Share` returns the second one's share, 0 to 1, and reads its own parameters.
 template <class Share>
 class SharedFloat final : public FloatTexture {
  public:
   SharedFloat(const Params& p, const TexturePlacement& placement)
       : share_(p, placement), first_(p.float_texture(Share::kFirst)), second_(p.float_texture(Share::kSecond)) {}
+  /// A texture with share 0 is not evaluated.
   float evaluate(const TexturePoint& at) const override {
     const float t = share_.of_second(at);
     return (t < 1 ? (1 - t) * first_->evaluate(at) : 0) + (t > 0 ? t * second_->evaluate(at) : 0);
@@ -59,8 +60,8 @@ class SharedSpectrum final : public SpectrumTexture {
   std::shared_ptr<const SpectrumTexture> first_, second_;
 };
 
-/// Squares of side 1 in two dimensions, cubes in three, alternately 1 and -1, averaged over a tent as wide as the
-/// footprint: pbrt 4th ed., 10.6 of the online edition.
+/// Alternating squares of side 1 in 2D, cubes in 3D, with values 1 and -1, filtered by a tent as wide as the footprint
+/// (pbrt 4th ed., 10.6 of the online edition).
 class Checkerboard {
  public:
   static constexpr std::string_view kFirst = "tex1", kSecond = "tex2";
@@ -68,6 +69,7 @@ class Checkerboard {
   Checkerboard(const Params& p, const TexturePlacement& placement)
       : is_solid_(p.integer("dimension") == 3), mapping_(p, placement), solid_(placement) {}
   bool needs_details() const { return true; }
+  /// The filtered product of square waves is the product of the filtered ones.
   float of_second(const TexturePoint& point) const {
     if (is_solid_) {
       const SolidCoordinates at = solid_.at(point);
@@ -80,7 +82,7 @@ class Checkerboard {
 
  private:
   static float share(float sign) { return std::clamp(0.5f - 0.5f * sign, 0.f, 1.f); }
-  /// 1 where x lies between an even number and the next, else -1, averaged.
+  /// Filtered square wave: 1 from an even number to the next, else -1.
   static float averaged(float x, float dx, float dy) {
     const float radius = 1.5f * std::max(std::abs(dx), std::abs(dy)), cell = std::floor(x);
     if (!std::isfinite(x) || !std::isfinite(radius)) return 0;
@@ -90,7 +92,7 @@ class Checkerboard {
                   second_integral(double(in_period) - double(radius))) /
                  (double(radius) * double(radius)));
   }
-  /// Of the alternating sign: the first is a triangle wave from 0 to 1, of area 1 in each period of 2.
+  /// Second integral of the square wave. The first is a triangle wave from 0 to 1 with area 1 in each period of 2.
   static double second_integral(double x) {
     const double periods = std::floor(x / 2), up = x - 2 * periods, down = 2 - up;
     return periods + (up < 1 ? up * up / 2 : 1 - down * down / 2);
@@ -101,14 +103,15 @@ class Checkerboard {
   SolidMapping solid_;
 };
 
-/// A disk in about every other cell, placed by noise.
+/// A disk in about every second cell, placed by noise.
 class Dots {
  public:
-  // What "inside" names lies around the dots, in pbrt-v4 and here.
+  // In pbrt-v4, and therefore here, "inside" is the texture around the dots.
   static constexpr std::string_view kFirst = "inside", kSecond = "outside";
 
   Dots(const Params& p, const TexturePlacement& placement) : mapping_(p, placement) {}
   bool needs_details() const { return mapping_.needs_point(); }
+  /// Position and presence of a dot are noise of its cell, with pbrt-v4's constants.
   float of_second(const TexturePoint& point) const {
     const Vec2 st = mapping_.at(point).st;
     const float s = std::floor(st.x + 0.5f), t = std::floor(st.y + 0.5f);
@@ -123,7 +126,7 @@ class Dots {
   TextureMapping mapping_;
 };
 
-/// The first where the normal is along a direction, or against it.
+/// Selects the first texture where the normal is along a direction or opposite to it.
 class DirectionMix {
  public:
   static constexpr std::string_view kFirst = "tex1", kSecond = "tex2";
@@ -133,6 +136,7 @@ class DirectionMix {
     if (direction_ == Vec3{}) fail(p.where("dir"), "\"dir\" has no direction: it is 0");
   }
   bool needs_details() const { return true; }
+  /// Returns 0 for normals parallel to the direction, 1 for perpendicular ones.
   float of_second(const TexturePoint& point) const {
     return std::clamp(1 - std::abs(dot(point.n, direction_)), 0.f, 1.f);
   }
@@ -141,14 +145,15 @@ class DirectionMix {
   Vec3 direction_;
 };
 
-// ---- Between four corners ----
+// ---- Interpolation of four corners ----
 
-/// Beyond the corners the surface goes on, but no higher or lower than they are.
+/// Extrapolates beyond the corners, clamped to their values.
 std::array<float, 4> corner_weights(Vec2 st) {
   return {(1 - st.x) * (1 - st.y), (1 - st.x) * st.y, st.x * (1 - st.y), st.x * st.y};
 }
 constexpr std::array<std::string_view, 4> kCorners{"v00", "v01", "v10", "v11"};
 
+/// Bilinear interpolation of four numbers over (u, v).
 class BilerpFloat final : public FloatTexture {
  public:
   BilerpFloat(const Params& p, const TexturePlacement& placement) : mapping_(p, placement) {
@@ -170,6 +175,7 @@ class BilerpFloat final : public FloatTexture {
   std::array<float, 4> v_{};
 };
 
+/// Bilinear interpolation of four spectra over (u, v).
 class BilerpSpectrum final : public SpectrumTexture {
  public:
   BilerpSpectrum(const Params& p, const TexturePlacement& placement) : mapping_(p, placement) {
@@ -197,14 +203,16 @@ class BilerpSpectrum final : public SpectrumTexture {
   std::array<SpectrumPtr, 4> v_;
 };
 
-// ---- Of noise ----
+// ---- Noise ----
 
+/// Parameters of a noise sum.
 struct Octaves {
   float gain;
   int count;
   explicit Octaves(const Params& p) : gain(float(p.real("roughness"))), count(p.integer("octaves")) {}
 };
 
+/// Fractal Brownian motion.
 class Fbm final : public FloatTexture {
  public:
   Fbm(const Params& p, const TexturePlacement& placement) : mapping_(placement), octaves_(p) {}
@@ -223,6 +231,7 @@ class Fbm final : public FloatTexture {
   Octaves octaves_;
 };
 
+/// Turbulence: octaves of absolute noise.
 class Wrinkled final : public FloatTexture {
  public:
   Wrinkled(const Params& p, const TexturePlacement& placement) : mapping_(placement), octaves_(p) {}
@@ -241,7 +250,7 @@ class Wrinkled final : public FloatTexture {
   Octaves octaves_;
 };
 
-/// Waves on water, higher where a gust passes.
+/// Water waves, higher in gusts.
 class Windy final : public FloatTexture {
  public:
   Windy(const Params&, const TexturePlacement& placement) : mapping_(placement) {}
@@ -264,7 +273,7 @@ class Windy final : public FloatTexture {
   SolidMapping mapping_;
 };
 
-/// Veins: layers along y, bent by noise, in colours along a spline.
+/// Marble: layers along y, perturbed by noise, coloured by a spline.
 class Marble final : public SpectrumTexture {
  public:
   Marble(const Params& p, const TexturePlacement& placement)
@@ -284,7 +293,7 @@ class Marble final : public SpectrumTexture {
   bool needs_details() const override { return true; }
 
  private:
-  /// From 0 to 1, by cubic Bézier curves over four colours in turn; the colours are those of pbrt-v4 (Apache 2.0).
+  /// Spline of cubic Bézier curves over four colours in turn, from 0 to 1; the colours are from pbrt-v4 (Apache 2.0).
   static Float4 color(float t) {
     constexpr Float4 kLight{.58f, .58f, .6f, 0};
     constexpr std::array<Float4, 9> kColors{kLight,
@@ -328,9 +337,10 @@ constexpr Param kDimension{.name = "dimension",
                            .default_value = 2,
                            .range = {2, 3},
                            .doc = "2: squares in (u, v) or another mapping; 3: cubes in the texture's space."};
-constexpr std::string_view kEven = "Where the whole parts of the coordinates have an even sum.", kOdd = "Elsewhere.",
-                           kAround = "Around the dots: so it is in pbrt-v4.", kInDots = "In the dots.",
-                           kAlong = "Where the normal is along \"dir\", or against it.", kAcross = "Across it.";
+constexpr std::string_view kEven = "Value of cells whose integer coordinates have an even sum.",
+                           kOdd = "Value of the other cells.", kAround = "Value around the dots, as in pbrt-v4.",
+                           kInDots = "Value in the dots.", kAlong = "Value for normals parallel to \"dir\".",
+                           kAcross = "Value for normals perpendicular to \"dir\".";
 constexpr Param kCheckerFloat[] = {texture_param("tex1", kFloat, 1, kEven), texture_param("tex2", kFloat, 0, kOdd),
                                    kDimension};
 constexpr Param kCheckerSpectrum[] = {texture_param("tex1", kSpectrum, 1, kEven),
@@ -355,7 +365,7 @@ constexpr auto kBilerpSpectrumParams = with_mapping(kBilerpSpectrum);
 constexpr Param kDirection{.name = "dir",
                            .kind = ParamKind::vector3,
                            .default_value = std::array<double, 3>{0, 1, 0},
-                           .doc = "In the texture's space, of any length."};
+                           .doc = "Direction in texture space, of any length."};
 constexpr Param kDirectionFloat[] = {texture_param("tex1", kFloat, 0, kAlong),
                                      texture_param("tex2", kFloat, 1, kAcross), kDirection};
 constexpr Param kDirectionSpectrum[] = {texture_param("tex1", kSpectrum, 0, kAlong),
@@ -365,27 +375,30 @@ constexpr Param kOctaves{.name = "octaves",
                          .kind = ParamKind::integer,
                          .default_value = 8,
                          .range = {0, 64},
-                         .doc = "How many frequencies; those finer than the footprint are left out."};
+                         .doc = "Number of octaves; octaves finer than the footprint are omitted."};
 constexpr Param kRoughness{.name = "roughness",
                            .kind = ParamKind::real,
                            .default_value = 0.5,
                            .range = {-4, 4},
-                           .doc = "Strength of each octave over that of the one before."};
+                           .doc = "Ratio of amplitudes of consecutive octaves."};
 constexpr Param kNoise[] = {kOctaves, kRoughness};
 constexpr Param kMarble[] = {
     kOctaves,
     kRoughness,
-    {.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor of the point."},
-    {.name = "variation", .kind = ParamKind::real, .default_value = 0.2, .doc = "How far noise bends the layers."}};
+    {.name = "scale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor of the coordinates."},
+    {.name = "variation",
+     .kind = ParamKind::real,
+     .default_value = 0.2,
+     .doc = "Amplitude of the noise that bends the layers."}};
 
 }  // namespace
 
 extern const FloatTextureInfo checkerboard_float_texture{
-    {"float texture", "checkerboard", "Two textures in turn, filtered over the footprint.", "pbrt-v4",
+    {"float texture", "checkerboard", "Checkerboard of two textures, filtered over the footprint.", "pbrt-v4",
      kCheckerFloatParams},
     make<FloatTexture, SharedFloat<Checkerboard>>};
 extern const SpectrumTextureInfo checkerboard_spectrum_texture{
-    {"spectrum texture", "checkerboard", "Two textures in turn, filtered over the footprint.", "pbrt-v4",
+    {"spectrum texture", "checkerboard", "Checkerboard of two textures, filtered over the footprint.", "pbrt-v4",
      kCheckerSpectrumParams},
     make<SpectrumTexture, SharedSpectrum<Checkerboard>>};
 extern const FloatTextureInfo dots_float_texture{
@@ -395,21 +408,25 @@ extern const SpectrumTextureInfo dots_spectrum_texture{
     {"spectrum texture", "dots", "Dots at random places.", "pbrt-v4", kDotsSpectrumParams},
     make<SpectrumTexture, SharedSpectrum<Dots>>};
 extern const FloatTextureInfo direction_mix_float_texture{
-    {"float texture", "directionmix", "Between two textures by the shading normal.", "pbrt-v4", kDirectionFloat},
+    {"float texture", "directionmix", "Mixture of two textures by the shading normal.", "pbrt-v4", kDirectionFloat},
     make<FloatTexture, SharedFloat<DirectionMix>>};
 extern const SpectrumTextureInfo direction_mix_spectrum_texture{
-    {"spectrum texture", "directionmix", "Between two textures by the shading normal.", "pbrt-v4", kDirectionSpectrum},
+    {"spectrum texture", "directionmix", "Mixture of two textures by the shading normal.", "pbrt-v4",
+     kDirectionSpectrum},
     make<SpectrumTexture, SharedSpectrum<DirectionMix>>};
 extern const FloatTextureInfo bilerp_float_texture{
-    {"float texture", "bilerp", "Between four numbers at the corners.", "pbrt-v4", kBilerpFloatParams},
+    {"float texture", "bilerp", "Bilinear interpolation of four numbers at the corners.", "pbrt-v4",
+     kBilerpFloatParams},
     make<FloatTexture, BilerpFloat>};
 extern const SpectrumTextureInfo bilerp_spectrum_texture{
-    {"spectrum texture", "bilerp", "Between four spectra at the corners.", "pbrt-v4", kBilerpSpectrumParams},
+    {"spectrum texture", "bilerp", "Bilinear interpolation of four spectra at the corners.", "pbrt-v4",
+     kBilerpSpectrumParams},
     make<SpectrumTexture, BilerpSpectrum>};
 extern const FloatTextureInfo fbm_float_texture{
-    {"float texture", "fbm", "Noise of many frequencies.", "Perlin 2002, pbrt-v4", kNoise}, make<FloatTexture, Fbm>};
+    {"float texture", "fbm", "Fractal noise: a sum of octaves.", "Perlin 2002, pbrt-v4", kNoise},
+    make<FloatTexture, Fbm>};
 extern const FloatTextureInfo wrinkled_float_texture{
-    {"float texture", "wrinkled", "Magnitudes of noise of many frequencies.", "Perlin 2002, pbrt-v4", kNoise},
+    {"float texture", "wrinkled", "Turbulence: a sum of magnitudes of octaves.", "Perlin 2002, pbrt-v4", kNoise},
     make<FloatTexture, Wrinkled>};
 extern const FloatTextureInfo windy_float_texture{{"float texture", "windy", "Waves and gusts of wind.", "pbrt-v4", {}},
                                                   make<FloatTexture, Windy>};

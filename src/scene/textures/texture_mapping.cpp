@@ -13,6 +13,7 @@ TextureMapping::TextureMapping(const Params& p, const TexturePlacement& placemen
   kind_ = Kind(std::ranges::find(kMappings, p.string("mapping")) - std::begin(kMappings));
 }
 
+/// Computes coordinates and, by the gradients, their change over the footprint.
 TextureCoordinates TextureMapping::of_point(const TexturePoint& point) const {
   const Vec3 p = texture_from_world_.point(point.p);
   Vec2 st;
@@ -29,7 +30,7 @@ TextureCoordinates TextureMapping::of_point(const TexturePoint& point) const {
       ds = around, dt = {0, 0, 1};
       st = {0.5f + phi * turn, p.z};
     } else {
-      // As pbrt-v4 has it: s runs from pole to pole, t around.
+      // As in pbrt-v4, s runs from pole to pole, and t around the axis.
       const float whole = square + p.z * p.z;
       if (!on_axis) ds = Vec3{p.x * p.z / radius, p.y * p.z / radius, -radius} * (kInvPi / whole);
       dt = around;

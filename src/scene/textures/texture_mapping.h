@@ -8,17 +8,16 @@
 
 namespace frond {
 
-/// Where a point lies in a texture of two dimensions, and how that changes over the footprint.
+/// 2D texture coordinates and their derivatives over the footprint.
 struct TextureCoordinates {
   Vec2 st, dst_dx, dst_dy;
 };
 
-/// How textures of two dimensions are laid on surfaces: by the surface's (u, v), or by the point in the texture's
-/// space.
+/// 2D texture mapping: by the surface's (u, v), or by the point in texture space.
 class TextureMapping {
  public:
   TextureMapping(const Params& p, const TexturePlacement& placement);
-  /// Reads the point; (u, v) alone takes none, but for filters.
+  /// Whether the mapping needs the point; mapping uv needs it only for filtering.
   bool needs_point() const { return kind_ != Kind::uv; }
   TextureCoordinates at(const TexturePoint& point) const;
 
@@ -38,16 +37,17 @@ inline TextureCoordinates TextureMapping::at(const TexturePoint& p) const {
   return {scaled(p.uv) + delta_, scaled(p.duv_dx), scaled(p.duv_dy)};
 }
 
-/// A point and the footprint around it, in the texture's space.
+/// A point in texture space and its derivatives over the footprint.
 struct SolidCoordinates {
   Vec3 p, dp_dx, dp_dy;
 };
 
-/// How textures of three dimensions fill space.
+/// 3D texture mapping.
 class SolidMapping {
  public:
   explicit SolidMapping(const TexturePlacement& placement)
       : texture_from_world_(placement.world_from_texture.inverse()) {}
+  /// Transforms point and footprint to texture space.
   SolidCoordinates at(const TexturePoint& p) const {
     const Transform& t = texture_from_world_;
     return {t.point(p.p), t.vector(p.dp_dx), t.vector(p.dp_dy)};
@@ -57,28 +57,34 @@ class SolidMapping {
   Transform texture_from_world_;
 };
 
-/// The parameters of a TextureMapping.
+/// Parameters of TextureMapping.
 inline constexpr std::string_view kMappings[] = {"uv", "planar", "spherical", "cylindrical"};
 inline constexpr std::array<Param, 7> kMappingParams{
     {{.name = "mapping",
       .kind = ParamKind::string,
       .default_value = std::string_view("uv"),
-      .doc = "By the surface's (u, v), or by the point in the space of the Texture directive.",
+      .doc = "Coordinates: the surface's (u, v), or the point in the space of the Texture directive.",
       .choices = kMappings},
-     {.name = "uscale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor of u; of mapping uv."},
-     {.name = "vscale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor of v; of mapping uv."},
-     {.name = "udelta", .kind = ParamKind::real, .default_value = 0.0, .doc = "Added to u; of uv and planar."},
-     {.name = "vdelta", .kind = ParamKind::real, .default_value = 0.0, .doc = "Added to v; of uv and planar."},
+     {.name = "uscale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor of u, for mapping uv."},
+     {.name = "vscale", .kind = ParamKind::real, .default_value = 1.0, .doc = "Factor of v, for mapping uv."},
+     {.name = "udelta",
+      .kind = ParamKind::real,
+      .default_value = 0.0,
+      .doc = "Offset of u, for mappings uv and planar."},
+     {.name = "vdelta",
+      .kind = ParamKind::real,
+      .default_value = 0.0,
+      .doc = "Offset of v, for mappings uv and planar."},
      {.name = "v1",
       .kind = ParamKind::vector3,
       .default_value = std::array<double, 3>{1, 0, 0},
-      .doc = "Of planar: u is the point's product with it."},
+      .doc = "Vector for mapping planar: u is its dot product with the point."},
      {.name = "v2",
       .kind = ParamKind::vector3,
       .default_value = std::array<double, 3>{0, 1, 0},
-      .doc = "Of planar: v is the point's product with it."}}};
+      .doc = "Vector for mapping planar: v is its dot product with the point."}}};
 
-/// A plugin's own parameters and those of its mapping.
+/// Concatenates a plug-in's own parameters and those of its mapping.
 template <size_t N>
 constexpr std::array<Param, N + kMappingParams.size()> with_mapping(const Param (&own)[N]) {
   return [&]<size_t... I, size_t... J>(std::index_sequence<I...>, std::index_sequence<J...>) {

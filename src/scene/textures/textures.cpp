@@ -5,10 +5,12 @@
 namespace frond {
 namespace {
 
+/// Product of two float textures.
 class ScaleFloat final : public FloatTexture {
  public:
   explicit ScaleFloat(const Params& p) : tex_(p.float_texture("tex")), scale_(p.float_texture("scale")) {}
   float evaluate(const TexturePoint& at) const override { return tex_->evaluate(at) * scale_->evaluate(at); }
+  /// Extreme products occur at the corners of the ranges.
   Interval range() const override {
     const Interval a = tex_->range(), b = scale_->range();
     const auto corners = {a.min * b.min, a.min * b.max, a.max * b.min, a.max * b.max};
@@ -20,6 +22,7 @@ class ScaleFloat final : public FloatTexture {
   std::shared_ptr<const FloatTexture> tex_, scale_;
 };
 
+/// Product of a spectrum and a number, clamped to [0, 1] where it may exceed that.
 class ScaleSpectrum final : public SpectrumTexture {
  public:
   explicit ScaleSpectrum(const Params& p) : tex_(p.spectrum_texture("tex")), scale_(p.float_texture("scale")) {
@@ -45,6 +48,7 @@ class ScaleSpectrum final : public SpectrumTexture {
   bool is_clamped_ = false;
 };
 
+/// Linear interpolation of two float textures.
 class MixFloat final : public FloatTexture {
  public:
   explicit MixFloat(const Params& p)
@@ -67,6 +71,7 @@ class MixFloat final : public FloatTexture {
   std::shared_ptr<const FloatTexture> a_, b_, amount_;
 };
 
+/// Linear interpolation of two spectrum textures.
 class MixSpectrum final : public SpectrumTexture {
  public:
   explicit MixSpectrum(const Params& p)
@@ -104,38 +109,38 @@ constexpr Param kAmount{.name = "amount",
                         .kind = ParamKind::float_texture,
                         .default_value = 0.5,
                         .range = {0, 1},
-                        .doc = "Share of the second."};
+                        .doc = "Share of the second texture."};
 constexpr Param kConstantFloat[] = {{.name = "value", .kind = ParamKind::real, .default_value = 1.0, .doc = "Value."}};
 constexpr Param kConstantSpectrum[] = {
     {.name = "value", .kind = ParamKind::albedo, .default_value = 1.0, .doc = "Value."}};
 constexpr Param kScaleFloat[] = {
-    {.name = "tex", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "What to scale."}, kFactor};
+    {.name = "tex", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "Texture to scale."}, kFactor};
 constexpr Param kScaleSpectrum[] = {
-    {.name = "tex", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "What to scale."}, kFactor};
+    {.name = "tex", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "Texture to scale."}, kFactor};
 constexpr Param kMixFloat[] = {
-    {.name = "tex1", .kind = ParamKind::float_texture, .default_value = 0.0, .doc = "First."},
-    {.name = "tex2", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "Second."},
+    {.name = "tex1", .kind = ParamKind::float_texture, .default_value = 0.0, .doc = "First texture."},
+    {.name = "tex2", .kind = ParamKind::float_texture, .default_value = 1.0, .doc = "Second texture."},
     kAmount};
 constexpr Param kMixSpectrum[] = {
-    {.name = "tex1", .kind = ParamKind::spectrum_texture, .default_value = 0.0, .doc = "First."},
-    {.name = "tex2", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "Second."},
+    {.name = "tex1", .kind = ParamKind::spectrum_texture, .default_value = 0.0, .doc = "First texture."},
+    {.name = "tex2", .kind = ParamKind::spectrum_texture, .default_value = 1.0, .doc = "Second texture."},
     kAmount};
 
 }  // namespace
 
 extern const FloatTextureInfo constant_float_texture{
-    {"float texture", "constant", "The same number everywhere.", "pbrt-v4", kConstantFloat}, make_constant_float};
+    {"float texture", "constant", "Constant number.", "pbrt-v4", kConstantFloat}, make_constant_float};
 extern const FloatTextureInfo scale_float_texture{
-    {"float texture", "scale", "One texture times another.", "pbrt-v4", kScaleFloat}, make<FloatTexture, ScaleFloat>};
-extern const FloatTextureInfo mix_float_texture{{"float texture", "mix", "Between two textures.", "pbrt-v4", kMixFloat},
-                                                make<FloatTexture, MixFloat>};
+    {"float texture", "scale", "Product of two textures.", "pbrt-v4", kScaleFloat}, make<FloatTexture, ScaleFloat>};
+extern const FloatTextureInfo mix_float_texture{
+    {"float texture", "mix", "Mixture of two textures.", "pbrt-v4", kMixFloat}, make<FloatTexture, MixFloat>};
 extern const SpectrumTextureInfo constant_spectrum_texture{
-    {"spectrum texture", "constant", "The same spectrum everywhere.", "pbrt-v4", kConstantSpectrum},
-    make_constant_spectrum};
+    {"spectrum texture", "constant", "Constant spectrum.", "pbrt-v4", kConstantSpectrum}, make_constant_spectrum};
 extern const SpectrumTextureInfo scale_spectrum_texture{
-    {"spectrum texture", "scale", "A texture times a number.", "pbrt-v4", kScaleSpectrum},
+    {"spectrum texture", "scale", "Product of a texture and a number.", "pbrt-v4", kScaleSpectrum},
     make<SpectrumTexture, ScaleSpectrum>};
 extern const SpectrumTextureInfo mix_spectrum_texture{
-    {"spectrum texture", "mix", "Between two textures.", "pbrt-v4", kMixSpectrum}, make<SpectrumTexture, MixSpectrum>};
+    {"spectrum texture", "mix", "Mixture of two textures.", "pbrt-v4", kMixSpectrum},
+    make<SpectrumTexture, MixSpectrum>};
 
 }  // namespace frond

@@ -7,7 +7,7 @@
 namespace frond {
 namespace {
 
-// The curves by what OpenColorIO calls gamma and offset. IEC 61966-2-1 and SMPTE ST 170.
+// Transfer functions with the parameters of OpenColorIO's ExponentWithLinearTransform: IEC 61966-2-1, SMPTE ST 170.
 constexpr std::string_view kSrgbCurve = "{gamma: 2.4, offset: 0.055, direction: inverse}";
 constexpr std::string_view kSmpte170Curve = "{gamma: 2.2222222222222222, offset: 0.099, direction: inverse}";
 

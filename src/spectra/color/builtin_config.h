@@ -4,8 +4,8 @@
 
 namespace frond {
 
-/// An OpenColorIO configuration with XYZ (D65) as its reference, every space of color_space.h, and displays sRGB and
-/// SMPTE-C, each with views Standard and Raw.
+/// Returns the text of the built-in OpenColorIO configuration: its reference space is XYZ (D65); it contains all spaces
+/// of color_space.h and the displays sRGB and SMPTE-C, each with the views Standard and Raw.
 std::string builtin_ocio_config();
 
 }  // namespace frond

@@ -33,7 +33,7 @@ OCIO::ConstConfigRcPtr read_config(const std::filesystem::path& path) try {
   fail({}, "cannot read the OpenColorIO configuration \"{}\" (environment variable OCIO): {}", path.string(), e.what());
 }
 
-/// Processors that run one after the other.
+/// Conversions that are applied one after the other.
 using Chain = std::vector<OCIO::ConstProcessorRcPtr>;
 
 void run(const Chain& chain, std::span<float> rgb) {
@@ -45,7 +45,7 @@ void run(const Chain& chain, std::span<float> rgb) {
   }
 }
 
-/// Names by index, as OpenColorIO lists things.
+/// Returns the names for the indices 0 to count - 1, which OpenColorIO returns one at a time.
 template <class Get>
 std::vector<std::string> list(int count, const Get& get) {
   std::vector<std::string> names;
@@ -61,7 +61,7 @@ void require(std::string_view what, std::string_view name, const std::vector<std
   if (std::find(known.begin(), known.end(), name) == known.end()) fail_unknown(what, name, known);
 }
 
-/// A space of one of the configurations.
+/// Colour space of one of the two configurations, built-in and user's.
 struct Place {
   OCIO::ConstConfigRcPtr config;
   std::string space;
@@ -78,6 +78,7 @@ class ColorManager::Impl {
 
   const std::string& source() const { return source_; }
 
+  /// Conversion between two spaces; between two configurations it goes through ACES2065-1.
   Chain conversion(std::string_view from, std::string_view to) const {
     Place a = find(from), b = find(to);
     if (a.config == b.config) return {a.config->getProcessor(a.space.c_str(), b.space.c_str())};
@@ -85,7 +86,7 @@ class ColorManager::Impl {
             b.config->getProcessor(aces(b.config).c_str(), b.space.c_str())};
   }
 
-  /// Of a display and one of its views, with the defaults in place of empty ones.
+  /// Returns the names of a display and one of its views; the configuration's defaults for empty names.
   std::pair<std::string, std::string> names(std::string_view display_or_empty, std::string_view view_or_empty) const {
     const std::string display(display_or_empty.empty() ? config_->getDefaultDisplay() : display_or_empty);
     const std::vector<std::string> known_views = views(display);
@@ -99,7 +100,7 @@ class ColorManager::Impl {
     Place source = find(from);
     Chain chain;
     if (source.config != config_ && !knows_aces(config_) && config_->getColorSpace(source.space.c_str())) {
-      source.config = config_;  // a small configuration that at least calls something by that name
+      source.config = config_;  // without ACES2065-1, use the configuration's own space of that name
     } else if (source.config != config_) {
       const std::string common = aces(config_);
       chain = conversion(from, common);
@@ -129,7 +130,8 @@ class ColorManager::Impl {
   }
 
  private:
-  /// Our names mean ours, whatever the user's configuration calls so: the pixels of an EXR do not depend on it.
+  /// Built-in names have priority over equal names of the user's configuration, so that the pixels of an EXR do not
+  /// depend on the configuration.
   Place find(std::string_view name) const {
     const std::string space(name);
     for (const auto& config : {builtin_, config_})
@@ -142,7 +144,7 @@ class ColorManager::Impl {
     return std::any_of(kAcesNames.begin(), kAcesNames.end(), [&](auto name) { return config->getColorSpace(name); });
   }
 
-  /// What a configuration calls ACES2065-1, by which two configurations meet.
+  /// Returns a configuration's name of ACES2065-1, the space by which two configurations are connected.
   std::string aces(const OCIO::ConstConfigRcPtr& config) const {
     for (const char* name : kAcesNames)
       if (config->getColorSpace(name)) return name;
@@ -158,7 +160,7 @@ class ColorManager::Impl {
 
 namespace {
 
-/// OpenColorIO's own complaints become ours.
+/// Converts exceptions of OpenColorIO to InputError.
 template <class Make>
 Chain build(const Make& make) try {
   return make();

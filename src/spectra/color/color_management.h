@@ -9,34 +9,39 @@
 
 namespace frond {
 
-/// Colour conversions by OpenColorIO. Spaces are those of the configuration; linear spaces of color_space.h and XYZ are
-/// known with any configuration that says what ACES2065-1 is (role aces_interchange, or a space of that name).
-/// Every function throws InputError that names what there is.
+/// Colour conversions by OpenColorIO. The spaces are those of the configuration, and in addition the linear spaces of
+/// color_space.h and XYZ if the configuration defines ACES2065-1 (role aces_interchange, or a space of that name), by
+/// which the two are connected. Every function throws InputError for an unknown name, with a suggestion.
 class ColorManager {
  public:
-  /// `config` is a file; empty: the one that the environment variable OCIO names, or else the built-in one.
+  /// `config` is a configuration file; empty: the file named by the environment variable OCIO, else the built-in one.
+  /// Throws InputError if the file cannot be read.
   explicit ColorManager(const std::filesystem::path& config = {});
   ~ColorManager();
   ColorManager(ColorManager&&) noexcept;
   ColorManager& operator=(ColorManager&&) noexcept;
 
-  /// In place, pixels of three channels. No clamping.
+  /// Converts pixels of three interleaved channels in place, from one space to another. Values are not clamped.
   void convert(std::span<float> rgb, std::string_view from, std::string_view to) const;
 
-  /// In place: from a colour space to what a display's view shows. Empty names: the configuration's defaults.
+  /// Converts pixels of three interleaved channels in place, from a colour space to the encoded values of a display's
+  /// view. Empty names select the configuration's default display and view.
   void display(std::span<float> rgb, std::string_view from, std::string_view display, std::string_view view) const;
 
-  /// Throws what `display` would throw, before there are pixels.
+  /// Throws what `display` would throw, so that a wrong choice is reported before an image is rendered.
   void check_display(std::string_view from, std::string_view display, std::string_view view) const;
 
-  /// Throws what `display` would throw for a display or a view that is not there.
+  /// Throws InputError if the display or the view does not exist; the colour space is not checked.
   void check_names(std::string_view display, std::string_view view) const;
 
+  /// Names of all colour spaces: the configuration's, then those of color_space.h that it lacks.
   std::vector<std::string> spaces() const;
+  /// Names of the configuration's displays.
   std::vector<std::string> displays() const;
+  /// Names of a display's views.
   std::vector<std::string> views(std::string_view display) const;
 
-  /// The configuration's file, or "built-in".
+  /// Path of the configuration, or "built-in".
   const std::string& source() const;
 
  private:

@@ -5,7 +5,9 @@
 namespace frond {
 namespace {
 
+/// White of ACES (SMPTE ST 2065-1).
 constexpr Chromaticity kAcesWhite{0.32168, 0.33767};
+/// The primaries of XYZ itself, with the equal-energy white.
 constexpr Chromaticities kXyz{{1, 0}, {0, 1}, {0, 0}, {1.0 / 3, 1.0 / 3}};
 
 ColorSpace make(std::string_view name, std::string_view linear_name, const Chromaticities& c) {

@@ -13,9 +13,10 @@ namespace {
 constexpr int kFirst_nm = int(kCieRange_nm.min), kLast_nm = int(kCieRange_nm.max);
 constexpr double kTableFirst_nm = 380, kTableStep_nm = 10;
 
-/// Values of one line, from 380 nm on.
+/// Values of one line of a table, from 380 nm in steps of 10 nm.
 using Row = std::vector<double>;
 
+/// Value at a wavelength by linear interpolation; 0 outside the table.
 double linear_at(const Row& row, double nm) {
   const double x = (nm - kTableFirst_nm) / kTableStep_nm;
   if (x < 0 || x > double(row.size() - 1)) return 0;
@@ -23,7 +24,7 @@ double linear_at(const Row& row, double nm) {
   return std::lerp(row[i], row[i + 1], x - double(i));
 }
 
-/// The lines that begin so, without that and without comments.
+/// Returns the values of all lines that begin with `beginning`; comment lines are skipped.
 std::vector<Row> rows_of(std::string_view csv, std::string_view beginning) {
   std::vector<Row> rows;
   for (size_t begin = 0; begin < csv.size();) {
@@ -57,7 +58,7 @@ std::vector<Triple> camera(std::string_view name) {
   return curves;
 }
 
-/// To light from a surface; from a white one where none is given.
+/// Returns the sensor's response to light that a surface reflects; without `reflectance` it is white.
 Triple responses(const std::vector<Triple>& curves, const Spectrum& illuminant, const Row* reflectance = nullptr) {
   Triple sum{};
   for (size_t i = 0; i < curves.size(); ++i) {
@@ -68,7 +69,8 @@ Triple responses(const std::vector<Triple>& curves, const Spectrum& illuminant, 
   return sum;
 }
 
-/// From a camera's responses to XYZ: patches under its white are to look as they do to the observer under D65.
+/// Returns the matrix from a camera's response to XYZ that best maps (least squares) the patches of the ColorChecker
+/// under the camera's white to their XYZ under D65.
 Matrix3 xyz_from_camera(const std::vector<Triple>& curves, const Spectrum& white) {
   const std::vector<Triple> eye = observer();
   const SpectrumPtr d65 = unit_d65();
@@ -85,6 +87,7 @@ Matrix3 xyz_from_camera(const std::vector<Triple>& curves, const Spectrum& white
   return products * inverse(squares);
 }
 
+/// Returns the chromatic adaptation of the observer's XYZ from a white to D65.
 Matrix3 xyz_from_observer(const Spectrum& white) {
   const Triple xyz = to_xyz(white);
   return bradford({xyz[0] / xyz[1], 1, xyz[2] / xyz[1]}, kD65White.xyz());

@@ -5,7 +5,7 @@
 namespace frond {
 namespace {
 
-/// The smallest luminance, and distance of one from 1, that is told from 0.
+/// Luminances are clamped to [kLeast, 1 - kLeast], so that sqrt(Y (1 - Y)) is not 0.
 constexpr float kLeast = 1e-6f;
 
 float clamped_luminance(Float4 weights, Float4 rgb) { return std::clamp(sum(weights * rgb), kLeast, 1 - kLeast); }
@@ -26,12 +26,12 @@ ReflectanceTable::ReflectanceTable(const ColorSpace& space) : nodes_(size_t(3 * 
     for (int j = 0; j < kNodes; ++j)
       for (int i = 0; i < kNodes; ++i) {
         if (i == kNodes - 1 && j == kNodes - 1) continue;  // grey
-        // From bright to dark each fit begins at the one before, which differs little but for its size.
+        // From bright to dark, each fit starts at the scaled result of the one before, which is close to its own.
         Float4 d{};
         bool is_first = true;
         for (int k = kNodes - 1; k >= 0; --k) {
           const double z = std::max(1 - share(kNodes - 1 - k), kDarkest);
-          // Colours that are told by their complement are in no cell that this is a corner of.
+          // Skip nodes of which all adjacent cells contain only colours that `at` computes by their complement.
           if (k > 0 && (1 - share(kNodes - k)) * (1 + share(std::max(std::min(i, j) - 1, 0))) > 1) continue;
           Triple rgb{};
           rgb[size_t(channel)] = z;
@@ -50,17 +50,18 @@ ReflectanceTable::ReflectanceTable(const ColorSpace& space) : nodes_(size_t(3 * 
 
 namespace {
 
+/// Cell of an axis and the position in it, from 0 to 1.
 struct Cell {
   int index;
   float t;
 };
 
-/// Where nodes are squares.
+/// Cell on an axis whose nodes are at (i / steps)^2: dense at 0.
 Cell cell_of(float share, int nodes) {
   const int steps = nodes - 1, index = std::min(int(std::sqrt(share) * float(steps)), steps - 1);
   return {index, (share * float(steps * steps) - float(index * index)) / float(2 * index + 1)};
 }
-/// Where what is left to 1 is squares, so that there are more nodes at pure and bright colours.
+/// Cell on an axis whose nodes are at 1 - (i / steps)^2: dense at 1, for pure and bright colours.
 Cell cell_of_size(float size, int nodes) {
   const Cell rest = cell_of(1 - size, nodes);
   return {nodes - 2 - rest.index, 1 - rest.t};
@@ -71,7 +72,7 @@ Cell cell_of_size(float size, int nodes) {
 SigmoidPolynomial ReflectanceTable::at(Float4 rgb) const {
   const float largest = std::max({rgb[0], rgb[1], rgb[2]}), smallest = std::min({rgb[0], rgb[1], rgb[2]});
   if (largest + smallest <= 1) return dark(rgb);
-  // What a reflectance leaves shows what its colour leaves of white.
+  // XYZ is linear in the reflectance: the complement of a reflectance has the complement of its colour.
   return dark(Float4{1 - rgb[0], 1 - rgb[1], 1 - rgb[2], 0}).complement();
 }
 

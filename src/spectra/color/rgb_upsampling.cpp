@@ -10,8 +10,8 @@ namespace {
 
 constexpr Interval kNotNegative{0, std::numeric_limits<double>::infinity()};
 
-/// What reflectance 1 at a node, falling linearly to 0 at its neighbours, adds to XYZ under D65 of luminance 1. Nodes
-/// stand at equal steps over kCieRange_nm, of whole nanometres.
+/// XYZ under D65 of luminance 1 of the hat functions at the nodes: reflectances that are 1 at a node and fall linearly
+/// to 0 at its neighbours. Nodes are spaced by a whole number of nanometres over kCieRange_nm.
 struct Response {
   std::vector<Triple> at_node;
   double step_nm;
@@ -19,7 +19,7 @@ struct Response {
   explicit Response(int step) : step_nm(step) {
     const int length_nm = int(kCieRange_nm.max - kCieRange_nm.min);
     at_node.resize(static_cast<size_t>(length_nm / step) + 1);
-    const double offset = 0.5 / std::sqrt(3.0);  // Gauss's rule of two points, exact for what is piecewise cubic
+    const double offset = 0.5 / std::sqrt(3.0);  // two-point Gauss rule, exact for cubics
     for (int nm = 0; nm < length_nm; ++nm)
       for (const double side : {-offset, offset}) add(nm + 0.5 + side, 0.5);
   }
@@ -35,17 +35,18 @@ struct Response {
   }
 };
 
-/// A few nodes to come near with, and enough to follow the steep edges of pure colours.
+/// Response with few nodes, for the first iterations.
 const Response& coarse_response() {
   static const Response r(5);
   return r;
 }
+/// Response with enough nodes for the steep edges of the reflectances of pure colours.
 const Response& fine_response() {
   static const Response r(1);
   return r;
 }
 
-/// Difference from a colour, and how it changes with the coefficients.
+/// Difference between the XYZ of a reflectance and the target, and its derivatives by the coefficients.
 struct Residual {
   Triple xyz;
   Matrix3 jacobian;
@@ -72,7 +73,8 @@ Residual residual(const Response& response, const Triple& c, const Triple& targe
   return r;
 }
 
-/// Levenberg's and Marquardt's step: Gauss-Newton's where damping is 0, short and downhill where it is large.
+/// Returns the Levenberg-Marquardt step: the Gauss-Newton step for damping 0, a short step along the negative gradient
+/// for large damping.
 Triple step(const Residual& r, double damping) {
   const auto& j = r.jacobian.row;
   Matrix3 normal;
@@ -86,20 +88,20 @@ Triple step(const Residual& r, double damping) {
   return inverse(normal) * gradient;
 }
 
-/// The flat reflectance of luminance y: exact for greys, and not far off for anything.
+/// Returns the coefficients of the flat reflectance of luminance y, the start of the iteration; exact for greys.
 Triple start(double y) {
   y = std::clamp(y, 1e-6, 1 - 1e-6);
   return {0, 0, (y - 0.5) / std::sqrt(y * (1 - y))};
 }
 
-/// Beyond this the edges of the reflectance are narrower than the nodes of the integral.
+/// With larger coefficients the edges of the reflectance are narrower than the spacing of the nodes.
 constexpr double kLargestCoefficient = 2000;
 
 bool is_smooth(const Triple& c) {
   return std::all_of(c.begin(), c.end(), [](double x) { return std::abs(x) <= kLargestCoefficient; });
 }
 
-/// Moves the coefficients `c` toward the target; returns the error that remains.
+/// Improves the coefficients `c` by Levenberg-Marquardt steps; returns the remaining error, the largest in X, Y or Z.
 double improve(const Response& response, const Triple& target, double damping, Triple& c) {
   constexpr double kSolved = 1e-7, kStuck = 1e9;
   constexpr int kMostSteps = 50;
@@ -115,8 +117,8 @@ double improve(const Response& response, const Triple& target, double damping, T
   return best.largest();
 }
 
-/// XYZ of a reflectance's colour, relative to the white of the tables, which differs from the standards' rounded one in
-/// the fourth digit: so grey is flat.
+/// Returns the XYZ that a reflectance of this colour must have. It is adapted to the white of the tabulated D65, which
+/// differs in the fourth digit from the rounded one of the standards; without this, greys would not be flat.
 Triple target_xyz(const ColorSpace& space, const Triple& rgb) {
   static const Matrix3 to_table_white = bradford(kD65White.xyz(), to_xyz(*unit_d65()));
   return to_table_white * (space.xyz_from_rgb * rgb);
@@ -124,8 +126,10 @@ Triple target_xyz(const ColorSpace& space, const Triple& rgb) {
 
 bool is_grey(const Triple& rgb) { return rgb[0] == rgb[1] && rgb[1] == rgb[2]; }
 
+/// Grey of any size.
 SpectrumPtr flat(double value) { return std::make_shared<ConstantSpectrum>(static_cast<float>(value), kCieRange_nm); }
 
+/// Multiple of a smooth reflectance.
 class ReflectanceSpectrum final : public Spectrum {
  public:
   ReflectanceSpectrum(SigmoidPolynomial s, double scale) : reflectance_(s), scale_(static_cast<float>(scale)) {}
@@ -138,6 +142,7 @@ class ReflectanceSpectrum final : public Spectrum {
   float scale_;
 };
 
+/// Multiple of a smooth reflectance times D65 of luminance 1.
 class IlluminantSpectrum final : public Spectrum {
  public:
   IlluminantSpectrum(SigmoidPolynomial s, double scale)
@@ -162,8 +167,8 @@ void check(const ColorSpace& space, const Triple& rgb, Interval range, const Loc
       fail(where, "{} lies outside {} to {}", shown(space, rgb), range.min, range.max);
 }
 
-/// The reflectance of a colour that has been divided by `scale`; twice the largest channel at first, so that
-/// reflectances have room for it, and more for colours so pure that they take a narrow band.
+/// Fit of a colour divided by `scale`. The scale starts at twice the largest channel and is doubled until a reflectance
+/// of the scaled colour exists: purer colours need narrower and therefore darker reflectances.
 struct ScaledFit {
   SigmoidFit fit;
   double scale;

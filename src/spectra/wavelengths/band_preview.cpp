@@ -9,7 +9,7 @@ namespace frond {
 std::vector<Triple> xyz_of_bands(std::span<const Band> bands) {
   if (bands.size() < 4 || bands.front().nm > 450 || bands.back().nm < 650) return {};
   std::vector<Triple> weights(bands.size());
-  size_t above = 0;
+  size_t above = 0;  // first band at or above nm
   constexpr double kStep_nm = 0.1;
   for (double nm = kCieRange_nm.min + kStep_nm / 2; nm < kCieRange_nm.max; nm += kStep_nm) {
     while (above < bands.size() && bands[above].nm < nm) ++above;

@@ -8,9 +8,9 @@
 
 namespace frond {
 
-/// Shares in CIE XYZ of a unit of radiance in each band, such that the spectrum between the bands' wavelengths is
-/// linear and beyond them that of the nearest. Empty where the bands say too little of what the eye sees: fewer than
-/// four, or none below 450 and above 650 nm.
+/// Returns for each band the CIE XYZ of a unit of radiance in it. The spectrum is taken as linear between the bands'
+/// wavelengths and as constant beyond the first and the last. Empty if the bands do not cover the visible: fewer than
+/// four, none at or below 450 nm, or none at or above 650 nm. `bands` ascend in wavelength.
 std::vector<Triple> xyz_of_bands(std::span<const Band> bands);
 
 }  // namespace frond

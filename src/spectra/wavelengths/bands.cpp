@@ -28,19 +28,19 @@ constexpr Param kParams[] = {
      .default_value = 400.0,
      .unit = "nm",
      .range = kAllowed_nm,
-     .doc = "First of evenly spaced wavelengths, where no others are given."},
+     .doc = "First of evenly spaced wavelengths, if no list is given."},
     {.name = "lambdamax",
      .kind = ParamKind::real,
      .default_value = 700.0,
      .unit = "nm",
      .range = kAllowed_nm,
-     .doc = "End of these; counts as one where the steps meet it."},
+     .doc = "Last of the evenly spaced wavelengths; included if a step ends there."},
     {.name = "step",
      .kind = ParamKind::real,
      .default_value = 10.0,
      .unit = "nm",
      .range = {0.1, 2200},
-     .doc = "Step of these."},
+     .doc = "Step of the evenly spaced wavelengths."},
 };
 
 std::vector<double> even_wavelengths(const Params& p) {
@@ -60,8 +60,8 @@ void check_choice(const Params& p) {
       fail(p.where(name), "\"{}\" is for evenly spaced wavelengths: others are given", name);
 }
 
-/// Any number of bands. A path carries four of them at most, in turn from sample to sample; each channel is the mean
-/// over the samples that saw it.
+/// Any number of spectral bands. A path carries at most four of them; consecutive samples carry different bands in
+/// turn. Each channel is the mean over the samples that carried its band.
 class Bands final : public WavelengthStrategy {
  public:
   explicit Bands(const Params& p) {
@@ -80,13 +80,14 @@ class Bands final : public WavelengthStrategy {
     find_range();
   }
 
-  /// A run of samples may then miss a band; sample_in_turn does not.
+  /// Chooses the bands at random: a few samples may miss a band, unlike those of sample_in_turn.
   SampledWavelengths sample(float u) const override {
     const double turn = double(u) * double(bands_.size());
     return sample_in_turn(static_cast<uint64_t>(turn), static_cast<float>(turn - std::floor(turn)));
   }
 
-  /// The lanes lie a quarter of the bands apart: what is common to them is then noise of brightness, not of colour.
+  /// The lanes are a quarter of the bands apart, so that noise common to the lanes of a path changes the brightness of
+  /// a pixel and not its colour.
   SampledWavelengths sample_in_turn(uint64_t index, float u) const override {
     const size_t count = bands_.size(), lanes = std::min<size_t>(count, kLanes);
     SampledWavelengths lambda;
@@ -129,7 +130,7 @@ class Bands final : public WavelengthStrategy {
     }
   }
 
-  /// Channels are known by their wavelength.
+  /// Channels are named after their wavelength, which must therefore be unique.
   void sort_and_check(const Location& where) {
     if (bands_.size() > kMostBands) fail(where, "these are {} bands, {} is the limit", bands_.size(), kMostBands);
     std::ranges::sort(bands_, {}, &Band::nm);
@@ -146,8 +147,8 @@ class Bands final : public WavelengthStrategy {
   }
 
   std::vector<Band> bands_;                ///< ascending
-  std::vector<float> listed_nm_;           ///< of the bands; empty where they have responses
-  std::vector<ResponseSampler> samplers_;  ///< of the responses
+  std::vector<float> listed_nm_;           ///< wavelengths of the bands; empty if they have responses
+  std::vector<ResponseSampler> samplers_;  ///< one for each band with a response
   Interval range_nm_{};
 };
 
@@ -155,7 +156,7 @@ class Bands final : public WavelengthStrategy {
 
 extern const WavelengthsInfo bands_wavelengths{
     {"wavelengths", "bands",
-     "Any wavelengths or responses of a sensor, from 300 to 2500 nm: a channel for each, in an EXR file.",
+     "Bands at any wavelengths or with the responses of a sensor, from 300 to 2500 nm, as channels of an EXR file.",
      "Imaging spectrometers", kParams},
     [](const Params& p) -> std::unique_ptr<WavelengthStrategy> { return std::make_unique<Bands>(p); }};
 

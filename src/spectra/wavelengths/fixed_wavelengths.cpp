@@ -3,6 +3,7 @@
 namespace frond {
 namespace {
 
+/// Spectrum with its values at fixed wavelengths stored.
 class KnownSpectrum final : public Spectrum {
  public:
   KnownSpectrum(SpectrumPtr spectrum, std::span<const float> nm) : spectrum_(std::move(spectrum)) {

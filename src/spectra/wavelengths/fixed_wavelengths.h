@@ -6,8 +6,8 @@
 
 namespace frond {
 
-/// The same spectrum, which knows its values at these wavelengths (nm, kLanes at most): where every path carries them,
-/// nothing has to be looked up.
+/// Returns the spectrum with its values at these wavelengths (nm) stored: `sample` needs no look-up for paths that
+/// carry exactly them. Returns the spectrum itself if there are no wavelengths or more than kLanes.
 SpectrumPtr known_at(SpectrumPtr spectrum, std::span<const float> nm);
 
 }  // namespace frond

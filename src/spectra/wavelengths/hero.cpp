@@ -25,7 +25,7 @@ constexpr Param kMax{.name = "lambdamax",
 constexpr Param kSensor{.name = "sensor",
                         .kind = ParamKind::string,
                         .default_value = kFilmSensors[0],
-                        .doc = "What the film is made of; the scene's film says so too.",
+                        .doc = "Sensor of the film; the scene's Film can set it too.",
                         .choices = kFilmSensors};
 constexpr Param kWhiteBalance{.name = "whitebalance",
                               .kind = ParamKind::real,
@@ -33,12 +33,12 @@ constexpr Param kWhiteBalance{.name = "whitebalance",
                               .unit = "K",
                               .range = {0, 1e5},
                               .doc =
-                                  "Colour temperature of the daylight that is to be white; 0: of cameras 6500 K, of "
-                                  "cie1931 none. The scene's film says so too."};
+                                  "Colour temperature of the daylight that is rendered as white; 0: 6500 K for camera "
+                                  "sensors, no adaptation for cie1931. The scene's Film can set it too."};
 constexpr Param kParams[] = {kMin, kMax, kSensor, kWhiteBalance};
 
-/// Density proportional to 1 / cosh^2 of the distance from 538 nm, close to the eye's response (Radziszewski et al.
-/// 2009); over 360 to 830 nm it is 0.0039398042 / cosh^2(...). Its integral is a difference of tanh.
+/// Density proportional to 1 / cosh^2(0.0072 (nm - 538)), close to the eye's response (Radziszewski et al. 2009); over
+/// 360 to 830 nm the constant factor is 0.0039398042. Its integral is a difference of tanh, which is inverted.
 class VisibleDensity {
  public:
   explicit VisibleDensity(Interval nm)
@@ -70,7 +70,7 @@ Interval range_of(const Params& p) {
   return nm;
 }
 
-/// Nothing for the eye as it is.
+/// Returns the film's sensor; nothing for the CIE 1931 observer without white balance, which needs no table.
 std::optional<FilmSensor> sensor_of(const Params& p) {
   constexpr double kColdest_kelvin = 1000;
   const std::string name = p.string("sensor");
@@ -82,8 +82,8 @@ std::optional<FilmSensor> sensor_of(const Params& p) {
   return FilmSensor(name, white_kelvin);
 }
 
-/// Four wavelengths at equal steps of the density's integral, all turned by the same random number (Wilkie et al. 2014,
-/// hero wavelength spectral sampling). The film's channels are CIE XYZ.
+/// Hero wavelength spectral sampling (Wilkie et al. 2014): four wavelengths at equal steps of the density's integral,
+/// rotated by one random number. The film's channels are CIE XYZ.
 class Hero final : public WavelengthStrategy {
  public:
   explicit Hero(const Params& p) : density_(range_of(p)), film_(sensor_of(p)) {}
@@ -122,7 +122,8 @@ class Hero final : public WavelengthStrategy {
 }  // namespace
 
 extern const WavelengthsInfo hero_wavelengths{
-    {"wavelengths", "hero", "Four of a full spectrum, stratified, drawn by the eye's sensitivity.",
+    {"wavelengths", "hero",
+     "Four stratified wavelengths per path from the full spectrum, sampled by the eye's sensitivity.",
      "Wilkie et al. 2014; density after Radziszewski et al. 2009", kParams},
     [](const Params& p) -> std::unique_ptr<WavelengthStrategy> { return std::make_unique<Hero>(p); }};
 

@@ -15,24 +15,25 @@ constexpr Param kParams[] = {
      .choices = kWhites},
 };
 
-/// Meyer's opponent space from XYZ: achromatic, red-green, blue-yellow. Its axes decorrelate the answers of the cones
-/// (Buchsbaum and Gottschalk 1983), so that each can be integrated to the precision that it is worth.
+/// Matrix from XYZ to Meyer's opponent space: achromatic (A), red-green (C1), blue-yellow (C2). Its axes decorrelate
+/// the responses of the cones (Buchsbaum and Gottschalk 1983), so that the less important ones need fewer quadrature
+/// points.
 constexpr Matrix3 kOpponent{{{{-0.0177, 1.0090, 0.0073}, {-1.5370, 1.0821, 0.3209}, {0.1946, -0.2045, 0.5264}}}};
 
-/// One axis of that space as a function of wavelength.
+/// Orthogonal polynomials under one axis of the opponent space as a function of wavelength.
 WeightedPolynomials axis(size_t row, size_t degree) {
   return {[row](double nm) { return (kOpponent * cie_xyz(nm))[row]; }, degree};
 }
 
-/// Four wavelengths and the shares in X, Y, Z of a unit of radiance at each.
+/// Four wavelengths (nm) and the XYZ of a unit of radiance at each.
 struct Quadrature {
   std::array<float, kLanes> nm;
   std::array<Triple, kLanes> xyz;
 };
 
-/// Gauss's rule of 3 points for A, of 2 for C1 and of 1 for C2: six wavelengths, of which C1's two lie near A's outer
-/// ones and replace them. A's weights then follow from interpolation. On polynomials in wavelength, A is exact to
-/// degree 2, C1 to 3, C2 to 1.
+/// Gaussian quadrature with 3 points for A, 2 for C1 and 1 for C2 has six wavelengths. C1's two are close to the outer
+/// two of A and replace them; A's weights then follow from interpolation. The rule is exact for polynomials in
+/// wavelength of degree 2 (A), 3 (C1) and 1 (C2).
 Quadrature make_quadrature() {
   const WeightedPolynomials a = axis(0, 3), c1 = axis(1, 2), c2 = axis(2, 1);
   const std::vector<double> c2_nm{c2.root(1, 450)}, c1_nm{c1.root(2, 490), c1.root(2, 630)};
@@ -67,6 +68,7 @@ class Meyer final : public WavelengthStrategy {
   std::string_view film_space() const override { return kXyzName; }
 
  private:
+  /// Scales X, Y and Z so that D65 has its exact colour.
   void keep_d65() {
     const Triple ours = sensor(unit_d65()->sample(lambda_), lambda_).color(), exact = to_xyz(*unit_d65());
     for (Triple& xyz : quadrature_.xyz)

@@ -6,7 +6,7 @@
 
 namespace frond {
 
-/// The wavelength strategies of this layer.
+/// Returns the plug-in records of the built-in wavelength strategies: smpte, hero, meyer, bands.
 std::span<const WavelengthsInfo* const> builtin_wavelengths();
 
 }  // namespace frond

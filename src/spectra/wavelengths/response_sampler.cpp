@@ -6,8 +6,8 @@
 namespace frond {
 namespace {
 
-/// Of the line from `a` to `b` over [0, 1] as a density: where its integral is the share `u` of the whole. The form of
-/// the quadratic's root that loses no digits and holds for a = b.
+/// Inverts the cumulative distribution of the density that is linear from `a` at 0 to `b` at 1: returns x with
+/// distribution `u`. This form of the quadratic's root has no cancellation and holds for a = b.
 double invert_line(double a, double b, double u) {
   if (u <= 0) return 0;
   const double begin = a / (a + b), end = b / (a + b);
@@ -18,7 +18,7 @@ double invert_line(double a, double b, double u) {
 
 ResponseSampler::ResponseSampler(std::vector<ResponsePoint> points, const Location& where)
     : points_(std::move(points)) {
-  double area = 0, moment = 0;  // about the first point
+  double area = 0, moment = 0;  // moment about the first point
   for (size_t i = 1; i < points_.size(); ++i) {
     const auto [begin_nm, a] = points_[i - 1];
     const auto [end_nm, b] = points_[i];
@@ -29,7 +29,7 @@ ResponseSampler::ResponseSampler(std::vector<ResponsePoint> points, const Locati
   }
   if (!(area > 0)) fail(where, "this response is 0 at every wavelength");
   centroid_nm_ = points_[0].nm + moment / area;
-  const auto rounded = [](double nm) { return double(static_cast<float>(nm)); };  // as samples are
+  const auto rounded = [](double nm) { return double(static_cast<float>(nm)); };  // samples are floats
   support_nm_ = {rounded(points_.front().nm), rounded(points_.back().nm)};
 }
 

@@ -8,27 +8,29 @@
 
 namespace frond {
 
-/// Draws wavelengths in proportion to a sensor's response.
+/// Samples wavelengths with a density proportional to a sensor's response, by inversion of its integral. Thread-safe.
 class ResponseSampler {
  public:
   /// The response is linear between the points, whose wavelengths ascend, and 0 beyond them. Throws InputError at
-  /// `where` where it is 0 everywhere.
+  /// `where` if it is 0 everywhere.
   ResponseSampler(std::vector<ResponsePoint> points, const Location& where);
 
-  /// A wavelength (nm) whose density is the response over its integral. u in [0, 1].
+  /// Returns a wavelength (nm) for a uniform u in [0, 1]; its density is the response divided by its integral.
   float sample(float u) const;
-  /// No sample leaves it.
+  /// Interval (nm) that contains all samples.
   Interval support_nm() const { return support_nm_; }
+  /// Mean wavelength (nm), weighted by the response.
   double centroid_nm() const { return centroid_nm_; }
 
  private:
   std::vector<ResponsePoint> points_;
-  std::vector<double> cumulative_;  ///< integral of the response up to the end of each cell between points
+  std::vector<double> cumulative_;  ///< integral of the response up to the end of each cell between two points
   Interval support_nm_{};
   double centroid_nm_ = 0;
 };
 
-/// Without the zeros at either end, but for the one next to the rest: tables of sensors are often padded with them.
+/// Returns the points without the zeros at either end, except the innermost one on each side. Sensor tables are often
+/// padded with zeros, which would widen the support. Empty if all values are 0.
 std::vector<ResponsePoint> without_margins(std::span<const ResponsePoint> points);
 
 }  // namespace frond

@@ -5,7 +5,7 @@
 namespace frond {
 namespace {
 
-/// Where polynomials are computed, so that powers stay near 1.
+/// Variable of the polynomials: scaled so that its powers stay near 1.
 double reduced(double nm) { return (nm - 560) / 100; }
 
 }  // namespace
@@ -44,6 +44,7 @@ double WeightedPolynomials::at(size_t n, double nm) const {
 double WeightedPolynomials::root(size_t n, double nm) const {
   constexpr double kStep_nm = 1e-3;
   for (int i = 0; i < 30; ++i) {
+    // Central difference: the polynomial's derivative is not part of the recurrence.
     const double slope = (at(n, nm + kStep_nm) - at(n, nm - kStep_nm)) / (2 * kStep_nm);
     nm -= at(n, nm) / slope;
   }

@@ -13,30 +13,29 @@
 namespace frond::choose {
 namespace {
 
-/// Samples a pixel, in each of two renders.
+/// Samples per pixel, in each of two renders.
 constexpr uint64_t kFirstSamples = 8, kMostScreening = 64, kMostSamples = 4096;
-/// Every power of two between the two: how often the same open_choice may be put to more samples. What the data say
-/// tells which of these looks are taken, never where they lie.
+/// Number of powers of two between them: how often a configuration may be tested with more samples. The data decide
+/// which of these tests are made, but not their positions, so the joint bound holds.
 constexpr size_t kLooks = 10;
 static_assert(kFirstSamples << (kLooks - 1) == kMostSamples);
-/// A pilot may trace that part of the final render's paths for what it compares, and this many at least.
+/// Share of the final render's paths that a pilot may trace for its comparisons; at least the minimum below.
 constexpr double kLargestPart = 0.25;
 constexpr uint64_t kLeastLimit = 64;
 
-/// How far a bound of a mean square may lie above its estimate, as a part of what was asked for, before more samples
-/// are spent on it.
+/// More samples are taken until a bound of a mean square exceeds its estimate by at most this share of the request.
 constexpr double kSharp = 0.25;
 
-/// 95 % that there is no more noise than that.
+/// One-sided 95 % quantile for the upper bound of noise.
 constexpr double kNoiseZ = 1.645;
 
 double root(double square) { return std::sqrt(std::max(0.0, square)); }
 
-/// A mean square, between bounds.
+/// Estimate of a mean square with bounds.
 struct Bounds {
   ConfidenceInterval square;
   double estimate;
-  double uncertainty;  ///< of the upper bound, above the estimate
+  double uncertainty;  ///< upper bound minus estimate
 
   RmsBounds rms() const { return {root(square.low), root(square.high)}; }
 };
@@ -47,7 +46,7 @@ size_t count_combinations(const std::vector<OpenChoice>& open_choices) {
   return size_t(std::min(product, 1e15));
 }
 
-/// Asks a pilot until it knows.
+/// Searches for the cheapest models that meet the error bound.
 class Chooser {
  public:
   explicit Chooser(Pilot& pilot) : pilot_(pilot), open_choices_(pilot.open_choices()), reference_(pilot.reference()) {
@@ -56,15 +55,15 @@ class Chooser {
       base_.push_back(q.base());
       if (q.is_leaf()) choice_.rms = std::min(choice_.rms, q.rms);
     }
-    // Every combination against the reference and every single answer against the base, each at every look, from
-    // above and from below: whatever the pilot comes to compare is among them.
+    // Bounds of every combination against the reference and of every single option against the base, at each test, from
+    // above and below: this covers every comparison the pilot can make.
     choice_.comparisons = size_t{2} * 2 * kLooks * count_combinations(open_choices_);
     z_ = normal_upper_quantile(sidak_level(1 - kConfidence, choice_.comparisons));
     choice_.samples = pilot.scene_samples();
     weights_ = weights();
   }
 
-  /// The answers.
+  /// Returns the selected configuration.
   Configuration run() {
     screen();
     const Configuration chosen = search();
@@ -88,7 +87,7 @@ class Chooser {
     return answers;
   }
 
-  /// Renders every single answer until its bias is known well enough to choose by.
+  /// Renders every single option until its bias is known well enough to select by.
   void screen() {
     std::vector<Configuration> singles;
     for (size_t q = 0; q < open_choices_.size(); ++q)
@@ -106,7 +105,7 @@ class Chooser {
     return e.standard_error() < std::max(request(), e.mean) / 8;
   }
 
-  /// Shares of the leaves that are seen; a leaf that only light sees has none.
+  /// Returns the shares of visible leaves; leaves that only light paths reach have none.
   std::vector<double> weights() const {
     std::vector<double> result;
     for (const OpenChoice& q : open_choices_) result.push_back(q.is_leaf() ? pilot_.share(q) : 0);
@@ -115,7 +114,7 @@ class Chooser {
     return result;
   }
 
-  /// Of one answer, as a factor to the base's.
+  /// Returns an option's price as a factor on the base's.
   double price(size_t open_choice, size_t option) const {
     const auto& options = open_choices_[open_choice].options;
     const double weight = open_choices_[open_choice].is_leaf() ? weights_[open_choice] : 1;
@@ -128,7 +127,7 @@ class Chooser {
     return product;
   }
 
-  /// What was found of single answers is kept for the report.
+  /// Builds the screening, and keeps the results of single options for the report.
   Screening screening() {
     ByOption<Screening::Single> singles(open_choices_.size());
     std::vector<PairedDifference> differences;
@@ -160,8 +159,8 @@ class Chooser {
             pilot_.cpu_us_per_path(answers)};
   }
 
-  /// The cheapest first; where that is not shown to meet the request, with a better answer to the open_choice that
-  /// spoils it most.
+  /// Tests the cheapest configuration first. If it is not shown to meet the request, the option with the largest bias
+  /// is improved.
   Configuration search() {
     const Screening guess = screening();
     Configuration floor(open_choices_.size(), 0);
@@ -177,14 +176,14 @@ class Chooser {
     return reference_without_bias();
   }
 
-  /// Whatever was tried before it.
+  /// Selects the reference, regardless of earlier trials.
   const Configuration& reference_without_bias() {
     choice_.bias = {};
     choice_.bias_estimate = 0;
     return reference_;
   }
 
-  /// More samples until the bounds tell, or the limit is reached. All bounds hold together: the narrowest counts.
+  /// Adds samples until the bounds decide, or until the limit. All bounds hold jointly, so the narrowest one counts.
   bool meets_request(const Configuration& answers) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ConfidenceInterval known{0, kInfinity};
@@ -197,7 +196,7 @@ class Chooser {
       choice_.bias = {root(known.low), root(known.high)};
       choice_.bias_estimate = root(std::clamp(b.estimate, known.low, known.high));
       const bool met = known.high <= request(), sharp = b.uncertainty < kSharp * request();
-      const bool helps = b.uncertainty < 0.8 * last;  // the spread among pixels stays
+      const bool helps = b.uncertainty < 0.8 * last;  // variation among pixels does not decrease with samples
       const bool told = known.low > request() || (met && (sharp || !helps));
       last = b.uncertainty;
       if (!told && grow(b.uncertainty)) continue;
@@ -213,7 +212,7 @@ class Chooser {
     return names;
   }
 
-  /// Noise of a squared bias falls as 1 / samples, faster where few pixels have most of it.
+  /// The noise of a squared bias falls as 1 / samples, or faster if few pixels contribute most of it.
   bool grow(double uncertainty) {
     constexpr double kAtMostFaster = 8;
     const uint64_t limit = most_samples();
@@ -267,9 +266,9 @@ double Choice::noise_rms() const { return std::sqrt(Convergence(noise, {}).noise
 
 namespace {
 
-/// Up to a whole power of two samples: there low-discrepancy ones are at their best, and were measured.
+/// Rounds up to a power of two, at which low-discrepancy samples converge best and were measured.
 Effort rounded_up(const std::optional<Effort>& effort) {
-  if (!effort) return {1, 1, false};  // nothing is left for noise, and nobody promised that there is
+  if (!effort) return {1, 1, false};  // bias alone uses the whole error
   const double samples = std::exp2(std::ceil(std::log2(effort->samples)));
   return {samples, effort->seconds * samples / effort->samples, effort->measured};
 }

@@ -7,69 +7,70 @@
 
 namespace frond::choose {
 
-/// That all bounds of a choice hold together.
+/// Joint confidence of all bounds of a selection.
 inline constexpr double kConfidence = 0.95;
 
-/// The RMS that an image's bias may have, by a pilot.
+/// Bounds of the RMS of an image's bias, estimated by a pilot.
 struct RmsBounds {
   double low = 0, high = 0;
 };
 
-/// What a pilot found of one answer to one open_choice, with the base answer to all others.
+/// Result of a pilot for one option of an open choice, with the base option for all other choices.
 struct OptionResult {
   std::string name;
   double price = 1, noise = 1;  ///< as in Screening::Single
-  double estimate = 0;          ///< RMS of its bias against the base
-  RmsBounds bias;               ///< and where it may lie
-  double cpu_us_per_path = 0;   ///< as it happened; nothing hangs on it
+  double estimate = 0;          ///< estimated RMS bias relative to the base
+  RmsBounds bias;               ///< bounds of the RMS bias
+  double cpu_us_per_path = 0;   ///< as measured; does not influence the selection
 };
 
-/// The answer to one open_choice, and why.
+/// The selected option of one open choice, and the results behind it.
 struct Answer {
   std::string open_choice;
   bool is_leaf = true;
   std::string chosen;
-  double share = 0;  ///< of the pixels, that see this leaf first
+  double share = 0;  ///< share of the pixels whose first hit is this leaf
   std::string base;
-  std::vector<OptionResult> findings;  ///< from the cheapest to the base
+  std::vector<OptionResult> findings;  ///< sorted from the cheapest to the base
   std::vector<Refusal> refused;
 };
 
-/// Answers that were measured against the reference, because they seemed to be the cheapest that would do.
+/// A combination of options that was measured against the reference, because screening predicted it to be the cheapest
+/// that meets the request.
 struct Trial {
-  std::vector<std::string> answers;  ///< in the order of the open_choices
+  std::vector<std::string> answers;  ///< in the order of the open choices
   RmsBounds bias;
-  uint64_t samples = 0;  ///< a pixel of the pilot, in each of two renders
+  uint64_t samples = 0;  ///< per pixel of the pilot, in each of two renders
 };
 
-/// What was chosen for a scene.
+/// The models selected for a scene, and the measurements behind the selection.
 struct Choice {
   enum class Ground : uint8_t {
     met,           ///< shown to meet the request
-    nothing_meets  ///< no cheaper model could be shown to: what counts as right is taken
+    nothing_meets  ///< no cheaper model was shown to meet it; the reference is used
   };
   Ground ground = Ground::met;
-  double rms = 0;               ///< what was asked for
-  RmsBounds bias;               ///< of what was chosen, against the reference; 0 for the reference itself
-  double bias_estimate = 0;     ///< what was measured of it
-  bool out_of_samples = false;  ///< the pilot's limit kept cheaper answers from being shown
+  double rms = 0;               ///< requested RMS error
+  RmsBounds bias;               ///< of the selected models against the reference; 0 for the reference itself
+  double bias_estimate = 0;     ///< measured RMS bias
+  bool out_of_samples = false;  ///< the pilot's sample limit prevented cheaper options from being shown
   std::string reference;
   std::vector<Answer> answers;
-  std::vector<Trial> trials;  ///< the last one is what was chosen, where that meets the request
-  /// How noise falls; seconds are samples by price, in the base's.
+  std::vector<Trial> trials;  ///< the last one is the selection, if it meets the request
+  /// Convergence of the noise. Seconds are samples times price, in units of the base.
   std::vector<ConvergencePoint> noise, reference_noise;
-  uint64_t samples = 0;        ///< a pixel, that the render is to have
-  uint64_t pilot_samples = 0;  ///< a pixel of the pilot, in each of two renders
-  size_t comparisons = 0;      ///< bounds that hold together
+  uint64_t samples = 0;        ///< per pixel, in the final render
+  uint64_t pilot_samples = 0;  ///< per pixel of the pilot, in each of two renders
+  size_t comparisons = 0;      ///< number of bounds that hold jointly
   PilotCost pilot;
 
-  /// Of one render with the scene's own number of samples.
+  /// Returns the RMS noise of one render with the scene's number of samples.
   double noise_rms() const;
-  /// A pixel, that bring the bias that was measured and noise at its upper bound down to what was asked for.
+  /// Returns the samples per pixel at which measured bias and the upper bound of the noise together meet the request.
   double samples_needed() const;
-  /// The same for the reference, which has noise alone.
+  /// Returns the same for the reference, which has noise only.
   double reference_samples_needed() const;
-  /// CPU time that the reference takes to that error, over that of what was chosen.
+  /// Returns the CPU time that the reference needs for the requested error, over that of the selected models.
   double time_saved() const;
 
  private:
@@ -77,19 +78,20 @@ struct Choice {
   Effort reference_effort() const;
 };
 
-/// What was chosen.
+/// The result of choose_models.
 struct Chosen {
   Choice choice;
-  std::shared_ptr<const Scene> scene;  ///< of the pilots; the render shares its geometry
+  std::shared_ptr<const Scene> scene;  ///< the pilot's scene, whose geometry the render shares
 };
 
-/// Writes into the description the cheapest answers to what it leaves open that meet its leaves' "maxrms", the smallest
-/// of them. Nothing where no leaf is open, or where wavelengths have no colours (with a warning). Throws InputError.
+/// Selects the cheapest options of all open choices that meet the smallest "maxrms" of the scene's leaves, and writes
+/// them into the description. Returns nullopt if no leaf is open, or, with a warning, if the wavelengths have no
+/// colours. Throws InputError.
 std::optional<Chosen> choose_models(const ChoiceTask& task, const Ladder& ladder, const Log& log);
 
-/// The same by the standard ladder, for an image of so many samples a pixel (0: the scene's). Tells the session's log,
-/// and writes into the request what the header is to say, and the colour space, which the choice of wavelengths shall
-/// not change.
+/// Selects from the standard ladder for an image with `samples` per pixel (0: the scene's number). Logs the selection
+/// to the session's log. Writes the image's header attributes into the request, and the colour space, which must not
+/// depend on the selected wavelengths.
 std::optional<Chosen> choose_for(Session& session, SceneDescription& description, uint64_t samples,
                                  ImageRequest& request);
 

@@ -31,7 +31,7 @@ std::string outcome_text(const Choice& c) {
                      100 * kConfidence, c.bias.low);
 }
 
-/// Those that were not good enough, or not shown to be.
+/// Returns the options that failed, or were not shown to meet the request.
 std::string failures_text(const Choice& c) {
   std::string text;
   for (const Trial& t : c.trials)

@@ -7,19 +7,20 @@
 
 namespace frond::choose {
 
-/// For people: a table of what was measured, what was chosen and why.
+/// Returns a text with a table of the measurements, the selection and its reason.
 std::string choice_text(const Choice& choice);
 
-/// The same in a sentence.
+/// Returns the selection in one sentence.
 std::string choice_sentence(const Choice& choice);
 
-/// Where nothing but what counts as right was shown to be good enough: a warning that says so. Else "".
+/// Returns a warning if only the reference was shown to meet the request; else "".
 std::string choice_warning(const Choice& choice);
 
-/// For an image's header: "frond:leaf:NAME", "frond:choice". Times are not in it: the same command gives the same file.
+/// Returns attributes of an image's header: "frond:leaf:NAME", "frond:choice". They contain no times, so that equal
+/// commands write equal files.
 std::map<std::string, std::string> choice_attributes(const Choice& choice);
 
-/// For programs: an object in JSON.
+/// Returns the selection as a JSON object.
 std::string choice_json(const Choice& choice);
 
 }  // namespace frond::choose

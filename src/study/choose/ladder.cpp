@@ -20,7 +20,7 @@ double price_of(std::string_view model) {
   return found->price;
 }
 
-/// After "auto".
+/// Returns the models of `leaf` after "auto".
 std::span<const std::string_view> models_of(const MaterialInfo& leaf) {
   return find_param(leaf, "model")->choices.subspan(1);
 }

@@ -8,21 +8,21 @@
 
 namespace frond::choose {
 
-/// One way to do a thing.
+/// One option of an open choice: a model or a wavelength strategy.
 struct ModelOption {
   std::string name;
   PluginText plugin;
-  /// CPU time of a sample, relative to the first option's. A constant, measured beforehand (docs/choosing.md): what a
-  /// run measures varies, and the same command has to give the same image.
+  /// CPU time of a sample relative to the first option. A constant measured beforehand (docs/selection.md), because
+  /// measured times vary and equal commands must give equal images.
   double price;
 };
 
-/// What can be chosen from, each list from the cheapest to the one that counts as right.
+/// Options to select from. Each list is sorted from the cheapest to the reference.
 struct Ladder {
   std::vector<ModelOption> models, wavelengths;
 };
 
-/// The models that the material `leaf` knows; wavelength strategies of colours.
+/// Returns the models that the material `leaf` offers, and the wavelength strategies with colours.
 Ladder standard_ladder(const Registry& registry);
 
 }  // namespace frond::choose

@@ -17,14 +17,14 @@ bool is_open(const MaterialDescription& m) {
   return !model || model->values == decltype(model->values){std::vector<std::string>{"auto"}};
 }
 
-/// Whether a model that has the choice of `name` has this one.
+/// Whether the model accepts `word` for its parameter `name`.
 bool takes(const Registry& registry, std::string_view model, std::string_view name, const std::string& word) {
   const MaterialInfo* info = registry.materials.find(model);
   const Param* param = info ? find_param(*info, name) : nullptr;
   return !param || std::ranges::count(param->choices, word) > 0;
 }
 
-/// What counts as right: the last of the ladder, but walks cannot tell of a reciprocal leaf.
+/// Returns the reference option: the last of the ladder, except that random walks cannot be reciprocal.
 const ModelOption* right_for(const ParsedPlugin& leaf, const Registry& registry,
                              const std::vector<ModelOption>& models) {
   const ParsedParam* incident = find_param(leaf.params, "incident");
@@ -36,7 +36,7 @@ const ModelOption* right_for(const ParsedPlugin& leaf, const Registry& registry,
   return right == models.rend() ? &models.back() : &*right;
 }
 
-/// With the options that the leaf can take. Leaves the description as it is.
+/// Adds the options that the leaf supports. The description is unchanged on return.
 void add_options(OpenChoice& open_choice, SceneSettings& description, const Registry& registry,
                  const WavelengthStrategy& wavelengths, const std::vector<ModelOption>& models) {
   const size_t place = open_choice.materials.front();

@@ -5,39 +5,41 @@
 
 namespace frond::choose {
 
-/// What a leaf cannot take, and why.
+/// A model that a leaf cannot use, and the reason.
 struct Refusal {
   std::string name, reason;
 };
 
-/// Something that a scene leaves open: the model of a leaf, or the wavelengths.
+/// A property that the scene leaves open: a leaf's model, or the wavelengths.
 struct OpenChoice {
-  std::string name;                  ///< of the leaf's material; "wavelengths"
-  std::vector<size_t> materials;     ///< by their index in the description; none: the open_choice is of wavelengths
-  double rms = 0;                    ///< what the leaf asks for
-  std::vector<ModelOption> options;  ///< the last one counts as right
+  std::string name;                  ///< name of the leaf's material; "wavelengths"
+  std::vector<size_t> materials;     ///< indices in the description; empty: the choice is of wavelengths
+  double rms = 0;                    ///< RMS error that the leaf allows
+  std::vector<ModelOption> options;  ///< the last one is the reference
   std::vector<Refusal> refused = {};
 
   bool is_leaf() const { return !materials.empty(); }
+  /// Index of the reference option.
   size_t reference() const { return options.size() - 1; }
-  /// The best that is no random walk, as far as there is one: what pilots compare with first.
+  /// Index of the best option that is not a random walk, if there is one; pilots compare with it first.
   size_t base() const { return is_leaf() && options.size() > 1 ? options.size() - 2 : reference(); }
 };
 
-/// An answer to each open_choice: the place of an option.
+/// The index of an option for each open choice.
 using Configuration = std::vector<size_t>;
 
+/// Whether a leaf's model is open.
 bool has_open_leaf(const SceneSettings& description);
-/// Whether the scene says which wavelengths it wants.
+/// Whether the scene states a wavelength strategy.
 bool names_wavelengths(const SceneSettings& description);
 
-/// Leaf by leaf; those without a name that are alike are one. Which models a leaf can take does not hang on the
-/// wavelengths: any will do. Throws InputError.
+/// Returns the open choices of leaf models. Unnamed leaves with equal parameters are one choice. The possible models do
+/// not depend on `wavelengths`. Throws InputError.
 std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Registry& registry,
                                     const WavelengthStrategy& wavelengths, const Ladder& ladder);
 
-/// Writes these answers into the description's leaves, as it had them when the open_choices were found, and into its
-/// option of wavelengths.
+/// Writes the options into the description's leaves, starting from their original parameters, and into its option of
+/// wavelengths.
 void put_answers(const std::vector<OpenChoice>& open_choices, const Configuration& answers, const Registry& registry,
                  SceneSettings& description);
 

@@ -11,14 +11,14 @@
 namespace frond::choose {
 namespace {
 
-/// Enough to know a mean square whose pixels spread by five times their mean to 8 %. More samples of fewer pixels tell
-/// more about bias than fewer of more: its noise falls with samples times the root of pixels.
+/// Enough to estimate a mean square to 8 % if pixels vary by five times their mean. More samples of fewer pixels
+/// estimate bias better than fewer of more: its noise falls with samples times the square root of pixels.
 constexpr size_t kPixels = 4096;
 
-/// Those of the final render differ.
+/// The final render uses other seeds.
 enum SeedUse : uint64_t { kFirstHalf = 0x70696c6f74, kSecondHalf, kPixelSeed };
 
-/// A film that has room for so many pixels, in a row.
+/// Returns a film with one row of pixels.
 FilmSettings row_of(const FilmSettings& film, size_t pixels) {
   FilmSettings row = film;
   row.width = int(pixels), row.height = 1;
@@ -26,7 +26,7 @@ FilmSettings row_of(const FilmSettings& film, size_t pixels) {
   return row;
 }
 
-/// From how two halves differ. Channels of a pixel go together: its noise is one thing.
+/// Estimates noise from the difference of two halves. A pixel's channels are correlated and count as one observation.
 MeanSquare noise_of(const std::array<std::vector<float>, 2>& halves) {
   Moments squares;
   for (size_t i = 0; i + 2 < halves[0].size(); i += 3) {

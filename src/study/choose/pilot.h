@@ -12,49 +12,50 @@
 
 namespace frond::choose {
 
-/// A scene as it is to be rendered, but for what it leaves open.
+/// The render to select models for.
 struct ChoiceTask {
   Session& session;
-  SceneDescription& description;  ///< the answers are written into it
-  uint64_t samples;               ///< a pixel, of the render that the choice is for; 0: the scene's
-  const Scene* other = nullptr;   ///< a scene in which the same stands, where there is one: that is not made again
+  SceneDescription& description;  ///< the selected options are written into it
+  uint64_t samples;               ///< per pixel of the final render; 0: the scene's number
+  const Scene* other = nullptr;   ///< scene with the same geometry, which is then shared; may be nullptr
 };
 
-/// What a pilot has cost.
+/// Cost of a pilot.
 struct PilotCost {
   size_t pixels = 0;
   uint64_t paths = 0;
-  double cpu_seconds = 0;  ///< tables and all
+  double cpu_seconds = 0;  ///< includes the computation of tables
 };
 
-/// Renders some pixels of the image with any answers to the open_choices. All renders share their random numbers: where
-/// two do not differ they are the same, noise and all. What they say depends on the task and its seed alone.
+/// Renders a sample of the image's pixels with any options of the open choices. All renders share their random numbers,
+/// so that equal configurations give equal renders, including noise. Results depend only on the task and its seed.
 class Pilot {
  public:
-  /// Also finds the open_choices. Throws InputError.
+  /// Finds the open choices. Throws InputError.
   Pilot(const ChoiceTask& task, const Ladder& ladder);
   ~Pilot();
 
   const std::vector<OpenChoice>& open_choices() const { return open_choices_; }
-  /// Wavelengths that have no colours cannot be compared.
+  /// Whether the wavelengths have colours; others cannot be compared.
   bool has_colors() const;
   const FilmSettings& film() const { return film_; }
-  /// As it is with what counts as right.
+  /// Returns the scene with the reference options.
   const std::shared_ptr<const Scene>& scene() const { return scene_; }
-  /// A pixel, of the render that the choice is for.
+  /// Returns the samples per pixel of the final render.
   uint64_t scene_samples() const;
-  /// The last option of every open_choice.
+  /// Returns the last option of every open choice.
   Configuration reference() const;
 
-  /// Up to so many samples a pixel in each of two renders.
+  /// Renders up to `samples` samples per pixel in each of two renders.
   void render(const Configuration& answers, uint64_t samples);
-  /// Of two that have been rendered.
+  /// Returns the difference of two rendered configurations.
   PairedDifference difference(const Configuration& answers, const Configuration& from) const;
-  /// Mean square over pixels and channels of one render's noise, after 1, 2, 4 ... samples and the last. Seconds are 0.
+  /// Returns the mean square noise of one render over pixels and channels after 1, 2, 4, ... samples and after the
+  /// last. Seconds are 0.
   const std::vector<ConvergencePoint>& noise(const Configuration& answers) const;
   double cpu_us_per_path(const Configuration& answers) const;
 
-  /// Share of the pixels whose middle sees one of the open_choice's materials first.
+  /// Returns the share of pixels whose centre first hits one of the choice's materials.
   double share(const OpenChoice& open_choice) const;
   PilotCost cost() const;
 
@@ -69,13 +70,12 @@ class Pilot {
   ChoiceTask task_;
   FilmSettings film_;
   double start_cpu_seconds_;
-  SceneDescription variant_;         ///< the task's without its shapes, as it was rendered last
-  const Log& quiet_ = silent_log();  ///< what there is to say the final render says
+  SceneDescription variant_;         ///< the task's description without its shapes, with the last configuration
+  const Log& quiet_ = silent_log();  ///< the final render reports messages
   SharedWork shared_;
   ColorManager colors_;
-  std::shared_ptr<const Scene>
-      scene_;         ///< with the wavelengths that count as right; the renders share what stands in it
-  int exponent_ = 0;  ///< its films': those of leaves that do not differ have the same bits
+  std::shared_ptr<const Scene> scene_;  ///< with the reference wavelengths; other renders share its geometry
+  int exponent_ = 0;                    ///< common unit of the films, so that equal leaves give equal bits
   std::vector<OpenChoice> open_choices_;
   std::vector<PixelPosition> pixels_;
   std::map<Configuration, Render> renders_;

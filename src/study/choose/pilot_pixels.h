@@ -6,8 +6,9 @@
 
 namespace frond::choose {
 
-/// About `count` pixels of an image, one drawn from each cell of a grid, every pixel with the same probability: their
-/// mean is that of the image at its full resolution, details and all. All pixels where there are no more.
+/// Returns about `count` pixels of the crop: one at random from each cell of a grid, each pixel with the same
+/// probability, so that their mean is an unbiased estimate of the image's mean. Returns all pixels if there are not
+/// more.
 std::vector<PixelPosition> pilot_pixels(const Crop& crop, size_t count, uint64_t seed);
 
 }  // namespace frond::choose

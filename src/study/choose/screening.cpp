@@ -18,7 +18,7 @@ double Screening::bias(const Configuration& answers) const {
 double Screening::noise(const Configuration& answers) const {
   double sum = 1;
   for (size_t q = 0; q < answers.size(); ++q) sum += singles_[q][answers[q]].noise - 1;
-  return std::max(sum, 0.01);  // first order may overshoot
+  return std::max(sum, 0.01);  // first-order predictions may overshoot
 }
 
 double Screening::price(const Configuration& answers) const {
@@ -39,7 +39,8 @@ Configuration Screening::base() const {
 }
 
 Configuration Screening::cheapest(const Configuration& floor, double rms) const {
-  constexpr double kAlike = 1e-3;  // less than a pilot can tell: then the simpler model, of a leaf that is hardly seen
+  constexpr double kAlike =
+      1e-3;  // below the pilot's resolution, for leaves that are hardly visible, the simpler model is preferred
   Configuration best = base();
   for (bool better = true; better;) {
     better = false;

@@ -7,39 +7,40 @@
 
 namespace frond::choose {
 
-/// What changing one answer alone does: open_choices before options.
+/// Values by open choice, then by option.
 template <class T>
 using ByOption = std::vector<std::vector<T>>;
 
-/// What any answers would do to the image, to first order: biases of single answers, as images, add up, and so do
-/// changes of the noise's variance. That is a guess, to be measured before it is believed.
+/// Predicts the effect of a configuration to first order: biases of single options, as images, are added, and so are
+/// changes of the noise's variance. Predictions are verified by measurement.
 class Screening {
  public:
-  /// What one answer changes, as factors to the base's price of a sample and variance of noise after as many samples.
+  /// Effect of one option: factors on the base's price of a sample and on its variance at equal samples.
   struct Single {
     double price = 1, noise = 1;
-    size_t place = 0;  ///< in `products`
+    size_t place = 0;  ///< index in `products`
     bool is_base = false;
   };
 
-  /// `singles` holds options from the cheapest to the base of every open_choice. `products[i][j]`: mean product of the
-  /// biases of two singles. `base`: how its noise falls; seconds are of no concern.
+  /// `singles`: options of every open choice, from the cheapest to the base. `products[i][j]`: mean product of the
+  /// biases of two singles. `base`: convergence of the base; its seconds are not used.
   Screening(ByOption<Single> singles, std::vector<std::vector<double>> products, Convergence base)
       : singles_(std::move(singles)), products_(std::move(products)), base_(std::move(base)) {}
 
-  /// Mean square, not negative.
+  /// Returns the mean square bias, >= 0.
   double bias(const Configuration& answers) const;
-  /// As factors, like those of a Single.
+  /// Returns the factor on the base's variance; price: on its time.
   double noise(const Configuration& answers) const;
   double price(const Configuration& answers) const;
-  /// What a render costs until its bias and noise together are down to `rms`, in the base's samples; infinite where
-  /// bias alone is too large.
+  /// Returns the cost until bias and noise together reach `rms`, in samples of the base; infinite if the bias alone is
+  /// larger.
   double cost(const Configuration& answers, double rms) const;
 
   Configuration base() const;
-  /// No answers below `floor`. Found by changing one answer at a time from the base as long as that helps.
+  /// Returns the cheapest configuration found, with no option below `floor`. Greedy: changes one option at a time,
+  /// starting from the base.
   Configuration cheapest(const Configuration& floor, double rms) const;
-  /// The open_choice, of those whose answer is not the base's, whose answer adds most to the bias.
+  /// Returns the open choice whose option contributes most to the bias, among those that differ from the base.
   size_t worst(const Configuration& answers) const;
 
  private:

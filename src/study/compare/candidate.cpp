@@ -27,13 +27,13 @@ std::vector<std::string> split_candidates(const std::string& text) {
   return result;
 }
 
-/// Where the label ends: at a colon before the first sign that belongs to the rest.
+/// Returns the end of the label: the first colon, unless another separator comes before.
 size_t label_end(const std::string& text) {
   const size_t colon = text.find(':');
   return colon < text.find_first_of(",=@") ? colon : std::string::npos;
 }
 
-/// Cuts `@key=...` off the text's end, wherever the next `@` stands.
+/// Parses `@key=...`, which ends at the next `@` or the end of the text.
 void take_override(Candidate& c, const std::string& part, const std::string& whole) {
   const size_t equals = part.find('=');
   const std::string key = part.substr(0, equals), value = equals == std::string::npos ? "" : part.substr(equals + 1);

@@ -8,21 +8,22 @@
 
 namespace frond::compare {
 
-/// What stands for the scene's leaves in one curve of the chart.
+/// A candidate: a material that replaces the scene's leaves, with its wavelengths and integrator; one curve of the
+/// chart.
 struct Candidate {
-  std::string label;  ///< what people call it: the text itself unless it begins with a name
-  std::string text;   ///< as it was given, without the label
+  std::string label;  ///< name in reports: `text`, unless the argument begins with a label
+  std::string text;   ///< as given, without the label
   PluginText material;
-  std::string wavelengths;               ///< a PluginText; empty: those of the whole comparison
-  std::optional<PluginText> integrator;  ///< over the scene's own
+  std::string wavelengths;               ///< a PluginText; empty: the comparison's
+  std::optional<PluginText> integrator;  ///< overrides the scene's
 };
 
-/// Candidates from `[LABEL:]MATERIAL[,parameter=value...][@wavelengths=PLUGIN...][@integrator=PLUGIN...]`, separated by
-/// `;` or by commas: a part between commas that has no `=` begins another candidate. Throws InputError for other forms
-/// and for two of one label.
+/// Parses candidates `[LABEL:]MATERIAL[,parameter=value...][@wavelengths=PLUGIN...][@integrator=PLUGIN...]`, separated
+/// by `;` or by commas: after a comma, a word without `=` begins another candidate. Throws InputError for other forms
+/// and for equal labels.
 std::vector<Candidate> parse_candidates(const std::vector<std::string>& texts);
 
-/// A single one.
+/// Parses a single candidate. Throws InputError.
 Candidate parse_candidate(const std::string& text);
 
 }  // namespace frond::compare

@@ -19,7 +19,7 @@ ChannelList colors() {
 
 std::string name_of(const Band& band) { return fmt::format("{:.8g} nm", band.nm); }
 
-/// Spectrum of all lights, each by its photometric power, at luminance 1.
+/// Spectrum of all lights, each weighted by its photometric power, normalized to luminance 1.
 class White {
  public:
   explicit White(const Scene& scene) {
@@ -33,7 +33,7 @@ class White {
     for (Share& light : lights_) light.weight /= sum;
   }
 
-  /// Of a band with a response, its mean under that.
+  /// Returns the value in a band; for a band with a response, the mean weighted by it.
   double in(const Band& band) const { return band.response.empty() ? at(band.nm) : under(band.response); }
 
  private:
@@ -48,7 +48,7 @@ class White {
     return sum;
   }
 
-  /// By the midpoints of steps of a nanometre, or what lies between two points of the response.
+  /// Integrates by midpoints of steps of 1 nm, or of shorter segments of the response.
   double under(std::span<const ResponsePoint> response) const {
     constexpr double kMostSteps = 10000;
     double sum = 0, area = 0;
@@ -66,7 +66,8 @@ class White {
   std::vector<Share> lights_;
 };
 
-/// As the eye sees them, where they cover what it sees; else three of them as red, green and blue.
+/// Chooses the displayed image: colours as perceived if the bands cover the visible range, else three bands as red,
+/// green and blue.
 void choose_image(ChannelList& list) {
   const size_t count = list.bands.size();
   const auto xyz = xyz_of_bands(list.bands);

@@ -14,69 +14,72 @@
 
 namespace frond::compare {
 
-/// Which pixels: all, or those that see a leaf.
+/// Set of pixels: all, or those with a leaf.
 enum Region : size_t { kAll, kLeaf, kRegions };
 inline constexpr std::array<const char*, kRegions> kRegionNames{"all", "leaf"};
 
-/// By region and place in a ChannelList.
+/// Errors by region and index in a ChannelList.
 using ErrorTable = std::array<std::vector<RenderError>, kRegions>;
 
-/// By region and the channels of an image (those of a ChannelList from kFirst on). Of a region without pixels: none.
+/// Means by region and channel of an image (a ChannelList from kFirst on); empty for a region without pixels.
 using MeanTable = std::array<std::vector<double>, kRegions>;
 
-/// One candidate after so many samples a pixel.
+/// Measurement of a candidate after a number of samples per pixel.
 struct CandidateRun {
   uint64_t samples = 0;
   RenderCost cost;  ///< of one render
   ErrorTable errors = {};
-  std::optional<double> flip = {};  ///< mean FLIP of one render against the reference; none of bands
+  std::optional<double> flip = {};  ///< mean FLIP of one render against the reference; empty for bands
 };
 
-/// A candidate in the paper's manner (paper_manner.h), timed alone.
+/// Timing of a candidate in the paper's manner (paper_manner.h).
 struct PaperTiming {
   Candidate candidate;
-  double depth;  ///< where the trees end
+  double depth;  ///< largest depth of the paper's ray trees
   CutoffFit end;
   double cpu_seconds_per_sample = 0;
 };
 
-/// What was measured of one candidate.
+/// All measurements of one candidate.
 struct CandidateResult {
   Candidate candidate;
   std::string wavelengths;
   double setup_cpu_seconds = 0;
   std::vector<CandidateRun> runs = {};
   std::optional<PaperTiming> paper = {};
-  Image early = {}, late = {};  ///< as shown: one render at `Comparison::early_samples`; both after the last run
+  Image early = {},
+        late = {};  ///< for display: one render at `Comparison::early_samples`; mean of both after the last run
 
-  /// Bias is that of the last run, where noise hides the least of it.
+  /// Returns the convergence. The bias is that of the last run, which has the least noise.
   Convergence convergence(Region region, size_t channel = kTogether) const;
 };
 
 struct Reference {
   Candidate candidate;
-  uint64_t samples = 0;                                      ///< of each of two renders
-  uint64_t cached_samples = 0;                               ///< of these, from the cache
-  RenderCost cost;                                           ///< of one render
-  std::array<std::vector<MeanSquare>, kRegions> noise = {};  ///< of the mean of the two, by place in the ChannelList
-  MeanTable mean = {};              ///< in the ChannelList's unit, where errors are relative to it; else empty
-  std::optional<double> flip = {};  ///< between the two: twice the noise of what candidates are compared with
-  Image image = {};                 ///< as shown
+  uint64_t samples = 0;         ///< in each of two renders
+  uint64_t cached_samples = 0;  ///< the part of `samples` that was cached
+  RenderCost cost;              ///< of one render
+  std::array<std::vector<MeanSquare>, kRegions> noise =
+      {};                           ///< of the mean of the two renders, by index in the ChannelList
+  MeanTable mean = {};              ///< in the ChannelList's unit, if errors are relative; else empty
+  std::optional<double> flip = {};  ///< between the two renders: twice the noise of the reference
+  Image image = {};                 ///< for display
 };
 
-/// What the user wants to know.
+/// The user's request of a comparison.
 struct Request {
-  std::vector<double> rms = {};                      ///< errors to meet, over all channels and all pixels
+  std::vector<double> rms = {};                      ///< RMS errors to meet, over all channels and pixels
   std::optional<std::array<double, 3>> target = {};  ///< RMS of red, green and blue for speed-up (c)
   std::optional<double> exposure_stops = {};
-  bool relative = false;  ///< errors, `rms` among them, over the reference's mean (error_unit.h); not with `target`
+  bool relative =
+      false;  ///< errors, including `rms`, are relative to the reference's mean (error_unit.h); excludes `target`
 
   ErrorUnit error_unit() const { return ErrorUnit(relative); }
 };
 
-/// Everything that a report tells.
+/// Content of a report.
 struct Comparison {
-  double exposure_stops = 0;  ///< by which images and FLIP are brightened
+  double exposure_stops = 0;  ///< exposure of images and FLIP
   std::string scene, command, machine;
   int width = 0, height = 0;
   ChannelList channels;
@@ -86,7 +89,7 @@ struct Comparison {
   Reference reference;
   std::vector<CandidateResult> candidates;
   uint64_t early_samples = 0;
-  std::string leaf_by_leaf;  ///< a sentence on what is enough for `Request::rms` of each leaf alone; empty: not asked
+  std::string leaf_by_leaf;  ///< which models of single leaves meet `Request::rms`, in a sentence; empty: not requested
   double wall_seconds = 0, cpu_seconds = 0;
 };
 

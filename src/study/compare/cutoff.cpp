@@ -12,7 +12,7 @@ constexpr double kSmallest = 1e-6, kLargest = 0.5;
 const double kFirstStep = std::log(1.1);
 constexpr int kSmallSteps = 4, kMostTries = 16, kMostHalvings = 4;
 
-/// The logarithm of the ratio after a whole number of events, and what its error follows from.
+/// Logarithm of the ratio after a whole number of events, and the counts behind its error.
 struct Count {
   double log_ratio, unshot;
 
@@ -23,26 +23,26 @@ struct Count {
   }
 };
 
-/// Of (1 - t) log a + t log b, where b counts some of those that a counts.
+/// Returns the variance of (1 - t) log a + t log b, where the events of b are a subset of those of a.
 double variance(const Count& a, const Count& b, double t) {
   return ((1 - t) * (1 - t) + 2 * t * (1 - t)) / a.unshot + t * t / b.unshot;
 }
 
-/// A cutoff, and the logarithms of it and of what it leaves over what was asked for: above 0 it is too small.
+/// A cutoff, and the logarithms of it and of its ratio over the target: above 0 the cutoff is too small.
 struct Try {
   double cutoff, log_cutoff, miss;
 };
 
-/// Where the logarithm of the ratio, taken as linear in that of the cutoff, is the target's; well inside, since the
-/// ratio has steps where many paths have the same attenuation.
+/// Interpolates the cutoff at the target, linearly in logarithms. The result stays well inside the interval, because
+/// the ratio has steps where many paths have the same attenuation.
 double between(const Try& low, const Try& high) {
   const double t = std::clamp(low.miss / (low.miss - high.miss), 0.1, 0.9);
   return std::exp(std::lerp(low.log_cutoff, high.log_cutoff, t));
 }
 
-/// Away from the first cutoff by small steps that grow. The ratio jumps where many paths have the same attenuation, and
-/// what lies beyond a jump may be another answer: a step that leads away from the target is halved, until what lies
-/// before the jump has been looked at.
+/// Searches from the first cutoff by growing steps. The ratio jumps where many paths have the same attenuation, and
+/// there may be another solution beyond a jump: a step that leads away from the target is halved until the range before
+/// the jump has been searched.
 class Search {
  public:
   void add(double cutoff, double miss) {
@@ -58,7 +58,7 @@ class Search {
     }
   }
 
-  /// The cutoff to try next; nothing where there is none left.
+  /// Returns the next cutoff to try; nullopt if there is none.
   std::optional<double> next() const {
     if (low_ && high_) return between(*low_, *high_);
     if (halvings_left_ > 0) return std::sqrt(before_.cutoff * after_.cutoff);
@@ -68,9 +68,9 @@ class Search {
   }
 
  private:
-  std::optional<Try> low_, high_;  // too small a cutoff, too large a one
-  Try before_ = {}, after_ = {};   // the last try; where one led away from the target, those nearest to the jump
-  Try beyond_ = {};  // the one that led away: the search goes on from there when the jump has been looked at
+  std::optional<Try> low_, high_;  // a cutoff that is too small, and one that is too large
+  Try before_ = {}, after_ = {};   // the last trial; after a step away from the target, the trials nearest to the jump
+  Try beyond_ = {};  // the trial that led away; the search continues there after the range before the jump
   int steps_ = 0, halvings_left_ = 0;
 };
 
@@ -86,7 +86,7 @@ UnshotRatio unshot_ratio(const PathEnds& ends, double events) {
 }
 
 double depth_of_trees(const PathEnds& ends) {
-  size_t last = 1;  // where the ratio is below for the first time, or no ray is left
+  size_t last = 1;  // first depth with a ratio below the limit, or without rays
   while (last < PathEnds::kDepths - 1 && ends.alive_after(last) > 0 && Count(ends, last).log_ratio >= kLogUnshot)
     ++last;
   if (last == 1) return 1;

@@ -7,23 +7,23 @@
 
 namespace frond::compare {
 
-/// A film's means: every channel of `list` but that of all together, in its unit.
+/// Returns a film's means: every channel of `list` except all together, in its unit.
 Image image_of(const Film& film, const Scene& scene, const ChannelList& list, const ColorManager& colors);
 
-/// What people see of such an image: red, green and blue of linear SMPTE-C.
+/// Returns the displayed colours of such an image: red, green and blue in linear SMPTE-C.
 Image shown(const Image& image, const ChannelList& list);
 
-/// Half and half.
+/// Returns the mean of two images.
 Image mean_of(const Image& a, const Image& b);
 
-/// Whole stops by which a display has to brighten it for people to see much: the brightest tenth, as far as it is lit,
-/// comes to lie above 0.3. 0 for a black image.
+/// Returns the exposure in whole stops at which the brightest tenth of the lit pixels lies above 0.3; 0 for a black
+/// image.
 double fitting_exposure(const Image& shown);
 
-/// What people see, as a display shows it after brightening by so many stops.
+/// Returns the image as displayed after an exposure change of so many stops.
 Image display_image(const Image& shown, double exposure_stops, const ColorManager& colors);
 
-/// Share of leaf in each pixel.
+/// Returns the leaf fraction of each pixel, 0 to 1.
 std::vector<float> leaf_mask(const Film& film);
 
 }  // namespace frond::compare

@@ -13,7 +13,7 @@
 namespace frond::compare {
 namespace {
 
-/// No candidate shares a seed with the reference, or a part of its noise would look like agreement.
+/// No candidate shares a seed with the reference: shared noise would appear as agreement.
 enum SeedUse : uint64_t { kCandidateSeed = 1, kReferenceSeed = 3, kTimingSeed = 5 };
 
 PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use, size_t pairs = 1) {
@@ -24,8 +24,7 @@ PairedRender pair_of(const Study& study, const Candidate& candidate, SeedUse use
 /// The two renders of a method as images.
 using ImagePair = std::array<Image, 2>;
 
-/// What relative errors are relative to. Throws InputError for what nothing can be relative to: a mean that is not
-/// above 0.
+/// Returns the means that relative errors refer to. Throws InputError for a mean that is not above 0.
 MeanTable means_of(const ImagePair& reference, const ChannelList& channels, std::span<const float> leaf) {
   MeanTable means;
   const std::array<std::span<const float>, kRegions> uses{std::span<const float>{}, leaf};
@@ -42,7 +41,7 @@ MeanTable means_of(const ImagePair& reference, const ChannelList& channels, std:
   return means;
 }
 
-/// Over the reference's means, where there are any.
+/// Returns the errors, relative to the reference's means if there are any.
 ErrorTable errors_of(const ImagePair& renders, const ImagePair& reference, size_t film_channels,
                      std::span<const float> leaf, const MeanTable& means) {
   ErrorTable errors{std::vector<RenderError>(kFirst), std::vector<RenderError>(kFirst)};
@@ -61,7 +60,7 @@ ErrorTable errors_of(const ImagePair& renders, const ImagePair& reference, size_
   return errors;
 }
 
-/// Measures against one reference.
+/// Measures candidates against one reference.
 class Bench {
  public:
   Bench(const PairedRender& reference, const Request& request)
@@ -104,7 +103,7 @@ class Bench {
     return errors_of(images, reference_, channels_.film_channels(), leaf_, means_);
   }
   Image display(const Image& shown) const { return display_image(shown, exposure_stops_, colors_); }
-  /// The eye has no say in bands.
+  /// FLIP models the eye and is undefined for bands.
   std::optional<double> flip(const Image& reference, const Image& image) const {
     if (channels_.are_bands()) return {};
     return mean_flip(reference, display(shown(image, channels_)));
@@ -117,11 +116,11 @@ class Bench {
   ErrorUnit error_unit_;
   MeanTable means_;
   double exposure_stops_;
-  Image display_;  ///< the reference's
+  Image display_;  ///< of the reference
 };
 
-/// Kept on disk from time to time: what was rendered is not lost when the program is ended. Returns how many samples
-/// came from there.
+/// Renders the reference and stores it periodically, so that an interrupted program loses little. Returns the number of
+/// samples that came from the store.
 uint64_t render_reference(PairedRender& render, const ReferenceStore& store, const Plan& plan, const ThreadPool& pool) {
   store.load(render);
   const uint64_t cached = render.samples();
@@ -134,13 +133,15 @@ uint64_t render_reference(PairedRender& render, const ReferenceStore& store, con
   return cached;
 }
 
-/// With fewer samples there are bands that no path has carried.
+/// With fewer samples, some bands would have no path.
 uint64_t first_samples(const Scene& scene) { return std::bit_ceil(samples_for_all_channels(scene)); }
 
 void check_channels(const PairedRender& render, const Candidate& candidate, const PairedRender& reference) {
   if (same_channels(channels_of(render.scene()), channels_of(reference.scene()))) return;
-  fail({}, "{}: its wavelengths \"{}\" give other channels than the reference's \"{}\": only like can be compared",
-       candidate.label, render.scene().wavelengths_name(), reference.scene().wavelengths_name());
+  fail(
+      {},
+      "{}: its wavelengths \"{}\" give other channels than the reference's \"{}\": only equal channels can be compared",
+      candidate.label, render.scene().wavelengths_name(), reference.scene().wavelengths_name());
 }
 
 void check_request(const Request& request, const Plan& plan, const Scene& scene) {
@@ -170,7 +171,7 @@ void warn_of_lost_samples(const PairedRender& render, const Candidate& candidate
                              candidate.label, count));
 }
 
-/// Doublings, and the last run that was asked for.
+/// Returns powers of two, and the last number requested.
 std::vector<uint64_t> ladder(uint64_t first, uint64_t top) {
   std::vector<uint64_t> runs;
   for (uint64_t samples = first; samples < top; samples *= 2) runs.push_back(samples);
@@ -191,7 +192,7 @@ void step_to(uint64_t samples, PairedRender& render, const Plan& plan, const Ben
 void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& bench, const ThreadPool& pool,
            const Log& log, Comparison& result) {
   const auto runs = ladder(first_samples(renders.front().scene()), plan.top_samples);
-  // An early image has about a sixteenth of the samples of the last.
+  // An early image has about a sixteenth of the samples of the last one.
   result.early_samples = runs[runs.size() > 5 ? runs.size() - 5 : 0];
   for (const uint64_t samples : runs)
     for (size_t i = 0; i < renders.size(); ++i) {
@@ -205,7 +206,8 @@ void climb(std::vector<PairedRender>& renders, const Plan& plan, const Bench& be
   }
 }
 
-/// A sample's CPU time hardly hangs on how many there are. The few rays that a cutoff leaves are counted over more.
+/// The CPU time of a sample hardly depends on the number of samples. The few rays that a cutoff leaves are counted over
+/// more samples.
 constexpr uint64_t kTimingSamples = 8, kPilotFactor = 4;
 
 void time_in_the_papers_manner(const Study& study, const Plan& plan, Comparison& result) {

@@ -5,18 +5,18 @@
 
 namespace frond::compare {
 
-/// Two renders of a study's scene with one candidate.
+/// Two independent renders of a study's scene with one candidate.
 class PairedRender {
  public:
-  /// Throws InputError where this machine has no room for the films of `pairs` such pairs.
+  /// Throws InputError if this machine lacks memory for the films of `pairs` such pairs.
   PairedRender(const Study& study, const Candidate& candidate, uint64_t first_seed, uint64_t second_seed,
                size_t pairs = 1);
 
-  /// Up to so many samples a pixel; nothing where there are as many.
+  /// Continues to `samples` samples per pixel; does nothing if they are present.
   void advance_to(uint64_t samples, const ThreadPool& pool, Progress* progress) {
     films_.advance_to(samples, *scene_, pool, progress);
   }
-  /// Goes on from what was kept of these two renders.
+  /// Continues from a saved state of these two renders.
   void restore(std::array<Film, 2> films, uint64_t samples, const RenderCost& cost) {
     films_.restore(std::move(films), samples, cost);
   }
@@ -25,7 +25,7 @@ class PairedRender {
   const RenderCost& cost() const { return films_.cost(); }
   const Film& film(size_t half) const { return films_.film(half); }
   const Scene& scene() const { return *scene_; }
-  /// CPU time of making the scene ready, tables included.
+  /// Returns the CPU time of the scene's construction, including tables.
   double setup_cpu_seconds() const { return setup_cpu_seconds_; }
 
  private:

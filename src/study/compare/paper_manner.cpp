@@ -22,7 +22,8 @@ std::string text_of(const Candidate& c) {
          "@integrator=" + text_of(*c.integrator);
 }
 
-/// Ended by attenuation; the cutoff and the depth are yet to be said. Nothing where its integrator does not know them.
+/// Returns the candidate with an integrator that ends paths by attenuation, cutoff and depth unset; nullopt if its
+/// integrator lacks these parameters.
 std::optional<Candidate> ended_by_attenuation(Candidate c, const Study& study) {
   if (!c.integrator) c.integrator = PluginText{study.integrator_name(), {}};
   const IntegratorInfo& integrator = study.registry().integrators.get(c.integrator->name, {});
@@ -40,7 +41,7 @@ PluginText with_end(PluginText integrator, double cutoff, double depth) {
   return integrator;
 }
 
-/// Renders a candidate with one cutoff after another.
+/// Renders a candidate with a series of cutoffs.
 class CutoffRenders {
  public:
   CutoffRenders(const Study& study, const Candidate& candidate, uint64_t samples)

@@ -7,22 +7,22 @@
 
 namespace frond::compare {
 
-/// Renders as Baranoski and Rokne do. Light sampling does not see a surface lobe. A path ends when the luminance of its
-/// attenuation falls below a cutoff: 0.01 for the baseline, whose trees end at the depth where 1e-4 is left of unshot
-/// to shot rays. Those of the others end there too, and their cutoff is such that the same is left.
+/// Renders in the manner of Baranoski and Rokne. Light sampling ignores a surface lobe. A path ends when the luminance
+/// of its attenuation falls below a cutoff: 0.01 for the baseline, whose trees end at the depth where the ratio of
+/// unshot to shot rays is 1e-4. Other candidates end at the same depth, with the cutoff that leaves the same ratio.
 class PaperManner {
  public:
-  /// How paths end is estimated by pilots of so many samples per pixel.
+  /// Pilots with `pilot_samples` samples per pixel estimate how paths end.
   PaperManner(const Study& study, const Candidate& baseline, uint64_t pilot_samples);
 
-  /// What to time. Nothing where the scene's integrator, or the candidate's own, has no such end.
+  /// Returns the timing to make; nullopt if the integrator of the scene or the candidate has no cutoff.
   std::optional<PaperTiming> of(const Candidate& candidate) const;
 
  private:
   const Study& study_;
   uint64_t pilot_samples_;
   double depth_ = 0;
-  UnshotRatio target_ = {};  ///< what the baseline leaves there
+  UnshotRatio target_ = {};  ///< ratio that the baseline leaves at that depth
 };
 
 }  // namespace frond::compare

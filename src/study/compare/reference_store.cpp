@@ -24,7 +24,7 @@ PartHeader header_of(const PairedRender& render, const Identity& identity) {
   return header;
 }
 
-/// The size of the first film's part, that part, and the second one's.
+/// Serializes the size of the first film's part, that part, and the second film's part.
 std::vector<unsigned char> encode(const PairedRender& render, const Identity& identity) {
   const PartHeader header = header_of(render, identity);
   const auto first = encode_part(header, render.film(0)), second = encode_part(header, render.film(1));
@@ -66,13 +66,13 @@ ReferenceStore::ReferenceStore(const std::filesystem::path& folder, Identity ide
       log_(log) {}
 
 void ReferenceStore::load(PairedRender& render) const try {
-  std::error_code error;  // a cache that cannot be looked into is none
+  std::error_code error;  // an inaccessible cache counts as empty
   if (path_.empty() || !std::filesystem::is_regular_file(path_, error)) return;
   if (decode(read_file_bytes(path_, {}), path_, identity_, render))
     mark_as_used(path_);
   else
     log_.warn({}, fmt::format("{} is damaged: the reference is rendered anew", path_.string()));
-} catch (const InputError& error) {  // another process may have deleted it just now
+} catch (const InputError& error) {  // another process may have just deleted the file
   log_.warn({}, fmt::format("{}: the reference is rendered anew", error.what()));
 }
 

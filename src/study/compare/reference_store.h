@@ -5,20 +5,20 @@
 
 namespace frond::compare {
 
-/// Keeps renders on disk, with all that is needed to continue them. A file that is damaged, or of something else,
-/// counts as none. Files that lie unused for longest make room for new ones (system/cache_limit.h).
+/// Stores renders on disk with the state needed to continue them. A damaged file, or a file of another render, is
+/// ignored. Files that have been unused for longest are deleted for new ones (system/cache_limit.h).
 class ReferenceStore {
  public:
-  /// `folder` empty: nothing is kept. `identity`: all that decides the pixels.
+  /// `folder` empty: nothing is stored. `identity`: everything that decides the pixels.
   ReferenceStore(const std::filesystem::path& folder, Identity identity, const Log& log);
 
-  /// A file that cannot be read, or is damaged, costs a warning.
+  /// Loads a stored render, if any. Warns about a file that is unreadable or damaged.
   void load(PairedRender& render) const;
-  /// A folder that does not take it costs a warning.
+  /// Stores the render. Warns if the folder is not writable.
   void save(const PairedRender& render) const;
 
  private:
-  std::filesystem::path path_;  ///< empty: nothing is kept
+  std::filesystem::path path_;  ///< empty: nothing is stored
   Identity identity_;
   const Log& log_;
 };

@@ -5,7 +5,7 @@
 namespace frond::compare {
 namespace {
 
-/// Until every channel's error is down to its own figure.
+/// Returns the effort until every channel meets its own target.
 std::optional<Effort> until_all(const CandidateResult& s, const std::array<double, 3>& target) {
   Effort all{0, 0, true};
   for (size_t c = 0; c < 3; ++c) {

@@ -10,7 +10,7 @@
 namespace frond::compare {
 namespace {
 
-/// The same image, or the same part of it, with `size` pixels along the longer side.
+/// Scales the film, or its crop, to `size` pixels along the longer side.
 void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
   const double scale = double(size) / std::max(s.crop.width(), s.crop.height());
   const auto scaled = [scale](int pixels) { return std::max(1.0, std::round(pixels * scale)); };
@@ -28,7 +28,7 @@ void resize(ParsedPlugin& film, const FilmSettings& s, int size) {
 
 std::string name_of(const MaterialDescription& m) { return m.name.empty() ? m.plugin.name : m.name; }
 
-/// Candidates answer what a leaf leaves open.
+/// Candidates replace open leaves, so their requests are removed.
 void drop_requests(SceneSettings& description) {
   for (MaterialDescription& m : description.materials)
     if (m.plugin.name == "leaf")
@@ -57,7 +57,7 @@ Study::Study(Session& session, const StudyOptions& options)
   for (const std::string& leaf : options.leaves) swaps_.push_back({leaf, {}});
 }
 
-/// With the candidate in place of the leaves.
+/// Returns the description with the candidate's material.
 SceneDescription Study::described(const Candidate& candidate, const Log& log) const {
   SceneDescription description = description_;
   apply_overrides(

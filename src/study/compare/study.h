@@ -8,43 +8,43 @@
 
 namespace frond::compare {
 
-/// What decides the images beside the candidates.
+/// Settings that decide the images, apart from the candidates.
 struct StudyOptions {
   std::string scene = {}, wavelengths = {};  ///< wavelengths: a PluginText; empty: the scene's
-  std::vector<std::string> leaves = {};      ///< names of the materials that candidates replace; empty: every leaf
+  std::vector<std::string> leaves = {};      ///< names of the materials to replace; empty: every leaf
   Unsupported unsupported = {};
   std::optional<uint64_t> seed = {};  ///< 0 by default
   int size = 256;                     ///< pixels of the image's longer side
 };
 
-/// One scene, in which one leaf model stands for another.
+/// A scene in which candidates replace the leaf materials.
 class Study {
  public:
-  /// The session must outlive it. Throws InputError.
+  /// `session` must outlive this object. Throws InputError.
   Study(Session& session, const StudyOptions& options);
 
-  /// With the candidate in place of the leaves; all of them have one geometry. Throws InputError.
+  /// Returns the scene with the candidate's material. All scenes share one geometry. Throws InputError.
   std::shared_ptr<const Scene> scene(const Candidate& candidate) const;
-  /// One of those that have been made; nullptr where none has.
+  /// Returns a scene that has been built; nullptr if there is none.
   const std::shared_ptr<const Scene>& any_scene() const { return first_; }
-  /// The scene's sampler, with a seed of its own.
+  /// Returns the scene's sampler with another seed.
   std::unique_ptr<Sampler> sampler(const Scene& scene, uint64_t seed) const;
-  /// The scene's integrator with these over it.
+  /// Returns the scene's integrator with overridden parameters.
   std::unique_ptr<Integrator> integrator(const Scene& scene, const PluginText& over) const;
 
-  /// From which those of all renders are made.
+  /// Seed from which the seeds of all renders are derived.
   uint64_t seed() const { return description_.seed.value_or(0); }
   const FilmSettings& film() const { return film_; }
   const SceneSettings& description() const { return description_; }
-  /// Which put a material in the leaves' place.
+  /// Returns swaps that replace the leaves by a material.
   std::vector<MaterialSwap> swaps_to(const PluginText& material) const;
   /// Names of the materials that candidates replace.
   const std::vector<std::string>& leaves() const { return leaves_; }
-  /// The scene's integrator, by name.
+  /// Name of the scene's integrator.
   const std::string& integrator_name() const { return description_.integrator.name; }
   Session& session() const { return session_; }
   const Registry& registry() const { return session_.registry(); }
-  /// All that decides the pixels of a candidate's renders, but the seeds that each of them has of its own.
+  /// Returns everything that decides the pixels of a candidate's renders, except their own seeds.
   Identity identity(const Candidate& candidate) const;
 
  private:
@@ -54,8 +54,8 @@ class Study {
   SceneDescription description_;
   FilmSettings film_;
   std::vector<std::string> leaves_;
-  std::vector<MaterialSwap> swaps_;             ///< without what they put in
-  mutable std::shared_ptr<const Scene> first_;  ///< that was asked for: the others share what stands in it
+  std::vector<MaterialSwap> swaps_;             ///< without the materials to insert
+  mutable std::shared_ptr<const Scene> first_;  ///< the first scene built; others share its geometry
 };
 
 }  // namespace frond::compare

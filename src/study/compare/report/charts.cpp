@@ -7,14 +7,15 @@
 namespace frond::compare {
 namespace {
 
-/// In a colour, dashes and a mark of its own; without points.
+/// Returns an empty series with the candidate's colour, dash and mark.
 Series candidate_series(size_t candidate, std::string label) {
   constexpr size_t kSolid = 4;
   const Dash dash = candidate < kSolid ? Dash::solid : Dash::dashed;
   return {std::move(label), kSeriesColors[candidate], 2, dash, series_mark(candidate)};
 }
 
-/// Seconds and error as the axis has it, with its interval; none where a logarithmic axis cannot show it.
+/// Returns points of CPU seconds and error in the axis's unit, with intervals. Points that a logarithmic axis cannot
+/// show are omitted.
 std::vector<ChartPoint> points_of(const CandidateResult& measured, Measure measure, const ErrorUnit& unit) {
   std::vector<ChartPoint> points;
   for (const CandidateRun& run : measured.runs) {
@@ -36,7 +37,7 @@ Series frontier(const std::vector<Series>& curves) {
   return s;
 }
 
-/// The level of the bias, from where noise has fallen to it; none where there is no bias.
+/// Returns the bias and the time at which noise falls below it; nullopt without bias.
 std::optional<ChartPoint> plateau_of(const CandidateResult& measured, Measure measure) {
   if (measure == Measure::flip) return {};
   const Convergence c = measured.convergence(measure == Measure::rms_leaf ? kLeaf : kAll);
@@ -49,8 +50,7 @@ double mean_step_nm(const ChannelList& channels) {
   return count < 2 ? 10 : (channels.bands.back().nm - channels.bands.front().nm) / double(count - 1);
 }
 
-/// Bias, as the axis has it, with its interval of 95 %; no number where it is not told from none, with 97.5 %
-/// confidence.
+/// Returns the bias in the axis's unit with its 95 % interval; NaN if it is not above 0 with 97.5 % confidence.
 ChartPoint bias_point(double nm, const MeanSquare& bias, const ErrorUnit& unit) {
   const Range bar{unit.on_axis(bias.root_at(-kZ95)), unit.on_axis(bias.root_at(kZ95))};
   return {nm, bar.low > 0 ? unit.on_axis(bias.root()) : NAN, bar};
@@ -113,7 +113,7 @@ std::optional<Chart> bands_chart(const Comparison& c) {
   std::vector<Series> series;
   Range y;
   for (size_t i = 0; i < c.candidates.size(); ++i) {
-    // Keeps candidates' bars off each other.
+    // Offset that separates the candidates' error bars.
     const double aside = step_nm * 0.5 * ((double(i) + 0.5) / double(c.candidates.size()) - 0.5);
     Series noise = line("", kSeriesColors[i], 2, Dash::dotted),
            bias = candidate_series(i, c.candidates[i].candidate.label);

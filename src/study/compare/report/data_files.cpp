@@ -96,7 +96,7 @@ Table reference_table(const Comparison& c) {
   Table table{"reference"};
   for (size_t region = 0; region < kRegions; ++region)
     for (size_t k = 0; k < c.channels.names.size(); ++k) {
-      const std::vector<double>& means = c.reference.mean[region];  // of the channels from kFirst on
+      const std::vector<double>& means = c.reference.mean[region];  // by channel, from kFirst on
       table.add("region", kRegionNames[region]);
       table.add("channel", c.channels.names[k]);
       add_interval(table, "noise", c.reference.noise[region][k]);

@@ -17,7 +17,7 @@ uint16_t half_of(float value) {
   const auto sign = uint16_t(std::signbit(value) ? 0x8000 : 0);
   const float x = std::isnan(value) ? 0 : std::min(std::abs(value), kLargest);
   if (x < kSmallestNormal) return uint16_t(sign | uint16_t(std::lround(x * 0x1p24f)));
-  // Rounds the 13 bits that go away to even, then moves the exponent's bias from 127 to 15.
+  // Rounds the 13 discarded bits to even, then changes the exponent's bias from 127 to 15.
   const auto bits = std::bit_cast<uint32_t>(x);
   const uint32_t rounded = bits + 0xfff + ((bits >> 13) & 1);
   return uint16_t(sign | uint16_t((rounded >> 13) - ((127 - 15) << 10)));

@@ -9,18 +9,19 @@
 
 namespace frond::compare {
 
-/// A text as HTML has it, in content and in attributes.
+/// Returns the text escaped for HTML content and attributes.
 std::string html_text(std::string_view text);
 
-/// A table of texts with its name above it and a note below.
+/// Returns a table with its name above and a note below.
 std::string to_html(const Table& table, const std::string& note);
 
 std::string base64(std::span<const unsigned char> bytes);
 
-/// The values as 16-bit floats (IEEE 754 binary16, little-endian), in base64. What is too large becomes the largest.
+/// Returns the values as 16-bit floats (IEEE 754 binary16, little-endian) in base64. Values out of range become the
+/// largest.
 std::string half_floats(std::span<const float> values);
 
-/// Puts values in place of `{{name}}`. Names that are not given are an error of ours.
+/// Replaces `{{name}}` by values. An unknown name is a logic error.
 std::string filled(std::string_view page, const std::map<std::string, std::string>& values);
 
 }  // namespace frond::compare

@@ -6,11 +6,11 @@
 
 namespace frond::compare {
 
-/// Refuses, by InputError, a folder that cannot be made or written to. Leaves nothing behind.
+/// Throws InputError if the folder cannot be created or written. Leaves no files.
 void check_report_folder(const std::filesystem::path& folder);
 
-/// Makes the folder and writes index.html, which needs nothing beside it, the charts as SVG (and PNG where there
-/// is librsvg), and the data as CSV and JSON.
+/// Creates the folder and writes index.html, which is self-contained, the charts as SVG (also PNG if librsvg is
+/// available), and the data as CSV and JSON.
 void write_report(const std::filesystem::path& folder, const Comparison& comparison, const ComparisonData& data);
 
 }  // namespace frond::compare

@@ -30,7 +30,7 @@ std::string cutoff_text(const CandidateResult& s) {
   return end.equal ? text : fmt::format("{} (which leaves {:.1e}: none leaves the same)", text, end.left.value);
 }
 
-/// What stands behind (b); nothing where the scene's integrator cannot render so.
+/// Returns the note on speed-up (b); empty if the scene's integrator cannot render in the paper's manner.
 std::string paper_note(const Comparison& c) {
   std::vector<std::string> cutoffs;
   for (const CandidateResult& s : c.candidates)
@@ -77,7 +77,7 @@ constexpr const char* kTable2Note =
     "linear SMPTE-C: theirs is between two noisy renders; here the reference’s noise is taken out. Speed-ups are "
     "defined under the table of speed-ups.";
 
-/// Of absolute errors of colours, as the paper's are.
+/// Table 2 of the paper, for absolute errors of colours.
 std::string table_2(const Comparison& c) {
   if (c.channels.are_bands() || c.request.relative) return "";
   Table table{fmt::format("Table 2: RMS error of {} samples per pixel, and speed-up",
@@ -115,7 +115,7 @@ constexpr const char* kOffersNote =
 
 constexpr int kDecimals = 4;
 
-/// The value, and the upper end of its interval.
+/// Returns the value and the upper end of its interval.
 std::string bounded(const ErrorUnit& unit, const MeanSquare& m) {
   return fmt::format("{} (≤ {})", unit.fixed(m.root(), kDecimals), unit.fixed(m.root_at(kZ95), kDecimals));
 }
@@ -157,7 +157,7 @@ std::string error_table(const Comparison& c, Region region) {
       table.add("largest bias\nof a band", worst_band(c, e));
       continue;
     }
-    // What is clipped is compared with the paper, whose errors are absolute.
+    // Clipped errors are compared with the paper's, which are absolute.
     if (!c.request.relative) table.add("RMS, clipped\nR G B", triple(&RenderError::clipped));
     table.add("RMS\nR G B", triple(&RenderError::total));
     table.add("noise\nR G B", triple(&RenderError::noise));
@@ -170,7 +170,7 @@ std::string error_table(const Comparison& c, Region region) {
   return to_html(table, error_note(c));
 }
 
-/// Band by band; folded away, as there may be many.
+/// Returns errors by band in a collapsed section, because there may be many bands.
 std::string band_table(const Comparison& c) {
   if (!c.channels.are_bands()) return "";
   Table table{"Bias over all pixels",

@@ -4,10 +4,10 @@
 
 namespace frond::compare {
 
-/// Bias, noise and time of each candidate, for a terminal.
+/// Returns bias, noise and time of each candidate for a terminal.
 std::string summary_text(const Comparison& comparison);
 
-/// As HTML: what meets the errors asked for, the paper's Table 2, and what that leaves out.
+/// Returns HTML: candidates that meet the requested errors, the paper's Table 2, and its notes.
 std::string tables_html(const Comparison& comparison);
 
 }  // namespace frond::compare

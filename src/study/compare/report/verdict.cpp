@@ -23,7 +23,7 @@ std::string effort_text(const Effort& e) {
                      figures(e.seconds, 3), e.measured ? "" : " by extrapolation");
 }
 
-/// Times of one program differ by some per cent: who is as cheap as the best as far as can be told need not give way.
+/// Whether the candidate's cost is within the few per cent by which times of one program vary.
 bool holds(const std::vector<CandidateCost>& all, size_t candidate) {
   constexpr double kMargin = 1.05;
   const auto own = std::ranges::find(all, candidate, &CandidateCost::candidate);

@@ -4,32 +4,30 @@
 
 namespace frond::compare {
 
-/// One candidate against an error that is asked for.
+/// Cost of one candidate for a requested error.
 struct CandidateCost {
   size_t candidate;
-  std::optional<Effort> effort;  ///< nothing: its bias alone may be too large
-  bool never;                    ///< its bias is too large, as sure as the effort would be enough
+  std::optional<Effort> effort;  ///< empty: not shown to be possible, because of its bias
+  bool never;                    ///< the bias is too large, with the same confidence
 };
 
-/// What every candidate needs to bring the RMS over all channels and pixels down to `rms`, the cheapest first, those
-/// of which that is not known, or known to be wrong, last. `z`: how many standard errors larger bias and noise are
-/// taken to be.
+/// Returns the effort of every candidate to reach `rms` over all channels and pixels, cheapest first; candidates whose
+/// effort is unknown or that cannot reach it are last. Bias and noise are increased by `z` standard errors.
 std::vector<CandidateCost> candidate_costs(const Comparison& comparison, double rms, double z);
 
-/// Standard errors to add so that all bounds of all candidates hold together with 95 % confidence.
+/// Returns the number of standard errors at which all bounds of all candidates hold with 95 % joint confidence.
 double simultaneous_z(const Comparison& comparison);
 
-/// From `rms_from` down to `rms_to` no candidate is cheaper by 5 %.
+/// Range of errors in which no other candidate is more than 5 % cheaper.
 struct CheapestRange {
   size_t candidate;
   double rms_from, rms_to;
 };
 
-/// Which candidate is the cheapest at which error: from what the best makes of one sample down to the smallest RMS that
-/// was measured.
+/// Returns the cheapest candidates by error, from the best error after one sample down to the smallest measured RMS.
 std::vector<CheapestRange> cheapest_ranges(const Comparison& comparison);
 
-/// The answer to each `Request::rms`, a line for each, or which candidate to take down to which error.
+/// Returns one line for each `Request::rms`, or without requests the cheapest candidates by error.
 std::string verdict(const Comparison& comparison);
 
 }  // namespace frond::compare

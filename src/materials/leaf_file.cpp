@@ -1,4 +1,4 @@
-#include "materials/portable_leaf.h"
+#include "materials/leaf_file.h"
 
 #include "leaf/table/mode_table_cache.h"
 #include "leaf/table/reciprocal_modes.h"
@@ -6,12 +6,12 @@
 
 namespace frond {
 
-leaf::PortableLeaf make_portable_leaf(const LeafParams& leaf, PortableLeafRequest request, const ThreadPool& pool,
-                                      const Log& log, const std::filesystem::path& cache_dir) {
+leaf::LeafFile make_leaf_file(const LeafParams& leaf, LeafFileRequest request, const ThreadPool& pool, const Log& log,
+                              const std::filesystem::path& cache_dir) {
   if (leaf.incident() == Incident::light)
     fail({},
-         "a .leaf file is of incident \"traced\" or \"reciprocal\": \"light\" is the former with its directions "
-         "swapped");
+         "a .leaf file supports incident \"traced\" and \"reciprocal\"; \"light\" is \"traced\" with its directions "
+         "exchanged");
   if (request.wavelengths_nm.empty()) fail({}, "a .leaf file needs wavelengths");
   for (const double nm : request.wavelengths_nm)
     if (!leaf::kConstantsRange_nm.contains(nm))
@@ -22,15 +22,16 @@ leaf::PortableLeaf make_portable_leaf(const LeafParams& leaf, PortableLeafReques
                               .wavelengths_nm = request.wavelengths_nm,
                               .tolerance = request.tolerance / (leaf.is_reciprocal() ? leaf::kReciprocalFiner : 1),
                               .nodes = request.nodes};
-  body.params.cuticle_aspect = 0;  // the surface is not part of the modes
+  body.params.cuticle_aspect = 0;  // modes do not depend on the surface's lobe
   if (request.depths) {
     const auto [least, most] = *request.depths;
-    if (!(0 <= least && least < most)) fail({}, "depths from {} to {} are no range from 0 on", least, most);
+    if (!(0 <= least && least < most))
+      fail({}, "invalid range of depths, {} to {}: 0 <= least < most is required", least, most);
     body.depths = leaf::DepthAxis(least, most, leaf::kDepthStep);
   }
   leaf::ModeTable spectrum = leaf::cached_mode_table(body, leaf.specimen(), pool, log, cache_dir);
   if (leaf.is_reciprocal()) spectrum = leaf::make_reciprocal(spectrum).value();
-  return leaf::make_portable(body, spectrum, leaf.tissue().cuticle_aspect);
+  return leaf::make_leaf_file(body, spectrum, leaf.tissue().cuticle_aspect);
 }
 
 }  // namespace frond

@@ -1,4 +1,4 @@
-#include "leaf/table/portable_leaf.h"
+#include "leaf/table/leaf_file.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +13,7 @@
 namespace frond::leaf {
 namespace {
 
-void add_surface(PortableLeaf& leaf) {
+void add_surface(LeafFile& leaf) {
   if (!leaf.is_reciprocal) {
     const TabulatedLobe lobe(leaf.exponent);
     for (const double c : CosineNodes::cosines()) leaf.surface.push_back(static_cast<float>(lobe.kept(c)));
@@ -27,7 +27,7 @@ void add_surface(PortableLeaf& leaf) {
       leaf.surface.push_back(scaling.at(place, static_cast<float>(c), Float4{n, n, n, n})[0]);
 }
 
-void add_series(PortableLeaf& leaf, const ModeTable& spectrum) {
+void add_series(LeafFile& leaf, const ModeTable& spectrum) {
   const size_t places = leaf.side() * leaf.side();
   for (const bool from_below : {false, true})
     for (const bool crosses : {false, true}) {
@@ -43,7 +43,7 @@ void add_series(PortableLeaf& leaf, const ModeTable& spectrum) {
     }
 }
 
-void add_ways(PortableLeaf& leaf, const ModeTable& spectrum) {
+void add_ways(LeafFile& leaf, const ModeTable& spectrum) {
   const size_t side = leaf.side(), depths = std::max<size_t>(1, leaf.depths.size());
   const Measure measure = leaf.is_reciprocal ? Measure::plain : Measure::over_inner_cosine;
   for (size_t c = 0; c < spectrum.modes.size(); ++c) {
@@ -72,8 +72,8 @@ class Writer {
 
 }  // namespace
 
-PortableLeaf make_portable(const ModeTableRequest& request, const ModeTable& spectrum, double exponent) {
-  PortableLeaf leaf;
+LeafFile make_leaf_file(const ModeTableRequest& request, const ModeTable& spectrum, double exponent) {
+  LeafFile leaf;
   leaf.is_reciprocal = spectrum.is_reciprocal;
   leaf.cells = static_cast<size_t>(spectrum.cells);
   leaf.exponent = exponent;
@@ -87,7 +87,7 @@ PortableLeaf make_portable(const ModeTableRequest& request, const ModeTable& spe
   return leaf;
 }
 
-std::string portable_bytes(const PortableLeaf& leaf) {
+std::string leaf_file_bytes(const LeafFile& leaf) {
   std::string bytes = "FRONDLF1";
   Writer writer(bytes);
   writer.add(uint32_t(leaf.is_reciprocal));
