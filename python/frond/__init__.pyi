@@ -127,7 +127,7 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
     paths: Number of paths for each view. Range: from 1 to 4294967296. Default: 65536.
-    rms: Stop when the RMS standard error, relative to the mean, is below this; paths is then not used. Range: above 0.
+    rms: Stop when the RMS of the standard errors, relative to the mean, is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; one of the scene's type keeps the scene's other parameters.
@@ -141,7 +141,7 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     json: JSON file to write; - is standard output.
     plot: Chart against the zenith angle, or maps of a hemisphere: .svg or .png.
     checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT or SIGTERM. Unit: s. Range: above 0. Needs csv.
-    resume: Resume from CSV.part if it is there; keep one too. Needs csv.
+    resume: Resume from CSV.part if it exists; write one too. Needs csv.
 
     Returns the job's table."""
 
@@ -159,7 +159,7 @@ def flux(scene, wavelengths = None, *, by_instance = False, target: float | Sequ
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
     paths: Number of light paths. Default: 1e6.
-    rms: Stop when the RMS standard error, relative to the mean, is below this; paths is then not used. Range: above 0.
+    rms: Stop when the RMS standard error of the reflected and absorbed shares of the incident light is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, one row each. One of instance.
     irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, or an .spd file. Unit: W/(m2 nm). Default: solar-am1.5-global.
@@ -171,7 +171,7 @@ def flux(scene, wavelengths = None, *, by_instance = False, target: float | Sequ
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
     checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT or SIGTERM. Unit: s. Range: above 0. Needs csv.
-    resume: Resume from CSV.part if it is there; keep one too. Needs csv."""
+    resume: Resume from CSV.part if it exists; write one too. Needs csv."""
 
 def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | Sequence[str] | Mapping[str, str] | None = None, rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
     """Measure a material's reflectance, transmittance and absorptance.

@@ -101,7 +101,7 @@ def test_fit_of_arrays_and_of_a_file(reference):
     shares = frond.spectrophotometer(["leaf_solved"] + of_file.material, 800, rays=100_000)
     measured = [r for nm, r in zip(table["wavelength_nm"], table["R"]) if nm == 800][0]
     assert abs(shares["R"][0] - measured) < 0.02
-    with pytest.raises(frond.InputError, match="fewer than the 9 numbers"):
+    with pytest.raises(frond.InputError, match="fewer than the 9 parameters"):
         frond.fit([550], [0.1])
     with pytest.raises(ValueError, match="takes measurements, or the path"):
         frond.fit()

@@ -1,7 +1,7 @@
 """A field of soybean in rows: plants, their tables, the soil, maps of the veins and the sky.
 
 A leaflet stands in a table of its plant, with its chlorophyll; a plant in a table of the field, with its vigour. The
-field is a tile that goes on for ever along x and y: rows run along y, and whatever varies slowly has the tile's period.
+field is a tile that is repeated periodically along x and y: rows run along y, and whatever varies slowly has the tile's period.
 """
 
 import math

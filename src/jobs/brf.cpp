@@ -37,7 +37,8 @@ constexpr JobParam kParams[] = {
     kTargetParam,
     kPeriodParam,
     JobParam("paths", count, "Number of paths for each view.", {.default_value = "65536", .range = {1, 4294967296}}),
-    kRmsParam,
+    rms_param(
+        "Stop when the RMS of the standard errors, relative to the mean, is below this; --paths is then not used."),
     kTimeLimitParam,
     kSwapParam,
     kIntegratorParam,

@@ -26,7 +26,9 @@ constexpr JobParam kParams[] = {
     kTargetParam,
     kPeriodParam,
     JobParam("paths", count, "Number of light paths.", {.default_value = "1e6", .range = kCounts}),
-    kRmsParam,
+    rms_param(
+        "Stop when the RMS standard error of the reflected and absorbed shares of the incident light is below this; "
+        "--paths is then not used."),
     kTimeLimitParam,
     JobParam("by", text, "Measure the absorption of each instance of an object, one row each.",
              {.choices = kBy, .decides = true}),

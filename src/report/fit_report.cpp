@@ -64,7 +64,7 @@ std::vector<std::string> not_told(const FitReport& report) {
 
 std::string note(const FittedNumber& n) {
   if (n.is_fixed) return "as given";
-  if (n.is_at_bound) return "at the end of its range: not determined by the data";
+  if (n.is_at_bound) return "at a limit of its range: not determined by the data";
   return n.is_identified() ? "" : "not determined by the data";
 }
 
@@ -97,7 +97,7 @@ std::string fit_text(const FitReport& report) {
     if (const auto rmse = leaf::rmse_between(report.request, result, band.nm))
       text += fmt::format("  {:<20} {:4.0f} to {:4.0f} nm   RMSE {:.4f}\n", band.name, band.nm.min, band.nm.max, *rmse);
   if (const auto far = std::ranges::count(result.fitted, true, &leaf::FitResult::Fitted::is_outlier); far > 0)
-    text += fmt::format("  {} measurements differ by more than 0.06 and have less weight\n", far);
+    text += fmt::format("  outliers (residual above 0.06, less weight): {}\n", far);
   text += fmt::format("structure of {}, {} the sieve effect\n", result.specimen->name,
                       result.params.sieve_and_detour ? "with" : "without");
   for (const FittedNumber& n : result.numbers)
@@ -112,7 +112,7 @@ std::string fit_text(const FitReport& report) {
   for (size_t a = 0; a < free.size(); ++a)
     for (size_t b = 0; b < a; ++b)
       if (std::abs(result.correlations[a][b]) > kGoTogether)
-        text += fmt::format("  {} and {} cannot be told apart well: their correlation is {:.2f}\n",
+        text += fmt::format("  {} and {} are strongly correlated ({:.2f}): the data do not separate them\n",
                             free[b]->variable->name, free[a]->variable->name, result.correlations[a][b]);
   return text;
 }

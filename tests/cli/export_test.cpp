@@ -160,7 +160,7 @@ TEST_F(ExportCommand, RefusesTheImpossible) {
               HasSubstr("one of radiance, csv, npz, netcdf, osl is needed; \"cvs\""));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "-o", out}), HasSubstr("a table needs wavelengths"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "--wavelengths", "551,550", "-o", out}),
-              HasSubstr("wavelengths ascend: 550 comes after 551"));
+              HasSubstr("wavelengths must ascend: 550 follows 551"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "--wavelengths", "300", "-o", out}), HasSubstr("360"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "--wavelengths", "551", "--angles", "90", "-o", out}),
               HasSubstr("--angles: a list of numbers from 0 to 89.9999 (degrees)"));

@@ -98,7 +98,7 @@ TEST_F(FittingData, IsRefusedAsAFileIs) {
   EXPECT_THAT(refusal({{"data", "nm,theta_deg,R\n550,200,0.1\n"}}), HasSubstr("theta_deg is from 0 to 180 degrees"));
   EXPECT_THAT(refusal({{"data", kSpectrum}, {"angle", "200"}}), HasSubstr("angle: a number from 0 to 180 (degrees)"));
   EXPECT_THAT(refusal({{"data", kSpectrum}, {"like", "maize"}, {"structure", "bifacial"}}),
-              HasSubstr("like maize is unifacial, structure says otherwise"));
+              HasSubstr("like maize is unifacial, which contradicts structure"));
   for (const char* value : {"-1", "nan", "inf", "", "1x"})
     EXPECT_THAT(refusal({{"data", kSpectrum}, {"fix", std::string("chlorophylla=") + value}}),
                 HasSubstr("chlorophylla=NUMBER is needed, 0 at least"))

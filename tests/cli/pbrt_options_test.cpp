@@ -127,7 +127,7 @@ TEST_F(PbrtOptions, WarningsOfManyPlacesAreToldOnce) {
   EXPECT_EQ(lenient.code, 0);
   EXPECT_EQ(std::ranges::count(lenient.err, '\n'), 1 + 1 + 20 + 1) << lenient.err;
   EXPECT_THAT(lenient.err, AllOf(HasSubstr("fog.pbrt:5:1: warning: MediumInterface of pbrt-v4"),
-                                 HasSubstr("here and at 99 more places"), HasSubstr("here and 80 more like it")));
+                                 HasSubstr("here and at 99 more locations"), HasSubstr("here and 80 more like it")));
 }
 
 TEST_F(PbrtOptions, StrictTellsWarningsBesideErrors) {

@@ -122,7 +122,7 @@ TEST(TableCommand, RefusesWhatItCannotDo) {
       {{"--wavelengths", "551,551"}, "--wavelengths has 551 twice"},
       {{"--wavelengths", "green"}, "\"green\" was given"},
       {{"--wavelengths", "551", "--angles", "0,200"}, "--angles: a list of numbers from 0 to 180 (degrees)"},
-      {{"--wavelengths", "551", "--angles", "20,10"}, "--angles ascend, 10 comes after 20"},
+      {{"--wavelengths", "551", "--angles", "20,10"}, "--angles must ascend: 10 follows 20"},
       {{"--wavelengths", "551", "--angles", "91:180:1", "--equalsides"}, "--equalsides needs angles up to 90"},
       {{"--wavelengths", "551", "--method", "montecarlo", "--rays", "0"},
        "--rays: a whole number from 1 to 1000000000"},

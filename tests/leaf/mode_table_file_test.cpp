@@ -86,7 +86,7 @@ TEST(ModeTableFile, NamesWhatIsWrongAndWhere) {
       {"adaxial trans", "abaxial trans", "leaf.modes:10:1: \"adaxial\" is expected here, not \"abaxial\""},
       {"modes 1", "modes 65", "leaf.modes:6:25: modes: 1 to 64, 65 was given"},
       {"0.02", "-0.02", "leaf.modes:7:1: mode 0 is a mean over azimuth and not below 0, -0.02 was given"},
-      {"0.02", "nan", "leaf.modes:7:1: nan is no number"},
+      {"0.02", "nan", "leaf.modes:7:1: nan is not a finite number"},
       {"0.02 0.02\n", "0.02\n", "leaf.modes:7:6: 2 words in place of the 3 numbers of mode 0"},
       {mode_of(0.02), mode_of(0.5), "leaf.modes:5:1: of light that enters the adaxial side at 0.0 degrees"},
   };
@@ -99,7 +99,8 @@ TEST(ModeTableFile, NamesWhatIsWrongAndWhere) {
   EXPECT_THAT(error_of([&] { parse_mode_table_file("", "leaf.modes"); }), HasSubstr("the file ends before cells N"));
   EXPECT_THAT(error_of([&] { parse_mode_table_file(sound + "0.02\n", "leaf.modes"); }),
               HasSubstr(":22:1: 1 word in place of"));
-  EXPECT_THAT(error_of([&] { parse_mode_table_file(std::string("\0", 1), "leaf.modes"); }), HasSubstr("no text"));
+  EXPECT_THAT(error_of([&] { parse_mode_table_file(std::string("\0", 1), "leaf.modes"); }),
+              HasSubstr("not a text file"));
 }
 
 TEST(ModeTableFile, IsRefusedWhereItCannotBeReadOrSaysThingsTwice) {

@@ -141,7 +141,7 @@ TEST(LeafSolved, TakesItsModesFromAFile) {
 TEST(LeafSolved, RefusesTexturesOfCells) {
   for (const char* name : {"epidermisaspect", "spongyaspect", "palisadeaspect"})
     EXPECT_THAT(error_of([&] { Ready("leaf_solved", {texture(name, {"1:2"})}); }),
-                AllOf(HasSubstr(name), HasSubstr("every texel"), HasSubstr("abm")));
+                AllOf(HasSubstr(name), HasSubstr("each texel"), HasSubstr("abm")));
 }
 
 }  // namespace

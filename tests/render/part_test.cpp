@@ -279,7 +279,7 @@ TEST_F(Parts, WhatIsNoneOrOfAnotherVersionIsRefused) {
   other[other.find('3')] = '2';
   EXPECT_THAT(reading(other), AllOf(HasSubstr("another version"), HasSubstr("version 3")));
   EXPECT_THAT(error_of([this] { read_part(path("none.part")); }), HasSubstr("none.part"));
-  EXPECT_THAT(error_of([this] { merge_parts({path("scene.pbrt")}); }), HasSubstr("no part of a render"));
+  EXPECT_THAT(error_of([this] { merge_parts({path("scene.pbrt")}); }), HasSubstr("not a part file"));
 }
 
 /// An adaptive render keeps more than another.

@@ -19,16 +19,15 @@ inline constexpr JobParam kTargetParam(
 inline constexpr JobParam kPeriodParam("period", ArgumentKind::numbers,
                                        "Lengths along x and y after which the scene is repeated periodically.",
                                        {.type = "X,Y", .range = kAboveZero, .values = 2, .decides = true});
-inline constexpr JobParam kRmsParam(
-    "rms", ArgumentKind::real,
-    "Stop when the RMS standard error, relative to the mean, is below this; --paths is then not used.",
-    {.range = kAboveZero});
+constexpr JobParam rms_param(std::string_view doc) {
+  return JobParam("rms", ArgumentKind::real, doc, {.range = kAboveZero});
+}
 inline constexpr JobParam kCheckpointParam(
     "checkpoint", ArgumentKind::real,
     "Keep the partial result in CSV.part at this interval, and when stopped by SIGINT or SIGTERM.",
     {.unit = "s", .range = kAboveZero, .needs = "csv"});
 inline constexpr JobParam kResumeParam("resume", ArgumentKind::flag,
-                                       "Resume from CSV.part if it is there; keep one too.", {.needs = "csv"});
+                                       "Resume from CSV.part if it exists; write one too.", {.needs = "csv"});
 
 /// Returns --target, or nullopt for the default.
 std::optional<Target> target_of(const Arguments& args);
