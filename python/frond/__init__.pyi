@@ -16,7 +16,7 @@ __version__: str
 def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
     """Render a pbrt-v4 scene file.
 
-    scene: Scene file (pbrt-v4 format). Several files: each file with WorldBegin ends a scene.
+    scene: Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the next file begins another.
     output: Image: .exr (linear), .png or .jpg (through the display transform). By default the file named by the scene's film. Excludes part.
     spp: Number of samples per pixel; by default the scene's. Range: from 1 to 1073741824.
     wavelengths: Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in nm: 450,550,850 or 400:1000:10.
@@ -25,8 +25,8 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     crop: Crop as fractions of the film; ends are rounded up. Range: from 0 to 1. Excludes pixels, pixel.
     pixels: Crop in pixels; x1 and y1 are excluded. Range: from 0 to 1073741824. Excludes pixel.
     pixel: Single pixel to render. Range: from 0 to 1073741824.
-    integrator: PLUGIN[,parameter=value...]: integrator; one of the scene's type keeps the scene's other parameters.
-    filter: PLUGIN[,parameter=value...]: pixel filter; one of the scene's type keeps the scene's other parameters. gaussian,reconstruction=importance: each sample counts in one pixel only.
+    integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
+    filter: PLUGIN[,parameter=value...]: pixel filter; parameters that are not given keep the scene's values if the type is the scene's. gaussian,reconstruction=importance: each sample counts in one pixel only.
     channels: Additional channels with data of the first surface that camera rays hit; names separated by commas (docs/scene_format.md).
     max_rms: Stop when the RMS noise of the image's linear colours is below this; pixels with more noise get more samples, up to spp. Range: above 0. Excludes samples.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
@@ -98,7 +98,7 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, sieve = None, fi
     material: Material type to write. One of leaf, leaf_solved, leaf_simplified, leaf_lambert, abm. Default: leaf."""
 
 def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen: str | os.PathLike | None = None, method: str | os.PathLike = 'solve', *, wavelengths: float | Sequence[float] | str, angles: float | Sequence[float] | str = '0:180:1', rays: int = 1000000, nodes: int | None = None, depths: float | Sequence[float] | str | None = None, seed: int | None = None, equalsides: bool = False, output: str | os.PathLike, progress = None, session: Session | None | None = None) -> Result:
-    """Write the table of a leaf material to a file that it can read.
+    """Compute the table of a leaf material and write it to a file for its "tablefile".
 
     leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as FILE.leaf the complete material for other programs.
 
@@ -117,7 +117,7 @@ def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen:
 def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | Sequence[str] | Mapping[str, str] | None = None, reference: str | os.PathLike = 'leaf_solved', within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the bidirectional reflectance factor of a scene from far away.
 
-    Unless the scene sets "incident", leaves are reciprocal, or conserve energy where they cannot be reciprocal.
+    Leaves without "incident" use incident=reciprocal; abm uses incident=light.
 
     scene: Scene file (pbrt-v4 format).
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.
@@ -130,7 +130,7 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     rms: Stop when the RMS of the standard errors, relative to the mean, is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
-    integrator: PLUGIN[,parameter=value...]: integrator; one of the scene's type keeps the scene's other parameters.
+    integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
     compare: MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate enough. Excludes plot, checkpoint, resume. Repeatable.
     reference: Reference leaf model of compare. Default: leaf_solved.
@@ -164,7 +164,7 @@ def flux(scene, wavelengths = None, *, by_instance = False, target: float | Sequ
     by: Measure the absorption of each instance of an object, one row each. One of instance.
     irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, or an .spd file. Unit: W/(m2 nm). Default: solar-am1.5-global.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
-    integrator: PLUGIN[,parameter=value...]: integrator; one of the scene's type keeps the scene's other parameters.
+    integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
     strict: Treat warnings as errors.
@@ -182,7 +182,7 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | Sequenc
     with_: NAME[,parameter=value...]: one more material. Repeatable.
     rays: Number of rays for each measurement, by default 1e6; with se the maximum, by default 1e9.
     se: Stop when the standard errors of R, T and A are at most this. Range: above 0.
-    rendered: Measure what a renderer shows: light along wi, seen along wo, though the model calls wo incident.
+    rendered: Measure what an image shows: light arrives along wi and the detector is at wo, also for models whose incident direction is wo.
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
@@ -202,7 +202,7 @@ def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), wi
     rays: Number of rays for each measurement. Default: 1e6.
     patches: THETAxPHI: numbers of detector patches, equal in angle, over the whole sphere. Default: 20x40.
     integrate: Integrate f over each patch, without noise, if the material evaluates f exactly; otherwise use rays.
-    rendered: Measure what a renderer shows: light along wi, seen along wo, though the model calls wo incident.
+    rendered: Measure what an image shows: light arrives along wi and the detector is at wo, also for models whose incident direction is wo.
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
@@ -231,7 +231,7 @@ def conform(material, *, session = None, sweep: bool = False, samples: int = 200
     Exit code 0: all laws hold; 2: a law is broken.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    sweep: Also vary the parameters that are not given over their declared ranges.
+    sweep: Also test parameters that are not given, over their declared ranges.
     samples: Number of samples for each direction. Range: from 1000 to 1073741824. Default: 20000.
     angles: Angles of wo from the normal, on both sides. Unit: degrees. Range: from 0 to 89.9999. Default: 0,30,60,80,89.
     wavelengths: Wavelengths, tested in groups of four. Unit: nm. Range: above 0. Default: 608,551,455.
@@ -269,7 +269,7 @@ def export(material: str | Sequence[str] | Mapping[str, str], format: str | os.P
     angles: Angles between the normal and the light, on both sides, in a table. Unit: degrees. Range: from 0 to 89.9999.
     view_angles: Angles between the normal and the viewer in a table. Unit: degrees. Range: from 0 to 89.9999.
     view_azimuths: Azimuths from the light to the viewer in a table; the mirror direction is at 180. Unit: degrees. Range: from 0 to 359.9999.
-    rays: Number of rays for each share of the light, where rays measure it.
+    rays: Number of rays for each value of R and T that is measured by rays.
     seed: Seed of all random numbers."""
 
 def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
@@ -324,7 +324,7 @@ def difference(images: str | Sequence[str] | Mapping[str, str], output: str | os
     json: Print JSON."""
 
 def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
-    """Render on a cluster: an array job of sample ranges, and the job that merges them.
+    """Write the scripts of a Slurm array job that renders ranges of samples, and of the job that merges them; --run submits them.
 
     The options of frond render are passed on to the tasks.
 
@@ -341,8 +341,8 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     crop: Crop as fractions of the film; ends are rounded up. Range: from 0 to 1. Excludes pixels, pixel.
     pixels: Crop in pixels; x1 and y1 are excluded. Range: from 0 to 1073741824. Excludes pixel.
     pixel: Single pixel to render. Range: from 0 to 1073741824.
-    integrator: PLUGIN[,parameter=value...]: integrator; one of the scene's type keeps the scene's other parameters.
-    filter: PLUGIN[,parameter=value...]: pixel filter; one of the scene's type keeps the scene's other parameters. gaussian,reconstruction=importance: each sample counts in one pixel only.
+    integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
+    filter: PLUGIN[,parameter=value...]: pixel filter; parameters that are not given keep the scene's values if the type is the scene's. gaussian,reconstruction=importance: each sample counts in one pixel only.
     channels: Additional channels with data of the first surface that camera rays hit; names separated by commas (docs/scene_format.md).
     max_rms: Stop when the RMS noise of the image's linear colours is below this; pixels with more noise get more samples, up to spp. Range: above 0. Excludes samples.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.

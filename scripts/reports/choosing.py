@@ -198,7 +198,8 @@ class FullSize:
 
 SECTION = """## Measurements
 
-None of these scenes was used to design the selection, except the first, whose early runs showed that samples were counted wrongly.
+None of these scenes was used to design the selection. The first is not quite independent: its early runs revealed an error in
+the count of samples.
 The scenes are two leaves close to the camera and far away, maize lit from behind, dark leaves in a strong light, a leaf with a map
 of its chlorophyll, leaves in the shade of others (`scenes/choosing`), and `scenes/hundred-leaves`.
 Machine: {machine}.

@@ -173,8 +173,8 @@ def write_letter(path):
 
 def main():
     options = arguments("gallery", ("--only", dict(default="", metavar="WORD", help="plugins whose names hold it; others stay")))
-    page = ["# Gallery", "", "Written by `scripts/gallery`: what the plugins that a scene can name look like, and the lines that made the image.",
-            "[All their parameters](plugins.md)."]
+    page = ["# Gallery", "", "For authors of scene files: an image of each plug-in that a scene can name, and the lines of the scene that produce it.",
+            "Written by `scripts/gallery`. [All parameters](plugins.md)."]
     with tempfile.TemporaryDirectory() as folder:
         write_letter(pathlib.Path(folder) / LETTER)
         for kind, (table, default) in KINDS.items():

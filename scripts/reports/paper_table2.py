@@ -180,5 +180,5 @@ def goals(measured):
 The table compares the paper's errors and speed-ups with those measured here. RMS and bias are of red, green and blue.
 
 {table(("set", "quantity", "goal", "measured", "reached"), goal_rows(measured))}
-The paper's speed-up is defined as (b); a user gains (c). The section on
+The paper's speed-up is defined as (b); the speed-up that a user experiences is (c). The section on
 [differences](#differences-from-the-paper-and-their-causes) explains why (b) is near 1."""

@@ -254,8 +254,7 @@ Result brf(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kBrfJob("brf", "Measure", "Measure the bidirectional reflectance factor of a scene from far away.",
-                             "Unless the scene sets \"incident\", leaves are reciprocal, or conserve energy "
-                             "where they cannot be reciprocal.",
-                             kParams, SessionUse::all, brf);
+                             "Leaves without \"incident\" use incident=reciprocal; abm uses incident=light.", kParams,
+                             SessionUse::all, brf);
 
 }  // namespace frond

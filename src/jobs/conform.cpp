@@ -24,8 +24,7 @@ constexpr double kGrazing_deg = 89.9999;
 
 constexpr JobParam kParams[] = {
     kMaterialParam,
-    JobParam("sweep", flag, "Also vary the parameters that are not given over their declared ranges.",
-             {.decides = true}),
+    JobParam("sweep", flag, "Also test parameters that are not given, over their declared ranges.", {.decides = true}),
     JobParam("samples", count, "Number of samples for each direction.",
              {.default_value = "20000", .range = {kFewestSamples, kMostSamples}, .decides = true}),
     JobParam("angles", numbers, "Angles of wo from the normal, on both sides.",

@@ -139,12 +139,12 @@ std::string markdown_of(const std::vector<Row>& rows, std::string_view head) {
 }
 
 std::string text_of(const PluginInfo& info) {
-  const std::string source = info.source.empty() ? "" : fmt::format("  After: {}\n", info.source);
+  const std::string source = info.source.empty() ? "" : fmt::format("  Source: {}\n", info.source);
   return fmt::format("{} \"{}\"\n  {}\n{}", info.kind, info.name, info.doc, source) + text_of(rows_of(info));
 }
 
 std::string markdown_of(const PluginInfo& info) {
-  const std::string source = info.source.empty() ? "" : fmt::format(" After: {}.", info.source);
+  const std::string source = info.source.empty() ? "" : fmt::format(" Source: {}.", info.source);
   return fmt::format("## {} `{}`\n\n{}{}\n\n", info.kind, info.name, info.doc, source) +
          markdown_of(rows_of(info), "| parameter | type | default | unit | range | |");
 }
@@ -169,10 +169,18 @@ std::string markdown_of(const JobInfo& job) {
   return text + fmt::format("[Common parameters](#common-parameters): {}.\n\n", fmt::join(names, ", "));
 }
 
+/// Opening of docs/plugins.md.
+constexpr std::string_view kPluginsHead =
+    "# Materials, lights, shapes and other plug-ins\n\n"
+    "For authors of scene files: everything that a scene can name, with all parameters. Made by "
+    "`frond describe --markdown`; [gallery](gallery.md) has images. One of them on the terminal:\n\n"
+    "```sh\nfrond describe diffuse\n```\n\n"
+    "```\nmaterial \"diffuse\"\n  Lambertian reflector.\n  Source: Lambert 1760\n  ...\n```\n\n";
+
 /// Returns the page docs/commands.md.
 std::string commands_page() {
   std::string text =
-      "# Commands\n\nAll commands of frond and their parameters. Made by `frond describe --commands`; "
+      "# Commands\n\nFor users of the command line: all commands and their parameters. Made by `frond describe --commands`; "
       "`frond COMMAND --help` and `frond man COMMAND` print the same. Examples are in the [cookbook](cookbook.md).\n\n";
   std::string_view group;
   for (const JobInfo* job : all_jobs()) {
@@ -203,8 +211,12 @@ Result describe(const JobRun& run) {
   for (const PluginInfo* info : all_plugins(registry))
     add(name.empty() || info->name == name || info->kind == name, *info);
   for (const JobInfo* job : all_jobs()) add(!name.empty() && job->name == name, *job);
-  if (found.empty()) fail({}, "no plug-in or command is named \"{}\"{}", name, suggestion(name, names));
-  if (name.empty()) found = "# Plugins\n\nMade by `frond describe --markdown`.\n\n" + found;
+  if (found.empty()) {
+    const std::string_view match = nearest(name, names);
+    fail({}, "no plug-in or command is named \"{}\"; {}", name,
+         match.empty() ? "frond list prints all" : fmt::format("did you mean \"{}\"?", match));
+  }
+  if (name.empty()) found = std::string(kPluginsHead) + found;
   return {.text = found, .is_requested = true};
 }
 

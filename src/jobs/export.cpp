@@ -52,7 +52,7 @@ const JobParam kParams[] = {
     JobParam("view-azimuths", numbers,
              "Azimuths from the light to the viewer in a table; the mirror direction is at 180.",
              {.unit = "degrees", .range = {0, 359.9999}, .decides = true}),
-    JobParam("rays", count, "Number of rays for each share of the light, where rays measure it.",
+    JobParam("rays", count, "Number of rays for each value of R and T that is measured by rays.",
              {.range = {2, kCounts.max}, .decides = true}),
     kSeedParam,
 };

@@ -24,7 +24,9 @@ using enum ArgumentKind;
 using Clock = std::chrono::steady_clock;
 
 constexpr JobParam kParams[] = {
-    JobParam("scene", texts, "Scene file (pbrt-v4 format). Several files: each file with WorldBegin ends a scene.",
+    JobParam("scene", texts,
+             "Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the "
+             "next file begins another.",
              {.type = "SCENE", .path = PathUse::read, .decides = true, .positional = true, .required = true}),
     JobParam(
         "output", text,
@@ -53,7 +55,8 @@ constexpr JobParam kParams[] = {
              {.type = "X,Y", .range = {0, 1 << 30}, .values = 2, .whole = true}),
     kIntegratorParam,
     JobParam("filter", text,
-             "PLUGIN[,parameter=value...]: pixel filter; one of the scene's type keeps the scene's other parameters. "
+             "PLUGIN[,parameter=value...]: pixel filter; parameters that are not given keep the scene's values if the "
+             "type is the scene's. "
              "gaussian,reconstruction=importance: each sample counts in one pixel only.",
              {.type = "FILTER", .decides = true}),
     JobParam("channels", text,

@@ -158,7 +158,8 @@ Result submit(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kSubmitJob("submit", "Cluster",
-                                "Render on a cluster: an array job of sample ranges, and the job that merges them.",
+                                "Write the scripts of a Slurm array job that renders ranges of samples, and of the job "
+                                "that merges them; --run submits them.",
                                 "The options of frond render are passed on to the tasks.", kParams, SessionUse::all,
                                 submit, &kRenderJob);
 

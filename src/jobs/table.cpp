@@ -223,7 +223,7 @@ Result table(const JobRun& run) {
 }  // namespace
 
 extern const JobInfo kTableJob(
-    "table", "Leaf models", "Write the table of a leaf material to a file that it can read.",
+    "table", "Leaf models", "Compute the table of a leaf material and write it to a file for its \"tablefile\".",
     "leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as "
     "FILE.leaf the complete material for other programs.",
     kParams, SessionUse::threads, table);

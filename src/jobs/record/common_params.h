@@ -24,10 +24,10 @@ inline constexpr JobParam kSwapParam(
     "swap", ArgumentKind::texts,
     "MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; \"*=PLUGIN\" replaces every leaf.",
     {.type = "SWAP", .decides = true});
-inline constexpr JobParam kIntegratorParam(
-    "integrator", ArgumentKind::text,
-    "PLUGIN[,parameter=value...]: integrator; one of the scene's type keeps the scene's other parameters.",
-    {.type = "INTEGRATOR", .decides = true});
+inline constexpr JobParam kIntegratorParam("integrator", ArgumentKind::text,
+                                           "PLUGIN[,parameter=value...]: integrator; parameters that are not given "
+                                           "keep the scene's values if the type is the scene's.",
+                                           {.type = "INTEGRATOR", .decides = true});
 inline constexpr JobParam kSeedParam("seed", ArgumentKind::seed, "Seed of all random numbers.", {.decides = true});
 inline constexpr JobParam kIgnoreUnsupportedParam(
     "ignore-unsupported", ArgumentKind::text,

@@ -16,10 +16,10 @@ inline constexpr JobParam kAnglesParam(
 inline constexpr JobParam kInstrumentWavelengthsParam(
     "wavelengths", ArgumentKind::numbers, "Wavelengths.",
     {.unit = "nm", .range = {360, 2500}, .aliases = "wavelength", .decides = true, .required = true});
-inline constexpr JobParam kRenderedParam(
-    "rendered", ArgumentKind::flag,
-    "Measure what a renderer shows: light along wi, seen along wo, though the model calls wo incident.",
-    {.decides = true});
+inline constexpr JobParam kRenderedParam("rendered", ArgumentKind::flag,
+                                         "Measure what an image shows: light arrives along wi and the detector is at "
+                                         "wo, also for models whose incident direction is wo.",
+                                         {.decides = true});
 inline constexpr Interval kRayCounts{2, kCounts.max};
 
 /// The materials under test and the beams on them. They are created and checked before the first ray.
