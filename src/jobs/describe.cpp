@@ -180,7 +180,8 @@ constexpr std::string_view kPluginsHead =
 /// Returns the page docs/commands.md.
 std::string commands_page() {
   std::string text =
-      "# Commands\n\nFor users of the command line: all commands and their parameters. Made by `frond describe --commands`; "
+      "# Commands\n\nFor users of the command line: all commands and their parameters. Made by `frond describe "
+      "--commands`; "
       "`frond COMMAND --help` and `frond man COMMAND` print the same. Examples are in the [cookbook](cookbook.md).\n\n";
   std::string_view group;
   for (const JobInfo* job : all_jobs()) {
