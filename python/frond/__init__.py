@@ -25,7 +25,7 @@ from ._measure import (Fit, brf, compare, conform, fit, flux, goniophotometer, n
                        spectrophotometer)
 from ._bsdf import Bsdf, FlatBsdf, LeafTable, bsdf, leaf_table
 
-Picture = Image  # the name that it had before 1.0
+Picture = Image  # the older name
 
 globals().update({name: function for name, function in _jobs.FUNCTIONS.items() if name not in globals()})
 
