@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/build_record.h"
@@ -10,14 +11,16 @@
 
 namespace frond {
 
-/// Functions of OpenImageIO: reading all formats and encoding 8-bit formats. Linking its 250 libraries at the start of
+/// Functions of OpenImageIO: decoding images and encoding 8-bit formats. Linking its 250 libraries at the start of
 /// the program takes 0.3 s. They are therefore linked into a shared object (src/openimageio), which is loaded when an
 /// image is first read, or first encoded as PNG or JPEG. Thread-safe.
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// Reads an image file; see read_image.
-  virtual ImageFile read(const std::filesystem::path& path, const Location& where) const = 0;
+  /// Decodes the bytes of an image file by the reader of this `format` (image_format_of) and no other. `path` names the
+  /// file in messages. See read_image.
+  virtual ImageFile decode(std::string_view bytes, std::string_view format, const std::filesystem::path& path,
+                           const Location& where) const = 0;
   /// Returns the bytes of a .png or .jpg file (by the extension of `path`) with the attributes `text`. Values are
   /// clamped to [0, 1]. Throws InputError.
   virtual std::vector<unsigned char> encode(const std::filesystem::path& path, const Image& image,

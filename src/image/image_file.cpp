@@ -8,7 +8,9 @@
 
 #include "image/exr.h"
 #include "image/image_codec.h"
+#include "image/image_signature.h"
 #include "system/atomic_file.h"
+#include "system/file_bytes.h"
 #include "system/file_time.h"
 
 namespace frond {
@@ -56,6 +58,9 @@ void write_image(const fs::path& path, const Image& image, const ImageHeader& he
                                            : image_codec().encode(path, image, complete.text));
 }
 
-ImageFile read_image(const fs::path& path, const Location& where) { return image_codec().read(path, where); }
+ImageFile read_image(const fs::path& path, const Location& where) {
+  const std::string bytes = read_file_bytes(path, where, "image");
+  return image_codec().decode(bytes, image_format_of(bytes, path, where), path, where);
+}
 
 }  // namespace frond

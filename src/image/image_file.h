@@ -56,9 +56,9 @@ struct ImageFile {
   bool is_encoded = false;                       ///< values are encoded for a display: 8-bit formats and PNG
 };
 
-/// Reads an image in any format that OpenImageIO supports (EXR, PNG, JPEG, HDR, TIFF, ...). Values are those of the
-/// file, without conversion of colours; alpha is unassociated. Throws InputError at `where` if the file does not exist
-/// or its data are incomplete.
+/// Reads an image file: EXR, PNG, JPEG, HDR, TIFF, PFM, BMP, WebP or TGA (image/image_signature.h). Values are those of
+/// the file, without conversion of colours; alpha is unassociated. Throws InputError at `where` if the file does not
+/// exist, has another format, is damaged or incomplete.
 ImageFile read_image(const std::filesystem::path& path, const Location& where);
 
 }  // namespace frond

@@ -5,20 +5,24 @@
 
 #include <cstring>
 
-#include "system/file_bytes.h"
-
 namespace frond {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Throws InputError if the header claims an image far larger than the file can contain, before memory is allocated. No
-/// image format compresses better than the limit here.
-void check_size(const OIIO::ImageSpec& spec, uintmax_t file_size, const Location& where, const fs::path& path) {
-  constexpr uintmax_t kMostCompression = 4096, kAlwaysAllowed = 64u << 20;
-  if (spec.image_bytes(true) > file_size * kMostCompression + kAlwaysAllowed)
-    fail(where, "image \"{}\" of {} bytes claims {} x {} pixels of {} channels", path.string(), file_size, spec.width,
-         spec.height, spec.nchannels);
+/// Throws InputError if the header claims no pixels, or far more than the file can contain, before memory is allocated.
+/// No image format compresses better than the limit here.
+void check_size(const OIIO::ImageSpec& spec, size_t file_size, const Location& where, const fs::path& path) {
+  constexpr uint64_t kMostCompression = 4096, kAlwaysAllowed = 64u << 20, kMostChannels = 1 << 12;
+  const auto claim = [&] {
+    return fmt::format("image \"{}\" of {} bytes claims {} x {} pixels of {} channels", path.string(), file_size,
+                       spec.width, spec.height, spec.nchannels);
+  };
+  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth <= 0) fail(where, "{}", claim());
+  if (uint64_t(spec.nchannels) > kMostChannels) fail(where, "{}: {} channels are the limit", claim(), kMostChannels);
+  const uint64_t pixels = uint64_t(spec.width) * uint64_t(spec.height);  // both below 2^31
+  const uint64_t most = file_size * kMostCompression + kAlwaysAllowed;
+  if (pixels > most / spec.pixel_bytes(true)) fail(where, "{}", claim());
 }
 
 /// Returns OpenEXR's attribute `chromaticities`: x and y of red, green, blue and white.
@@ -42,49 +46,50 @@ ImageHeader read_header(const OIIO::ImageSpec& spec) {
 
 /// Returns whether a JPEG's end marker (EOI) follows its last scan (SOS). libjpeg fills missing data with grey and
 /// reports success.
-bool is_whole_jpeg(const std::string& bytes) {
+bool is_whole_jpeg(std::string_view bytes) {
   const size_t last_scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
   return last_scan != std::string::npos && end != std::string::npos && end > last_scan;
 }
 
 /// Returns whether a PNG contains its last chunk, IEND. OpenImageIO may report success for a file that ends within the
 /// pixels.
-bool is_whole_png(const std::string& bytes) {
+bool is_whole_png(std::string_view bytes) {
   constexpr size_t kAfterName = 8;  // name and checksum of the chunk, 4 bytes each
   const size_t end = bytes.rfind("IEND");
   return end != std::string::npos && end + kAfterName <= bytes.size();
 }
 
-/// Size of a file in bytes; an error is reported with the file's name.
-uintmax_t size_of_file(const fs::path& path, const Location& where) {
-  std::error_code error;
-  const uintmax_t size = fs::file_size(path, error);
-  if (error) fail(where, "cannot read image \"{}\": {}", path.string(), error.message());
-  return size;
-}
-
 /// The codec of this shared object. It has no state, so that all threads can use it at once.
 class OpenImageIOCodec final : public ImageCodec {
  public:
-  ImageFile read(const fs::path& path, const Location& where) const override {
-    const uintmax_t file_size = size_of_file(path, where);
-    OIIO::ImageSpec config;
+  /// Calls the reader of one format, and passes its errors on with the name of the file and the place that asks for it.
+  /// Decodes from memory: nothing is opened by name, and a file that changes meanwhile does no harm.
+  ImageFile decode(std::string_view bytes, std::string_view format, const fs::path& path,
+                   const Location& where) const override {
+    const auto check = [&](bool good, const std::string& why) {
+      if (!good) fail(where, "cannot read image \"{}\": {}", path.string(), why.empty() ? "it is damaged" : why);
+    };
+    const bool is_jpeg = format == "jpeg", is_png = format == "png";
+    check((!is_jpeg || is_whole_jpeg(bytes)) && (!is_png || is_whole_png(bytes)), "the file ends too soon");
+    OIIO::ImageSpec config, spec;
     config.attribute("oiio:UnassociatedAlpha", 1);  // keep the file's values: no multiplication by alpha
-    const auto in = OIIO::ImageInput::open(path.string(), &config);
-    if (!in) fail(where, "cannot read image \"{}\": {}", path.string(), OIIO::geterror());
-    const OIIO::ImageSpec& spec = in->spec();
-    check_size(spec, file_size, where, path);
-    if (spec.depth > 1 || spec.deep) fail(where, "image \"{}\" is a volume, or deep", path.string());
-    const bool is_jpeg = std::strcmp(in->format_name(), "jpeg") == 0,
-               is_png = std::strcmp(in->format_name(), "png") == 0;
-    if ((is_jpeg && !is_whole_jpeg(read_file_bytes(path, where))) ||
-        (is_png && !is_whole_png(read_file_bytes(path, where))))
-      fail(where, "cannot read image \"{}\": the file ends too soon", path.string());
-    ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
-                   spec.format == OIIO::TypeDesc::UINT8, spec.format == OIIO::TypeDesc::UINT8 || is_png};
-    if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.pixels.data()))
-      fail(where, "cannot read image \"{}\": {}", path.string(), in->geterror());
-    return file;
+    OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());  // it only reads
+    try {
+      const auto in = OIIO::ImageInput::create(std::string(format));
+      check(in != nullptr, OIIO::geterror());
+      check(in->set_ioproxy(&memory), "OpenImageIO cannot read this format from memory");
+      check(in->open(path.filename().string(), spec, config), in->geterror());
+      check_size(spec, bytes.size(), where, path);
+      check(spec.depth == 1 && !spec.deep, "it is a volume, or deep");
+      ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
+                     spec.format == OIIO::TypeDesc::UINT8, spec.format == OIIO::TypeDesc::UINT8 || is_png};
+      check(in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.pixels.data()), in->geterror());
+      return file;
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::exception& error) {  // of the libraries that OpenImageIO calls
+      fail(where, "cannot read image \"{}\": {}", path.string(), error.what());
+    }
   }
 
   /// Encodes to memory, because OpenImageIO does not report a full disk.

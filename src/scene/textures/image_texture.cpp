@@ -272,7 +272,7 @@ class ImageSpectrum final : public SpectrumTexture {
 constexpr Param kImageMap[] = {
     {.name = "filename",
      .kind = ParamKind::string,
-     .doc = "Image file: EXR, PNG, JPEG, HDR or another format of OpenImageIO.",
+     .doc = "Image file: EXR, PNG, JPEG, HDR, TIFF, PFM, BMP, WebP or TGA.",
      .required = true},
     {.name = "filter",
      .kind = ParamKind::string,
