@@ -32,7 +32,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 class NumberTable {
  public:
   explicit NumberTable(const std::string& path)
-      : file_(std::make_shared<const std::string>(path)), mapped_(path, {}), rest_(text()) {
+      : file_(std::make_shared<const std::string>(path)), text_(read_file_bytes(path, {})), rest_(text_) {
     std::string_view line;
     if (!next_line(line)) fail({file_, 1, 1}, "the file is empty: its first line names the columns");
     for (const std::string& name : split(std::string(trimmed(line)), ',')) names_.emplace_back(trimmed(name));
@@ -86,9 +86,6 @@ class NumberTable {
     return first == std::string_view::npos ? std::string_view()
                                            : s.substr(first, s.find_last_not_of(kBlank) - first + 1);
   }
-  std::string_view text() const {
-    return {reinterpret_cast<const char*>(mapped_.bytes().data()), mapped_.bytes().size()};
-  }
   /// Takes the next line, and counts lines for errors. Returns false at the end.
   bool next_line(std::string_view& line) {
     if (rest_.empty()) return false;
@@ -100,7 +97,7 @@ class NumberTable {
   }
 
   std::shared_ptr<const std::string> file_;
-  MappedFile mapped_;
+  std::string text_;
   std::string_view rest_;
   std::vector<std::string> names_;
   int line_ = 0;

@@ -1,7 +1,5 @@
 #include "system/file_bytes.h"
 
-#include <sys/mman.h>
-
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -77,20 +75,19 @@ std::string read_standard_input() {
   return bytes;
 }
 
-MappedFile::MappedFile(const fs::path& path, const Location& where, std::string_view what) {
-  const Source source{path.string(), where, what};
+uint64_t read_file_blocks(const fs::path& path, const Location& where,
+                          const std::function<void(std::string_view)>& use) {
+  constexpr size_t kBlock = 1 << 20;
+  const Source source{path.string(), where, {}};
   const File file = open(source);
-  std::error_code error;
-  size_ = fs::file_size(path, error);
-  if (error) source.refuse("read", error.value());
-  if (size_ == 0) return;  // mmap rejects an empty range
-  void* mapped = mmap(nullptr, size_, PROT_READ, MAP_SHARED, fileno(file.get()), 0);
-  if (mapped == MAP_FAILED) source.refuse("map", errno);
-  data_ = static_cast<const std::byte*>(mapped);
-}
-
-MappedFile::~MappedFile() {
-  if (data_) munmap(const_cast<std::byte*>(data_), size_);
+  std::string block(kBlock, '\0');
+  uint64_t all = 0;
+  while (const size_t count = std::fread(block.data(), 1, kBlock, file.get())) {
+    use({block.data(), count});
+    all += count;
+  }
+  if (std::ferror(file.get())) source.refuse("read", errno);
+  return all;
 }
 
 }  // namespace frond

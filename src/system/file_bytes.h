@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <filesystem>
-#include <span>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -17,22 +17,9 @@ std::string read_file_bytes(const std::filesystem::path& path, const Location& w
 /// Returns the whole of standard input. Throws InputError if it cannot be read.
 std::string read_standard_input();
 
-/// Read-only memory map of a file: the system reads a page at its first access and may drop it if memory is short. The
-/// file must not be truncated while it is mapped.
-class MappedFile {
- public:
-  /// Throws InputError as read_file_bytes.
-  MappedFile(const std::filesystem::path& path, const Location& where, std::string_view what = {});
-  ~MappedFile();
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-
-  /// The file's content; valid as long as this object.
-  std::span<const std::byte> bytes() const { return {data_, size_}; }
-
- private:
-  const std::byte* data_ = nullptr;
-  size_t size_ = 0;
-};
+/// Calls `use` with consecutive blocks of a file, all but the last of 1 MiB, for files that need not be in memory
+/// whole. Returns the number of bytes. Throws InputError as read_file_bytes.
+uint64_t read_file_blocks(const std::filesystem::path& path, const Location& where,
+                          const std::function<void(std::string_view)>& use);
 
 }  // namespace frond

@@ -123,6 +123,33 @@ TEST_F(Instances, BadFilesAreRefusedByName) {
               HasSubstr("row 1"));
 }
 
+/// Headers whose sizes overflow or are no sizes.
+TEST_F(Instances, SizesThatNoFileHasAreRefused) {
+  const auto error = [this](const std::string& descr, const std::string& shape) {
+    const std::string dict = fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': {}, }}", descr, shape);
+    const fs::path path = write_npy("t.npy", dict, std::vector<float>(24, 1));
+    return error_of([&] { InstanceTable(path, {}, pool_); });
+  };
+  const std::string map = "('transform', '<f4', (12,))";
+  EXPECT_THAT(error("[('', '|V8', (1152921504606846976,)), " + map + ", ('', '|V8', (1152921504606846976,))]", "(1,)"),
+              HasSubstr("t.npy: its rows have more than"));
+  EXPECT_THAT(error("[('', '|V4000000000000000000'), " + map + "]", "(1,)"), HasSubstr("its rows have more than"));
+  EXPECT_THAT(error("[('x', '<f4', (4294967296, 4294967296, 2)), " + map + "]", "(1,)"), HasSubstr("its rows"));
+  for (const char* shape : {"(1e300, 12)", "(-1, 12)", "(1.5, 12)", "('a', 12)", "(18446744073709551616, 12)"})
+    EXPECT_THAT(error("'<f4'", shape), HasSubstr("t.npy: ")) << shape;
+  EXPECT_THAT(error("'<f4'", "(18446744073709551615, 12)"), HasSubstr("cut short"));
+}
+
+/// A table is a copy: a file that changes later is another one.
+TEST_F(Instances, AFileThatChangesChangesNoTable) {
+  const fs::path path = write_npy("t.npy", "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 12), }",
+                                  {1, 0, 0, 7, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 8, 0, 1, 0, 0, 0, 0, 1, 0});
+  const InstanceTable table(path, {}, pool_);
+  fs::resize_file(path, 0);
+  EXPECT_EQ(table.map(0).rows[0][3], 7);
+  EXPECT_EQ(table.map(1).rows[0][3], 8);
+}
+
 TEST_F(Instances, BadScenesAreRefusedWithTheirPlace) {
   write_npy("t.npy", "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 12), }",
             {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
@@ -139,7 +166,8 @@ TEST_F(Instances, BadScenesAreRefusedWithTheirPlace) {
   for (int i = 0; i < 5; ++i)
     deep += fmt::format("ObjectBegin \"o{}\" ObjectInstance \"{}\" ObjectEnd\n", i,
                         i == 0 ? "leaf" : fmt::format("o{}", i - 1));
-  EXPECT_THAT(error_of([&] { scene(deep + "ObjectInstance \"o4\""); }), HasSubstr("nested 6 deep: 4 is the limit"));
+  EXPECT_THAT(error_of([&] { scene(deep + "ObjectInstance \"o4\""); }),
+              HasSubstr("scene.pbrt:7:13: instances of objects are nested more than 4 deep in object \"o3\""));
 }
 
 /// A leaf that is no flat thing, and its instances written out in the world's own space.

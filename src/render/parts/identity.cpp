@@ -65,7 +65,7 @@ Identity identity_of(const SceneDescription& description, const ImageFacts& fact
   id.add("frond", fmt::format("{} (build {})", FROND_VERSION, hexadecimal(hash_program(0))));
   id.add("instruction set", instruction_set());
   for (const auto& plugin : facts.plugins)
-    id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_library(plugin, 0)));
+    id.add("plug-in " + plugin.filename().string(), hexadecimal(hash_file(plugin, 0)));
   id.add("seed", std::to_string(facts.seed));
   id.add("wavelengths", read_options(description).wavelengths);
   id.add("integrator", text_of(description.integrator));

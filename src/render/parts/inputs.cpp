@@ -24,15 +24,15 @@ void add_files(const ParsedPlugin& plugin, const SceneDescription& scene, std::v
   }
 }
 
-uint64_t hash_words(std::span<const std::byte> bytes, uint64_t seed) {
-  uint64_t hash = hash_key(seed, bytes.size());
+/// Continues a hash. Words instead of bytes, for speed: instance tables have gigabytes.
+uint64_t hash_words(std::string_view bytes, uint64_t hash) {
   size_t at = 0;
   for (; at + sizeof(uint64_t) <= bytes.size(); at += sizeof(uint64_t)) {
-    uint64_t word;  // words instead of bytes, for speed: instance tables have gigabytes
+    uint64_t word;
     std::memcpy(&word, bytes.data() + at, sizeof word);
     hash = mix64(hash ^ word) + 1;
   }
-  return hash_bytes({reinterpret_cast<const char*>(bytes.data()) + at, bytes.size() - at}, hash);
+  return hash_bytes(bytes.substr(at), hash);
 }
 
 }  // namespace
@@ -60,16 +60,12 @@ std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plu
   return files;
 }
 
-uint64_t hash_program(uint64_t seed) { return hash_library(image_codec_file(), hash_library(own_file(), seed)); }
-
-uint64_t hash_library(const std::filesystem::path& path, uint64_t seed) {
-  const std::string bytes = read_file_bytes(path, {});
-  return hash_words(std::as_bytes(std::span(bytes)), seed);
-}
+uint64_t hash_program(uint64_t seed) { return hash_file(image_codec_file(), hash_file(own_file(), seed)); }
 
 uint64_t hash_file(const std::filesystem::path& path, uint64_t seed) {
-  const MappedFile file(path, {});
-  return hash_words(file.bytes(), seed);
+  uint64_t hash = seed;
+  const uint64_t size = read_file_blocks(path, {}, [&hash](std::string_view block) { hash = hash_words(block, hash); });
+  return hash_key(hash, size);
 }
 
 }  // namespace frond

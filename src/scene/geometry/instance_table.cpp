@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "scene/geometry/npy.h"
+#include "system/file_bytes.h"
 
 namespace frond {
 namespace {
@@ -25,8 +26,9 @@ InstanceTable::InstanceTable(std::shared_ptr<const std::vector<AffineMap>> maps)
       stride_(sizeof(AffineMap)) {}
 
 InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& where, const ThreadPool& pool)
-    : file_(std::make_unique<MappedFile>(path, where)) {
-  const NpyLayout layout = read_npy_layout(file_->bytes(), path.string(), where);
+    : file_(read_file_bytes(path, where)) {
+  const auto bytes_of_file = std::as_bytes(std::span(file_));
+  const NpyLayout layout = read_npy_layout(bytes_of_file, path.string(), where);
   bool found = false;
   for (const NpyField& field : layout.fields) {
     if (field.name.empty() && field.type.find('V') != std::string::npos) continue;  // padding of a record
@@ -47,7 +49,7 @@ InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& 
   constexpr size_t kMost = 0xfffffffe;  // limit of one geometry in Embree
   if (layout.rows > kMost)
     fail(where, "{}: {} rows, {} is the limit: tables of tables hold more", path.string(), layout.rows, kMost);
-  first_ = file_->bytes().data() + layout.begin;
+  first_ = bytes_of_file.data() + layout.begin;
   size_ = layout.rows;
   stride_ = layout.row_bytes;
   check(path, where, pool);

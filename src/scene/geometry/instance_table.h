@@ -1,24 +1,29 @@
 #pragma once
 
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/parallel.h"
 #include "core/texture.h"
 #include "scene/math/affine_map.h"
-#include "system/file_bytes.h"
 
 namespace frond {
 
-/// Table of instances: an affine map for each row, and numbers for Texture "instance". Rows are a memory-mapped file,
-/// or own data.
+/// Table of instances: an affine map for each row, and numbers for Texture "instance". Rows are the
+/// content of a file, or shared with a scene.
 class InstanceTable {
  public:
   explicit InstanceTable(std::shared_ptr<const std::vector<AffineMap>> maps);
-  /// Maps a NumPy file: an array of shape (rows, 12) or (rows, 3, 4), or records with a field "transform" of 12 numbers
-  /// and any number of scalar fields; all "<f4". Throws InputError at `where`, also for maps without an inverse.
+  /// Reads a NumPy file: an array of shape (rows, 12) or (rows, 3, 4), or records with a field "transform" of 12
+  /// numbers and any number of scalar fields; all "<f4". Throws InputError at `where`, also for maps without an
+  /// inverse.
   InstanceTable(const std::filesystem::path& path, const Location& where, const ThreadPool& pool);
+
+  InstanceTable(const InstanceTable&) = delete;
+  InstanceTable& operator=(const InstanceTable&) = delete;
 
   size_t size() const { return size_; }
   /// Returns the map of a row. It is copied, because rows of a file may not be aligned.
@@ -35,7 +40,7 @@ class InstanceTable {
   void check(const std::filesystem::path& path, const Location& where, const ThreadPool& pool);
 
   std::shared_ptr<const std::vector<AffineMap>> own_;
-  std::unique_ptr<MappedFile> file_;
+  std::string file_;
   const std::byte* first_ = nullptr;
   size_t size_ = 0, stride_ = 0, map_offset_ = 0;
   std::vector<InstanceColumn> columns_;

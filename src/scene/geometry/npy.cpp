@@ -1,5 +1,6 @@
 #include "scene/geometry/npy.h"
 
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -38,28 +39,45 @@ std::string to_json(std::string_view python) {
   return json;
 }
 
+/// Limit of a row, and of all numbers that describe one: their sums and products cannot overflow.
+constexpr size_t kMostRowBytes = size_t{1} << 30;
+
+/// Returns a * b, or a number above kMostRowBytes if either or the product is above it.
+size_t limited_product(size_t a, size_t b) { return b != 0 && a > kMostRowBytes / b ? kMostRowBytes + 1 : a * b; }
+
 /// Returns the size in a type such as "<f4"; 0 if there is none.
 size_t size_of_type(const std::string& type) {
   const size_t digits = type.find_first_of("0123456789");
-  return digits == std::string::npos || type.size() > digits + 4 ? 0 : size_t(std::stoul(type.substr(digits)));
+  if (digits == std::string::npos) return 0;
+  size_t size = 0;
+  const char* end = type.data() + type.size();
+  const auto [stop, error] = std::from_chars(type.data() + digits, end, size);
+  return error == std::errc() && stop == end ? size : 0;
 }
 
-/// numpy writes a shape of one dimension as a number or as a tuple.
-std::vector<size_t> shape_of(const Json& json) {
-  return json.is_number() ? std::vector<size_t>{json.get<size_t>()} : json.get<std::vector<size_t>>();
+/// numpy writes a shape of one dimension as a number or as a tuple. Dimensions are integers from 0.
+std::vector<size_t> shape_of(const Json& json, const Source& source) {
+  const auto dimension = [&source](const Json& number) {
+    if (!number.is_number_unsigned()) source.refuse("a shape holds integers from 0");
+    return number.get<size_t>();
+  };
+  if (!json.is_array()) return {dimension(json)};
+  std::vector<size_t> shape;
+  for (const Json& number : json) shape.push_back(dimension(number));
+  return shape;
 }
 
 /// Parses ["name", "type"] or ["name", "type", shape].
-NpyField field_of(const Json& json) {
+NpyField field_of(const Json& json, const Source& source) {
   NpyField field{.name = json.at(0), .type = json.at(1), .shape = {}};
-  if (json.size() > 2) field.shape = shape_of(json.at(2));
+  if (json.size() > 2) field.shape = shape_of(json.at(2), source);
   return field;
 }
 
 /// Returns the fields and rows of a header. Throws InputError for Fortran order and scalars.
 NpyLayout layout_of(const Json& header, const Source& source) {
   NpyLayout layout;
-  std::vector<size_t> shape = shape_of(header.at("shape"));
+  std::vector<size_t> shape = shape_of(header.at("shape"), source);
   if (header.at("fortran_order").get<bool>() && shape.size() > 1)
     source.refuse("its columns stand one after another; numpy.ascontiguousarray puts its rows so");
   if (shape.empty()) source.refuse("it holds a single value, not rows");
@@ -69,10 +87,11 @@ NpyLayout layout_of(const Json& header, const Source& source) {
   if (descr.is_string()) layout.fields.push_back({.name = "", .type = descr, .shape = shape});
   if (descr.is_array() && !shape.empty()) source.refuse("it has rows of several records; one is needed in each");
   if (descr.is_array())
-    for (const Json& json : descr) layout.fields.push_back(field_of(json));
+    for (const Json& json : descr) layout.fields.push_back(field_of(json, source));
   for (NpyField& field : layout.fields) {
     field.offset = layout.row_bytes;
     layout.row_bytes += field.bytes();
+    if (layout.row_bytes > kMostRowBytes) source.refuse(fmt::format("its rows have more than {} bytes", kMostRowBytes));
   }
   return layout;
 }
@@ -88,11 +107,11 @@ T number_at(std::span<const std::byte> bytes, size_t at) {
 
 size_t NpyField::count() const {
   size_t product = 1;
-  for (const size_t n : shape) product *= n;
+  for (const size_t n : shape) product = limited_product(product, n);
   return product;
 }
 
-size_t NpyField::bytes() const { return count() * size_of_type(type); }
+size_t NpyField::bytes() const { return limited_product(count(), size_of_type(type)); }
 
 /// Format versions 1.0 to 3.0 differ in the size of the header's length field.
 NpyLayout read_npy_layout(std::span<const std::byte> file, std::string_view name, const Location& where) {

@@ -17,7 +17,7 @@ struct NpyField {
   std::vector<size_t> shape;  ///< empty: a scalar
   size_t offset = 0;          ///< bytes from the beginning of the row
 
-  /// Returns the number of scalars.
+  /// Returns the number of scalars; above 2^30 a number that is too large, not their exact number.
   size_t count() const;
   size_t bytes() const;
 };
