@@ -87,11 +87,16 @@ void write_sums(const std::filesystem::path& path, const Identity& identity,
 
 void read_sums(const std::filesystem::path& path, const Identity& identity,
                const std::vector<std::span<std::byte>>& arrays) {
-  const MappedFile file(path, {});
-  Reader reader(text_of(file.bytes()), path);
-  const auto header = nlohmann::json::parse(reader.take_with_hash(reader.take_number()));
+  const std::string bytes = read_file_bytes(path, {});
+  Reader reader(bytes, path);
+  const std::string_view header = reader.take_with_hash(reader.take_number());
   Identity found;
-  for (const auto& field : header.at("identity")) found.add(field.at(0), field.at(1));
+  try {
+    const auto parsed = nlohmann::json::parse(header);
+    for (const auto& field : parsed.at("identity")) found.add(field.at(0), field.at(1));
+  } catch (const nlohmann::json::exception&) {
+    reader.fail_as_damaged();
+  }
   const std::string difference = identity.difference(found, "this command", "\"" + path.string() + "\"");
   if (!difference.empty()) fail({}, "--resume: this is another measurement. {}", difference);
   std::vector<std::string_view> pieces;

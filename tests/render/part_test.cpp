@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <random>
 
 #include "core/log.h"
+#include "core/random.h"
 #include "image/image_file.h"
 #include "render/image_output.h"
 #include "render/parts/part_file.h"
@@ -287,6 +289,57 @@ TEST_F(Parts, WithAndWithoutNoiseDoNotGoTogether) {
   const RenderPart plain = part({16, 32}), adaptive = part({0, 16}, {.adaptive = true});
   for (const std::string& said : {refusal(plain, adaptive), refusal(adaptive, plain)})
     EXPECT_THAT(said, AllOf(HasSubstr("--max-rms"), HasSubstr("a.part"), HasSubstr("b.part")));
+}
+
+/// A part whose header has `to` in place of `from`, with the size and the hash of that header.
+std::string forged(const std::string& bytes, const std::string& from, const std::string& to) {
+  const size_t size_at = bytes.find('\n') + 1, text_at = size_at + sizeof(uint64_t);
+  uint64_t size = 0;
+  std::memcpy(&size, bytes.data() + size_at, sizeof size);
+  std::string text = bytes.substr(text_at, size);
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  const auto number = [](uint64_t n) { return std::string(reinterpret_cast<const char*>(&n), sizeof n); };
+  return bytes.substr(0, size_at) + number(text.size()) + text + number(hash_bytes(text)) +
+         bytes.substr(text_at + size + sizeof(uint64_t));
+}
+
+/// Numbers that overflow where they are added or multiplied before they are checked, or that convert to no integer.
+TEST_F(Parts, ForgedHeadersAreDamaged) {
+  const std::string bytes = bytes_of(write(part({0, 4}), "a.part"));
+  const auto refusal = [&](const std::string& from, const std::string& to) {
+    const fs::path path = folder_.write("f.part", forged(bytes, from, to));
+    return error_of([&] { read_part(path); });
+  };
+  const auto number_of = [&](const std::string& name) {
+    const size_t at = bytes.find('"' + name + "\": ");
+    return bytes.substr(at, bytes.find_first_of(",\n", at) - at);
+  };
+  EXPECT_EQ(refusal("\"round\": 0", "\"round\": 0"), "");
+  for (const char* name : {"width", "height", "bands", "exponent", "paths", "round", "request", "pixel_scale"})
+    for (const char* value : {"1e300", "-9223372036854775808", "18446744073709551615", "2147483648", "\"x\"", "null"}) {
+      const bool fits = std::string_view(value) == "18446744073709551615" || std::string_view(value) == "2147483648";
+      const bool has_64_bits = std::string_view(name) == "paths" || std::string_view(name) == "request";
+      if (fits && has_64_bits) continue;
+      EXPECT_THAT(refusal(number_of(name), fmt::format("\"{}\": {}", name, value)), HasSubstr("is damaged"))
+          << name << " " << value;
+    }
+  EXPECT_THAT(refusal(number_of("reach"), "\"reach\": 2147483647"), HasSubstr("is damaged"));
+}
+
+/// A header can claim any size; memory is taken for what the sums can hold.
+TEST_F(Parts, ClaimsOfManyPixelsAreDamage) {
+  const RenderPart small = part({0, 4});
+  const FilmSettings& film = small.film.settings();
+  std::string bytes = bytes_of(write(small, "a.part"));
+  const std::string crop = fmt::format("\"crop\": [\n   {},\n   {},\n   {},\n   {}\n  ]", film.crop.x0, film.crop.y0,
+                                       film.crop.x1, film.crop.y1);
+  bytes = forged(bytes, crop, "\"crop\": [0, 0, 60000, 60000]");
+  bytes = forged(bytes, fmt::format("\"width\": {}", film.width), "\"width\": 60000");
+  bytes = forged(bytes, fmt::format("\"height\": {}", film.height), "\"height\": 60000");
+  const fs::path path = folder_.write("f.part", bytes);
+  EXPECT_THAT(error_of([&] { read_part(path); }), HasSubstr("is damaged"));
 }
 
 }  // namespace

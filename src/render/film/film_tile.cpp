@@ -278,7 +278,7 @@ void FilmTile::add_features(size_t at, const FilmTile& other, size_t from) {
   if (std::pair(others.nearest_distance, others.nearest_sample) <
       std::pair(hits.nearest_distance, hits.nearest_sample)) {
     hits.nearest_distance = others.nearest_distance, hits.nearest_sample = others.nearest_sample;
-    std::copy_n(&other.ids_[from * id_count_], id_count_, &ids_[at * id_count_]);
+    std::copy_n(other.ids_.data() + from * id_count_, id_count_, ids_.data() + at * id_count_);
   }
 }
 

@@ -2,8 +2,10 @@
 
 #include <zstd.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
@@ -57,8 +59,32 @@ constexpr std::string_view kMagic = "frond part 3\n", kEnd = "frond part end\n";
 
 // --- header
 
+/// Throws the exception that a reader reports as damage.
+[[noreturn]] void refuse(const Json& json, const char* why) { throw Json::other_error::create(501, why, &json); }
+
+/// Returns an integer of at most `most`. A forged header can hold any number, and conversions do not check.
+template <class Integer>
+Integer integer_of(const Json& json, Integer most = std::numeric_limits<Integer>::max()) {
+  if (!json.is_number_unsigned() || json.get<uint64_t>() > uint64_t(most)) refuse(json, "no number that it can be");
+  return static_cast<Integer>(json.get<uint64_t>());
+}
+
+constexpr int kMostPixels = 1 << 24;  ///< in a row or a column
+constexpr size_t kMostBands = 1 << 16;
+constexpr int kMostExponent = 2048;
+
 Json json_of(const Crop& c) { return {c.x0, c.y0, c.x1, c.y1}; }
-Crop crop_of(const Json& j) { return {j.at(0), j.at(1), j.at(2), j.at(3)}; }
+Crop crop_of(const Json& j) {
+  // Pixels around a crop, whose samples reach into it, can have negative coordinates.
+  const auto bound = [&j](size_t i) {
+    const Json& value = j.at(i);
+    if (!value.is_number_integer() || (value.is_number_unsigned() && value.get<uint64_t>() > uint64_t(kMostPixels)) ||
+        value.get<int64_t>() < -kMostPixels)
+      refuse(value, "no position of a pixel");
+    return static_cast<int>(value.get<int64_t>());
+  };
+  return {bound(0), bound(1), bound(2), bound(3)};
+}
 
 Json json_of(const std::vector<Band>& bands) {
   Json list = Json::array();
@@ -93,18 +119,16 @@ std::optional<Splatting> splatting_of(const Json& j, const Crop& crop) {
   Splatting s;
   for (size_t i = 0; i < 2; ++i) {
     const Json& axis = j.at("axes").at(i);
-    s.axes[i] = {axis.at("reach"), axis.at("mean").get<std::vector<double>>(),
+    s.axes[i] = {integer_of<int>(axis.at("reach"), kMostReach), axis.at("mean").get<std::vector<double>>(),
                  axis.at("square").get<std::vector<double>>()};
     const auto width = size_t(2 * s.axes[i].reach + 1);
-    if (s.axes[i].reach < 0 || s.axes[i].reach > kMostReach || s.axes[i].mean.size() != width ||
-        s.axes[i].square.size() != width)
-      throw Json::other_error::create(501, "a filter that reaches too far", &j);
+    if (s.axes[i].mean.size() != width || s.axes[i].square.size() != width) refuse(j, "a filter of another width");
   }
   s.has_negative_weights = j.at("has_negative_weights"), s.correlated_pixels = j.at("correlated_pixels");
   s.sampled = crop_of(j.at("sampled"));
   if (intersection(s.sampled, crop) != crop ||
       intersection(s.sampled, widened(crop, s.reach_x(), s.reach_y())) != s.sampled)
-    throw Json::other_error::create(501, "samples of other pixels", &j);
+    refuse(j, "samples of other pixels");
   return s;
 }
 
@@ -129,16 +153,20 @@ Json json_of(const FilmFormat& f) {
 FilmFormat film_format_of(const Json& j) {
   FilmFormat f;
   FilmSettings& s = f.settings;
-  s.width = j.at("width"), s.height = j.at("height"), s.crop = crop_of(j.at("crop"));
+  s.width = integer_of(j.at("width"), kMostPixels), s.height = integer_of(j.at("height"), kMostPixels);
+  s.crop = crop_of(j.at("crop"));
   s.half = j.at("half"), s.exposure = j.at("exposure");
   const Json& most = j.at("max_component");
   s.max_component = most.is_null() ? std::numeric_limits<double>::infinity() : most.get<double>();
-  f.bands = j.at("bands"), f.channels = ChannelList(j.at("channels").get<std::vector<std::string>>()),
-  f.blocks = j.at("blocks"), f.exponent = j.at("exponent");
+  f.bands = integer_of(j.at("bands"), kMostBands),
+  f.channels = ChannelList(j.at("channels").get<std::vector<std::string>>()), f.blocks = j.at("blocks");
+  const Json& exponent = j.at("exponent");
+  if (!exponent.is_number_integer() || std::abs(exponent.get<double>()) > kMostExponent) refuse(exponent, "exponent");
+  f.exponent = exponent;
   f.color.row = j.at("color").get<std::array<Triple, 3>>(), f.white = j.at("white").get<Triple>();
   if (s.crop.x0 < 0 || s.crop.y0 < 0 || s.crop.x1 > s.width || s.crop.y1 > s.height || s.crop.width() <= 0 ||
       s.crop.height() <= 0)
-    throw Json::other_error::create(501, "a film without pixels", &j);
+    refuse(j, "a film without pixels");
   f.splatting = splatting_of(j.at("splatting"), s.crop);
   return f;
 }
@@ -153,7 +181,7 @@ Json json_of(const RenderStatistics& s) {
 }
 RenderStatistics statistics_of(const Json& j) {
   RenderStatistics s;
-  s.paths = j.at("paths"), s.rays = j.at("rays");
+  s.paths = integer_of<uint64_t>(j.at("paths")), s.rays = integer_of<uint64_t>(j.at("rays"));
   s.wall_seconds = j.at("wall_seconds"), s.cpu_seconds = j.at("cpu_seconds");
   s.ends.escaped = j.at("escaped"), s.ends.absorbed = j.at("absorbed");
   return s;
@@ -190,9 +218,10 @@ PartHeader header_of(const Json& j) {
   h.image.attributes = image.at("attributes").get<std::map<std::string, std::string>>();
   h.command = j.at("command");
   h.scene_crop = crop_of(j.at("scene_crop"));
-  h.pixel_scale = j.at("pixel_scale");
-  h.request = j.at("request"), h.adaptive = j.at("adaptive"), h.round = j.at("round");
-  h.tile_ends = j.at("tile_ends").get<std::vector<uint64_t>>();
+  h.pixel_scale = integer_of(j.at("pixel_scale"), 2);
+  h.request = integer_of<uint64_t>(j.at("request")), h.adaptive = j.at("adaptive");
+  h.round = integer_of<int>(j.at("round"));
+  for (const Json& end : j.at("tile_ends")) h.tile_ends.push_back(integer_of<uint64_t>(end));
   h.statistics = statistics_of(j.at("statistics"));
   return h;
 }
@@ -291,8 +320,16 @@ void write_tile(const FilmTile& tile, Compressor& to) {
 
 void read_tile(Decompressor& from, FilmTile& tile, const fs::path& path) {
   const auto count = from.get<uint64_t>();
-  for (uint64_t i = 0; i < count; ++i)
-    if (!tile.cover(from.get<WorkItem>())) fail_to_read(path, "is damaged");
+  const Crop& pixels = tile.pixels();
+  const auto is_within = [](int begin, int end, int least, int most) {
+    return least <= begin && begin < end && end <= most;
+  };
+  for (uint64_t i = 0; i < count; ++i) {
+    const auto item = from.get<WorkItem>();
+    if (!is_within(item.pixels.x0, item.pixels.x1, pixels.x0, pixels.x1) ||
+        !is_within(item.pixels.y0, item.pixels.y1, pixels.y0, pixels.y1) || item.samples.empty() || !tile.cover(item))
+      fail_to_read(path, "is damaged");
+  }
   PartFile::for_each_array(tile, [&from](void* data, size_t bytes) { from.get(data, bytes); });
 }
 
@@ -321,6 +358,18 @@ Json take_header(std::string_view& bytes, const fs::path& path) {
   bytes.remove_prefix(size);
   if (take_number(bytes) != hash_bytes(text)) fail_to_read(path, "is damaged");
   return Json::parse(text);
+}
+
+/// Throws InputError for a header that claims a film far larger than the compressed sums can contain, before memory is
+/// allocated. Zstandard compresses by 2^15 at most: blocks of 128 KiB in 4 bytes.
+void check_claim(const FilmFormat& format, size_t compressed, const fs::path& path) {
+  constexpr double kMostCompression = 1 << 15, kAlwaysAllowed = 1 << 20;
+  const Crop& crop = format.settings.crop;
+  const double least = double(crop.width()) * double(crop.height()) *
+                       (sizeof(FilmTile::Pixel) + double(format.bands) * sizeof(FilmTile::BandSums));
+  if (least > double(compressed) * kMostCompression + kAlwaysAllowed)
+    fail_to_read(
+        path, fmt::format("is damaged (its {} bytes claim {} x {} pixels)", compressed, crop.width(), crop.height()));
 }
 
 void check_readable(const fs::path& path) {
@@ -382,6 +431,7 @@ RenderPart decode_part(std::string_view bytes, const fs::path& path) try {
     bytes.remove_suffix(kEnd.size());
   }
   PartHead head = head_of(take_header(bytes, path));
+  check_claim(head.film, bytes.size(), path);
   Film film(head.film);
   RenderPart part{std::move(head.header), std::move(film)};
   Decompressor sums(bytes, path);
