@@ -9,6 +9,35 @@
 #include <vector>
 
 namespace frond {
+namespace {
+
+thread_local const std::stop_token* current_stop = nullptr;
+
+/// Lets a thread of a loop observe the token of the thread that started the loop.
+class SharedStop {
+ public:
+  explicit SharedStop(const std::stop_token* token) : outer_(current_stop) { current_stop = token; }
+  ~SharedStop() { current_stop = outer_; }
+  SharedStop(const SharedStop&) = delete;
+  SharedStop& operator=(const SharedStop&) = delete;
+
+ private:
+  const std::stop_token* outer_;
+};
+
+}  // namespace
+
+StopScope::StopScope(std::stop_token token) : token_(std::move(token)), outer_(current_stop) {
+  if (token_.stop_possible()) current_stop = &token_;
+}
+
+StopScope::~StopScope() { current_stop = outer_; }
+
+bool is_stop_requested() { return current_stop && current_stop->stop_requested(); }
+
+void check_stop() {
+  if (is_stop_requested()) throw Stopped();
+}
 
 ThreadPool::ThreadPool(int threads)
     : threads_(threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
@@ -17,12 +46,22 @@ void ThreadPool::for_each(int64_t count, const std::function<void(int64_t, int)>
   std::atomic<int64_t> next{0};
   std::mutex mutex;
   std::exception_ptr error;
+  const std::stop_token* const stop = current_stop;
   const auto work = [&](int worker) {
+    const SharedStop shared(stop);
     try {
-      for (int64_t i; (i = next.fetch_add(1)) < count;) body(i, worker);
-    } catch (...) {
+      for (int64_t i; (i = next.fetch_add(1)) < count;) {
+        check_stop();
+        body(i, worker);
+      }
+    } catch (const std::exception&) {
       const std::lock_guard lock(mutex);
       if (!error) error = std::current_exception();
+      next = count;
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!error)
+        error = std::make_exception_ptr(std::runtime_error("a plug-in threw an object that is no std::exception"));
       next = count;
     }
   };

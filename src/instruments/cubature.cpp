@@ -5,6 +5,8 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
+#include "core/parallel.h"
+
 namespace frond {
 namespace {
 
@@ -54,6 +56,7 @@ class Cubature {
 
   void refine(const SphereBox& box, const Value& whole, std::span<Peak> peaks, int depth,
               std::vector<SpherePart>& parts) const {
+    check_stop();
     const double z = (box.z0 + box.z1) / 2, phi = (box.phi0 + box.phi1) / 2;
     const std::array<SphereBox, 4> quarters{{{box.z0, z, box.phi0, phi},
                                              {box.z0, z, phi, box.phi1},

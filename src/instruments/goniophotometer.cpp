@@ -130,6 +130,7 @@ GoniophotometerMeasurement integrate_f(const LitMaterial& lit, const DetectorSph
   pool.for_each(sphere.thetas(), [&](int64_t row, int) {
     const ShareDensity density(lit);
     for (int column = 0; column < sphere.phis(); ++column) {
+      check_stop();
       const size_t i = sphere.index(static_cast<int>(row), column);
       const SphereBox box = box_of(sphere.patch(i));
       constexpr double kNegligible = 1e-12;

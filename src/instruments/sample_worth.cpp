@@ -145,7 +145,10 @@ SampleWorth measure_worth(const PathHit& hit, int64_t samples, const ThreadPool&
   pool.for_each(kBatches, [&](int64_t i, int) {
     const LitSpecimen specimen(hit);
     RandomStream rng(hash_key(hit.seed, std::bit_cast<uint64_t>(hit.theta_deg), hit.lambda.count, i));
-    for (int64_t k = 0; k < of_batch; ++k) specimen.add_to(batches[static_cast<size_t>(i)], rng);
+    for (int64_t k = 0; k < of_batch; ++k) {
+      check_stop();
+      specimen.add_to(batches[static_cast<size_t>(i)], rng);
+    }
   });
   BatchMoments albedo, sky, sun;
   for (const Batch& b : batches) {

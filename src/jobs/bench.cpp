@@ -39,7 +39,7 @@ constexpr JobParam kParams[] = {
     JobParam("repetitions", count, "Number of repetitions of each benchmark.",
              {.default_value = "5", .range = {1, 10000}}),
     JobParam("min-time", real, "Minimum duration of a repetition.",
-             {.default_value = "0.01", .unit = "s", .range = kAboveZero}),
+             {.default_value = "0.01", .unit = "s", .range = {kAboveZero.min, 1}}),
     JobParam("samples", count, "Number of samples for the variance of each estimate.",
              {.default_value = "1e5", .range = {1000, kCounts.max}}),
     kSeedParam,
@@ -198,7 +198,7 @@ std::string json_of(const std::string& of_times, const Arguments& args, std::spa
   for (Json& entry : json["benchmarks"])
     if (const auto found = counters.find(entry["name"]); found != counters.end() && entry["run_type"] == "iteration")
       entry.update(found->second);
-  return json.dump(2) + '\n';
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
 /// Timings are unreliable when other processes use the processors.
@@ -211,6 +211,7 @@ void warn_where_busy(const Log& log) {
 
 /// Times all materials first, on one thread, and estimates their variances afterwards on all threads.
 Result bench(const JobRun& run) {
+  const StopScope stop(run.control.stop);
   check_chart_param(run, "plot");
   const TimedMaterials materials(run);
   if (run.args.given("plot")) check_bench_chart(materials.count(), materials.angles());

@@ -230,7 +230,9 @@ Result brf(const JobRun& run) {
   if (run.args.given("compare")) return run_comparison(run, request);
   std::optional<KeptFile> kept;
   if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
+  std::optional<StopScope> loading(std::in_place, run.control.stop);
   const BrfMeter meter(run.session(), described_scene(run), request);
+  loading.reset();
   run.context.log().check();
   const auto measured = measure(run, meter, kept ? &*kept : nullptr);
   if (!measured) {

@@ -83,7 +83,11 @@ Result canopy(const JobRun& run) {
   InstanceWriter writer(output, leaves, names);
   LeafPlacer placer(canopy);
   std::vector<float> values(names.size());
-  for (uint64_t leaf = 0; leaf < leaves; ++leaf) writer.add(placer.place(values), values);
+  const StopScope stop(run.control.stop);
+  for (uint64_t leaf = 0; leaf < leaves; ++leaf) {
+    check_stop();
+    writer.add(placer.place(values), values);
+  }
   writer.finish();
   const double area = double(leaves) * canopy.leaf_area * canopy.scale * canopy.scale;
   Result result{.facts = {{"leaves", double(leaves)}, {"area", area}}};

@@ -79,6 +79,7 @@ void check_arguments(const Arguments& args, const ExportFormat& format) {
 
 /// The job: prepares the material in groups of wavelengths as the format requests them.
 Result export_material(const JobRun& run) {
+  const StopScope stop(run.control.stop);
   const Arguments& args = run.args;
   const ExportFormat& format =
       **std::ranges::find(export_formats(), args.text("format"), [](const ExportFormat* f) { return f->name; });

@@ -208,7 +208,9 @@ Result flux(const JobRun& run) {
                             .wavelengths = wavelengths_text(run.args),
                             .by_instance = is_by_instance,
                             .keeps_depth = run.args.given("integrator")};
+  std::optional<StopScope> loading(std::in_place, run.control.stop);
   FluxMeter meter(run.session(), described_scene(run), request);
+  loading.reset();
   run.context.log().check();
   const auto photons = photon_weights(meter.scene(), *irradiance);
   auto measured = measure(run, meter, kept ? &*kept : nullptr);

@@ -47,10 +47,13 @@ constexpr Share kShares[] = {{"Rs", &SpectrophotometerMeasurement::surface, true
 Table table_of(std::span<const LabelledMeasurement> measurements) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Table table{"measurements"};
-  for (const auto& [material, r] : measurements) {
+  for (const LabelledMeasurement& measurement : measurements) {
+    const auto& [material, r] = measurement;
     table.add("theta_deg", r.beam.theta_deg);
     table.add("wavelength_nm", r.beam.lambda_nm);
-    const auto is_known = [&](const Share& s) { return !s.is_optional || r.tells_surface; };
+    const auto is_known = [&, tells_surface = r.tells_surface](const Share& s) {
+      return !s.is_optional || tells_surface;
+    };
     for (const Share& s : kShares) table.add(s.name, is_known(s) ? (r.*s.value).mean : kNone);
     for (const Share& s : kShares)
       table.add(std::string(s.name) + "_se", is_known(s) ? (r.*s.value).standard_error() : kNone);
@@ -90,6 +93,7 @@ void warn_where_not_reached(const JobRun& run, const Dose& dose, const std::vect
 
 /// The job. The chart is checked before the first ray.
 Result spectrophotometer(const JobRun& run) {
+  const StopScope stop(run.control.stop);
   check_chart_param(run, "plot");
   // With --se, measurements end by their error, so the default limit is larger.
   constexpr int64_t kRays = 1'000'000, kMostRays = 1'000'000'000;

@@ -48,7 +48,11 @@ std::shared_ptr<const SphereMap> Verdict::map_of_faults() const {
 
 void Examination::integrate_pdf() {
   constexpr double kTolerance = 1e-8;  // for each of up to about 1,000 parts of the sphere
-  const auto density = [this](const Vec3& wi) { return static_cast<double>(bsdf.pdf(wo, wi)); };
+  // Where a pdf is negative or not a number, which another law reports, no quadrature would settle.
+  const auto density = [this](const Vec3& wi) {
+    const double pdf = bsdf.pdf(wo, wi);
+    return pdf > 0 && std::isfinite(pdf) ? pdf : 0;
+  };
   for (size_t b = 0; b < bins.size(); ++b) {
     auto parts = integrate(bins.box(b), density, kTolerance, bins.points(b));
     pdf_mass.push_back(total(parts));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/parallel.h"
 #include "instruments/conformance/conformance.h"
 #include "instruments/cubature.h"
 #include "instruments/errors/statistics.h"
@@ -85,6 +86,7 @@ inline constexpr double kEnoughForNormal = 100;
 
 /// One call of `sample` with numbers and a stream from `key`.
 inline std::optional<BsdfSample> draw_once(const Bsdf& bsdf, const Vec3& wo, uint64_t key) {
+  check_stop();
   RandomStream numbers(hash_key(key, 0)), stream(hash_key(key, 1));
   const float uc = numbers.uniform(), u = numbers.uniform(), v = numbers.uniform();
   return bsdf.sample(wo, uc, {u, v}, stream);
@@ -92,6 +94,7 @@ inline std::optional<BsdfSample> draw_once(const Bsdf& bsdf, const Vec3& wo, uin
 
 /// One call of `f` with a stream from `key`.
 inline SampledSpectrum f_once(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, uint64_t key) {
+  check_stop();
   RandomStream stream(key);
   return bsdf.f(wo, wi, stream);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 #ifdef FROND_HAS_BENCHMARK
 #include <benchmark/benchmark.h>
@@ -53,6 +54,7 @@ class Recorder final : public benchmark::BenchmarkReporter {
 template <class Call>
 void add_call(const TimedHit& timed, BsdfCall which, const Call& call) {
   benchmark::RegisterBenchmark(timed.name(which).c_str(), [&timed, call](benchmark::State& state) {
+    check_stop();
     const Vec3 wo = viewer_at(timed.hit.theta_deg);
     Arena arena;
     const Bsdf& bsdf = *timed.hit.material.evaluate(flat_hit(), timed.hit.lambda, arena);
@@ -65,6 +67,7 @@ void add_call(const TimedHit& timed, BsdfCall which, const Call& call) {
 /// Registers the benchmark of a complete hit: the BSDF is created in every iteration.
 void add_hit(const TimedHit& timed) {
   benchmark::RegisterBenchmark(timed.name(BsdfCall::hit).c_str(), [&timed](benchmark::State& state) {
+    check_stop();
     const Vec3 wo = viewer_at(timed.hit.theta_deg);
     const Hit hit = flat_hit();
     Arena arena;
@@ -113,8 +116,10 @@ CallTimes time_calls(std::span<const TimedHit> hits, const TimingEffort& effort)
   set(effort);
   for (const TimedHit& hit : hits) add_all(hit);
   Recorder recorder;
+  const struct Clear {
+    ~Clear() { benchmark::ClearRegisteredBenchmarks(); }
+  } clear;  // also if a benchmark throws Stopped
   benchmark::RunSpecifiedBenchmarks(&recorder, ".");
-  benchmark::ClearRegisteredBenchmarks();
   CallTimes times{.ns = {}, .json = recorder.json()};
   for (const TimedHit& hit : hits) {
     auto& ns = times.ns.emplace_back();

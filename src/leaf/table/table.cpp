@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/parallel.h"
 #include "leaf/walk/batch_walk.h"
 
 namespace frond::leaf {
@@ -21,6 +22,7 @@ Shares measure(const Tissue& tissue, double theta_deg, int rays, uint64_t key) {
   std::array<BatchRay, 4096> batch;
   const auto all = static_cast<size_t>(rays);
   for (size_t first = 0; first < all; first += batch.size()) {
+    check_stop();
     const std::span<BatchRay> some(batch.data(), std::min(batch.size(), all - first));
     walk_batch(tissue, wo, Absorption::analog, key, some, first);
     for (const BatchRay& ray : some) ++counts[static_cast<size_t>(ray.fate)];
