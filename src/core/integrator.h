@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "core/arena.h"
 #include "core/sampler.h"
@@ -21,12 +24,29 @@ struct FirstHit {
   SampledSpectrum albedo;
 };
 
+/// Plug-in that returned what cannot be: a value or density that is negative or not finite, a direction that is no unit
+/// vector. The radiance of the path is then not a number.
+struct PlugInFault {
+  enum class Kind : uint8_t { none, material, light };
+  Kind kind = Kind::none;
+  uint32_t index = 0;  ///< SurfacePoint::material_id, or Light::index
+
+  friend auto operator<=>(const PlugInFault&, const PlugInFault&) = default;
+};
+
+/// Exception of a plug-in during rendering, with the material of the surface at which it was thrown.
+struct SurfaceError : std::runtime_error {
+  SurfaceError(uint32_t id, const std::string& what) : std::runtime_error(what), material_id(id) {}
+  uint32_t material_id;
+};
+
 /// Result of one path.
 struct PathResult {
   SampledSpectrum radiance;
   FirstHit first;
-  int scatterings = 0;   ///< number of scatterings
-  bool escaped = false;  ///< the path left the scene; otherwise it was absorbed or terminated
+  int scatterings = 0;     ///< number of scatterings
+  bool escaped = false;    ///< the path left the scene; otherwise it was absorbed or terminated
+  PlugInFault fault = {};  ///< the last one on the path
 };
 
 /// Samples of one pixel that are traced together. The first sample index of a bundle is a multiple of `kMost`.

@@ -147,6 +147,7 @@ class Params {
   /// Position of the directive.
   const Location& where() const { return parsed_.where; }
   std::string_view plugin() const;  ///< name of the plug-in
+  const PluginInfo& info() const { return info_; }
   /// Warns the user, at the position of the parameter, that the result deviates from what the scene states.
   void warn(std::string_view name, std::string_view message) const { resolver_.warn(where(name), message); }
   /// Parameters for the plug-in `to`, which this one makes: `more`, and all given parameters that both declare. The

@@ -21,8 +21,8 @@ struct PluginInfo {
   std::span<const Param> params;
 };
 
-/// Returns the result of `make()`. InputError and std::bad_alloc pass through; any other exception, and a null pointer
-/// as result, become an InputError at `where`.
+/// Returns the result of `make()`. InputError passes through; any other exception, and a null pointer as result, become
+/// an InputError at `where` that names the plug-in.
 template <class Make>
 auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
   const auto attempt = [&] {
@@ -31,9 +31,11 @@ auto made_by(const PluginInfo& info, const Location& where, const Make& make) {
     } catch (const InputError&) {
       throw;
     } catch (const std::bad_alloc&) {
-      throw;
+      fail(where, "{} \"{}\" needs more memory than there is", info.kind, info.name);
     } catch (const std::exception& error) {
       fail(where, "{} \"{}\" has a defect: {}", info.kind, info.name, error.what());
+    } catch (...) {
+      fail(where, "{} \"{}\" has a defect: it threw an object that is no std::exception", info.kind, info.name);
     }
   };
   auto made = attempt();

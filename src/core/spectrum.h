@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "core/float4.h"
@@ -36,6 +37,11 @@ struct SampledSpectrum {
   /// Largest lane.
   float max() const { return std::max({v[0], v[1], v[2], v[3]}); }
   bool is_black() const { return are_equal(v, Float4{}); }
+  /// Returns whether every lane is finite and not negative.
+  bool is_physical() const {
+    const auto valid = (v >= 0.f) & (v <= std::numeric_limits<float>::max());
+    return (valid[0] & valid[1] & valid[2] & valid[3]) != 0;
+  }
 };
 
 /// Closed interval [min, max].

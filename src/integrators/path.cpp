@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/integrator.h"
 #include "core/sampling.h"
@@ -96,6 +97,24 @@ class PathTracer final : public Tracer {
   // Each iteration is one vertex of all paths: intersect, add emission, sample lights, sample the BSDF.
   void trace(PathBundle& bundle) override {
     bundle_ = &bundle;
+    at_ = nullptr;
+    try {
+      trace();
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::exception& error) {
+      if (!at_) throw;
+      throw SurfaceError(at_->material_id, error.what());
+    } catch (...) {
+      if (!at_) throw;
+      throw SurfaceError(at_->material_id, "it threw an object that is no std::exception");
+    }
+  }
+
+ private:
+  static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
+
+  void trace() {
     LaneList alive = begin();
     for (vertex_ = 0; !alive.empty(); ++vertex_) {
       const LaneList met = vertex_ == 0 ? meet_first(alive) : meet(alive);
@@ -106,9 +125,6 @@ class PathTracer final : public Tracer {
       alive = scatter(scattering, passed);
     }
   }
-
- private:
-  static constexpr size_t kMost = PathBundle::kMost, kWidth = RayPacket::kWidth;
 
   LaneList begin() {
     LaneList lanes;
@@ -128,6 +144,7 @@ class PathTracer final : public Tracer {
       result.first.is_hit = result.first.is_leaf = false;
       result.scatterings = 0;
       result.escaped = false;
+      result.fault = {};
     }
     return lanes;
   }
@@ -178,6 +195,7 @@ class PathTracer final : public Tracer {
     LaneList scattering;
     for (const size_t i : met) {
       const SurfacePoint& point = points_[i];
+      at_ = &point;
       Path& path = paths_[i];
       path.key = key_of(i);
       if (point.light) add_emission(i);
@@ -205,14 +223,23 @@ class PathTracer final : public Tracer {
             .albedo = {}};
   }
 
-  void add(size_t lane, const SampledSpectrum& radiance, float weight) {
+  void add(size_t lane, const Light& light, const SampledSpectrum& radiance, float weight) {
+    if (!radiance.is_physical() || !(weight >= 0)) return blame(lane, light);
     bundle_->results[lane].radiance += paths_[lane].throughput * radiance * weight;
   }
+
+  /// The film counts a sample that is not a number, and takes it as black.
+  void blame(size_t lane, PlugInFault fault) {
+    bundle_->results[lane].fault = fault;
+    bundle_->results[lane].radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());
+  }
+  void blame(size_t lane, const Light& light) { blame(lane, {PlugInFault::Kind::light, uint32_t(light.index())}); }
+  void blame_material(size_t lane) { blame(lane, {PlugInFault::Kind::material, points_[lane].material_id}); }
 
   void add_environment(size_t lane) {
     const Path& path = paths_[lane];
     for (const EnvironmentLight* light : world_.environment())
-      add(lane, light->radiance(path.previous.p, path.ray.d, path.lambda),
+      add(lane, *light, light->radiance(path.previous.p, path.ray.d, path.lambda),
           weight_of(*light, path, [&] { return light->competing_pdf(path.previous.p, path.ray.d); }));
   }
 
@@ -221,7 +248,7 @@ class PathTracer final : public Tracer {
     const Path& path = paths_[lane];
     const AreaLight& light = *point.light;
     const EmittingPoint at{point.hit.p, point.hit.ng, point.hit.at.uv};
-    add(lane, light.radiance(at, -path.ray.d, path.lambda),
+    add(lane, light, light.radiance(at, -path.ray.d, path.lambda),
         weight_of(light, path, [&] { return light.pdf(path.previous.p, at); }));
   }
 
@@ -236,6 +263,7 @@ class PathTracer final : public Tracer {
   struct Lit {
     SampledSpectrum radiance;
     float weight;
+    const Light* light;
   };
 
   void add_sampled_lights(const LaneList& lanes) {
@@ -246,6 +274,7 @@ class PathTracer final : public Tracer {
     bool alike = vertex_ == 0;
     for (const size_t i : lanes) {
       const SurfacePoint& point = points_[i];
+      at_ = &point;
       const Path& path = paths_[i];
       const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, selector_.has_choice() ? numbers_[i] : 0.f);
       if (!chosen) continue;
@@ -256,10 +285,19 @@ class PathTracer final : public Tracer {
       float scatter_pdf = 0;
       const SampledSpectrum f_cos = bsdfs_[i].f_cos(sample->wi, path.key.stream(Use::light_bsdf), scatter_pdf);
       if (f_cos.is_black()) continue;
+      if (!f_cos.is_physical() || !(scatter_pdf < INFINITY)) {
+        blame_material(i);
+        continue;
+      }
+      if (!sample->radiance.is_physical()) {
+        blame(i, *light);
+        continue;
+      }
       const float light_pdf = sample->pdf * probability;
       const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
       lit_[i].radiance = f_cos * sample->radiance;
       lit_[i].weight = weight / light_pdf;
+      lit_[i].light = light;
       set_shadow_ray(point.hit, *sample, shadow_rays_[i]);
       shadow_keys_[i] = path.key.of(Use::shadow_ray);
       lit.add(i);
@@ -268,7 +306,7 @@ class PathTracer final : public Tracer {
     bundle_->traced += lit.size();
     const uint32_t dark = alike ? occluded_alike(lit) : occluded(lit);
     for (const size_t i : lit)
-      if (!(dark >> i & 1)) add(i, lit_[i].radiance, lit_[i].weight);
+      if (!(dark >> i & 1)) add(i, *lit_[i].light, lit_[i].radiance, lit_[i].weight);
   }
 
   /// Returns the mask of the occluded paths: shadow rays one by one.
@@ -322,8 +360,9 @@ class PathTracer final : public Tracer {
     for (const size_t i : passed) alive |= 1u << i;
     for (const size_t i : lanes) {
       Path& path = paths_[i];
+      at_ = &points_[i];
       FirstHit& first = bundle_->results[i].first;
-      if (!scatter(points_[i].hit, bsdfs_[i], numbers_[i], pairs_[i], path)) continue;
+      if (!scatter(i, points_[i].hit, bsdfs_[i], numbers_[i], pairs_[i], path)) continue;
       if (path.depth == 0) first.albedo = path.throughput;
       if (ends(path)) continue;
       bundle_->results[i].scatterings = ++path.depth;
@@ -336,9 +375,14 @@ class PathTracer final : public Tracer {
   }
 
   /// Returns false if nothing is scattered.
-  bool scatter(const Hit& hit, const LocalBsdf& bsdf, float uc, Vec2 u, Path& path) const {
+  bool scatter(size_t lane, const Hit& hit, const LocalBsdf& bsdf, float uc, Vec2 u, Path& path) {
     LocalBsdf::Sample sample;
     if (!bsdf.sample(uc, u, path.key.stream(Use::bsdf), sample)) return false;
+    constexpr float kRounding = 1e-2f;
+    if (!sample.weight.is_physical() || !(sample.pdf > 0) || !(std::abs(dot(sample.wi, sample.wi) - 1) < kRounding)) {
+      blame_material(lane);
+      return false;
+    }
     path.throughput *= sample.weight;
     path.power_factor *= sample.power_factor;
     path.lambda.retire_black_lanes(path.throughput);
@@ -397,7 +441,8 @@ class PathTracer final : public Tracer {
   const World& world_;
   const LightSelector& selector_;
   const PathSettings& settings_;
-  PathBundle* bundle_ = nullptr;  ///< current bundle
+  PathBundle* bundle_ = nullptr;      ///< current bundle
+  const SurfacePoint* at_ = nullptr;  ///< surface whose plug-ins are called
   Arena arena_;
   /// Index of the vertex for random numbers; invisible surfaces count too.
   int vertex_ = 0;

@@ -188,6 +188,7 @@ class Worker {
         tile_.add(x, y, features);
       }
       statistics_.ends.add(path);
+      if (path.fault.kind != PlugInFault::Kind::none) ++statistics_.faults[path.fault];
     }
     tile_.add(format_, x, y, std::span(samples_).subspan(begin, end - begin), kernel_ ? &*kernel_ : nullptr);
   }
@@ -220,7 +221,7 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   RenderStatistics total;
   std::mutex mutex;
   int64_t done = 0;
-  struct Ended {};  // an exception, because skipping millions of items one by one would take a second
+  struct Ended : std::exception {};  // because skipping millions of items one by one would take a second
   const auto render_item = [&](int64_t i, int thread) {
     if (control.stop.stop_requested() || (control.deadline && std::chrono::steady_clock::now() >= *control.deadline))
       throw Ended();

@@ -177,7 +177,49 @@ FilmSettings Session::film(const SceneSettings& description) const {
   return Scene::film_settings(description, registry_);
 }
 
+namespace {
+
+std::string spelled(const MaterialDescription& material) {
+  return material.name.empty() ? fmt::format("material \"{}\"", material.plugin.name)
+                               : fmt::format("material \"{}\" ({})", material.name, material.plugin.name);
+}
+
+}  // namespace
+
+/// Calls `act`. An exception of a plug-in becomes an InputError that names the material at the hit where it was thrown,
+/// and the shared objects that are loaded, one of which may be to blame.
+template <class Act>
+auto Session::naming_plugins(const std::vector<MaterialDescription>& materials, const Act& act) const {
+  const auto suspects = [this] {
+    std::string names;
+    for (const auto& file : plugin_files(options_.plugins)) names += " " + file.filename().string();
+    return names.empty() ? names : "; plug-ins are loaded from" + names;
+  };
+  try {
+    return act();
+  } catch (const SurfaceError& error) {
+    const MaterialDescription& material = materials.at(error.material_id);
+    fail(material.plugin.where, "{}, or a light or texture at its surface, has a defect: {}{}", spelled(material),
+         error.what(), suspects());
+  } catch (const InputError&) {
+    throw;
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::exception& error) {
+    const std::string names = suspects();
+    if (names.empty()) throw;  // no plug-in of somebody else
+    fail({}, "a plug-in has a defect: {}{}", error.what(), names);
+  } catch (...) {
+    fail({}, "a plug-in has a defect: it threw an object that is no std::exception{}", suspects());
+  }
+}
+
 LoadedScene Session::load(SceneDescription description, const ImageRequest& request, const Scene* other) {
+  const std::vector<MaterialDescription> materials = description.materials;
+  return naming_plugins(materials, [&] { return load_scene(std::move(description), request, other); });
+}
+
+LoadedScene Session::load_scene(SceneDescription description, const ImageRequest& request, const Scene* other) {
   LoadedScene loaded;
   loaded.scene_ = std::make_unique<Scene>(description, registry_, pool_, log_, cache(), other);
   FilmSettings film = loaded.scene_->film();
@@ -219,6 +261,23 @@ LoadedScene Session::load(SceneDescription description, const ImageRequest& requ
   return loaded;
 }
 
+namespace {
+
+/// Warns of values that cannot be, and names the plug-in that returned them.
+void warn_of(const PlugInFault& fault, uint64_t count, const SceneDescription& scene, const Log& log) {
+  constexpr const char* kWhat =
+      "{} returned values that are negative, infinite or not a number on {} path{}: they count as black";
+  const char* plural = count == 1 ? "" : "s";
+  if (fault.kind == PlugInFault::Kind::material && fault.index < scene.materials.size()) {
+    const MaterialDescription& material = scene.materials[fault.index];
+    log.warn(material.plugin.where, fmt::format(kWhat, spelled(material), count, plural));
+  } else {
+    log.warn({}, fmt::format(kWhat, fmt::format("light {}, counted from 0,", fault.index), count, plural));
+  }
+}
+
+}  // namespace
+
 RenderStatistics Session::render(const LoadedScene& scene, SampleRange samples, RenderPart& part,
                                  const RenderControl& control) {
   return render_plan(scene, plan_of(part.film, samples), part, control);
@@ -226,7 +285,9 @@ RenderStatistics Session::render(const LoadedScene& scene, SampleRange samples, 
 
 RenderStatistics Session::render_plan(const LoadedScene& scene, const WorkPlan& plan, RenderPart& part,
                                       const RenderControl& control) {
-  const RenderStatistics statistics = frond::render(scene.job(), plan, part.film, pool_, control);
+  const RenderStatistics statistics = naming_plugins(
+      scene.description().materials, [&] { return frond::render(scene.job(), plan, part.film, pool_, control); });
+  for (const auto& [fault, count] : statistics.faults) warn_of(fault, count, scene.description(), log_);
   part.header.statistics += statistics;
   return statistics;
 }

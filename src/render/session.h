@@ -128,6 +128,10 @@ class Session {
                              const RenderControl& control = {});
 
  private:
+  template <class Act>
+  auto naming_plugins(const std::vector<MaterialDescription>& materials, const Act& act) const;
+  LoadedScene load_scene(SceneDescription description, const ImageRequest& request, const Scene* other);
+
   const Log& log_;
   SessionOptions options_;
   Registry registry_;

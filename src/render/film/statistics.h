@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <numeric>
 
 #include "core/integrator.h"
@@ -36,11 +37,13 @@ struct RenderStatistics {
   uint64_t paths = 0, rays = 0;
   double wall_seconds = 0, cpu_seconds = 0;
   PathEnds ends;
+  std::map<PlugInFault, uint64_t> faults = {};  ///< number of paths with each
 
   RenderStatistics& operator+=(const RenderStatistics& other) {
     paths += other.paths, rays += other.rays;
     wall_seconds += other.wall_seconds, cpu_seconds += other.cpu_seconds;
     ends += other.ends;
+    for (const auto& [fault, count] : other.faults) faults[fault] += count;
     return *this;
   }
 };

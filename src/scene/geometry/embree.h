@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <exception>
 
 #include "core/random.h"
 #include "core/texture.h"
@@ -46,7 +47,13 @@ struct Query {
   /// Instances that traversal is currently inside, outermost first.
   std::array<Instance, InstanceRows::kMost> inside;
   uint32_t depth = 0;
+  std::exception_ptr error = {};  ///< of a plug-in in a callback: Embree would lose it
 
+  /// Rethrows the error of a callback.
+  void check() const {
+    if (error) [[unlikely]]
+      std::rethrow_exception(error);
+  }
   /// Enters an instance. The depth is stored in instID[0], which Embree copies into hits.
   void enter(const Instance& instance) {
     inside[depth] = instance;
@@ -83,6 +90,7 @@ inline void intersect(RTCScene scene, RTCRayHit& ray, Query& query) {
 #else
   rtcIntersect1(scene, &query.base, &ray);
 #endif
+  query.check();
 }
 
 /// Traces a coherent packet; rays whose `valid` is not -1 are ignored.
@@ -94,6 +102,7 @@ inline void intersect(const int* valid, RTCScene scene, RTCRayHit8& rays, Query&
   query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect8(valid, scene, &query.base, &rays);
 #endif
+  query.check();
 }
 
 /// Sets ray.tfar to minus infinity if the ray is occluded.
@@ -104,6 +113,7 @@ inline void occluded(RTCScene scene, RTCRay& ray, Query& query) {
 #else
   rtcOccluded1(scene, &query.base, &ray);
 #endif
+  query.check();
 }
 
 /// Same for a coherent packet.
@@ -115,6 +125,7 @@ inline void occluded(const int* valid, RTCScene scene, RTCRay8& rays, Query& que
   query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded8(valid, scene, &query.base, &rays);
 #endif
+  query.check();
 }
 
 }  // namespace frond::embree

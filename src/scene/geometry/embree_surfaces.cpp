@@ -33,15 +33,30 @@ Query& query_of(Context* context) {
   return *reinterpret_cast<Query*>(context);
 }
 
+/// Calls `act` for a ray of a query. Returns false if it threw: Embree would lose the exception, so that the query
+/// keeps it.
+template <class Act>
+bool attempt(Query& query, const Act& act) {
+  try {
+    act();
+    return true;
+  } catch (...) {
+    if (!query.error) query.error = std::current_exception();
+    return false;
+  }
+}
+
 /// Embree's filter callback: rejects hits on meshes that fail the alpha test.
 void filter_alpha(const RTCFilterFunctionNArguments* args) {
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
-  const Query& query = query_of(args->context);
+  Query& query = query_of(args->context);
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
-    const RTCHit hit = rtcGetHitFromHitN(args->hit, args->N, i);
-    if (passes(surface, {hit.geomID, hit.primID}, texture_point(surface, hit), query, query.lane[i]))
-      args->valid[i] = 0;
+    attempt(query, [&] {
+      const RTCHit hit = rtcGetHitFromHitN(args->hit, args->N, i);
+      if (passes(surface, {hit.geomID, hit.primID}, texture_point(surface, hit), query, query.lane[i]))
+        args->valid[i] = 0;
+    });
   }
 }
 
@@ -53,21 +68,25 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
-    const Ray ray = to_ray(rtcGetRayFromRayN(rays, args->N, i));
-    if (const auto point = meet(surface, target, ray, query, query.lane[i]))
-      report(*point, target, args->rayhit, args->N, i, query);
+    attempt(query, [&] {
+      const Ray ray = to_ray(rtcGetRayFromRayN(rays, args->N, i));
+      if (const auto point = meet(surface, target, ray, query, query.lane[i]))
+        report(*point, target, args->rayhit, args->N, i, query);
+    });
   }
 }
 
 /// Embree's occlusion callback for analytic shapes.
 void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
-  const Query& query = query_of(args->context);
+  Query& query = query_of(args->context);
   for (unsigned i = 0; i < args->N; ++i) {
     if (!args->valid[i]) continue;
-    const Ray ray = to_ray(rtcGetRayFromRayN(args->ray, args->N, i));
-    if (meet(surface, {args->geomID, args->primID}, ray, query, query.lane[i]))
-      RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+    attempt(query, [&] {
+      const Ray ray = to_ray(rtcGetRayFromRayN(args->ray, args->N, i));
+      if (meet(surface, {args->geomID, args->primID}, ray, query, query.lane[i]))
+        RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+    });
   }
 }
 
@@ -118,6 +137,7 @@ std::optional<ShapePoint> meet(const Surface& surface, const Target& target, con
     point = shape.intersect(target.primitive, ray, behind);
     if (point && !(point->t > behind)) return {};  // ignores a shape that returns a point before `behind`
   }
+  if (point && !(point->t > 0 && point->t < INFINITY)) return {};
   return point;
 }
 

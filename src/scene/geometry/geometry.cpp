@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "core/error.h"
 #include "scene/geometry/embree_instances.h"
@@ -145,8 +146,7 @@ Geometry::Geometry(std::vector<ObjectParts> objects, ObjectParts world, int thre
     objects_.push_back(build(std::move(parts), first_id));
   }
   world_ = build(std::move(world), 1);
-  if (world_->depth > InstanceRows::kMost)
-    fail({}, "instances of objects are nested {} deep: {} is the limit", world_->depth, InstanceRows::kMost);
+  assert(world_->depth <= InstanceRows::kMost);
 }
 
 Geometry::~Geometry() = default;
