@@ -6,11 +6,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <sstream>
 
 #include "cli/pbrt_options.h"
 #include "core/error.h"
+#include "core/log.h"
 #include "jobs/record/command_line.h"
 #include "jobs/record/pbrt_options.h"
+#include "report/text_output.h"
 #include "scene/format/words.h"
 
 namespace frond {
@@ -208,9 +211,15 @@ std::string mistyped(const CLI::App& app) {
 /// first; CLI11 would report a missing parameter instead.
 int refuse(const CLI::App& app, const CLI::ParseError& error) {
   const std::string message = error.get_exit_code() == 0 ? "" : mistyped(app);
-  if (message.empty()) return app.exit(error) == 0 ? 0 : 1;
-  fmt::print(stderr, "frond: {}\n", message);
-  return 1;
+  if (!message.empty()) {
+    print_to_stderr("frond: " + message);
+    return 1;
+  }
+  std::ostringstream help, problem;
+  const int code = app.exit(error, help, problem);
+  if (!problem.str().empty()) print_to_stderr(problem.str().substr(0, problem.str().find_last_not_of('\n') + 1));
+  write_text("-", help.str());
+  return code == 0 ? 0 : 1;
 }
 
 std::vector<std::string> long_names(const CLI::App& command) {

@@ -26,6 +26,9 @@ void set_handler(int signal, void (*handler)(int)) {
 Interrupt::Interrupt() {
   caught = 0;
   for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, remember);
+  struct sigaction hangup {};
+  // The terminal was closed; nohup ignores it.
+  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) set_handler(SIGHUP, remember);
   // The stop is requested from a thread, because request_stop() is not safe in a signal handler.
   watcher_ = std::jthread([this](const std::stop_token& end) {
     while (!end.stop_requested() && caught == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -1,8 +1,27 @@
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
+#include <initializer_list>
 
 #include "cli/commands.h"
 
+namespace {
+
+/// Opens standard streams that the caller has closed: a file of the program would else take the number of one, and
+/// receive what is printed there. Standard input and error become /dev/null; writing to standard output stays an error.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) == -1) {
+      const int opened = open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+      if (opened != stream && opened >= 0) dup2(opened, stream), close(opened);
+    }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit becomes a write error instead of ending the program
   return frond::run(argc, argv);
 }

@@ -19,7 +19,7 @@ TerminalLine::~TerminalLine() { clear(); }
 
 /// \x1b[K erases the line from the cursor on.
 void TerminalLine::clear() {
-  if (active_ && last_shown_ >= 0) fmt::print(stderr, "\r\x1b[K");
+  if (active_ && last_shown_ >= 0) std::fputs("\r\x1b[K", stderr);
   last_shown_ = -1;
 }
 
@@ -30,7 +30,7 @@ bool TerminalLine::is_due(double seconds) {
 }
 
 void TerminalLine::show(const std::string& text) {
-  fmt::print(stderr, "\r\x1b[K{}", text);
+  std::fputs(("\r\x1b[K" + text).c_str(), stderr);
   std::fflush(stderr);
 }
 

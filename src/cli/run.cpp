@@ -30,6 +30,16 @@ bool writes_to_standard_output(const Arguments& args) {
   });
 }
 
+/// Returns the result of `act`, which is stopped, without a partial result, if that throws Stopped.
+template <class Act>
+Result stoppable(const Act& act) {
+  try {
+    return act();
+  } catch (const Stopped&) {
+    return {.stopped = true};
+  }
+}
+
 /// Runs the job and prints its result. Returns the exit code.
 int execute(const ParsedCommand& command) {
   const Arguments& args = command.arguments;
@@ -42,9 +52,9 @@ int execute(const ParsedCommand& command) {
   if (asks_for_parts(args)) interrupt.emplace();
   RenderControl control{.progress = &progress};
   if (interrupt) control.stop = interrupt->token();
-  const Result result = run_job(*command.job, {context, args, control});
+  const Result result = stoppable([&] { return run_job(*command.job, {context, args, control}); });
   if (result.stopped) return 128 + (interrupt ? interrupt->signal() : 0);
-  for (const std::string& error : result.errors) fmt::print(stderr, "frond: {}\n", error);
+  for (const std::string& error : result.errors) print_to_stderr("frond: " + error);
   if (result.is_requested || !(quiet || writes_to_standard_output(args))) write_text("-", result.text);
   return result.code;
 }
@@ -61,15 +71,17 @@ int run(int argc, const char* const* argv) {
     write_text("-", pbrt_options_text());
     return 0;
   } catch (const Busy& error) {
-    fmt::print(stderr, "frond: {}\n", error.what());
+    print_to_stderr(fmt::format("frond: {}", error.what()));
     return kTryAgainLater;
   } catch (const InputErrors& errors) {
     constexpr size_t kMostShown = 20;
-    fmt::print(stderr, "{}\n", errors.text("frond: ", kMostShown));
+    print_to_stderr(errors.text("frond: ", kMostShown));
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "frond: out of memory\n");
+    print_to_stderr("frond: out of memory");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "frond: {}\n", error.what());
+    print_to_stderr(fmt::format("frond: {}", error.what()));
+  } catch (...) {
+    print_to_stderr("frond: a plug-in threw an object that is no std::exception");
   }
   return 1;
 }

@@ -4,16 +4,32 @@
 
 namespace frond {
 
+namespace {
+
+class SilentLog final : public Log {
+ public:
+  void info(std::string_view) const override {}
+  void warn(const Location&, std::string_view) const override {}
+};
+
+}  // namespace
+
+void print_to_stderr(std::string_view text) {
+  const std::string line = fmt::format("{}\n", text);
+  std::fwrite(line.data(), 1, line.size(), stderr);  // in one call, so that lines of threads do not mix
+  std::fflush(stderr);
+}
+
 void ConsoleLog::info(std::string_view message) const {
-  if (!quiet_) fmt::print(stderr, "{}\n", message);
+  if (!quiet_) print_to_stderr(message);
 }
 
 void ConsoleLog::warn(const Location& where, std::string_view message) const {
-  if (!quiet_) fmt::print(stderr, "{}warning: {}\n", where.text(), message);
+  print_to_stderr(fmt::format("{}warning: {}", where.text(), message));
 }
 
 const Log& silent_log() {
-  static const ConsoleLog log(true);
+  static const SilentLog log;
   return log;
 }
 

@@ -13,7 +13,12 @@ class Log {
   virtual void warn(const Location& where, std::string_view message) const = 0;
 };
 
-/// Log that prints to standard error, or nothing if `quiet`. Thread-safe: each message is printed in one call.
+/// Prints a line to standard error. A stream that is closed or full is no error: there is nowhere to report it.
+/// Thread-safe.
+void print_to_stderr(std::string_view text);
+
+/// Log that prints to standard error; if `quiet`, warnings only, because a warning can say that numbers were changed.
+/// Thread-safe.
 class ConsoleLog final : public Log {
  public:
   explicit ConsoleLog(bool quiet = false) : quiet_(quiet) {}

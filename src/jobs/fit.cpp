@@ -104,7 +104,8 @@ std::vector<leaf::LeafMeasurement> measurements_of(const JobRun& run) {
   leaf::MeasuredSpectra measured = args.given("file")
                                        ? leaf::read_measured_spectra(args.text("file"), how)
                                        : leaf::parse_measured_spectra(args.text("data"), args.spelled("data"), how);
-  if (measured.is_in_percent) run.log().info("values are in percent");
+  // A warning, because it changes the numbers: -q shows it too.
+  if (measured.is_in_percent) run.log().warn({}, "values are in percent: they are divided by 100");
   if (measured.left_out > 0)
     run.log().warn({},
                    fmt::format("{} rows are left out: beyond 360 to 2500 nm, or without a number", measured.left_out));
@@ -113,6 +114,7 @@ std::vector<leaf::LeafMeasurement> measurements_of(const JobRun& run) {
 
 /// The job: fits the leaf, and writes scene file, chart and tables.
 Result fit(const JobRun& run) {
+  const StopScope stop(run.control.stop);
   const Arguments& args = run.args;
   check_chart_param(run, "plot");
   const leaf::FitRequest request = request_of(args, measurements_of(run));

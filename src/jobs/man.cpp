@@ -8,6 +8,7 @@
 #include "jobs/record/pbrt_options.h"
 #include "report/text_output.h"
 #include "scene/format/words.h"
+#include "system/atomic_file.h"
 #include "system/file_time.h"
 
 namespace frond {
@@ -171,7 +172,7 @@ Result man(const JobRun& run) {
   if (!run.args.given("folder"))
     return {.text = command.empty() ? overview() : page(find_job(command)), .is_requested = true};
   const fs::path folder = run.args.text("folder");
-  fs::create_directories(folder);
+  make_folders(folder);
   write_text((folder / "frond.1").string(), overview());
   for (const JobInfo* job : all_jobs()) write_text((folder / (page_name(job->name) + ".1")).string(), page(*job));
   return {};

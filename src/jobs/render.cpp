@@ -203,8 +203,7 @@ class SceneRender {
   void fill(RenderPart& part) {
     RenderControl control = run_.control;
     if (run_.args.given("time-limit"))
-      control.deadline = start_ + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(run_.args.real("time-limit")));
+      control.deadline = run_.control_until(run_.args.real("time-limit"), start_).deadline;
     std::optional<Checkpointer> checkpointer;
     if (kept_) {
       checkpointer.emplace(kept_->checkpoint(), checkpoint_seconds(run_.args), part, control.progress, run_.log());
@@ -299,7 +298,7 @@ class SceneRender {
     json["paths_escaped_by_depth"] = counts(statistics_.ends.escaped);
     json["paths_absorbed_by_depth"] = counts(statistics_.ends.absorbed);
     if (task_.choice()) json["choice"] = nlohmann::ordered_json::parse(choose::choice_json(*task_.choice()));
-    result.text += json.dump(2) + '\n';
+    result.text += json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
     result.is_requested = true;
   }
 

@@ -7,6 +7,7 @@
 #include "jobs/support/render_task.h"
 #include "jobs/support/templates.h"
 #include "report/text_output.h"
+#include "system/atomic_file.h"
 #include "system/child_process.h"
 
 namespace frond {
@@ -123,7 +124,7 @@ Result submit(const JobRun& run) {
     fail({}, "\"{}\" already contains a job: its submit.sh renders the missing samples; delete it to start anew",
          folder.string());
   const auto params = handed_on(run);
-  fs::create_directories(folder / "parts");
+  make_folders(folder / "parts");
   try_out(run, folder, params);
   std::string options;
   for (const std::string& word : task_options(run, params)) options += (options.empty() ? "" : " ") + quoted(word);

@@ -163,7 +163,7 @@ std::string to_json(const std::vector<std::string>& notes, const std::vector<Fac
       for (const Column& c : table.columns) entry[c.name] = json_value(c, row);
     }
   }
-  return json.dump(2) + '\n';
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace frond

@@ -1,10 +1,15 @@
 #include "system/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
+#include <utility>
 
 #include "core/error.h"
 
@@ -26,13 +31,43 @@ fs::path follow_links(const fs::path& path) {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
+constexpr std::string_view kPrefix = ".frond-", kSuffix = ".tmp";
+
+/// Deletes temporary files that killed processes have left in a folder. A process locks its own as long as it writes,
+/// so that one whose lock can be taken has no writer, on this machine or another. Once for each folder.
+void remove_left_files(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> seen;
+  const std::lock_guard lock(mutex);
+  if (!seen.insert(folder).second) return;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
+    const int file = open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) continue;
+    if (flock(file, LOCK_EX | LOCK_NB) == 0) unlink(entry.path().c_str());
+    close(file);
+  }
+}
+
+/// Locks a new file against remove_left_files. Returns false if that was faster. Without locks in a file system nothing
+/// is removed there.
+bool lock_new(int file) {
+  if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+  struct stat status {};
+  return fstat(file, &status) != 0 || status.st_nlink > 0;
+}
+
 }  // namespace
 
 NewFile::NewFile(const fs::path& path) : target_(follow_links(path)) {
+  remove_left_files(folder_of(target_));
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    path_ = folder_of(target_) / fmt::format(".frond-{}-{}.tmp", getpid(), attempt);
+    path_ = folder_of(target_) / fmt::format("{}{}-{}{}", kPrefix, getpid(), attempt, kSuffix);
     descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && (errno != EEXIST || attempt == 1000)) fail_to_write(target_, errno);
+    if (descriptor_ >= 0 && !lock_new(descriptor_)) close(std::exchange(descriptor_, -1));
   }
 }
 
@@ -57,6 +92,12 @@ void NewFile::finish() {
   if (close(descriptor) != 0) fail_to_write(target_, errno);
   if (rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
   path_.clear();
+}
+
+void make_folders(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) fail({}, "cannot create folder \"{}\": {}", folder.string(), error.message());
 }
 
 void check_replaceable(const fs::path& path) {

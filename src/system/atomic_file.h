@@ -9,8 +9,12 @@ namespace frond {
 /// path exists and is not a writable regular file. No file remains after the check.
 void check_replaceable(const std::filesystem::path& path);
 
+/// Creates a folder and those above it that are missing. Throws InputError with the system's reason.
+void make_folders(const std::filesystem::path& folder);
+
 /// Writes a file atomically: `bytes` are written to a temporary file in the same folder, synchronised to the disk and
-/// renamed to `path`. A symbolic link is followed. Throws InputError with the system's reason; an existing file is then
+/// renamed to `path`. Temporary files that killed processes have left in the folder are deleted. A symbolic link is
+/// followed. Throws InputError with the system's reason; an existing file is then
 /// unchanged.
 void replace_file(const std::filesystem::path& path, std::span<const unsigned char> bytes);
 

@@ -2,18 +2,22 @@
 they are killed at a bad moment: each says what is wrong, and leaves nothing half-written."""
 
 import errno
+import json
 import os
 import random
 import resource
 import shutil
+import struct
 import subprocess
 import time
 import unittest
 
-from frond_program import FROND, SLOW, FrondTest, part_header
+from frond_program import FROND, SCENE, SLOW, FrondTest, part_header
 
 OLD = b"an old file"
 BANDS = "bands,lambdamin=400,lambdamax=800,step=10"  # makes parts of more than a megabyte
+
+SCENE_WITH_WARNING = SCENE.replace("WorldBegin", 'Option "bool forcediffuse" true\nWorldBegin')
 
 TRIANGLE = """ply
 format ascii 1.0
@@ -349,6 +353,136 @@ class KilledAnywhere(FrondTest):
             self.write(f".frond-{os.getpid() + number}-0.tmp", "half an image")
         self.write("a.exr.part.lock", "")
         self.check_rerun(self.command(self.output, *self.words, "--checkpoint", 0.05))
+        self.assertEqual(temporaries(self.folder), [])
+
+
+class StandardStreams(FrondTest):
+    """The exit code is 0 only if all that was asked for could be written. Where messages go does not matter for it."""
+
+    def run_with(self, redirection, *words):
+        line = 'exec "$@" ' + redirection
+        done = subprocess.run(
+            ["sh", "-c", line, "sh", *map(str, words)], capture_output=True, check=False, stdin=subprocess.DEVNULL
+        )
+        return done.returncode
+
+    def test_lost_output_is_an_error(self):
+        image = self.folder / "a.exr"
+        for words in (
+            ["--version"],
+            ["--help"],
+            ["describe", "leaf"],
+            ["check", self.scene],
+            ["render", "--help"],
+            ["render", self.scene, "--spp", 1, "-o", image, "--json", "-q"],
+        ):
+            with self.subTest(words=words):
+                self.assertEqual(self.run_with(">/dev/null", FROND, *words), 0)
+                self.assertEqual(self.run_with(">/dev/full", FROND, *words), 1)
+                self.assertEqual(self.run_with(">&-", FROND, *words), 1)
+
+    def test_lost_messages_are_none(self):
+        image = self.folder / "a.exr"
+        for redirection in ("2>/dev/full", "2>&-", "<&- 2>&-"):
+            for words in ([self.scene, "--spp", 1, "-o", image], [self.scene, "--spp", 1, "-o", image, "--strict"]):
+                with self.subTest(redirection=redirection):
+                    self.assertEqual(self.run_with(redirection, FROND, "render", *words), 0)
+                    self.assertTrue(image.exists())
+                    image.unlink()
+
+    def test_a_closed_stream_is_no_file_of_the_program(self):
+        # Else the image would get number 2, and a warning would be written into it.
+        scene = self.write("warns.pbrt", SCENE_WITH_WARNING)
+        images = [self.folder / name for name in ("a.exr", "b.exr")]
+        for image, redirection in zip(images, ("2>/dev/null", "2>&-")):
+            words = ["env", "SOURCE_DATE_EPOCH=0", FROND, "render", scene, "--spp", 1, "-o", image]
+            self.assertEqual(self.run_with(redirection, *words), 0)
+        self.assertEqual(images[0].read_bytes(), images[1].read_bytes())
+
+    def test_names_that_are_not_utf8_are_reported(self):
+        name = os.fsencode(self.folder) + b"/\xff.exr"
+        done = subprocess.run(
+            [FROND, "render", str(self.scene), "--spp", "1", "-o", name, "--json", "-q"], capture_output=True, check=False
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(os.path.exists(name))
+        json.loads(done.stdout)
+
+    def test_quiet_hides_no_warning(self):
+        scene = self.write("warns.pbrt", SCENE_WITH_WARNING)
+        _, err = self.run_to_end([FROND, "render", str(scene), "--spp", "1", "-o", str(self.folder / "a.exr"), "-q"])
+        self.assertIn("warning: ", err)
+        spectra = self.write("m.csv", "nm,R,T\n" + "".join(f"{nm},{20 + nm / 100},20\n" for nm in range(450, 1000, 10)))
+        _, err = self.run_to_end([FROND, "fit", str(spectra), "-q"])
+        self.assertIn("values are in percent", err)
+
+
+class FilmFile(FrondTest):
+    """A scene cannot choose a file outside of the working folder; -o can."""
+
+    def render(self, name, *words, code=0):
+        text = SCENE.replace('Film "rgb"', f'Film "rgb" "string filename" "{name}"')
+        scene = self.write("scene.pbrt", text)
+        work = self.folder / "work"
+        work.mkdir(exist_ok=True)
+        return self.run_to_end([FROND, "render", str(scene), "--spp", "1", "-q", *words], code, cwd=work)
+
+    def test_outside_is_refused(self):
+        victim = self.folder / "victim.exr"
+        victim.write_bytes(OLD)
+        (self.folder / "work").mkdir()
+        (self.folder / "work" / "link").symlink_to(self.folder)
+        for name in (victim, "../victim.exr", "link/victim.exr", "a/../../victim.exr"):
+            _, err = self.render(name, code=1)
+            self.assertIn("scene.pbrt:4:6: the scene asks to write", err)
+            self.assertIn("give a file with -o", err)
+            self.assertEqual(victim.read_bytes(), OLD)
+
+    def test_inside_is_written(self):
+        self.render("a.exr")
+        self.assertTrue((self.folder / "work" / "a.exr").exists())
+        self.render("../b.exr", "-o", str(self.folder / "c.exr"))
+        self.assertTrue((self.folder / "c.exr").exists())
+
+
+class ChangingTables(FrondTest):
+    """An instance table that changes during a render."""
+
+    TABLE_SCENE = SCENE.replace(
+        'Shape "sphere" "float radius" .5',
+        'ObjectBegin "o" Shape "sphere" "float radius" .02 ObjectEnd\n'
+        'Shape "instances" "string object" "o" "string filename" "t.npy"',
+    )
+
+    def table(self, shift):
+        header = "{'descr': '<f4', 'fortran_order': False, 'shape': (5000, 12), }".ljust(117) + "\n"
+        rows = (
+            struct.pack("<12f", 1, 0, 0, i % 100 / 50 - 1 + shift, 0, 1, 0, i // 100 / 25 - 1, 0, 0, 1, 0)
+            for i in range(5000)
+        )
+        return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + b"".join(rows)
+
+    def test_no_signal_and_the_same_image(self):
+        scene = self.write("scene.pbrt", self.TABLE_SCENE)
+        path = self.folder / "t.npy"
+        path.write_bytes(self.table(0))
+        command = [FROND, "render", str(scene), "--spp", "64", "--no-cache", "--threads", "2", "-q", "-o"]
+        first, second = (self.folder / name for name in ("a.exr", "b.exr"))
+        self.run_to_end([*command, str(first)])
+        def overwrite():
+            with path.open("r+b") as file:
+                file.write(b"\x7f" * 100_000)
+
+        for fault in (lambda: os.truncate(path, 200), overwrite):
+            path.write_bytes(self.table(0))
+            (self.folder / "b.exr.part").unlink(missing_ok=True)
+            process = self.start([*command[:-1], "--checkpoint", "0.02", "-o", str(second)])
+            part = self.folder / "b.exr.part"
+            self.wait_for(lambda: part.exists() or process.poll() is not None, "a checkpoint")
+            fault()
+            _, err = process.communicate()
+            self.assertEqual(process.returncode, 0, err)
+            self.assertEqual(second.read_bytes(), first.read_bytes())
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 #include "system/atomic_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "system/file_bytes.h"
@@ -28,9 +30,23 @@ TEST(AtomicFile, LeavesAloneWhatAnotherProcessOfTheSameNumberIsWriting) {
   const TestFolder folder("atomic_file");
   const std::string others = fmt::format(".frond-{}-0.tmp", ::getpid());
   folder.write(others, "half of so");
+  const int writer = ::open(folder.name_of(others).c_str(), O_RDONLY);
+  ASSERT_EQ(::flock(writer, LOCK_EX), 0);
   replace(folder.name_of("file"), "whole");
   EXPECT_EQ(read_file_bytes(folder.name_of(others), {}), "half of so");
   EXPECT_EQ(read_file_bytes(folder.name_of("file"), {}), "whole");
+  ::close(writer);
+}
+
+TEST(AtomicFile, RemovesWhatKilledProcessesHaveLeft) {
+  const TestFolder folder("atomic_file");
+  folder.write(".frond-1-0.tmp", "half of so");
+  folder.write(".frond-77777-3.tmp", "");
+  folder.write(".frond-note", "another file");
+  replace(folder.name_of("file"), "whole");
+  EXPECT_FALSE(fs::exists(folder.name_of(".frond-1-0.tmp")));
+  EXPECT_FALSE(fs::exists(folder.name_of(".frond-77777-3.tmp")));
+  EXPECT_TRUE(fs::exists(folder.name_of(".frond-note")));
 }
 
 TEST(AtomicFile, SaysWhyNot) {

@@ -147,7 +147,10 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
   if (takes > 0 && words.size() != takes)
     fail({}, "{} takes {} value{}, {} {} given", p.positional ? std::string(p.name) : spelling_(p.name), takes,
          takes == 1 ? "" : "s", words.size(), words.size() == 1 ? "was" : "were");
+  if (words.empty()) refuse("");
   for (std::string& word : value.words) {
+    if (word.find('\0') != std::string::npos)
+      fail({}, "{}: a text without zero bytes is needed", p.positional ? std::string(p.name) : spelling_(p.name));
     if (word == "true" && !p.implied.empty()) word = p.implied;
     if (!p.choices.empty() && std::ranges::find(p.choices, word) == p.choices.end()) refuse(word);
     if (word.empty() && p.path != PathUse::none) refuse(word);

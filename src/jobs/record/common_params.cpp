@@ -65,8 +65,13 @@ std::vector<std::vector<std::filesystem::path>> scenes_of(const std::vector<std:
 }
 
 /// Text that begins with a digit is a list of bands; other text names a strategy.
+/// Numbers are short for the strategy "bands"; an empty text is refused, because it would mean the scene's own
+/// strategy.
 std::string wavelengths_text(const Arguments& args) {
   const std::string text = args.text("wavelengths");
+  if (text.empty() && args.given("wavelengths"))
+    fail({}, "{}: a list of wavelengths, as in 450,550 or 400:700:10, or a plug-in is needed",
+         args.spelled("wavelengths"));
   if (text.empty() || std::string_view("0123456789.").find(text[0]) == std::string_view::npos) return text;
   const auto numbers = parse_numbers(text);
   if (!numbers)

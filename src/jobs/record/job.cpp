@@ -75,11 +75,13 @@ Result run_job(const JobInfo& job, const JobRun& run) {
   return result;
 }
 
-RenderControl JobRun::control_until(double seconds) const {
+/// A time limit beyond what a clock can count is none.
+RenderControl JobRun::control_until(double seconds, std::chrono::steady_clock::time_point start) const {
   using Clock = std::chrono::steady_clock;
   RenderControl until = control;
-  if (seconds > 0)
-    until.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  constexpr double kEndless = 1e9;  // beyond it a clock's ticks could overflow
+  if (seconds > 0 && seconds < kEndless)
+    until.deadline = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   return until;
 }
 

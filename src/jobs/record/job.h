@@ -59,15 +59,11 @@ struct JobRun {
 
   Session& session() const { return context.session(); }
   const Log& log() const { return context.log(); }
-  /// Returns the control, with a deadline `seconds` after now if `seconds` is above 0.
-  RenderControl control_until(double seconds) const;
+  /// Returns the control, with a deadline `seconds` after `start` if `seconds` is above 0.
+  RenderControl control_until(double seconds,
+                              std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now()) const;
   /// Throws Stopped if the front end has requested a stop. Jobs call it between measurements.
   void check_stop() const;
-};
-
-/// Ends a job whose partial result is useless.
-struct Stopped : std::runtime_error {
-  Stopped() : std::runtime_error("stopped") {}
 };
 
 /// Session parameters that a job has in addition to its own.

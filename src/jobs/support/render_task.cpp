@@ -2,7 +2,9 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 #include "core/problems.h"
 #include "jobs/record/common_params.h"
@@ -23,7 +25,7 @@ constexpr std::pair<const char*, const char*> kSceneOptions[] = {
 void set_scene_options(const Arguments& args, SceneDescription& description) {
   for (const auto& [flag, option] : kSceneOptions) {
     if (!args.flag(flag)) continue;
-    std::erase_if(description.options, [option](const ParsedParam& p) { return p.name == option; });
+    std::erase_if(description.options, [name = option](const ParsedParam& p) { return p.name == name; });
     description.options.push_back({"bool", option, {}, {}, std::vector<bool>{true}});
   }
 }
@@ -79,6 +81,17 @@ void RenderTask::read_text(const std::string& text, const std::string& name) {
   apply_arguments();
 }
 
+/// Symbolic links are resolved first; a folder that does not exist is no link.
+const std::string& RenderTask::film_file() const {
+  std::error_code error;
+  const auto here = std::filesystem::canonical(".", error);
+  const auto target = std::filesystem::weakly_canonical(here / film_file_, error);
+  if (error || std::mismatch(here.begin(), here.end(), target.begin(), target.end()).first != here.end())
+    fail(film_where_, "the scene asks to write \"{}\", which is not in the working folder: give a file with -o",
+         film_file_);
+  return film_file_;
+}
+
 /// Applies overrides and the crop. The crop is evaluated at full size and then halved for --quick.
 void RenderTask::apply_arguments() {
   const Arguments& args = run_.args;
@@ -88,6 +101,7 @@ void RenderTask::apply_arguments() {
   film.crop = crop_of(args, film, run_.log());
   if (args.flag("quick")) film = halved(film);
   film_file_ = film.filename;
+  film_where_ = description_.film.where;
   if (args.given("samples")) samples_ = range_of(args);
   const std::string channels = args.text("channels");
   request_ = {.pixels = film.crop,
@@ -100,6 +114,7 @@ void RenderTask::apply_arguments() {
 
 /// Channels are checked first, because the selection of models may take minutes.
 void RenderTask::choose(const ImageOutput* output) {
+  const StopScope stop(run_.control.stop);
   Session& session = run_.session();
   if (output) output->check_channels(make_wavelengths(description_, session.registry())->film_space());
   auto chosen = choose::choose_for(session, description_, uint64_t(run_.args.count("spp")), request_);
@@ -110,6 +125,7 @@ void RenderTask::choose(const ImageOutput* output) {
 
 /// Consumes the description: shapes may be large.
 void RenderTask::load(const ImageOutput* output) {
+  const StopScope stop(run_.control.stop);
   const Arguments& args = run_.args;
   scene_.emplace(run_.session().load(std::move(description_), request_, pilot_.get()));
   if (!args.given("samples")) samples_ = {0, args.given("spp") ? uint64_t(args.count("spp")) : scene_->samples()};

@@ -22,8 +22,9 @@ class RenderTask {
   void read(const std::vector<std::filesystem::path>& files);
   /// Reads a scene from a string. Errors name it `name`; relative paths in the scene are resolved against `name`.
   void read_text(const std::string& text, const std::string& name);
-  /// Returns the file name of the scene's film.
-  const std::string& film_file() const { return film_file_; }
+  /// Returns the film's file name. Throws InputError, at the film's directive, for one outside of the working folder: a
+  /// scene of somebody else must not choose which file is replaced.
+  const std::string& film_file() const;
 
   /// Selects the models of open leaves. `output` may be nullptr; otherwise throws InputError first if the image cannot
   /// be written in its format.
@@ -49,6 +50,7 @@ class RenderTask {
   bool is_adaptive_;
   SceneDescription description_;
   std::string film_file_;
+  Location film_where_;
   ImageRequest request_;
   std::optional<choose::Choice> choice_;
   std::shared_ptr<const Scene> pilot_;  ///< shares its geometry with scene_

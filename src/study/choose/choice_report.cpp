@@ -134,7 +134,7 @@ std::string choice_json(const Choice& c) {
     j["trials"].push_back(
         {{"answers", t.answers}, {"bias_low", t.bias.low}, {"bias_high", t.bias.high}, {"samples", t.samples}});
   for (const Answer& a : c.answers) j[a.is_leaf ? "leaves" : "wavelengths"].push_back(to_json(a));
-  return j.dump();
+  return j.dump(-1, ' ', false, decltype(j)::error_handler_t::replace);
 }
 
 }  // namespace frond::choose

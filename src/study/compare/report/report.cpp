@@ -64,7 +64,7 @@ std::string viewer_data(const Comparison& c) {
     json["images"].push_back(image_json(fmt::format("{}, {} samples", s.candidate.label, 2 * top), s.late));
     json["images"].push_back(image_json(fmt::format("{}, {} samples", s.candidate.label, c.early_samples), s.early));
   }
-  std::string text = json.dump();
+  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.replace(at, 2, "<\\/");
   return text;
 }
