@@ -13,10 +13,14 @@ std::string Location::text() const {
   return line > 0 ? fmt::format("{}:{}:{}: ", *file, line, column) : *file + ": ";
 }
 
-InputError::InputError(const Location& where, const std::string& message)
-    : std::runtime_error(where.text() + message) {}
-
 namespace {
+
+/// A message quotes words of the input, which can have any length.
+std::string shortened(const std::string& message) {
+  constexpr size_t kMost = 4000, kEnd = 1000;
+  if (message.size() <= kMost) return message;
+  return message.substr(0, kMost - kEnd) + " ... " + message.substr(message.size() - kEnd);
+}
 
 size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
@@ -35,11 +39,16 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+InputError::InputError(const Location& where, const std::string& message)
+    : std::runtime_error(where.text() + shortened(message)) {}
+
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
   std::string_view best;
   constexpr size_t kShort = 3;  // within two edits of a word this short lies nearly any other word: only one is allowed
   size_t best_distance = (word.size() <= kShort ? 1 : std::max<size_t>(2, word.size() / 3)) + 1;
   for (const std::string_view candidate : candidates) {
+    const size_t longer = std::max(word.size(), candidate.size()), shorter = std::min(word.size(), candidate.size());
+    if (longer - shorter >= best_distance) continue;  // the distance is at least that
     const size_t distance = edit_distance(word, candidate);
     if (distance < best_distance) best = candidate, best_distance = distance;
   }

@@ -17,6 +17,10 @@ leaf::LeafFile make_leaf_file(const LeafParams& leaf, LeafFileRequest request, c
     if (!leaf::kConstantsRange_nm.contains(nm))
       fail({}, "leaf optics are known from {} to {} nm, {} was given", leaf::kConstantsRange_nm.min,
            leaf::kConstantsRange_nm.max, nm);
+  constexpr Interval kTolerances{1e-5, 0.1};  // of leaf_solved's parameter
+  if (!kTolerances.contains(request.tolerance))
+    fail({}, "tolerance: a number from {} to {} is needed, {} was given", kTolerances.min, kTolerances.max,
+         request.tolerance);
   std::ranges::sort(request.wavelengths_nm);
   leaf::ModeTableRequest body{.params = leaf.tissue(),
                               .wavelengths_nm = request.wavelengths_nm,
@@ -25,8 +29,9 @@ leaf::LeafFile make_leaf_file(const LeafParams& leaf, LeafFileRequest request, c
   body.params.cuticle_aspect = 0;  // modes do not depend on the surface's lobe
   if (request.depths) {
     const auto [least, most] = *request.depths;
-    if (!(0 <= least && least < most))
-      fail({}, "invalid range of depths, {} to {}: 0 <= least < most is required", least, most);
+    constexpr double kDeepest = 100;  // times the mean depth of a leaf
+    if (!(0 <= least && least < most && most <= kDeepest))
+      fail({}, "invalid range of depths, {} to {}: 0 <= least < most <= {} is required", least, most, kDeepest);
     body.depths = leaf::DepthAxis(least, most, leaf::kDepthStep);
   }
   leaf::ModeTable spectrum = leaf::cached_mode_table(body, leaf.specimen(), pool, log, cache_dir);

@@ -101,6 +101,7 @@ class GeometryBuilder {
     problems_.attempt([&] {
       for (size_t i = 0; i < description_.objects.size(); ++i) visit(i);
       world = parts_of(description_.shapes, description_.instances);
+      (void)levels_in(world);
     });
     problems_.check();
     return std::make_shared<const Geometry>(std::move(objects_), std::move(world), pool_.size());
@@ -118,12 +119,31 @@ class GeometryBuilder {
     const ObjectDescription& object = description_.objects[index];
     if (visits_[index].is_open) fail(object.where, "object \"{}\" holds an instance of itself", object.name);
     if (!visits_[index].place) {
+      if (++open_ > InstanceRows::kMost + 1) refuse_nesting(object);  // one more if the outermost is not placed
       visits_[index].is_open = true;
       ObjectParts parts = parts_of(object.shapes, object.instances);
       visits_[index] = {false, uint32_t(objects_.size())};
+      built_.push_back({index, levels_in(parts)});
       objects_.push_back(std::move(parts));
+      --open_;
     }
     return *visits_[index].place;
+  }
+
+  /// Number of levels of instances in an object. Throws InputError, at an object, if they are too many.
+  size_t levels_in(const ObjectParts& parts) const {
+    size_t levels = 0;
+    for (const Instances& instances : parts.instances)
+      for (const uint32_t place : instances.objects) {
+        levels = std::max(levels, built_[place].levels + 1);
+        if (levels > InstanceRows::kMost) refuse_nesting(description_.objects[built_[place].index]);
+      }
+    return levels;
+  }
+
+  [[noreturn]] static void refuse_nesting(const ObjectDescription& object) {
+    fail(object.where, "instances of objects are nested more than {} deep in object \"{}\"", InstanceRows::kMost,
+         object.name);
   }
 
   /// Builds the shapes and instances of an object or of the world.
@@ -200,6 +220,12 @@ class GeometryBuilder {
   const ThreadPool& pool_;
   const Log& log_;
   Problems& problems_;
+  /// Objects in building order: index in the description, and levels of instances inside.
+  struct Built {
+    size_t index, levels;
+  };
+  std::vector<Built> built_;
+  size_t open_ = 0;  ///< objects that are being visited, each inside the one before
   std::map<std::string, size_t, std::less<>> by_name_;
   std::map<std::filesystem::path, std::shared_ptr<const InstanceTable>> tables_;
   std::vector<Visit> visits_;

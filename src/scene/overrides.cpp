@@ -62,7 +62,8 @@ void apply_overrides(const SceneOverrides& overrides, SceneSettings& description
     override_plugin(*text, registry.integrators.get(text->name, {}), {}, description.integrator);
   if (const auto& text = overrides.filter)
     override_plugin(*text, registry.filters.get(text->name, {}), {}, description.filter);
-  if (!overrides.wavelengths.empty()) set_wavelengths(description, overrides.wavelengths);
+  if (!overrides.wavelengths.empty())
+    set_wavelengths(description, overrides.wavelengths, {std::make_shared<const std::string>("--wavelengths")});
   if (overrides.seed) description.seed = overrides.seed;
   description.is_quick = description.is_quick || overrides.quick;
 }

@@ -221,6 +221,12 @@ class SceneBuilder {
   void build_tiling() {
     if (!period_) return;
     check_period();
+    const Bounds bounds = scene_.geometry_->bounds();
+    constexpr float kMostPeriods = 64;  // a ray visits each cell that could hold what it meets
+    const float periods =
+        std::max((bounds.max.x - bounds.min.x) / period_->x, (bounds.max.y - bounds.min.y) / period_->y);
+    if (!(periods <= kMostPeriods))
+      fail(period_where_, "the scene is {:.6g} periods wide: {} is the limit", periods, kMostPeriods);
     scene_.period_ = period_;
     scene_.tiling_.emplace(*period_, scene_.geometry_->bounds());
   }

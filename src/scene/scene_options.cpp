@@ -106,8 +106,8 @@ SceneOptions read_options(const SceneSettings& description, const Log& log) {
 }
 
 /// Overrides the scene's own option.
-void set_wavelengths(SceneSettings& description, const std::string& text) {
-  set_param(description.options, {"string", "wavelengths", {}, {}, std::vector<std::string>{text}});
+void set_wavelengths(SceneSettings& description, const std::string& text, const Location& where) {
+  set_param(description.options, {"string", "wavelengths", where, where, std::vector<std::string>{text}});
 }
 
 }  // namespace frond

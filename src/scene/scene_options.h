@@ -22,7 +22,7 @@ struct SceneOptions {
 SceneOptions read_options(const SceneSettings& description, const Log& log = silent_log());
 
 /// Sets the wavelength strategy. `text`: a PluginText.
-void set_wavelengths(SceneSettings& description, const std::string& text);
+void set_wavelengths(SceneSettings& description, const std::string& text, const Location& where = {});
 
 /// Resolver for plug-ins that may refer to files but not to other objects of the scene: options, wavelengths, films.
 class OptionResolver final : public ParamResolver {

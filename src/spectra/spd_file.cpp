@@ -15,12 +15,14 @@ struct Number {
   Location where;
 };
 
-/// Skips a leading +, which std::from_chars does not accept.
+/// Skips a leading +, which std::from_chars does not accept. The message does not quote the file: a scene could name
+/// any file here, and its content would go to whoever sees the log.
 double parse_number(std::string_view word, const Location& where) {
   const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) fail(where, "\"{}\" is not a number", word);
+  if (error != std::errc() || end != digits.data() + digits.size())
+    fail(where, "a spectrum file holds numbers only: this is not one");
   return value;
 }
 

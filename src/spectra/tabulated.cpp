@@ -1,6 +1,7 @@
 #include "spectra/tabulated.h"
 
 #include <cassert>
+#include <limits>
 
 #include "spectra/analytic.h"
 
@@ -32,6 +33,9 @@ void check_points(std::span<const SpectrumPoint> points) {
     if (!std::isfinite(lambda_nm) || lambda_nm <= 0) fail(where, "{} is not a wavelength in nm", lambda_nm);
     if (lambda_nm <= last) fail(where, "wavelengths must ascend, {} nm follows {} nm", lambda_nm, last);
     if (!std::isfinite(value)) fail(where, "the value at {} nm is {}, finite numbers are needed", lambda_nm, value);
+    constexpr double kMost = std::numeric_limits<float>::max();
+    if (lambda_nm > kMost || value > kMost)
+      fail(where, "{} at {} nm is beyond the largest number of 32 bits, {:.3g}", value, lambda_nm, kMost);
     if (value < 0) fail(where, "the value at {} nm is {}, a spectrum cannot be negative", lambda_nm, value);
     last = lambda_nm;
   }

@@ -151,6 +151,27 @@ TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(error("nm,R\n550,.1\n", {.leaf = "oak"}), HasSubstr("has no names of leaves"));
   EXPECT_THAT(error("nm,R,side\n550,.1,middle\n"), HasSubstr("adaxial"));
   EXPECT_THAT(error("550 .1 .2 .3\n"), HasSubstr("4 columns"));
+  // What no spectrometer gives.
+  EXPECT_THAT(error("nm,R\n500,.3\n510,-5\n520,.3\n"), AllOf(HasSubstr("a.csv:3:5"), HasSubstr("\"-5\"")));
+  EXPECT_THAT(error("nm,R,T\n500,.3,.1\n510,.3,5\n520,.3,.1\n"), AllOf(HasSubstr("a.csv:3:8"), HasSubstr("\"5\"")));
+  EXPECT_THAT(error("nm,R\n500,30\n510,120\n520,30\n"), AllOf(HasSubstr("a.csv:3:5"), HasSubstr("\"120\"")));
+  EXPECT_THAT(error("nm,R\n500,inf\n"), HasSubstr("a.csv:2:5"));
+}
+
+TEST(MeasuredSpectra, AreInPercentIfMostValuesOrTheirColumnsSaySo) {
+  const auto is_in_percent = [](std::string_view text) {
+    return parse_measured_spectra(text, "a.csv", {}).is_in_percent;
+  };
+  EXPECT_TRUE(is_in_percent("nm,R\n500,1.2\n510,30\n520,40\n"));
+  EXPECT_TRUE(is_in_percent("nm,R (%)\n500,1.2\n510,.9\n"));
+  EXPECT_FALSE(is_in_percent("nm,R\n500,.012\n510,1\n"));
+}
+
+/// As frond spectrophotometer writes a material with parameters.
+TEST(MeasuredSpectra, FieldsInQuotesCanHoldTheSeparator) {
+  const MeasuredSpectra read =
+      parse_measured_spectra("nm,R,material\n550,.1,\"leaf_solved,specimen=maize\"\n", "a.csv", {});
+  EXPECT_EQ(read.measurements.size(), 1u);
 }
 
 }  // namespace

@@ -223,5 +223,29 @@ TEST(ParserErrors, ASceneWithAnyByteChangedParsesOrIsRefused) {
   }
 }
 
+/// Each file includes the next one twice: 2^40 files in all.
+TEST(ParserErrors, IncludedFilesHaveALimitInAll) {
+  const TestFolder folder("includes");
+  for (int i = 0; i < 40; ++i)
+    folder.write(fmt::format("{}.pbrt", i), fmt::format("Include \"{}.pbrt\"\nInclude \"{}.pbrt\"\n", i + 1, i + 1));
+  folder.write("40.pbrt", "Scale 1 1 1\n");
+  EXPECT_THAT(error_of([&] { parse_scene(folder.name_of("0.pbrt"), silent_log()); }),
+              testing::HasSubstr("each counted as often as it is included, are more than 20000"));
+}
+
+/// Took a time quadratic in their number; 30,000 took 15 s, a million would take hours.
+TEST(ParserErrors, AMillionRepeatedParametersAreRead) {
+  std::string text = "Camera \"perspective\"";
+  for (int i = 0; i < 1'000'000; ++i) text += " \"float a\" 1";
+  EXPECT_EQ(error_of([&] { parse_scene_text(text + " WorldBegin", "s", silent_log()); }), "");
+}
+
+/// Names of millions of letters are neither compared letter by letter with all that exist nor printed whole.
+TEST(ParserErrors, LongNamesAreShortened) {
+  const std::string error = error_of([] { parse_scene_text("Wor" + std::string(10'000'000, 'd'), "s", silent_log()); });
+  EXPECT_THAT(error, testing::HasSubstr("unknown directive Word"));
+  EXPECT_LT(error.size(), 5000u);
+}
+
 }  // namespace
 }  // namespace frond

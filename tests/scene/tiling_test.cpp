@@ -94,6 +94,9 @@ TEST(Tiling, BadPeriodsAreRefused) {
   };
   EXPECT_NE(error("Option \"float period\" [1]\n", "").find("takes 2 values"), std::string::npos);
   EXPECT_NE(error("Option \"float period\" [0 1]\n", ""), "");
+  // A ray would visit each of the cells.
+  EXPECT_NE(error("Option \"float period\" [1 1]\n", "Shape \"sphere\" \"float radius\" 1e4").find("periods wide: 64"),
+            std::string::npos);
   const std::string outside = "takes light from outside alone: \"distant\", or \"infinite\" without a portal";
   const std::string two = "Option \"float period\" [1 1]\n", even = "LightSource \"infinite\"\n";
   for (const char* light :

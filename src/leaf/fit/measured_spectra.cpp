@@ -3,9 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "leaf/tissue/constants.h"
 #include "system/file_bytes.h"
@@ -38,11 +40,18 @@ char separator_of(std::string_view line) {
   return ' ';
 }
 
+/// Returns the index behind a field that begins at `begin`. A field in double quotes can contain the separator.
+size_t end_of_field(std::string_view line, size_t begin, char separator) {
+  if (begin < line.size() && line[begin] == '"')
+    if (const size_t quote = line.find('"', begin + 1); quote != line.npos) begin = quote + 1;
+  return std::min(line.find(separator, begin), line.size());
+}
+
 std::vector<Field> split(std::string_view line, char separator, Location where) {
   std::vector<Field> fields;
   for (size_t begin = 0; begin <= line.size();) {
     if (separator == ' ') begin = std::min(line.find_first_not_of(" \r", begin), line.size());
-    const size_t end = std::min(line.find(separator, begin), line.size());
+    const size_t end = end_of_field(line, begin, separator);
     where.column = static_cast<int>(begin) + 1;
     if (separator != ' ' || end > begin) fields.push_back({trimmed(line.substr(begin, end - begin)), where});
     begin = end + 1;
@@ -108,8 +117,6 @@ class Reader {
   }
 
  private:
-  static constexpr double kPercent = 1.5;  ///< larger values are no shares
-
   /// Returns true if the line held column names.
   bool begin(const std::vector<Field>& fields) {
     first_row_ = where_;
@@ -122,7 +129,12 @@ class Reader {
       if (fields.size() == 3) columns_.push_back(Column::t);
       return false;
     }
-    for (const Field& f : fields) columns_.push_back(column_of(f.text));
+    for (const Field& f : fields) {
+      columns_.push_back(column_of(f.text));
+      const bool is_share = columns_.back() == Column::r || columns_.back() == Column::t;
+      if (is_share && (f.text.find('%') != f.text.npos || lower(f.text).find("percent") != std::string::npos))
+        result_.is_in_percent = true;
+    }
     for (const Column once : {Column::wavelength, Column::r, Column::t, Column::theta, Column::side, Column::leaf})
       if (std::ranges::count(columns_, once) > 1)
         fail(where_, "two columns have the same name: wavelength, R, T, theta_deg, side and leaf occur at most once");
@@ -137,6 +149,7 @@ class Reader {
     if (fields.size() != columns_.size())
       fail(where_, "{} fields, but the file has {} columns", fields.size(), columns_.size());
     LeafMeasurement measurement{0, how_.theta_deg, {}, {}};
+    std::array of_row{fields[0], fields[0]};
     bool is_below = false;
     for (size_t i = 0; i < fields.size(); ++i) {
       const auto& [text, where] = fields[i];
@@ -146,9 +159,11 @@ class Reader {
           break;
         case Column::r:
           measurement.r = value(fields[i], "R");
+          of_row[0] = fields[i];
           break;
         case Column::t:
           measurement.t = value(fields[i], "T");
+          of_row[1] = fields[i];
           break;
         case Column::theta: {
           const auto theta = to_number(text, *separator_);
@@ -175,7 +190,7 @@ class Reader {
       return;
     }
     result_.measurements.push_back(measurement);
-    wheres_.push_back(where_);
+    fields_.push_back(of_row);
   }
 
   double wavelength(const Field& field) const {
@@ -187,13 +202,12 @@ class Reader {
   }
 
   /// None if a field is empty or marks a missing number.
-  std::optional<double> value(const Field& field, std::string_view what) {
+  std::optional<double> value(const Field& field, std::string_view what) const {
     const std::string word = lower(field.text);
     if (word.empty() || word == "nan" || word == "na" || word == "null" || word == "-") return {};
     const auto number = to_number(field.text, *separator_);
     constexpr double kLeast = -5, kMost = 150;  // range accepted: noise about 0, and percentages
     if (!number || !(*number >= kLeast && *number <= kMost)) refuse_share(field.where, what, field.text);
-    largest_ = std::max(largest_, *number);
     return number;
   }
 
@@ -208,18 +222,34 @@ class Reader {
     fail(where, "{} is a share of the light, from 0 to 1 or in percent; \"{}\" was given", what, given);
   }
 
+  /// Whether the names of the columns say so, or most values are too large for shares: a single one is a mistake.
+  bool is_in_percent() const {
+    constexpr double kLargestShare = 1.5;
+    size_t all = 0, large = 0;
+    for (const LeafMeasurement& m : result_.measurements)
+      for (const auto& share : {m.r, m.t})
+        if (share) ++all, large += *share > kLargestShare ? 1 : 0;
+    return result_.is_in_percent || 2 * large > all;
+  }
+
+  /// Converts percent, and refuses what no spectrometer gives.
   void scale() {
     constexpr double kNoise = 0.05;
-    result_.is_in_percent = largest_ > kPercent;
+    result_.is_in_percent = is_in_percent();
     for (size_t i = 0; i < result_.measurements.size(); ++i) {
       LeafMeasurement& measurement = result_.measurements[i];
-      for (const auto& [what, share] : {std::pair{"R", &measurement.r}, {"T", &measurement.t}}) {
+      for (const auto& [what, share, field] :
+           {std::tuple{"R", &measurement.r, &fields_[i][0]}, {"T", &measurement.t, &fields_[i][1]}}) {
         if (!*share) continue;
         if (result_.is_in_percent) **share /= 100;
-        if (**share < -kNoise) refuse_share(wheres_[i], what, fmt::format("{}", **share));
+        if (**share < -kNoise || **share > 1 + kNoise)
+          fail(field->where, "{} is a share of the light, from 0 to 1{}; \"{}\" was given", what,
+               result_.is_in_percent ? " or, as most values of this file, from 0 to 100 percent"
+                                     : " (most values of this file are not in percent)",
+               field->text);
       }
       const double sum = measurement.r.value_or(0) + measurement.t.value_or(0);
-      if (sum > 1 + kNoise) fail(wheres_[i], "R + T is {:.4g}: a leaf scatters 1 at most", sum);
+      if (sum > 1 + kNoise) fail(fields_[i][0].where, "R + T is {:.4g}: a leaf scatters 1 at most", sum);
     }
   }
 
@@ -228,9 +258,8 @@ class Reader {
   std::optional<char> separator_;
   std::vector<Column> columns_;
   std::set<std::string> leaves_;
-  double largest_ = 0;
   MeasuredSpectra result_;
-  std::vector<Location> wheres_;  ///< of the measurements
+  std::vector<std::array<Field, 2>> fields_;  ///< R and T of the measurements
 };
 
 }  // namespace

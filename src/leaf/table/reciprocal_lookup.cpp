@@ -55,7 +55,8 @@ SubsurfaceFactors subsurface_factors(const Column& column) {
   constexpr int kMostSteps = 500;
   constexpr double kDone = 1e-13;
   SubsurfaceFactors factors;
-  auto& [d, back] = factors;
+  auto& d = factors.d;
+  auto& back = factors.back;
   d.fill(1), back.fill(0);
   for (int step = 0; step < kMostSteps; ++step) {
     const auto all = means([&](size_t i) { return d[i]; });

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
+#include <set>
+#include <unordered_map>
 
 namespace frond {
 namespace {
@@ -28,15 +31,21 @@ struct Directive {
   /// Reads parameters. As in pbrt, the last one of a name counts.
   std::vector<ParsedParam> parameters() {
     std::vector<ParsedParam> params = context.parameters.read(context.tokens);
-    for (size_t i = 1; i < params.size(); ++i) {
-      const auto end = params.begin() + static_cast<std::ptrdiff_t>(i);
-      const auto older = std::find_if(params.begin(), end, [&](const ParsedParam& p) { return p.name == end->name; });
-      if (older == end) continue;
-      context.log.warn(end->where, fmt::format("parameter \"{}\" is given twice: this one counts", end->name));
-      params.erase(older);
-      --i;
+    std::unordered_map<std::string_view, size_t> last;
+    for (size_t i = 0; i < params.size(); ++i) last[params[i].name] = i;
+    if (last.size() == params.size()) return params;
+    std::vector<ParsedParam> kept;
+    std::set<std::string, std::less<>> repeated;
+    for (size_t i = 0; i < params.size(); ++i)
+      if (last.at(params[i].name) != i) repeated.insert(params[i].name);
+    for (const size_t i : std::views::iota(size_t{0}, params.size())) {
+      if (last.at(params[i].name) != i) continue;
+      if (repeated.contains(params[i].name))
+        context.log.warn(params[i].where,
+                         fmt::format("parameter \"{}\" is given twice: this one counts", params[i].name));
+      kept.push_back(params[i]);
     }
-    return params;
+    return kept;
   }
   template <size_t N>
   std::array<double, N> numbers() {

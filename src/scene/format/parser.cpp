@@ -14,6 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns the canonical path, to detect cycles through links; the path itself if that fails.
+fs::path real_path(const fs::path& path) {
+  std::error_code error;
+  const fs::path result = fs::weakly_canonical(path, error);
+  return error ? path : result;
+}
+
 /// Reads scene files and the files that they include.
 class SceneReader {
  public:
@@ -31,6 +38,8 @@ class SceneReader {
 
  private:
   static constexpr size_t kDeepest = 64;
+  static constexpr size_t kMostFiles = 20'000;           ///< read in all, each as often as it is included
+  static constexpr size_t kMostBytes = size_t{1} << 36;  ///< read in all, uncompressed
 
   Location read(const std::string& bytes, const fs::path& path, Tokenizer* outer);
   void read_directive(Tokenizer& tokens, DirectiveContext& context);
@@ -45,16 +54,14 @@ class SceneReader {
   Problems& problems_;
   DescriptionBuilder builder_;
   ParameterReader parameters_;
-  std::vector<fs::path> open_files_;  // from the main file to the one being read
+  struct OpenFile {
+    fs::path path, real;
+  };
+  std::vector<OpenFile> open_files_;  // from the main file to the one being read
+  size_t files_ = 0, bytes_ = 0;
+  bool is_exhausted_ = false;  // a total is above its limit: nothing further is read
   Location end_;
 };
-
-/// Returns the canonical path, to detect cycles through links; the path itself if that fails.
-fs::path real_path(const fs::path& path) {
-  std::error_code error;
-  const fs::path result = fs::weakly_canonical(path, error);
-  return error ? path : result;
-}
 
 /// Reads one file. Returns the location of its end.
 Location SceneReader::read(const std::string& bytes, const fs::path& path, Tokenizer* outer) {
@@ -63,10 +70,17 @@ Location SceneReader::read(const std::string& bytes, const fs::path& path, Token
   const auto name = std::make_shared<const std::string>(path.string());
   std::string unpacked;
   if (is_gzip(bytes)) unpacked = unpack_gzip(bytes, path.string(), {name, 1, 1});
+  bytes_ += is_gzip(bytes) ? unpacked.size() : bytes.size();
+  if (++files_ > kMostFiles || bytes_ > kMostBytes) {
+    is_exhausted_ = scene_.is_incomplete = true;
+    fail({name, 1, 1},
+         "the files of a scene, each counted as often as it is included, are more than {} or have more than {} GB",
+         kMostFiles, kMostBytes >> 30);
+  }
   Tokenizer tokens(is_gzip(bytes) ? unpacked : bytes, name, outer);
   DirectiveContext context{tokens, parameters_, builder_, log_, unsupported_};
-  open_files_.push_back(path);
-  while (!tokens.at_end()) {
+  open_files_.push_back({path, real_path(path)});
+  while (!is_exhausted_ && !tokens.at_end()) {
     const Token word = tokens.peek();
     if (!problems_.attempt([&] { read_directive(tokens, context); })) tokens.skip_to_directive(word, is_directive);
   }
@@ -120,12 +134,11 @@ fs::path SceneReader::next_file(Tokenizer& tokens, std::string_view directive, L
 /// Throws InputError for an include cycle or for too deep nesting.
 void SceneReader::check_include(const fs::path& path, const Location& where) const {
   if (open_files_.size() >= kDeepest) fail(where, "includes are nested more than {} deep", kDeepest);
-  const auto is_same = [target = real_path(path)](const fs::path& open) { return real_path(open) == target; };
-  const auto first = std::find_if(open_files_.begin(), open_files_.end(), is_same);
+  const auto first = std::ranges::find(open_files_, real_path(path), &OpenFile::real);
   if (first == open_files_.end()) return;
   std::string chain;
-  for (auto file = first; file != open_files_.end(); ++file) chain += file->string() + " -> ";
-  fail(where, "include cycle: {}{}", chain, first->string());
+  for (auto file = first; file != open_files_.end(); ++file) chain += file->path.string() + " -> ";
+  fail(where, "include cycle: {}{}", chain, first->path.string());
 }
 
 }  // namespace

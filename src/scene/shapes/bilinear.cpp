@@ -69,7 +69,9 @@ class BilinearMesh final : public AnalyticShape {
     for (const double u : quadratic_roots(a, b, c)) {
       if (!(u >= 0 && u <= 1)) continue;
       const Vec3d base = q0 * (1 - u) + q1 * u, side = left * (1 - u) + right * u, n = cross(d, side);
-      const double det = dot(n, n), t = dot(cross(n, base), side) / det, v = dot(cross(n, base), d) / det;
+      const double det = dot(n, n);
+      if (!(det > 0)) continue;  // the ray is parallel to this line of the patch
+      const double t = dot(cross(n, base), side) / det, v = dot(cross(n, base), d) / det;
       if (!(v >= 0 && v <= 1 && float(t) > t_min && t < best_t)) continue;
       best_t = t, best_u = u, best_v = v, found = true;
     }
