@@ -252,7 +252,7 @@ def bench(material: str | Sequence[str] | Mapping[str, str], with_: str | Sequen
     lanes: Numbers of wavelengths that a path carries. Range: from 1 to 4. Default: 1,2,3,4.
     wavelengths: Wavelengths; a path of n lanes carries the first n. By default the wavelengths of frond_bench (docs/performance.md). Unit: nm. Range: above 0.
     repetitions: Number of repetitions of each benchmark. Range: from 1 to 10000. Default: 5.
-    min_time: Minimum duration of a repetition. Unit: s. Range: above 0. Default: 0.01.
+    min_time: Minimum duration of a repetition. Unit: s. Range: above 0, up to 1. Default: 0.01.
     samples: Number of samples for the variance of each estimate. Default: 1e5.
     seed: Seed of all random numbers.
     csv: CSV file to write; - is standard output.

@@ -20,20 +20,34 @@ def _text(value):
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (str, os.PathLike)):
-        return os.fspath(value)
-    if hasattr(value, "__index__"):
-        return str(operator.index(value))
-    if hasattr(value, "__float__"):
-        return repr(float(value))
+        return os.fsdecode(value)
+    if isinstance(value, (bytes, bytearray)):
+        return os.fsdecode(bytes(value))
+    if getattr(value, "ndim", 0) == 0:  # arrays have __index__ and __float__ too
+        if hasattr(value, "__index__"):
+            return str(operator.index(value))
+        if hasattr(value, "__float__"):
+            return repr(float(value))
     return ",".join(_text(v) for v in value)
 
 
 def words(param, value):
-    """Returns the list of texts for a parameter: one text, or any number for a repeatable parameter."""
+    """Returns the list of texts for a parameter: one text, or any number for a repeatable parameter. Raises ValueError if a text
+    cannot be UTF-8, as a file name whose bytes are not."""
+    found = _words(param, value)
+    for text in found:
+        try:
+            text.encode()
+        except UnicodeEncodeError:
+            raise ValueError(f"{python_name(param['name'])}: {text!r} is not UTF-8") from None
+    return found
+
+
+def _words(param, value):
     if param["kind"] != "texts":
         return [_text(value)]
-    if isinstance(value, (str, os.PathLike)):
-        text = os.fspath(value)
+    if isinstance(value, (str, bytes, os.PathLike)):
+        text = os.fsdecode(value)
         if param["name"] == "swap" and "=" not in text.split(",")[0]:
             text = "*=" + text  # a model for every leaf
         return [text]
@@ -143,8 +157,10 @@ def run(name, /, *, progress=None, session=None, **given):
     known = {python_name(p["name"]) for p in job["params"]}
     for unknown in given.keys() - known:
         raise TypeError(f"{name}() got an unexpected keyword argument {unknown!r}")
-    owner = (session or default_session())._session
-    return Result(_frond.run(owner, name, arguments(job["params"], given), _show(progress)))
+    owner = session or default_session()
+    if not hasattr(owner, "_session"):
+        raise TypeError(f"session: a frond.Session is needed, not {session!r}")
+    return Result(_frond.run(owner._session, name, arguments(job["params"], given), _show(progress)))
 
 
 def _function(job):

@@ -18,7 +18,10 @@ def _numbers(values):
 
 
 def _session_of(session):
-    return (session or default_session())._session
+    session = session or default_session()
+    if not hasattr(session, "_session"):
+        raise TypeError(f"session: a frond.Session is needed, not {session!r}")
+    return session._session
 
 
 def names(kind="material", *, session=None):

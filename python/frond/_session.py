@@ -11,6 +11,8 @@ from . import _frond
 def _show(progress):
     """Returns the progress callback: None, the given function, or for True one that writes a line to standard error."""
     if progress is not True:
+        if progress and not callable(progress):
+            raise TypeError(f"progress: a function of the share that is done, True or None is needed, not {progress!r}")
         return progress or None
     import sys
 
@@ -30,6 +32,8 @@ class Session:
 
     def __init__(self, threads=0, cache=True, plugins=()):
         folder = _frond.default_cache() if cache is True else "" if not cache else os.fspath(cache)
+        if not 0 <= threads <= 1024:
+            raise ValueError(f"threads: a whole number from 0 to 1024 is needed, not {threads!r}")
         self._session = _frond.Session(threads, folder, [os.fspath(p) for p in plugins])
 
     @property
@@ -147,6 +151,9 @@ class Image:
         Keywords: those of `Scene.render`. Raises ValueError if max_rms is given for a scene that is not adaptive."""
         if max_rms is not None and not self._scene._scene.is_adaptive:
             raise ValueError("max_rms is for scenes that are loaded with adaptive=True")
+        for name, value in (("max_rms", max_rms), ("time_limit", time_limit)):
+            if value is not None and not value >= 0:
+                raise ValueError(f"{name}: a number from 0 on is needed, not {value!r}")
         self._image = None
         self._rendered.render_more(samples or self._scene.samples, max_rms or 0, time_limit or 0, _show(progress))
 

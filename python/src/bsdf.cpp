@@ -14,12 +14,16 @@ class FlatBsdf {
   FlatBsdf(std::shared_ptr<SessionHandle> owner, const std::string& material, const std::vector<float>& nm)
       : owner_(std::move(owner)) {
     if (nm.empty() || nm.size() > kLanes) fail({}, "a BSDF has one to four wavelengths, {} were given", nm.size());
-    const nb::gil_scoped_release release;
     const GivenWavelengths wavelengths(nm);
     lambda_ = wavelengths.sample(0);
     Session& session = owner_->session();
-    material_ = ready_material(material_text({material}, session.log()), session.registry(), wavelengths,
-                               session.pool(), session.log(), owner_->context.options().cache);
+    run(
+        [&](const RenderControl& control) {
+          const StopScope stop(control.stop);
+          material_ = ready_material(material_text({material}, session.log()), session.registry(), wavelengths,
+                                     session.pool(), session.log(), owner_->context.options().cache);
+        },
+        nb::none());
     if (!material_->evaluate(flat_hit(), lambda_, arena_)) fail({}, "{}: there is no surface", material);
   }
 
@@ -47,6 +51,7 @@ class FlatBsdf {
   /// One direction for each wo: wi, its weight f |cos| / pdf by wavelength, and pdf; 0 where there is none.
   nb::tuple sample(const Directions& wo, uint64_t seed) {
     const size_t count = wo.shape(0), lanes = size_t(lambda_.count);
+    check_directions(wo, "wo");
     std::vector<float> wi(count * 3), weight(count * lanes), pdf(count);
     for_blocks(count, [&](const Bsdf& bsdf, size_t i) {
       RandomStream numbers(hash_key(seed, i, 0)), rng(hash_key(seed, i, 1));
@@ -66,6 +71,8 @@ class FlatBsdf {
 
   /// For callers that have one pair at a time: f by wavelength, and pdf.
   std::pair<std::vector<float>, float> f_and_pdf(const Numbers& wo, const Numbers& wi, uint64_t seed) {
+    check_direction(direction(wo), "wo");
+    check_direction(direction(wi), "wi");
     arena_.reset();
     const Bsdf& bsdf = *material_->evaluate(flat_hit(), lambda_, arena_);
     RandomStream rng(seed);
@@ -76,6 +83,9 @@ class FlatBsdf {
   std::optional<std::tuple<Numbers, std::vector<float>, float, bool>> sample_one(const Numbers& wo, float uc,
                                                                                  std::pair<float, float> u,
                                                                                  uint64_t seed) {
+    check_direction(direction(wo), "wo");
+    if (!is_uniform(uc) || !is_uniform(u.first) || !is_uniform(u.second))
+      fail({}, "uc and u are random numbers from 0 to below 1, {} and ({}, {}) were given", uc, u.first, u.second);
     arena_.reset();
     RandomStream rng(seed);
     const auto s =
@@ -92,6 +102,7 @@ class FlatBsdf {
   bool is_reciprocal() const { return material_->is_reciprocal(); }
 
  private:
+  static bool is_uniform(float x) { return x >= 0 && x < 1; }
   static Vec3 direction(const Numbers& v) { return {v[0], v[1], v[2]}; }
   std::vector<float> values(const SampledSpectrum& s) const {
     std::vector<float> result;
@@ -104,18 +115,36 @@ class FlatBsdf {
   }
   static size_t check_pairs(const Directions& wo, const Directions& wi) {
     if (wo.shape(0) != wi.shape(0)) fail({}, "{} wo and {} wi are no pairs", wo.shape(0), wi.shape(0));
+    check_directions(wo, "wo");
+    check_directions(wi, "wi");
     return wo.shape(0);
+  }
+  /// Throws InputError unless the vector has length 1 within the rounding of a caller's floats. A model need not end
+  /// for others.
+  static void check_direction(const Vec3& v, std::string_view name) {
+    constexpr float kRounding = 1e-3f;
+    if (!(std::abs(dot(v, v) - 1) < kRounding))
+      fail({}, "{}: directions are vectors of length 1, ({}, {}, {}) was given", name, v.x, v.y, v.z);
+  }
+  static void check_directions(const Directions& d, std::string_view name) {
+    for (size_t i = 0; i < d.shape(0); ++i) check_direction(direction(d, i), name);
   }
 
   template <class Body>
   void for_blocks(size_t count, const Body& body) {
     constexpr size_t kBlock = 4096;
-    const nb::gil_scoped_release release;
-    owner_->session().pool().for_each(int64_t((count + kBlock - 1) / kBlock), [&](int64_t block, int) {
+    const auto work = [&](int64_t block, int) {
       Arena arena;
       const Bsdf& bsdf = *material_->evaluate(flat_hit(), lambda_, arena);
       for (size_t i = size_t(block) * kBlock; i < std::min(count, (size_t(block) + 1) * kBlock); ++i) body(bsdf, i);
-    });
+    };
+    if (count <= kBlock) return work(0, 0);  // too short for a thread of its own
+    run(
+        [&](const RenderControl& control) {
+          const StopScope stop(control.stop);
+          owner_->session().pool().for_each(int64_t((count + kBlock - 1) / kBlock), work);
+        },
+        nb::none());
   }
 
   std::shared_ptr<SessionHandle> owner_;

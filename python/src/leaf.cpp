@@ -26,13 +26,15 @@ nb::dict leaf_table(const std::shared_ptr<SessionHandle>& owner, const std::stri
                     const std::vector<double>& wavelengths_nm, double tolerance,
                     const std::optional<std::pair<double, double>>& depths) {
   leaf::LeafFile table;
-  {
-    const nb::gil_scoped_release release;
-    LeafFileRequest request{.wavelengths_nm = wavelengths_nm, .tolerance = tolerance};
-    if (depths) request.depths = {depths->first, depths->second};
-    table = make_leaf_file(leaf_of(*owner, material), std::move(request), owner->session().pool(),
-                           owner->session().log(), owner->context.options().cache);
-  }
+  run(
+      [&](const RenderControl& control) {
+        const StopScope stop(control.stop);
+        LeafFileRequest request{.wavelengths_nm = wavelengths_nm, .tolerance = tolerance};
+        if (depths) request.depths = {depths->first, depths->second};
+        table = make_leaf_file(leaf_of(*owner, material), std::move(request), owner->session().pool(),
+                               owner->session().log(), owner->context.options().cache);
+      },
+      nb::none());
   nb::dict d;
   const std::string bytes = leaf::leaf_file_bytes(table);
   d["bytes"] = nb::bytes(bytes.data(), bytes.size());

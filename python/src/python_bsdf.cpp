@@ -11,6 +11,18 @@ using namespace nb::literals;
 /// A BSDF that is written in Python: an object of frond.Bsdf. Each call takes the GIL, so that renders of it use one
 /// core. In an arena: the object is kept by whoever made this.
 class PythonBsdf final : public Bsdf {
+  // Before the functions that call it, because its type is deduced.
+  /// Returns the value of `call`. A value of another type than `needed` becomes a TypeError that names the method.
+  template <class Call>
+  auto returned(const char* method, const char* needed, const Call& call) const {
+    try {
+      return call();
+    } catch (const nb::cast_error&) {
+      const std::string name = nb::cast<std::string>(self().type().attr("__name__"));
+      throw nb::type_error(fmt::format("{}.{} returns {}", name, method, needed).c_str());
+    }
+  }
+
  public:
   PythonBsdf(PyObject* object, Lobes flags, const SampledWavelengths& lambda)
       : object_(object), flags_(flags), lambda_(lambda) {}
@@ -20,7 +32,8 @@ class PythonBsdf final : public Bsdf {
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
     if (wo.z == 0 || wi.z == 0) return {};  // along the surface nothing is scattered
     const nb::gil_scoped_acquire hold;
-    return spectrum(self().attr("f")(tuple(wo), tuple(wi), nm()));
+    return returned("f", "a number, or one for each wavelength",
+                    [&] { return spectrum(self().attr("f")(tuple(wo), tuple(wi), nm())); });
   }
 
   std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream&) const override {
@@ -28,8 +41,10 @@ class PythonBsdf final : public Bsdf {
     const nb::gil_scoped_acquire hold;
     const nb::object found = self().attr("sample")(tuple(wo), uc, nb::make_tuple(u.x, u.y), nm());
     if (found.is_none()) return {};
-    const auto [wi, f, pdf] = nb::cast<std::tuple<std::array<float, 3>, nb::object, float>>(found);
-    BsdfSample s{.f = spectrum(f), .wi = {wi[0], wi[1], wi[2]}, .pdf = pdf};
+    BsdfSample s = returned("sample", "None or (wi, f, pdf)", [&] {
+      const auto [wi, f, pdf] = nb::cast<std::tuple<std::array<float, 3>, nb::object, float>>(found);
+      return BsdfSample{.f = spectrum(f), .wi = {wi[0], wi[1], wi[2]}, .pdf = pdf};
+    });
     const Lobes side = s.wi.z * wo.z > 0 ? Lobes::reflection : Lobes::transmission;
     s.flags = side | (flags_ & (Lobes::diffuse | Lobes::glossy));
     return s;
@@ -38,7 +53,7 @@ class PythonBsdf final : public Bsdf {
   float pdf(const Vec3& wo, const Vec3& wi) const override {
     if (wo.z == 0 || wi.z == 0) return 0;
     const nb::gil_scoped_acquire hold;
-    return nb::cast<float>(self().attr("pdf")(tuple(wo), tuple(wi), nm()));
+    return returned("pdf", "a number", [&] { return nb::cast<float>(self().attr("pdf")(tuple(wo), tuple(wi), nm())); });
   }
 
  private:
@@ -70,9 +85,18 @@ class PythonBsdf final : public Bsdf {
   SampledWavelengths lambda_;
 };
 
+std::vector<std::string> flag_words(const nb::handle& object) {
+  if (!nb::hasattr(object, "flags")) throw nb::type_error("a BSDF is needed: an object of frond.Bsdf");
+  try {
+    return nb::cast<std::vector<std::string>>(object.attr("flags"));
+  } catch (const nb::cast_error&) {
+    throw nb::type_error("flags: a tuple of texts is needed");
+  }
+}
+
 Lobes flags_of(const nb::handle& object) {
   Lobes flags = Lobes::none;
-  for (const auto& word : nb::cast<std::vector<std::string>>(object.attr("flags"))) {
+  for (const auto& word : flag_words(object)) {
     if (word == "reflection")
       flags = flags | Lobes::reflection;
     else if (word == "transmission")
@@ -85,6 +109,8 @@ Lobes flags_of(const nb::handle& object) {
       throw nb::value_error(
           fmt::format("flags: \"{}\" is none of reflection, transmission, diffuse, glossy", word).c_str());
   }
+  if (!any(flags & (Lobes::reflection | Lobes::transmission)))
+    throw nb::value_error("flags: reflection, transmission or both are needed");
   return flags;
 }
 
@@ -124,9 +150,9 @@ std::deque<Registered>& registered() {
 
 std::unique_ptr<Material> make_python_material(const Params& p) {
   const nb::gil_scoped_acquire hold;
-  // The latest of that name, for sessions have their own.
+  // By the record and not by its name, for each session has its own names.
   const auto& all = registered();
-  const auto found = std::find_if(all.rbegin(), all.rend(), [&](const Registered& r) { return r.name == p.plugin(); });
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Registered& r) { return &r.info == &p.info(); });
   return std::make_unique<PythonMaterial>(nb::borrow(found->object));
 }
 
@@ -141,7 +167,12 @@ void bind_python_bsdf(nb::module_& m) {
         Registered& r = registered().emplace_back(name, doc, object.ptr(), MaterialInfo{});
         r.info.kind = "material", r.info.name = r.name, r.info.doc = r.doc, r.info.source = "Python";
         r.info.make = make_python_material;
-        owner->session().add_material(r.info);
+        try {
+          owner->session().add_material(r.info);
+        } catch (...) {
+          registered().pop_back();
+          throw;
+        }
         object.inc_ref();
       },
       "session"_a, "name"_a, "doc"_a, "bsdf"_a);

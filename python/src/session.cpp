@@ -30,19 +30,24 @@ struct ImageHandle {
 
 std::shared_ptr<SceneHandle> load(const std::shared_ptr<SessionHandle>& owner, const std::string& path,
                                   const std::optional<std::string>& text, const GivenArguments& given, bool adaptive) {
-  const nb::gil_scoped_release release;
   Arguments args = arguments_of(kRenderJob, given);
   args.set("scene", path);
   args.check();
-  owner->context.log().begin(args.flag("strict"));
-  auto scene = std::make_shared<SceneHandle>(owner, std::move(args), adaptive);
-  if (text)
-    scene->task.read_text(*text, path);
-  else
-    scene->task.read({path});
-  scene->task.choose(nullptr);
-  scene->task.load(nullptr);
-  owner->context.log().check();
+  std::shared_ptr<SceneHandle> scene;
+  run(
+      [&](const RenderControl& control) {
+        const StopScope stop(control.stop);
+        owner->context.log().begin(args.flag("strict"));
+        scene = std::make_shared<SceneHandle>(owner, std::move(args), adaptive);
+        if (text)
+          scene->task.read_text(*text, path);
+        else
+          scene->task.read({path});
+        scene->task.choose(nullptr);
+        scene->task.load(nullptr);
+        owner->context.log().check();
+      },
+      nb::none());
   return scene;
 }
 
@@ -53,6 +58,7 @@ void render_more(ImageHandle& image, uint64_t samples, double max_rms, double ti
   Session& session = handle.owner->session();
   const LoadedScene& scene = handle.task.scene();
   if (samples == 0) samples = scene.samples();
+  if (max_rms > 0 && !handle.task.is_adaptive()) fail({}, "max_rms: the scene was not loaded for an adaptive render");
   if (max_rms == 0) scene.check_samples(samples);
   run(
       [&](const RenderControl& control) {
