@@ -1,0 +1,23 @@
+// Spectrum files (.spd).
+
+#include "spectra/spd_file.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace frond;
+
+FROND_FUZZ_TARGET(spectrum, bytes) {
+  const auto path = fuzz::folder().write("curve.spd", bytes);
+  std::vector<SpectrumPoint> points;
+  if (!fuzz::accepts([&] { points = read_spd_points(path, {}); })) return;
+  fuzz::require(points.size() >= 2 && 4 * points.size() <= bytes.size() + 1, "a point takes four bytes or more");
+  for (size_t i = 0; i < points.size(); ++i) {
+    fuzz::require_finite(std::array{points[i].lambda_nm, points[i].value}, "a point");
+    fuzz::require(points[i].value >= 0, "values are not negative");
+    fuzz::require(points[i].lambda_nm > (i == 0 ? 0 : points[i - 1].lambda_nm), "wavelengths ascend");
+  }
+  SpectrumPtr spectrum;
+  if (!fuzz::accepts([&] { spectrum = read_spd(path, {}); })) return;
+  for (const float nm : {1.f, 360.f, 400.25f, 555.f, 830.f, 2500.f, 1e6f})
+    fuzz::require(std::isfinite(spectrum->at(nm)) && spectrum->at(nm) >= 0, "a spectrum is finite");
+  fuzz::require(std::isfinite(spectrum->max_value()), "the largest value is finite");
+}
