@@ -12,7 +12,7 @@ class Pages(unittest.TestCase):
     def test_every_page_is_in_the_navigation(self):
         navigation = set(re.findall(r"- (?:[\w ]+: )?(\S+\.md)$", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"), re.M))
         pages = {f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")}
-        self.assertEqual(navigation, pages | {"README.md", "HACKING.md", "CONTRIBUTING.md", "CHANGELOG.md"})
+        self.assertEqual(navigation, pages | {"README.md", "HACKING.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"})
 
     def test_links_lead_to_files(self):
         for page in [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "scenes").rglob("*.md")]:
