@@ -32,10 +32,11 @@ bool writes_to_standard_output(const Arguments& args) {
 
 /// Returns the result of `act`, which is stopped, without a partial result, if that throws Stopped.
 template <class Act>
-Result stoppable(const Act& act) {
+Result stoppable(const Log& log, const Act& act) {
   try {
     return act();
   } catch (const Stopped&) {
+    log.info("stopped; there is no partial result yet");
     return {.stopped = true};
   }
 }
@@ -52,7 +53,7 @@ int execute(const ParsedCommand& command) {
   if (asks_for_parts(args)) interrupt.emplace();
   RenderControl control{.progress = &progress};
   if (interrupt) control.stop = interrupt->token();
-  const Result result = stoppable([&] { return run_job(*command.job, {context, args, control}); });
+  const Result result = stoppable(console, [&] { return run_job(*command.job, {context, args, control}); });
   if (result.stopped) return 128 + (interrupt ? interrupt->signal() : 0);
   for (const std::string& error : result.errors) print_to_stderr("frond: " + error);
   if (result.is_requested || !(quiet || writes_to_standard_output(args))) write_text("-", result.text);

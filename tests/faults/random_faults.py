@@ -320,7 +320,7 @@ class RandomFaults(unittest.TestCase):
     def full_file_system(self):
         """A small file system that is full, or filled at some moment."""
         self.choose()
-        size = sum(path.stat().st_size for path in self.folder.iterdir()) // 4096 + (500 if self.job.folder else 40)
+        size = sum(path.stat().st_size for path in self.folder.iterdir()) // 4096 + (500 if self.job.folder else 120)
         place = self.folder.parent / "small"
         place.mkdir()
         mount = ["mount", "-t", "tmpfs", "-o", f"size={4 * size}k", "frond_test", str(place)]

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 #include <set>
 #include <unordered_map>
 
@@ -38,7 +37,7 @@ struct Directive {
     std::set<std::string, std::less<>> repeated;
     for (size_t i = 0; i < params.size(); ++i)
       if (last.at(params[i].name) != i) repeated.insert(params[i].name);
-    for (const size_t i : std::views::iota(size_t{0}, params.size())) {
+    for (size_t i = 0; i < params.size(); ++i) {
       if (last.at(params[i].name) != i) continue;
       if (repeated.contains(params[i].name))
         context.log.warn(params[i].where,
