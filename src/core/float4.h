@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -26,6 +27,16 @@ inline bool are_equal(Float4 a, Float4 b) {
   return _mm_movemask_ps(_mm_cmpneq_ps(a, b)) == 0;
 #else
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2] && a[3] == b[3];
+#endif
+}
+
+/// True if all lanes are finite and not negative.
+inline bool are_finite_and_not_negative(Float4 x) {
+  const auto valid = (x >= 0.f) & (x <= std::numeric_limits<float>::max());
+#if defined(__SSE2__)
+  return _mm_movemask_ps(Float4(valid)) == 0b1111;
+#else
+  return (valid[0] & valid[1] & valid[2] & valid[3]) != 0;
 #endif
 }
 

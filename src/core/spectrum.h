@@ -38,10 +38,7 @@ struct SampledSpectrum {
   float max() const { return std::max({v[0], v[1], v[2], v[3]}); }
   bool is_black() const { return are_equal(v, Float4{}); }
   /// Returns whether every lane is finite and not negative.
-  bool is_physical() const {
-    const auto valid = (v >= 0.f) & (v <= std::numeric_limits<float>::max());
-    return (valid[0] & valid[1] & valid[2] & valid[3]) != 0;
-  }
+  bool is_physical() const { return are_finite_and_not_negative(v); }
 };
 
 /// Closed interval [min, max].

@@ -9,7 +9,8 @@
 namespace frond {
 namespace {
 
-Float4 to_float4(const Vec3& v) { return Float4{v.x, v.y, v.z, 0}; }
+/// The fourth lane has no meaning. It is 1 because 0 would make `passes` multiply 0 by infinity.
+Float4 to_float4(const Vec3& v) { return Float4{v.x, v.y, v.z, 1}; }
 
 /// Whether a ray hits a box. The world-space box of an instance is larger than its object-space box, so most rays that
 /// hit the former miss the latter.

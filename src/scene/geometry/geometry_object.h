@@ -43,8 +43,9 @@ struct GeometryObject {
 
 inline float largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Returns the bounds enlarged by the possible rounding error of points within.
+/// Returns the bounds enlarged by the possible rounding error of points within. Empty bounds stay empty.
 inline Bounds widened(const Bounds& b) {
+  if (b.is_empty()) return b;
   const float slack = 0x1p-20f * std::max(largest_coordinate(b.min), largest_coordinate(b.max));
   const Vec3 by{slack, slack, slack};
   return {b.min - by, b.max + by};

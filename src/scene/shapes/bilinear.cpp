@@ -22,13 +22,15 @@ struct Patch {
   Vec3d along_u(double u, size_t first) const { return p[first] * (1 - u) + p[first + 1] * u; }
 };
 
-/// Returns the real roots of a + b x + c x^2, without cancellation.
+/// Returns the real roots of a + b x + c x^2, without cancellation; -1, which is outside of a patch, where there is
+/// none.
 std::array<double, 2> quadratic_roots(double a, double b, double c) {
-  if (c == 0) return {-a / b, NAN};
+  constexpr double kNone = -1;
+  if (c == 0) return {b != 0 ? -a / b : kNone, kNone};
   const double discriminant = b * b - 4 * a * c;
-  if (discriminant < 0) return {NAN, NAN};
+  if (discriminant < 0) return {kNone, kNone};
   const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
-  return {q / c, q != 0 ? a / q : NAN};
+  return {q / c, q != 0 ? a / q : kNone};
 }
 
 /// Samples [0, 1] with a density that changes linearly from `a` to `b`.
