@@ -1,4 +1,5 @@
 #include "common.h"
+#include "render/parts/inputs.h"
 
 namespace frond::python {
 namespace {
@@ -83,7 +84,16 @@ void bind_jobs(nb::module_& m) {
         const JobInfo& job = find_job(name);
         const Arguments args = arguments_of(job, given);
         Result result;
-        run([&](const RenderControl& control) { result = run_job(job, {owner->context, args, control}); }, progress);
+        const auto work = [&](const RenderControl& control) {
+          try {
+            result = run_job(job, {owner->context, args, control});
+          } catch (const nb::python_error&) {  // of a BSDF written in Python
+            throw;
+          } catch (...) {
+            rethrow_naming(owner->context.options().plugins);
+          }
+        };
+        run(work, progress);
         return result_of(std::move(result));
       },
       "session"_a, "job"_a, "arguments"_a, "progress"_a.none());

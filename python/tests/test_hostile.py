@@ -254,6 +254,12 @@ def call_of(kind, fault):
 PLUGIN_CALLS = [(kind, fault, call_of(kind, fault)) for table in (GOES_ON, ENDS) for kind, faults in table.items()
                 for fault in faults]
 CONFORM_FAULTS = GOES_ON["with_material"][1:]
+#: Exceptions of a BSDF outside of a render.
+INSTRUMENT_CALLS = [f'{function.format(f"hostile_material,fault={fault}")}'
+                    for fault in ("f_throws", "sample_throws", "runtime_error", "object")
+                    for function in ('conform("{}")', 'frond.spectrophotometer("{}", 551, rays=10, session=session)',
+                                     'frond.goniophotometer("{}", 551, rays=10, session=session)')
+                    if fault != "f_throws" or function.startswith("conform")]
 
 
 @pytest.fixture(scope="module")
@@ -262,6 +268,7 @@ def outcomes(tmp_path_factory):
     calls = [call for call, _, _ in CALLS]
     if PLUGIN:
         calls += [call for _, _, call in PLUGIN_CALLS] + [conform_call(fault) for fault in CONFORM_FAULTS]
+        calls += INSTRUMENT_CALLS
     script = tmp_path_factory.mktemp("hostile") / "runner.py"
     script.write_text(RUNNER)
     lines = "".join(json.dumps(call) + "\n" for call in calls)
@@ -308,6 +315,12 @@ def test_a_plugin_that_fails(kind, fault, call, outcomes):
 def test_conform_finds_a_plugin_that_fails(fault, outcomes):
     """A material without a surface, "null", obeys all laws."""
     check(outcomes[conform_call(fault)], "", "True" if fault == "null" else "False")
+
+
+@needs_plugin
+@pytest.mark.parametrize("call", INSTRUMENT_CALLS)
+def test_an_instrument_names_a_plugin_that_throws(call, outcomes):
+    check(outcomes[call], "InputError", r"loaded from hostile\.so")
 
 
 #: Calls that last long. `session` has no cache.

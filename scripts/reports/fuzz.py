@@ -1,4 +1,4 @@
-"""scripts/fuzz --report: the section of docs/reliability.md about fuzzing, from the results of the last runs and of the last
+"""scripts/fuzz --report: the section of docs/reliability.md about fuzzing, from the last run of each target and the last
 coverage."""
 
 import json
@@ -6,13 +6,14 @@ import json
 import tools
 
 FUZZ = tools.ROOT / "build" / "fuzz"
+TARGETS = sorted(path.stem for path in (tools.ROOT / "tests" / "fuzz").glob("*.cpp") if path.stem != "replay")
 
 
-def results(name, command):
-    path = FUZZ / name
-    if not path.exists():
-        raise SystemExit(f"{path} is missing: {command} makes it")
-    return json.loads(path.read_text(encoding="utf-8"))
+def load(paths, command):
+    """Returns the contents of JSON files."""
+    if not paths or not all(path.exists() for path in paths):
+        raise SystemExit(f"results are missing in {FUZZ}: {command} makes them")
+    return [json.loads(path.read_text(encoding="utf-8")) for path in paths]
 
 
 def text(runs, coverage):
@@ -39,5 +40,8 @@ if __name__ == "__main__":
     tools.write_section(
         tools.ROOT / "docs" / "reliability.md",
         "fuzz",
-        text(results("fuzz.json", "scripts/fuzz"), results("coverage.json", "scripts/fuzz --coverage")),
+        text(
+            load([FUZZ / "results" / f"{target}.json" for target in TARGETS], "scripts/fuzz"),
+            *load([FUZZ / "coverage.json"], "scripts/fuzz --coverage"),
+        ),
     )

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "cli/app.h"
 #include "cli/commands.h"
@@ -10,6 +12,7 @@
 #include "cli/progress.h"
 #include "core/problems.h"
 #include "render/checkpoint.h"
+#include "render/parts/inputs.h"
 #include "report/text_output.h"
 
 namespace frond {
@@ -30,14 +33,17 @@ bool writes_to_standard_output(const Arguments& args) {
   });
 }
 
-/// Returns the result of `act`, which is stopped, without a partial result, if that throws Stopped.
+/// Returns the result of `act`, which is stopped, without a partial result, if that throws Stopped. Exceptions of plug-ins
+/// name them.
 template <class Act>
-Result stoppable(const Log& log, const Act& act) {
+Result guarded(const Log& log, std::span<const std::string> plugins, const Act& act) {
   try {
     return act();
   } catch (const Stopped&) {
     log.info("stopped; there is no partial result yet");
     return {.stopped = true};
+  } catch (...) {
+    rethrow_naming(plugins);
   }
 }
 
@@ -53,7 +59,8 @@ int execute(const ParsedCommand& command) {
   if (asks_for_parts(args)) interrupt.emplace();
   RenderControl control{.progress = &progress};
   if (interrupt) control.stop = interrupt->token();
-  const Result result = stoppable(console, [&] { return run_job(*command.job, {context, args, control}); });
+  const Result result = guarded(console, context.options().plugins,
+                                [&] { return run_job(*command.job, {context, args, control}); });
   if (result.stopped) return 128 + (interrupt ? interrupt->signal() : 0);
   for (const std::string& error : result.errors) print_to_stderr("frond: " + error);
   if (result.is_requested || !(quiet || writes_to_standard_output(args))) write_text("-", result.text);

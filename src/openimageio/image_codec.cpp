@@ -3,6 +3,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace frond {
@@ -20,7 +21,8 @@ void check_size(const OIIO::ImageSpec& spec, size_t file_size, const Location& w
   };
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth <= 0) fail(where, "{}", claim());
   if (uint64_t(spec.nchannels) > kMostChannels) fail(where, "{}: {} channels are the limit", claim(), kMostChannels);
-  const uint64_t pixels = uint64_t(spec.width) * uint64_t(spec.height);  // both below 2^31
+  constexpr int kRowsAtOnce = 64;  // for which OpenImageIO allocates memory even where there are fewer
+  const uint64_t pixels = uint64_t(spec.width) * uint64_t(std::max(spec.height, kRowsAtOnce));  // both below 2^31
   const uint64_t most = file_size * kMostCompression + kAlwaysAllowed;
   if (pixels > most / spec.pixel_bytes(true)) fail(where, "{}", claim());
 }

@@ -187,30 +187,19 @@ std::string spelled(const MaterialDescription& material) {
 }  // namespace
 
 /// Calls `act`. An exception of a plug-in becomes an InputError that names the material at the hit where it was thrown,
-/// and the shared objects that are loaded, one of which may be to blame.
+/// if there is one, and the shared objects that are loaded.
 template <class Act>
 auto Session::naming_plugins(const std::vector<MaterialDescription>& materials, const Act& act) const {
-  const auto suspects = [this] {
-    std::string names;
-    for (const auto& file : plugin_files(options_.plugins)) names += " " + file.filename().string();
-    return names.empty() ? names : "; plug-ins are loaded from" + names;
-  };
   try {
-    return act();
-  } catch (const SurfaceError& error) {
-    const MaterialDescription& material = materials.at(error.material_id);
-    fail(material.plugin.where, "{}, or a light or texture at its surface, has a defect: {}{}", spelled(material),
-         error.what(), suspects());
-  } catch (const InputError&) {
-    throw;
-  } catch (const Stopped&) {
-    throw;
-  } catch (const std::exception& error) {
-    const std::string names = suspects();
-    if (names.empty()) throw;  // no plug-in of somebody else
-    fail({}, "a plug-in has a defect: {}{}", error.what(), names);
+    try {
+      return act();
+    } catch (const SurfaceError& error) {
+      const MaterialDescription& material = materials.at(error.material_id);
+      fail(material.plugin.where, "{}, or a light or texture at its surface, has a defect: {}{}", spelled(material),
+           error.what(), loaded_from(options_.plugins));
+    }
   } catch (...) {
-    fail({}, "a plug-in has a defect: it threw an object that is no std::exception{}", suspects());
+    rethrow_naming(options_.plugins);
   }
 }
 

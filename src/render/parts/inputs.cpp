@@ -2,7 +2,10 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
+#include "core/error.h"
+#include "core/parallel.h"
 #include "core/random.h"
 #include "image/image_codec.h"
 #include "scene/plugin_library.h"
@@ -58,6 +61,30 @@ std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plu
     for (const auto& file : plugins_in(folders)) files.push_back(file);
   files.insert(files.end(), plugins.begin(), plugins.end());
   return files;
+}
+
+std::string loaded_from(std::span<const std::string> plugins) {
+  std::string names;
+  for (const auto& file : plugin_files(plugins)) names += " " + file.filename().string();
+  return names.empty() ? names : "; plug-ins are loaded from" + names;
+}
+
+void rethrow_naming(std::span<const std::string> plugins) {
+  const std::string names = loaded_from(plugins);
+  if (names.empty()) throw;
+  try {
+    throw;
+  } catch (const InputError&) {
+    throw;
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail({}, "out of memory{}", names);
+  } catch (const std::exception& error) {
+    fail({}, "a plug-in has a defect: {}{}", error.what(), names);
+  } catch (...) {
+    fail({}, "a plug-in has a defect: it threw an object that is no std::exception{}", names);
+  }
 }
 
 uint64_t hash_program(uint64_t seed) { return hash_file(image_codec_file(), hash_file(own_file(), seed)); }

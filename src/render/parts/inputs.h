@@ -16,12 +16,15 @@ std::vector<std::filesystem::path> input_files(const SceneDescription& scene, co
 /// Shared objects that load_registry loads.
 std::vector<std::filesystem::path> plugin_files(std::span<const std::string> plugins);
 
+/// Returns "; plug-ins are loaded from NAME...", or "" if there are none.
+std::string loaded_from(std::span<const std::string> plugins);
+
+/// Rethrows the current exception. If frond's own code does not throw such exceptions and shared objects are loaded, it
+/// becomes an InputError that names them.
+[[noreturn]] void rethrow_naming(std::span<const std::string> plugins);
+
 /// Hash of frond's own code: the library, and the shared object for image files.
 uint64_t hash_program(uint64_t seed);
-
-/// Like hash_file, for a shared object that is loaded. It reads the file instead of mapping it: a second mapping
-/// confuses perf, which records mappings but not their end and then cannot resolve stacks through the library.
-uint64_t hash_library(const std::filesystem::path& path, uint64_t seed);
 
 /// Hash of a file's bytes, combined with `seed`. Throws InputError if the file cannot be read.
 uint64_t hash_file(const std::filesystem::path& path, uint64_t seed);

@@ -377,8 +377,8 @@ void check_readable(const fs::path& path) {
   if (!fs::is_regular_file(path, error) || !std::ifstream(path)) read_file_bytes(path, {});  // throws with the reason
 }
 
-/// Reads the beginning of a part file up to the end of the header.
-std::string read_front(const fs::path& path) {
+/// Reads the beginning of a part file up to the end of the header. Sets `rest_size` to the number of bytes that follow.
+std::string read_front(const fs::path& path, size_t& rest_size) {
   std::ifstream file(path, std::ios::binary);
   std::string front(kMagic.size() + sizeof(uint64_t), '\0');
   file.read(front.data(), static_cast<std::streamsize>(front.size()));
@@ -386,8 +386,10 @@ std::string read_front(const fs::path& path) {
   std::string_view rest = front;
   const uint64_t size = take_header_size(rest, path) + sizeof(uint64_t);
   std::error_code error;
-  if (const uintmax_t whole = fs::file_size(path, error); error || size > whole) fail_to_read(path, "is cut short");
+  const uintmax_t whole = fs::file_size(path, error);
   const size_t start = front.size();
+  if (error || size > whole || start + size > whole) fail_to_read(path, "is cut short");
+  rest_size = whole - start - size;
   front.resize(start + size);
   file.read(front.data() + start, static_cast<std::streamsize>(size));
   front.resize(start + static_cast<size_t>(file.gcount()));
@@ -416,9 +418,12 @@ std::vector<unsigned char> encode_part(const PartHeader& header, const Film& fil
 
 PartHead read_part_head(const fs::path& path) try {
   check_readable(path);
-  const std::string front = read_front(path);
+  size_t compressed = 0;
+  const std::string front = read_front(path, compressed);
   std::string_view bytes = front;
-  return head_of(take_header(bytes, path));
+  PartHead head = head_of(take_header(bytes, path));
+  check_claim(head.film, compressed, path);
+  return head;
 } catch (const Json::exception& error) {
   fail_to_read(path, "is damaged");
 }
