@@ -33,8 +33,8 @@ bool writes_to_standard_output(const Arguments& args) {
   });
 }
 
-/// Returns the result of `act`, which is stopped, without a partial result, if that throws Stopped. Exceptions of plug-ins
-/// name them.
+/// Returns the result of `act`, which is stopped, without a partial result, if that throws Stopped. Exceptions of
+/// plug-ins name them.
 template <class Act>
 Result guarded(const Log& log, std::span<const std::string> plugins, const Act& act) {
   try {
@@ -59,8 +59,9 @@ int execute(const ParsedCommand& command) {
   if (asks_for_parts(args)) interrupt.emplace();
   RenderControl control{.progress = &progress};
   if (interrupt) control.stop = interrupt->token();
-  const Result result = guarded(console, context.options().plugins,
-                                [&] { return run_job(*command.job, {context, args, control}); });
+  const Result result = guarded(console, context.options().plugins, [&] {
+    return run_job(*command.job, {context, args, control});
+  });
   if (result.stopped) return 128 + (interrupt ? interrupt->signal() : 0);
   for (const std::string& error : result.errors) print_to_stderr("frond: " + error);
   if (result.is_requested || !(quiet || writes_to_standard_output(args))) write_text("-", result.text);

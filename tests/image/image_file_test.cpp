@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -303,6 +304,15 @@ TEST_F(ImageFiles, SmallFilesThatClaimHugeImagesAreRefused) {
   ASSERT_EQ(replaced, 2u);
   std::ofstream(path, std::ios::binary) << bytes;
   EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("a.exr"));
+}
+
+/// 24 MB of pixels, for which OpenImageIO would allocate 3 GB.
+TEST_F(ImageFiles, SmallFilesThatClaimWideRowsAreRefused) {
+  constexpr std::array<uint16_t, 27> kBmp{0x4d42, 78, 0, 0, 0, 54, 0, 40, 0, 2, 63, 2, 0, 1, 24};
+  const std::string bytes(reinterpret_cast<const char*>(kBmp.data()), sizeof kBmp);
+  const fs::path path = folder_ / "a.bmp";
+  std::ofstream(path, std::ios::binary) << bytes + std::string(24, '\0');
+  EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("claims 4128770 x 2 pixels"));
 }
 
 TEST_F(ImageFiles, ThatEndTooSoonAreRefusedWhereverTheyEnd) {

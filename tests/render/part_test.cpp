@@ -340,6 +340,7 @@ TEST_F(Parts, ClaimsOfManyPixelsAreDamage) {
   bytes = forged(bytes, fmt::format("\"height\": {}", film.height), "\"height\": 60000");
   const fs::path path = folder_.write("f.part", bytes);
   EXPECT_THAT(error_of([&] { read_part(path); }), HasSubstr("is damaged"));
+  EXPECT_THAT(error_of([&] { read_part_head(path); }), HasSubstr("is damaged"));
 }
 
 }  // namespace
