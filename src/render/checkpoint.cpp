@@ -29,7 +29,7 @@ bool is_there(int descriptor, const std::filesystem::path& path) {
 PartLock::PartLock(const std::filesystem::path& part) : path_(part) {
   path_ += ".lock";
   for (;;) {
-    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor_ < 0) fail({}, "cannot write \"{}\": {}", path_.string(), std::strerror(errno));
     const bool has_lock = flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
     if (!has_lock && errno != EWOULDBLOCK) return;  // some file systems have no locks

@@ -5,10 +5,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <mutex>
+#include <regex>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "core/error.h"
@@ -31,32 +35,50 @@ fs::path follow_links(const fs::path& path) {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-constexpr std::string_view kPrefix = ".frond-", kSuffix = ".tmp";
+/// Name of the n-th temporary file of this process. No name is used twice, since remove_left_files of another process
+/// may still hold a file that had it.
+std::string temporary_name() {
+  static std::atomic<uint64_t> count = 0;
+  return fmt::format(".frond-{}-{}.tmp", getpid(), count++);
+}
 
-/// Deletes temporary files that killed processes have left in a folder. A process locks its own as long as it writes,
-/// so that one whose lock can be taken has no writer, on this machine or another. Once for each folder.
+bool is_temporary_name(const std::string& name) {
+  static const std::regex pattern(R"(\.frond-\d+-\d+\.tmp)");
+  return std::regex_match(name, pattern);
+}
+
+/// Whether `path` is still the name of the open file.
+bool is_named(int file, const fs::path& path) {
+  struct stat opened {
+  }, named{};
+  return fstat(file, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
+}
+
+/// Deletes temporary files that killed processes have left in a folder. A process locks its own until they have their
+/// final name, so that one whose lock can be taken has no writer. Once for each folder.
 void remove_left_files(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> seen;
   const std::lock_guard lock(mutex);
   if (!seen.insert(folder).second) return;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
-    const int file = open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path path = entry->path();
+    if (!is_temporary_name(path.filename().string())) continue;
+    // For writing, because NFS makes an exclusive lock of a lock for writing.
+    const int file = open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) continue;
-    if (flock(file, LOCK_EX | LOCK_NB) == 0) unlink(entry.path().c_str());
+    if (flock(file, LOCK_EX | LOCK_NB) == 0 && is_named(file, path)) unlink(path.c_str());
     close(file);
   }
 }
 
 /// Locks a new file against remove_left_files. Returns false if that was faster. Without locks in a file system nothing
 /// is removed there.
-bool lock_new(int file) {
+bool lock_new(int file, const fs::path& path) {
   if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
-  struct stat status {};
-  return fstat(file, &status) != 0 || status.st_nlink > 0;
+  return is_named(file, path);
 }
 
 }  // namespace
@@ -64,16 +86,16 @@ bool lock_new(int file) {
 NewFile::NewFile(const fs::path& path) : target_(follow_links(path)) {
   remove_left_files(folder_of(target_));
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    path_ = folder_of(target_) / fmt::format("{}{}-{}{}", kPrefix, getpid(), attempt, kSuffix);
+    path_ = folder_of(target_) / temporary_name();
     descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && (errno != EEXIST || attempt == 1000)) fail_to_write(target_, errno);
-    if (descriptor_ >= 0 && !lock_new(descriptor_)) close(std::exchange(descriptor_, -1));
+    if (descriptor_ >= 0 && !lock_new(descriptor_, path_)) close(std::exchange(descriptor_, -1));
   }
 }
 
 NewFile::~NewFile() {
-  if (descriptor_ >= 0) close(descriptor_);
   if (!path_.empty()) unlink(path_.c_str());
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 void NewFile::write(std::span<const unsigned char> bytes) {
@@ -85,13 +107,12 @@ void NewFile::write(std::span<const unsigned char> bytes) {
   }
 }
 
+/// The lock is held until the file has its name.
 void NewFile::finish() {
   if (fsync(descriptor_) != 0) fail_to_write(target_, errno);
-  const int descriptor = descriptor_;  // close releases it even if it fails
-  descriptor_ = -1;
-  if (close(descriptor) != 0) fail_to_write(target_, errno);
   if (rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
   path_.clear();
+  close(std::exchange(descriptor_, -1));
 }
 
 void make_folders(const fs::path& folder) {

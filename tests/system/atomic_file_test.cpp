@@ -49,6 +49,27 @@ TEST(AtomicFile, RemovesWhatKilledProcessesHaveLeft) {
   EXPECT_TRUE(fs::exists(folder.name_of(".frond-note")));
 }
 
+/// The second writer cleans the folder, which it knows by another name, while the first is writing; no name is used
+/// twice.
+TEST(AtomicFile, LeavesAloneWhatIsBeingWritten) {
+  const TestFolder folder("atomic_file");
+  const fs::path path = folder.name_of("first");
+  NewFile first(path);
+  replace(folder.name_of("./second"), "whole");
+  const auto entries = [&] { return std::distance(fs::directory_iterator(folder.name_of("")), {}); };
+  EXPECT_EQ(entries(), 2);
+  first.finish();
+  EXPECT_TRUE(fs::exists(path));
+  EXPECT_EQ(entries(), 2);
+}
+
+TEST(AtomicFile, LeavesAloneFilesOfOthers) {
+  const TestFolder folder("atomic_file");
+  for (const char* name : {".frond-notes.tmp", ".frond-1-0.tmp.old", "frond-1-0.tmp"}) folder.write(name, "");
+  replace(folder.name_of("file"), "whole");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.name_of("")), {}), 4);
+}
+
 TEST(AtomicFile, SaysWhyNot) {
   const TestFolder folder("atomic_file");
   const std::string missing = folder.name_of("missing"), path = missing + "/file";
