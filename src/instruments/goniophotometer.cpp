@@ -22,13 +22,6 @@ struct PatchTally {
   void clear() { caught.assign(caught.size(), {}); }
 };
 
-void check_weights(const GoniophotometerMeasurement& measurement) {
-  for (const Moments& m : measurement.caught)
-    if (!std::isfinite(m.mean() + m.variance()))
-      fail({}, "the material scattered light with a weight that is not a number, at {} degrees and {} nm",
-           measurement.beam.theta_deg, measurement.beam.lambda_nm);
-}
-
 SphereBox box_of(const Patch& p) {
   constexpr double kDegree = std::numbers::pi / 180;
   return {std::cos(p.theta_max_deg * kDegree), std::cos(p.theta_min_deg * kDegree), p.phi_min_deg * kDegree,
@@ -114,7 +107,6 @@ GoniophotometerMeasurement measure_f(const LitMaterial& lit, const DetectorSpher
   PatchTally tally{&sphere, std::vector<Moments>(sphere.size())};
   shoot(lit, 0, rays, tally, pool, progress);
   measurement.caught = std::move(tally.caught);
-  check_weights(measurement);
   return measurement;
 }
 

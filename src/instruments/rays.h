@@ -22,6 +22,7 @@ class RayBlock {
  public:
   RayBlock(const LitMaterial& lit, int64_t number)
       : bsdf_(bsdf_of(lit.material, lit.beam, arena_)),
+        beam_(lit.beam),
         toward_light_(toward_light(lit.beam)),
         as_rendered_(lit.as_rendered),
         rng_(hash_key(lit.seed, std::bit_cast<uint64_t>(lit.beam.theta_deg),
@@ -29,21 +30,35 @@ class RayBlock {
   RayBlock(const RayBlock&) = delete;
   RayBlock& operator=(const RayBlock&) = delete;
 
-  /// Returns the next scattered rays, at most `wanted`; valid until the next call.
+  /// Returns the next scattered rays, at most `wanted`; valid until the next call. Throws InputError if the material
+  /// has a defect.
   std::span<const Scattered> next(int64_t wanted) {
     const std::span batch = std::span(rays_).first(static_cast<size_t>(std::min<int64_t>(wanted, kBatch)));
     if (as_rendered_)
       scatter_as_rendered(bsdf_, toward_light_, rng_, batch);
     else
       bsdf_.scatter(toward_light_, rng_, batch);
+    for (const Scattered& ray : batch) check(ray);
     return batch;
   }
 
  private:
   static constexpr int64_t kBatch = 512;
 
+  void check(const Scattered& ray) const {
+    constexpr float kRounding = 1e-2f;
+    if (ray.weight.is_physical() &&
+        (ray.weight.is_black() || std::abs(dot(ray.direction, ray.direction) - 1) < kRounding))
+      return;
+    fail({},
+         "the material has a defect: for light at {} degrees and {} nm it scatters a weight of {}, which is negative, "
+         "infinite or not a number, or in a direction of no unit length",
+         beam_.theta_deg, beam_.lambda_nm, ray.weight[0]);
+  }
+
   Arena arena_;
   const Bsdf& bsdf_;
+  Beam beam_;
   Vec3 toward_light_;
   bool as_rendered_;
   RandomStream rng_;

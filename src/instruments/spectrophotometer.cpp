@@ -48,9 +48,6 @@ SpectrophotometerMeasurement measurement_of(const ShareTally& tally, int64_t ray
   measurement.reflectance = share(reflected, rays);
   measurement.transmittance = share(tally.transmitted, rays);
   measurement.absorptance = one_minus(share(sum(reflected, tally.transmitted), rays));
-  if (!std::isfinite(measurement.absorptance.mean + measurement.absorptance.variance))
-    fail({}, "the material scattered light with a weight that is not a number, at {} degrees and {} nm",
-         measurement.beam.theta_deg, measurement.beam.lambda_nm);
   return measurement;
 }
 

@@ -40,9 +40,9 @@ class LocalBsdf {
     if (!s) return false;
     sample.wi = frame_.to_world(s->wi);
     sample.weight = s->f * (std::abs(s->wi.z) / s->pdf);
-    sample.pdf = s->pdf_is_approximate ? bsdf_->pdf(wo_, s->wi) : s->pdf;
     sample.power_factor = s->eta * s->eta;
     sample.is_specular = any(s->flags & Lobes::specular);
+    sample.pdf = s->pdf_is_approximate && !sample.is_specular ? bsdf_->pdf(wo_, s->wi) : s->pdf;
     return true;
   }
 

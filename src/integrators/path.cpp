@@ -102,6 +102,10 @@ class PathTracer final : public Tracer {
       trace();
     } catch (const InputError&) {
       throw;
+    } catch (const Stopped&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& error) {
       if (!at_) throw;
       throw SurfaceError(at_->material_id, error.what());
@@ -210,6 +214,7 @@ class PathTracer final : public Tracer {
       bsdfs_[i].set(*bsdf, point.hit, -path.ray.d);
       scattering.add(i);
     }
+    at_ = nullptr;
     return scattering;
   }
 
@@ -284,11 +289,11 @@ class PathTracer final : public Tracer {
       if (!sample || sample->radiance.is_black()) continue;
       float scatter_pdf = 0;
       const SampledSpectrum f_cos = bsdfs_[i].f_cos(sample->wi, path.key.stream(Use::light_bsdf), scatter_pdf);
-      if (f_cos.is_black()) continue;
-      if (!f_cos.is_physical() || !(scatter_pdf < INFINITY)) {
+      if (!f_cos.is_physical() || !(scatter_pdf >= 0 && scatter_pdf < INFINITY)) {
         blame_material(i);
         continue;
       }
+      if (f_cos.is_black()) continue;
       if (!sample->radiance.is_physical()) {
         blame(i, *light);
         continue;
@@ -303,6 +308,7 @@ class PathTracer final : public Tracer {
       lit.add(i);
       alike = alike && (light->is_delta() || !light->is_distant());
     }
+    at_ = nullptr;
     bundle_->traced += lit.size();
     const uint32_t dark = alike ? occluded_alike(lit) : occluded(lit);
     for (const size_t i : lit)
@@ -368,6 +374,7 @@ class PathTracer final : public Tracer {
       bundle_->results[i].scatterings = ++path.depth;
       alive |= 1u << i;
     }
+    at_ = nullptr;
     LaneList next;
     for (size_t i = 0; i < kMost; ++i)
       if (alive >> i & 1) next.add(i);

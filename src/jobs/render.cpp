@@ -84,7 +84,8 @@ constexpr JobParam kParams[] = {
     JobParam("samples", text, "Range of samples to render, without END, as in 64:128; by default from 0 to --spp.",
              {.type = "FIRST:END"}),
     JobParam("checkpoint", real,
-             "Save the partial result at this interval, and when stopped by SIGINT or SIGTERM: in OUTPUT.part, or in "
+             "Save the partial result at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP: in OUTPUT.part, "
+             "or in "
              "FILE.checkpoint if --part writes FILE.",
              {.unit = "s", .range = kAboveZero}),
     JobParam("resume", flag, "Resume from OUTPUT.part, or --part's file, if it exists; also save checkpoints."),
@@ -221,10 +222,12 @@ class SceneRender {
     if (output_ && samples.most == 0)
       fail({}, "{}: the time limit ended before any sample was rendered", run_.args.spelled("time-limit"));
     const Log& log = run_.log();
-    if (const uint64_t count = part.film.not_finite(); count > 0)
+    uint64_t lost = part.film.not_finite();  // those of plug-ins have been reported by name
+    for (const auto& [fault, count] : statistics_.faults) lost -= std::min(lost, count);
+    if (lost > 0)
       log.warn({}, fmt::format("{} samples were too bright for the film or not finite: they count as its largest value "
                                "or as black",
-                               count));
+                               lost));
     // Adaptive renders report noise; others report missing samples.
     if (task_.is_adaptive())
       report_noise(part.film);

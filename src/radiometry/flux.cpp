@@ -242,6 +242,7 @@ class FluxMeter::Sums {
       record_.add(PathRecord::of_material(point.material_id, kIncident), share);
       if (depth++ == 0) record_.add(PathRecord::of_material(point.material_id, kUncollided), share);
       const auto [direction, weight] = scatter(*bsdf, point.hit, ray.d, random);
+      if (!weight.is_physical()) fail_for(point.material_id);
       record_.absorb(point.material_id, point.instance_id, share * remainder(weight));
       share *= weight;
       lambda.retire_black_lanes(share);
@@ -254,6 +255,12 @@ class FluxMeter::Sums {
     }
   }
 
+  [[noreturn]] void fail_for(uint32_t material) const {
+    const MaterialDescription& m = state_.loaded.description().materials[material];
+    fail(m.plugin.where, "{} has a defect: it scatters weights that are negative, infinite or not a number",
+         spelled(m));
+  }
+
   struct Onward {
     Vec3 direction;
     Lanes weight;
@@ -264,6 +271,8 @@ class FluxMeter::Sums {
     Scattered s;
     bsdf.scatter(frame.to_local(-d), random, {&s, 1});
     if (s.weight.is_black()) return {};
+    constexpr float kRounding = 1e-2f;
+    if (!(std::abs(dot(s.direction, s.direction) - 1) < kRounding)) return {{}, Lanes(NAN)};
     return {frame.to_world(s.direction), s.weight};
   }
 

@@ -177,14 +177,10 @@ FilmSettings Session::film(const SceneSettings& description) const {
   return Scene::film_settings(description, registry_);
 }
 
-namespace {
-
 std::string spelled(const MaterialDescription& material) {
   return material.name.empty() ? fmt::format("material \"{}\"", material.plugin.name)
                                : fmt::format("material \"{}\" ({})", material.name, material.plugin.name);
 }
-
-}  // namespace
 
 /// Calls `act`. An exception of a plug-in becomes an InputError that names the material at the hit where it was thrown,
 /// if there is one, and the shared objects that are loaded.

@@ -73,6 +73,9 @@ struct SessionOptions {
   std::vector<std::string> plugins = {};  ///< shared objects, in addition to those of FROND_PLUGIN_PATH
 };
 
+/// Returns a material as messages name it.
+std::string spelled(const MaterialDescription& material);
+
 /// Plug-ins, threads, cache and log that renders share. It is the entry point of the library for programs that render:
 ///
 ///   Session session(log);

@@ -207,7 +207,9 @@ struct NotThere final : Material {
 TEST(Spectrophotometer, SaysSoWhenTheMaterialIsAtFault) {
   const Prepared broken(planted<NotANumber>("broken"), {}, 551);
   EXPECT_EQ(error_of([&] { measure(broken.under(8), 100); }),
-            "the material scattered light with a weight that is not a number, at 8 degrees and 551 nm");
+            "the material has a defect: for light at 8 degrees and 551 nm it scatters a weight of nan, which is "
+            "negative, infinite or "
+            "not a number, or in a direction of no unit length");
   const MaterialInfo not_there{{"material", "not_there", "", "", {}}, make_material<NotThere>};
   EXPECT_NE(error_of([&] { measure(Prepared(not_there, {}, 551).under(8), 100); }), "");
 }

@@ -94,6 +94,23 @@ TEST(Degenerate, CamerasInAndOnSurfaces) {
                           kOptions, kLights, material, plane("")));
 }
 
+/// Every scattered path is specular, although the material's density is approximate elsewhere: no fault, and a mirror's
+/// image of an even light.
+TEST(Degenerate, SmoothCoatsOverSmoothMetal) {
+  for (const std::string eta : {"1.5", "0.6"}) {
+    RenderStatistics statistics;
+    const std::string coated =
+        "Material \"coatedconductor\" \"float interface.roughness\" 0 \"float conductor.roughness\" 0 "
+        "\"float interface.eta\" " +
+        eta + " \"rgb reflectance\" [.9 .9 .9]";
+    const Film film = render_text(scene("LightSource \"infinite\" \"rgb L\" [1 1 1]\n" + coated + " Shape \"sphere\""),
+                                  {.statistics = &statistics});
+    EXPECT_TRUE(statistics.faults.empty()) << eta;
+    EXPECT_EQ(film.not_finite(), 0u) << eta;
+    EXPECT_GT(testing::channel_mean(film, 1).mean, 0.5) << eta;
+  }
+}
+
 TEST(Degenerate, SamplesThatAreNoNumbersAreCounted) {
   const Film film =
       render_text(kOptions + "WorldBegin LightSource \"infinite\" \"rgb L\" [3e38 3e38 3e38] \"float scale\" 1e38");

@@ -145,12 +145,13 @@ class LayeredBsdf final : public Bsdf {
     if (!same_side(wo_, wi_) || is_grazing(wo_) || is_grazing(wi_) || indices_.count() == 0) return 0;
     const Vec3 wo = wo_.z < 0 ? -wo_ : wo_, wi = wo_.z < 0 ? -wi_ : wi_;
     if (coat_.is_smooth() && base_.is_smooth() && medium_.albedo.is_black()) return 0;
-    const float reflected = fresnel_dielectric(wo.z, indices_.of(0));
+    // Below 1: where the first lane is reflected totally, another may not be.
+    const float reflected = std::min(fresnel_dielectric(wo.z, indices_.of(0)), 0.95f);
     float density = wi.z * kInvPi;
     if (const auto lobe = base_.seen_through(coat_, indices_.of(0)))
       density = std::lerp(density, density_folded(*lobe, wo, wi), kLobeShare);
     if (coat_.is_smooth()) return (1 - reflected) * density;
-    return std::lerp(density, density_folded(coat_, wo, wi), std::clamp(reflected, 0.05f, 0.95f));
+    return std::lerp(density, density_folded(coat_, wo, wi), std::max(reflected, 0.05f));
   }
 
  private:
