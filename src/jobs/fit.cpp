@@ -105,7 +105,8 @@ std::vector<leaf::LeafMeasurement> measurements_of(const JobRun& run) {
                                        ? leaf::read_measured_spectra(args.text("file"), how)
                                        : leaf::parse_measured_spectra(args.text("data"), args.spelled("data"), how);
   // A warning, because it changes the numbers: -q shows it too.
-  if (measured.is_in_percent) run.log().warn({}, "values are in percent: they are divided by 100");
+  if (!measured.in_percent.empty())
+    run.log().warn({}, fmt::format("the values of {} are in percent: they are divided by 100", measured.in_percent));
   if (measured.left_out > 0)
     run.log().warn({},
                    fmt::format("{} rows are left out: beyond 360 to 2500 nm, or without a number", measured.left_out));

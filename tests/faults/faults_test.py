@@ -390,6 +390,16 @@ class StandardStreams(FrondTest):
                     self.assertTrue(image.exists())
                     image.unlink()
 
+    def test_a_reader_that_has_gone_is_no_reason_to_stop(self):
+        image = self.folder / "a.exr"
+        reader, writer = os.pipe()
+        os.close(reader)
+        words = map(str, [FROND, "render", self.scene, "--spp", 1, "-o", image])
+        with os.fdopen(writer, "wb") as pipe:
+            done = subprocess.run(list(words), stdout=subprocess.DEVNULL, stderr=pipe, check=False)
+        self.assertEqual(done.returncode, 0)
+        self.assertTrue(image.exists())
+
     def test_a_closed_stream_is_no_file_of_the_program(self):
         # Else the image would get number 2, and a warning would be written into it.
         scene = self.write("warns.pbrt", SCENE_WITH_WARNING)
@@ -414,7 +424,7 @@ class StandardStreams(FrondTest):
         self.assertIn("warning: ", err)
         spectra = self.write("m.csv", "nm,R,T\n" + "".join(f"{nm},{20 + nm / 100},20\n" for nm in range(450, 1000, 10)))
         _, err = self.run_to_end([FROND, "fit", str(spectra), "-q"])
-        self.assertIn("values are in percent", err)
+        self.assertIn("values of R and T are in percent", err)
 
 
 class FilmFile(FrondTest):

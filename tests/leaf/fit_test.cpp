@@ -121,7 +121,7 @@ TEST(MeasuredSpectra, AreReadAsInstrumentsWriteThem) {
   EXPECT_FALSE(own.measurements[1].t.has_value());
   const MeasuredSpectra percents =
       read("Wavelength [nm];Reflectance (%);Transmittance (%)\r\n550,5;10,5;20\r\n350;1;1\r\n");
-  EXPECT_TRUE(percents.is_in_percent);
+  EXPECT_EQ(percents.in_percent, "R and T");
   EXPECT_EQ(percents.left_out, 1u);
   ASSERT_EQ(percents.measurements.size(), 1u);
   EXPECT_EQ(percents.measurements[0].lambda_nm, 550.5);
@@ -160,11 +160,19 @@ TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
 
 TEST(MeasuredSpectra, AreInPercentIfMostValuesOrTheirColumnsSaySo) {
   const auto is_in_percent = [](std::string_view text) {
-    return parse_measured_spectra(text, "a.csv", {}).is_in_percent;
+    return !parse_measured_spectra(text, "a.csv", {}).in_percent.empty();
   };
   EXPECT_TRUE(is_in_percent("nm,R\n500,1.2\n510,30\n520,40\n"));
   EXPECT_TRUE(is_in_percent("nm,R (%)\n500,1.2\n510,.9\n"));
   EXPECT_FALSE(is_in_percent("nm,R\n500,.012\n510,1\n"));
+}
+
+TEST(MeasuredSpectra, EachColumnHasItsUnit) {
+  const auto in_percent = [](std::string_view text) { return parse_measured_spectra(text, "a.csv", {}).in_percent; };
+  EXPECT_EQ(in_percent("nm,R (%),T\n500,25,.2\n510,30,.2\n"), "R");
+  EXPECT_EQ(in_percent("nm,R,T\n500,6,1.2\n510,6,1.1\n"), "R and T");
+  EXPECT_THAT(error_of([&] { in_percent("nm,R,T\n500,25,.2\n510,30,.2\n"); }),
+              HasSubstr("R looks like percent and T like fractions: name the columns with their units"));
 }
 
 /// As frond spectrophotometer writes a material with parameters.

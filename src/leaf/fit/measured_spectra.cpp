@@ -131,9 +131,9 @@ class Reader {
     }
     for (const Field& f : fields) {
       columns_.push_back(column_of(f.text));
-      const bool is_share = columns_.back() == Column::r || columns_.back() == Column::t;
-      if (is_share && (f.text.find('%') != f.text.npos || lower(f.text).find("percent") != std::string::npos))
-        result_.is_in_percent = true;
+      if (f.text.find('%') == f.text.npos && lower(f.text).find("percent") == std::string::npos) continue;
+      if (columns_.back() == Column::r) units_[0] = Unit::percent;
+      if (columns_.back() == Column::t) units_[1] = Unit::percent;
     }
     for (const Column once : {Column::wavelength, Column::r, Column::t, Column::theta, Column::side, Column::leaf})
       if (std::ranges::count(columns_, once) > 1)
@@ -222,35 +222,66 @@ class Reader {
     fail(where, "{} is a share of the light, from 0 to 1 or in percent; \"{}\" was given", what, given);
   }
 
-  /// Whether the names of the columns say so, or most values are too large for shares: a single one is a mistake.
-  bool is_in_percent() const {
-    constexpr double kLargestShare = 1.5;
+  using Share = std::optional<double> LeafMeasurement::*;
+  static constexpr std::array<Share, 2> kShares{&LeafMeasurement::r, &LeafMeasurement::t};
+  static constexpr std::array<std::string_view, 2> kNames{"R", "T"};
+  enum class Unit : uint8_t { unknown, fraction, percent };
+
+  /// Returns the unit that a column's values show: a few that are too large for fractions are mistakes, or noise.
+  Unit unit_of(Share share) const {
+    constexpr double kLargestFraction = 1.5;
     size_t all = 0, large = 0;
+    double most = 0;
     for (const LeafMeasurement& m : result_.measurements)
-      for (const auto& share : {m.r, m.t})
-        if (share) ++all, large += *share > kLargestShare ? 1 : 0;
-    return result_.is_in_percent || 2 * large > all;
+      if (m.*share) ++all, large += *(m.*share) > kLargestFraction ? 1 : 0, most = std::max(most, *(m.*share));
+    if (2 * large > all) return Unit::percent;
+    return all > 0 && most <= 1 ? Unit::fraction : Unit::unknown;
+  }
+
+  /// Decides for the columns whose names have no unit. If the values of one are in percent, those of the other are too,
+  /// unless they look like fractions: then the names of the columns must tell.
+  void find_units() {
+    if (units_[0] != Unit::unknown || units_[1] != Unit::unknown) {
+      for (size_t i = 0; i < 2; ++i)
+        if (units_[i] == Unit::unknown) units_[i] = unit_of(kShares[i]);
+      return;
+    }
+    for (size_t i = 0; i < 2; ++i) units_[i] = unit_of(kShares[i]);
+    for (size_t i = 0; i < 2; ++i) {
+      if (units_[i] != Unit::percent || units_[1 - i] == Unit::percent) continue;
+      if (units_[1 - i] == Unit::fraction)
+        fail(first_row_,
+             "{} looks like percent and {} like fractions: name the columns with their units, as in \"{} (%)\"",
+             kNames[i], kNames[1 - i], kNames[i]);
+      units_[1 - i] = Unit::percent;
+    }
   }
 
   /// Converts percent, and refuses what no spectrometer gives.
   void scale() {
     constexpr double kNoise = 0.05;
-    result_.is_in_percent = is_in_percent();
-    for (size_t i = 0; i < result_.measurements.size(); ++i) {
-      LeafMeasurement& measurement = result_.measurements[i];
-      for (const auto& [what, share, field] :
-           {std::tuple{"R", &measurement.r, &fields_[i][0]}, {"T", &measurement.t, &fields_[i][1]}}) {
-        if (!*share) continue;
-        if (result_.is_in_percent) **share /= 100;
-        if (**share < -kNoise || **share > 1 + kNoise)
-          fail(field->where, "{} is a share of the light, from 0 to 1{}; \"{}\" was given", what,
-               result_.is_in_percent ? " or, as most values of this file, from 0 to 100 percent"
-                                     : " (most values of this file are not in percent)",
-               field->text);
+    find_units();
+    std::array<bool, 2> is_there{};
+    for (size_t row = 0; row < result_.measurements.size(); ++row) {
+      LeafMeasurement& measurement = result_.measurements[row];
+      for (size_t i = 0; i < 2; ++i) {
+        std::optional<double>& share = measurement.*kShares[i];
+        if (!share) continue;
+        is_there[i] = true;
+        const bool is_in_percent = units_[i] == Unit::percent;
+        if (is_in_percent) *share /= 100;
+        if (*share < -kNoise || *share > 1 + kNoise)
+          fail(fields_[row][i].where, "{} is a share of the light, from 0 to 1{}; \"{}\" was given", kNames[i],
+               is_in_percent ? " or, as in this column, from 0 to 100 percent"
+                             : " (most values of this column are not in percent)",
+               fields_[row][i].text);
       }
       const double sum = measurement.r.value_or(0) + measurement.t.value_or(0);
-      if (sum > 1 + kNoise) fail(fields_[i][0].where, "R + T is {:.4g}: a leaf scatters 1 at most", sum);
+      if (sum > 1 + kNoise) fail(fields_[row][0].where, "R + T is {:.4g}: a leaf scatters 1 at most", sum);
     }
+    for (size_t i = 0; i < 2; ++i)
+      if (is_there[i] && units_[i] == Unit::percent)
+        result_.in_percent += fmt::format("{}{}", result_.in_percent.empty() ? "" : " and ", kNames[i]);
   }
 
   const SpectraMeasurement& how_;
@@ -260,6 +291,7 @@ class Reader {
   std::set<std::string> leaves_;
   MeasuredSpectra result_;
   std::vector<std::array<Field, 2>> fields_;  ///< R and T of the measurements
+  std::array<Unit, 2> units_{};               ///< of R and T
 };
 
 }  // namespace

@@ -20,16 +20,17 @@ struct SpectraMeasurement {
 /// Content of a file of measured spectra.
 struct MeasuredSpectra {
   std::vector<LeafMeasurement> measurements;
-  size_t left_out = 0;         ///< rows beyond kConstantsRange_nm, or without a number
-  bool is_in_percent = false;  ///< the file is in percent; `measurements` are divided by 100
+  size_t left_out = 0;          ///< rows beyond kConstantsRange_nm, or without a number
+  std::string in_percent = {};  ///< "R", "T" or "R and T": what is in percent in the file; `measurements` are fractions
 };
 
 /// Reads text as instruments export it: rows of numbers separated by commas, semicolons, tabs or spaces, after lines of
 /// comment (#) and at most one line of column names. Names, in any case and with or without a unit behind them:
 /// wavelength (nm, lambda, wvl), R (reflectance, refl), T (transmittance, trans), theta_deg (angle), side (adaxial or
 /// upper, abaxial or lower), leaf (material, sample); other columns are ignored. Without names: wavelength, R and, if
-/// there are three columns, T. Wavelengths below 100 are in micrometres, values above 1.5 in percent. Decimals may have
-/// a comma if fields are not separated by one. Throws InputError with `name`, line and column.
+/// there are three columns, T. Wavelengths below 100 are in micrometres. A column is in percent if its name says so or,
+/// where no name has a unit, if most of its values are above 1.5. Decimals may have a comma if fields are not separated
+/// by one. Throws InputError with `name`, line and column.
 MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how);
 
 /// Reads a file by `parse_measured_spectra`. Throws InputError, also if the file cannot be read.
