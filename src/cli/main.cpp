@@ -22,6 +22,8 @@ void open_standard_streams() {
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit becomes a write error instead of ending the program
+  // Exceeding the file size limit, and a pipe whose reader is gone, become write errors instead of ending the program.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   return frond::run(argc, argv);
 }

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <memory>
 
+#include "core/parallel.h"
+
 namespace frond {
 namespace {
 
@@ -53,7 +55,10 @@ File open(const Source& source) {
 
 void append_rest(std::FILE* file, const Source& source, std::string& bytes) {
   std::array<char, 1 << 16> block;
-  while (const size_t count = std::fread(block.data(), 1, block.size(), file)) bytes.append(block.data(), count);
+  while (const size_t count = std::fread(block.data(), 1, block.size(), file)) {
+    check_stop();
+    bytes.append(block.data(), count);
+  }
   if (std::ferror(file)) source.refuse("read", errno);
 }
 
@@ -83,6 +88,7 @@ uint64_t read_file_blocks(const fs::path& path, const Location& where,
   std::string block(kBlock, '\0');
   uint64_t all = 0;
   while (const size_t count = std::fread(block.data(), 1, kBlock, file.get())) {
+    check_stop();
     use({block.data(), count});
     all += count;
   }

@@ -13,7 +13,7 @@ bool is_gzip(std::string_view bytes);
 
 /// Largest size in bytes that `packed` bytes of compressed text may unpack to. Scenes and meshes are compressed to
 /// about a tenth; a file made to exhaust memory, to a thousandth.
-constexpr size_t most_unpacked(size_t packed) { return std::max(size_t{1} << 28, 64 * packed); }
+constexpr size_t most_unpacked(size_t packed) { return std::max(size_t{1} << 25, 64 * packed); }
 
 /// Returns the uncompressed content of a gzip file of one or more members. Throws InputError at `where` if the file is
 /// damaged or truncated, or unpacks to more than `most` bytes (0: most_unpacked). `name` is the file in messages.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
+
 namespace frond {
 namespace {
 
@@ -200,6 +202,7 @@ std::vector<double> ParameterReader::read_numbers(Tokenizer& tokens, const Token
     if (!number || (are_integers && !is_int(*number)))
       fail_value(tokens.where(value), p, numbers_.empty() || are_integers ? kind : Values::numbers, value);
     numbers_.push_back(*number);
+    if (numbers_.size() % 65536 == 0) check_stop();
   });
   return numbers_;
 }

@@ -1,8 +1,10 @@
 #include "scene/format/parser.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/log.h"
+#include "core/parallel.h"
 #include "core/random.h"
 #include "scene/format/description_builder.h"
 #include "scene/format/directives.h"
@@ -39,7 +41,7 @@ class SceneReader {
  private:
   static constexpr size_t kDeepest = 64;
   static constexpr size_t kMostFiles = 20'000;           ///< read in all, each as often as it is included
-  static constexpr size_t kMostBytes = size_t{1} << 36;  ///< read in all, uncompressed
+  static constexpr size_t kMostBytes = size_t{1} << 30;  ///< read again, from files that are included several times
 
   Location read(const std::string& bytes, const fs::path& path, Tokenizer* outer);
   void read_directive(Tokenizer& tokens, DirectiveContext& context);
@@ -58,8 +60,9 @@ class SceneReader {
     fs::path path, real;
   };
   std::vector<OpenFile> open_files_;  // from the main file to the one being read
-  size_t files_ = 0, bytes_ = 0;
-  bool is_exhausted_ = false;  // a total is above its limit: nothing further is read
+  std::set<fs::path> seen_;           // real paths
+  size_t files_ = 0, repeated_bytes_ = 0;
+  bool limit_reached_ = false;  // nothing further is read
   Location end_;
 };
 
@@ -70,17 +73,20 @@ Location SceneReader::read(const std::string& bytes, const fs::path& path, Token
   const auto name = std::make_shared<const std::string>(path.string());
   std::string unpacked;
   if (is_gzip(bytes)) unpacked = unpack_gzip(bytes, path.string(), {name, 1, 1});
-  bytes_ += is_gzip(bytes) ? unpacked.size() : bytes.size();
-  if (++files_ > kMostFiles || bytes_ > kMostBytes) {
-    is_exhausted_ = scene_.is_incomplete = true;
+  if (!seen_.insert(real_path(path)).second) repeated_bytes_ += is_gzip(bytes) ? unpacked.size() : bytes.size();
+  if (++files_ > kMostFiles || repeated_bytes_ > kMostBytes) {
+    limit_reached_ = scene_.is_incomplete = true;
     fail({name, 1, 1},
-         "the files of a scene, each counted as often as it is included, are more than {} or have more than {} GB",
+         "the scene includes more than {} files, each counted as often as it is included, or files again with more "
+         "than {} "
+         "GB in all",
          kMostFiles, kMostBytes >> 30);
   }
   Tokenizer tokens(is_gzip(bytes) ? unpacked : bytes, name, outer);
   DirectiveContext context{tokens, parameters_, builder_, log_, unsupported_};
   open_files_.push_back({path, real_path(path)});
-  while (!is_exhausted_ && !tokens.at_end()) {
+  while (!limit_reached_ && !tokens.at_end()) {
+    check_stop();
     const Token word = tokens.peek();
     if (!problems_.attempt([&] { read_directive(tokens, context); })) tokens.skip_to_directive(word, is_directive);
   }
