@@ -39,7 +39,7 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     preview: Show the image in the terminal while it is rendered, and at the end.
     part: Write a part, to be combined with frond merge, instead of an image.
     samples: Range of samples to render, without END, as in 64:128; by default from 0 to spp.
-    checkpoint: Save the partial result at this interval, and when stopped by SIGINT or SIGTERM: in OUTPUT.part, or in FILE.checkpoint if part writes FILE. Unit: s. Range: above 0.
+    checkpoint: Save the partial result at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP: in OUTPUT.part, or in FILE.checkpoint if part writes FILE. Unit: s. Range: above 0.
     resume: Resume from OUTPUT.part, or part's file, if it exists; also save checkpoints.
     disable_pixel_jitter: Sample the centres of pixels and lens.
     disable_texture_filtering: Point-sample textures.
@@ -140,7 +140,7 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
     plot: Chart against the zenith angle, or maps of a hemisphere: .svg or .png.
-    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT or SIGTERM. Unit: s. Range: above 0. Needs csv.
+    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
     resume: Resume from CSV.part if it exists; write one too. Needs csv.
 
     Returns the job's table."""
@@ -170,7 +170,7 @@ def flux(scene, wavelengths = None, *, by_instance = False, target: float | Sequ
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
-    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT or SIGTERM. Unit: s. Range: above 0. Needs csv.
+    checkpoint: Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP. Unit: s. Range: above 0. Needs csv.
     resume: Resume from CSV.part if it exists; write one too. Needs csv."""
 
 def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | Sequence[str] | Mapping[str, str] | None = None, rays: int | None = None, se: float | None = None, rendered: bool = False, seed: int | None = None, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> object:
@@ -355,7 +355,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     preview: Show the image in the terminal while it is rendered, and at the end.
     part: Write a part, to be combined with frond merge, instead of an image.
     samples: Range of samples to render, without END, as in 64:128; by default from 0 to spp.
-    checkpoint: Save the partial result at this interval, and when stopped by SIGINT or SIGTERM: in OUTPUT.part, or in FILE.checkpoint if part writes FILE. Unit: s. Range: above 0.
+    checkpoint: Save the partial result at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP: in OUTPUT.part, or in FILE.checkpoint if part writes FILE. Unit: s. Range: above 0.
     resume: Resume from OUTPUT.part, or part's file, if it exists; also save checkpoints.
     disable_pixel_jitter: Sample the centres of pixels and lens.
     disable_texture_filtering: Point-sample textures.

@@ -7,7 +7,7 @@ import os
 import re
 
 from . import _frond
-from ._session import _show, default_session
+from ._session import _show, checked_session
 
 _ANNOTATIONS = {"flag": "bool", "count": "int", "seed": "int", "real": "float", "numbers": "float | Sequence[float] | str",
                 "text": "str | os.PathLike", "texts": "str | Sequence[str] | Mapping[str, str]"}
@@ -46,6 +46,8 @@ def words(param, value):
 def _words(param, value):
     if param["kind"] != "texts":
         return [_text(value)]
+    if isinstance(value, (bytearray, memoryview)):
+        value = bytes(value)
     if isinstance(value, (str, bytes, os.PathLike)):
         text = os.fsdecode(value)
         if param["name"] == "swap" and "=" not in text.split(",")[0]:
@@ -152,15 +154,14 @@ def _table(columns):
 
 def run(name, /, *, progress=None, session=None, **given):
     """Runs the job `name` with the keywords of its function and returns a `Result`. Raises InputError."""
+    if name not in JOBS:
+        raise ValueError(f"there is no job {name!r}: one of {', '.join(JOBS)}")
     job = JOBS[name]
     given = by_alias(job["params"], given)
     known = {python_name(p["name"]) for p in job["params"]}
     for unknown in given.keys() - known:
         raise TypeError(f"{name}() got an unexpected keyword argument {unknown!r}")
-    owner = session or default_session()
-    if not hasattr(owner, "_session"):
-        raise TypeError(f"session: a frond.Session is needed, not {session!r}")
-    return Result(_frond.run(owner._session, name, arguments(job["params"], given), _show(progress)))
+    return Result(_frond.run(checked_session(session)._session, name, arguments(job["params"], given), _show(progress)))
 
 
 def _function(job):

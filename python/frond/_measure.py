@@ -5,7 +5,7 @@ import os
 
 from . import _frond
 from ._jobs import FUNCTIONS, _table, run
-from ._session import default_session
+from ._session import checked_session, path_text
 
 
 def material_text(material):
@@ -18,15 +18,12 @@ def _numbers(values):
 
 
 def _session_of(session):
-    session = session or default_session()
-    if not hasattr(session, "_session"):
-        raise TypeError(f"session: a frond.Session is needed, not {session!r}")
-    return session._session
+    return checked_session(session)._session
 
 
 def names(kind="material", *, session=None):
     """Returns {name: description} of the plug-ins of a kind ("material", "light", "integrator", ...)."""
-    return (session or default_session()).names(kind)
+    return checked_session(session).names(kind)
 
 
 def _with_keywords_of(name):
@@ -175,7 +172,7 @@ def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
     Raises ValueError or InputError."""
     if (path is None) == (wavelengths is None):
         raise ValueError("fit takes measurements, or the path of a file with them")
-    source = {"file": os.fspath(path)} if path is not None else {"data": _csv(wavelengths, R, T)}
+    source = {"file": path_text(path)} if path is not None else {"data": _csv(wavelengths, R, T)}
     if isinstance(sieve, bool):
         sieve = "on" if sieve else "off"
     return Fit(run("fit", **source, sieve=sieve, **options))
@@ -184,6 +181,6 @@ def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
 def read_spectra(path, *, leaf="", angle=8.0):
     """Reads a file of measured spectra as the job `fit` does. Returns a table of wavelength_nm, theta_deg, R and T. leaf: the
     leaf to read if the file has several. angle: of incidence, in degrees, if the file does not say it. Raises InputError."""
-    rows = _frond.read_spectra(os.fspath(path), leaf, angle)
+    rows = _frond.read_spectra(path_text(path), leaf, angle)
     columns = list(zip(*rows)) or [(), (), (), ()]
     return _table(dict(zip(("wavelength_nm", "theta_deg", "R", "T"), map(list, columns))))

@@ -1,6 +1,7 @@
 """Sessions, scenes, and the images rendered from them."""
 
 import json
+import operator
 import os
 import threading
 from pathlib import Path
@@ -23,6 +24,15 @@ def _show(progress):
     return line
 
 
+def path_text(path):
+    """Returns a path (str, bytes or os.PathLike) as text. Raises TypeError, and ValueError for a zero byte, at which the system
+    would cut it off."""
+    text = os.fsdecode(path)
+    if "\0" in text:
+        raise ValueError(f"a path has no zero byte, as {text!r} does")
+    return text
+
+
 class Session:
     """Threads, plug-ins and the cache of leaf tables, shared by scenes. Several sessions may exist at once.
 
@@ -31,10 +41,13 @@ class Session:
     """
 
     def __init__(self, threads=0, cache=True, plugins=()):
-        folder = _frond.default_cache() if cache is True else "" if not cache else os.fspath(cache)
+        folder = _frond.default_cache() if cache is True else "" if not cache else path_text(cache)
+        threads = operator.index(threads)
         if not 0 <= threads <= 1024:
             raise ValueError(f"threads: a whole number from 0 to 1024 is needed, not {threads!r}")
-        self._session = _frond.Session(threads, folder, [os.fspath(p) for p in plugins])
+        if isinstance(plugins, (str, bytes, os.PathLike)):
+            plugins = [plugins]
+        self._session = _frond.Session(threads, folder, [path_text(p) for p in plugins])
 
     @property
     def threads(self):
@@ -47,11 +60,11 @@ class Session:
 
     def load(self, path, **over):
         """Returns the Scene of a file. Keywords: those of the function `load`."""
-        return self._scene(os.fspath(path), None, **over)
+        return self._scene(path_text(path), None, **over)
 
     def loads(self, text, folder=".", **over):
         """Returns the Scene of a string. Relative file names in it start at `folder`."""
-        return self._scene(os.path.join(os.fspath(folder), "<string>"), text, **over)
+        return self._scene(os.path.join(path_text(folder), "<string>"), text, **over)
 
     def _scene(self, path, text, *, adaptive=False, **over):
         from ._jobs import JOBS, arguments, by_alias, python_name
@@ -81,6 +94,14 @@ def default_session():
         return _default
 
 
+def checked_session(session):
+    """Returns the session, or the default one for None. Raises TypeError for anything else."""
+    session = session or default_session()
+    if not isinstance(session, Session):
+        raise TypeError(f"session: a frond.Session is needed, not {session!r}")
+    return session
+
+
 def load(path, *, session=None, **over):
     """Reads a pbrt-v4 scene file and returns a Scene that is ready to render.
 
@@ -99,17 +120,17 @@ def load(path, *, session=None, **over):
 
     Raises InputError with file, line and column if the scene is wrong.
     """
-    return (session or default_session()).load(path, **over)
+    return checked_session(session).load(path, **over)
 
 
 def loads(text, folder=".", *, session=None, **over):
     """Returns the Scene of a string. Relative file names in it start at `folder`. Keywords: those of `load`."""
-    return (session or default_session()).loads(text, folder, **over)
+    return checked_session(session).loads(text, folder, **over)
 
 
 def read_image(path):
     """Reads an image file. Returns (names of the channels, float32 array `[row][column][channel]`). Raises InputError."""
-    return _frond.read_image(os.fspath(path))
+    return _frond.read_image(path_text(path))
 
 
 class Scene:
@@ -201,11 +222,11 @@ class Image:
     def save(self, path):
         """Writes the image: all channels to .exr, colours for a display to .png or .jpg. A failed write leaves no file.
         Raises InputError."""
-        self._rendered.save(os.fspath(path))
+        self._rendered.save(path_text(path))
 
     def save_part(self, path):
         """Writes a part, which `frond merge` combines with other parts and `frond render --resume` continues."""
-        self._rendered.save_part(os.fspath(path))
+        self._rendered.save_part(path_text(path))
 
     def __repr__(self):
         least, most = self.samples

@@ -122,6 +122,15 @@ CALLS = [
     ('frond.load("scene.pbrt", wavelengths="")', BAD_INPUT, "wavelengths"),
     ('frond.flux("scene.pbrt", wavelengths="", paths=64, period=(2, 2))', BAD_INPUT, "wavelengths"),
     ('frond.brf("scene.pbrt", wavelengths="", paths=64, period=(2, 2))', BAD_INPUT, "wavelengths"),
+    ('frond.run(None)', "ValueError", "None"),
+    ('frond.load("scene.pbrt", session=5)', "TypeError", "frond.Session is needed, not 5"),
+    ('frond.Session(threads="2")', "TypeError", "integer"),
+    ('frond.Session(cache="tables\\0more")', "ValueError", "zero byte"),
+    ('frond.Session(plugins=["a\\0b"])', "ValueError", "zero byte"),
+    ('frond.Session(plugins="nowhere.so")', BAD_INPUT, "nowhere.so"),
+    ('frond.load("scene.pbrt", session=session).render(1).save("a\\0.exr")', "ValueError", "zero byte"),
+    ('frond.read_image("a\\0.exr")', "ValueError", "zero byte"),
+    ('frond.run("render", scene=bytearray(b"nope.pbrt"), session=session)', BAD_INPUT, "nope.pbrt"),
     ('frond.run("nowhere")', "KeyError InputError ValueError", "nowhere"),
     # Lists that are empty.
     ('frond.compare("scene.pbrt", [], size=4, spp=4)', BAD_INPUT, "materials|candidate"),
@@ -242,6 +251,12 @@ ENDS = {kind: EXCEPTIONS for kind in GOES_ON} | {
 }
 #: Values that are not finite, which the renderer counts as black and reports.
 REPORTED = ("f_nan", "f_infinite", "sample_f_nan", "sample_f_infinite", "sample_pdf_nan", "sample_pdf_zero")
+#: Measurements end with an error instead: a share without them would be wrong.
+MEASURED = [f'{function.format(f"hostile_material,fault={fault}")}'
+            for fault in ("sample_f_nan", "sample_f_infinite", "sample_pdf_nan", "sample_pdf_negative", "nan_direction")
+            for function in ('frond.spectrophotometer("{}", 551, rays=1000, session=session)',
+                             'frond.goniophotometer("{}", 551, rays=1000, session=session)',
+                             'frond.flux("scene.pbrt", wavelengths=551, paths=1000, swap="*={}", session=session)')]
 
 
 def call_of(kind, fault):
@@ -268,7 +283,7 @@ def outcomes(tmp_path_factory):
     calls = [call for call, _, _ in CALLS]
     if PLUGIN:
         calls += [call for _, _, call in PLUGIN_CALLS] + [conform_call(fault) for fault in CONFORM_FAULTS]
-        calls += INSTRUMENT_CALLS
+        calls += INSTRUMENT_CALLS + MEASURED
     script = tmp_path_factory.mktemp("hostile") / "runner.py"
     script.write_text(RUNNER)
     lines = "".join(json.dumps(call) + "\n" for call in calls)
@@ -321,6 +336,12 @@ def test_conform_finds_a_plugin_that_fails(fault, outcomes):
 @pytest.mark.parametrize("call", INSTRUMENT_CALLS)
 def test_an_instrument_names_a_plugin_that_throws(call, outcomes):
     check(outcomes[call], "InputError", r"loaded from hostile\.so")
+
+
+@needs_plugin
+@pytest.mark.parametrize("call", MEASURED)
+def test_a_measurement_of_wrong_weights_is_an_error(call, outcomes):
+    check(outcomes[call], "InputError", "has a defect")
 
 
 #: Calls that last long. `session` has no cache.

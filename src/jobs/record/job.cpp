@@ -15,7 +15,7 @@ namespace {
 using enum ArgumentKind;
 
 constexpr JobParam kSession[] = {
-    JobParam("quiet", flag, "Print only errors and requested data.", {.aliases = "q"}),
+    JobParam("quiet", flag, "Print only errors, warnings and requested data.", {.aliases = "q"}),
     JobParam(
         "plugin", texts,
         "Shared object with further plug-ins. Shared objects in the folders of FROND_PLUGIN_PATH are always loaded.",

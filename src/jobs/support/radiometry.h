@@ -24,7 +24,7 @@ constexpr JobParam rms_param(std::string_view doc) {
 }
 inline constexpr JobParam kCheckpointParam(
     "checkpoint", ArgumentKind::real,
-    "Keep the partial result in CSV.part at this interval, and when stopped by SIGINT or SIGTERM.",
+    "Keep the partial result in CSV.part at this interval, and when stopped by SIGINT, SIGTERM or SIGHUP.",
     {.unit = "s", .range = kAboveZero, .needs = "csv"});
 inline constexpr JobParam kResumeParam("resume", ArgumentKind::flag,
                                        "Resume from CSV.part if it exists; write one too.", {.needs = "csv"});
