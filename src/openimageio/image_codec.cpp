@@ -4,7 +4,9 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
+#include <optional>
 
 namespace frond {
 namespace {
@@ -77,6 +79,38 @@ bool is_whole_png(std::string_view bytes) {
   return end != std::string::npos && end + kAfterName <= bytes.size();
 }
 
+/// Throws InputError if an attribute of an EXR's headers claims more bytes than follow, for which OpenEXR would
+/// allocate memory (OpenEXR File Layout). Other damage is left to OpenEXR.
+void check_exr_header(std::string_view bytes, const Location& where, const fs::path& path) {
+  constexpr size_t kVersion = 4, kAttributes = 8;
+  if (bytes.size() < kAttributes) return;
+  const bool has_parts = (bytes[kVersion + 1] & 0x10) != 0;
+  std::string_view rest = bytes.substr(kAttributes);
+  const auto take_text = [&rest]() -> std::optional<std::string_view> {
+    const size_t end = rest.find('\0');
+    if (end == rest.npos) return {};
+    const std::string_view text = rest.substr(0, end);
+    rest.remove_prefix(end + 1);
+    return text;
+  };
+  for (;;) {
+    const auto name = take_text();
+    if (!name) return;
+    if (name->empty()) {
+      if (!has_parts || rest.empty() || rest.front() == '\0') return;
+      continue;
+    }
+    int32_t size = 0;
+    if (!take_text() || rest.size() < sizeof size) return;
+    std::memcpy(&size, rest.data(), sizeof size);
+    rest.remove_prefix(sizeof size);
+    if (size < 0 || size_t(size) > rest.size())
+      fail(where, "cannot read image \"{}\": an attribute of its header claims {} bytes, {} follow", path.string(),
+           size, rest.size());
+    rest.remove_prefix(size_t(size));
+  }
+}
+
 /// The codec of this shared object. It has no state, so that all threads can use it at once.
 class OpenImageIOCodec final : public ImageCodec {
  public:
@@ -89,6 +123,7 @@ class OpenImageIOCodec final : public ImageCodec {
     };
     const bool is_jpeg = format == "jpeg", is_png = format == "png";
     check((!is_jpeg || is_whole_jpeg(bytes)) && (!is_png || is_whole_png(bytes)), "the file ends too soon");
+    if (format == "openexr") check_exr_header(bytes, where, path);
     OIIO::ImageSpec config, spec;
     config.attribute("oiio:UnassociatedAlpha", 1);  // keep the file's values: no multiplication by alpha
     MemoryReader memory(bytes);

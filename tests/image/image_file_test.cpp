@@ -306,6 +306,16 @@ TEST_F(ImageFiles, SmallFilesThatClaimHugeImagesAreRefused) {
   EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("a.exr"));
 }
 
+TEST_F(ImageFiles, SmallFilesWithHugeAttributesAreRefused) {
+  const fs::path path = folder_ / "a.exr";
+  write_image(path, sample({"R", "G", "B"}), {});
+  std::string bytes = bytes_of(path);
+  const size_t size = bytes.find(std::string("capDate\0string\0", 15)) + 15;
+  bytes[size + 3] = 0x7f;  // the last byte of the attribute's size: 2 GB
+  std::ofstream(path, std::ios::binary) << bytes;
+  EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("an attribute of its header claims 21307064"));
+}
+
 /// 24 MB of pixels, for which OpenImageIO would allocate 3 GB.
 TEST_F(ImageFiles, SmallFilesThatClaimWideRowsAreRefused) {
   constexpr std::array<uint16_t, 27> kBmp{0x4d42, 78, 0, 0, 0, 54, 0, 40, 0, 2, 63, 2, 0, 1, 24};
