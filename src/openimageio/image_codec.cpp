@@ -2,32 +2,21 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <malloc.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <cstring>
+#include <future>
+#include <mutex>
 #include <optional>
+#include <system_error>
+
+#include "openimageio/header_checks.h"
 
 namespace frond {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Throws InputError if the header claims no pixels, or more bytes of floats than the limits, before memory is
-/// allocated. Images of 8 bits compress by 1032 at most (deflate).
-void check_size(const OIIO::ImageSpec& spec, size_t file_size, const Location& where, const fs::path& path) {
-  constexpr uint64_t kMostCompression = 16384, kAlwaysAllowed = 256u << 20, kMostChannels = 1 << 12;
-  const auto claim = [&] {
-    return fmt::format("image \"{}\" of {} bytes claims {} x {} pixels of {} channels", path.string(), file_size,
-                       spec.width, spec.height, spec.nchannels);
-  };
-  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth <= 0) fail(where, "{}", claim());
-  if (uint64_t(spec.nchannels) > kMostChannels) fail(where, "{}: {} channels are the limit", claim(), kMostChannels);
-  constexpr int kRowsAtOnce = 64;  // for which OpenImageIO allocates memory even where there are fewer
-  const uint64_t pixels = uint64_t(spec.width) * uint64_t(std::max(spec.height, kRowsAtOnce));  // both below 2^31
-  const uint64_t most = file_size * kMostCompression + kAlwaysAllowed;
-  if (pixels > most / (uint64_t(spec.nchannels) * sizeof(float))) fail(where, "{}", claim());
-}
 
 /// As OpenImageIO's reader of memory (2.4), without its defect: after a seek beyond the end it reads there.
 class MemoryReader final : public OIIO::Filesystem::IOMemReader {
@@ -54,12 +43,13 @@ std::optional<Chromaticities> read_chromaticities(const OIIO::ImageSpec& spec) {
   return Chromaticities{xy(0), xy(1), xy(2), xy(3)};
 }
 
-/// Returns the text attributes; those of other types are ignored.
+/// Returns the text attributes; those of other types, and text that is not UTF-8, are ignored.
 ImageHeader read_header(const OIIO::ImageSpec& spec) {
   ImageHeader header;
   header.color_space = spec.get_string_attribute(kColorSpaceKey);
   for (const auto& attribute : spec.extra_attribs)
-    if (attribute.type() == OIIO::TypeDesc::STRING && attribute.name() != kColorSpaceKey)
+    if (attribute.type() == OIIO::TypeDesc::STRING && attribute.name() != kColorSpaceKey &&
+        is_utf8(attribute.name().string()) && is_utf8(attribute.get_string()))
       header.text[attribute.name().string()] = attribute.get_string();
   return header;
 }
@@ -79,72 +69,55 @@ bool is_whole_png(std::string_view bytes) {
   return end != std::string::npos && end + kAfterName <= bytes.size();
 }
 
-/// Throws InputError if an attribute of an EXR's headers claims more bytes than follow, for which OpenEXR would
-/// allocate memory (OpenEXR File Layout). Other damage is left to OpenEXR.
-void check_exr_header(std::string_view bytes, const Location& where, const fs::path& path) {
-  constexpr size_t kVersion = 4, kAttributes = 8;
-  if (bytes.size() < kAttributes) return;
-  const bool has_parts = (bytes[kVersion + 1] & 0x10) != 0;
-  std::string_view rest = bytes.substr(kAttributes);
-  const auto take_text = [&rest]() -> std::optional<std::string_view> {
-    const size_t end = rest.find('\0');
-    if (end == rest.npos) return {};
-    const std::string_view text = rest.substr(0, end);
-    rest.remove_prefix(end + 1);
-    return text;
-  };
-  for (;;) {
-    const auto name = take_text();
-    if (!name) return;
-    if (name->empty()) {
-      if (!has_parts || rest.empty() || rest.front() == '\0') return;
-      continue;
-    }
-    int32_t size = 0;
-    if (!take_text() || rest.size() < sizeof size) return;
-    std::memcpy(&size, rest.data(), sizeof size);
-    rest.remove_prefix(sizeof size);
-    if (size < 0 || size_t(size) > rest.size())
-      fail(where, "cannot read image \"{}\": an attribute of its header claims {} bytes, {} follow", path.string(),
-           size, rest.size());
-    rest.remove_prefix(size_t(size));
+/// While one exists, memory that is allocated is filled with 0, as far as the C library can (glibc): decoders take
+/// memory as it is where a damaged file has too few data and they report no error, so that pixels could be different
+/// each time, and those of other data. Other threads' memory is filled too.
+class ZeroedMemory {
+ public:
+  ZeroedMemory() { count(1); }
+  ~ZeroedMemory() { count(-1); }
+  ZeroedMemory(const ZeroedMemory&) = delete;
+  ZeroedMemory& operator=(const ZeroedMemory&) = delete;
+
+ private:
+  static void count(int change) {
+    static std::mutex mutex;
+    static int scopes = 0;
+    constexpr int kFillWithZero = 0xff;  // the complement is what allocated memory is filled with
+    const std::lock_guard lock(mutex);
+    scopes += change;
+    mallopt(M_PERTURB, scopes > 0 ? kFillWithZero : 0);
   }
+};
+
+/// Reads the pixels into `image`, as floats. Returns false on an error, which OpenImageIO (2.4) may only note. Strips
+/// of a TIFF that it would inflate itself, without noting errors, are read row by row.
+bool read_pixels(OIIO::ImageInput& in, const OIIO::ImageSpec& spec, Image& image) {
+  constexpr auto kFloat = OIIO::TypeDesc::FLOAT;
+  constexpr int kAdobeDeflate = 8;
+  float* to = image.pixels.data();
+  const bool inflates = spec.get_int_attribute("tiff:Compression") == kAdobeDeflate && spec.tile_width == 0 &&
+                        spec.get_string_attribute("planarconfig") == "contig";
+  if (!inflates) return in.read_image(0, 0, 0, spec.nchannels, kFloat, to) && !in.has_error();
+  for (int y = spec.y; y < spec.y + spec.height; ++y, to += size_t(spec.width) * size_t(spec.nchannels))
+    if (!in.read_scanlines(0, 0, y, y + 1, 0, 0, spec.nchannels, kFloat, to)) return false;
+  return !in.has_error();
 }
 
 /// The codec of this shared object. It has no state, so that all threads can use it at once.
 class OpenImageIOCodec final : public ImageCodec {
  public:
-  /// Calls the reader of one format, and passes its errors on with the name of the file and the place that asks for it.
-  /// Decodes from memory: nothing is opened by name, and a file that changes meanwhile does no harm.
   ImageFile decode(std::string_view bytes, std::string_view format, const fs::path& path,
                    const Location& where) const override {
-    const auto check = [&](bool good, const std::string& why) {
-      if (!good) fail(where, "cannot read image \"{}\": {}", path.string(), why.empty() ? "it is damaged" : why);
-    };
-    const bool is_jpeg = format == "jpeg", is_png = format == "png";
-    check((!is_jpeg || is_whole_jpeg(bytes)) && (!is_png || is_whole_png(bytes)), "the file ends too soon");
-    if (format == "openexr") check_exr_header(bytes, where, path);
-    OIIO::ImageSpec config, spec;
-    config.attribute("oiio:UnassociatedAlpha", 1);  // keep the file's values: no multiplication by alpha
-    MemoryReader memory(bytes);
+    const ZeroedMemory zeroed;
+    std::future<ImageFile> image;
     try {
-      const auto in = OIIO::ImageInput::create(std::string(format));
-      check(in != nullptr, OIIO::geterror());
-      check(in->set_ioproxy(&memory), "OpenImageIO cannot read this format from memory");
-      check(in->open(path.filename().string(), spec, config), in->geterror());
-      check_size(spec, bytes.size(), where, path);
-      check(spec.depth == 1 && !spec.deep, "it is a volume, or deep");
-      ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
-                     spec.format == OIIO::TypeDesc::UINT8, spec.format == OIIO::TypeDesc::UINT8 || is_png};
-      check(in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, file.image.pixels.data()), in->geterror());
-      return file;
-    } catch (const InputError&) {
-      throw;
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {  // of the libraries that OpenImageIO calls
-      fail(where, "cannot read image \"{}\": {}", path.string(), error.what());
+      // A thread of its own has no small blocks of memory that were freed before and keep their content.
+      image = std::async(std::launch::async, [&] { return decode_here(bytes, format, path, where); });
+    } catch (const std::system_error&) {  // the machine has no more threads
+      return decode_here(bytes, format, path, where);
     }
+    return image.get();
   }
 
   /// Encodes to memory, because OpenImageIO does not report a full disk.
@@ -167,6 +140,42 @@ class OpenImageIOCodec final : public ImageCodec {
     check(out->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data()), out->geterror());
     check(out->close(), out->geterror());
     return bytes;
+  }
+
+ private:
+  /// Calls the reader of one format, and passes its errors on with the name of the file and the place that asks for it.
+  /// Decodes from memory: nothing is opened by name, and a file that changes meanwhile does no harm.
+  static ImageFile decode_here(std::string_view bytes, std::string_view format, const fs::path& path,
+                               const Location& where) {
+    const auto check = [&](bool good, const std::string& why) {
+      if (!good) fail(where, "cannot read image \"{}\": {}", path.string(), why.empty() ? "it is damaged" : why);
+    };
+    const bool is_jpeg = format == "jpeg", is_png = format == "png";
+    check((!is_jpeg || is_whole_jpeg(bytes)) && (!is_png || is_whole_png(bytes)), "the file ends too soon");
+    const EncodedImage encoded{bytes, path, where};
+    check_header(encoded, format);
+    OIIO::ImageSpec config, spec;
+    config.attribute("oiio:UnassociatedAlpha", 1);  // keep the file's values: no multiplication by alpha
+    MemoryReader memory(bytes);
+    try {
+      const auto in = OIIO::ImageInput::create(std::string(format));
+      check(in != nullptr, OIIO::geterror());
+      check(in->set_ioproxy(&memory), "OpenImageIO cannot read this format from memory");
+      check(in->open(path.filename().string(), spec, config), in->geterror());
+      check_claim(encoded, spec.width, spec.height, spec.nchannels);
+      check_tiles(encoded, spec.tile_width, spec.tile_height, spec.width, spec.height);
+      check(spec.depth == 1 && spec.tile_depth <= 1 && !spec.deep, "it is a volume, or deep");
+      ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),
+                     spec.format == OIIO::TypeDesc::UINT8, spec.format == OIIO::TypeDesc::UINT8 || is_png};
+      check(read_pixels(*in, spec, file.image), in->geterror());
+      return file;
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {  // of the libraries that OpenImageIO calls
+      fail(where, "cannot read image \"{}\": {}", path.string(), error.what());
+    }
   }
 };
 

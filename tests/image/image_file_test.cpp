@@ -316,6 +316,45 @@ TEST_F(ImageFiles, SmallFilesWithHugeAttributesAreRefused) {
   EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("an attribute of its header claims 21307064"));
 }
 
+/// Images of the fuzz target "image", whose first byte is not part of the file.
+TEST_F(ImageFiles, ThatOpenImageIOFollowsBeyondTheirDataAreRefused) {
+  const std::vector<std::array<std::string, 3>> kCases{
+      {"exr_wide_data_window", "a.exr", "claims 10420256 x 24 pixels"},
+      {"exr_huge_tiles", "a.exr", "are larger than its"},
+      {"exr_subsampled_tiles", "a.exr", "it is subsampled"},
+      {"exr_name_of_a_channel", "a.exr", "the name of a channel is not UTF-8"},
+      {"bmp_compressed_0", "a.bmp", "compressed BMP is not supported"},
+      {"tiff_huge_tiles", "a.tif", "are larger than its"},
+      {"tiff_lzw_damaged", "a.tif", "cannot read image"},
+      {"tiff_deflate_damaged", "a.tif", "cannot read image"}};
+  for (const auto& [input, name, message] : kCases) {
+    std::ofstream(folder_ / name, std::ios::binary)
+        << bytes_of(FROND_SOURCE_DIR "/tests/fuzz/corpus/image/" + input).substr(1);
+    EXPECT_THAT(error_of([&] { read_image(folder_ / name, {}); }), HasSubstr(message)) << input;
+  }
+}
+
+/// OpenEXR takes the pixels of a chunk without bytes from memory as it is.
+TEST_F(ImageFiles, PixelsWithoutDataAreBlack) {
+  const fs::path path = folder_ / "a.exr";
+  std::ofstream(path, std::ios::binary)
+      << bytes_of(FROND_SOURCE_DIR "/tests/fuzz/corpus/image/exr_empty_chunk").substr(1);
+  for (int i = 0; i < 20; ++i) {
+    for (size_t size = 16; size < 4096; size += 16) std::string(size, 'x').swap(*std::make_unique<std::string>());
+    EXPECT_THAT(read_image(path, {}).image.pixels, testing::Each(0.0f));
+  }
+}
+
+/// A BMP with 16 of the 256 colours that its pixels can name.
+TEST_F(ImageFiles, ShortPalettesAreRefused) {
+  constexpr std::array<uint16_t, 27> kBmp{0x4d42, 0, 0, 0, 0, 118, 0, 40, 0, 4,  0, 1, 0, 1,
+                                          8,      0, 0, 0, 0, 0,   0, 0,  0, 16, 0, 0, 0};
+  const fs::path path = folder_ / "a.bmp";
+  std::ofstream(path, std::ios::binary) << std::string(reinterpret_cast<const char*>(kBmp.data()), sizeof kBmp)
+                                        << std::string(64, '\0') << std::string(4, '\xff');
+  EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("its palette has 16 of 256 colours"));
+}
+
 /// 24 MB of pixels, for which OpenImageIO would allocate 3 GB.
 TEST_F(ImageFiles, SmallFilesThatClaimWideRowsAreRefused) {
   constexpr std::array<uint16_t, 27> kBmp{0x4d42, 78, 0, 0, 0, 54, 0, 40, 0, 2, 63, 2, 0, 1, 24};

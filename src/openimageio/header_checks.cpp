@@ -1,0 +1,165 @@
+#include "openimageio/header_checks.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+namespace frond {
+namespace {
+
+/// Returns the little-endian number at an offset, or 0 beyond the end.
+template <class T>
+T number_at(std::string_view bytes, size_t offset) {
+  T value = 0;
+  if (offset <= bytes.size() && bytes.size() - offset >= sizeof value)
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+/// Takes a text that ends in a zero byte from the front; nothing if there is none.
+std::optional<std::string_view> take_text(std::string_view& rest) {
+  const size_t end = rest.find('\0');
+  if (end == rest.npos) return {};
+  const std::string_view text = rest.substr(0, end);
+  rest.remove_prefix(end + 1);
+  return text;
+}
+
+/// What the attributes of one part of an EXR claim; 0 where there is no attribute.
+struct ExrPart {
+  int64_t width = 0, height = 0, channels = 0, tile_width = 0, tile_height = 0;
+};
+
+constexpr uint64_t kEachPixel = (uint64_t{1} << 32) | 1;  ///< sampling of an EXR's channel: 1 in x, 1 in y
+
+/// Reads the attributes "channels", "dataWindow" and "tiles".
+void read_attribute(std::string_view name, std::string_view value, ExrPart& part, const EncodedImage& file) {
+  if (name == "dataWindow") {  // four corners
+    part.width = int64_t(number_at<int32_t>(value, 8)) - number_at<int32_t>(value, 0) + 1;
+    part.height = int64_t(number_at<int32_t>(value, 12)) - number_at<int32_t>(value, 4) + 1;
+  } else if (name == "tiles") {
+    part.tile_width = number_at<uint32_t>(value, 0);
+    part.tile_height = number_at<uint32_t>(value, 4);
+  } else if (name == "channels") {  // each a name, and 16 bytes of which the last eight are the sampling in x and y
+    constexpr size_t kAfterName = 16, kSampling = 8;
+    for (auto channel = take_text(value); channel && !channel->empty(); channel = take_text(value)) {
+      if (!is_utf8(*channel)) file.refuse("the name of a channel is not UTF-8");
+      if (number_at<uint64_t>(value, kSampling) != kEachPixel)
+        file.refuse("channel \"{}\" has no value at each pixel: it is subsampled", *channel);
+      value.remove_prefix(std::min(kAfterName, value.size()));
+      ++part.channels;
+    }
+  }
+}
+
+/// OpenEXR allocates memory for whole tiles and rows, and offsets of all tiles, before it reads any.
+void check_part(const ExrPart& part, const EncodedImage& file) {
+  if (part.width == 0 || part.channels == 0) return;  // OpenEXR reports what is missing
+  check_claim(file, part.width, part.height, part.channels);
+  if (part.tile_width == 0 || part.tile_height == 0) return;
+  check_tiles(file, part.tile_width, part.tile_height, part.width, part.height);
+  const auto count = [](int64_t size, int64_t tile) { return (size + tile - 1) / tile; };
+  const int64_t tiles = count(part.width, part.tile_width) * count(part.height, part.tile_height);
+  constexpr int64_t kOffset = 8;  // bytes of the table for each tile
+  if (tiles > int64_t(file.bytes.size()) / kOffset)
+    file.refuse("its {} bytes claim {} tiles", file.bytes.size(), tiles);
+}
+
+/// OpenEXR File Layout: attributes of all parts.
+void check_exr(const EncodedImage& file) {
+  constexpr size_t kVersion = 4, kAttributes = 8;
+  constexpr uint32_t kParts = 1 << 12;
+  if (file.bytes.size() < kAttributes) return;
+  const bool has_parts = (number_at<uint32_t>(file.bytes, kVersion) & kParts) != 0;
+  std::string_view rest = file.bytes.substr(kAttributes);
+  ExrPart part;
+  for (;;) {
+    const auto name = take_text(rest);
+    if (!name) return;
+    if (name->empty()) {  // the end of a part
+      check_part(part, file);
+      if (!has_parts || rest.empty() || rest.front() == '\0') return;
+      part = {};
+      continue;
+    }
+    if (!take_text(rest) || rest.size() < sizeof(int32_t)) return;
+    const auto size = number_at<int32_t>(rest, 0);
+    rest.remove_prefix(sizeof size);
+    if (size < 0 || size_t(size) > rest.size())
+      file.refuse("an attribute of its header claims {} bytes, {} follow", size, rest.size());
+    read_attribute(*name, rest.substr(0, size_t(size)), part, file);
+    rest.remove_prefix(size_t(size));
+  }
+}
+
+/// OpenImageIO (2.4) looks colours up without regard to the size of the palette, and decodes compressed rows into any
+/// kind of pixels.
+void check_bmp(const EncodedImage& file) {
+  constexpr size_t kHeader = 14, kOldHeader = 12;
+  constexpr uint32_t kUncompressed = 0, kBitFields = 3;
+  const auto header = number_at<uint32_t>(file.bytes, kHeader);
+  const bool is_old = header == kOldHeader;  // of OS/2: no compression, a full palette
+  const auto bits = number_at<uint16_t>(file.bytes, kHeader + (is_old ? 10 : 14));
+  const auto compression = is_old ? kUncompressed : number_at<uint32_t>(file.bytes, kHeader + 16);
+  const auto colors = is_old ? 0 : number_at<uint32_t>(file.bytes, kHeader + 32);
+  if (compression != kUncompressed && !(compression == kBitFields && (bits == 16 || bits == 32)))
+    file.refuse("compressed BMP is not supported; save it as PNG");
+  if (bits <= 8 && colors != 0 && colors != 1u << bits)
+    file.refuse("its palette has {} of {} colours; save it as PNG", colors, 1u << bits);
+}
+
+}  // namespace
+
+void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_t channels) {
+  constexpr int64_t kMostCompression = 16384;  // images of 8 bits compress by 1032 at most (deflate)
+  constexpr int64_t kAlwaysAllowed = 256 << 20, kMostChannels = 1 << 12, kMostSide = int64_t{1} << 31;
+  constexpr int64_t kRowsAtOnce = 64;  // for which OpenImageIO allocates memory even where there are fewer
+  const int64_t most = int64_t(file.bytes.size()) * kMostCompression + kAlwaysAllowed;
+  const bool has_pixels = width > 0 && height > 0 && channels > 0;
+  if (has_pixels && channels <= kMostChannels && width <= kMostSide && height <= kMostSide &&
+      width * std::max(height, kRowsAtOnce) <= most / (channels * int64_t(sizeof(float))))
+    return;
+  fail(file.where, "image \"{}\" of {} bytes claims {} x {} pixels of {} channels{}", file.path.string(),
+       file.bytes.size(), width, height, channels,
+       channels > kMostChannels ? fmt::format(": {} channels are the limit", kMostChannels) : "");
+}
+
+void check_tiles(const EncodedImage& file, int64_t tile_width, int64_t tile_height, int64_t width, int64_t height) {
+  constexpr int64_t kLargest = 1024;  // where the image is smaller
+  if (tile_width > std::max(width, kLargest) || tile_height > std::max(height, kLargest))
+    file.refuse("its tiles of {} x {} pixels are larger than its {} x {} pixels", tile_width, tile_height, width,
+                height);
+}
+
+void check_header(const EncodedImage& file, std::string_view format) {
+  if (format == "openexr") check_exr(file);
+  if (format == "bmp") check_bmp(file);
+}
+
+bool is_utf8(std::string_view text) {
+  /// Characters of `length` bytes begin with a byte in [first, last] and are `least` or more.
+  struct Kind {
+    unsigned first, last;
+    size_t length;
+    uint32_t least;
+  };
+  constexpr Kind kKinds[] = {
+      {0x00, 0x7f, 1, 0}, {0xc2, 0xdf, 2, 0x80}, {0xe0, 0xef, 3, 0x800}, {0xf0, 0xf4, 4, 0x10000}};
+  for (size_t i = 0; i < text.size();) {
+    const unsigned first = static_cast<unsigned char>(text[i]);
+    const auto* kind = std::ranges::find_if(kKinds, [&](const Kind& k) { return k.first <= first && first <= k.last; });
+    if (kind == std::end(kKinds) || text.size() - i < kind->length) return false;
+    uint32_t code = first - (kind->first & 0xf0);
+    for (size_t k = 1; k < kind->length; ++k) {
+      const unsigned next = static_cast<unsigned char>(text[i + k]);
+      if ((next & 0xc0) != 0x80) return false;
+      code = code << 6 | (next & 0x3f);
+    }
+    const bool is_surrogate = code >= 0xd800 && code < 0xe000;
+    if (code < kind->least || code > 0x10ffff || is_surrogate) return false;
+    i += kind->length;
+  }
+  return true;
+}
+
+}  // namespace frond

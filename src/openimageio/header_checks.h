@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace frond {
+
+/// An image file in memory, and where the scene asks for it.
+struct EncodedImage {
+  std::string_view bytes;
+  const std::filesystem::path& path;
+  const Location& where;
+
+  /// Throws InputError: "cannot read image ...: " and the message.
+  template <class... Args>
+  [[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) const {
+    fail(where, "cannot read image \"{}\": {}", path.string(), fmt::format(format, std::forward<Args>(args)...));
+  }
+};
+
+/// Throws InputError if an image of this size has no pixels, more bytes of floats than 256 MB and 16,384 times the
+/// file's size, or more than 4,096 channels.
+void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_t channels);
+
+/// Throws InputError if tiles are larger than the image and than 1024 x 1024 pixels: their memory is allocated before
+/// they are read.
+void check_tiles(const EncodedImage& file, int64_t tile_width, int64_t tile_height, int64_t width, int64_t height);
+
+/// Throws InputError for headers that OpenImageIO's readers or OpenEXR follow beyond the file's data. `format` is one
+/// of image_format_of. Damage that they report themselves is left to them.
+void check_header(const EncodedImage& file, std::string_view format);
+
+/// Returns whether the text is UTF-8 (RFC 3629).
+bool is_utf8(std::string_view text);
+
+}  // namespace frond
