@@ -35,15 +35,9 @@ void check_made(const ShapeGeometry& geometry, const ShapeInfo& info, const Loca
       refuse(fmt::format("it has made a mesh of {} vertices with a triangle that names number {}", vertices, last));
 }
 
-/// Throws InputError for coordinates that are too large: Embree silently drops geometry beyond 1.8e18.
+/// Throws InputError for coordinates beyond kFarthest.
 void check_extent(const ShapeGeometry& geometry, const Location& where) {
-  static constexpr float kFarthest = 1e18f;
-  const auto check = [&where](const Vec3& p) {
-    const bool is_within = std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
-    if (!is_within)  // also false for NaN
-      fail(where, "this shape reaches to ({:g}, {:g}, {:g}): {:g} units from the origin is the limit", p.x, p.y, p.z,
-           kFarthest);
-  };
+  const auto check = [&where](const Vec3& p) { check_coordinates(p, "this shape reaches to", where); };
   if (const auto* mesh = std::get_if<MeshPtr>(&geometry)) {
     std::for_each((*mesh)->p.begin(), (*mesh)->p.end(), check);
     return;
@@ -233,6 +227,12 @@ class GeometryBuilder {
 };
 
 }  // namespace
+
+void check_coordinates(const Vec3& p, std::string_view what, const Location& where) {
+  const bool is_within = std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+  if (!is_within)  // also false for NaN
+    fail(where, "{} ({:g}, {:g}, {:g}): {:g} units from the origin is the limit", what, p.x, p.y, p.z, kFarthest);
+}
 
 std::shared_ptr<const Geometry> build_geometry(const SceneDescription& description, const Registry& registry,
                                                SceneResolver& resolver, const ThreadPool& pool, const Log& log,

@@ -8,6 +8,13 @@
 
 namespace frond {
 
+/// Limit of the coordinates of shapes and lights. Embree takes rays and geometry up to 1.8e18, and the ray from one
+/// point to another is as long as their distance.
+inline constexpr float kFarthest = 5e17f;
+
+/// Throws InputError, "this shape reaches to ...", for a coordinate beyond kFarthest or NaN.
+void check_coordinates(const Vec3& p, std::string_view what, const Location& where);
+
 /// Builds the geometry of the description's shapes and instances. Continues after an invalid shape; throws all errors
 /// in `problems` at the end.
 std::shared_ptr<const Geometry> build_geometry(const SceneDescription& description, const Registry& registry,

@@ -267,7 +267,7 @@ class SceneBuilder {
 
   /// Embree rejects rays with large coordinates. The film's corners and the lens's edge have the largest.
   void check_camera(const FilmSettings& film) const {
-    constexpr float kFarthest = 1e12f;
+    constexpr float kFarthestCamera = 1e12f;
     const auto within = [](const Vec3& v, float limit) {
       return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;  // false for NaN
     };
@@ -275,9 +275,9 @@ class SceneBuilder {
       for (const float y : {0.f, float(film.height)})
         for (const Vec2 lens : {Vec2{0, 0.5f}, Vec2{1, 0.5f}, Vec2{0.5f, 0}, Vec2{0.5f, 1}}) {
           const Ray ray = scene_.camera_->ray({x, y}, lens);
-          if (!within(ray.o, kFarthest) || !within(ray.d, 2) || ray.d == Vec3{})
+          if (!within(ray.o, kFarthestCamera) || !within(ray.d, 2) || ray.d == Vec3{})
             fail(description_.camera.where, "this camera is out of bounds: {:g} units from the origin at most",
-                 kFarthest);
+                 kFarthestCamera);
         }
   }
 
@@ -292,6 +292,8 @@ class SceneBuilder {
     // One light of infinite or NaN power would break the selection of lights by power.
     if (const double power = light->power(1); !(std::isfinite(power) && power >= 0))
       fail(where, "this light has the power {}, which is not possible", power);
+    if (const auto bounds = light->bounds())
+      for (const Vec3& p : {bounds->min, bounds->max}) check_coordinates(p, "this light reaches to", where);
     const Light* const added = light.get();
     if (period_) light_where_.emplace(added, where);
     lights_->add(std::move(light));
