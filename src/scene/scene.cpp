@@ -139,6 +139,7 @@ class SceneBuilder {
     }
     const Bounds b = scene_.geometry_->bounds();
     scene_.radius_ = b.is_empty() ? 1 : length(b.max - b.min) / 2;
+    check_rays(b);
     build_tiling();
     scene_.integrator_->prepare(scene_);
   }
@@ -266,7 +267,7 @@ class SceneBuilder {
   }
 
   /// Embree rejects rays with large coordinates. The film's corners and the lens's edge have the largest.
-  void check_camera(const FilmSettings& film) const {
+  void check_camera(const FilmSettings& film) {
     constexpr float kFarthestCamera = 1e12f;
     const auto within = [](const Vec3& v, float limit) {
       return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;  // false for NaN
@@ -278,7 +279,19 @@ class SceneBuilder {
           if (!within(ray.o, kFarthestCamera) || !within(ray.d, 2) || ray.d == Vec3{})
             fail(description_.camera.where, "this camera is out of bounds: {:g} units from the origin at most",
                  kFarthestCamera);
+          reach_ = std::max(reach_, largest_coordinate(ray.o));
         }
+  }
+
+  /// Rays become long in the spaces of small instances.
+  void check_rays(const Bounds& bounds) {
+    constexpr float kMost = 1.8e18f;  // Embree's limit
+    if (!bounds.is_empty()) reach_ = std::max({reach_, largest_coordinate(bounds.min), largest_coordinate(bounds.max)});
+    if (const float largest = scene_.geometry_->largest_ray_coordinate(reach_); !(largest <= kMost))
+      fail(description_.camera.where,
+           "the scene with its camera and lights reaches to {:g} units from the origin, which in the space of its "
+           "smallest instances are {:g}: {:g} is the limit",
+           reach_, largest, kMost);
   }
 
   /// Lights that fail are reported together.
@@ -293,7 +306,10 @@ class SceneBuilder {
     if (const double power = light->power(1); !(std::isfinite(power) && power >= 0))
       fail(where, "this light has the power {}, which is not possible", power);
     if (const auto bounds = light->bounds())
-      for (const Vec3& p : {bounds->min, bounds->max}) check_coordinates(p, "this light reaches to", where);
+      for (const Vec3& p : {bounds->min, bounds->max}) {
+        check_coordinates(p, "this light reaches to", where);
+        reach_ = std::max(reach_, largest_coordinate(p));
+      }
     const Light* const added = light.get();
     if (period_) light_where_.emplace(added, where);
     lights_->add(std::move(light));
@@ -362,6 +378,7 @@ class SceneBuilder {
   const Log& log_;
   const std::filesystem::path& cache_;
   std::shared_ptr<LightTable> lights_ = std::make_shared<LightTable>();
+  float reach_ = 0;                                       ///< largest coordinate of camera and lights
   std::map<const Light*, Location> light_where_;          ///< only for periodic scenes
   std::vector<std::unique_ptr<AreaEmission>> emissions_;  ///< by index of the area light; created on first use
 };

@@ -143,6 +143,16 @@ TEST(Degenerate, PointsAreAsFarApartAsEmbreeAllows) {
   EXPECT_EQ(film.not_finite(), 0u);
 }
 
+TEST(Degenerate, RaysInTheSpaceOfSmallInstancesAreAsLongAsEmbreeAllows) {
+  const auto text = [](const std::string& distance) {
+    return "LookAt 0 0 " + distance + "  0 0 0  0 1 0\nCamera \"orthographic\" " + kOptions +
+           "WorldBegin LightSource \"infinite\" ObjectBegin \"o\" Shape \"sphere\" \"float radius\" 1e8 ObjectEnd\n"
+           "Scale 1e-8 1e-8 1e-8 ObjectInstance \"o\"";
+  };
+  EXPECT_GT(channel_mean(render_text(text("1e9")), 1).mean, 0.1);
+  expect_error(text("1e11"), "test.pbrt:2:8: the scene with its camera and lights reaches to 1e+11 units");
+}
+
 TEST(Degenerate, WhatNothingUsesIsCheckedToo) {
   expect_error("WorldBegin\nMaterial \"diffuse\" \"rgb reflectanc\" [1 1 1]", "did you mean \"reflectance\"?");
   expect_error("WorldBegin\nMakeNamedMaterial \"m\" \"string type\" \"difuse\"", "did you mean \"diffuse\"?");

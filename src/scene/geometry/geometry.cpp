@@ -204,7 +204,12 @@ void Geometry::attach(GeometryObject& object) {
         object.ids += set.object(row).ids;
       }
     }
-    for (const GeometryObject* o : set.objects) object.depth = std::max(object.depth, o->depth + 1);
+    const float into =
+        instances.table->inverse_stretch() * (instances.is_placed ? set.from_placement.largest_stretch() : 1);
+    for (const GeometryObject* o : set.objects) {
+      object.depth = std::max(object.depth, o->depth + 1);
+      object.stretch = std::max(object.stretch, into * o->stretch);
+    }
     object.instances.push_back(std::move(set));
   }
   for (const GeometryInstances& set : object.instances) add(embree::new_geometry(device_.get(), set));
@@ -333,6 +338,18 @@ bool Geometry::occluded(const Ray& ray, uint64_t key) const {
   embree::Query context(&lane);
   embree::occluded(world_->scene.get(), query, context);
   return query.tfar < 0;
+}
+
+float Geometry::largest_ray_coordinate(float reach) const {
+  // In an object's space a point is as far from any point of the object as the stretched distance in the world.
+  float largest = 0;
+  const auto add = [&](const GeometryObject& object) {
+    if (!object.bounds.is_empty())
+      largest = std::max({largest, largest_coordinate(object.bounds.min), largest_coordinate(object.bounds.max)});
+  };
+  for (const auto& object : objects_) add(*object);
+  add(*world_);
+  return largest + 2 * reach * world_->stretch;
 }
 
 Bounds Geometry::bounds() const { return bounds_of(world_->scene.get()); }

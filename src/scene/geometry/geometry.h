@@ -88,6 +88,9 @@ class Geometry {
   uint32_t closest(const RayPacket& packet, RTCRayHit8& query) const;
   uint32_t occluded(const RayPacket& packet) const;
   Bounds bounds() const;
+  /// Returns a bound of the coordinates of rays in the spaces of all objects, if they begin and end within `reach`
+  /// units of the origin in each coordinate. Embree takes 1.8e18.
+  float largest_ray_coordinate(float reach) const;
 
   /// Surfaces outside of objects. Only these can emit light.
   const std::vector<Surface>& surfaces() const;

@@ -23,7 +23,9 @@ InstanceTable::InstanceTable(std::shared_ptr<const std::vector<AffineMap>> maps)
     : own_(std::move(maps)),
       first_(reinterpret_cast<const std::byte*>(own_->data())),
       size_(own_->size()),
-      stride_(sizeof(AffineMap)) {}
+      stride_(sizeof(AffineMap)) {
+  for (const AffineMap& map : *own_) inverse_stretch_ = std::max(inverse_stretch_, map.inverse().largest_stretch());
+}
 
 InstanceTable::InstanceTable(const std::filesystem::path& path, const Location& where, const ThreadPool& pool)
     : file_(read_file_bytes(path, where)) {
@@ -63,9 +65,12 @@ void InstanceTable::check(const std::filesystem::path& path, const Location& whe
   pool.for_each(int64_t((size_ + kBlock - 1) / kBlock), [&](int64_t block, int) {
     std::vector<Interval> ranges(columns_.size(), {INFINITY, -INFINITY});
     size_t wrong = size_;
+    float stretch = 0;
     const size_t begin = size_t(block) * kBlock, end = std::min(size_, begin + kBlock);
     for (size_t row = begin; row < end && wrong == size_; ++row) {
-      if (!problem_of(map(row)).empty()) wrong = row;
+      const AffineMap placed = map(row);
+      if (!problem_of(placed).empty()) wrong = row;
+      stretch = std::max(stretch, placed.inverse().largest_stretch());
       for (size_t c = 0; c < columns_.size(); ++c) {
         float value;
         std::memcpy(&value, bytes(row) + columns_[c].offset, sizeof value);
@@ -75,6 +80,7 @@ void InstanceTable::check(const std::filesystem::path& path, const Location& whe
     }
     const std::lock_guard lock(mutex);
     first_wrong = std::min(first_wrong, wrong);
+    inverse_stretch_ = std::max(inverse_stretch_, stretch);
     for (size_t c = 0; c < columns_.size(); ++c)
       columns_[c].range = {std::min(columns_[c].range.min, ranges[c].min),
                            std::max(columns_[c].range.max, ranges[c].max)};

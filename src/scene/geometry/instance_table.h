@@ -33,16 +33,19 @@ class InstanceTable {
     return map;
   }
   const std::vector<InstanceColumn>& columns() const { return columns_; }
+  /// Returns the largest AffineMap::Inverse::largest_stretch of all maps.
+  float inverse_stretch() const { return inverse_stretch_; }
   const std::byte* bytes(size_t row) const { return first_ + row * stride_; }
 
  private:
-  /// Throws InputError for an invalid map, and computes the ranges of the columns.
+  /// Throws InputError for an invalid map, and computes the ranges of the columns and the stretch.
   void check(const std::filesystem::path& path, const Location& where, const ThreadPool& pool);
 
   std::shared_ptr<const std::vector<AffineMap>> own_;
   std::string file_;
   const std::byte* first_ = nullptr;
   size_t size_ = 0, stride_ = 0, map_offset_ = 0;
+  float inverse_stretch_ = 0;
   std::vector<InstanceColumn> columns_;
 };
 

@@ -11,6 +11,9 @@
 
 namespace frond {
 
+/// Returns the largest absolute value of the coordinates.
+inline float largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
 /// Transform of an instance, without a stored inverse to save memory.
 struct AffineMap {
   Transform::Rows rows;
@@ -32,6 +35,12 @@ struct AffineMap {
 
     Float4 vector(Float4 v) const { return x * v[0] + y * v[1] + z * v[2]; }
     Float4 point(Float4 p) const { return vector(p - translation); }
+    /// As AffineMap::largest_stretch.
+    float largest_stretch() const {
+      float largest = 0;
+      for (int i = 0; i < 3; ++i) largest = std::max(largest, std::abs(x[i]) + std::abs(y[i]) + std::abs(z[i]));
+      return largest;
+    }
     /// Transforms a normal from the object's space; not normalized.
     Vec3 normal_out(const Vec3& n) const {
       const auto along = [&n](Float4 axis) { return axis[0] * n.x + axis[1] * n.y + axis[2] * n.z; };
