@@ -108,6 +108,15 @@ void check_bmp(const EncodedImage& file) {
     file.refuse("its palette has {} of {} colours; save it as PNG", colors, 1u << bits);
 }
 
+/// OpenImageIO (2.4) looks colours up without regard to the size of the palette.
+void check_tga(const EncodedImage& file) {
+  constexpr size_t kType = 2;
+  constexpr uint8_t kIndices = 1, kCompressedIndices = 9;
+  const auto type = number_at<uint8_t>(file.bytes, kType);
+  if (type == kIndices || type == kCompressedIndices)
+    file.refuse("TGA with a palette is not supported; save it as PNG");
+}
+
 }  // namespace
 
 void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_t channels) {
@@ -134,6 +143,7 @@ void check_tiles(const EncodedImage& file, int64_t tile_width, int64_t tile_heig
 void check_header(const EncodedImage& file, std::string_view format) {
   if (format == "openexr") check_exr(file);
   if (format == "bmp") check_bmp(file);
+  if (format == "targa") check_tga(file);
 }
 
 bool is_utf8(std::string_view text) {

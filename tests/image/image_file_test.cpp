@@ -324,6 +324,7 @@ TEST_F(ImageFiles, ThatOpenImageIOFollowsBeyondTheirDataAreRefused) {
       {"exr_subsampled_tiles", "a.exr", "it is subsampled"},
       {"exr_name_of_a_channel", "a.exr", "the name of a channel is not UTF-8"},
       {"bmp_compressed_0", "a.bmp", "compressed BMP is not supported"},
+      {"tga_with_a_palette", "a.tga", "TGA with a palette is not supported"},
       {"tiff_huge_tiles", "a.tif", "are larger than its"},
       {"tiff_lzw_damaged", "a.tif", "cannot read image"},
       {"tiff_deflate_damaged", "a.tif", "cannot read image"}};
