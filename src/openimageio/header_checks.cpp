@@ -108,6 +108,27 @@ void check_bmp(const EncodedImage& file) {
     file.refuse("its palette has {} of {} colours; save it as PNG", colors, 1u << bits);
 }
 
+/// TIFF 6.0 and BigTIFF. Where the tag BitsPerSample is missing, OpenImageIO (2.4) takes 8 bits and libtiff 1, so that
+/// most of the pixels would be memory as it is.
+void check_tiff(const EncodedImage& file) {
+  const bool is_little = file.bytes.starts_with('I');
+  const auto number = [&](uint64_t offset, uint64_t size) {  // 0 beyond the end
+    uint64_t value = 0;
+    if (offset > file.bytes.size() || file.bytes.size() - offset < size) return value;
+    for (uint64_t i = 0; i < size; ++i)
+      value = value << 8 | static_cast<unsigned char>(file.bytes[offset + (is_little ? size - 1 - i : i)]);
+    return value;
+  };
+  constexpr uint64_t kBig = 43, kBitsPerSample = 258;
+  const bool is_big = number(2, 2) == kBig;
+  const uint64_t count_size = is_big ? 8 : 2, entry_size = is_big ? 20 : 12;
+  const uint64_t directory = is_big ? number(8, 8) : number(4, 4);
+  const uint64_t entries = std::min(number(directory, count_size), file.bytes.size() / entry_size);
+  for (uint64_t i = 0; i < entries; ++i)
+    if (number(directory + count_size + i * entry_size, 2) == kBitsPerSample) return;
+  file.refuse("its header has no BitsPerSample");
+}
+
 /// OpenImageIO (2.4) looks colours up without regard to the size of the palette.
 void check_tga(const EncodedImage& file) {
   constexpr size_t kType = 2;
@@ -144,6 +165,7 @@ void check_header(const EncodedImage& file, std::string_view format) {
   if (format == "openexr") check_exr(file);
   if (format == "bmp") check_bmp(file);
   if (format == "targa") check_tga(file);
+  if (format == "tiff") check_tiff(file);
 }
 
 bool is_utf8(std::string_view text) {

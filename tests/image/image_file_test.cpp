@@ -326,6 +326,7 @@ TEST_F(ImageFiles, ThatOpenImageIOFollowsBeyondTheirDataAreRefused) {
       {"bmp_compressed_0", "a.bmp", "compressed BMP is not supported"},
       {"tga_with_a_palette", "a.tga", "TGA with a palette is not supported"},
       {"tiff_huge_tiles", "a.tif", "are larger than its"},
+      {"tiff_without_bits", "a.tif", "its header has no BitsPerSample"},
       {"tiff_lzw_damaged", "a.tif", "cannot read image"},
       {"tiff_deflate_damaged", "a.tif", "cannot read image"}};
   for (const auto& [input, name, message] : kCases) {
