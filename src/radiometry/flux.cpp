@@ -125,15 +125,20 @@ class Incoming {
   }
 
  private:
+  /// Cosine below which light is left out: its ray would begin far from the scene, or nowhere. Of a uniform sky this is
+  /// 1e-12 of the light, of a cosine that is rounded to 0 about 1e-7.
+  static constexpr float kGrazing = 1e-6f;
+
   /// Weight relative to the irradiance of all lights. Directions of a uniform sky are sampled with the cosine.
   static std::optional<Sample> sample_one(const Light& light, const EnvironmentLight* evenly, Vec2 u,
                                           const SampledWavelengths& lambda) {
     if (evenly) {
       const Vec3 wi = sample_cosine_hemisphere(u);
+      if (wi.z < kGrazing) return {};
       return Sample{-wi, evenly->radiance({}, wi, lambda) * kPi};
     }
     const auto s = light.sample({}, u, lambda);
-    if (!s || s->wi.z <= 0 || s->pdf <= 0) return {};
+    if (!s || s->wi.z < kGrazing || s->pdf <= 0) return {};
     return Sample{-s->wi, s->radiance * (s->wi.z / s->pdf)};
   }
 

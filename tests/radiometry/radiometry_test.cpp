@@ -326,6 +326,13 @@ TEST_F(Radiometry, WalksThatAreFollowedFromTheSensorAreNotJudged) {
   EXPECT_EQ(judge(read("leaf_solved"), read("abm"), 0.5).answer, BrfVerdict::Answer::unknown);
 }
 
+/// With this seed one of the directions lies in the plane of the horizon.
+TEST_F(Radiometry, LightFromTheHorizonIsLeftOut) {
+  const FluxMeasurement m =
+      flux(kSky + soil(0.5), {.wavelengths = "bands,wavelengths=550"}, 1000000, 2, "Option \"integer seed\" 1\n");
+  EXPECT_NEAR(m.reflected[0].mean, 0.5, kZ * m.reflected[0].standard_error + 1e-6);
+}
+
 TEST_F(Radiometry, WhatCannotBeMeasuredIsRefused) {
   EXPECT_THAT(error_of([&] {
                 brf(kSun, {.views = {{0, 0}}, .wavelengths = "bands,wavelengths=450"}, 1);
