@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 namespace frond {
 namespace {
@@ -32,30 +33,78 @@ struct ExrPart {
 
 constexpr uint64_t kEachPixel = (uint64_t{1} << 32) | 1;  ///< sampling of an EXR's channel: 1 in x, 1 in y
 
-/// Reads the attributes "channels", "dataWindow" and "tiles".
-void read_attribute(std::string_view name, std::string_view value, ExrPart& part, const EncodedImage& file) {
+/// Sizes of values by type. OpenEXR reads as many bytes, whatever size an attribute states: where it is another one,
+/// the next attribute would begin elsewhere.
+constexpr std::pair<std::string_view, size_t> kSizes[] = {{"box2f", 16},
+                                                          {"box2i", 16},
+                                                          {"chromaticities", 32},
+                                                          {"compression", 1},
+                                                          {"deepImageState", 1},
+                                                          {"double", 8},
+                                                          {"envmap", 1},
+                                                          {"float", 4},
+                                                          {"int", 4},
+                                                          {"keycode", 28},
+                                                          {"lineOrder", 1},
+                                                          {"m33d", 72},
+                                                          {"m33f", 36},
+                                                          {"m44d", 128},
+                                                          {"m44f", 64},
+                                                          {"rational", 8},
+                                                          {"tiledesc", 9},
+                                                          {"timecode", 8},
+                                                          {"v2d", 16},
+                                                          {"v2f", 8},
+                                                          {"v2i", 8},
+                                                          {"v3d", 24},
+                                                          {"v3f", 12},
+                                                          {"v3i", 12}};
+
+/// Returns the number of channels of a "chlist": names, each with 16 bytes of which the last eight are the sampling in
+/// x and y, and an empty name at its end.
+int64_t count_channels(std::string_view list, const EncodedImage& file) {
+  constexpr size_t kAfterName = 16, kSampling = 8;
+  int64_t channels = 0;
+  auto channel = take_text(list);
+  for (; channel && !channel->empty(); channel = take_text(list)) {
+    if (!is_utf8(*channel)) file.refuse("the name of a channel is not UTF-8");
+    if (number_at<uint64_t>(list, kSampling) != kEachPixel)
+      file.refuse("channel \"{}\" has no value at each pixel: it is subsampled", *channel);
+    list.remove_prefix(std::min(kAfterName, list.size()));
+    ++channels;
+  }
+  if (!channel || !list.empty()) file.refuse("its list of channels has another size than it states");
+  return channels;
+}
+
+/// Reads the attributes "channels", "dataWindow" and "tiles", and checks the sizes of all.
+void read_attribute(std::string_view name, std::string_view type, std::string_view value, ExrPart& part,
+                    const EncodedImage& file) {
+  const auto* known = std::ranges::find(kSizes, type, [](const auto& size) { return size.first; });
+  constexpr uint64_t kPreviewHeader = 8, kPreviewPixel = 4;
+  const bool is_wrong = known != std::end(kSizes) ? value.size() != known->second
+                        : type == "preview"
+                            ? value.size() != kPreviewHeader + kPreviewPixel * number_at<uint32_t>(value, 0) *
+                                                                   uint64_t(number_at<uint32_t>(value, 4))
+                            : false;
+  if (is_wrong) file.refuse("an attribute of its header, of type {}, has {} bytes", type, value.size());
+  const int64_t channels = type == "chlist" ? count_channels(value, file) : 0;
   if (name == "dataWindow") {  // four corners
     part.width = int64_t(number_at<int32_t>(value, 8)) - number_at<int32_t>(value, 0) + 1;
     part.height = int64_t(number_at<int32_t>(value, 12)) - number_at<int32_t>(value, 4) + 1;
   } else if (name == "tiles") {
     part.tile_width = number_at<uint32_t>(value, 0);
     part.tile_height = number_at<uint32_t>(value, 4);
-  } else if (name == "channels") {  // each a name, and 16 bytes of which the last eight are the sampling in x and y
-    constexpr size_t kAfterName = 16, kSampling = 8;
-    for (auto channel = take_text(value); channel && !channel->empty(); channel = take_text(value)) {
-      if (!is_utf8(*channel)) file.refuse("the name of a channel is not UTF-8");
-      if (number_at<uint64_t>(value, kSampling) != kEachPixel)
-        file.refuse("channel \"{}\" has no value at each pixel: it is subsampled", *channel);
-      value.remove_prefix(std::min(kAfterName, value.size()));
-      ++part.channels;
-    }
+  } else if (name == "channels") {
+    part.channels = channels;
   }
 }
 
 /// OpenEXR allocates memory for whole tiles and rows, and offsets of all tiles, before it reads any.
 void check_part(const ExrPart& part, const EncodedImage& file) {
   if (part.width == 0 || part.channels == 0) return;  // OpenEXR reports what is missing
-  check_claim(file, part.width, part.height, part.channels);
+  constexpr int64_t kMostRows = 256;                  // of a block (DWAB)
+  check_claim(file, part.width, part.height, part.channels, kMostRows);
   if (part.tile_width == 0 || part.tile_height == 0) return;
   check_tiles(file, part.tile_width, part.tile_height, part.width, part.height);
   const auto count = [](int64_t size, int64_t tile) { return (size + tile - 1) / tile; };
@@ -82,12 +131,13 @@ void check_exr(const EncodedImage& file) {
       part = {};
       continue;
     }
-    if (!take_text(rest) || rest.size() < sizeof(int32_t)) return;
+    const auto type = take_text(rest);
+    if (!type || rest.size() < sizeof(int32_t)) return;
     const auto size = number_at<int32_t>(rest, 0);
     rest.remove_prefix(sizeof size);
     if (size < 0 || size_t(size) > rest.size())
       file.refuse("an attribute of its header claims {} bytes, {} follow", size, rest.size());
-    read_attribute(*name, rest.substr(0, size_t(size)), part, file);
+    read_attribute(*name, *type, rest.substr(0, size_t(size)), part, file);
     rest.remove_prefix(size_t(size));
   }
 }
@@ -140,14 +190,13 @@ void check_tga(const EncodedImage& file) {
 
 }  // namespace
 
-void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_t channels) {
+void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_t channels, int64_t rows) {
   constexpr int64_t kMostCompression = 16384;  // images of 8 bits compress by 1032 at most (deflate)
   constexpr int64_t kAlwaysAllowed = 256 << 20, kMostChannels = 1 << 12, kMostSide = int64_t{1} << 31;
-  constexpr int64_t kRowsAtOnce = 64;  // for which OpenImageIO allocates memory even where there are fewer
   const int64_t most = int64_t(file.bytes.size()) * kMostCompression + kAlwaysAllowed;
   const bool has_pixels = width > 0 && height > 0 && channels > 0;
   if (has_pixels && channels <= kMostChannels && width <= kMostSide && height <= kMostSide &&
-      width * std::max(height, kRowsAtOnce) <= most / (channels * int64_t(sizeof(float))))
+      width * std::max(height, rows) <= most / (channels * int64_t(sizeof(float))))
     return;
   fail(file.where, "image \"{}\" of {} bytes claims {} x {} pixels of {} channels{}", file.path.string(),
        file.bytes.size(), width, height, channels,

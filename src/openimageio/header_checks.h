@@ -22,8 +22,9 @@ struct EncodedImage {
 };
 
 /// Throws InputError if an image of this size has no pixels, more bytes of floats than 256 MB and 16,384 times the
-/// file's size, or more than 4,096 channels.
-void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_t channels);
+/// file's size, or more than 4,096 channels. `rows`: at once, for which memory is allocated even where there are fewer;
+/// OpenImageIO's 64.
+void check_claim(const EncodedImage& file, int64_t width, int64_t height, int64_t channels, int64_t rows = 64);
 
 /// Throws InputError if tiles are larger than the image and than 1024 x 1024 pixels: their memory is allocated before
 /// they are read.

@@ -163,6 +163,8 @@ class OpenImageIOCodec final : public ImageCodec {
       check(in->set_ioproxy(&memory), "OpenImageIO cannot read this format from memory");
       check(in->open(path.filename().string(), spec, config), in->geterror());
       check_claim(encoded, spec.width, spec.height, spec.nchannels);
+      if (const int rows = spec.get_int_attribute("tiff:RowsPerStrip", -1); rows != -1)  // -1: the image is one strip
+        check_claim(encoded, spec.width, rows, spec.nchannels);
       check_tiles(encoded, spec.tile_width, spec.tile_height, spec.width, spec.height);
       check(spec.depth == 1 && spec.tile_depth <= 1 && !spec.deep, "it is a volume, or deep");
       ImageFile file{Image(spec.width, spec.height, spec.channelnames), read_header(spec), read_chromaticities(spec),

@@ -321,6 +321,10 @@ TEST_F(ImageFiles, ThatOpenImageIOFollowsBeyondTheirDataAreRefused) {
   const std::vector<std::array<std::string, 3>> kCases{
       {"exr_wide_data_window", "a.exr", "claims 10420256 x 24 pixels"},
       {"exr_huge_tiles", "a.exr", "are larger than its"},
+      {"exr_hidden_tiles", "a.exr", "its list of channels has another size than it states"},
+      {"exr_wide_dwab", "a.exr", "claims 262176 x 24 pixels"},
+      {"tiff_endless_strip", "a.tif", "claims 32 x 2147483647 pixels"},
+      {"tiff_huge_strip", "a.tif", "claims 32 x 67108864 pixels"},
       {"exr_subsampled_tiles", "a.exr", "it is subsampled"},
       {"exr_name_of_a_channel", "a.exr", "the name of a channel is not UTF-8"},
       {"bmp_compressed_0", "a.bmp", "compressed BMP is not supported"},
