@@ -145,7 +145,7 @@ void check_exr(const EncodedImage& file) {
 /// OpenImageIO (2.4) looks colours up without regard to the size of the palette, and decodes compressed rows into any
 /// kind of pixels.
 void check_bmp(const EncodedImage& file) {
-  constexpr size_t kHeader = 14, kOldHeader = 12;
+  constexpr size_t kPixels = 10, kHeader = 14, kOldHeader = 12;
   constexpr uint32_t kUncompressed = 0, kBitFields = 3;
   const auto header = number_at<uint32_t>(file.bytes, kHeader);
   const bool is_old = header == kOldHeader;  // of OS/2: no compression, a full palette
@@ -154,7 +154,10 @@ void check_bmp(const EncodedImage& file) {
   const auto colors = is_old ? 0 : number_at<uint32_t>(file.bytes, kHeader + 32);
   if (compression != kUncompressed && !(compression == kBitFields && (bits == 16 || bits == 32)))
     file.refuse("compressed BMP is not supported; save it as PNG");
-  if (bits <= 8 && colors != 0 && colors != 1u << bits)
+  if (bits > 8 || colors == 0 || colors == 1u << bits) return;
+  const auto pixels = std::min<size_t>(number_at<uint32_t>(file.bytes, kPixels), file.bytes.size());
+  const auto is_known = [colors](char index) { return static_cast<unsigned char>(index) < colors; };
+  if (bits != 8 || !std::ranges::all_of(file.bytes.substr(pixels), is_known))
     file.refuse("its palette has {} of {} colours; save it as PNG", colors, 1u << bits);
 }
 
