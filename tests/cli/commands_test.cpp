@@ -358,6 +358,30 @@ TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
 }
 
 /// It knows linear sRGB by that name and not how to get there from anywhere else.
+TEST_F(Commands, NoInputIsReplacedAndNoFileIsWrittenTwice) {
+  const std::string scene = path("scene.pbrt"), table = path("table.csv");
+  const auto text_of = [](const std::string& file) {
+    std::ifstream in(file);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string before = text_of(scene);
+  fs::create_symlink(scene, path("link.csv"));
+  const std::vector<std::string> brf{"brf", scene, "--no-cache", "--wavelengths", "550", "--paths", "64"};
+  const auto refusal = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), brf.begin(), brf.end());
+    const Outcome o = frond_command(more);
+    EXPECT_EQ(o.code, 1);
+    return o.err;
+  };
+  EXPECT_THAT(refusal({"--csv", scene}), HasSubstr("--csv would replace the input \"" + scene));
+  EXPECT_THAT(refusal({"--json", path("link.csv")}), HasSubstr("--json would replace the input"));
+  EXPECT_THAT(refusal({"--csv", table, "--json", path("./table.csv")}),
+              HasSubstr("--csv and --json write to the same file"));
+  EXPECT_FALSE(fs::exists(table));
+  EXPECT_THAT(render({"-o", scene}).err, HasSubstr("would replace the input"));
+  EXPECT_EQ(text_of(scene), before);
+}
+
 TEST_F(Commands, AnOpenColorIOConfigurationThatLacksTheFilmsSpaceIsRefusedBeforeRendering) {
   folder_.write("small.ocio", R"(ocio_profile_version: 2
 roles: {default: linear sRGB}

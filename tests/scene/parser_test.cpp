@@ -242,6 +242,24 @@ Shape "sphere")");
   EXPECT_TRUE(s.shapes.at(1).plugin.params.empty());
 }
 
+TEST(Parser, LimitsTheCopiesOfAttribute) {
+  std::string world = "WorldBegin Attribute \"shape\" \"float x\" [";
+  for (int i = 0; i < 1'000'000; ++i) world += " 1";
+  world += "]\n";
+  for (int i = 0; i < 100; ++i) world += "Shape \"sphere\"\n";
+  const std::string error = error_of([&] { parse(world); });
+  EXPECT_THAT(error, HasSubstr("s.pbrt:65:7: parameters by Attribute take more than 512 MB"));
+  EXPECT_EQ(std::ranges::count(error, '\n'), 0) << "one error";
+
+  // States share the parameters: only the directive copies them.
+  std::string nested = "WorldBegin Attribute \"shape\" \"float x\" [";
+  for (int i = 0; i < 100'000; ++i) nested += " 1";
+  nested += "]\n";
+  for (int i = 0; i < 10'000; ++i) nested += "AttributeBegin ";
+  for (int i = 0; i < 10'000; ++i) nested += "AttributeEnd ";
+  EXPECT_TRUE(parse(nested).shapes.empty());
+}
+
 TEST(Parser, WarnsOfAcceleratorsOptionsGivenTwiceAndLightsInObjects) {
   testing::internal::CaptureStderr();
   parse_scene_text(R"(Accelerator "bvh" Accelerator "octree" Film "rgb"

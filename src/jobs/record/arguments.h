@@ -25,7 +25,12 @@ enum class ArgumentKind : uint8_t {
 };
 
 /// Use of a parameter's value as a path. `submit` makes paths absolute; outputs are checked before the job runs.
-enum class PathUse : uint8_t { none, read, write };
+enum class PathUse : uint8_t {
+  none,
+  read,     ///< no output may replace the file
+  replace,  ///< read, and an output may replace the file: it is written once all has been read
+  write,
+};
 
 /// Properties of a parameter; the defaults suit most parameters.
 struct ParamTraits {

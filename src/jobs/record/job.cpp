@@ -34,20 +34,39 @@ std::string file_name(const JobParam& p, const std::string& word) {
 
 bool is_path(const JobParam& p, const std::string& word) { return p.path != PathUse::none && word != "-"; }
 
-/// Throws InputError if an output cannot be written, or if two outputs are "-".
+/// Whether both names are of one file, which need not exist.
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error) && !error) return true;
+  const auto full = [&error](const std::string& path) { return std::filesystem::weakly_canonical(path, error); };
+  return full(a) == full(b) && !error;
+}
+
+/// Throws InputError if an output cannot be written, is an input, or is also another output.
 void check_outputs(const JobRun& run, std::span<const JobParam> params) {
-  std::string_view first;
-  for (const JobParam& p : params) {
-    if (p.path != PathUse::write || p.type != "FILE" || !run.args.given(p.name)) continue;
-    const std::string path = run.args.text(p.name);
-    if (path != "-") {
-      check_replaceable(path);
-    } else if (!first.empty()) {
-      fail({}, "only one of {} and {} can go to standard output", run.args.spelled(first), run.args.spelled(p.name));
-    } else {
-      first = p.name;
+  std::vector<std::pair<std::string_view, std::string>> used;  // parameters and their files
+  const auto each_file = [&](PathUse use, const auto& act) {
+    for (const JobParam& p : params)
+      if (p.path == use && run.args.given(p.name))
+        for (const std::string& path : run.args.words(p.name)) act(p, path);
+  };
+  each_file(PathUse::read, [&](const JobParam& p, const std::string& path) {
+    if (path != "-") used.emplace_back(p.name, path);
+  });
+  const size_t inputs = used.size();
+  each_file(PathUse::write, [&](const JobParam& p, const std::string& path) {
+    if (p.type == "FOLDER") return;
+    if (path != "-" && p.type == "FILE") check_replaceable(path);
+    for (size_t i = 0; i < used.size(); ++i) {
+      const auto& [name, other] = used[i];
+      if (path == "-" && other == "-")
+        fail({}, "only one of {} and {} can go to standard output", run.args.spelled(name), run.args.spelled(p.name));
+      if (path == "-" || other == "-" || !is_same_file(path, other)) continue;
+      if (i < inputs) fail({}, "{} would replace the input \"{}\"", run.args.spelled(p.name), other);
+      fail({}, "{} and {} write to the same file, \"{}\"", run.args.spelled(name), run.args.spelled(p.name), path);
     }
-  }
+    used.emplace_back(p.name, path);
+  });
 }
 
 /// Writes --csv and --json.

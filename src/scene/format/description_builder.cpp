@@ -234,7 +234,13 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
   const auto found = std::find(kTargets.begin(), kTargets.end(), target);
   if (found == kTargets.end())
     fail(where, "unknown target \"{}\" of Attribute{}", target, suggestion(target, {kTargets.begin(), kTargets.end()}));
-  auto& defaults = state_.defaults[static_cast<size_t>(found - kTargets.begin())];
+  if (has_too_many_copies_) return;
+  if (state_.defaults.use_count() > 1) {
+    for (const auto& list : *state_.defaults)
+      for (const ParsedParam& p : list) count_copy(p, where);
+    state_.defaults = std::make_shared<Defaults>(*state_.defaults);
+  }
+  auto& defaults = (*state_.defaults)[static_cast<size_t>(found - kTargets.begin())];
   note_color_space(params);
   for (ParsedParam& param : params) {
     param.may_be_unused = true;
@@ -244,15 +250,27 @@ void DescriptionBuilder::attribute(const std::string& target, const Location& wh
 }
 
 /// Appends the defaults of Attribute for parameters that the plug-in does not give itself.
-ParsedPlugin DescriptionBuilder::with_defaults(ParsedPlugin plugin, Target target) const {
+ParsedPlugin DescriptionBuilder::with_defaults(ParsedPlugin plugin, Target target) {
   note_color_space(plugin.params);
   const size_t own = plugin.params.size();
-  for (const ParsedParam& p : state_.defaults[static_cast<size_t>(target)]) {
+  for (const ParsedParam& p : (*state_.defaults)[static_cast<size_t>(target)]) {
     const auto own_end = plugin.params.begin() + static_cast<std::ptrdiff_t>(own);
-    if (std::none_of(plugin.params.begin(), own_end, [&](const ParsedParam& given) { return given.name == p.name; }))
-      plugin.params.push_back(p);
+    if (std::any_of(plugin.params.begin(), own_end, [&](const ParsedParam& given) { return given.name == p.name; }))
+      continue;
+    count_copy(p, plugin.where);
+    if (!has_too_many_copies_) plugin.params.push_back(p);
   }
   return plugin;
+}
+
+void DescriptionBuilder::count_copy(const ParsedParam& param, const Location& where) {
+  constexpr size_t kMost = size_t{512} << 20;
+  if (has_too_many_copies_) return;
+  copied_bytes_ += sizeof param + std::visit([](const auto& v) { return v.size() * sizeof v[0]; }, param.values);
+  if (copied_bytes_ <= kMost) return;
+  has_too_many_copies_ = scene_.is_incomplete = true;
+  fail(where, "parameters by Attribute take more than {} MB in all; give them to the shapes that need them",
+       kMost >> 20);
 }
 
 /// Returns the index of the new material.

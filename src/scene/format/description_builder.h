@@ -77,6 +77,9 @@ class DescriptionBuilder {
   enum class Target : uint8_t { shape, light, material, texture };
   static constexpr std::array<std::string_view, 4> kTargets{"shape", "light", "material", "texture"};
 
+  /// Parameters by Attribute, for each target.
+  using Defaults = std::array<std::vector<ParsedParam>, kTargets.size()>;
+
   struct State {
     Transform transform;
     bool is_transform_active = true;
@@ -86,7 +89,7 @@ class DescriptionBuilder {
     std::optional<size_t> open_object;
     std::string color_space = "srgb";
     Location color_space_where;
-    std::array<std::vector<ParsedParam>, kTargets.size()> defaults;
+    std::shared_ptr<Defaults> defaults = std::make_shared<Defaults>();  ///< shared by states, and copied to be changed
   };
   enum class Opener : uint8_t { attribute, transform, object, import };
   struct Saved {
@@ -110,7 +113,10 @@ class DescriptionBuilder {
   /// As in pbrt, AttributeEnd also closes TransformBegin, and TransformEnd AttributeBegin.
   void end(std::string_view directive, std::string_view beginner, const Location& where);
   void settle_unknown_materials(Problems& problems);
-  ParsedPlugin with_defaults(ParsedPlugin plugin, Target target) const;
+  ParsedPlugin with_defaults(ParsedPlugin plugin, Target target);
+  /// Counts a copy of a parameter by Attribute. Beyond a limit of all copies it throws InputError once; no further ones
+  /// are made.
+  void count_copy(const ParsedParam& param, const Location& where);
   void note_color_space(std::vector<ParsedParam>& params) const;
   /// Sets the film's colour space to the current one.
   void set_film_space();
@@ -123,6 +129,8 @@ class DescriptionBuilder {
   const Log& log_;
   State state_;
   std::vector<Saved> saved_;
+  size_t copied_bytes_ = 0;  ///< of parameters by Attribute
+  bool has_too_many_copies_ = false;
   bool in_world_ = false;
   bool has_warned_of_transform_begin_ = false;
   Names materials_, objects_;
