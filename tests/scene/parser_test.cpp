@@ -248,7 +248,7 @@ TEST(Parser, LimitsTheCopiesOfAttribute) {
   world += "]\n";
   for (int i = 0; i < 100; ++i) world += "Shape \"sphere\"\n";
   const std::string error = error_of([&] { parse(world); });
-  EXPECT_THAT(error, HasSubstr("s.pbrt:65:7: parameters by Attribute take more than 512 MB"));
+  EXPECT_THAT(error, HasSubstr("s.pbrt:69:7: parameters by Attribute take more than 512 MB"));
   EXPECT_EQ(std::ranges::count(error, '\n'), 0) << "one error";
 
   // States share the parameters: only the directive copies them.
