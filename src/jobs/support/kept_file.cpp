@@ -19,7 +19,8 @@ std::optional<std::filesystem::path> KeptFile::found(bool resume) const {
 void KeptFile::keep(bool is_complete, bool is_result,
                     const std::function<void(const std::filesystem::path&)>& write) const try {
   write(is_complete ? names_.finished : names_.checkpoint);
-  if (is_complete && names_.checkpoint != names_.finished) std::filesystem::remove(names_.checkpoint);
+  std::error_code ignored;  // a name that is too long, for example: then there is no checkpoint
+  if (is_complete && names_.checkpoint != names_.finished) std::filesystem::remove(names_.checkpoint, ignored);
 } catch (const InputError& error) {
   if (!is_complete || is_result) throw;
   log_.warn({}, fmt::format("no checkpoint was written: {}", error.what()));
