@@ -88,7 +88,7 @@ class Kill(FrondTest):
                 self.assertEqual(process.returncode, 0, process.stderr.read())
             kept_before, kept = kept, self.paths_kept()
             self.assertGreaterEqual(kept, kept_before)
-        self.assertGreater(killed, KILLS / 2)
+        self.assertGreater(killed, KILLS / 4)  # the others end first, at a rate that depends on the machine's load
         self.assertLess(loss / killed, 1.5 * INTERVAL)
         self.assertGreater(kept, 0)
         self.check_resumed(spp)
