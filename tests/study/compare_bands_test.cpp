@@ -137,7 +137,8 @@ TEST_F(CompareBands, AreMeasuredOneByOneAndTogether) {
 TEST_F(CompareBands, AreMeasuredOnceAllOfThemAreSeen) {
   const std::string nine = "bands,wavelengths=400,450,500,550,600,650,700,750,800";
   ASSERT_EQ(compare({"--wavelengths", nine}).code, 0);
-  for (const auto& row : nlohmann::json::parse(file("compare.json"))["comparison"]) {
+  const auto report = nlohmann::json::parse(file("compare.json"));
+  for (const auto& row : report["comparison"]) {
     EXPECT_EQ(row["samples"], 4);
     if (row["region"] == "leaf") {
       EXPECT_GT(row["noise"], 0) << row["channel"];

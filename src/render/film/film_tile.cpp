@@ -266,7 +266,7 @@ void FilmTile::add(int x, int y, const Features& f) {
   for (size_t i = 0; i < mean_count_; ++i) mean_sums_[at * mean_count_ + i].add(held(f.means[i]));
   if (std::pair(double(f.from_center), f.sample) < std::pair(hits.nearest_distance, hits.nearest_sample)) {
     hits.nearest_distance = double(f.from_center), hits.nearest_sample = f.sample;
-    std::copy_n(f.ids.begin(), id_count_, &ids_[at * id_count_]);
+    std::copy_n(f.ids.begin(), id_count_, ids_.data() + at * id_count_);
   }
 }
 
