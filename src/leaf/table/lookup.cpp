@@ -102,7 +102,9 @@ TableLookup TableLookup::for_lanes(const DepthTable& table) {
 }
 
 TableLookup TableLookup::for_spectra(const DepthTable& table) {
-  TableLookup lookup = for_lanes(table);
+  TableLookup lookup;
+  lookup.depths_ = table.depths;
+  lookup.add_columns(table.theta_deg, table.shares);
   lookup.wavelengths_ = WavelengthAxis(table.wavelengths_nm);
   return lookup;
 }
