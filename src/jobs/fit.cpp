@@ -88,8 +88,8 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasure
   for (const leaf::LeafMeasurement& r : request.measurements) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
   // Fewer values than parameters leave the fit undetermined, unless a prior determines the rest.
   const size_t all = std::size(leaf::kFitVariables), free = all - std::min(all, request.fixed.size());
-  const Location where = args.given("file") ? Location{std::make_shared<const std::string>(args.text("file")), 0, 0}
-                                           : Location{};
+  const Location where =
+      args.given("file") ? Location{std::make_shared<const std::string>(args.text("file")), 0, 0} : Location{};
   if (values == 0) fail(where, "there is no value to fit within 360 to 2500 nm");
   if (values < free && !request.has_prior)
     fail(where, "{} values are fewer than the {} parameters to fit: use {} or {}", values, free, args.spelled("fix"),
