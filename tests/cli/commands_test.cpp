@@ -357,7 +357,6 @@ TEST_F(Commands, WhatCannotBeWrittenIsRefusedBeforeRendering) {
   EXPECT_EQ(files(), before);
 }
 
-/// It knows linear sRGB by that name and not how to get there from anywhere else.
 TEST_F(Commands, NoInputIsReplacedAndNoFileIsWrittenTwice) {
   const std::string scene = path("scene.pbrt"), table = path("table.csv");
   const auto text_of = [](const std::string& file) {
@@ -382,6 +381,7 @@ TEST_F(Commands, NoInputIsReplacedAndNoFileIsWrittenTwice) {
   EXPECT_EQ(text_of(scene), before);
 }
 
+/// It knows linear sRGB by that name and not how to get there from anywhere else.
 TEST_F(Commands, AnOpenColorIOConfigurationThatLacksTheFilmsSpaceIsRefusedBeforeRendering) {
   folder_.write("small.ocio", R"(ocio_profile_version: 2
 roles: {default: linear sRGB}

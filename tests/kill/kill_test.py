@@ -67,7 +67,7 @@ class Kill(FrondTest):
 
     def test_at_random_moments(self):
         moments = random.Random(1)
-        spp = self.per_second * KILLS // 8
+        spp = self.per_second * KILLS // 4
         start = time.time()
         self.run_to_end(self.command(self.folder / "load.exr", "--spp", 1, "-q"))
         longest = LONGEST + time.time() - start
@@ -88,7 +88,7 @@ class Kill(FrondTest):
                 self.assertEqual(process.returncode, 0, process.stderr.read())
             kept_before, kept = kept, self.paths_kept()
             self.assertGreaterEqual(kept, kept_before)
-        self.assertGreater(killed, KILLS / 4)  # the others end first, at a rate that depends on the machine's load
+        self.assertGreater(killed, KILLS / 2)
         self.assertLess(loss / killed, 1.5 * INTERVAL)
         self.assertGreater(kept, 0)
         self.check_resumed(spp)
