@@ -63,33 +63,34 @@ class Cubature {
                                              {z, box.z1, box.phi0, phi},
                                              {z, box.z1, phi, box.phi1}}};
     std::array<Value, 4> values;
-    Value sum;
+    SpherePart part{.box = box};
     for (size_t i = 0; i < 4; ++i) {
       values[i] = product_rule(quarters[i]);
-      sum.integral += values[i].integral;
-      sum.largest = std::max(sum.largest, values[i].largest);
+      part.integral += values[i].integral;
+      part.largest = std::max(part.largest, values[i].largest);
     }
-    if (depth == 0 || is_settled(box, whole, sum, peaks)) {
-      parts.push_back({box, sum.integral});
+    double peak = 0;
+    for (const Peak& p : peaks) peak = std::max(peak, p.density);
+    const bool settled = rules_agree(whole, part) && !part.overlooks(peak);
+    if (settled || depth == 0) {
+      if (!settled) part.error = std::max(part.largest, peak) * box.solid_angle();
+      parts.push_back(part);
       return;
     }
     for (size_t i = 0; i < 4; ++i) {
-      const SphereBox& q = quarters[i];
-      const auto others = std::partition(peaks.begin(), peaks.end(), [&q](const Peak& p) {
-        return p.cos_theta >= q.z0 && p.cos_theta < q.z1 && p.phi >= q.phi0 && p.phi < q.phi1;
+      const auto others = std::partition(peaks.begin(), peaks.end(), [&quarters, i](const Peak& p) {
+        return quarters[i].contains(p.cos_theta, p.phi);
       });
-      refine(q, values[i], peaks.first(size_t(others - peaks.begin())), depth - 1, parts);
+      refine(quarters[i], values[i], peaks.first(size_t(others - peaks.begin())), depth - 1, parts);
     }
   }
 
  private:
-  bool is_settled(const SphereBox& box, const Value& whole, const Value& sum, std::span<const Peak> peaks) const {
+  bool rules_agree(const Value& whole, const SpherePart& part) const {
     constexpr double kRelative = 1e-4;  // below it, float rounding of densities would cause subdivision
     constexpr double kUneven = 8;       // largest over mean: few nodes hit the lobe, and two rules may agree by chance
-    constexpr double kOverlooked = 3;   // times the largest at the nodes: they have missed a lobe
-    if (std::abs(sum.integral - whole.integral) > tolerance_ + kRelative * std::abs(sum.integral)) return false;
-    if (sum.largest * box.solid_angle() > tolerance_ + kUneven * sum.integral) return false;
-    return std::ranges::none_of(peaks, [&sum](const Peak& p) { return p.density > kOverlooked * sum.largest; });
+    return std::abs(part.integral - whole.integral) <= tolerance_ + kRelative * std::abs(part.integral) &&
+           part.largest * part.box.solid_angle() <= tolerance_ + kUneven * part.integral;
   }
 
   const Density& density_;
@@ -113,6 +114,12 @@ std::vector<SpherePart> integrate(const SphereBox& box, const Density& density, 
 double total(std::span<const SpherePart> parts) {
   double sum = 0;
   for (const SpherePart& part : parts) sum += part.integral;
+  return sum;
+}
+
+double total_error(std::span<const SpherePart> parts) {
+  double sum = 0;
+  for (const SpherePart& part : parts) sum += part.error;
   return sum;
 }
 

@@ -16,6 +16,13 @@ using Density = std::function<double(const Vec3&)>;
 struct SpherePart {
   SphereBox box;
   double integral = 0;
+  double largest = 0;  ///< largest density found at the nodes
+  /// 0 if division has settled the integral; else, at the limit of division, the largest density of a node or peak times
+  /// the solid angle.
+  double error = 0;
+
+  /// Whether the nodes have missed a lobe that has this density.
+  bool overlooks(double density) const { return density > 3 * largest; }
 };
 
 /// Integrates by adaptive Gauss quadrature; returns the parts into which it has divided the box. A part is divided
@@ -26,6 +33,8 @@ std::vector<SpherePart> integrate(const SphereBox& box, const Density& density, 
 
 /// Sum of the integrals.
 double total(std::span<const SpherePart> parts);
+/// Sum of the errors.
+double total_error(std::span<const SpherePart> parts);
 
 /// Draws directions in parts, half of them in proportion to the integral and half to the solid angle: importance
 /// sampling for functions similar to the integrated density.
@@ -38,6 +47,7 @@ class PartSampler {
   };
   /// At least one part.
   explicit PartSampler(std::vector<SpherePart> parts);
+  std::span<const SpherePart> parts() const { return parts_; }
   Draw draw(RandomStream& numbers) const;
 
  private:

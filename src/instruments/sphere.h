@@ -25,6 +25,9 @@ struct SphereBox {
 
   /// Solid angle, sr.
   double solid_angle() const { return (z1 - z0) * (phi1 - phi0); }
+  bool contains(double cos_theta, double phi) const {
+    return cos_theta >= z0 && cos_theta < z1 && phi >= phi0 && phi < phi1;
+  }
   /// Area-preserving map of the unit square into the box.
   Vec3 at(double u, double v) const;
 };

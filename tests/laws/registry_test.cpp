@@ -206,6 +206,20 @@ TEST(Rough, Obeys) {
   }
 }
 
+// A reflection 1e-4 wide one way and as wide as the hemisphere the other: the quadrature of pdf has nodes on either side of
+// it, and 250 pilot samples do not lie in all of its parts.
+TEST(Rough, ObeysWithFewSamplesWhereTheQuadratureOverlooksABand) {
+  const ParameterSet band{
+      "band",
+      {"coateddiffuse",
+       {},
+       {given("float", "roughness", 0.0), given("float", "vroughness", 9.67319), given("float", "thickness", 2.9e-4),
+        given("integer", "maxdepth", 4.0), given("integer", "nsamples", 3.0)}}};
+  for (const int samples : {1000, 2000, 5000, 10000})
+    expect_lawful(material("coateddiffuse"), {&band, 1}, GivenWavelengths({608, 551, 455}),
+                  {.samples = samples, .angles_deg = {30}});
+}
+
 TEST(CoatedConductor, Obeys) {
   const ParsedParam scatters = level("albedo", 0.8), thick = given("float", "thickness", 0.3);
   const ParsedParam rough = given("float", "conductor.roughness", 0.05);

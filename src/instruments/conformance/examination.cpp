@@ -1,6 +1,7 @@
 #include "instruments/conformance/examination.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
 
 namespace frond {
 namespace {
@@ -56,8 +57,30 @@ void Examination::integrate_pdf() {
   for (size_t b = 0; b < bins.size(); ++b) {
     auto parts = integrate(bins.box(b), density, kTolerance, bins.points(b));
     pdf_mass.push_back(total(parts));
+    pdf_error += total_error(parts);
     in_bin.emplace_back(std::move(parts));
   }
+  bound_overlooked();
+}
+
+/// The quadrature knows the pilot only, so the share of the other samples in lobes that it has overlooked is the mass of
+/// those lobes.
+void Examination::bound_overlooked() {
+  constexpr double kAlarm = 1e-6;  // probability that the true mass is larger
+  const auto part_of = [this](const BsdfSample& sample) -> const SpherePart* {
+    const SpherePoint point(sample.wi);
+    const auto parts = in_bin[bins.find(sample.wi)].parts();
+    const auto found = std::ranges::find_if(
+        parts, [&point](const SpherePart& part) { return part.box.contains(point.cos_theta, point.phi); });
+    return found == parts.end() ? nullptr : &*found;
+  };
+  int64_t count = 0;
+  for (const BsdfSample& sample : samples) {
+    if (is_specular(sample)) continue;
+    const SpherePart* part = part_of(sample);
+    if (part && part->overlooks(bsdf.pdf(wo, sample.wi))) ++count;
+  }
+  overlooked = boost::math::gamma_q_inv(static_cast<double>(count + 1), kAlarm) / static_cast<double>(drawn);
 }
 
 std::vector<BsdfSample> Examination::draw(int64_t count, uint64_t seed) const {

@@ -66,12 +66,15 @@ struct Examination {
   bool exact;                       ///< see Law
   SphereBins bins;
   std::vector<double> pdf_mass;     ///< integral of `pdf` over each bin
+  double pdf_error = 0;             ///< bound of the error of their sum where division has not settled it
+  double overlooked = 0;            ///< bound of what their sum lacks: lobes between nodes, without a pilot sample
   std::vector<PartSampler> in_bin;  ///< draw directions in each bin
   std::vector<Probe> probes;
 
  private:
   std::vector<BsdfSample> draw(int64_t count, uint64_t seed) const;
   void integrate_pdf();
+  void bound_overlooked();
   void probe(uint64_t seed);
 };
 
