@@ -17,8 +17,8 @@ struct SpherePart {
   SphereBox box;
   double integral = 0;
   double largest = 0;  ///< largest density found at the nodes
-  /// 0 if division has settled the integral; else, at the limit of division, the largest density of a node or peak times
-  /// the solid angle.
+  /// 0 if division has settled the integral; else, at the limit of division, the largest density of a node or peak
+  /// times the solid angle.
   double error = 0;
 
   /// Whether the nodes have missed a lobe that has this density.

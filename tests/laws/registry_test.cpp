@@ -206,8 +206,8 @@ TEST(Rough, Obeys) {
   }
 }
 
-// A reflection 1e-4 wide one way and as wide as the hemisphere the other: the quadrature of pdf has nodes on either side of
-// it, and 250 pilot samples do not lie in all of its parts.
+// A reflection 1e-4 wide one way and as wide as the hemisphere the other: the quadrature of pdf has nodes on either
+// side of it, and 250 pilot samples do not lie in all of its parts.
 TEST(Rough, ObeysWithFewSamplesWhereTheQuadratureOverlooksABand) {
   const ParameterSet band{
       "band",

@@ -63,8 +63,8 @@ void Examination::integrate_pdf() {
   bound_overlooked();
 }
 
-/// The quadrature knows the pilot only, so the share of the other samples in lobes that it has overlooked is the mass of
-/// those lobes.
+/// The quadrature knows the pilot only, so the share of the other samples in lobes that it has overlooked is the mass
+/// of those lobes.
 void Examination::bound_overlooked() {
   constexpr double kAlarm = 1e-6;  // probability that the true mass is larger
   const auto part_of = [this](const BsdfSample& sample) -> const SpherePart* {

@@ -53,7 +53,7 @@ void check_sampling(const Examination& s, Findings& findings) {
   if (!s.exact) return;
   const std::vector<double> observed = counts(s);
   const double count = total(observed), mass = total(s.pdf_mass);
-  if (count < 50 || mass <= 0) return;  // purely specular, or a fault that coverage and normalisation find
+  if (count < 50 || mass <= 0) return;    // purely specular, or a fault that coverage and normalisation find
   if (s.pdf_error > kQuadrature) return;  // the number expected in each bin is not known well enough
   const std::vector<double> expected = scaled(s.pdf_mass, count / mass);
   findings.push_back(statistical(Law::sampling, s, chi_square_p(observed, expected),
