@@ -349,6 +349,9 @@ LONG = {
     "render": 'frond.load("scene.pbrt", session=session).render(10**9)',
     "load": 'frond.loads(SCENE.replace("leaf_lambert", "leaf").replace(" 16 ", " 512 ", 2), swap="leaf,maxrms=0.0001",'
             ' samples=100000, session=session)',
+    "render_python": '[frond.register_material("slow", python_bsdf(f=lambda *_: __import__("time").sleep(0.02) or 0.1),'
+                     ' session=session), session.loads(SCENE.replace("leaf_lambert", "slow").replace(" 16 ", " 512 ", 2))'
+                     '.render(10**6)]',
     "leaf_table": 'frond.leaf_table("leaf_solved", range(400, 2400), session=session)',
     "table": 'frond.table(specimen="maize", method="montecarlo", wavelengths=551, rays=10**9, output="t.csv",'
              ' session=session)',

@@ -77,7 +77,7 @@ int64_t count_channels(std::string_view list, const EncodedImage& file) {
   return channels;
 }
 
-/// Reads the attributes "channels", "dataWindow" and "tiles", and checks the sizes of all.
+/// Reads the attributes "channels", "compression", "dataWindow" and "tiles", and checks the sizes of all.
 void read_attribute(std::string_view name, std::string_view type, std::string_view value, ExrPart& part,
                     const EncodedImage& file) {
   const auto* known = std::ranges::find(kSizes, type, [](const auto& size) { return size.first; });
@@ -92,6 +92,10 @@ void read_attribute(std::string_view name, std::string_view type, std::string_vi
   if (name == "dataWindow") {  // four corners
     part.width = int64_t(number_at<int32_t>(value, 8)) - number_at<int32_t>(value, 0) + 1;
     part.height = int64_t(number_at<int32_t>(value, 12)) - number_at<int32_t>(value, 4) + 1;
+  } else if (name == "compression") {
+    constexpr int kLast = 9;  // DWAB
+    const int compression = static_cast<unsigned char>(value.empty() ? '\0' : value[0]);
+    if (compression > kLast) file.refuse("EXR compression {} is not supported; save it as ZIP", compression);
   } else if (name == "tiles") {
     part.tile_width = number_at<uint32_t>(value, 0);
     part.tile_height = number_at<uint32_t>(value, 4);

@@ -57,11 +57,15 @@ class WorkItems {
   uint64_t block_, first_block_, blocks_;
 };
 
+/// Ends the loop over all items at once: skipping millions of items one by one would take a second.
+struct Ended : std::exception {};
+
 /// State of one thread.
 class Worker {
  public:
-  Worker(const RenderJob& job, const Film& film)
+  Worker(const RenderJob& job, const Film& film, std::stop_token stop)
       : job_(job),
+        stop_(std::move(stop)),
         format_(film.format()),
         tracer_(job.integrator.tracer(job.world)),
         bundle_{.sampler = job.sampler},
@@ -71,7 +75,8 @@ class Worker {
     if (has_fixed_wavelengths_) bundle_.lambda.fill(job.wavelengths.sample(0));
   }
 
-  /// Renders the samples of an item that `covered` lacks. Afterwards `tile` contains exactly these.
+  /// Renders the samples of an item that `covered` lacks. Afterwards `tile` contains exactly these. Throws Ended, with
+  /// an incomplete tile, if a stop is requested: with a slow BSDF an item takes seconds.
   void render(const WorkItem& item, const Coverage& covered) {
     tile_.clear(item.empty() ? Crop{} : item.pixels);
     statistics_ = {};
@@ -111,6 +116,7 @@ class Worker {
   void render_pixel(int x, int y, SampleRange samples) {
     assert(!format_.blocks || (samples.begin % FilmTile::kBlock == 0 && samples.end % FilmTile::kBlock == 0));
     for (uint64_t first = samples.begin / kBundle * kBundle; first < samples.end; first += kBundle) {
+      if (stop_.stop_requested()) throw Ended();
       const uint64_t begin = std::max(samples.begin, first), end = std::min(samples.end, first + kBundle);
       trace_bundle(place_of(x, y), first, uint32_t(((1u << (end - first)) - 1) & ~((1u << (begin - first)) - 1)));
       const bool own_blocks = format_.blocks && !kernel_;
@@ -197,6 +203,7 @@ class Worker {
   static_assert(kBundle == FilmTile::kBlock);
 
   const RenderJob& job_;
+  const std::stop_token stop_;
   const FilmFormat& format_;
   const bool has_fixed_wavelengths_ = !job_.wavelengths.fixed_nm().empty();
   std::optional<SplatKernel> kernel_;  ///< set with splatting
@@ -221,12 +228,11 @@ RenderStatistics render(const RenderJob& job, const WorkPlan& plan, Film& film, 
   RenderStatistics total;
   std::mutex mutex;
   int64_t done = 0;
-  struct Ended : std::exception {};  // because skipping millions of items one by one would take a second
   const auto render_item = [&](int64_t i, int thread) {
     if (control.stop.stop_requested() || (control.deadline && std::chrono::steady_clock::now() >= *control.deadline))
       throw Ended();
     auto& worker = workers[size_t(thread)];
-    if (!worker) worker = std::make_unique<Worker>(job, film);
+    if (!worker) worker = std::make_unique<Worker>(job, film, control.stop);
     // No other thread adds samples of this item: its missing samples remain the same meanwhile.
     worker->render(items.item(i), film.coverage(items.tile(i)));
     film.merge(items.tile(i), worker->tile());
@@ -251,6 +257,7 @@ int film_exponent(const RenderJob& job, const FilmSettings& settings) {
   const auto tracer = job.integrator.tracer(job.world);
   std::vector<double> brightest;
   for (uint64_t i = 0; i < kPaths; ++i) {
+    check_stop();
     RandomStream place(hash_key(job.seed, i));
     const int x = int(place.uniform() * float(settings.width)), y = int(place.uniform() * float(settings.height));
     PathBundle bundle{

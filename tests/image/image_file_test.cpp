@@ -316,6 +316,16 @@ TEST_F(ImageFiles, SmallFilesWithHugeAttributesAreRefused) {
   EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("an attribute of its header claims 21307064"));
 }
 
+TEST_F(ImageFiles, CompressionsOfLaterVersionsOfOpenExrAreNamed) {
+  const fs::path path = folder_ / "a.exr";
+  write_image(path, sample({"R", "G", "B"}), {});
+  std::string bytes = bytes_of(path);
+  const std::string attribute("compression\0compression\0\x01\0\0\0", 28);
+  bytes[bytes.find(attribute) + attribute.size()] = 10;
+  std::ofstream(path, std::ios::binary) << bytes;
+  EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr("compression 10 is not supported"));
+}
+
 /// Images of the fuzz target "image", whose first byte is not part of the file.
 TEST_F(ImageFiles, ThatOpenImageIOFollowsBeyondTheirDataAreRefused) {
   const std::vector<std::array<std::string, 3>> kCases{
