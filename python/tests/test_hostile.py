@@ -210,6 +210,7 @@ CALLS = [
     ('frond.bsdf("diffuse", [551]).f(numpy.eye(3)[:, ::-1], [0, 0, 1]).shape', "", r"\(3, 1\)"),
     ('frond.bsdf("diffuse", [551]).f([0, 0, 1], [0, 0, 1], seed=-1)', BAD_INPUT, ""),
     # BSDFs in Python.
+    ('session.loads(SCENE).render(2**63)', BAD_INPUT, "samples per pixel"),
     ('conform(python_bsdf(pdf=lambda self, wo, wi, nm: -1.0))["all_hold"]', "", "False"),
     ('conform(python_bsdf(pdf=lambda self, wo, wi, nm: nan))["all_hold"]', "", "False"),
     ('conform(python_bsdf(f=lambda self, wo, wi, nm: nan))["laws"]["values"]["verdict"]', "", "broken"),

@@ -117,6 +117,8 @@ class WholeProgress final : public Progress {
 }  // namespace
 
 void LoadedScene::check_samples(uint64_t samples) const {
+  constexpr uint64_t kMost = uint64_t{1} << 30;
+  if (samples > kMost) fail({}, "{} samples per pixel are requested: {} are the most", samples, kMost);
   const size_t bands = facts_.format.bands, needed = (bands + kLanes - 1) / kLanes;
   if (samples < needed)
     fail({}, "{} bands need {} samples per pixel or more, as each sample carries {} of them: {} are requested", bands,

@@ -39,7 +39,7 @@ class LoadedScene {
   const ImageFormat& image_format() const { return image_format_; }
   /// Samples per pixel that the scene file states.
   uint64_t samples() const { return uint64_t(scene_->samples_per_pixel()); }
-  /// Throws InputError if `samples` per pixel are too few to sample each spectral band at least once.
+  /// Throws InputError if `samples` per pixel are too few to sample each spectral band at least once, or too many.
   void check_samples(uint64_t samples) const;
   /// Arguments for `render`; they refer to this object.
   RenderJob job() const;

@@ -326,6 +326,13 @@ TEST_F(Parts, ForgedHeadersAreDamaged) {
           << name << " " << value;
     }
   EXPECT_THAT(refusal(number_of("reach"), "\"reach\": 2147483647"), HasSubstr("is damaged"));
+  for (const std::string name : {"mean", "square"}) {
+    const size_t at = bytes.find('"' + name + "\": [");
+    const std::string first = bytes.substr(at, bytes.find(',', at) - at);
+    EXPECT_EQ(refusal(first, first), "");
+    EXPECT_THAT(refusal(first, '"' + name + "\": [1e30"), HasSubstr("is damaged"));
+  }
+  EXPECT_THAT(refusal(number_of("correlated_pixels"), "\"correlated_pixels\": 1e30"), HasSubstr("is damaged"));
 }
 
 /// A header can claim any size; memory is taken for what the sums can hold.

@@ -72,6 +72,7 @@ Integer integer_of(const Json& json, Integer most = std::numeric_limits<Integer>
 constexpr int kMostPixels = 1 << 24;  ///< in a row or a column
 constexpr size_t kMostBands = 1 << 16;
 constexpr int kMostExponent = 2048;
+constexpr double kMostWeight = 1e6;  // of a filter; usual ones are about 1
 
 Json json_of(const Crop& c) { return {c.x0, c.y0, c.x1, c.y1}; }
 Crop crop_of(const Json& j) {
@@ -123,8 +124,12 @@ std::optional<Splatting> splatting_of(const Json& j, const Crop& crop) {
                  axis.at("square").get<std::vector<double>>()};
     const auto width = size_t(2 * s.axes[i].reach + 1);
     if (s.axes[i].mean.size() != width || s.axes[i].square.size() != width) refuse(j, "a filter of another width");
+    const auto is_weight = [](double weight) { return std::abs(weight) <= kMostWeight; };
+    if (!std::ranges::all_of(s.axes[i].mean, is_weight) || !std::ranges::all_of(s.axes[i].square, is_weight))
+      refuse(j, "a filter whose weights are too large");
   }
   s.has_negative_weights = j.at("has_negative_weights"), s.correlated_pixels = j.at("correlated_pixels");
+  if (!(s.correlated_pixels >= 1 && s.correlated_pixels <= kMostWeight)) refuse(j, "no number of pixels");
   s.sampled = crop_of(j.at("sampled"));
   if (intersection(s.sampled, crop) != crop ||
       intersection(s.sampled, widened(crop, s.reach_x(), s.reach_y())) != s.sampled)
