@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kMost = std::numeric_limits<uint32_t>::max();
 
-/// Appends an integer, little-endian.
+/// Appends an integer of up to 8 bytes, little-endian.
 void put(std::string& out, uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out += char(value >> (8 * i) & 0xff);
 }
@@ -37,13 +37,13 @@ std::string entry(std::string_view name, std::string_view bytes) {
 }  // namespace
 
 void StoredZip::add(std::string_view name, std::string_view bytes) {
-  if (bytes.size() > kMost || files_.size() > kMost - bytes.size() - name.size())
+  if (files_.size() + name.size() + bytes.size() > kMost)
     fail({}, "the archive would be larger than 4 GB");
   const std::string e = entry(name, bytes);
   directory_ += "PK\x01\x02";
   put(directory_, 20, 2);
   directory_ += e;
-  put(directory_, 0, 2 + 2 + 2 + 4);  // no comment, one disk, no attributes
+  directory_.append(2 + 2 + 2 + 4, '\0');  // no comment, one disk, no attributes
   put(directory_, files_.size(), 4);
   directory_ += name;
   files_ += "PK\x03\x04";

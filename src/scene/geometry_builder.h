@@ -8,11 +8,11 @@
 
 namespace frond {
 
-/// Limit of the coordinates of shapes and lights. Embree takes rays and geometry up to 1.8e18, and the ray from one
-/// point to another is as long as their distance.
+/// Limit of the coordinates of shapes, lights and cameras. Embree takes rays and geometry up to 1.8e18, and the ray
+/// from one point to another is as long as their distance.
 inline constexpr float kFarthest = 5e17f;
 
-/// Throws InputError, "this shape reaches to ...", for a coordinate beyond kFarthest or NaN.
+/// Throws InputError, `what` and the point, for a coordinate beyond kFarthest or NaN.
 void check_coordinates(const Vec3& p, std::string_view what, const Location& where);
 
 /// Builds the geometry of the description's shapes and instances. Continues after an invalid shape; throws all errors

@@ -182,7 +182,7 @@ class Radiometers(FrondTest):
 
     def paths_in(self, seconds, words):
         """How many paths a run of so many seconds gets to here and now."""
-        _, err = self.run_to_end(self.command(*words, "--paths", "4e9", "--time-limit", seconds, "--csv", self.csv))
+        _, err = self.run_for(seconds, *words, "--paths", "4e9", "--csv", self.csv)
         self.csv.unlink()
         return int(re.search(r"(\d+) paths", err)[1])
 

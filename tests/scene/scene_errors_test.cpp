@@ -28,8 +28,8 @@ std::vector<std::string> errors_of(const std::string& text) {
 
 TEST(SceneErrors, WithoutAFilmThereIsNoCameraToBeWrong) {
   // The camera stands too far away, which is seen once there is a film.
-  const std::string camera = "Translate 0 0 1e13 Camera \"perspective\" ";
-  EXPECT_THAT(errors_of(camera + "\nWorldBegin"), ElementsAre(HasSubstr("out of bounds")));
+  const std::string camera = "Translate 0 0 1e18 Camera \"perspective\" ";
+  EXPECT_THAT(errors_of(camera + "\nWorldBegin"), ElementsAre(HasSubstr("a ray of this camera starts at")));
   const std::string film = "Film \"rgb\" \"integer xresolution\" -5\n";
   EXPECT_THAT(errors_of(film + camera + "\nWorldBegin"), ElementsAre(HasSubstr("xresolution")));
   EXPECT_THAT(errors_of(film + "Camera \"perspective\" \"float fov\" -1\nWorldBegin"),
