@@ -61,12 +61,17 @@ bool is_whole_jpeg(std::string_view bytes) {
   return last_scan != std::string::npos && end != std::string::npos && end > last_scan;
 }
 
-/// Returns whether a PNG contains its last chunk, IEND. OpenImageIO may report success for a file that ends within the
-/// pixels.
+/// Returns whether a PNG (ISO 15948) contains its chunks, each a big-endian length, a type, data and a checksum, up to
+/// the last, IEND. OpenImageIO may report success for a file that ends within the pixels, and libpng prints a message.
 bool is_whole_png(std::string_view bytes) {
-  constexpr size_t kAfterName = 8;  // name and checksum of the chunk, 4 bytes each
-  const size_t end = bytes.rfind("IEND");
-  return end != std::string::npos && end + kAfterName <= bytes.size();
+  constexpr size_t kSignature = 8, kType = 4, kAround = 12;  // bytes of a chunk beside its data
+  for (size_t at = kSignature; at + kAround <= bytes.size();) {
+    size_t length = 0;
+    for (size_t i = 0; i < kType; ++i) length = length << 8 | static_cast<unsigned char>(bytes[at + i]);
+    if (bytes.substr(at + kType, kType) == "IEND") return true;
+    at += kAround + length;
+  }
+  return false;
 }
 
 /// While one exists, memory that is allocated is filled with 0, as far as the C library can (glibc): decoders take

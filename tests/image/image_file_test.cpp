@@ -337,6 +337,8 @@ TEST_F(ImageFiles, ThatOpenImageIOFollowsBeyondTheirDataAreRefused) {
       {"tiff_huge_strip", "a.tif", "claims 32 x 67108864 pixels"},
       {"exr_subsampled_tiles", "a.exr", "it is subsampled"},
       {"exr_name_of_a_channel", "a.exr", "the name of a channel is not UTF-8"},
+      {"cut_png", "a.png", "the file ends too soon"},
+      {"png_long_chunk", "a.png", "the file ends too soon"},
       {"bmp_compressed_0", "a.bmp", "compressed BMP is not supported"},
       {"tga_with_a_palette", "a.tga", "TGA with a palette is not supported"},
       {"tiff_huge_tiles", "a.tif", "are larger than its"},
