@@ -37,8 +37,7 @@ std::string entry(std::string_view name, std::string_view bytes) {
 }  // namespace
 
 void StoredZip::add(std::string_view name, std::string_view bytes) {
-  if (files_.size() + name.size() + bytes.size() > kMost)
-    fail({}, "the archive would be larger than 4 GB");
+  if (files_.size() + name.size() + bytes.size() > kMost) fail({}, "the archive would be larger than 4 GB");
   const std::string e = entry(name, bytes);
   directory_ += "PK\x01\x02";
   put(directory_, 20, 2);
