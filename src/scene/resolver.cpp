@@ -1,6 +1,7 @@
 #include "scene/resolver.h"
 
 #include "core/problems.h"
+#include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"
 #include "spectra/analytic.h"
 #include "spectra/beyond_data.h"
@@ -75,7 +76,8 @@ SceneResolver::SceneResolver(const SceneSettings& description, const Registry& r
       registry_(registry),
       wavelengths_(wavelengths),
       color_space_(color_space(description.color_space, description.color_space_where)),
-      log_(log) {}
+      log_(log),
+      extends_spectra_(read_options(description).extends_spectra) {}
 
 SceneResolver::~SceneResolver() = default;
 
@@ -194,18 +196,24 @@ std::shared_ptr<Material> SceneResolver::material(size_t index) {
   return materials_.emplace(index, made).first->second.material;
 }
 
-/// Extends a table that ends within the visible range: by 0 as in pbrt-v4, or by its last value if 0 is invalid, as for
-/// an index of refraction.
-SpectrumPtr SceneResolver::in_the_visible(SpectrumPtr s, const ParsedParam& p, SpectrumUse use) {
-  const Beyond beyond = use == SpectrumUse::unbounded ? Beyond::held : Beyond::zero;
+/// Extends data that do not cover the render's wavelengths: with the scene's option "extendspectra" by their first and
+/// last values. Without, in an image of colours, within the visible range: by 0 as in pbrt-v4, or by their last value
+/// if 0 is invalid, as for an index of refraction. What is measured in bands would be wrong without data.
+SpectrumPtr SceneResolver::extended(SpectrumPtr s, const ParsedParam& p, SpectrumUse use) {
   const Interval data_nm = s->range_nm(), needed_nm = wavelengths_.range_nm();
-  s = known_in_the_visible(std::move(s), beyond);
   const auto reaches = [needed_nm](Interval nm) { return nm.contains(needed_nm.min) && nm.contains(needed_nm.max); };
-  if (!reaches(data_nm) && reaches(s->range_nm()))
-    warn(p.value_where,
-         fmt::format("\"{}\" is known from {} to {} nm, the render needs {} to {} nm: {}", p.name, data_nm.min,
-                     data_nm.max, needed_nm.min, needed_nm.max,
-                     beyond == Beyond::zero ? "it is 0 beyond, as in pbrt-v4" : "beyond, its last value is taken"));
+  const bool is_known = reaches(data_nm), is_held = extends_spectra_ || use == SpectrumUse::unbounded;
+  if (!is_known && !extends_spectra_ && wavelengths_.film_space().empty())
+    fail(p.value_where,
+         "\"{}\" is known from {} to {} nm, the bands need {} to {} nm; Option \"bool extendspectra\" true takes the "
+         "values at the ends",
+         p.name, data_nm.min, data_nm.max, needed_nm.min, needed_nm.max);
+  if (extends_spectra_) s = beyond_data(std::move(s), Beyond::held, needed_nm);
+  s = beyond_data(std::move(s), is_held ? Beyond::held : Beyond::zero, kCieRange_nm);
+  if (!is_known && reaches(s->range_nm()))
+    warn(p.value_where, fmt::format("\"{}\" is known from {} to {} nm, the render needs {} to {} nm: {}", p.name,
+                                    data_nm.min, data_nm.max, needed_nm.min, needed_nm.max,
+                                    is_held ? "beyond, its last value is taken" : "it is 0 beyond, as in pbrt-v4"));
   return s;
 }
 
@@ -247,10 +255,9 @@ SpectrumPtr SceneResolver::spectrum(const ParsedParam& p, SpectrumUse use) {
         warn(p.value_where,
              fmt::format("a blackbody has one value, its temperature: the second, {}, has no effect", numbers(p)[1]));
     } else {
-      s = in_the_visible(std::holds_alternative<std::vector<double>>(p.values)
-                             ? make_tabulated(numbers(p), p.value_where)
-                             : spectrum_of_name(p, description_),
-                         p, use);
+      s = extended(std::holds_alternative<std::vector<double>>(p.values) ? make_tabulated(numbers(p), p.value_where)
+                                                                         : spectrum_of_name(p, description_),
+                   p, use);
     }
     if (emission) s = normalized(s, p);
   }

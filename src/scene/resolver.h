@@ -23,8 +23,8 @@ struct MadeMaterial {
 };
 
 /// Resolves references of parameters: textures and materials by name, spectra by value, name or file. Objects are
-/// created on first use. A spectrum that ends within the visible range is extended with a warning; one that does not
-/// cover the render's wavelengths even then is an error at its parameter.
+/// created on first use. In an image of colours a spectrum that ends within the visible range is extended with a
+/// warning; one that does not cover the render's wavelengths otherwise is an error at its parameter.
 class SceneResolver final : public ParamResolver {
  public:
   SceneResolver(const SceneSettings& description, const Registry& registry, const WavelengthStrategy& wavelengths,
@@ -63,7 +63,7 @@ class SceneResolver final : public ParamResolver {
   [[noreturn]] void fail_unknown(std::string_view kind, const std::string& name,
                                  const std::vector<std::string_view>& names, const Location& where) const;
   void warn_of_clamping(const ParsedParam& p, double most);
-  SpectrumPtr in_the_visible(SpectrumPtr s, const ParsedParam& p, SpectrumUse use);
+  SpectrumPtr extended(SpectrumPtr s, const ParsedParam& p, SpectrumUse use);
   std::array<double, 3> clamped_rgb(const ParsedParam& p);
 
   const SceneSettings& description_;
@@ -71,6 +71,7 @@ class SceneResolver final : public ParamResolver {
   const WavelengthStrategy& wavelengths_;
   const ColorSpace& color_space_;
   const Log& log_;
+  const bool extends_spectra_;
   MadeTextures<FloatTexture> float_textures_;
   MadeTextures<SpectrumTexture> spectrum_textures_;
   std::map<size_t, MadeMaterial> materials_;

@@ -38,6 +38,10 @@ constexpr Param kOptionParams[] = {
      .kind = ParamKind::boolean,
      .default_value = false,
      .doc = "Use the same wavelengths for all samples."},
+    {.name = "extendspectra",
+     .kind = ParamKind::boolean,
+     .default_value = false,
+     .doc = "Beyond the ends of their data, spectra keep their first and last values, with a warning."},
     {.name = "forcediffuse",
      .kind = ParamKind::boolean,
      .default_value = false,
@@ -102,6 +106,7 @@ SceneOptions read_options(const SceneSettings& description, const Log& log) {
   options.has_pixel_jitter = !p.boolean("disablepixeljitter");
   options.has_wavelength_jitter = !p.boolean("disablewavelengthjitter");
   options.filters_textures = !p.boolean("disabletexturefiltering");
+  options.extends_spectra = p.boolean("extendspectra");
   return options;
 }
 

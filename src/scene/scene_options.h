@@ -15,7 +15,7 @@ struct SceneOptions {
   Location wavelengths_where;
   std::optional<Vec2> period;  ///< empty: no repetition
   Location period_where;
-  bool has_pixel_jitter = true, has_wavelength_jitter = true, filters_textures = true;
+  bool has_pixel_jitter = true, has_wavelength_jitter = true, filters_textures = true, extends_spectra = false;
 };
 
 /// Throws InputError.

@@ -1,17 +1,17 @@
 #include "spectra/beyond_data.h"
 
-#include "spectra/cie.h"
+#include <algorithm>
 
 namespace frond {
 namespace {
 
-/// Extension of a spectrum to kCieRange_nm.
+/// Extension of a spectrum.
 class BeyondData final : public Spectrum {
  public:
-  BeyondData(SpectrumPtr base, Beyond beyond)
+  BeyondData(SpectrumPtr base, Beyond beyond, Interval to_nm)
       : base_(std::move(base)),
         data_nm_(base_->range_nm()),
-        range_nm_{std::min(data_nm_.min, kCieRange_nm.min), std::max(data_nm_.max, kCieRange_nm.max)},
+        range_nm_{std::min(data_nm_.min, to_nm.min), std::max(data_nm_.max, to_nm.max)},
         beyond_(beyond) {}
   float at(float lambda_nm) const override {
     const double nm = std::clamp(double(lambda_nm), range_nm_.min, range_nm_.max);
@@ -28,10 +28,10 @@ class BeyondData final : public Spectrum {
 
 }  // namespace
 
-SpectrumPtr known_in_the_visible(SpectrumPtr s, Beyond beyond) {
+SpectrumPtr beyond_data(SpectrumPtr s, Beyond beyond, Interval range_nm) {
   const Interval nm = s->range_nm();
-  if (nm.min <= kCieRange_nm.min && nm.max >= kCieRange_nm.max) return s;
-  return std::make_shared<BeyondData>(std::move(s), beyond);
+  if (nm.min <= range_nm.min && nm.max >= range_nm.max) return s;
+  return std::make_shared<BeyondData>(std::move(s), beyond, range_nm);
 }
 
 }  // namespace frond

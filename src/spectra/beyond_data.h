@@ -4,14 +4,14 @@
 
 namespace frond {
 
-/// Value of a spectrum at visible wavelengths for which it has no data.
+/// Value of a spectrum at wavelengths for which it has no data.
 enum class Beyond : uint8_t {
   zero,  ///< 0, as in pbrt-v4's tables
   held,  ///< the value at the nearest end of the data
 };
 
-/// Returns the spectrum extended to cover kCieRange_nm, with values beyond its data according to `beyond`. Returns the
-/// spectrum itself if its data cover kCieRange_nm.
-SpectrumPtr known_in_the_visible(SpectrumPtr s, Beyond beyond);
+/// Returns the spectrum extended to cover a range, with values beyond its data according to `beyond`. Returns the
+/// spectrum itself if its data cover the range.
+SpectrumPtr beyond_data(SpectrumPtr s, Beyond beyond, Interval range_nm);
 
 }  // namespace frond

@@ -297,6 +297,39 @@ TEST_F(Commands, WavelengthsTakeParameters) {
               HasSubstr("scene.pbrt:7:37: \"L\" is known from 360 to 830 nm, the render needs 360 to 1000 nm"));
 }
 
+/// A band is a measurement, an image of colours is not: its eye sees little at the ends of the visible.
+TEST_F(Commands, SpectraWithoutDataAreErrorsInBandsAndWarningsInColours) {
+  const auto scene = [this](const std::string& option) {
+    return folder_.write("soil.pbrt", option + R"(
+Camera "orthographic"
+Film "rgb" "integer xresolution" 2 "integer yresolution" 2
+WorldBegin
+LightSource "infinite"
+Material "diffuse" "spectrum reflectance" [ 400 .1  2500 .5 ]
+Shape "disk")");
+  };
+  const auto run = [&](const std::string& option, const std::string& command, const std::string& wavelengths) {
+    std::vector<std::string> words{command, scene(option).string(), "-q", "--wavelengths", wavelengths};
+    if (command == "render") words.insert(words.end(), {"-o", path("soil.exr"), "--no-cache", "--spp", "2"});
+    if (command == "brf") words.insert(words.end(), {"--paths", "64"});
+    return frond_command(words);
+  };
+  const std::string known = "\"reflectance\" is known from 400 to 2500 nm, the ";
+  for (const auto& [command, wavelengths] :
+       {std::pair("brf", "380,550"), {"flux", "380,550"}, {"render", "bands,wavelengths=380,550"}}) {
+    const Outcome refused = run("", command, wavelengths);
+    EXPECT_EQ(refused.code, 1) << command;
+    EXPECT_THAT(refused.err,
+                HasSubstr("soil.pbrt:6:45: " + known + "bands need 380 to 550 nm; Option \"bool extendspectra"));
+    const Outcome extended = run("Option \"bool extendspectra\" true", command, wavelengths);
+    EXPECT_EQ(extended.code, 0) << extended.err;
+    EXPECT_THAT(extended.err, HasSubstr(known + "render needs 380 to 550 nm: beyond, its last value is taken"));
+  }
+  const Outcome seen = run("", "render", "hero,lambdamin=380");
+  EXPECT_EQ(seen.code, 0);
+  EXPECT_THAT(seen.err, HasSubstr(known + "render needs 380 to 830 nm: it is 0 beyond, as in pbrt-v4"));
+}
+
 /// From within a closed sphere that takes half of the light each time.
 TEST_F(Commands, AnIntegratorOfTheScenesKindKeepsItsOtherParameters) {
   folder_.write("scene.pbrt", R"(

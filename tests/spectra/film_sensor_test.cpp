@@ -44,7 +44,8 @@ TEST(Daylight, At6504KelvinIsD65) {
 
 TEST(BeyondData, IsZeroOrHeldInTheVisible) {
   const SpectrumPtr s = make_tabulated(std::vector<double>{450, 2, 620, 3}, {});
-  const SpectrumPtr zero = known_in_the_visible(s, Beyond::zero), held = known_in_the_visible(s, Beyond::held);
+  const SpectrumPtr zero = beyond_data(s, Beyond::zero, kCieRange_nm),
+                    held = beyond_data(s, Beyond::held, kCieRange_nm);
   EXPECT_EQ(zero->at(449.9f), 0);
   EXPECT_EQ(zero->at(450), 2);
   EXPECT_EQ(zero->at(620), 3);
@@ -54,8 +55,9 @@ TEST(BeyondData, IsZeroOrHeldInTheVisible) {
   EXPECT_EQ(zero->range_nm().min, 360);
   EXPECT_EQ(held->range_nm().max, 830);
   const SpectrumPtr far = make_tabulated(std::vector<double>{300, 2, 900, 3}, {});
-  EXPECT_EQ(known_in_the_visible(far, Beyond::zero), far);
-  const SpectrumPtr red = known_in_the_visible(make_tabulated(std::vector<double>{600, 2, 900, 3}, {}), Beyond::zero);
+  EXPECT_EQ(beyond_data(far, Beyond::zero, kCieRange_nm), far);
+  const SpectrumPtr red =
+      beyond_data(make_tabulated(std::vector<double>{600, 2, 900, 3}, {}), Beyond::zero, kCieRange_nm);
   EXPECT_EQ(red->range_nm().max, 900);
   EXPECT_EQ(red->at(900), 3);
 }
