@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -35,21 +36,27 @@ class Leaf {
   Leaf(const std::string& bytes, const std::string& name) {
     Reader in{bytes, name, 8};
     if (bytes.compare(0, 8, "FRONDLF1") != 0) throw std::runtime_error(name + ": not a .leaf file of frond");
-    if (bytes.size() < 60 || checksum(bytes) != stored_checksum(bytes)) throw std::runtime_error(name + ": damaged");
+    if (bytes.size() < 60 || checksum(bytes) != stored_checksum(bytes)) in.refuse();
     reciprocal_ = in.whole() != 0;
     cells_ = in.whole();
     const size_t wavelengths = in.whole(), depths = in.whole();
     for (auto& of_side : modes_)
       for (size_t& modes : of_side) modes = in.whole();
-    exponent_ = in.floats(1)[0];
-    wavelengths_ = in.floats(wavelengths);
-    depths_ = in.floats(depths);
-    index_ = in.floats(wavelengths);
-    surface_ = in.floats((reciprocal_ ? wavelengths : 1) * (kCosineCells + 1));
-    const size_t columns = wavelengths * std::max<size_t>(1, depths);
+    if (cells_ == 0 || wavelengths == 0) in.refuse();
+    exponent_ = in.floats({1})[0];
+    wavelengths_ = in.floats({wavelengths});
+    depths_ = in.floats({depths});
+    index_ = in.floats({wavelengths});
+    const size_t least_depths = depths > 0 && depths_[0] == 0 ? 3 : 2;
+    if (!increases(wavelengths_, 0) || (depths > 0 && (depths < least_depths || !increases(depths_, 0))) || exponent_ < 0)
+      in.refuse();
+    for (const float index : index_)
+      if (index < 1) in.refuse();
+    surface_ = in.floats({reciprocal_ ? wavelengths : 1, kCosineCells + 1});
+    const size_t rows = std::max<size_t>(1, depths);  // of a wavelength
     for (size_t s = 0; s < 2; ++s)
-      for (size_t w = 0; w < 2; ++w) series_[s][w] = in.floats(columns * modes_[s][w] * side() * side());
-    for (auto& ways : ways_) ways = in.floats(columns * side() * 2);
+      for (size_t w = 0; w < 2; ++w) series_[s][w] = in.floats({wavelengths, rows, modes_[s][w], side(), side()});
+    for (auto& ways : ways_) ways = in.floats({wavelengths, rows, side(), 2});
   }
 
   bool is_reciprocal() const { return reciprocal_; }
@@ -151,18 +158,33 @@ class Leaf {
       std::memcpy(&value, take(sizeof value), sizeof value);
       return value;
     }
-    std::vector<float> floats(size_t count) {
+    /// An array of these dimensions, of finite numbers. None is larger than the file, however large the dimensions.
+    std::vector<float> floats(std::initializer_list<size_t> dimensions) {
+      size_t count = 1;
+      for (const size_t d : dimensions) {
+        if (d > 0 && count > bytes.size() / d) refuse();
+        count *= d;
+      }
+      const char* data = take(count * sizeof(float));
       std::vector<float> values(count);
-      if (count > 0) std::memcpy(values.data(), take(count * sizeof(float)), count * sizeof(float));
+      if (count > 0) std::memcpy(values.data(), data, count * sizeof(float));
+      for (const float value : values)
+        if (!std::isfinite(value)) refuse();
       return values;
     }
     const char* take(size_t size) {
-      if (at + size > bytes.size()) throw std::runtime_error(name + ": the file is truncated");
+      if (size > bytes.size() - at) throw std::runtime_error(name + ": the file is truncated");
       at += size;
       return bytes.data() + at - size;
     }
+    [[noreturn]] void refuse() const { throw std::runtime_error(name + ": damaged"); }
   };
 
+  static bool increases(const std::vector<float>& values, float least) {
+    for (size_t i = 0; i < values.size(); ++i)
+      if (values[i] < least || (i > 0 && values[i] <= values[i - 1])) return false;
+    return true;
+  }
   static std::string bytes_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) throw std::runtime_error(path + ": cannot be read");

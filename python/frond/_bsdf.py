@@ -4,6 +4,7 @@ import math
 
 from . import _frond
 from ._measure import _numbers, _session_of, material_text
+from ._session import path_text
 
 
 class FlatBsdf:
@@ -51,9 +52,8 @@ class LeafTable(dict):
     "surface", and Fourier modes such as "adaxial_reflected" `[column][mode][incident sine][leaving sine]`."""
 
     def save(self, path):
-        """Writes a .leaf file, which exports/cpp/frond_leaf.h reads."""
-        with open(path, "wb") as file:
-            file.write(self["bytes"])
+        """Writes a .leaf file, which exports/cpp/frond_leaf.h reads. If it fails, an old file stays. Raises InputError."""
+        _frond.replace_file(path_text(path), self["bytes"])
 
 
 def leaf_table(material, wavelengths, *, tolerance=5e-4, depths=None, session=None):

@@ -34,7 +34,10 @@ def _text(value):
 def words(param, value):
     """Returns the list of texts for a parameter: one text, or any number for a repeatable parameter. Raises ValueError if a text
     cannot be UTF-8, as a file name whose bytes are not."""
-    found = _words(param, value)
+    try:
+        found = _words(param, value)
+    except TypeError as error:
+        raise TypeError(f"{python_name(param['name'])}: {error}") from None
     for text in found:
         try:
             text.encode()

@@ -2,19 +2,20 @@
 
 import inspect
 import os
+import re
 
 from . import _frond
 from ._jobs import FUNCTIONS, _table, run
-from ._session import checked_session, path_text
+from ._session import checked_session, checked_text, path_text
 
 
 def material_text(material):
     """Returns a material as text, "leaf_solved,specimen=maize"; a list of its words is joined by commas."""
-    return material if isinstance(material, str) else ",".join(str(part) for part in material)
+    return checked_text(material if isinstance(material, str) else ",".join(str(part) for part in material), "material")
 
 
 def _numbers(values):
-    return [float(v) for v in (values if hasattr(values, "__iter__") else [values])]
+    return [float(v) for v in (values if getattr(values, "ndim", 1) and hasattr(values, "__iter__") else [values])]
 
 
 def _session_of(session):
@@ -111,7 +112,12 @@ def conform(material, *, session=None, **options):
 
 def register_material(name, bsdf, *, session=None):
     """Registers an object of `frond.Bsdf` as a material that scenes of the session name by `name`. Its renders use one
-    core, because each call needs Python's lock."""
+    core, because each call needs Python's lock. Raises TypeError or ValueError."""
+    from ._bsdf import Bsdf
+    if isinstance(bsdf, type) or not isinstance(bsdf, Bsdf):
+        raise TypeError(f"bsdf: an object of a subclass of frond.Bsdf is needed, not {bsdf!r}")
+    if not re.fullmatch(r"[\w.-]+", checked_text(name, "name")):
+        raise ValueError(f"name: letters, digits, _ - and . are needed, not {name!r}")
     _frond.register_material(_session_of(session), name, (type(bsdf).__doc__ or name).strip().split("\n")[0], bsdf)
 
 
@@ -157,6 +163,8 @@ def _csv(wavelengths, R, T):
     for name, values in columns.items():
         if len(values) != count:
             raise ValueError(f"fit: {count} wavelengths have {len(values)} {name}")
+        if any(hasattr(v, "__len__") for v in values):
+            raise ValueError(f"fit: {name} has more than one number for a wavelength")
     rows = zip(*columns.values())
     lines = [",".join(columns)] + [",".join("" if v is None or v != v else repr(float(v)) for v in row) for row in rows]
     return "\n".join(lines) + "\n"

@@ -24,13 +24,36 @@ def _show(progress):
     return line
 
 
-def path_text(path):
-    """Returns a path (str, bytes or os.PathLike) as text. Raises TypeError, and ValueError for a zero byte, at which the system
-    would cut it off."""
-    text = os.fsdecode(path)
+def checked_text(text, what):
+    """Returns the text. Raises TypeError if it is not a str, and ValueError for a zero byte, at which it would be cut off, and for
+    what UTF-8 cannot hold."""
+    if not isinstance(text, str):
+        raise TypeError(f"{what}: text is needed, not {text!r}")
     if "\0" in text:
-        raise ValueError(f"a path has no zero byte, as {text!r} does")
+        raise ValueError(f"{what}: a text without zero bytes is needed, not {text!r}")
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{what}: {text!r} is not UTF-8") from None
     return text
+
+
+def path_text(path):
+    """Returns a path (str, bytes or os.PathLike) as text. Raises the errors of `checked_text`."""
+    return checked_text(os.fsdecode(path), "path")
+
+
+def _samples_of(samples, default):
+    """Returns a number of samples per pixel: the default for None. Raises TypeError or ValueError."""
+    if samples is None:
+        return default
+    try:
+        number = operator.index(samples)
+    except TypeError:
+        raise TypeError(f"samples: a whole number is needed, not {samples!r}") from None
+    if not 0 < number <= 1 << 30:
+        raise ValueError(f"samples: a whole number from 1 to {1 << 30} is needed, not {number}")
+    return number
 
 
 class Session:
@@ -64,7 +87,7 @@ class Session:
 
     def loads(self, text, folder=".", **over):
         """Returns the Scene of a string. Relative file names in it start at `folder`."""
-        return self._scene(os.path.join(path_text(folder), "<string>"), text, **over)
+        return self._scene(os.path.join(path_text(folder), "<string>"), checked_text(text, "text"), **over)
 
     def _scene(self, path, text, *, adaptive=False, **over):
         from ._jobs import JOBS, arguments, by_alias, python_name
@@ -157,7 +180,7 @@ class Scene:
         [0, 1], or True for a line on standard error. Raises KeyboardInterrupt when it is interrupted.
         """
         image = Image(self._scene.image(), self)
-        image.render_more(samples or self.samples, max_rms=max_rms, time_limit=time_limit, progress=progress)
+        image.render_more(_samples_of(samples, self.samples), max_rms=max_rms, time_limit=time_limit, progress=progress)
         return image
 
 
@@ -176,7 +199,7 @@ class Image:
             if value is not None and not value >= 0:
                 raise ValueError(f"{name}: a number from 0 on is needed, not {value!r}")
         self._image = None
-        self._rendered.render_more(samples or self._scene.samples, max_rms or 0, time_limit or 0, _show(progress))
+        self._rendered.render_more(_samples_of(samples, self._scene.samples), max_rms or 0, time_limit or 0, _show(progress))
 
     def _load(self):
         if self._image is None:

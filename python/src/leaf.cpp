@@ -6,6 +6,7 @@
 #include "render/material_words.h"
 #include "render/refusing_log.h"
 #include "scene/resolver.h"
+#include "system/atomic_file.h"
 
 namespace frond::python {
 namespace {
@@ -98,6 +99,12 @@ void bind_leaf(nb::module_& m) {
       },
       "path"_a, "leaf"_a, "theta_deg"_a);
   m.def("leaf_table", &leaf_table, "session"_a, "material"_a, "wavelengths"_a, "tolerance"_a, "depths"_a.none());
+  m.def(
+      "replace_file",
+      [](const std::string& path, const nb::bytes& bytes) {
+        replace_file(path, {reinterpret_cast<const unsigned char*>(bytes.c_str()), bytes.size()});
+      },
+      "path"_a, "bytes"_a);
   m.def("leaf_chemistry", &leaf_chemistry, "session"_a, "material"_a, "wavelengths"_a);
 }
 

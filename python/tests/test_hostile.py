@@ -200,6 +200,29 @@ CALLS = [
     ('frond.submit("scene.pbrt", output="o.exr", spp=2, tasks=2, slurm=True, folder="x" * 5000)',
      "InputError OSError", "x"),
     ('frond.load("scene.pbrt").render(20000, progress=3)', "TypeError", ""),
+    ('session.loads(SCENE).render(2**63)', "ValueError", "samples: .* from 1 to 1073741824"),
+    ('session.loads(SCENE).render(-5)', "ValueError", "samples"),
+    ('session.loads(SCENE).render(2.5)', "TypeError", "samples: a whole number"),
+    ('session.loads(SCENE).render(1).render_more("4")', "TypeError", "samples: a whole number"),
+    # Text.
+    ('session.load(b"caf\\xe9.pbrt")', "ValueError", "path: .* is not UTF-8"),
+    ('session.loads("\\udcff")', "ValueError", "text: .* is not UTF-8"),
+    ('session.loads(b"x")', "TypeError", "text: text is needed"),
+    ('session.loads(SCENE).render(1).save(b"caf\\xe9.exr")', "ValueError", "path: .* is not UTF-8"),
+    ('frond.bsdf("dif\\udc80", [551])', "ValueError", "material: .* is not UTF-8"),
+    ('frond.bsdf("dif\\0fuse", [551])', "ValueError", "material: .* zero bytes"),
+    ('frond.bsdf("diffuse", numpy.array(551.)).f([0, 0, 1], [0, 0, 1]).shape', "", r"\(1, 1\)"),
+    ('frond.merge(["a.part", None], output="x.exr")', "TypeError", "part.*None"),
+    ('frond.fit([500, 600], numpy.ones((2, 2)) * 0.1)', "ValueError", "R has more than one number"),
+    ('frond.register_material("x\\0y", python_bsdf(), session=session)', "ValueError", "name: .* zero bytes"),
+    ('frond.register_material("", python_bsdf(), session=session)', "ValueError", "name"),
+    ('frond.register_material("a b", python_bsdf(), session=session)', "ValueError", "name"),
+    ('frond.register_material("k", type(python_bsdf()), session=session)', "TypeError", "bsdf: an object"),
+    # An old file stays where there is no room for a new one.
+    ('[__import__("signal").signal(25, 1), frond.leaf_table("leaf_solved", [551]).save("keep.leaf"),'
+     ' __import__("resource").setrlimit(1, (5000, 5000)),'
+     ' outcome(\'frond.leaf_table("leaf_solved", [551, 455]).save("keep.leaf")\'),'
+     ' os.path.getsize("keep.leaf") > 5000]', "", r"keep\.leaf.*True"),
     # Directions.
     ('frond.bsdf("abm", [551]).sample([[nan, nan, nan]])', BAD_INPUT, "wo|direction"),
     ('frond.bsdf("abm", [551]).f([0, 0, inf], [0, 0, 1])', BAD_INPUT, "wo|direction"),
@@ -210,7 +233,6 @@ CALLS = [
     ('frond.bsdf("diffuse", [551]).f(numpy.eye(3)[:, ::-1], [0, 0, 1]).shape', "", r"\(3, 1\)"),
     ('frond.bsdf("diffuse", [551]).f([0, 0, 1], [0, 0, 1], seed=-1)', BAD_INPUT, ""),
     # BSDFs in Python.
-    ('session.loads(SCENE).render(2**63)', BAD_INPUT, "samples per pixel"),
     ('conform(python_bsdf(pdf=lambda self, wo, wi, nm: -1.0))["all_hold"]', "", "False"),
     ('conform(python_bsdf(pdf=lambda self, wo, wi, nm: nan))["all_hold"]', "", "False"),
     ('conform(python_bsdf(f=lambda self, wo, wi, nm: nan))["laws"]["values"]["verdict"]', "", "broken"),

@@ -94,3 +94,33 @@ def test_a_damaged_file_is_refused(program, tmp_path):
         path.write_bytes(bad)
         found = subprocess.run([program, path, "551", "8"], capture_output=True, text=True)
         assert found.returncode == 1 and message in found.stderr
+
+
+def forged(reciprocal=0, cells=4, wavelengths=(551,), depths=(), modes=1, claims=None):
+    """Bytes of a .leaf file with a correct checksum. claims: numbers of the header in place of the right ones."""
+    side, columns, kept = cells + 3, len(wavelengths) * max(1, len(depths)), max(len(wavelengths), 1)
+    whole = dict(reciprocal=reciprocal, cells=cells, wavelengths=len(wavelengths), depths=len(depths), modes=modes) | (claims or {})
+    header = numpy.array([whole["reciprocal"], whole["cells"], whole["wavelengths"], whole["depths"], *[whole["modes"]] * 4], "<u4")
+    arrays = numpy.concatenate([[1.0], wavelengths, depths, numpy.full(len(wavelengths), 1.5), numpy.ones((kept if reciprocal else 1) * 65),
+                                numpy.full(4 * columns * modes * side**2, 0.1), numpy.full(4 * columns * side, 0.3)]).astype("<f4")
+    data = b"FRONDLF1" + header.tobytes() + arrays.tobytes()
+    mask, h = 2**64 - 1, 0xCBF29CE484222325
+    for byte in data:
+        h = (h ^ byte) * 0x100000001B3 & mask
+    h = (h ^ h >> 30) * 0xBF58476D1CE4E5B9 & mask
+    h = (h ^ h >> 27) * 0x94D049BB133111EB & mask
+    return data + (h ^ h >> 31).to_bytes(8, "little")
+
+
+#: What makes a forged file damaged, although its checksum is right.
+DAMAGED = {"no wavelength": dict(wavelengths=()), "no cell": dict(cells=0), "one depth": dict(depths=(1.0,)), "depth 0": dict(depths=(0.0,)),
+           "depths 0 and 1": dict(depths=(0.0, 1.0)), "falling wavelengths": dict(wavelengths=(551, 455)), "nan": dict(wavelengths=(float("nan"),)),
+           "many wavelengths": dict(claims=dict(wavelengths=2**32 - 1)), "many cells": dict(claims=dict(cells=2**32 - 3)),
+           "a product of 2^64": dict(claims=dict(cells=2**17 - 3, modes=2**30))}
+
+
+@pytest.mark.parametrize("name", ["good", *DAMAGED])
+def test_a_forged_file_is_damaged(program, tmp_path, name):
+    (tmp_path / "f.leaf").write_bytes(forged(**DAMAGED.get(name, {})))
+    done = subprocess.run([program, tmp_path / "f.leaf", "551", "30"], capture_output=True, text=True)
+    assert (done.returncode, "damaged" in done.stderr) == ((0, False) if name == "good" else (1, True)), done.stderr

@@ -413,12 +413,13 @@ def report(options, seconds, crashes):
     ends = {what: collections.Counter(one["end"] for one in log[what]) for what in ("render", "again", "job")}
     findings += [] if ends["render"]["done"] else [("error", "no scene was rendered", "")]
     late = max(([one for one in log["memory"] if one["first"] == first] for first in {one["first"] for one in log["memory"]}), key=len, default=[])
+    eighths = [f"{late[len(late) * i // 8 - 1]['megabytes']:.0f}" for i in range(1, 9)] if len(late) >= 8 else []
     late = late[max(len(late) // 5, WARM // MEASURE):]
     memory = [[f"memory, tested with {BLOCKS * LEAST} measurements after warm-up", f"{len(late)} measurements"]]
     if len(late) >= BLOCKS * LEAST:
         grows, half, probability = growth([one["megabytes"] for one in late])
         says, size = f"{grows:.2f} ± {half:.2f} kB per scene, probability {probability:.2g}", len(late) // BLOCKS
-        memory = [["memory after warm-up, median", f"{numpy.median([one['megabytes'] for one in late]):.0f} MB"],
+        memory = [["memory after each eighth of the scenes, MB", ", ".join(eighths)],
                   ["growth of memory, with its 95 % interval", says], ["open files, threads", f"{late[-1]['files']}, {late[-1]['threads']}"]]
         findings += [("leak", f"growth of memory: {says}", "")] if probability < RATE else []
         findings += [("leak", f"{key} become more", "") for key in ("files", "threads") if min(x[key] for x in late[-size:]) > max(x[key] for x in late[:size])]

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/printable.h"
+
 namespace frond {
 
 std::string Location::text() const {
@@ -39,8 +41,16 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string printable(std::string text) {
+  for (char& c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code < 0x20 && c != '\n' && c != '\t') || code == 0x7f) c = '?';
+  }
+  return text;
+}
+
 InputError::InputError(const Location& where, const std::string& message)
-    : std::runtime_error(where.text() + shortened(message)) {}
+    : std::runtime_error(printable(where.text() + shortened(message))) {}
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
   std::string_view best;

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "core/printable.h"
+
 namespace frond {
 
 namespace {
@@ -21,11 +23,11 @@ void print_to_stderr(std::string_view text) {
 }
 
 void ConsoleLog::info(std::string_view message) const {
-  if (!quiet_) print_to_stderr(message);
+  if (!quiet_) print_to_stderr(printable(std::string(message)));
 }
 
 void ConsoleLog::warn(const Location& where, std::string_view message) const {
-  print_to_stderr(fmt::format("{}warning: {}", where.text(), message));
+  print_to_stderr(printable(fmt::format("{}warning: {}", where.text(), message)));
 }
 
 const Log& silent_log() {

@@ -204,6 +204,7 @@ Result run_comparison(const JobRun& run, const BrfRequest& request) {
     const double start = cpu_seconds();
     auto measurement = measure(run, *meter, nullptr);
     if (!measurement) throw Stopped();
+    warn_of_time_limit(run, measurement->paths, measurement->relative_error());
     ModelMeasurement result{model, *std::move(measurement)};
     const double paths = double(result.brf.paths) * double(result.brf.views.size());
     result.cpu_us_per_path = (cpu_seconds() - start) * 1e6 / paths;
@@ -243,10 +244,10 @@ Result brf(const JobRun& run) {
   if (run.args.given("plot"))
     write_chart(run.args.text("plot"),
                 run.args.flag("hemisphere") ? brf_hemisphere_chart(measurement) : brf_plane_chart(measurement));
-  const double error = measurement.relative_error(), rms = run.args.real("rms");
+  const double error = measurement.relative_error();
   run.log().info(
       fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", measurement.paths, 100 * error));
-  if (rms > 0 && error > rms) run.log().warn({}, fmt::format("{} {:g} was not reached", run.args.spelled("rms"), rms));
+  warn_of_time_limit(run, measurement.paths, error);
   Result result{.tables = {{"brf"}}, .facts = {{"paths", double(measurement.paths)}, {"relative_error", error}}};
   add_rows(result.tables[0], measurement, "");
   result.text = to_text(by_direction(measurement));

@@ -18,24 +18,27 @@ const std::vector<std::string_view> kAngles = [] {
   return names;
 }();
 
+/// Of maps that are inverted in 32 bits.
+constexpr Interval kLengths{1e-9, 1e9};
+
 const JobParam kParams[] = {
     output_param("Instance table to write, a NumPy file (.npy).", true),
     JobParam("lai", real, "Leaf area index: one-sided leaf area over ground area.",
              {.default_value = "3", .range = kAboveZero}),
     JobParam("count", count, "Number of leaves.", {.range = {1, 4e9}, .excludes = "lai"}),
     JobParam("ball", real, "Fill a ball of this radius around the origin instead of a plot.",
-             {.range = kAboveZero, .needs = "count"}),
+             {.range = kLengths, .needs = "count"}),
     JobParam("angles", text, "Distribution of leaf angles.", {.default_value = "spherical", .choices = kAngles}),
     JobParam("scale", real, "Scale of each leaf: its radius if the object is a disk of radius 1.",
-             {.default_value = "0.05", .range = kAboveZero}),
+             {.default_value = "0.05", .range = kLengths}),
     JobParam("leaf-area", real, "One-sided area of the object at scale 1; the default is a disk of radius 1.",
              {.default_value = "3.141592653589793", .range = kAboveZero}),
     JobParam("size", numbers, "Size of the plot along x and y, from 0; also the period of a repeated plot.",
-             {.type = "X,Y", .default_value = "10,10", .range = kAboveZero, .values = 2}),
+             {.type = "X,Y", .default_value = "10,10", .range = kLengths, .values = 2}),
     JobParam("heights", numbers, "Minimum and maximum height of the leaves' centres.",
-             {.type = "LEAST,MOST", .default_value = "0,1", .values = 2}),
+             {.type = "LEAST,MOST", .default_value = "0,1", .range = {-kLengths.max, kLengths.max}, .values = 2}),
     JobParam("apart", real, "Minimum distance between the leaves' centres; by default positions are independent.",
-             {.range = kAboveZero}),
+             {.range = kLengths}),
     JobParam("column", texts,
              "Random number of each leaf for Texture \"instance\", uniform between two bounds: chlorophylla=2:5.",
              {.type = "NAME=LEAST:MOST"}),

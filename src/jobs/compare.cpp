@@ -42,7 +42,7 @@ constexpr JobParam kParams[] = {
              "random walk, with less noise.",
              {.type = "MATERIAL", .default_value = "abm,mode=weighted", .decides = true}),
     JobParam("rms", numbers, "Report the cheapest candidate with this RMS error.",
-             {.type = "NUMBER", .range = kAboveZero, .decides = true}),
+             {.type = "NUMBER", .range = {1e-6, 1}, .decides = true}),
     JobParam(
         "target", text,
         "RMS errors of red, green and blue for speed-up (c): three numbers, or the paper's front, back or ambient.",

@@ -22,7 +22,7 @@ constexpr JobParam kParams[] = {
         "Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy "
         "light is 1.",
         {.type = "R,G,B", .unit = "nm", .range = kAboveZero, .values = 3}),
-    JobParam("exposure", real, "Change of exposure.", {.default_value = "0", .unit = "stops"}),
+    JobParam("exposure", real, "Change of exposure.", {.default_value = "0", .unit = "stops", .range = {-64, 64}}),
     kDisplayParam,
     kViewParam,
 };

@@ -97,6 +97,15 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasure
   return request;
 }
 
+/// Throws InputError for a value that the material would refuse.
+void check_fixed(const std::vector<leaf::FitRequest::Fixed>& fixed, const MaterialInfo& material,
+                 const std::string& option) {
+  for (const auto& [name, value] : fixed)
+    if (const Param* p = find_param(material, name); p && !p->range.contains(value))
+      fail({}, "{} {}: {:g} is outside its range {:g} to {:g} {}", option, name, value, p->range.min, p->range.max,
+           p->unit);
+}
+
 /// Reads the measurements of --file or --data. Rows outside 360 to 2500 nm are left out with a warning.
 std::vector<leaf::LeafMeasurement> measurements_of(const JobRun& run) {
   const Arguments& args = run.args;
@@ -121,6 +130,7 @@ Result fit(const JobRun& run) {
   const Arguments& args = run.args;
   check_chart_param(run, "plot");
   const leaf::FitRequest request = request_of(args, measurements_of(run));
+  check_fixed(request.fixed, run.session().registry().materials.get(args.text("material"), {}), args.spelled("fix"));
   const double start = cpu_seconds();
   const leaf::FitResult fitted = leaf::fit_leaf(request, run.session().pool());
   run.log().info(fmt::format("fitted in {:.2g} s of CPU", cpu_seconds() - start));

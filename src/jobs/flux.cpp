@@ -225,6 +225,7 @@ Result flux(const JobRun& run) {
   result.tables.push_back(share_table(measurement, photons));
   result.facts = {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}};
   run.log().info(fmt::format("{} paths; RMS standard error {:.2g}", measurement.paths, error));
+  warn_of_time_limit(run, measurement.paths, error);
   return result;
 }
 

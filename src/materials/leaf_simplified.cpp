@@ -84,7 +84,10 @@ class LeafSimplified final : public Material {
     // random numbers.
     if (request_.method == leaf::TableMethod::solve) request_.params.cuticle_aspect = 0;
     request_.rays = p.integer("tablerays");
-    if (!file_.is_given()) refuse_textures(p);
+    if (file_.is_given())
+      table_of_file_ = std::make_shared<const leaf::Table>(leaf::read_table(file_.path(), file_.where()));
+    else
+      refuse_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {
@@ -168,9 +171,9 @@ class LeafSimplified final : public Material {
     return lookup_of(table, preparation.wavelengths);
   }
 
-  // Reads "tablefile".
+  // The table of "tablefile".
   leaf::TableLookup read_lookup(const Preparation& preparation) const {
-    const leaf::Table table = leaf::read_table(file_.path(), file_.where());
+    const leaf::Table& table = *table_of_file_;
     preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} angles{}", file_.path().string(),
                                      table.wavelengths_nm.size(), table.theta_deg.size(),
                                      table.has_equal_sides() ? ", both sides the same" : ""));
@@ -189,6 +192,7 @@ class LeafSimplified final : public Material {
   std::shared_ptr<const leaf::CutLobe> surface_;              ///< lobe with that exponent
   LeafManner manner_;
   TableFileParam file_;
+  std::shared_ptr<const leaf::Table> table_of_file_;  ///< nullptr: no file is given
 };
 
 }  // namespace

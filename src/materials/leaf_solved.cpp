@@ -38,7 +38,11 @@ class LeafSolved final : public Material {
         exponent_(leaf_.tissue().cuticle_aspect),
         tolerance_(p.real("tolerance")),
         file_(p, {}) {
-    if (!file_.is_given()) leaf_.refuse_wall_textures(p);
+    if (file_.is_given())
+      modes_of_file_ =
+          std::make_shared<const leaf::ModeTableFile>(leaf::read_mode_table_file(file_.path(), file_.where()));
+    else
+      leaf_.refuse_wall_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {
@@ -110,10 +114,10 @@ class LeafSolved final : public Material {
         [&] { return leaf::SurfaceScaling(exponents, indices); });
   }
 
-  /// Reads "tablefile".
+  /// The table of "tablefile".
   leaf::ModeLookup read_table(const Preparation& preparation) const {
     const std::string name = file_.path().string();
-    const leaf::ModeTableFile file = leaf::read_mode_table_file(file_.path(), file_.where());
+    const leaf::ModeTableFile& file = *modes_of_file_;
     const leaf::ModeTableRequest request{
         .params = {},
         .wavelengths_nm = file_wavelengths(file.wavelengths_nm(), preparation.wavelengths, file_.where(), name),
@@ -149,6 +153,7 @@ class LeafSolved final : public Material {
   std::shared_ptr<const leaf::SurfaceScaling> scaling_;  ///< nullptr: not reciprocal
   double tolerance_;
   TableFileParam file_;
+  std::shared_ptr<const leaf::ModeTableFile> modes_of_file_;  ///< nullptr: no file is given
   std::shared_ptr<const leaf::ModeLookup> table_;
   std::optional<Selection> fixed_;  ///< selection of all hits, if it is the same for all
 };

@@ -126,7 +126,7 @@ class FullDisk(FrondTest):
     def test_a_stopped_render_whose_part_does_not_fit_fails(self):
         image = self.folder / "a.exr"
         command = self.command(image, "--wavelengths", BANDS, "--spp", 1 << 20, "--checkpoint", 0.05)
-        process = self.start(command, preexec_fn=limit_files(1 << 16))
+        process = self.start(command, preexec_fn=limit_files(1 << 10))
         self.assertIn("no checkpoint was written", process.stderr.readline())
         process.terminate()
         _, err = process.communicate()

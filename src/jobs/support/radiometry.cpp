@@ -31,4 +31,13 @@ std::optional<KeptFile::Names> kept_names_of(const Arguments& args) {
   return KeptFile::Names{part, part};
 }
 
+void warn_of_time_limit(const JobRun& run, uint64_t paths, double error) {
+  const Arguments& args = run.args;
+  if (const double rms = args.real("rms"); rms > 0) {
+    if (error > rms) run.log().warn({}, fmt::format("{} {:g} was not reached", args.spelled("rms"), rms));
+  } else if (const auto asked = uint64_t(args.count("paths")); paths < asked) {
+    run.log().warn({}, fmt::format("the time limit ended: {} paths were traced, not {}", paths, asked));
+  }
+}
+
 }  // namespace frond

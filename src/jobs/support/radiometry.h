@@ -33,6 +33,8 @@ inline constexpr JobParam kResumeParam("resume", ArgumentKind::flag,
 std::optional<Target> target_of(const Arguments& args);
 /// Returns --period in scene units, or nullopt.
 std::optional<std::array<double, 2>> period_of(const Arguments& args);
+/// Warns if the time limit ended a measurement before --paths, or before its standard error was as small as --rms.
+void warn_of_time_limit(const JobRun& run, uint64_t paths, double error);
 /// Returns the names of the partial result beside --csv; nullopt if neither --checkpoint nor --resume is given.
 std::optional<KeptFile::Names> kept_names_of(const Arguments& args);
 

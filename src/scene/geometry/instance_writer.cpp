@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
+#include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "scene/geometry/npy.h"
@@ -17,9 +19,13 @@ InstanceWriter::InstanceWriter(const std::filesystem::path& path, size_t rows, c
       return std::isalnum(c) || c == '_' || c == '-' || c == '.';
     });
     if (!is_name) fail({}, "\"{}\" is not a column name: use letters, digits, _ - and .", name);
+    if (std::ranges::count(columns, name) > 1) fail({}, "there are two columns \"{}\"", name);
     fields.push_back({.name = name, .type = "<f4", .shape = {}});
   }
   const std::string header = npy_header(fields, rows);
+  constexpr size_t kMost = 10000;  // numpy.load reads no larger header by default
+  if (header.size() > kMost)
+    fail({}, "the names of {} columns take {} bytes: {} is the limit", columns.size(), header.size(), kMost);
   file_.write({reinterpret_cast<const unsigned char*>(header.data()), header.size()});
 }
 
@@ -27,8 +33,11 @@ InstanceWriter::InstanceWriter(const std::filesystem::path& path, size_t rows, c
 void InstanceWriter::add(const AffineMap& map, std::span<const float> values) {
   constexpr size_t kBuffer = 1 << 18;
   assert(values.size() == columns_ && rows_left_ > 0);
+  const size_t begin = buffer_.size();
   for (const auto& row : map.rows) buffer_.insert(buffer_.end(), row.begin(), row.end());
   buffer_.insert(buffer_.end(), values.begin(), values.end());
+  if (!std::all_of(buffer_.begin() + std::ptrdiff_t(begin), buffer_.end(), [](float v) { return std::isfinite(v); }))
+    fail({}, "an instance has numbers beyond {:.2g}, the largest of a table", std::numeric_limits<float>::max());
   --rows_left_;
   if (buffer_.size() >= kBuffer) flush();
 }
