@@ -203,7 +203,7 @@ struct Callbacks {
   }
 
   /// World bounds of an instance: the transformed outline is tighter than a transformed box.
-  static void bounds(const RTCBoundsFunctionArguments* args) {
+  static void bounds_instances(const RTCBoundsFunctionArguments* args) {
     const auto& set = *static_cast<const GeometryInstances*>(args->geometryUserPtr);
     const Instances& i = set.instances;
     const AffineMap map = i.table->map(args->primID);
@@ -223,7 +223,7 @@ struct Callbacks {
 RTCGeometry embree::new_geometry(RTCDevice device, const GeometryInstances& set) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, unsigned(set.instances.table->size()));
-  rtcSetGeometryBoundsFunction(geometry, Callbacks::bounds, nullptr);
+  rtcSetGeometryBoundsFunction(geometry, Callbacks::bounds_instances, nullptr);
   rtcSetGeometryIntersectFunction(geometry, Callbacks::intersect);
   rtcSetGeometryOccludedFunction(geometry, Callbacks::occluded);
   rtcSetGeometryUserData(geometry, const_cast<GeometryInstances*>(&set));
