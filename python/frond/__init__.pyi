@@ -55,7 +55,7 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
     materials: Candidates, separated by ;: [LABEL:]MATERIAL[,parameter=value...], optionally followed by @wavelengths=PLUGIN or @integrator=PLUGIN. The first is the baseline of speed-ups. Default: abm;abm,mode=weighted;leaf_simplified;leaf_solved;leaf_lambert. Repeatable.
     output: Folder of the report: charts, tables, index.html. By default results are only printed.
     reference: Candidate whose converged render is the reference. The default is the expectation of the analog random walk, with less noise. Default: abm,mode=weighted.
-    rms: Report the cheapest candidate with this RMS error. Range: above 0.
+    rms: Report the cheapest candidate with this RMS error. Range: from 1e-06 to 1.
     target: RMS errors of red, green and blue for speed-up (c): three numbers, or the paper's front, back or ambient. Excludes relative.
     relative: Report errors relative to the reference: RMS over pixels, divided by the reference's mean over them, in each channel; rms 0.05 is 5 %. FLIP stays absolute, and models are not selected leaf by leaf.
     leaf: Name of a material to replace; by default every leaf. Repeatable.
@@ -232,7 +232,7 @@ def conform(material, *, session = None, sweep: bool = False, samples: int = 200
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
     sweep: Also test parameters that are not given, over their declared ranges.
-    samples: Number of samples for each direction. Range: from 1000 to 1073741824. Default: 20000.
+    samples: Number of samples for each direction. Range: from 1000 to 67108864. Default: 20000.
     angles: Angles of wo from the normal, on both sides. Unit: degrees. Range: from 0 to 89.9999. Default: 0,30,60,80,89.
     wavelengths: Wavelengths, tested in groups of four. Unit: nm. Range: above 0. Default: 608,551,455.
     seed: Seed of all random numbers. Default: 1.
@@ -287,13 +287,13 @@ def canopy(output: str | os.PathLike, lai: float = 3.0, count: int | None = None
     output: Instance table to write, a NumPy file (.npy).
     lai: Leaf area index: one-sided leaf area over ground area. Range: above 0. Default: 3.
     count: Number of leaves. Range: from 1 to 4000000000. Excludes lai.
-    ball: Fill a ball of this radius around the origin instead of a plot. Range: above 0. Needs count.
+    ball: Fill a ball of this radius around the origin instead of a plot. Range: from 1e-09 to 1000000000. Needs count.
     angles: Distribution of leaf angles. One of spherical, planophile, erectophile, plagiophile, extremophile, uniform, horizontal. Default: spherical.
-    scale: Scale of each leaf: its radius if the object is a disk of radius 1. Range: above 0. Default: 0.05.
+    scale: Scale of each leaf: its radius if the object is a disk of radius 1. Range: from 1e-09 to 1000000000. Default: 0.05.
     leaf_area: One-sided area of the object at scale 1; the default is a disk of radius 1. Range: above 0. Default: 3.141592653589793.
-    size: Size of the plot along x and y, from 0; also the period of a repeated plot. Range: above 0. Default: 10,10.
-    heights: Minimum and maximum height of the leaves' centres. Default: 0,1.
-    apart: Minimum distance between the leaves' centres; by default positions are independent. Range: above 0.
+    size: Size of the plot along x and y, from 0; also the period of a repeated plot. Range: from 1e-09 to 1000000000. Default: 10,10.
+    heights: Minimum and maximum height of the leaves' centres. Range: from -1000000000 to 1000000000. Default: 0,1.
+    apart: Minimum distance between the leaves' centres; by default positions are independent. Range: from 1e-09 to 1000000000.
     column: Random number of each leaf for Texture "instance", uniform between two bounds: chlorophylla=2:5. Repeatable.
     seed: Seed of all random numbers."""
 
@@ -311,7 +311,7 @@ def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.Pa
     images: EXR files of one size and colour space.
     output: Image to write: .png, .jpg or .exr.
     bands: Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy light is 1. Unit: nm. Range: above 0.
-    exposure: Change of exposure. Unit: stops. Default: 0.
+    exposure: Change of exposure. Unit: stops. Range: from -64 to 64. Default: 0.
     display: OpenColorIO display of PNG and JPEG output; sRGB by default.
     view: View of the display."""
 

@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <numeric>
 
-#include "core/printable.h"
-
 namespace frond {
 
 std::string Location::text() const {
@@ -22,6 +20,16 @@ std::string shortened(const std::string& message) {
   constexpr size_t kMost = 4000, kEnd = 1000;
   if (message.size() <= kMost) return message;
   return message.substr(0, kMost - kEnd) + " ... " + message.substr(message.size() - kEnd);
+}
+
+/// Replaces control characters other than line ends and tabs: words of the input could clear a terminal or hide a
+/// message, and a zero byte would cut it short.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code < 0x20 && c != '\n' && c != '\t') || code == 0x7f) c = '?';
+  }
+  return text;
 }
 
 size_t edit_distance(std::string_view a, std::string_view b) {
@@ -40,14 +48,6 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
-
-std::string printable(std::string text) {
-  for (char& c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if ((code < 0x20 && c != '\n' && c != '\t') || code == 0x7f) c = '?';
-  }
-  return text;
-}
 
 InputError::InputError(const Location& where, const std::string& message)
     : std::runtime_error(printable(where.text() + shortened(message))) {}

@@ -2,8 +2,6 @@
 
 #include <cstdio>
 
-#include "core/printable.h"
-
 namespace frond {
 
 namespace {
@@ -23,11 +21,11 @@ void print_to_stderr(std::string_view text) {
 }
 
 void ConsoleLog::info(std::string_view message) const {
-  if (!quiet_) print_to_stderr(printable(std::string(message)));
+  if (!quiet_) print_to_stderr(InputError({}, std::string(message)).what());  // as messages of errors are printed
 }
 
 void ConsoleLog::warn(const Location& where, std::string_view message) const {
-  print_to_stderr(printable(fmt::format("{}warning: {}", where.text(), message)));
+  print_to_stderr(InputError(where, fmt::format("warning: {}", message)).what());
 }
 
 const Log& silent_log() {

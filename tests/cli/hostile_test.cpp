@@ -21,7 +21,7 @@ class Hostile : public ::testing::Test {
   std::string refusal(const std::vector<std::string>& words, const std::string& output = "") const {
     const Outcome o = frond_command(words);
     EXPECT_EQ(o.code, 1) << o.err;
-    if (!output.empty()) EXPECT_FALSE(std::filesystem::exists(path(output)));
+    EXPECT_FALSE(!output.empty() && std::filesystem::exists(path(output))) << output;
     return o.err;
   }
   std::string scene(const std::string& material) {
