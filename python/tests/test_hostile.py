@@ -385,7 +385,7 @@ LONG = {
     "conform_python": 'conform(python_bsdf(), samples=10**6)',
     "conform_sweep": 'conform("leaf_solved", samples=20000, sweep=True)',
     "bench": 'frond.bench("abm", samples=10**12, session=session)',
-    "bench_time": 'frond.bench("abm", min_time=1, repetitions=1000, session=session)',
+    "bench_time": 'frond.bench("abm", min_time=0.3, repetitions=10000, session=session)',
     "export": 'frond.export("leaf_solved", format="osl", output="e.osl", rays=10**12, wavelengths=[600, 550, 450],'
               ' session=session)',
     "brf": 'frond.brf("scene.pbrt", paths=2**32, period=(2, 2), session=session)',
