@@ -203,11 +203,13 @@ SpectrumPtr SceneResolver::extended(SpectrumPtr s, const ParsedParam& p, Spectru
   const Interval data_nm = s->range_nm(), needed_nm = wavelengths_.range_nm();
   const auto reaches = [needed_nm](Interval nm) { return nm.contains(needed_nm.min) && nm.contains(needed_nm.max); };
   const bool is_known = reaches(data_nm), is_held = extends_spectra_ || use == SpectrumUse::unbounded;
-  if (!is_known && !extends_spectra_ && wavelengths_.film_space().empty())
+  if (!is_known && !extends_spectra_ && wavelengths_.film_space().empty()) {
+    if (use == SpectrumUse::illuminant) return s;  // check_light_range refuses it, and names lights that reach further
     fail(p.value_where,
          "\"{}\" is known from {} to {} nm, the bands need {} to {} nm; Option \"bool extendspectra\" true takes the "
          "values at the ends",
          p.name, data_nm.min, data_nm.max, needed_nm.min, needed_nm.max);
+  }
   if (extends_spectra_) s = beyond_data(std::move(s), Beyond::held, needed_nm);
   s = beyond_data(std::move(s), is_held ? Beyond::held : Beyond::zero, kCieRange_nm);
   if (!is_known && reaches(s->range_nm()))

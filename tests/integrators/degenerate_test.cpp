@@ -130,10 +130,11 @@ TEST(Degenerate, WhatEmbreeWouldLeaveOutIsRefused) {
   for (const std::string type : {"point", "spot"})
     expect_error("WorldBegin Translate 0 0 2e18\nLightSource \"" + type + "\"",
                  "test.pbrt:2:13: this light reaches to (0, 0, 2e+18)");
-  expect_error("LookAt 0 -3e15 2 0 0 0 0 0 1\nCamera \"perspective\"\nWorldBegin", "test.pbrt:2:8: this camera");
+  expect_error("LookAt 0 -3e18 2 0 0 0 0 0 1\nCamera \"perspective\"\nWorldBegin",
+               "test.pbrt:2:8: a ray of this camera");
   expect_error("WorldBegin ObjectBegin \"o\" ObjectEnd Scale 1e-12 1 1\nObjectInstance \"o\"",
                "test.pbrt:2:16: this instance is not possible: it scales by 1e-12");
-  expect_error("Camera \"perspective\" \"float lensradius\" 1e30\nWorldBegin", "test.pbrt:1:8: this camera");
+  expect_error("Camera \"perspective\" \"float lensradius\" 1e30\nWorldBegin", "test.pbrt:1:8: a ray of this camera");
 }
 
 TEST(Degenerate, PointsAreAsFarApartAsEmbreeAllows) {

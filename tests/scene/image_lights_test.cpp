@@ -505,7 +505,7 @@ TEST(Spectra, OfTablesThatEndWithinTheVisibleAreZeroBeyond) {
                 Loaded("WorldBegin LightSource \"infinite\" \"spectrum L\" [450 1 620 1]",
                        "bands,lambdamin=400,lambdamax=1000");
               }),
-              HasSubstr("the bands need 400 to 1000 nm"));
+              HasSubstr("the render needs 400 to 1000 nm"));
 }
 
 TEST(Spectra, OfBlackbodiesTakeTheTemperatureAlone) {

@@ -135,7 +135,7 @@ TEST_F(CompareCommand, BadRequestsAreRefused) {
   for (const char* target : {"0.1,0.2", "0.01,0.01,0.01x", "0.01,0.01,-1"})
     EXPECT_THAT(compare({"--target", target}).err, HasSubstr("--target takes the RMS of red, green and blue"));
   EXPECT_THAT(compare({"--leaf", "foo"}).err, HasSubstr("no material \"foo\""));
-  EXPECT_THAT(compare({"--rms", "0"}).err, HasSubstr("--rms: a list of numbers above 0"));
+  EXPECT_THAT(compare({"--rms", "0"}).err, HasSubstr("--rms: a list of numbers from 1e-06 to 1"));
   EXPECT_THAT(compare({"--materials", "abm@wavelengths=bands"}).err,
               HasSubstr("its wavelengths \"bands\" give other channels than the reference's \"smpte\""));
   std::string scene(kLeafScene);
