@@ -326,7 +326,7 @@ TEST_F(Parts, ForgedHeadersAreDamaged) {
           << name << " " << value;
     }
   EXPECT_THAT(refusal(number_of("reach"), "\"reach\": 2147483647"), HasSubstr("is damaged"));
-  for (const std::string name : {"mean", "square"}) {
+  for (const std::string name : {"mean", "square", "escaped", "absorbed"}) {
     const size_t at = bytes.find('"' + name + "\": [");
     const std::string first = bytes.substr(at, bytes.find(',', at) - at);
     EXPECT_EQ(refusal(first, first), "");

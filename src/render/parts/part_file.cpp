@@ -188,7 +188,10 @@ RenderStatistics statistics_of(const Json& j) {
   RenderStatistics s;
   s.paths = integer_of<uint64_t>(j.at("paths")), s.rays = integer_of<uint64_t>(j.at("rays"));
   s.wall_seconds = j.at("wall_seconds"), s.cpu_seconds = j.at("cpu_seconds");
-  s.ends.escaped = j.at("escaped"), s.ends.absorbed = j.at("absorbed");
+  for (size_t i = 0; i < s.ends.escaped.size(); ++i) {
+    s.ends.escaped[i] = integer_of<uint64_t>(j.at("escaped").at(i));
+    s.ends.absorbed[i] = integer_of<uint64_t>(j.at("absorbed").at(i));
+  }
   return s;
 }
 
