@@ -346,9 +346,9 @@ TEST_F(ImageFiles, ThatOpenImageIOFollowsBeyondTheirDataAreRefused) {
       {"tiff_lzw_damaged", "a.tif", "cannot read image"},
       {"tiff_deflate_damaged", "a.tif", "cannot read image"}};
   for (const auto& [input, name, message] : kCases) {
-    std::ofstream(folder_ / name, std::ios::binary)
-        << bytes_of(FROND_SOURCE_DIR "/tests/fuzz/corpus/image/" + input).substr(1);
-    EXPECT_THAT(error_of([&] { read_image(folder_ / name, {}); }), HasSubstr(message)) << input;
+    const fs::path path = folder_ / name;
+    std::ofstream(path, std::ios::binary) << bytes_of(FROND_SOURCE_DIR "/tests/fuzz/corpus/image/" + input).substr(1);
+    EXPECT_THAT(error_of([&] { read_image(path, {}); }), HasSubstr(message)) << input;
   }
 }
 
