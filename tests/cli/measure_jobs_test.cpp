@@ -78,7 +78,7 @@ TEST(MeasureJobs, RefuseWithTheSameWordsInBothFrontEnds) {
                       {"fit", "angle", "-1"},
                       {"fit", "like", "oak"}};
   for (const auto& [job, name, value] : kCases) {
-    const auto refusal = [&](Spelling spelling) {
+    const auto refusal = [&job = job, &name = name, &value = value](Spelling spelling) {
       return error_of([&] { Arguments(params_of(find_job(job)), spelling).set(name, value); });
     };
     std::string expected = refusal(python_spelling);
