@@ -260,7 +260,7 @@ class RandomFaults(unittest.TestCase):
         if done.code == 0:
             is_right = any(found == f and (not self.job.text or (text and out == t)) for f, t in [(files, wanted), *others])
             self.assertTrue(is_right, f"exit code 0, but the output is not complete or not right: {told}")
-        elif done.code > 0 and message and not (done.code in (130, 143) and "-q" in self.command):
+        elif done.code > 0 and message and not (done.code in (129, 130, 143) and "-q" in self.command):
             self.assertRegex(done.err, "(?m)^(frond: |stopped; )", f"no message: {told}")
         for name, data in found.items():
             right = [files[name], self.olds[name], *(f[name] for f, _ in others)]
