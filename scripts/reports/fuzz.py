@@ -26,7 +26,7 @@ def text(runs, coverage):
     return f"""### Fuzzing
 
 {tools.machine()}. clang 14, AddressSanitizer, UndefinedBehaviorSanitizer, conversions from float to integer.
-{total:,} inputs, {findings} failures.
+{total:,} inputs, {findings} failures, in the last run of each target. Several targets ran at a time.
 
 {tools.table(["target", "time", "inputs", "corpus after it", "failures"], rows)}
 
