@@ -7,7 +7,7 @@ import os
 import re
 
 from . import _frond
-from ._session import _show, checked_session
+from ._session import _show, checked_session, checked_text
 
 _ANNOTATIONS = {"flag": "bool", "count": "int", "seed": "int", "real": "float", "numbers": "float | Sequence[float] | str",
                 "text": "str | os.PathLike", "texts": "str | Sequence[str] | Mapping[str, str]"}
@@ -32,18 +32,13 @@ def _text(value):
 
 
 def words(param, value):
-    """Returns the list of texts for a parameter: one text, or any number for a repeatable parameter. Raises ValueError if a text
-    cannot be UTF-8, as a file name whose bytes are not."""
+    """Returns the list of texts for a parameter: one text, or any number for a repeatable parameter. Raises TypeError or
+    ValueError, as for a file name whose bytes are not UTF-8."""
     try:
         found = _words(param, value)
     except TypeError as error:
         raise TypeError(f"{python_name(param['name'])}: {error}") from None
-    for text in found:
-        try:
-            text.encode()
-        except UnicodeEncodeError:
-            raise ValueError(f"{python_name(param['name'])}: {text!r} is not UTF-8") from None
-    return found
+    return [checked_text(text, python_name(param["name"])) for text in found]
 
 
 def _words(param, value):

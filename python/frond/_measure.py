@@ -114,7 +114,7 @@ def register_material(name, bsdf, *, session=None):
     """Registers an object of `frond.Bsdf` as a material that scenes of the session name by `name`. Its renders use one
     core, because each call needs Python's lock. Raises TypeError or ValueError."""
     from ._bsdf import Bsdf
-    if isinstance(bsdf, type) or not isinstance(bsdf, Bsdf):
+    if not isinstance(bsdf, Bsdf):
         raise TypeError(f"bsdf: an object of a subclass of frond.Bsdf is needed, not {bsdf!r}")
     if not re.fullmatch(r"[\w.-]+", checked_text(name, "name")):
         raise ValueError(f"name: letters, digits, _ - and . are needed, not {name!r}")

@@ -44,15 +44,15 @@ def path_text(path):
 
 
 def _samples_of(samples, default):
-    """Returns a number of samples per pixel: the default for None. Raises TypeError or ValueError."""
+    """Returns a number of samples per pixel: the default for None. Raises TypeError or ValueError; the renderer has a lower limit."""
     if samples is None:
         return default
     try:
         number = operator.index(samples)
     except TypeError:
         raise TypeError(f"samples: a whole number is needed, not {samples!r}") from None
-    if not 0 < number <= 1 << 30:
-        raise ValueError(f"samples: a whole number from 1 to {1 << 30} is needed, not {number}")
+    if not 0 < number < 1 << 64:
+        raise ValueError(f"samples: a whole number from 1 on, of 64 bits, is needed, not {number}")
     return number
 
 
