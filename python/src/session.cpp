@@ -57,7 +57,6 @@ void render_more(ImageHandle& image, uint64_t samples, double max_rms, double ti
   SceneHandle& handle = *image.scene;
   Session& session = handle.owner->session();
   const LoadedScene& scene = handle.task.scene();
-  if (samples == 0) samples = scene.samples();
   if (max_rms > 0 && !handle.task.is_adaptive()) fail({}, "max_rms: the scene was not loaded for an adaptive render");
   if (max_rms == 0) scene.check_samples(samples);
   run(
