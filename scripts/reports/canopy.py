@@ -14,12 +14,14 @@ import charts
 import frond
 from tools import FROND, ROOT, arguments, machine, program, program_csv, rms, run, table, write_section
 
-MODELS = ["leaf_lambert", "leaf_simplified", "leaf_solved"]
+DIFFUSE = "leaf_lambert,bihemispherical=true"
+MODELS = ["leaf_lambert", DIFFUSE, "leaf_simplified", "leaf_solved"]
 REFERENCE = "leaf_solved"
 SIMPLER = [model for model in MODELS if model != REFERENCE]
+STYLES = {"leaf_lambert": "-", DIFFUSE: ":", "leaf_simplified": "--"}
 ANGLES = ["spherical", "planophile", "erectophile"]
 INDICES = [1, 3, 5]
-SUNS = [20, 45, 70]
+SUNS = [30, 45, 70]
 BANDS = [450, 550, 670, 800, 1650, 2200]
 ZENITH = range(-60, 61, 10)
 RMS = 0.01
@@ -102,7 +104,7 @@ def chart(path, canopies):
         for canopy, model in itertools.product([c for c in canopies if c.index == 3 and c.sun == 45], SIMPLER):
             mean, error = (100 * x[band] for x in canopy.difference(model))
             panel.errorbar(mean.index, mean, error, color=charts.COLORS[1 + ANGLES.index(canopy.angles)], elinewidth=1, marker="o",
-                           markersize=2.5, linestyle="-" if model == "leaf_lambert" else "--", label=f"{canopy.angles}, {model}")
+                           markersize=2.5, linestyle=STYLES[model], label=f"{canopy.angles}, {model}")
         panel.axhline(0, color="#000000", linewidth=1)
         panel.set(title=f"{band} nm", xticks=range(-60, 61, 30))
     for panel in panels[-1]:
@@ -129,17 +131,21 @@ positions of the leaves are drawn anew from the published description. The refer
 
 The canopies are soybean leaves, disks of radius 5 cm at random positions, over soil, lit by the sun alone. The views lie in the
 principal plane, from −60 to 60°; negative angles are on the sun's side. The differences are relative to the BRF with `leaf_solved`,
-the BSDF that the random walk converges to. They are the errors of a Lambertian leaf of the same reflectance and transmittance
-(`leaf_lambert`) and of three lobes scaled by a table (`leaf_simplified`). The standard error of a difference is about
+the BSDF that the random walk converges to. They are the errors of three lobes scaled by a table (`leaf_simplified`) and of two Lambertian leaves (`leaf_lambert`): one with
+the near-normal reflectance and transmittance of an integrating sphere (8°), as plant codes use them, and one with the means under
+diffuse light (`bihemispherical`). The standard error of a difference is about
 {noise:.1f} %. All leaves are reciprocal ([conventions](conventions.md)).
 
 ![BRF differences from leaf_solved against view zenith angle, for six bands](images/canopy.svg)
 
-*Leaf area index 3, sun zenith angle 45°. Solid: `leaf_lambert`; dashed: `leaf_simplified`. Blue: spherical leaf angles; vermilion:
+*Leaf area index 3, sun zenith angle 45°. Solid: `leaf_lambert`; dotted: with `bihemispherical`; dashed: `leaf_simplified`. Blue: spherical leaf angles; vermilion:
 planophile; green: erectophile. Bars: standard errors.*
 
+{nadir}
+*View from the nadir: spherical leaf angles, leaf area index 3, sun zenith angle 30°. BRF with `leaf_solved`, and differences from it.*
+
 {extremes}
-*Smallest and largest difference in %, over all directions, leaf area indices 1, 3 and 5, and sun zenith angles of 20, 45 and 70°.*
+*Smallest and largest difference in %, over all directions, leaf area indices 1, 3 and 5, and sun zenith angles of 30, 45 and 70°.*
 
 {verdict}
 
@@ -158,6 +164,16 @@ def extremes_table(canopies):
         body.append([f"`{model}`", angles, *(f"{100 * low:+.0f} to {100 * high:+.0f}"
                                              for low, high in zip(differences.min(), differences.max()))])
     return table(["", "leaf angles", *(f"{band} nm" for band in BANDS)], body)
+
+
+def nadir_table(canopies):
+    canopy = next(c for c in canopies if (c.angles, c.index) == ("spherical", 3) and c.sun == min(x.sun for x in canopies))
+    brf, error = canopy.brf[REFERENCE].loc[0], canopy.brf_se[REFERENCE].loc[0]
+    body = []
+    for band in BANDS:
+        found = [[100 * x[band].loc[0] for x in canopy.difference(model)] for model in SIMPLER]
+        body.append([f"{band} nm", f"{brf[band]:.4f} ± {error[band]:.4f}", *(f"{mean:+.1f} ± {se:.1f} %" for mean, se in found)])
+    return table(["", "`leaf_solved`", *(f"`{m}`" for m in SIMPLER)], body)
 
 
 def par_table(canopies):
@@ -204,12 +220,13 @@ def main():
                 canopies.append(Canopy(folder, angles, index, sun, asked, paths))
                 print(canopies[-1].name(), flush=True)
     noise = 100 * rms(numpy.stack([c.difference(MODELS[0])[1] for c in canopies]))
-    print(extremes_table(canopies), par_table(canopies), verdict(canopies), sep="\n")
+    print(nadir_table(canopies), extremes_table(canopies), par_table(canopies), verdict(canopies), sep="\n")
     if options.only:
         return
     chart(options.docs / "images" / "canopy.svg", canopies)
     write_section(options.docs / "radiometry.md", "canopy",
-                  SECTION.format(machine=machine(), het01=het, noise=noise, extremes=extremes_table(canopies),
+                  SECTION.format(machine=machine(), het01=het, noise=noise, nadir=nadir_table(canopies),
+                                 extremes=extremes_table(canopies),
                                  par=par_table(canopies), verdict=verdict(canopies)))
 
 

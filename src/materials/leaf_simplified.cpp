@@ -2,7 +2,6 @@
 
 #include "core/material.h"
 #include "leaf/table/table_cache.h"
-#include "leaf/table/table_file.h"
 #include "materials/leaf_params.h"
 #include "materials/lobes/active_lanes.h"
 #include "materials/lobes/three_lobe.h"
@@ -38,10 +37,15 @@ constexpr Param kOwn[] = {
      .unit = "degrees",
      .range = {0.1, 90},
      .doc = "Largest step between the table's angles of incidence; the widest that divides 90 degrees is used."},
-    {.name = "tablefile",
-     .kind = ParamKind::string,
-     .doc = "File with the leaf's reflectance and transmittance, made by frond table or measured "
-            "(docs/file_formats.md); replaces all parameters of the tissue."},
+    kTableFile,
+    kTableLeaf,
+    {.name = "tablesurface",
+     .kind = ParamKind::real,
+     .default_value = 0.04,
+     .range = {0, 1},
+     .doc =
+         "Share of light that the surface lobe reflects, at most R, where tablefile holds measured R and T. It moves "
+         "light from the diffuse lobe to the surface lobe: R stays as measured."},
 };
 constexpr auto kLeafSimplified = with_leaf_params(kOwn);
 
@@ -84,10 +88,8 @@ class LeafSimplified final : public Material {
     // random numbers.
     if (request_.method == leaf::TableMethod::solve) request_.params.cuticle_aspect = 0;
     request_.rays = p.integer("tablerays");
-    if (file_.is_given())
-      table_of_file_ = std::make_shared<const leaf::Table>(leaf::read_table(file_.path(), file_.where()));
-    else
-      refuse_textures(p);
+    table_of_file_ = file_.read(p, p.real("tablesurface"));
+    if (!table_of_file_) refuse_textures(p);
   }
 
   void prepare(const Preparation& preparation) override {
@@ -95,9 +97,8 @@ class LeafSimplified final : public Material {
     surface_ = preparation.share<leaf::CutLobe>(fmt::format("surface lobe {}", exponent_),
                                                 [&] { return leaf::CutLobe(exponent_); });
     if (file_.is_given())
-      lookup_ = preparation.share<leaf::TableLookup>(
-          wavelengths_key(preparation.wavelengths) + "leaf table file " + file_.path().string(),
-          [&] { return read_lookup(preparation); });
+      lookup_ = preparation.share<leaf::TableLookup>(wavelengths_key(preparation.wavelengths) + file_.key(),
+                                                     [&] { return read_lookup(preparation); });
     else if (varies_)
       lookup_ = std::make_shared<const leaf::TableLookup>(depth_lookup(preparation));
     else

@@ -29,17 +29,23 @@ bool reaches(Interval data_nm, Interval needed_nm) {
   return data_nm.contains(needed_nm.min) && data_nm.contains(needed_nm.max);
 }
 
-/// As check_range, with a hint at --wavelengths smpte if that would succeed: most files do not cover the whole
-/// spectrum.
+/// As check_range, with a hint at wavelengths that the file covers: most files do not cover the whole spectrum.
 void check_file_range(Interval in_file_nm, const WavelengthStrategy& strategy, const Location& where,
                       std::string_view name) {
-  // Range of the three SMPTE wavelengths 455, 551 and 608 nm.
-  const Interval needed_nm = strategy.range_nm(), smpte_nm{455, 608};
-  if (needed_nm.min < needed_nm.max && !reaches(in_file_nm, needed_nm) && reaches(in_file_nm, smpte_nm))
-    fail(where,
-         "\"{}\" is known from {} to {} nm, the render needs {} to {} nm; --wavelengths smpte renders 608, 551 and "
-         "455 nm",
-         name, in_file_nm.min, in_file_nm.max, needed_nm.min, needed_nm.max);
+  const Interval needed_nm = strategy.range_nm();
+  if (needed_nm.min < needed_nm.max && !reaches(in_file_nm, needed_nm)) {
+    // Beyond `seen_nm` lie at most 3.2 % of the integral of a colour matching function under D65. The SMPTE wavelengths
+    // are 455, 551 and 608 nm.
+    constexpr Interval seen_nm{420, 680}, smpte_nm{455, 608};
+    const auto refuse = [&](const std::string& hint) {
+      fail(where, "\"{}\" is known from {} to {} nm, the render needs {} to {} nm; {}", name, in_file_nm.min,
+           in_file_nm.max, needed_nm.min, needed_nm.max, hint);
+    };
+    if (reaches(in_file_nm, seen_nm))
+      refuse(fmt::format("--wavelengths hero,lambdamin={},lambdamax={} leaves out what the file lacks",
+                         std::max(in_file_nm.min, needed_nm.min), std::min(in_file_nm.max, needed_nm.max)));
+    if (reaches(in_file_nm, smpte_nm)) refuse("--wavelengths smpte renders 608, 551 and 455 nm");
+  }
   check_range(in_file_nm, strategy, where, name);
 }
 

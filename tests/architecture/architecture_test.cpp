@@ -56,7 +56,7 @@ const std::map<std::string, Layers> kAllowedInside{
       {"walk", {"tissue"}},
       {"solve", {"tissue"}},
       {"table", {"tissue", "walk", "solve"}},
-      {"fit", {"tissue", "solve"}}}},
+      {"fit", {"tissue", "solve", "table"}}}},
     {"materials", {{"lobes", {}}, {"", {"lobes"}}}},
     {"render", {{"film", {}}, {"parts", {"film"}}, {"", {"film", "parts"}}}},
     {"instruments", {{"errors", {}}, {"", {"errors"}}, {"conformance", {"", "errors"}}}},

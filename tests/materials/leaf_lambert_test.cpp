@@ -24,10 +24,12 @@ struct Pair {
 };
 
 /// f times pi, which is the share, for a path that arrives from `wo` and goes to `wi`.
-double share(Ready& leaf, const Vec3& wo, const Vec3& wi, int lane) {
+double share(Ready& leaf, const Vec3& wo, const Vec3& wi, int lane, Vec2 uv = {}) {
   RandomStream rng(1);
-  return double(leaf.bsdf().f(wo, wi, rng)[lane]) * std::numbers::pi;
+  return double(leaf.bsdf(uv).f(wo, wi, rng)[lane]) * std::numbers::pi;
 }
+
+const ParsedParam kBihemispherical = flag("bihemispherical", true);
 
 /// Mean of one side under diffuse light, by Simpson's rule on the solver's answers at every degree.
 Pair diffuse_mean(const leaf::TissueParams& params, double lambda_nm, bool back) {
@@ -65,7 +67,7 @@ TEST(LeafLambert, TakesBandsHoweverClose) {
 
 TEST(LeafLambert, HasTheMeansUnderDiffuseLight) {
   for (const std::string specimen : {"soybean", "maize"}) {
-    Ready leaf("leaf_lambert", {words("specimen", {specimen})});
+    Ready leaf("leaf_lambert", {words("specimen", {specimen}), kBihemispherical});
     for (int lane = 0; lane < 3; ++lane)
       for (const bool back : {false, true}) {
         const Vec3 lit = back ? kDown : kUp, other = back ? kUp : kDown;
@@ -79,7 +81,7 @@ TEST(LeafLambert, HasTheMeansUnderDiffuseLight) {
 
 TEST(LeafLambert, HasTheMeansUnderDiffuseLightWhateverItsSurface) {
   for (const double aspect : {0.0, 1.0, 100.0, 1000.0}) {
-    Ready leaf("leaf_lambert", {number("float", "cuticleaspect", {aspect})});
+    Ready leaf("leaf_lambert", {number("float", "cuticleaspect", {aspect}), kBihemispherical});
     leaf::TissueParams params = leaf::find_specimen("soybean")->params;
     params.cuticle_aspect = aspect;
     const Pair mean = diffuse_mean(params, 551, false);
@@ -88,10 +90,9 @@ TEST(LeafLambert, HasTheMeansUnderDiffuseLightWhateverItsSurface) {
   }
 }
 
-TEST(LeafLambert, HasTheSharesOfOneAngleWhereItIsAsked) {
-  Ready leaf("leaf_lambert", {number("float", "incidence", {8})});
+void expect_shares_at(Ready& leaf, double theta_deg) {
   const leaf::TissueModel soybean(leaf::find_specimen("soybean")->params);
-  const std::array<double, 2> theta{8, 172};
+  const std::array<double, 2> theta{theta_deg, 180 - theta_deg};
   for (int lane = 0; lane < 3; ++lane) {
     const auto s = leaf::solve(soybean.at(double(leaf.lambda().nm[static_cast<size_t>(lane)])), theta);
     EXPECT_NEAR(share(leaf, kUp, kUp, lane), s[0].surface + s[0].subsurface, 1e-6);
@@ -99,6 +100,16 @@ TEST(LeafLambert, HasTheSharesOfOneAngleWhereItIsAsked) {
     EXPECT_NEAR(share(leaf, kDown, kDown, lane), s[1].surface + s[1].subsurface, 1e-6);
     EXPECT_NEAR(share(leaf, kDown, kUp, lane), s[1].transmitted, 1e-6);
   }
+}
+
+TEST(LeafLambert, HasTheSharesOfAnIntegratingSphereOrOfOneAngle) {
+  Ready sphere("leaf_lambert", {}), at_40("leaf_lambert", {number("float", "incidence", {40})});
+  expect_shares_at(sphere, 8);
+  expect_shares_at(at_40, 40);
+  EXPECT_THAT(error_of([] {
+                Ready("leaf_lambert", {kBihemispherical, number("float", "incidence", {8})});
+              }),
+              HasSubstr("\"incidence\" has no effect with \"bihemispherical\""));
 }
 
 TEST(LeafLambert, TakesTheIncidentSideFromTheRayOrTheLight) {
@@ -112,7 +123,7 @@ TEST(LeafLambert, TakesTheIncidentSideFromTheRayOrTheLight) {
 }
 
 TEST(LeafLambert, InterpolatesWhereWavelengthsVary) {
-  Ready leaf("leaf_lambert", {}, "hero");
+  Ready leaf("leaf_lambert", {kBihemispherical}, "hero");
   for (int lane = 0; lane < 4; ++lane) {
     const double nm = double(leaf.lambda().nm[static_cast<size_t>(lane)]);
     const Pair mean = diffuse_mean(leaf::find_specimen("soybean")->params, nm, false);
@@ -122,7 +133,7 @@ TEST(LeafLambert, InterpolatesWhereWavelengthsVary) {
 }
 
 TEST(LeafLambert, IsExactAtTheWavelengthsOfAList) {
-  Ready leaf("leaf_lambert", {}, "bands");
+  Ready leaf("leaf_lambert", {kBihemispherical}, "bands");
   for (int lane = 0; lane < 4; ++lane) {
     const double nm = double(leaf.lambda().nm[static_cast<size_t>(lane)]);
     const Pair mean = diffuse_mean(leaf::find_specimen("soybean")->params, nm, true);
@@ -131,10 +142,63 @@ TEST(LeafLambert, IsExactAtTheWavelengthsOfAList) {
   }
 }
 
-TEST(LeafLambert, RefusesTexturesByName) {
-  EXPECT_THAT(error_of([] { Ready("leaf_lambert", {texture("chlorophylla", {"3:30"})}); }),
-              HasSubstr("leaf_lambert takes no textures: its parameters are those of the whole leaf"));
-  EXPECT_EQ(error_of([] { Ready("leaf_lambert", {texture("chlorophylla", {"3:3"})}); }), "");
+/// Linear interpolation over steps of 10 % of the depth changes shares by 4e-4 at most.
+TEST(LeafLambert, TakesTexturesOfChemistry) {
+  for (const char* wavelengths : {"smpte", "hero", "bands"})
+    for (const bool reciprocal : {false, true}) {
+      const ParsedParam incident = words("incident", {reciprocal ? "reciprocal" : "traced"});
+      Ready varied("leaf_lambert",
+                   {texture("chlorophylla", {"1:4"}), texture("thickness", {"0.0001:0.0003"}), incident}, wavelengths);
+      for (const float u : {0.1f, 0.5f, 0.9f}) {
+        const double chlorophyll = 1 + 3 * double(u), thickness = 1e-4 + 2e-4 * double(u);
+        Ready constant(
+            "leaf_lambert",
+            {number("float", "chlorophylla", {chlorophyll}), number("float", "thickness", {thickness}), incident},
+            wavelengths);
+        for (int lane = 0; lane < varied.lambda().count; ++lane)
+          for (const Vec3& wo : {kUp, kDown})
+            for (const Vec3& wi : {kUp, kDown})
+              EXPECT_NEAR(share(varied, wo, wi, lane, {u, u}), share(constant, wo, wi, lane), 1e-3)
+                  << wavelengths << reciprocal << u << lane;
+      }
+    }
+}
+
+TEST(LeafLambert, RefusesTexturesOfWallsByName) {
+  EXPECT_THAT(error_of([] { Ready("leaf_lambert", {texture("spongyaspect", {"3:30"})}); }),
+              HasSubstr("leaf_lambert takes no texture for \"spongyaspect\""));
+  EXPECT_EQ(error_of([] { Ready("leaf_lambert", {texture("spongyaspect", {"3:3"})}); }), "");
+}
+
+TEST(LeafLambert, TakesMeasurementsAsTheyAre) {
+  const TestFolder folder("leaf_lambert");
+  const std::string csv = folder.write("leaf.csv",
+                                       "wavelength,R (%),T (%),side\n"
+                                       "455,4,1,upper\n551,10,12,upper\n608,6,8,upper\n"
+                                       "455,5,1,lower\n551,13,11,lower\n608,9,7,lower\n");
+  Ready leaf("leaf_lambert", {words("tablefile", {csv})});
+  const double expected[3][4] = {{0.06, 0.08, 0.09, 0.07}, {0.10, 0.12, 0.13, 0.11}, {0.04, 0.01, 0.05, 0.01}};
+  for (int lane = 0; lane < 3; ++lane) {
+    EXPECT_FLOAT_EQ(float(share(leaf, kUp, kUp, lane)), float(expected[lane][0]));
+    EXPECT_FLOAT_EQ(float(share(leaf, kUp, kDown, lane)), float(expected[lane][1]));
+    EXPECT_FLOAT_EQ(float(share(leaf, kDown, kDown, lane)), float(expected[lane][2]));
+    EXPECT_FLOAT_EQ(float(share(leaf, kDown, kUp, lane)), float(expected[lane][3]));
+  }
+}
+
+/// Angles of a leaf table: those of the file exactly, and the mean over all of them.
+TEST(LeafLambert, TakesLeafTables) {
+  const TestFolder folder("leaf_lambert");
+  const std::string rows = "8,500,0.04,0.06,0.1\n40,500,0.05,0.07,0.09\n80,500,0.3,0.1,0.05\n";
+  const std::string csv = folder.write("leaf.csv", "theta_deg,wavelength_nm,Rs,Rd,T\n" + rows);
+  Ready at_8("leaf_lambert", {words("tablefile", {csv})}),
+      at_40("leaf_lambert", {words("tablefile", {csv}), number("float", "incidence", {40})}),
+      mean("leaf_lambert", {words("tablefile", {csv}), kBihemispherical});
+  EXPECT_FLOAT_EQ(float(share(at_8, kUp, kUp, 0)), 0.10f);
+  EXPECT_FLOAT_EQ(float(share(at_40, kUp, kUp, 0)), 0.12f);
+  EXPECT_FLOAT_EQ(float(share(at_40, kDown, kUp, 0)), 0.09f);
+  EXPECT_GT(share(mean, kUp, kUp, 0), 0.12);
+  EXPECT_LT(share(mean, kUp, kUp, 0), 0.40);
 }
 
 }  // namespace

@@ -235,6 +235,35 @@ TEST(LeafSimplified, TakesItsTableFromAFile) {
               HasSubstr("t.csv:2:1: Rs + Rd + T"));
 }
 
+/// R and T are those measured, whatever share of R the surface has.
+TEST(LeafSimplified, TakesMeasurementsAsTheyAre) {
+  const TestFolder folder("measured");
+  const ParsedParam csv = words("tablefile", {folder.write("m.csv", "nm,R,T\n400,0.03,0.2\n700,0.03,0.2\n")});
+  constexpr int kSamples = 1 << 14;
+  for (const auto& [given, surface] : {std::pair{-1.0, 0.03}, std::pair{0.01, 0.01}, std::pair{0.0, 0.0}}) {
+    std::vector<ParsedParam> params{csv};
+    if (given >= 0) params.push_back(number("float", "tablesurface", {given}));
+    Ready leaf("leaf_simplified", params);
+    const Vec3 wo = normalize(Vec3{0, std::tan(8 * float(std::numbers::pi) / 180), 1});
+    RandomStream rng(1);
+    // The two diffuse lobes are Lambertian: away from the mirror direction their f is all there is.
+    const Vec3 aside = normalize(Vec3{1, 0, 0.02f}), below{0, 0, -1};
+    EXPECT_NEAR(double(leaf.bsdf().f(wo, below, rng)[0]), 0.2 / std::numbers::pi, 1e-6);
+    EXPECT_NEAR(double(leaf.bsdf().f(wo, aside, rng)[0]), (0.03 - surface) / std::numbers::pi, 2e-4) << given;
+    // Mean weight of samples: R + T = 0.23, exactly for each sample of a lobe that is drawn in proportion.
+    double sum = 0, squares = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const float uc = rng.uniform();
+      const float u = rng.uniform(), v = rng.uniform();
+      const auto s = leaf.bsdf().sample(wo, uc, {u, v}, rng);
+      const double weight = s ? double(s->f[0] * std::abs(s->wi.z) / s->pdf) : 0;
+      sum += weight, squares += weight * weight;
+    }
+    const double mean = sum / kSamples, error = std::sqrt((squares / kSamples - mean * mean) / kSamples);
+    EXPECT_NEAR(mean, 0.23, 5 * error + 1e-6) << given;  // 5 sigma: false alarms 6e-7
+  }
+}
+
 TEST(LeafSimplified, SharesAFileWithThoseOfItsWavelengthsAlone) {
   const TestFolder folder("leaf_table");
   const std::string rows = "8,300,.04,.1,.2\n8,900,.04,.1,.8\n";

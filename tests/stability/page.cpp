@@ -62,7 +62,7 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"path, weighted abm", "the same with `abm` in its weighted mode"},
     {"path, simplified", "the same with `leaf_simplified`"},
     {"path, solved leaf", "the same with `leaf_solved`"},
-    {"path, lambert", "the same with `leaf_lambert`, whose R and T are means under diffuse light"},
+    {"path, lambert", "the same with `leaf_lambert`, whose R and T are those of 8 degrees"},
 }};
 
 /// Escapes the characters that Markdown interprets.
