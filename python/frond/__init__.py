@@ -19,7 +19,7 @@ imported with the first array, pandas, where it is installed, with the first tab
 from . import _jobs
 from ._errors import InputError
 from ._frond import version as __version__
-from ._session import Image, Scene, Session, default_session, load, loads, read_image
+from ._session import Image, Scene, Session, default_session, load, loads, read_image, write_image
 from ._jobs import Result, run
 from ._measure import (Fit, brf, compare, conform, fit, flux, goniophotometer, names, read_spectra, register_material,
                        spectrophotometer)
@@ -31,4 +31,5 @@ globals().update({name: function for name, function in _jobs.FUNCTIONS.items() i
 
 __all__ = sorted({name for name in _jobs.FUNCTIONS if name != "list"} | {
     "Bsdf", "Fit", "FlatBsdf", "InputError", "Image", "LeafTable", "Picture", "Result", "Scene", "Session", "__version__", "bsdf",
-    "default_session", "leaf_table", "load", "loads", "names", "read_image", "read_spectra", "register_material", "run"})
+    "default_session", "leaf_table", "load", "loads", "names", "read_image", "read_spectra", "register_material", "run",
+    "write_image"})

@@ -134,6 +134,7 @@ def load(path, *, session=None, **over):
     wavelengths: a strategy ("smpte", "hero"), or a list of bands in nm.
     integrator, filter: "plugin,parameter=value".
     channels: additional channels ("normal", "depth", ...).
+    for_denoiser: True for pixels without common samples, and the channels "albedo" and "normal".
     color_space: colour space of R, G and B.
     seed: seed of all random numbers.
     pixels: crop window (x0, x1, y0, y1) in pixels.
@@ -154,6 +155,20 @@ def loads(text, folder=".", *, session=None, **over):
 def read_image(path):
     """Reads an image file. Returns (names of the channels, float32 array `[row][column][channel]`). Raises InputError."""
     return _frond.read_image(path_text(path))
+
+
+def write_image(path, rgb, *, color_space=None, like=None):
+    """Writes linear colours, such as those of a denoiser, as .exr, or for a display as .png or .jpg.
+
+    rgb: array `[row][column][3]`, rows from the top. color_space: their colour space; by default that of `like`, else linear
+    sRGB. like: image file whose attributes are copied (scene, seed, command). A failed write leaves no file. Raises InputError,
+    and ValueError for an array of another shape.
+    """
+    import numpy
+    rgb = numpy.ascontiguousarray(rgb, numpy.float32)
+    if rgb.ndim != 3 or rgb.shape[2] != 3 or rgb.size == 0:
+        raise ValueError(f"rgb: an array [row][column][3] is needed, not of shape {rgb.shape}")
+    _frond.write_image(path_text(path), rgb, checked_text(color_space or "", "color_space"), path_text(like or ""))
 
 
 class Scene:
@@ -185,7 +200,8 @@ class Scene:
 
 
 class Image:
-    """A rendered image: `image["R"]` is a channel `[row][column]`; `image.array` and `image.rgb` are several."""
+    """A rendered image: `image["R"]` is a channel `[row][column]`, `image["normal"]` are its channels normal.X, .Y and .Z
+    as `[row][column][3]`; `image.array` and `image.rgb` are several channels, too."""
 
     def __init__(self, image, scene):
         self._rendered, self._scene, self._image = image, scene, None
@@ -218,6 +234,9 @@ class Image:
 
     def __getitem__(self, channel):
         names, array = self._load()
+        parts = [name for name in names if name.startswith(f"{channel}.")]
+        if channel not in names and parts:
+            return self._several(parts)
         if channel not in names:
             raise KeyError(f"no channel {channel!r}: there are {', '.join(names)}")
         return array[:, :, names.index(channel)]

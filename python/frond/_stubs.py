@@ -31,7 +31,7 @@ def stub():
             "from ._jobs import Result as Result, run as run\n"
             "from ._measure import Fit as Fit, names as names, read_spectra as read_spectra, register_material as register_material\n"
             "from ._session import (Image as Image, Scene as Scene, Session as Session, default_session as default_session,\n"
-            "                       load as load, loads as loads, read_image as read_image)\n\n__version__: str\n")
+            "                       load as load, loads as loads, read_image as read_image, write_image as write_image)\n\n__version__: str\n")
     for name in _jobs.FUNCTIONS:
         text += "\n" + stub_of(name, getattr(frond, name))
     return text

@@ -43,7 +43,7 @@ std::shared_ptr<SceneHandle> load(const std::shared_ptr<SessionHandle>& owner, c
           scene->task.read_text(*text, path);
         else
           scene->task.read({path});
-        scene->task.choose(nullptr);
+        scene->task.choose(nullptr, {});
         scene->task.load(nullptr);
         owner->context.log().check();
       },

@@ -133,10 +133,15 @@ class StoppingProgress final : public Progress {
 /// Returns a sentence about the models that `frond render` would select for open leaves with this error bound; "" if
 /// the wavelengths have no colours.
 std::string leaf_by_leaf(const JobRun& run, double rms, const compare::Study& study, const Plan& plan) {
+  const std::string limit = run.args.flag("relative") ? "maxrelativerms" : "maxrms";
   SceneDescription description{study.description(), {}, {}, {}};  // without geometry, which the study's scene provides
-  const PluginText open{"leaf", {{"model", "auto"}, {"maxrms", fmt::format("{}", rms)}}};
+  const PluginText open{"leaf", {{"model", "auto"}, {limit, fmt::format("{}", rms)}}};
   apply_overrides({.swaps = study.swaps_to(open), .seed = study.seed()}, description, study.registry(), silent_log());
-  const choose::ChoiceTask task{study.session(), description, plan.top_samples, study.any_scene().get()};
+  const choose::ChoiceTask task{.session = study.session(),
+                                .description = description,
+                                .samples = plan.top_samples,
+                                .other = study.any_scene().get(),
+                                .is_question = true};
   const auto chosen = choose::choose_models(task, choose::standard_ladder(study.registry()), silent_log());
   if (!chosen) return {};
   run.log().info(choose::choice_text(chosen->choice));
@@ -167,8 +172,7 @@ Result compare_models(const JobRun& run) {
   StoppingProgress progress(run);
   plan.progress = &progress;
   Comparison result = compare::measure(study, plan, request);
-  // The selection of models supports absolute errors only.
-  for (const double rms : request.relative ? std::vector<double>{} : request.rms)
+  for (const double rms : request.rms)
     result.leaf_by_leaf += (result.leaf_by_leaf.empty() ? "" : "\n") + leaf_by_leaf(run, rms, study, plan);
   result.scene = scene_name(args.text("scene"));
   result.command = identifying_command(kCompareJob, args);

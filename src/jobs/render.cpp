@@ -63,10 +63,12 @@ constexpr JobParam kParams[] = {
              "Additional channels with data of the first surface that camera rays hit; names separated by commas "
              "(docs/scene_format.md).",
              {.type = "CHANNELS", .decides = true}),
-    JobParam("max-rms", real,
-             "Stop when the RMS noise of the image's linear colours is below this; pixels with more noise get more "
-             "samples, up to --spp.",
-             {.range = kAboveZero, .excludes = "samples"}),
+    JobParam(
+        "max-rms", real,
+        "Stop when the RMS noise of the image's linear colours is below this: a number is in film units (1: white), "
+        "2% is relative to each colour's mean over the image. Pixels with more noise get more samples, up to "
+        "--spp.",
+        {.range = kAboveZero, .relative = true, .excludes = "samples"}),
     kTimeLimitParam,
     JobParam("quick", flag, "Preview: half the resolution, a sixteenth of the samples.", {.decides = true}),
     JobParam("pilot", flag, "Select the models of open leaves and report them; render nothing."),
@@ -141,7 +143,9 @@ class SceneRender {
   void prepare() {
     task_.read(files_);
     find_paths();
-    task_.choose(output_ ? &*output_ : nullptr);
+    constexpr double kPilotPart = 0.25;  // of the time limit
+    task_.choose(output_ ? &*output_ : nullptr,
+                 run_.control_until(kPilotPart * run_.args.real("time-limit"), start_).deadline);
     if (run_.args.flag("pilot")) return;
     if (task_.choice()) load_start_ = Clock::now();  // the time of the selection is reported separately
     task_.load(output_ ? &*output_ : nullptr);
@@ -247,14 +251,18 @@ class SceneRender {
 
   /// Logs the image's noise; warns if it exceeds --max-rms.
   void report_noise(const Film& film) const {
-    const NoiseEstimate noise = image_noise(film, noise_z());
+    const bool is_relative = run_.args.is_relative("max-rms");
+    const NoiseEstimate noise = image_noise(film, noise_z(), noise_unit(film, is_relative));
     const double max_rms = run_.args.real("max-rms");
+    const auto text = [is_relative](double rms) {
+      return is_relative ? fmt::format("{:.3g} % of the mean", 100 * rms) : fmt::format("{:.5f}", rms);
+    };
     if (noise.upper_rms() <= max_rms)
-      run_.log().info(fmt::format("noise RMS {:.5f}, {:.5f} at most ({:.0f} %)", noise.rms(), noise.upper_rms(),
-                                  100 * kNoiseConfidence));
+      run_.log().info(fmt::format("noise RMS {}, {} at most ({:.0f} % confidence)", text(noise.rms()),
+                                  text(noise.upper_rms()), 100 * kNoiseConfidence));
     else
-      run_.log().warn({}, fmt::format("noise RMS {:.5f}, {:.5f} at most: more than the requested {:g}", noise.rms(),
-                                      noise.upper_rms(), max_rms));
+      run_.log().warn({}, fmt::format("noise RMS {}, {} at most: more than the requested {}", text(noise.rms()),
+                                      text(noise.upper_rms()), run_.args.words("max-rms").back()));
   }
 
   /// Adds the statistics to the table, and logs them unless --json prints them.

@@ -35,20 +35,31 @@ constexpr Param kOwn[] = {
      .kind = ParamKind::string,
      .default_value = kAuto,
      .doc = "Leaf model. auto: frond render selects the cheapest that meets maxrms (docs/selection.md); other commands "
-            "use "
-            "abm with weighted walks, or leaf_solved if incident is reciprocal.",
+            "use leaf_solved, or abm with weighted walks where a texture gives the aspect ratio of an inner wall.",
      .choices = kModels},
     {.name = "maxrms",
      .kind = ParamKind::real,
      .default_value = 0.01,
      .range = {1e-6, 1},
-     .doc = "Largest RMS error of the image that the model may cause, in linear SMPTE-C (white: 1)."},
+     .doc =
+         "Largest RMS error of the image that the model may cause, in linear SMPTE-C (white: 1). It has no effect if "
+         "only maxrelativerms is given."},
+    {.name = "maxrelativerms",
+     .kind = ParamKind::real,
+     .range = {1e-6, 1},
+     .doc = "The same error relative to each channel's mean over the image, such as 0.02."},
 };
 constexpr auto kLeaf = with_leaf_params(kOwn);
 
-/// The material of a model; for "auto", the exact model that the leaf's incident direction permits.
-const MaterialInfo& material_of(std::string_view model, bool is_reciprocal) {
-  if (model == kAuto) return is_reciprocal ? leaf_solved_material : abm_material;
+/// Whether a texture gives the aspect ratio of an inner wall, for which no table holds.
+bool has_wall_textures(const Params& p) {
+  const LeafParams leaf(p);
+  return leaf.epidermis_aspect() || leaf.spongy_aspect() || leaf.palisade_aspect();
+}
+
+/// The material of a model; for "auto", `leaf_solved`, or `abm` for the leaves that it refuses.
+const MaterialInfo& material_of(std::string_view model, const Params& p) {
+  if (model == kAuto) return has_wall_textures(p) ? abm_material : leaf_solved_material;
   const auto found = std::ranges::find(kLadder, model, &Model::name);
   if (found == kLadder.end()) throw std::logic_error("no leaf model is called " + std::string(model));
   return *found->info;
@@ -59,9 +70,10 @@ ParsedParam weighted_walks() { return {"string", "mode", {}, {}, std::vector<std
 /// Does not select a model, since a material has no access to the image: the renderer (docs/selection.md) replaces
 /// "auto" by a model's name before the material is made.
 std::unique_ptr<Material> make_leaf(const Params& p) {
-  // Read so that the parameter counts as used; the renderer reads the value.
+  // Read so that the parameters count as used; the renderer reads their values.
   (void)p.real("maxrms");
-  const MaterialInfo& info = material_of(p.string("model"), p.string("incident") == "reciprocal");
+  if (p.given("maxrelativerms")) (void)p.real("maxrelativerms");
+  const MaterialInfo& info = material_of(p.string("model"), p);
   const bool walks = &info == &abm_material;
   return info.make(p.forwarded(info, walks ? std::vector{weighted_walks()} : std::vector<ParsedParam>{}));
 }

@@ -294,8 +294,9 @@ RenderStatistics Session::render_to(const LoadedScene& scene, const NoiseRequest
     progress.plan(statistics.paths, plan.predicted_paths);
     statistics += render_plan(scene, {part.film.sampled(), {}, header.tile_ends}, part, each);
     if (!has_all(part.film, header.tile_ends)) return statistics;  // ended early
-    if (image_noise(part.film, noise_z()).upper_rms() <= request.max_rms) return statistics;
-    plan = next_plan(part.film, request.max_rms, request.most_samples);
+    const NoiseUnit unit = noise_unit(part.film, request.is_relative);
+    if (image_noise(part.film, noise_z(), unit).upper_rms() <= request.max_rms) return statistics;
+    plan = next_plan(part.film, request.max_rms, request.most_samples, unit);
     if (plan.tile_ends == header.tile_ends) return statistics;  // all tiles have the largest number of samples
     header.tile_ends = plan.tile_ends;
     ++header.round;

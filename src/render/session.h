@@ -61,6 +61,7 @@ class LoadedScene {
 /// Noise target of an adaptive render.
 struct NoiseRequest {
   double max_rms = 0;                ///< RMS of the noise over pixels and colours, in film units
+  bool is_relative = false;          ///< in units of each colour's mean over the image instead
   uint64_t most_samples = 1u << 30;  ///< upper limit of samples per pixel
   /// Called before each plan is rendered, with the header for checkpoints; may be empty.
   std::function<void(const PartHeader&)> planned = {};

@@ -1,5 +1,6 @@
 #include "render/film/adaptive.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,6 +99,32 @@ TEST_F(Adaptive, NoiseComesDownToWhatIsAskedFor) {
   const SampleCount count = sample_count(to_noise(scene, 0.01).film);
   EXPECT_LT(count.least, count.most);
   EXPECT_EQ(count.least % FilmTile::kBlock, 0u);
+}
+
+/// The noise of each colour is divided by its mean over the image, so that it has no unit.
+TEST_F(Adaptive, RelativeNoiseIsThatOfTheMeans) {
+  const LoadedScene scene = load(true);
+  constexpr double kRelative = 0.05;
+  RenderPart part = scene.empty_part();
+  session_.render_to(scene, {.max_rms = kRelative, .is_relative = true}, part);
+  const NoiseUnit unit = noise_unit(part.film, true);
+  EXPECT_LE(image_noise(part.film, noise_z(), unit).upper_rms(), kRelative);
+  RenderPart reference = scene.empty_part();
+  session_.render(scene, SampleRange{1 << 20, (1 << 20) + 2048}, reference);  // of other samples
+  const Crop& c = part.film.settings().crop;
+  double mean = 0, square = 0;
+  for (int y = c.y0; y < c.y1; ++y)
+    for (int x = c.x0; x < c.x1; ++x) mean += reference.film.mean(x, y)[1] / (c.width() * c.height());
+  EXPECT_NEAR(unit[1], mean, 0.02 * mean);
+  for (int y = c.y0; y < c.y1; ++y)
+    for (int x = c.x0; x < c.x1; ++x)
+      for (size_t i = 0; i < 3; ++i)
+        square += std::pow((part.film.mean(x, y)[i] - reference.film.mean(x, y)[i]) / unit[i], 2);
+  EXPECT_LE(std::sqrt(square / (3 * c.width() * c.height())), kRelative);
+  EXPECT_LT(part.header.statistics.paths, to_noise(scene, kRelative * mean / 2).header.statistics.paths);
+  const Film black(part.film.format());
+  EXPECT_THAT(error_of([&] { noise_unit(black, true); }),
+              ::testing::HasSubstr("relative noise needs light of every colour"));
 }
 
 TEST_F(Adaptive, MostSamplesAreNotExceeded) {

@@ -11,15 +11,15 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// Two open_choices of three options each, the last of which is the base. The first open_choice's options are off by
-/// `far`, the second's by `near` (of each: the cheapest, the middle one), everywhere alike.
+/// Two open_choices of three options each, the last of which is the reference. The first open_choice's options are off
+/// by `far`, the second's by `near` (of each: the cheapest, the middle one), everywhere alike.
 Screening screening(std::array<double, 2> far, std::array<double, 2> near, double cheap_noise = 1) {
   const std::vector<double> bias{far[0], far[1], near[0], near[1]};
   std::vector<std::vector<double>> products(4);
   for (size_t i = 0; i < 4; ++i)
     for (const double other : bias) products[i].push_back(bias[i] * other);
   ByOption<Screening::Single> singles(2);
-  for (size_t q = 0; q < 2; ++q) singles[q] = {{0.7, cheap_noise, 2 * q}, {0.8, 1, 2 * q + 1}, {.is_base = true}};
+  for (size_t q = 0; q < 2; ++q) singles[q] = {{0.7, cheap_noise, 2 * q}, {0.8, 1, 2 * q + 1}, {.is_reference = true}};
   const std::vector<ConvergencePoint> noise{{1, 0, {1, 0}}, {2, 0, {0.5, 0}}};
   return {std::move(singles), std::move(products), {noise, {}}};
 }
@@ -28,7 +28,7 @@ TEST(Screening, BiasesAddUpAsImagesDo) {
   const Screening s = screening({0.03, 0.01}, {-0.04, 0.02});
   EXPECT_NEAR(s.bias({0, 0}), 0.01 * 0.01, 1e-15);
   EXPECT_NEAR(s.bias({1, 1}), 0.03 * 0.03, 1e-15);
-  EXPECT_EQ(s.bias(s.base()), 0);
+  EXPECT_EQ(s.bias(s.reference()), 0);
 }
 
 TEST(Screening, TakesTheCheaperModelWhereItDoesLittleHarm) {
@@ -46,10 +46,10 @@ TEST(Screening, ABiasJustBelowTheRequestIsNotCheap) {
 
 TEST(Screening, TheBaseIsTheMeasureOfPriceAndNoise) {
   const Screening s = screening({0.03, 0.01}, {-0.04, 0.02}, 3);
-  EXPECT_EQ(s.price(s.base()), 1);
-  EXPECT_EQ(s.noise(s.base()), 1);
+  EXPECT_EQ(s.price(s.reference()), 1);
+  EXPECT_EQ(s.noise(s.reference()), 1);
   EXPECT_EQ(s.noise({0, 2}), 3);
-  EXPECT_NEAR(s.cost(s.base(), 0.1), 100, 1e-9);  // noise falls as 1 / samples
+  EXPECT_NEAR(s.cost(s.reference(), 0.1), 100, 1e-9);  // noise falls as 1 / samples
 }
 
 TEST(Screening, NoiseIsPartOfThePrice) {

@@ -45,39 +45,44 @@ class Choosing : public ::testing::Test {
 };
 
 const std::string kSmpte = "Option \"string wavelengths\" \"smpte\"\n";
-const std::vector<std::string> kQuick{"--wavelengths", "smpte", "--spp", "4", "--json"};
+const std::vector<std::string> kPilot{"--wavelengths", "smpte", "--pilot", "--json"};
+/// A long render, for which a pilot pays, that its noise target ends early.
+const std::vector<std::string> kLong{"--wavelengths", "smpte", "--spp", "1e5", "--max-rms", "0.3"};
 
 nlohmann::json choice_of(const Outcome& o) {
   EXPECT_EQ(o.code, 0) << o.err;
-  return nlohmann::json::parse(o.out)["choice"];
+  return nlohmann::json::parse(o.out);
 }
 
 TEST_F(Choosing, WhatIsFarAwayMayBeSimpler) {
-  const auto choice = choice_of(render(two_leaves("\"float maxrms\" 0.01", "\"float maxrms\" 0.01"), kQuick));
+  const auto choice = choice_of(render(two_leaves("\"float maxrms\" 0.004", "\"float maxrms\" 0.01"), kPilot));
   ASSERT_EQ(choice["leaves"].size(), 2u);
   EXPECT_EQ(choice["leaves"][0]["name"], "near");
   EXPECT_NE(choice["leaves"][0]["chosen"], "leaf_lambert");
   EXPECT_EQ(choice["leaves"][1]["chosen"], "leaf_lambert");
   EXPECT_GT(choice["leaves"][0]["share"], choice["leaves"][1]["share"]);
-  EXPECT_TRUE(choice["met"]);
-  EXPECT_LT(choice["bias_high"], 0.01);
+  EXPECT_EQ(choice["ground"], "met");
+  EXPECT_EQ(choice["rms"], 0.004);
+  EXPECT_LT(choice["bias_high"], 0.004);
   EXPECT_FALSE(choice.contains("wavelengths"));
 }
 
 TEST_F(Choosing, TheLogAndTheHeaderSayWhatAndWhy) {
-  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "smpte", "--spp", "4"});
+  const Outcome o = render(two_leaves("", ""), kLong);
   EXPECT_THAT(o.err, HasSubstr("leaf models for an RMS of 0.01, by a pilot of 2304 pixels"));
   EXPECT_THAT(o.err, HasSubstr("far, seen first by"));
   EXPECT_THAT(o.err, HasSubstr("* leaf_lambert"));
   const auto attributes = header();
   EXPECT_THAT(attributes.at("frond:leaf:far"), HasSubstr("leaf_lambert"));
-  EXPECT_THAT(attributes.at("frond:choice"), StartsWith("RMS against abm at most 0.0"));
+  EXPECT_THAT(attributes.at("frond:choice"), StartsWith("an RMS of 0.0"));
 }
 
 TEST_F(Choosing, TheSameCommandGivesTheSameFileOnAnyThreads) {
   const std::string scene = two_leaves("", "");
   const auto bytes = [&](const char* threads) {
-    EXPECT_EQ(render(scene, {"--wavelengths", "smpte", "--spp", "4", "-q", "--threads", threads}).code, 0);
+    std::vector<std::string> more = kLong;
+    more.insert(more.end(), {"-q", "--threads", threads});
+    EXPECT_EQ(render(scene, more).code, 0);
     std::ifstream in(image(), std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
@@ -86,23 +91,32 @@ TEST_F(Choosing, TheSameCommandGivesTheSameFileOnAnyThreads) {
   EXPECT_EQ(one, bytes("1"));
 }
 
-TEST_F(Choosing, SaysWhenNothingMeetsTheRequest) {
-  const Outcome o = render(two_leaves("\"float maxrms\" 1e-6", ""), {"--wavelengths", "smpte", "--spp", "4"});
-  EXPECT_THAT(o.err, HasSubstr("warning: no model but abm was shown to keep the image's RMS error below 1e-06"));
-  EXPECT_EQ(header().at("frond:leaf:near"), "abm");
-  EXPECT_THAT(header().at("frond:choice"), StartsWith("no model but abm"));
+TEST_F(Choosing, WhatCannotBeMetByLessIsSolved) {
+  const Outcome o = render(two_leaves("\"float maxrms\" 1e-6", ""), kLong);
+  EXPECT_THAT(o.err, Not(HasSubstr("warning: no")));
+  EXPECT_EQ(header().at("frond:leaf:near"), "leaf_solved");
+}
+
+TEST_F(Choosing, NoPilotIsMadeThatCannotPay) {
+  const Outcome o = render(two_leaves("", ""), {"--wavelengths", "smpte", "--spp", "4", "--json"});
+  const auto choice = nlohmann::json::parse(o.out)["choice"];
+  EXPECT_EQ(choice["ground"], "no gain");
+  EXPECT_EQ(choice["pilot"]["paths"], 0);
+  for (const auto& leaf : choice["leaves"]) EXPECT_EQ(leaf["chosen"], "leaf_solved");
+  EXPECT_EQ(header().at("frond:leaf:near"), "leaf_solved");
+  EXPECT_THAT(o.err, HasSubstr("a pilot could take as long as simpler models can save in this render"));
 }
 
 TEST_F(Choosing, WhoNamesAModelHasIt) {
-  const Outcome o =
-      render(two_leaves("\"string model\" \"leaf_lambert\"", "\"string model\" \"leaf_lambert\""), kQuick);
+  const Outcome o = render(two_leaves("\"string model\" \"leaf_lambert\"", "\"string model\" \"leaf_lambert\""),
+                           {"--wavelengths", "smpte", "--spp", "4", "--json"});
   EXPECT_FALSE(nlohmann::json::parse(o.out).contains("choice"));
   EXPECT_THAT(header(), Not(Contains(Key("frond:choice"))));
 }
 
 TEST_F(Choosing, AnySceneCanBeAskedBySwapping) {
   const std::string fixed = "\"string model\" \"leaf_simplified\"";
-  std::vector<std::string> more = kQuick;
+  std::vector<std::string> more = kPilot;
   more.insert(more.end(), {"--swap", "*=leaf,model=auto,maxrms=0.3"});
   const auto choice = choice_of(render(two_leaves(fixed, fixed), more));
   EXPECT_EQ(choice["rms"], 0.3);
@@ -116,7 +130,7 @@ TEST_F(Choosing, TexturesOfCellWallsLeaveTheWalkAlone) {
   std::string scene = two_leaves("\"texture spongyaspect\" \"ramp\"", "");
   scene.insert(scene.find("WorldBegin\n") + 11,
                "Texture \"ramp\" \"float\" \"imagemap\" \"string filename\" \"ramp.png\"\n");
-  const auto choice = choice_of(render(scene, kQuick));
+  const auto choice = choice_of(render(scene, kPilot));
   EXPECT_EQ(choice["leaves"][0]["chosen"], "abm");
   EXPECT_EQ(choice["leaves"][0]["refused"].size(), 3u);
   EXPECT_THAT(choice["leaves"][0]["refused"][1]["reason"].get<std::string>(), HasSubstr("takes no texture"));
@@ -142,9 +156,57 @@ TEST_F(Choosing, BandsAreNoImage) {
   EXPECT_THAT(o.err, HasSubstr("bands are none"));
 }
 
+/// Light of a thousand times the radiance: an absolute error means another thing, a relative one the same.
+TEST_F(Choosing, ARelativeErrorHasNoUnit) {
+  const auto chosen = [&](const std::string& limit, const std::string& factor) {
+    std::string scene = two_leaves(limit, limit);
+    for (const std::string light : {"LightSource \"distant\" ", "LightSource \"infinite\" "})
+      scene.insert(scene.find(light) + light.size(), "\"float scale\" " + factor + " ");
+    if (const auto twice = scene.find("\"float scale\" 0.2"); twice != scene.npos) scene.erase(twice, 18);
+    return choice_of(render(scene, kPilot));
+  };
+  const auto one = chosen("\"float maxrelativerms\" 0.03", "1"),
+             bright = chosen("\"float maxrelativerms\" 0.03", "1024");
+  EXPECT_TRUE(one["relative"]);
+  EXPECT_EQ(one["rms"], 0.03);
+  EXPECT_EQ(one["ground"], "met");
+  for (const size_t leaf : {0u, 1u}) EXPECT_EQ(one["leaves"][leaf]["chosen"], bright["leaves"][leaf]["chosen"]);
+  EXPECT_NEAR(one["bias_high"].get<double>(), bright["bias_high"].get<double>(), 1e-6);
+  const auto absolute = chosen("\"float maxrms\" 0.03", "1"), of_bright = chosen("\"float maxrms\" 0.03", "1024");
+  EXPECT_FALSE(absolute["relative"]);
+  EXPECT_EQ(absolute["ground"], "met");
+  EXPECT_EQ(absolute["leaves"][0]["chosen"], "leaf_lambert");
+  EXPECT_EQ(of_bright["leaves"][0]["chosen"], "leaf_solved");
+}
+
+/// With both limits, the smaller one of each channel counts: here the absolute one, which is stricter.
+TEST_F(Choosing, BothErrorsCanBeStated) {
+  const std::string both = "\"float maxrms\" 1e-6 \"float maxrelativerms\" 0.5";
+  EXPECT_EQ(choice_of(render(two_leaves(both, both), kPilot))["leaves"][0]["chosen"], "leaf_solved");
+}
+
 /// What is chosen for two leaves.
 Choice chosen_from(const Ladder& ladder, Session& session, SceneDescription description) {
-  return choose_models({session, description, 64}, ladder, silent_log()).value().choice;
+  return choose_models({.session = session, .description = description, .samples = 64, .is_question = true}, ladder,
+                       silent_log())
+      .value()
+      .choice;
+}
+
+TEST_F(Choosing, TheDeadlineEndsAPilot) {
+  Session session(silent_log(), {.threads = 2, .cache = tables().name_of("")});
+  SceneDescription description = session.read(folder_.write("scene.pbrt", kSmpte + two_leaves("", "")));
+  const auto chosen = choose_models({.session = session,
+                                     .description = description,
+                                     .samples = 1 << 20,
+                                     .is_question = true,
+                                     .deadline = std::chrono::steady_clock::now()},
+                                    standard_ladder(session.registry()), silent_log());
+  ASSERT_TRUE(chosen);
+  EXPECT_EQ(chosen->choice.ground, Choice::Ground::no_time);
+  EXPECT_EQ(chosen->choice.pilot.paths, 0u);
+  for (const Answer& answer : chosen->choice.answers) EXPECT_EQ(answer.chosen, "leaf_solved");
+  EXPECT_THAT(choice_text(chosen->choice), HasSubstr("the time limit ended the pilot"));
 }
 
 /// A cheap model that is wrong stands at the foot of the ladder.
@@ -194,9 +256,12 @@ TEST_F(Choosing, TheAnswersAreWrittenIntoTheDescriptionAndTheRequest) {
   const SceneDescription open = session.read(folder_.write("scene.pbrt", two_leaves("", "")));
   SceneDescription description = open;
   ImageRequest request;
-  const auto chosen = choose_for(session, description, 4, request);
+  const auto choose = [&] {
+    return choose_for({.session = session, .description = description, .samples = 4, .is_question = true}, request);
+  };
+  const auto chosen = choose();
   ASSERT_TRUE(chosen);
-  EXPECT_FALSE(choose_for(session, description, 4, request)) << "nothing is open any more";
+  EXPECT_FALSE(choose()) << "nothing is open any more";
   const Answer& first = chosen->choice.answers.front();
   EXPECT_EQ(first.open_choice, "wavelengths");
   EXPECT_EQ(read_options(description).wavelengths, first.chosen);
@@ -206,7 +271,7 @@ TEST_F(Choosing, TheAnswersAreWrittenIntoTheDescriptionAndTheRequest) {
   EXPECT_EQ(request.color_space, "linear sRGB");
   description = open;
   request.color_space = "ACEScg";
-  (void)choose_for(session, description, 4, request);
+  (void)choose();
   EXPECT_EQ(request.color_space, "ACEScg") << "who names a space has it";
 }
 

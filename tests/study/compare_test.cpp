@@ -81,6 +81,19 @@ TEST_F(CompareCommand, MeasuresEveryCandidateOnEveryRung) {
   EXPECT_EQ(std::ranges::count(csv, '\n'), 6 + 2 * 3 * 2 * 5);
 }
 
+/// The default candidates take the textures that chemistry of a plant has.
+TEST_F(CompareCommand, TheDefaultCandidatesTakeTexturesOfChemistry) {
+  std::string scene(kLeafScene);
+  scene.insert(scene.find("MakeNamedMaterial"),
+               "Texture \"spots\" \"float\" \"checkerboard\" \"float tex1\" 2 "
+               "\"float tex2\" 5\n");
+  const std::string leaf = "\"string specimen\" \"soybean\"";
+  scene.insert(scene.find(leaf) + leaf.size(), " \"texture chlorophylla\" \"spots\"");
+  const Outcome o = compare({}, scene);
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("leaf_lambert"));
+}
+
 TEST_F(CompareCommand, TheReportNeedsNothingBesideIt) {
   ASSERT_EQ(compare({"--materials", "name <b>:abm"}).code, 0);
   const std::string html = file("index.html");

@@ -74,7 +74,7 @@ std::string needed(const JobParam& p) {
     case ArgumentKind::seed:
       return "a whole number from 0 to 2^64 - 1";
     case ArgumentKind::real:
-      return "a number" + range_text(p.range) + unit;
+      return "a number" + range_text(p.range) + unit + (p.relative ? ", or a share in percent, as in 2%," : "");
     case ArgumentKind::numbers:
       return fmt::format("{} {}numbers{}{}{}", p.values > 0 ? std::to_string(p.values) : "a list of",
                          p.whole ? "whole " : "", range_text(p.range), unit,
@@ -161,7 +161,10 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
       if (parsed.ec != std::errc() || parsed.ptr != end) refuse(word);
     }
     if (!is_number_kind(p.kind)) continue;
-    const auto numbers = parse_numbers(word);
+    const bool in_percent = p.relative && word.ends_with('%');
+    auto numbers = parse_numbers(in_percent ? std::string_view(word).substr(0, word.size() - 1) : word);
+    if (numbers && in_percent)
+      for (double& x : *numbers) x /= 100;
     if (!numbers || (p.values > 0 && numbers->size() != p.values)) refuse(word);
     if (p.kind != ArgumentKind::numbers && (numbers->size() != 1 || word.find(':') != std::string::npos)) refuse(word);
     for (const double x : *numbers)
@@ -224,6 +227,11 @@ uint64_t Arguments::seed(std::string_view name) const { return value(declared(na
 double Arguments::real(std::string_view name) const {
   const Value v = value(declared(name, ArgumentKind::real));
   return v.numbers.empty() ? 0 : v.numbers[0];
+}
+
+bool Arguments::is_relative(std::string_view name) const {
+  const Value v = value(declared(name, ArgumentKind::real));
+  return !v.words.empty() && v.words[0].ends_with('%');
 }
 
 std::vector<double> Arguments::numbers(std::string_view name) const {

@@ -42,6 +42,7 @@ struct ParamTraits {
   std::string_view aliases = "";  ///< further names, separated by commas: "o,outfile"; one letter is a short option
   size_t values = 0;              ///< numbers and texts: required number of values; 0: any number
   bool whole = false;             ///< numbers: each must be a whole number
+  bool relative = false;          ///< real: a number with % is relative, as in 2%
   PathUse path = PathUse::none;
   bool decides = false;  ///< the result depends on it: part of the identity of a measurement or a part
   bool positional = false;
@@ -103,9 +104,10 @@ class Arguments {
   // The accessors below return the given value, or the default of the record. An undeclared name or a wrong kind is a
   // logic error.
   bool flag(std::string_view name) const;
-  int64_t count(std::string_view name) const;  ///< 0 without a default
-  uint64_t seed(std::string_view name) const;  ///< 0 without a default
-  double real(std::string_view name) const;    ///< 0 without a default
+  int64_t count(std::string_view name) const;     ///< 0 without a default
+  uint64_t seed(std::string_view name) const;     ///< 0 without a default
+  double real(std::string_view name) const;       ///< 0 without a default; 0.02 for 2%
+  bool is_relative(std::string_view name) const;  ///< real: whether the value was written with %
   std::vector<double> numbers(std::string_view name) const;
   std::string text(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;

@@ -113,11 +113,16 @@ void RenderTask::apply_arguments() {
 }
 
 /// Channels are checked first, because the selection of models may take minutes.
-void RenderTask::choose(const ImageOutput* output) {
+void RenderTask::choose(const ImageOutput* output, std::optional<std::chrono::steady_clock::time_point> deadline) {
   const StopScope stop(run_.control.stop);
   Session& session = run_.session();
   if (output) output->check_channels(make_wavelengths(description_, session.registry())->film_space());
-  auto chosen = choose::choose_for(session, description_, uint64_t(run_.args.count("spp")), request_);
+  auto chosen = choose::choose_for({.session = session,
+                                    .description = description_,
+                                    .samples = uint64_t(run_.args.count("spp")),
+                                    .is_question = run_.args.flag("pilot"),
+                                    .deadline = deadline},
+                                   request_);
   if (!chosen) return;
   choice_ = std::move(chosen->choice);
   pilot_ = std::move(chosen->scene);
@@ -147,7 +152,8 @@ RenderStatistics RenderTask::render(RenderPart& part, const RenderControl& contr
                                     const std::function<void(const PartHeader&)>& plan_changed) const {
   Session& session = run_.session();
   if (!is_adaptive()) return session.render(*scene_, samples_, part, control);
-  NoiseRequest request{.max_rms = run_.args.real("max-rms"), .planned = plan_changed};
+  NoiseRequest request{
+      .max_rms = run_.args.real("max-rms"), .is_relative = run_.args.is_relative("max-rms"), .planned = plan_changed};
   if (run_.args.given("spp")) request.most_samples = samples_.count();
   return session.render_to(*scene_, request, part, control);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -26,9 +27,9 @@ class RenderTask {
   /// scene of somebody else must not choose which file is replaced.
   const std::string& film_file() const;
 
-  /// Selects the models of open leaves. `output` may be nullptr; otherwise throws InputError first if the image cannot
-  /// be written in its format.
-  void choose(const ImageOutput* output);
+  /// Selects the models of open leaves; a pilot ends at `deadline`. `output` may be nullptr; otherwise throws
+  /// InputError first if the image cannot be written in its format.
+  void choose(const ImageOutput* output, std::optional<std::chrono::steady_clock::time_point> deadline);
   /// Returns the selection; empty if the scene has no open leaf.
   const std::optional<choose::Choice>& choice() const { return choice_; }
   /// Builds the scene. Throws InputError.

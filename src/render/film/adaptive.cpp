@@ -10,10 +10,11 @@ namespace {
 
 constexpr uint64_t kBlock = FilmTile::kBlock;
 
-/// Variance of a pixel's mean, averaged over colours.
-double noise_of(const Film& film, int x, int y) {
-  const Triple v = film.block_variance(x, y);
-  return (v[0] + v[1] + v[2]) / 3;
+/// Variance of colours in the given units, averaged over them.
+double averaged(const Triple& variance, const NoiseUnit& unit) {
+  double sum = 0;
+  for (size_t c = 0; c < 3; ++c) sum += variance[c] / (unit[c] * unit[c]);
+  return sum / 3;
 }
 
 double pixels_of(const Crop& c) { return double(c.width()) * double(c.height()); }
@@ -25,17 +26,17 @@ struct TileNoise {
   double cost;      ///< rays per path, plus one for the cost of the path itself
 };
 
-TileNoise noise_of(const Film& film, size_t i) {
+TileNoise noise_of(const Film& film, size_t i, const NoiseUnit& unit) {
   const FilmTile& tile = film.tile(i);
   const Crop& c = tile.pixels();
   double noise = 0;
   if (film.format().splatting) {
     const Crop reached = intersection(tile.reached(), film.settings().crop);
     for (int y = reached.y0; y < reached.y1; ++y)
-      for (int x = reached.x0; x < reached.x1; ++x) noise += film.block_variance_by(i, x, y);
+      for (int x = reached.x0; x < reached.x1; ++x) noise += averaged(film.block_variance_by(i, x, y), unit);
   } else {
     for (int y = c.y0; y < c.y1; ++y)
-      for (int x = c.x0; x < c.x1; ++x) noise += noise_of(film, x, y);
+      for (int x = c.x0; x < c.x1; ++x) noise += averaged(film.block_variance(x, y), unit);
   }
   const double pixels = pixels_of(c), samples = double(tile.pixel(c.x0, c.y0).samples);
   return {pixels, samples, noise / pixels * samples, double(tile.rays()) / (pixels * samples) + 1};
@@ -61,12 +62,26 @@ std::vector<double> smoothed(const std::vector<TileNoise>& tiles, size_t columns
 double NoiseEstimate::rms() const { return std::sqrt(mean_square); }
 double NoiseEstimate::upper_rms() const { return std::sqrt(upper); }
 
-NoiseEstimate image_noise(const Film& film, double z) {
+NoiseUnit noise_unit(const Film& film, bool is_relative) {
+  if (!is_relative) return kFilmUnit;
+  const Crop& crop = film.settings().crop;
+  NoiseUnit mean{};
+  for (int y = crop.y0; y < crop.y1; ++y)
+    for (int x = crop.x0; x < crop.x1; ++x) {
+      const Triple pixel = film.mean(x, y);
+      for (size_t c = 0; c < 3; ++c) mean[c] += pixel[c] / pixels_of(crop);
+    }
+  if (!std::ranges::all_of(mean, [](double m) { return m > 0; }))
+    fail({}, "relative noise needs light of every colour: the mean of R, G or B over the image is not above 0");
+  return mean;
+}
+
+NoiseEstimate image_noise(const Film& film, double z, const NoiseUnit& unit) {
   const Crop& c = film.settings().crop;
   double sum = 0, squares = 0;
   for (int y = c.y0; y < c.y1; ++y)
     for (int x = c.x0; x < c.x1; ++x) {
-      const double noise = noise_of(film, x, y);
+      const double noise = averaged(film.block_variance(x, y), unit);
       sum += noise, squares += noise * noise;
     }
   const double pixels = pixels_of(c), alike = film.format().splatting ? film.format().splatting->correlated_pixels : 1;
@@ -79,13 +94,13 @@ SamplePlan first_plan(const Film& film) {
   return {std::vector<uint64_t>(film.tiles(), kLeastAdaptive), uint64_t(pixels_of(film.sampled())) * kLeastAdaptive};
 }
 
-SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples) {
+SamplePlan next_plan(const Film& film, double max_rms, uint64_t most_samples, const NoiseUnit& unit) {
   const uint64_t most = most_samples / kBlock * kBlock;
   std::vector<TileNoise> tiles;
-  for (size_t i = 0; i < film.tiles(); ++i) tiles.push_back(noise_of(film, i));
+  for (size_t i = 0; i < film.tiles(); ++i) tiles.push_back(noise_of(film, i, unit));
   const std::vector<double> variance = smoothed(tiles, film.columns());
   // The target applies to the upper bound: the goal for the estimate is lower by their present ratio.
-  const NoiseEstimate now = image_noise(film, noise_z());
+  const NoiseEstimate now = image_noise(film, noise_z(), unit);
   const double sharpness = now.mean_square > 0 ? now.mean_square / now.upper : 1;
   const double goal = max_rms * max_rms * sharpness * pixels_of(film.settings().crop);
   const auto samples_at = [&](size_t i, double scale) {

@@ -214,9 +214,8 @@ Triple Film::block_variance_by(const FilmTile& tile, int x, int y, const Gathere
   return v;
 }
 
-double Film::block_variance_by(size_t tile, int x, int y) const {
-  const Triple v = block_variance_by(tiles_[tile], x, y, gathered(x, y));
-  return (v[0] + v[1] + v[2]) / 3;
+Triple Film::block_variance_by(size_t tile, int x, int y) const {
+  return block_variance_by(tiles_[tile], x, y, gathered(x, y));
 }
 
 Triple Film::block_variance(int x, int y) const {

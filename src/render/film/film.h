@@ -59,8 +59,8 @@ class Film {
   /// Estimated variance of `mean` from the differences between blocks of samples, for a film with block statistics. It
   /// accounts for the negative correlation of low-discrepancy samples in part.
   Triple block_variance(int x, int y) const;
-  /// With splatting: contribution of the samples of one tile to `block_variance`, mean over colours.
-  double block_variance_by(size_t tile, int x, int y) const;
+  /// With splatting: contribution of the samples of one tile to `block_variance`.
+  Triple block_variance_by(size_t tile, int x, int y) const;
   /// Mean of the samples that carry a band, its estimated variance, 0 for fewer than two samples, and their number.
   struct BandMean {
     double mean = 0, variance = 0;

@@ -13,9 +13,6 @@ std::string choice_text(const Choice& choice);
 /// Returns the selection in one sentence.
 std::string choice_sentence(const Choice& choice);
 
-/// Returns a warning if only the reference was shown to meet the request; else "".
-std::string choice_warning(const Choice& choice);
-
 /// Returns attributes of an image's header: "frond:leaf:NAME", "frond:choice". They contain no times, so that equal
 /// commands write equal files.
 std::map<std::string, std::string> choice_attributes(const Choice& choice);

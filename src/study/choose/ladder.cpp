@@ -31,7 +31,8 @@ Ladder standard_ladder(const Registry& registry) {
   Ladder ladder;
   for (const std::string_view model : models_of(registry.materials.get("leaf", {}))) {
     const std::string name(model);
-    ladder.models.push_back({name, {"leaf", {{"model", name}}}, price_of(model)});
+    const bool is_exact = name == "leaf_solved" || name == "abm";
+    ladder.models.push_back({name, {"leaf", {{"model", name}}}, price_of(model), is_exact});
   }
   for (const auto& [text, price] : {std::pair{"smpte", 0.88}, {"meyer,white=D65", 0.92}, {"hero", 1.0}})
     ladder.wavelengths.push_back({text, parse_plugin_text(text, {}), price});

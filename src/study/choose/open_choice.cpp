@@ -1,6 +1,7 @@
 #include "study/choose/open_choice.h"
 
 #include <algorithm>
+#include <exception>
 
 #include "core/log.h"
 #include "scene/overrides.h"
@@ -17,43 +18,35 @@ bool is_open(const MaterialDescription& m) {
   return !model || model->values == decltype(model->values){std::vector<std::string>{"auto"}};
 }
 
-/// Whether the model accepts `word` for its parameter `name`.
-bool takes(const Registry& registry, std::string_view model, std::string_view name, const std::string& word) {
-  const MaterialInfo* info = registry.materials.find(model);
-  const Param* param = info ? find_param(*info, name) : nullptr;
-  return !param || std::ranges::count(param->choices, word) > 0;
-}
-
-/// Returns the reference option: the last of the ladder, except that random walks cannot be reciprocal.
-const ModelOption* right_for(const ParsedPlugin& leaf, const Registry& registry,
-                             const std::vector<ModelOption>& models) {
-  const ParsedParam* incident = find_param(leaf.params, "incident");
-  const auto* words = incident ? std::get_if<std::vector<std::string>>(&incident->values) : nullptr;
-  if (!words || words->size() != 1) return &models.back();
-  const auto right = std::ranges::find_if(models.rbegin(), models.rend(), [&](const ModelOption& option) {
-    return takes(registry, option.name, "incident", words->front());
-  });
-  return right == models.rend() ? &models.back() : &*right;
-}
-
-/// Adds the options that the leaf supports. The description is unchanged on return.
+/// Adds the options that the leaf supports, up to the first exact one. The description is unchanged on return. Throws
+/// the error of the first exact option if there is none.
 void add_options(OpenChoice& open_choice, SceneSettings& description, const Registry& registry,
                  const WavelengthStrategy& wavelengths, const std::vector<ModelOption>& models) {
   const size_t place = open_choice.materials.front();
   ParsedPlugin& plugin = description.materials[place].plugin;
   const ParsedPlugin open = plugin;
-  const ModelOption* right = right_for(open, registry, models);
+  std::exception_ptr refusal;
   for (const ModelOption& option : models) {
     swap_material(plugin, option.plugin, registry, silent_log());
     try {
       SceneResolver(description, registry, wavelengths).material(place);
       open_choice.options.push_back(option);
     } catch (const InputError& error) {
-      if (&option == right) throw;
       open_choice.refused.push_back({option.name, error.what()});
+      if (option.is_exact && !refusal) refusal = std::current_exception();
     }
     plugin = open;
+    if (!open_choice.options.empty() && open_choice.options.back().is_exact) return;
   }
+  if (refusal) std::rethrow_exception(refusal);
+}
+
+/// The errors that a leaf states; the default of "maxrms" holds if it states none.
+ErrorLimits limits_of(const Params& leaf) {
+  ErrorLimits limits;
+  if (leaf.given("maxrelativerms")) limits.relative = leaf.real("maxrelativerms");
+  if (leaf.given("maxrms") || !leaf.given("maxrelativerms")) limits.absolute = leaf.real("maxrms");
+  return limits;
 }
 
 }  // namespace
@@ -80,7 +73,7 @@ std::vector<OpenChoice> open_leaves(const SceneSettings& description, const Regi
     }
     const Params params(registry.materials.get("leaf", m.plugin.where), split_bend(m.plugin, false), resolver);
     const std::string name = m.name.empty() ? fmt::format("leaf in line {}", m.plugin.where.line) : m.name;
-    OpenChoice& open_choice = leaves.emplace_back(OpenChoice{name, {i}, params.real("maxrms"), {}});
+    OpenChoice& open_choice = leaves.emplace_back(OpenChoice{name, {i}, limits_of(params), {}});
     add_options(open_choice, tried, registry, wavelengths, ladder.models);
   }
   return leaves;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "scene/scene.h"
 #include "study/choose/ladder.h"
 
@@ -10,19 +13,27 @@ struct Refusal {
   std::string name, reason;
 };
 
+/// Largest RMS errors of an image; infinite where none is stated.
+struct ErrorLimits {
+  double absolute = std::numeric_limits<double>::infinity();  ///< in linear SMPTE-C (white: 1)
+  double relative = std::numeric_limits<double>::infinity();  ///< of each channel's mean over the image
+
+  friend ErrorLimits smaller(const ErrorLimits& a, const ErrorLimits& b) {
+    return {std::min(a.absolute, b.absolute), std::min(a.relative, b.relative)};
+  }
+};
+
 /// A property that the scene leaves open: a leaf's model, or the wavelengths.
 struct OpenChoice {
   std::string name;                  ///< name of the leaf's material; "wavelengths"
   std::vector<size_t> materials;     ///< indices in the description; empty: the choice is of wavelengths
-  double rms = 0;                    ///< RMS error that the leaf allows
+  ErrorLimits limits = {};           ///< errors that the leaf allows
   std::vector<ModelOption> options;  ///< the last one is the reference
   std::vector<Refusal> refused = {};
 
   bool is_leaf() const { return !materials.empty(); }
   /// Index of the reference option.
   size_t reference() const { return options.size() - 1; }
-  /// Index of the best option that is not a random walk, if there is one; pilots compare with it first.
-  size_t base() const { return is_leaf() && options.size() > 1 ? options.size() - 2 : reference(); }
 };
 
 /// The index of an option for each open choice.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <unordered_set>
 
 #include "core/random.h"
@@ -42,6 +43,18 @@ MeanSquare noise_of(const std::array<std::vector<float>, 2>& halves) {
 
 }  // namespace
 
+/// Ends a render at a deadline.
+class UntilDeadline final : public Progress {
+ public:
+  explicit UntilDeadline(std::chrono::steady_clock::time_point deadline) : deadline_(deadline) {}
+  void update(double, const RenderStatistics&) override {
+    if (std::chrono::steady_clock::now() >= deadline_) throw Pilot::OutOfTime();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point deadline_;
+};
+
 struct Pilot::Render {
   std::unique_ptr<Scene> scene;
   PairedFilms films;
@@ -57,7 +70,7 @@ Pilot::Pilot(const ChoiceTask& task, const Ladder& ladder)
   const Registry& registry = session.registry();
   SceneDescription& description = task.description;
   if (!names_wavelengths(description)) {
-    open_choices_.push_back({"wavelengths", {}, 0, ladder.wavelengths});
+    open_choices_.push_back({"wavelengths", {}, {}, ladder.wavelengths});
     put_answers(open_choices_, reference(), registry, description);
   }
   scene_ = std::make_shared<const Scene>(description, registry, session.pool(), quiet_, session.cache(), task.other,
@@ -66,6 +79,7 @@ Pilot::Pilot(const ChoiceTask& task, const Ladder& ladder)
   const auto leaves = open_leaves(description, registry, scene_->wavelengths(), ladder);
   open_choices_.insert(open_choices_.end(), leaves.begin(), leaves.end());
   pixels_ = pilot_pixels(film_.crop, kPixels, hash_key(scene_->seed(), uint64_t{kPixelSeed}));
+  if (has_colors()) set_unit();
 }
 
 Pilot::~Pilot() = default;
@@ -94,13 +108,42 @@ Pilot::Render Pilot::make(const Configuration& answers) {
   return {std::move(scene), std::move(films)};
 }
 
+/// A relative limit needs the channels' means, from a short render of the reference. With both kinds of limit, the
+/// smaller one of each channel counts.
+void Pilot::set_unit() {
+  ErrorLimits limits;
+  for (const OpenChoice& q : open_choices_)
+    if (q.is_leaf()) limits = smaller(limits, q.limits);
+  is_relative_ = std::isfinite(limits.relative);
+  request_ = is_relative_ ? limits.relative : limits.absolute;
+  if (!is_relative_) return;
+  std::array<double, 3> mean{};
+  try {
+    render(reference(), kFirstSamples);
+  } catch (const OutOfTime&) {
+    return;  // the search ends before it uses the unit
+  }
+  for (const auto& half : images(rendered(reference())))
+    for (size_t i = 0; i < half.size(); ++i) mean[i % 3] += double(half[i]) / (2 * double(pixels_.size()));
+  for (size_t c = 0; c < 3; ++c) {
+    if (!(mean[c] > 0))
+      fail(task_.description.materials[open_choices_.back().materials.front()].plugin.where,
+           "\"maxrelativerms\" needs light of every colour: the image's mean of red, green or blue is not above 0");
+    unit_[c] = std::min(limits.absolute, limits.relative * mean[c]) / limits.relative;
+  }
+  renders_.clear();  // its noise is in the other unit
+}
+
 void Pilot::render(const Configuration& answers, uint64_t samples) {
+  std::optional<UntilDeadline> progress;
+  if (task_.deadline) progress.emplace(*task_.deadline), progress->update(0, {});
   auto found = renders_.find(answers);
   if (found == renders_.end()) found = renders_.emplace(answers, make(answers)).first;
   Render& r = found->second;
   while (r.films.samples() < samples) {
-    const uint64_t next = std::min(samples, std::bit_floor(r.films.samples()) * 2 + (r.films.samples() == 0));
-    r.films.advance_to(next, *r.scene, task_.session.pool(), nullptr);
+    const uint64_t next = r.films.samples() == 0 ? std::min(samples, kFirstSamples)
+                                                 : std::min(samples, std::bit_floor(r.films.samples()) * 2);
+    r.films.advance_to(next, *r.scene, task_.session.pool(), progress ? &*progress : nullptr);
     r.noise.push_back({double(next), 0, noise_of(images(r))});
   }
 }
@@ -113,6 +156,8 @@ Pilot::Halves Pilot::images(const Render& render) const {
     for (int x = 0; x < int(pixels_.size()); ++x)
       for (const double value : render.films.film(i).mean(x, 0)) halves[i].push_back(float(value));
     colors_.convert(halves[i], render.scene->wavelengths().film_space(), "linear SMPTE-C");
+    if (is_relative_)
+      for (size_t k = 0; k < halves[i].size(); ++k) halves[i][k] /= float(unit_[k % 3]);
   }
   return halves;
 }
@@ -146,9 +191,13 @@ double Pilot::share(const OpenChoice& open_choice) const {
 }
 
 PilotCost Pilot::cost() const {
-  PilotCost cost{.pixels = pixels_.size(), .cpu_seconds = cpu_seconds() - start_cpu_seconds_};
-  for (const auto& [answers, r] : renders_) cost.paths += 2 * r.films.samples() * pixels_.size();
-  return cost;
+  return {.pixels = pixels_.size(), .paths = paths(), .cpu_seconds = cpu_seconds() - start_cpu_seconds_};
+}
+
+uint64_t Pilot::paths() const {
+  uint64_t paths = 0;
+  for (const auto& [answers, r] : renders_) paths += 2 * r.films.samples() * pixels_.size();
+  return paths;
 }
 
 }  // namespace frond::choose

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <map>
+#include <optional>
 
 #include "core/log.h"
 #include "instruments/errors/convergence.h"
@@ -18,7 +20,13 @@ struct ChoiceTask {
   SceneDescription& description;  ///< the selected options are written into it
   uint64_t samples;               ///< per pixel of the final render; 0: the scene's number
   const Scene* other = nullptr;   ///< scene with the same geometry, which is then shared; may be nullptr
+  bool is_question = false;       ///< the selection is the result: it is made even if it cannot save time
+  /// The search ends then, with the reference; none: it ends by itself.
+  std::optional<std::chrono::steady_clock::time_point> deadline = {};
 };
+
+/// Samples per pixel of a pilot's first step. Taken one by one, they cost about twice as much.
+inline constexpr uint64_t kFirstSamples = 8;
 
 /// Cost of a pilot.
 struct PilotCost {
@@ -46,14 +54,24 @@ class Pilot {
   /// Returns the last option of every open choice.
   Configuration reference() const;
 
-  /// Renders up to `samples` samples per pixel in each of two renders.
+  /// Error that the selection may have, in the pilot's unit.
+  double request() const { return request_; }
+  /// Whether that unit is each channel's mean over the image; otherwise it is linear SMPTE-C.
+  bool is_relative() const { return is_relative_; }
+  /// Paths traced so far.
+  uint64_t paths() const;
+
+  /// Thrown by `render` at the task's deadline.
+  struct OutOfTime {};
+  /// Renders up to `samples` samples per pixel in each of two renders. Throws OutOfTime.
   void render(const Configuration& answers, uint64_t samples);
-  /// Returns the difference of two rendered configurations.
+  /// Returns the difference of two rendered configurations, in the pilot's unit.
   PairedDifference difference(const Configuration& answers, const Configuration& from) const;
-  /// Returns the mean square noise of one render over pixels and channels after 1, 2, 4, ... samples and after the
-  /// last. Seconds are 0.
+  /// Returns the mean square noise of one render over pixels and channels after kFirstSamples, twice as many, ..., and
+  /// after the last. Seconds are 0.
   const std::vector<ConvergencePoint>& noise(const Configuration& answers) const;
   double cpu_us_per_path(const Configuration& answers) const;
+  size_t pixels() const { return pixels_.size(); }
 
   /// Returns the share of pixels whose centre first hits one of the choice's materials.
   double share(const OpenChoice& open_choice) const;
@@ -66,6 +84,7 @@ class Pilot {
   Render make(const Configuration& answers);
   const Render& rendered(const Configuration& answers) const;
   Halves images(const Render& render) const;
+  void set_unit();
 
   ChoiceTask task_;
   FilmSettings film_;
@@ -79,6 +98,9 @@ class Pilot {
   std::vector<OpenChoice> open_choices_;
   std::vector<PixelPosition> pixels_;
   std::map<Configuration, Render> renders_;
+  std::array<double, 3> unit_{1, 1, 1};  ///< of each channel, in linear SMPTE-C
+  double request_ = 0;
+  bool is_relative_ = false;
 };
 
 }  // namespace frond::choose

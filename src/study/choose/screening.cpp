@@ -10,7 +10,7 @@ double Screening::bias(const Configuration& answers) const {
   for (size_t q = 0; q < answers.size(); ++q)
     for (size_t r = 0; r < answers.size(); ++r) {
       const Single &a = singles_[q][answers[q]], &b = singles_[r][answers[r]];
-      if (!a.is_base && !b.is_base) sum += products_[a.place][b.place];
+      if (!a.is_reference && !b.is_reference) sum += products_[a.place][b.place];
     }
   return std::max(0.0, sum);
 }
@@ -28,11 +28,11 @@ double Screening::price(const Configuration& answers) const {
 }
 
 double Screening::cost(const Configuration& answers, double rms) const {
-  const auto effort = base_.until_noise((rms * rms - bias(answers)) / noise(answers));
+  const auto effort = reference_.until_noise((rms * rms - bias(answers)) / noise(answers));
   return effort ? price(answers) * effort->samples : std::numeric_limits<double>::infinity();
 }
 
-Configuration Screening::base() const {
+Configuration Screening::reference() const {
   Configuration answers;
   for (const auto& options : singles_) answers.push_back(options.size() - 1);
   return answers;
@@ -41,7 +41,7 @@ Configuration Screening::base() const {
 Configuration Screening::cheapest(const Configuration& floor, double rms) const {
   constexpr double kAlike =
       1e-3;  // below the pilot's resolution, for leaves that are hardly visible, the simpler model is preferred
-  Configuration best = base();
+  Configuration best = reference();
   for (bool better = true; better;) {
     better = false;
     const Configuration from = best;
@@ -65,7 +65,7 @@ size_t Screening::worst(const Configuration& answers) const {
   size_t result = answers.size();
   double most = -std::numeric_limits<double>::infinity();
   for (size_t q = 0; q < answers.size(); ++q) {
-    if (singles_[q][answers[q]].is_base) continue;
+    if (singles_[q][answers[q]].is_reference) continue;
     Configuration without = answers;
     without[q] = singles_[q].size() - 1;
     const double adds = bias(answers) - bias(without);

@@ -15,38 +15,38 @@ using ByOption = std::vector<std::vector<T>>;
 /// changes of the noise's variance. Predictions are verified by measurement.
 class Screening {
  public:
-  /// Effect of one option: factors on the base's price of a sample and on its variance at equal samples.
+  /// Effect of one option: factors on the reference's price of a sample and on its variance at equal samples.
   struct Single {
     double price = 1, noise = 1;
     size_t place = 0;  ///< index in `products`
-    bool is_base = false;
+    bool is_reference = false;
   };
 
-  /// `singles`: options of every open choice, from the cheapest to the base. `products[i][j]`: mean product of the
-  /// biases of two singles. `base`: convergence of the base; its seconds are not used.
-  Screening(ByOption<Single> singles, std::vector<std::vector<double>> products, Convergence base)
-      : singles_(std::move(singles)), products_(std::move(products)), base_(std::move(base)) {}
+  /// `singles`: options of every open choice, from the cheapest to the reference. `products[i][j]`: mean product of the
+  /// biases of two singles. `reference`: convergence of the reference; its seconds are not used.
+  Screening(ByOption<Single> singles, std::vector<std::vector<double>> products, Convergence reference)
+      : singles_(std::move(singles)), products_(std::move(products)), reference_(std::move(reference)) {}
 
   /// Returns the mean square bias, >= 0.
   double bias(const Configuration& answers) const;
-  /// Returns the factor on the base's variance; price: on its time.
+  /// Returns the factor on the reference's variance; price: on its time.
   double noise(const Configuration& answers) const;
   double price(const Configuration& answers) const;
-  /// Returns the cost until bias and noise together reach `rms`, in samples of the base; infinite if the bias alone is
-  /// larger.
+  /// Returns the cost until bias and noise together reach `rms`, in samples of the reference; infinite if the bias
+  /// alone is larger.
   double cost(const Configuration& answers, double rms) const;
 
-  Configuration base() const;
+  Configuration reference() const;
   /// Returns the cheapest configuration found, with no option below `floor`. Greedy: changes one option at a time,
-  /// starting from the base.
+  /// starting from the reference.
   Configuration cheapest(const Configuration& floor, double rms) const;
-  /// Returns the open choice whose option contributes most to the bias, among those that differ from the base.
+  /// Returns the open choice whose option contributes most to the bias, among those that differ from the reference.
   size_t worst(const Configuration& answers) const;
 
  private:
   ByOption<Single> singles_;
   std::vector<std::vector<double>> products_;
-  Convergence base_;
+  Convergence reference_;
 };
 
 }  // namespace frond::choose
