@@ -40,3 +40,6 @@ configure_package_config_file(cmake/frondConfig.cmake.in "${CMAKE_CURRENT_BINARY
 write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/frondConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/frondConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/frondConfigVersion.cmake"
               cmake/FrondFmt.cmake DESTINATION "${frond_package_dir}" COMPONENT development)
+# find_package on the build folder (-Dfrond_DIR=...) finds the library there.
+export(EXPORT frond NAMESPACE frond:: FILE "${CMAKE_CURRENT_BINARY_DIR}/frond.cmake")
+file(COPY cmake/FrondFmt.cmake DESTINATION "${CMAKE_CURRENT_BINARY_DIR}")

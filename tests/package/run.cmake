@@ -1,5 +1,5 @@
 # Installs the build in BUILD_DIR to a folder of its own, then configures, builds and runs this project and the examples
-# against it.
+# against it, and against the build itself.
 set(prefix "${WORK_DIR}/prefix")
 file(REMOVE_RECURSE "${WORK_DIR}")
 function(run)
@@ -22,6 +22,14 @@ run("${WORK_DIR}/embed/embed" "${CMAKE_CURRENT_LIST_DIR}/../../scenes/soybean-fr
 set(example "${CMAKE_CURRENT_LIST_DIR}/../../examples/plugins")
 run(${CMAKE_COMMAND} -S "${example}" -B "${WORK_DIR}/plugin" -G Ninja "-DCMAKE_PREFIX_PATH=${prefix}")
 run(${CMAKE_COMMAND} --build "${WORK_DIR}/plugin")
+# The same from the build folder, without an installation.
+run(${CMAKE_COMMAND} -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK_DIR}/of_build" -G Ninja "-Dfrond_DIR=${BUILD_DIR}")
+run(${CMAKE_COMMAND} --build "${WORK_DIR}/of_build")
+run("${WORK_DIR}/of_build/consumer")
+run(${CMAKE_COMMAND} -S "${example}" -B "${WORK_DIR}/plugin_of_build" -G Ninja "-DCMAKE_PREFIX_PATH=${BUILD_DIR}")
+run(${CMAKE_COMMAND} --build "${WORK_DIR}/plugin_of_build")
+run("${BUILD_DIR}/frond" describe --plugin "${WORK_DIR}/plugin_of_build/soil.so" soil)
+
 set(frond "${prefix}/bin/frond")
 set(plugin --plugin "${WORK_DIR}/plugin/soil.so")
 run("${frond}" describe ${plugin} soil)

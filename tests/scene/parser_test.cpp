@@ -287,6 +287,23 @@ TEST(Parser, IncludesFilesBesideTheOneThatNamesThemOrBesideTheMainFile) {
   EXPECT_EQ(s.files[3], folder.name_of("parts/c.pbrt"));
 }
 
+TEST(Parser, ResolvesParentFoldersBehindALinkAsTheSystemDoes) {
+  const TestFolder folder("link");
+  const std::string text = "WorldBegin Include \"../parts/a.pbrt\"";
+  folder.write("far/parts/a.pbrt", "Shape \"sphere\"");
+  const auto main = folder.write("far/scene/main.pbrt", text);
+  folder.write("near/unused.pbrt", "");
+  std::filesystem::create_directory_symlink(main.parent_path(), folder.name_of("near/scene"));
+  const std::filesystem::path through_link = folder.name_of("near/scene/main.pbrt");
+  EXPECT_EQ(parse_scene(through_link, silent_log()).shapes.at(0).plugin.name, "sphere");
+  // The target's parent goes first, as in pbrt; the folder with the link is second.
+  folder.write("near/parts/a.pbrt", "Shape \"disk\"");
+  EXPECT_EQ(parse_scene(through_link, silent_log()).shapes.at(0).plugin.name, "sphere");
+  std::filesystem::remove(folder.name_of("far/parts/a.pbrt"));
+  EXPECT_EQ(parse_scene(through_link, silent_log()).shapes.at(0).plugin.name, "disk");
+  EXPECT_EQ(parse_scene(through_link, silent_log()).files.at(1), folder.name_of("near/parts/a.pbrt"));
+}
+
 TEST(Parser, HashesTheContentOfAllFilesAndNotTheirNames) {
   const TestFolder folder("hash");
   const auto main = folder.write("main.pbrt", "WorldBegin Include \"part.pbrt\"");

@@ -6,6 +6,21 @@ namespace frond {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Returns the existing file of a path, without "..", or nullopt. As in pbrt, the system resolves "..": after a
+/// symbolic link to a folder it is the parent of the link's target. If no such file exists, ".." is the folder with the
+/// link.
+std::optional<fs::path> existing(const fs::path& path) {
+  std::error_code error;
+  const fs::path normal = path.lexically_normal();
+  if (normal == path || !fs::exists(path, error))
+    return fs::exists(normal, error) ? std::optional(normal) : std::nullopt;
+  return fs::equivalent(path, normal, error) ? normal : fs::canonical(path, error);
+}
+
+}  // namespace
+
 /// Candidates are tried in order: first with the name as written, then with slashes for backslashes.
 fs::path SceneSettings::resolve(const std::string& name, const Location& where) const {
   if (name.empty() || fs::path(name).is_absolute() || !where.file) return name;
@@ -17,10 +32,9 @@ fs::path SceneSettings::resolve(const std::string& name, const Location& where) 
   folders.emplace_back();
   std::string slashed = name;  // exporters on Windows write backslashes
   std::ranges::replace(slashed, '\\', '/');
-  std::error_code error;
   for (const std::string& spelling : {name, slashed})
     for (const fs::path& folder : folders)
-      if (fs::path path = (folder / spelling).lexically_normal(); fs::exists(path, error)) return path;
+      if (const auto path = existing(folder / spelling)) return *path;
   return (folders.front() / name).lexically_normal();
 }
 
