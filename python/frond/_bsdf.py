@@ -8,7 +8,7 @@ from ._session import path_text
 
 
 class FlatBsdf:
-    """The BSDF of a material on a flat surface, at one to four wavelengths in nm.
+    """The BSDF of a material on a flat surface, at any number of wavelengths in nm; `pdf` and `sample` at one to four.
 
     Directions are arrays `[n][3]` of unit vectors that point away from the surface. The z axis is the surface normal, on
     the adaxial side of a leaf. `wo` points back along the camera path, `wi` toward the light. Arrays are broadcast.
@@ -16,10 +16,12 @@ class FlatBsdf:
 
     def __init__(self, material, wavelengths, *, session=None):
         self.wavelengths = _numbers(wavelengths)
-        self._bsdf = _frond.FlatBsdf(_session_of(session), material_text(material), self.wavelengths)
+        # A path has up to four wavelengths.
+        groups = [self.wavelengths[i:i + 4] for i in range(0, max(len(self.wavelengths), 1), 4)]
+        self._bsdfs = [_frond.FlatBsdf(_session_of(session), material_text(material), group) for group in groups]
 
-    is_stochastic = property(lambda self: self._bsdf.is_stochastic, doc="True if `f` is a random estimate.")
-    is_reciprocal = property(lambda self: self._bsdf.is_reciprocal, doc="True if the material claims f(a, b) = f(b, a).")
+    is_stochastic = property(lambda self: self._bsdfs[0].is_stochastic, doc="True if `f` is a random estimate.")
+    is_reciprocal = property(lambda self: self._bsdfs[0].is_reciprocal, doc="True if the material claims f(a, b) = f(b, a).")
 
     @staticmethod
     def _directions(*directions):
@@ -28,22 +30,30 @@ class FlatBsdf:
         shape = numpy.broadcast_shapes(*(a.shape for a in arrays))
         return [numpy.ascontiguousarray(numpy.broadcast_to(a, shape)) for a in arrays]
 
+    def _of_one_path(self):
+        if len(self._bsdfs) > 1:
+            raise ValueError(f"pdf and sample are those of a path, of one to four wavelengths: there are {len(self.wavelengths)}")
+        return self._bsdfs[0]
+
     def f(self, wo, wi, *, seed=0):
         """Returns the BSDF value in 1/sr, without the cosine: float32 `[n][wavelength]`."""
-        return self._bsdf.f(*self._directions(wo, wi), seed)
+        import numpy
+        pairs = self._directions(wo, wi)
+        return numpy.concatenate([bsdf.f(*pairs, seed) for bsdf in self._bsdfs], axis=1)
 
     def pdf(self, wo, wi):
-        """Returns the probability density of `sample` in 1/sr: float32 `[n]`."""
-        return self._bsdf.pdf(*self._directions(wo, wi))
+        """Returns the probability density of `sample` in 1/sr: float32 `[n]`. Raises ValueError for more than four
+        wavelengths."""
+        return self._of_one_path().pdf(*self._directions(wo, wi))
 
     def sample(self, wo, *, seed=0):
         """Samples a direction for each wo. Returns (wi `[n][3]`, weights f |cos| / pdf `[n][wavelength]`, pdf `[n]` in 1/sr);
-        pdf is 0 where nothing is scattered."""
-        return self._bsdf.sample(*self._directions(wo), seed)
+        pdf is 0 where nothing is scattered. Raises ValueError for more than four wavelengths."""
+        return self._of_one_path().sample(*self._directions(wo), seed)
 
 
 def bsdf(material, wavelengths=(608, 551, 455), *, session=None):
-    """Returns the FlatBsdf of a material, as text ("leaf_solved,specimen=maize"), at one to four wavelengths in nm."""
+    """Returns the FlatBsdf of a material, as text ("leaf_solved,specimen=maize"), at wavelengths in nm. Raises InputError."""
     return FlatBsdf(material, wavelengths, session=session)
 
 

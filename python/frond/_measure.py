@@ -31,9 +31,12 @@ def _with_keywords_of(name):
     """Decorator: adds the keywords and the documentation of a job to a function that passes them on."""
     def decorate(function):
         job, kinds = FUNCTIONS[name], inspect.Parameter
-        own = [p for p in inspect.signature(function).parameters.values() if p.kind is not kinds.VAR_KEYWORD]
+        of_job = job.__signature__.parameters
+        own = [p if p.default is not None or p.name not in of_job else
+               p.replace(default=of_job[p.name].default, annotation=of_job[p.name].annotation)
+               for p in inspect.signature(function).parameters.values() if p.kind is not kinds.VAR_KEYWORD]
         names = {p.name for p in own}
-        more = [p.replace(kind=kinds.KEYWORD_ONLY) for p in job.__signature__.parameters.values() if p.name not in names]
+        more = [p.replace(kind=kinds.KEYWORD_ONLY) for p in of_job.values() if p.name not in names]
         function.__signature__ = inspect.Signature(sorted(own + more, key=lambda p: p.kind))
         function.__doc__ = "\n\n".join(filter(None, (inspect.getdoc(function), job.__doc__)))
         return function
@@ -62,12 +65,15 @@ def spectrophotometer(material, wavelengths, angles=8, **options):
 
 
 @_with_keywords_of("flux")
-def flux(scene, wavelengths=None, *, by_instance=False, **options):
-    """Returns the table of reflected, transmitted and absorbed shares of the incident light. With by_instance=True also a
-    dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][wavelength]`, "areas" `[instance]`, and
-    "wavelengths_nm"."""
-    result = FUNCTIONS["flux"](scene, wavelengths, by="instance" if by_instance else None, **options)
-    if not by_instance:
+def flux(scene, wavelengths=None, *, by=None, **options):
+    """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
+    "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
+
+    With by="instance" also a dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][wavelength]`,
+    "areas" `[instance]`, "wavelengths_nm", and if there is PAR, "par_umol_m2_s" and "par_umol_m2_s_se" `[instance]`: absorbed
+    photons by leaf area."""
+    result = FUNCTIONS["flux"](scene, wavelengths, by=by, **options)
+    if by is None:
         return result.table
     columns = result.columns["instances"]
     bands = [name for name in columns if name.startswith("absorbed_") and not name.endswith("_se")]
@@ -75,7 +81,8 @@ def flux(scene, wavelengths=None, *, by_instance=False, **options):
     return result.tables["flux"], {
         "absorbed": numpy.stack([columns[name] for name in bands], axis=1),
         "absorbed_se": numpy.stack([columns[name + "_se"] for name in bands], axis=1),
-        "areas": columns["area"], "wavelengths_nm": [float(name.removeprefix("absorbed_")) for name in bands]}
+        "areas": columns["area"], "wavelengths_nm": [float(name.removeprefix("absorbed_")) for name in bands],
+        **{name: columns[name] for name in ("par_umol_m2_s", "par_umol_m2_s_se") if name in columns}}
 
 
 @_with_keywords_of("goniophotometer")

@@ -261,6 +261,25 @@ class Image:
     attributes = property(lambda self: self._rendered.attributes(), doc="Dictionary of the attributes that `save` writes into the file's header.")
     samples = property(lambda self: self._rendered.samples(), doc="(least, most) samples of a pixel.")
 
+    def to_xarray(self):
+        """Returns an xarray.Dataset of all channels over the pixels "y" (rows, from the top) and "x". Channels that bands have,
+        the radiance and its variance, are one variable each over "wavelength_nm", "y" and "x". Raises ImportError without
+        the package xarray."""
+        import numpy
+        import xarray
+        variables, bands = {}, {}
+        for i, name in enumerate(self.channels):
+            kind, _, rest = name.rpartition(".") if name.endswith("nm") else ("", "", "")
+            if kind in ("S0", "variance"):
+                bands.setdefault("radiance" if kind == "S0" else kind, {})[float(rest[:-2].replace(",", "."))] = self.array[:, :, i]
+            else:
+                variables[name] = (("y", "x"), self.array[:, :, i])
+        coordinates = {}
+        for name, planes in bands.items():
+            coordinates["wavelength_nm"] = list(planes)
+            variables[name] = (("wavelength_nm", "y", "x"), numpy.stack(list(planes.values())))
+        return xarray.Dataset(variables, coordinates, self.attributes)
+
     def save(self, path):
         """Writes the image: all channels to .exr, colours for a display to .png or .jpg. A failed write leaves no file.
         Raises InputError."""

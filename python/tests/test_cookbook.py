@@ -25,5 +25,6 @@ def test_recipes(tmp_path, monkeypatch):
     names = {}
     for block in blocks:
         exec(compile(block, "docs/cookbook.md", "exec"), names)
+    assert 0.7 < names["ndvi"].mean() < 0.9
     for image in ("from_python.exr", "mine.png", "mitsuba.png"):
         assert (tmp_path / image).stat().st_size > 1000

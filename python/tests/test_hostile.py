@@ -145,7 +145,7 @@ CALLS = [
     ('frond.brf("scene.pbrt", wavelengths=[], paths=64, period=(2, 2))', BAD_INPUT, "wavelengths"),
     ('frond.spectrophotometer("diffuse", [])', BAD_INPUT, "wavelengths"),
     ('frond.bsdf("diffuse", [])', BAD_INPUT, "wavelengths"),
-    ('frond.bsdf("diffuse", [500, 510, 520, 530, 540])', BAD_INPUT, "wavelengths"),
+    ('frond.bsdf("diffuse", [500, 510, 520, 530, 540]).sample([0, 0, 1])', "ValueError", "wavelengths"),
     ('frond.leaf_table("leaf_solved", [])', BAD_INPUT, "wavelengths"),
     ('frond.fit([], [], [])', BAD_INPUT, ""),
     # Arrays as lists.

@@ -1,3 +1,4 @@
+import inspect
 import json
 import math
 import os
@@ -121,6 +122,73 @@ Shape "bilinearmesh" "point3 P" [ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ]
     share = {q: (s, e) for q, s, e in zip(flux["quantity"], flux["share"], flux["share_se"])}
     assert abs(share["reflected"][0] - 0.4) < 5 * share["reflected"][1] + 1e-6
     assert abs(share["sum"][0] - 1) < 5 * share["sum"][1] + 1e-9
+
+
+CANOPY = """
+Option "float period" [ 2 2 ]
+WorldBegin
+LightSource "distant" "point3 from" [ 0 0 1 ] "point3 to" [ 0 0 0 ] "spectrum L" "stdillum-E"
+Material "diffuse" "spectrum reflectance" [ 300 0.2 900 0.2 ]
+Shape "bilinearmesh" "point3 P" [ 0 0 0  2 0 0  0 2 0  2 2 0 ]
+Material "diffuse" "spectrum reflectance" [ 300 0.5 900 0.5 ]
+ObjectBegin "leaf" Shape "disk" "float radius" 0.5 ObjectEnd
+Translate 1 1 1
+ObjectInstance "leaf"
+"""
+
+
+def test_flux_has_par_and_the_defaults_of_the_command(tmp_path):
+    """The sum is 1 within 5 standard errors: a false alarm in 2e6."""
+    (tmp_path / "canopy.pbrt").write_text(CANOPY)
+    by_default = frond.flux(tmp_path / "canopy.pbrt", paths=4096)
+    assert sorted(set(by_default["wavelength_nm"])) == [450, 550, 670, 800]
+    table = frond.flux(tmp_path / "canopy.pbrt", "400:700:50", paths=100_000)
+    par = table[table["wavelength_nm"].isna()].set_index("quantity")
+    assert abs(par["share"]["sum"] - 1) < 5 * par["share_se"]["sum"] + 1e-9
+    table, leaves = frond.flux(tmp_path / "canopy.pbrt", "400:700:50", by="instance", paths=100_000)
+    assert abs(leaves["areas"][0] - numpy.pi / 4) < 0.01
+    # Photons that the disk absorbs, over its share of them: those of 1 m2 in full sun.
+    share = leaves["absorbed"][0].mean()
+    photons = leaves["par_umol_m2_s"][0] * leaves["areas"][0] / 4 / share
+    assert 1500 < photons < 2500 and leaves["par_umol_m2_s_se"][0] > 0
+    for name, function in frond._jobs.FUNCTIONS.items():
+        ours, of_command = (inspect.signature(f).parameters for f in (getattr(frond, name), function))
+        for word in ours.keys() & of_command.keys():
+            default = ours[word].default
+            text = "x".join(map(str, default)) if isinstance(default, tuple) else str(default)
+            assert default is None or text == str(of_command[word].default), (name, word)
+    assert inspect.signature(frond.flux).parameters["wavelengths"].default == "450,550,670,800"
+
+
+def test_bench_of_a_material():
+    found = frond.bench("diffuse", samples=1000, min_time=0.001)
+    assert set(found.tables) == {"times", "worths"} and len(found.tables["times"]) > 0
+
+
+def test_a_bsdf_has_any_number_of_wavelengths():
+    nm = [450, 551, 670, 700, 750, 800]
+    directions = [0, 0, 1], [[0, 0.6, 0.8], [0, 0.6, -0.8]]
+    leaf = frond.bsdf("leaf_lambert", nm)
+    alone = numpy.concatenate([frond.bsdf("leaf_lambert", [one]).f(*directions) for one in nm], axis=1)
+    assert leaf.f(*directions).shape == (2, 6) and numpy.allclose(leaf.f(*directions), alone, rtol=1e-6)
+    for call in (lambda: leaf.sample([0, 0, 1]), lambda: leaf.pdf(*directions)):
+        with pytest.raises(ValueError, match="one to four wavelengths: there are 6"):
+            call()
+
+
+def test_to_xarray(scene_text, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    image = frond.loads(scene_text, wavelengths=[800, 551]).render(1)
+    data = image.to_xarray()
+    assert isinstance(data, xarray.Dataset) and data.radiance.dims == ("wavelength_nm", "y", "x")
+    assert list(data.wavelength_nm) == [551, 800] == list(data.variance.wavelength_nm)
+    assert numpy.array_equal(data.radiance.sel(wavelength_nm=551), image["S0.551,000000nm"])
+    colors = frond.loads(scene_text, wavelengths="smpte").render(1)
+    assert numpy.array_equal(colors.to_xarray()["G"], colors["G"]) and colors.to_xarray()["G"].dims == ("y", "x")
+    (tmp_path / "canopy.pbrt").write_text(CANOPY)
+    brf = frond.brf(tmp_path / "canopy.pbrt", [670, 800], zenith="-60:60:15", paths=64)
+    brf = brf.set_index(["zenith_deg", "azimuth_deg", "wavelength_nm"]).to_xarray()
+    assert brf.brf.sel(wavelength_nm=800).shape == (9, 1)
 
 
 def test_compare(scene_text, tmp_path):

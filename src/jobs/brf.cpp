@@ -38,7 +38,8 @@ constexpr JobParam kParams[] = {
     kPeriodParam,
     JobParam("paths", count, "Number of paths for each view.", {.default_value = "65536", .range = {1, 4294967296}}),
     rms_param(
-        "Stop when the RMS of the standard errors, relative to the mean, is below this; --paths is then not used."),
+        "Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below "
+        "this; --paths is then not used."),
     kTimeLimitParam,
     kSwapParam,
     kIntegratorParam,
@@ -123,6 +124,9 @@ std::optional<BrfMeasurement> measure(const JobRun& run, const BrfMeter& meter, 
   return meter.read(part.film);
 }
 
+/// Returns the column of the quantity: "brf" or "hdrf".
+std::string column_of(const BrfMeasurement& measurement) { return measurement.quantity == "BRF" ? "brf" : "hdrf"; }
+
 /// Appends one row for each view and band. `model` may be empty.
 void add_rows(Table& table, const BrfMeasurement& measurement, const std::string& model) {
   for (size_t view = 0; view < measurement.views.size(); ++view)
@@ -131,7 +135,7 @@ void add_rows(Table& table, const BrfMeasurement& measurement, const std::string
       table.add("zenith_deg", measurement.views[view].zenith_deg);
       table.add("azimuth_deg", measurement.views[view].azimuth_deg);
       table.add("wavelength_nm", measurement.wavelengths_nm[band]);
-      table.add("brf", measurement.at(view, band));
+      table.add(column_of(measurement), measurement.at(view, band));
     }
 }
 
@@ -182,10 +186,14 @@ Result comparison_result(const ModelMeasurement& reference, const std::vector<Mo
   const std::string& cheapest = (enough ? *enough : reference).model.label;
   return {
       .tables = {differences, verdicts},
-      .facts = {{"reference", reference.model.label}, {"within", within}, {"cheapest_enough", cheapest}},
-      .text = fmt::format("BRF relative to {} ({:.2f} µs of CPU per path); accurate enough: within {:g} % everywhere\n"
+      .facts = {{"quantity", std::string(reference.brf.quantity)},
+                {"reference", reference.model.label},
+                {"within", within},
+                {"cheapest_enough", cheapest}},
+      .text = fmt::format("{} relative to {} ({:.2f} µs of CPU per path); accurate enough: within {:g} % everywhere\n"
                           "{}Cheapest model that is accurate enough: {}\n",
-                          reference.model.label, reference.cpu_us_per_path, 100 * within, to_text(verdicts), cheapest)};
+                          reference.brf.quantity, reference.model.label, reference.cpu_us_per_path, 100 * within,
+                          to_text(verdicts), cheapest)};
 }
 
 /// Measures the scene once with each leaf model in place of its leaves. Models share the geometry of the first.
@@ -248,16 +256,21 @@ Result brf(const JobRun& run) {
   run.log().info(
       fmt::format("{} paths for each view; RMS relative standard error {:.2f} %", measurement.paths, 100 * error));
   warn_of_time_limit(run, measurement.paths, error);
-  Result result{.tables = {{"brf"}}, .facts = {{"paths", double(measurement.paths)}, {"relative_error", error}}};
+  Result result{.tables = {{"brf"}},
+                .facts = {{"quantity", std::string(measurement.quantity)},
+                          {"paths", double(measurement.paths)},
+                          {"relative_error", error}}};
   add_rows(result.tables[0], measurement, "");
-  result.text = to_text(by_direction(measurement));
+  result.text = fmt::format("{}\n{}", measurement.quantity, to_text(by_direction(measurement)));
   return result;
 }
 
 }  // namespace
 
 extern const JobInfo kBrfJob("brf", "Measure", "Measure the bidirectional reflectance factor of a scene from far away.",
-                             "Leaves without \"incident\" use incident=reciprocal; abm uses incident=light.", kParams,
-                             SessionUse::all, brf);
+                             "Under more than one sun, as with a sky, the result is the hemispherical-directional "
+                             "reflectance factor (HDRF). Leaves without \"incident\" use incident=reciprocal; abm uses "
+                             "incident=light.",
+                             kParams, SessionUse::all, brf);
 
 }  // namespace frond

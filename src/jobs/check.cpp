@@ -16,26 +16,38 @@ constexpr JobParam kParams[] = {
     kStrictParam,
 };
 
-/// Returns all errors of one scene: of its files, its plug-ins and parameters, its image's name, and in strict mode its
-/// warnings.
-Problems problems_of(const JobRun& run, const std::vector<std::filesystem::path>& files) {
+/// Result of reading one scene.
+struct Findings {
+  Problems problems;  ///< of its files, plug-ins, parameters and image name; in strict mode also its warnings
+  size_t warnings = 0;
+};
+
+Findings findings_of(const JobRun& run, const std::vector<std::filesystem::path>& files) {
   StrictLog& log = run.context.log();
   log.begin(run.args.flag("strict"));
   Session& session = run.session();
-  Problems problems;
+  Findings findings;
+  Problems& problems = findings.problems;
   const SceneDescription description = session.read(files, unsupported_of(run.args), problems);
   if (!description.files.empty()) problems.attempt([&] { session.check(description); });
   problems.attempt([&] { check_image_name(session.film(description).filename, description.film.where); });
   problems.attempt([&] { log.check(); });
+  findings.warnings = log.warnings();
   log.begin(false);
-  return problems;
+  return findings;
+}
+
+/// Returns "1 error", "2 errors" or "no errors".
+std::string counted(size_t count, const char* what) {
+  if (count == 0) return fmt::format("no {}s", what);
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 /// The job: checks every scene, and reports all errors. The exit code is 1 if there is an error.
 Result check(const JobRun& run) {
   Result result{.tables = {{"problems"}}};
   for (const auto& files : scenes_of(run.args.texts("scene"))) {
-    const Problems problems = problems_of(run, files);
+    const auto [problems, warnings] = findings_of(run, files);
     const std::string name = files.back().string();
     for (const std::string& message : problems.messages()) {
       result.tables[0].add("scene", name);
@@ -43,8 +55,8 @@ Result check(const JobRun& run) {
       result.errors.push_back(message);
     }
     const size_t count = problems.count();
-    result.text += count == 0 ? fmt::format("{}: no errors\n", name)
-                              : fmt::format("{}: {} error{}\n", name, count, count == 1 ? "" : "s");
+    result.text += fmt::format("{}: {}{}\n", name, counted(count, "error"),
+                               warnings == 0 ? "" : ", " + counted(warnings, "warning"));
     if (count > 0) result.code = 1;
   }
   return result;

@@ -15,7 +15,9 @@ namespace {
 using enum ArgumentKind;
 
 constexpr std::string_view kSpace = "linear SMPTE-C";
-constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
+constexpr size_t kColors = 3;
+/// The last one is all colour values together: its mean squares are the means of the three.
+constexpr std::array<const char*, kColors + 1> kChannels{"red", "green", "blue", "all"};
 constexpr JobParam kParams[] = {
     files_param("images", "A1 A2 B1 B2: two halves of render A and two of render B, each with its own seed.", 4),
     output_param("Image of the signed difference in luminance: red where A is brighter, blue where B is.", false),
@@ -98,11 +100,22 @@ std::string add_errors(Result& result, const std::string& region, const std::str
                        const std::vector<LinearFile>& halves, std::span<const float> use) {
   double correlated = 1;
   for (const LinearFile& half : halves) correlated = std::max(correlated, half.correlated_pixels);
-  std::array<ImageError, 3> errors;
-  for (size_t c = 0; c < 3; ++c) {
-    std::array<std::vector<float>, 4> v;
-    for (size_t i = 0; i < 4; ++i) v[i] = halves[i].image.plane(c);
-    errors[c] = image_error(v[0], v[1], v[2], v[3], use, correlated);
+  std::array<ImageError, kChannels.size()> errors;
+  std::array<std::vector<float>, 4> all;
+  std::vector<float> all_use;
+  for (size_t c = 0; c < kChannels.size(); ++c) {
+    if (c < kColors) {
+      std::array<std::vector<float>, 4> v;
+      for (size_t i = 0; i < 4; ++i) {
+        v[i] = halves[i].image.plane(c);
+        all[i].insert(all[i].end(), v[i].begin(), v[i].end());
+      }
+      all_use.insert(all_use.end(), use.begin(), use.end());
+      errors[c] = image_error(v[0], v[1], v[2], v[3], use, correlated);
+    } else {
+      // The colours of a pixel share its noise.
+      errors[c] = image_error(all[0], all[1], all[2], all[3], all_use, correlated * double(kColors));
+    }
     result.tables[0].add("region", region);
     result.tables[0].add("channel", std::string(kChannels[c]));
     for (const auto& n : kNumbers) {
@@ -114,7 +127,7 @@ std::string add_errors(Result& result, const std::string& region, const std::str
   for (const auto& n : kNumbers) {
     if (*n.title == '\0') continue;
     shown.add(region + " pixels", std::string(n.title));
-    for (size_t c = 0; c < 3; ++c) shown.add(kChannels[c], n.of(errors[c]));
+    for (size_t c = 0; c < kChannels.size(); ++c) shown.add(kChannels[c], n.of(errors[c]));
   }
   return to_text(shown);
 }

@@ -27,8 +27,8 @@ constexpr JobParam kParams[] = {
     kPeriodParam,
     JobParam("paths", count, "Number of light paths.", {.default_value = "1e6", .range = kCounts}),
     rms_param(
-        "Stop when the RMS standard error of the reflected and absorbed shares of the incident light is below this; "
-        "--paths is then not used."),
+        "Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the "
+        "standard errors of all reflected and absorbed shares is below this; --paths is then not used."),
     kTimeLimitParam,
     JobParam("by", text, "Measure the absorption of each instance of an object, one row each.",
              {.choices = kBy, .decides = true}),

@@ -91,11 +91,18 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
         "what is printed as standard error is too small; leaf_solved is the same leaf without noise");
   const HorizontalIrradiance irradiance(scene.lights(), scene.wavelengths());
   for (const double e : irradiance.bands()) white_.push_back(e / std::numbers::pi);
+  size_t beams = 0;
+  for (size_t i = 0; i < scene.lights().size(); ++i) {
+    if (irradiance.shares()[i] <= 0) continue;
+    is_hemispherical_ = is_hemispherical_ || !scene.lights()[i]->is_delta() || beams > 0;
+    ++beams;
+  }
 }
 
 BrfMeasurement BrfMeter::read(const Film& film) const {
   BrfMeasurement measurement{.views = request_.views, .wavelengths_nm = {}, .values = {}, .rows = {}};
   measurement.has_heavy_tails = has_heavy_tails_;
+  if (is_hemispherical_) measurement.quantity = "HDRF";
   for (const Band& band : scene_.scene().wavelengths().bands()) measurement.wavelengths_nm.push_back(band.nm);
   for (int view = 0; view < film.settings().width; ++view)
     for (size_t band = 0; band < film.bands(); ++band) {

@@ -28,13 +28,17 @@ struct BrfRequest {
   bool keeps_depth = false;  ///< true: path lengths are limited as in the scene; false: unlimited
 };
 
-/// BRF of a scene: radiance in a direction over the radiance of a white Lambertian plane in the same light.
+/// Reflectance factor of a scene: radiance in a direction over the radiance of a white Lambertian plane in the same
+/// light. Terms: Schaepman-Strub et al. 2006, Remote Sensing of Environment 103:27-42.
 struct BrfMeasurement {
   std::vector<ViewDirection> views;
   std::vector<double> wavelengths_nm;
   std::vector<MeanError> values;  ///< by view, then band
   std::vector<double> rows;       ///< for each value, BrfMeter::kRows independent estimates
   uint64_t paths = 0;             ///< for each view
+  /// Name of the quantity: "BRF" (bidirectional) if all light comes from one direction, else "HDRF"
+  /// (hemispherical-directional), as under sun and sky.
+  std::string_view quantity = "BRF";
   /// True if standard errors are unreliable, because a few rare paths contribute much of the mean.
   bool has_heavy_tails = false;
   const MeanError& at(size_t view, size_t band) const { return values[view * wavelengths_nm.size() + band]; }
@@ -62,6 +66,7 @@ class BrfMeter {
   LoadedScene scene_ = {};
   std::vector<double> white_;  ///< radiance of a white plane, band by band
   bool has_heavy_tails_ = false;
+  bool is_hemispherical_ = false;  ///< light comes from more than one direction
 };
 
 }  // namespace frond

@@ -14,7 +14,11 @@ Chart brf_plane_chart(const BrfMeasurement& r) {
   const auto [least, most] = std::ranges::minmax(r.values, {}, &MeanError::mean);
   const bool logarithmic = least.mean > 0 && most.mean / least.mean > kLogarithmic;
   const Range values = logarithmic ? Range{least.mean, most.mean}.widened() : Range{0, 1.08 * most.mean};
-  Panel panel{900, 520, "", {"zenith angle of the view (degrees)", {}, false, 15}, {"BRF", values, logarithmic}};
+  Panel panel{900,
+              520,
+              "",
+              {"zenith angle of the view (degrees)", {}, false, 15},
+              {std::string(r.quantity), values, logarithmic}};
   auto planes = distinct(r.views, &ViewDirection::azimuth_deg);
   std::ranges::sort(planes);
   for (const double azimuth : planes)
@@ -40,7 +44,7 @@ Chart brf_hemisphere_chart(const BrfMeasurement& r) {
   for (size_t band = 0; band < bands; ++band) {
     ColorScale scale;
     for (size_t i = 0; i < r.views.size(); ++i) scale.axis.range.include(r.at(i, band).mean);
-    const std::string title = fmt::format("BRF at {:g} nm", r.wavelengths_nm[band]);
+    const std::string title = fmt::format("{} at {:g} nm", r.quantity, r.wavelengths_nm[band]);
     const PolarMap map{chart.panels.emplace_back(disk_panel(340, title))};
     for (size_t i = 0; i < r.views.size(); ++i) {
       const auto& [zenith, azimuth] = r.views[i];

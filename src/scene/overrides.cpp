@@ -1,5 +1,7 @@
 #include "scene/overrides.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "core/log.h"
@@ -10,48 +12,75 @@
 namespace frond {
 namespace {
 
-/// Removes parameters that the material does not have, each with a warning.
-void leave_out_unknown(const MaterialInfo& info, ParsedPlugin& plugin, const Log& log) {
-  std::erase_if(plugin.params, [&](const ParsedParam& given) {
-    if (find_param(info, given.name) || find_param(normal_bend_params, given.name)) return false;
-    log.warn(given.where, fmt::format("\"{}\" has no parameter \"{}\": left out by the swap", info.name, given.name));
-    return true;
-  });
-}
+/// Replacement of materials by one other. Parameters that this material does not have are removed, with one warning for
+/// all replaced materials.
+class Replacement {
+ public:
+  Replacement(const PluginText& to, const Registry& registry, const Location& where)
+      : to_(to), info_(registry.materials.get(to.name, where)), where_(where) {}
 
-void apply_swap_to_leaves(SceneSettings& description, const MaterialSwap& swap, const Registry& registry,
-                          const Log& log) {
-  const auto leaves = Scene::leaf_materials(description, registry);
-  if (leaves.empty()) fail(swap.where, "swap: none of the scene's materials is a leaf");
-  for (const size_t i : leaves) swap_material(description.materials[i].plugin, swap.to, registry, log, swap.where);
+  /// Throws InputError.
+  void apply(ParsedPlugin& plugin) {
+    std::erase_if(plugin.params, [this](const ParsedParam& given) {
+      if (find_param(info_, given.name) || find_param(normal_bend_params, given.name)) return false;
+      if (left_out_.empty()) first_ = given.where;
+      if (std::ranges::find(left_out_, given.name) == left_out_.end()) left_out_.push_back(given.name);
+      return true;
+    });
+    set_params(to_, info_, where_, plugin);
+    plugin.name = to_.name;
+  }
+  /// Warns of the removed parameters, at the first one.
+  void warn(const Log& log) const {
+    if (left_out_.empty()) return;
+    log.warn(first_, fmt::format("\"{}\" has no parameter{} \"{}\": left out by the swap", info_.name,
+                                 left_out_.size() == 1 ? "" : "s", fmt::join(left_out_, "\", \"")));
+  }
+
+ private:
+  const PluginText& to_;
+  const MaterialInfo& info_;
+  const Location& where_;
+  std::vector<std::string> left_out_;
+  Location first_;
+};
+
+/// Returns the indices of the materials that a swap replaces. Throws InputError if there are none.
+std::vector<size_t> swapped_materials(const SceneSettings& description, const MaterialSwap& swap,
+                                      const Registry& registry) {
+  if (swap.from == "*") {
+    auto leaves = Scene::leaf_materials(description, registry);
+    if (leaves.empty()) fail(swap.where, "swap: none of the scene's materials is a leaf");
+    return leaves;
+  }
+  std::vector<std::string_view> names;
+  std::vector<size_t> found;
+  for (size_t i = 0; i < description.materials.size(); ++i) {
+    const MaterialDescription& m = description.materials[i];
+    names.push_back(m.name.empty() ? m.plugin.name : m.name);
+    if (m.name == swap.from || m.plugin.name == swap.from) found.push_back(i);
+  }
+  if (found.empty())
+    fail(swap.where, "swap: the scene has no material \"{}\"{}", swap.from, suggestion(swap.from, names));
+  return found;
 }
 
 }  // namespace
 
 void swap_material(ParsedPlugin& plugin, const PluginText& to, const Registry& registry, const Log& log,
                    const Location& where) {
-  const MaterialInfo& info = registry.materials.get(to.name, where);
-  leave_out_unknown(info, plugin, log);
-  set_params(to, info, where, plugin);
-  plugin.name = to.name;
+  Replacement replacement(to, registry, where);
+  replacement.apply(plugin);
+  replacement.warn(log);
 }
 
 void apply_swaps(SceneSettings& description, const std::vector<MaterialSwap>& swaps, const Registry& registry,
                  const Log& log) {
   for (const MaterialSwap& swap : swaps) {
-    if (swap.from == "*") {
-      apply_swap_to_leaves(description, swap, registry, log);
-      continue;
-    }
-    std::vector<std::string_view> names;
-    bool found = false;
-    for (MaterialDescription& m : description.materials) {
-      names.push_back(m.name.empty() ? m.plugin.name : m.name);
-      if (m.name != swap.from && m.plugin.name != swap.from) continue;
-      swap_material(m.plugin, swap.to, registry, log, swap.where);
-      found = true;
-    }
-    if (!found) fail(swap.where, "swap: the scene has no material \"{}\"{}", swap.from, suggestion(swap.from, names));
+    const auto materials = swapped_materials(description, swap, registry);
+    Replacement replacement(swap.to, registry, swap.where);
+    for (const size_t i : materials) replacement.apply(description.materials[i].plugin);
+    replacement.warn(log);
   }
 }
 

@@ -462,6 +462,10 @@ TEST_F(Commands, DifferenceTellsNoiseFromBias) {
   EXPECT_GT(same["rms_green"], 0);
   EXPECT_LT(same["bias_green"], same["noise_green"]);
   EXPECT_GT(other["bias_green"], other["noise_green"]);
+  double squares = 0;
+  for (const char* color : {"rms_red", "rms_green", "rms_blue"}) squares += std::pow(other[color].get<double>(), 2);
+  EXPECT_NEAR(other["rms_all"].get<double>(), std::sqrt(squares / 3), 1e-9);
+  EXPECT_GT(other["bias_squared_error_all"], other["bias_squared_error_green"].get<double>() / 3);
   EXPECT_EQ(read_image(path("d.png"), {}).image.width, 24);
 }
 

@@ -77,6 +77,20 @@ TEST_F(Hostile, CheckReadsTables) {
   }
 }
 
+TEST_F(Hostile, EveryReaderOfCsvNamesAFileWithoutRows) {
+  for (const char* text : {"", "\n", "# a comment\n"}) {
+    const std::string csv = folder_.write("none.csv", text).string();
+    const std::string leaf = scene("Material \"diffuse\"");
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"fit", csv, "-o", path("fit.pbrt")},
+             {"instances", csv, "-o", path("i.npy")},
+             {"spectrophotometer", "diffuse,reflectance=" + csv, "--wavelengths", "500"},
+             {"spectrophotometer", "leaf_simplified,tablefile=" + csv, "--wavelengths", "500"},
+             {"brf", leaf, "--wavelengths", "bands,responses=" + csv}})
+      EXPECT_THAT(refusal(words), HasSubstr("none.csv")) << words[0];
+  }
+}
+
 TEST_F(Hostile, WhatIsFixedIsWhatAMaterialTakes) {
   for (const std::string fixed : {"thickness=1e30", "thickness=1e-320", "chlorophylla=1e308", "spongyaspect=1e300"})
     EXPECT_THAT(refusal({"fit", "--data", "wavelength,R,T\n550,0.1,0.1\n", "--like", "soybean", "--fix", fixed, "-o",

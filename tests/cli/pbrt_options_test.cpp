@@ -85,6 +85,17 @@ TEST_F(PbrtOptions, AScenesErrorsAreItsOwn) {
                                HasSubstr("in_two.pbrt: no errors"), HasSubstr("scene.pbrt: no errors")));
 }
 
+TEST_F(PbrtOptions, CheckCountsWarnings) {
+  const std::string empty = std::string(kOptions) + "WorldBegin\n";
+  folder_.write("dark.pbrt", empty);
+  const Outcome once = frond_command({"check", path("dark.pbrt"), path("scene.pbrt")});
+  EXPECT_THAT(once.err, HasSubstr("warning: the scene has no light"));
+  EXPECT_THAT(once.out, AllOf(HasSubstr("dark.pbrt: no errors, 1 warning\n"), HasSubstr("scene.pbrt: no errors\n")));
+  folder_.write("old.pbrt", "Accelerator \"a\"\nAccelerator \"a\"\n" + empty);
+  EXPECT_THAT(frond_command({"check", path("old.pbrt")}).out, HasSubstr("old.pbrt: no errors, 3 warnings\n"));
+  EXPECT_THAT(frond_command({"check", "--strict", path("old.pbrt")}).out, HasSubstr("old.pbrt: 3 errors\n"));
+}
+
 TEST_F(PbrtOptions, SpectrumFilesMayHaveAnyName) {
   folder_.write("leaf.txt", "360 0.5\n830 0.25\n");
   folder_.write("leaf.pbrt", std::string(kOptions) + std::string(kWorld) +

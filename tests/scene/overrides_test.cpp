@@ -16,6 +16,7 @@
 namespace frond {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -128,6 +129,25 @@ TEST_F(Overrides, AreWhatTheSceneIsMadeBy) {
 TEST_F(Overrides, SwapsAreMadeInTheirOrder) {
   const SceneOverrides overrides{.swaps = {{"leaf_lambert", {"abm", {}}}, {"abm", {"leaf_solved", {}}}}};
   EXPECT_THAT(parts_of(edited(overrides)).at("material blade"), StartsWith("leaf_solved"));
+}
+
+TEST_F(Overrides, ASwapWarnsOnceOfAllThatItLeavesOut) {
+  class Warnings final : public Log {
+   public:
+    void info(std::string_view) const override {}
+    void warn(const Location& where, std::string_view text) const override {
+      texts.push_back(where.text() + std::string(text));
+    }
+    mutable std::vector<std::string> texts;
+  } log;
+  std::string scene = "WorldBegin\n";
+  for (int i = 0; i < 14; ++i)
+    scene += fmt::format("Material \"leaf_lambert\" \"string specimen\" \"maize\" \"float {}\" 3\n",
+                         i % 2 == 0 ? "chlorophylla" : "carotenoids");
+  SceneDescription description = parse_scene_text(scene, "test.pbrt", log);
+  apply_overrides({.swaps = {{"*", {"diffuse", {}}}}}, description, registry_, log);
+  EXPECT_THAT(log.texts, ElementsAre("test.pbrt:2:25: \"diffuse\" has no parameters \"specimen\", \"chlorophylla\", "
+                                     "\"carotenoids\": left out by the swap"));
 }
 
 TEST_F(Overrides, ErrorsHaveThePlaceOfWhatAsks) {

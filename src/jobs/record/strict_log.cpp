@@ -30,12 +30,14 @@ void StrictLog::begin(bool is_strict) {
   show_repeats();
   is_strict_ = is_strict;
   problems_ = {};
+  count_ = 0;
   warnings_.clear(), by_message_.clear(), by_kind_.clear();
 }
 
 /// The first occurrence is logged at once, so that a long run shows its warnings early.
 void StrictLog::warn(const Location& where, std::string_view message) const {
   if (is_strict_) return problems_.add(InputError(where, std::string(message) + " (an error in strict mode)"));
+  ++count_;
   if (const auto known = by_message_.find(message); known != by_message_.end()) {
     ++warnings_[known->second].repeats;
     return;

@@ -26,6 +26,8 @@ class StrictLog final : public Log {
   void warn(const Location& where, std::string_view message) const override;
   /// Logs the counts of repeated warnings. Throws the collected warnings of strict mode.
   void check() const;
+  /// Returns the number of warnings since begin(), including those that are not shown; 0 in strict mode.
+  size_t warnings() const { return count_; }
   /// Returns the log that messages are forwarded to. Warnings sent to it directly are never errors.
   const Log& target() const { return to_; }
 
@@ -41,6 +43,7 @@ class StrictLog final : public Log {
 
   const Log& to_;
   bool is_strict_ = false;
+  mutable size_t count_ = 0;
   mutable Problems problems_;
   mutable std::vector<Warning> warnings_;
   mutable std::map<std::string, size_t, std::less<>> by_message_;            ///< message to index in warnings_
