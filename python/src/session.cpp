@@ -1,5 +1,7 @@
 #include "common.h"
+#include "image/display_image.h"
 #include "image/image_file.h"
+#include "image/rgb_file.h"
 #include "jobs/support/render_task.h"
 #include "render/image_output.h"
 #include "render/parts/part_file.h"
@@ -84,9 +86,43 @@ auto arrays_of(Image image) {
   return std::pair(image.channels, to_array(std::move(image.pixels), shape));
 }
 
+/// Float32 [row][column][3].
+using Rgb = nb::ndarray<const float, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
+
+/// Writes linear colours. The header is that of the file `like`, if it is not empty, without what is no longer true of
+/// these colours. Throws InputError.
+void write_rgb(const std::string& path, const Rgb& rgb, std::string space, const std::string& like) {
+  check_writable(path);
+  std::map<std::string, std::string> text{{"frond:version", FROND_VERSION}};
+  if (!like.empty()) {
+    const ImageFile file = read_image(like, {});
+    for (const auto& [name, value] : file.header.text)
+      if (name.starts_with("frond:") && name != "frond:correlated_pixels" && name != "frond:noise_rms")
+        text[name] = value;
+    if (space.empty()) space = file.header.color_space;
+    if (const ColorSpace* known = color_space_of(file); space.empty() && known) space = known->linear_name;
+  }
+  if (space.empty()) space = "linear sRGB";
+  if (space != kXyzName) space = color_space(space, {}).linear_name;
+  Image image(int(rgb.shape(1)), int(rgb.shape(0)), {"R", "G", "B"});
+  std::copy_n(rgb.data(), rgb.size(), image.pixels.begin());
+  if (is_exr(path))
+    write_image(path, image, {space, text});
+  else
+    write_display_image(path, image, space, ColorManager(), {}, text);
+}
+
 }  // namespace
 
 void bind_session(nb::module_& m) {
+  m.def(
+      "write_image",
+      [](const std::string& path, const Rgb& rgb, const std::string& space, const std::string& like) {
+        const nb::gil_scoped_release release;
+        write_rgb(path, rgb, space, like);
+      },
+      "path"_a, "rgb"_a, "color_space"_a, "like"_a);
+
   m.def(
       "read_image",
       [](const std::string& path) {

@@ -33,6 +33,38 @@ def test_channels_and_arrays(scene_text):
         image["Q"]
 
 
+def test_what_a_denoiser_needs(scene_text, tmp_path):
+    image = frond.loads(scene_text, for_denoiser=True).render(4)
+    assert image["albedo"].shape == image["normal"].shape == image.rgb.shape == (16, 16, 3)
+    assert numpy.array_equal(image["albedo"][:, :, 1], image["albedo.G"])
+    assert 0 < image["albedo"].max() <= 1
+    assert "frond:correlated_pixels" not in image.attributes
+    with pytest.raises(KeyError, match="no channel 'albed'"):
+        image["albed"]
+
+
+def test_colours_of_another_program_are_written(scene_text, tmp_path):
+    image = frond.loads(scene_text, wavelengths="smpte").render(4)
+    image.save(tmp_path / "a.exr")
+    frond.write_image(tmp_path / "b.exr", image.rgb[:, ::-1], like=tmp_path / "a.exr")
+    names, pixels = frond.read_image(tmp_path / "b.exr")
+    assert sorted(names) == ["B", "G", "R"]
+    assert numpy.array_equal(pixels[:, :, names.index("G")], image["G"][:, ::-1])
+    data = (tmp_path / "b.exr").read_bytes()
+    assert b"linear SMPTE-C" in data and b"frond:scene_hash" in data and b"frond:correlated_pixels" not in data
+    frond.write_image(tmp_path / "a.png", image.rgb.astype(float), color_space=image.color_space)
+    frond.convert([tmp_path / "a.exr"], output=tmp_path / "c.png")
+    ours, theirs = (frond.read_image(tmp_path / f"{name}.png")[1] for name in "ac")
+    assert numpy.array_equal(ours, theirs)
+    frond.write_image(tmp_path / "d.exr", image.rgb)
+    assert b"linear sRGB" in (tmp_path / "d.exr").read_bytes()
+    with pytest.raises(ValueError, match=r"\[row\]\[column\]\[3\] is needed"):
+        frond.write_image(tmp_path / "e.exr", image["G"])
+    with pytest.raises(frond.InputError, match="unknown color space"):
+        frond.write_image(tmp_path / "e.exr", image.rgb, color_space="nonsense")
+    assert not (tmp_path / "e.exr").exists()
+
+
 def test_an_image_goes_on(scene_text):
     scene = frond.loads(scene_text)
     whole, pieces = scene.render(8), scene.render(3)

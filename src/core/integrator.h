@@ -19,8 +19,8 @@ struct FirstHit {
   uint32_t material = 0;  ///< SurfacePoint::material_id
   uint64_t instance = 0;  ///< SurfacePoint::instance_id
   Vec3 p, n;              ///< position and shading normal, unit, in world space
-  /// Throughput of the path after its scattering there: an unbiased estimate of the directional albedo, the sum of
-  /// reflectance and transmittance, for wo = -direction of the camera ray.
+  /// Unbiased estimate of the directional albedo, the sum of reflectance and transmittance, for wo = -direction of the
+  /// camera ray; black unless PathBundle::albedo_samples is set.
   SampledSpectrum albedo;
 };
 
@@ -63,7 +63,8 @@ struct PathBundle {
   std::array<SampledWavelengths, kMost> lambda{};
   std::array<uint64_t, kMost> keys{};  ///< keys of the paths' random streams (sample_key)
   std::array<PathResult, kMost> results{};
-  uint64_t traced = 0;  ///< number of rays traced, including shadow rays
+  int albedo_samples = 0;  ///< samples of the BSDF for FirstHit::albedo; 0: it is not needed
+  uint64_t traced = 0;     ///< number of rays traced, including shadow rays
 };
 
 /// Traces paths in one thread.

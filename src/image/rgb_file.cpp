@@ -34,13 +34,24 @@ bool is_near(const Chromaticity& a, const Chromaticity& b) {
   return std::abs(a.x - b.x) < kSame && std::abs(a.y - b.y) < kSame;
 }
 
-[[noreturn]] void refuse_without_colors(const std::string& path, const Image& image) {
+/// Throws InputError if the image has bands and no colours.
+void check_colors(const std::string& path, const Image& image) {
   const auto bands = bands_of(image);
-  if (bands.empty()) fail({}, "{} does not say in which colour space it is: images that frond has written do", path);
+  if (bands.empty() || image.channel(kRgb[0])) return;
   fail({},
        "{} holds bands from {} to {} nm and no colours; frond convert --bands {},{},{} shows three of them, and frond "
        "compare --wavelengths bands,... reports errors band by band",
        path, bands.front(), bands.back(), bands.back(), bands[bands.size() / 2], bands.front());
+}
+
+/// Linear name of the colour space that a file states, by name or by chromaticities; empty if it states none. Throws
+/// InputError for unknown chromaticities.
+std::string stated_space(const std::string& path, const ImageFile& file) {
+  if (!file.header.color_space.empty() || !file.chromaticities) return file.header.color_space;
+  if (const ColorSpace* space = color_space_of(file)) return std::string(space->linear_name);
+  const Chromaticities& c = *file.chromaticities;
+  fail({}, "{} has the chromaticities of no known colour space: red {} {}, green {} {}, blue {} {}, white {} {}", path,
+       c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y);
 }
 
 }  // namespace
@@ -79,12 +90,22 @@ void decode_srgb(Image& image) {
   for (float& v : image.pixels) v = decode_srgb(v);
 }
 
-LinearFile read_linear(const std::string& path) {
+LinearFile read_linear(const std::string& path, const std::string& otherwise) {
   const ImageFile file = read_image(path, {});
   if (file.is_encoded) fail({}, "{} is encoded for a display: a linear image is needed, such as EXR", path);
-  if (file.header.color_space.empty()) refuse_without_colors(path, file.image);
-  LinearFile result{
-      .path = path, .space = file.header.color_space, .image = rgb_of(file.image, path, {}), .leaf = {}, .seed = {}};
+  check_colors(path, file.image);
+  const std::string stated = stated_space(path, file);
+  if (stated.empty() && otherwise.empty())
+    fail({},
+         "{} does not state its colour space: images that frond has written do; frond convert --color-space writes "
+         "an image that does",
+         path);
+  LinearFile result{.path = path,
+                    .space = stated.empty() ? otherwise : stated,
+                    .is_assumed = stated.empty(),
+                    .image = rgb_of(file.image, path, {}),
+                    .leaf = {},
+                    .seed = {}};
   if (const auto leaf = file.image.channel("leaf")) result.leaf = file.image.plane(*leaf);
   if (const auto seed = file.header.text.find("frond:seed"); seed != file.header.text.end()) result.seed = seed->second;
   if (const auto pixels = file.header.text.find("frond:correlated_pixels"); pixels != file.header.text.end())

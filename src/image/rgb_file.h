@@ -25,15 +25,17 @@ void decode_srgb(Image& image);
 /// Content of a linear image file. Files of renders also state a seed and can have a leaf channel.
 struct LinearFile {
   std::string path, space;       ///< file name, and linear name of the colour space
+  bool is_assumed = false;       ///< the file does not state the space
   Image image;                   ///< R G B
   std::vector<float> leaf;       ///< foliar ratio of each pixel; empty: not in the file
   std::string seed;              ///< seed of the render, from the header; empty: not in the file
   double correlated_pixels = 1;  ///< upper bound of the variance of a sum of pixels over that of independent pixels
 };
 
-/// Reads a linear image file. Throws InputError if the file is encoded for a display, does not state its colour space
-/// or lacks R, G or B.
-LinearFile read_linear(const std::string& path);
+/// Reads a linear image file. Its colour space is the one that its header names, or that has its chromaticities;
+/// `otherwise` if it states neither. Throws InputError if the file is encoded for a display, lacks R, G or B, states
+/// chromaticities of no known space, or states nothing and `otherwise` is empty.
+LinearFile read_linear(const std::string& path, const std::string& otherwise = {});
 
 /// Throws InputError, which names both files, if the images differ in width or height.
 void check_same_size(const LinearFile& a, const LinearFile& b);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/bsdf.h"
@@ -44,6 +45,27 @@ class LocalBsdf {
     sample.is_specular = any(s->flags & Lobes::specular);
     sample.pdf = s->pdf_is_approximate && !sample.is_specular ? bsdf_->pdf(wo_, s->wi) : s->pdf;
     return true;
+  }
+
+  /// Estimates the directional albedo by the mean weight of `samples` samples. Their numbers are an additive recurrence
+  /// with a random start, which spreads them evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom
+  /// Sequences"); they are independent of the path's own, so that noise of the albedo is not that of the colours.
+  SampledSpectrum albedo(int samples, uint64_t key) const {
+    RandomStream start(key);
+    const float uc = start.uniform();
+    const Vec2 u{start.uniform(), start.uniform()};
+    SampledSpectrum sum;
+    for (int i = 0; i < samples; ++i) {
+      const auto moved = [i](float from, float step) {
+        const float to = from + float(i) * step;
+        return std::min(to - std::floor(to), 0x1.fffffep-1f);
+      };
+      Sample sample;
+      const bool scattered = this->sample(moved(uc, 0.81917251f), {moved(u.x, 0.67104361f), moved(u.y, 0.54970048f)},
+                                          RandomStream(hash_key(key, uint64_t(i))), sample);
+      if (scattered && sample.weight.is_physical()) sum += sample.weight;
+    }
+    return sum * (1 / float(samples));
   }
 
  private:

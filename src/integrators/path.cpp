@@ -12,7 +12,7 @@ namespace frond {
 namespace {
 
 /// Uses of random streams at one path vertex.
-enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette };
+enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette, albedo };
 
 /// Key of the random numbers of one vertex: of its rays, and of its streams by use.
 struct VertexKey {
@@ -367,10 +367,9 @@ class PathTracer final : public Tracer {
     for (const size_t i : lanes) {
       Path& path = paths_[i];
       at_ = &points_[i];
-      FirstHit& first = bundle_->results[i].first;
-      if (!scatter(i, points_[i].hit, bsdfs_[i], numbers_[i], pairs_[i], path)) continue;
-      if (path.depth == 0) first.albedo = path.throughput;
-      if (ends(path)) continue;
+      if (path.depth == 0 && bundle_->albedo_samples > 0)
+        bundle_->results[i].first.albedo = bsdfs_[i].albedo(bundle_->albedo_samples, path.key.of(Use::albedo));
+      if (!scatter(i, points_[i].hit, bsdfs_[i], numbers_[i], pairs_[i], path) || ends(path)) continue;
       bundle_->results[i].scatterings = ++path.depth;
       alive |= 1u << i;
     }

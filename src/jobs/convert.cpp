@@ -25,23 +25,38 @@ constexpr JobParam kParams[] = {
     JobParam("exposure", real, "Change of exposure.", {.default_value = "0", .unit = "stops", .range = {-64, 64}}),
     kDisplayParam,
     kViewParam,
+    JobParam("color-space", text,
+             "Colour space of images that do not state one, as after other programs, such as linear SMPTE-C or XYZ; by "
+             "default linear sRGB (Rec. 709), as OpenEXR defines."),
 };
 
+/// Returns the linear name of --color-space.
+std::string space_of(const Arguments& args) {
+  const std::string name = args.text("color-space");
+  if (name.empty() || name == kXyzName) return name;
+  return std::string(color_space(name, {}).linear_name);
+}
+
 /// Reads an image in linear RGB: its own colours, or three of its bands.
-LinearFile read(const std::string& path, const std::vector<double>& bands_nm) {
-  if (bands_nm.empty()) return read_linear(path);
-  return {.path = path,
-          .space = "linear sRGB",
-          .image = false_color_image(read_image(path, {}), path, bands_nm),
-          .leaf = {},
-          .seed = {}};
+LinearFile read(const std::string& path, const JobRun& run) {
+  constexpr const char* kDefault = "linear sRGB";
+  if (run.args.given("bands")) {
+    Image bands = false_color_image(read_image(path, {}), path, run.args.numbers("bands"));
+    return {.path = path, .space = kDefault, .image = std::move(bands), .leaf = {}, .seed = {}};
+  }
+  const std::string given = space_of(run.args);
+  LinearFile file = read_linear(path, given.empty() ? kDefault : given);
+  if (file.is_assumed && given.empty())
+    run.log().warn({}, fmt::format("{} does not state its colour space: {} is assumed; {} sets another one", path,
+                                   kDefault, run.args.spelled("color-space")));
+  return file;
 }
 
 /// Returns the mean of the images. Throws InputError unless all have one size and one colour space.
-LinearFile mean_of(const std::vector<std::string>& paths, const std::vector<double>& bands_nm) {
-  LinearFile mean = read(paths[0], bands_nm);
+LinearFile mean_of(const std::vector<std::string>& paths, const JobRun& run) {
+  LinearFile mean = read(paths[0], run);
   for (size_t i = 1; i < paths.size(); ++i) {
-    const LinearFile next = read(paths[i], bands_nm);
+    const LinearFile next = read(paths[i], run);
     check_same_size(mean, next);
     if (next.space != mean.space)
       fail({}, "{} is in {}, {} in {}: only images of one colour space are averaged", mean.path, mean.space, next.path,
@@ -60,7 +75,7 @@ Result convert(const JobRun& run) {
   const ColorManager colors;
   check_display_choice(output, colors, display);
   const auto paths = run.args.texts("images");
-  LinearFile mean = mean_of(paths, run.args.numbers("bands"));
+  LinearFile mean = mean_of(paths, run);
   const float scale = float(std::exp2(run.args.real("exposure")) / double(paths.size()));
   for (float& v : mean.image.pixels) v *= scale;
   std::map<std::string, std::string> attributes{{"frond:version", FROND_VERSION}};

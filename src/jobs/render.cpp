@@ -64,6 +64,11 @@ constexpr JobParam kParams[] = {
              "(docs/scene_format.md).",
              {.type = "CHANNELS", .decides = true}),
     JobParam(
+        "for-denoiser", flag,
+        "Render for a denoiser: pixels without common samples (the filter's reconstruction becomes importance), and "
+        "the channels albedo and normal (docs/rendering.md).",
+        {.decides = true}),
+    JobParam(
         "max-rms", real,
         "Stop when the RMS noise of the image's linear colours is below this: a number is in film units (1: white), "
         "2% is relative to each colour's mean over the image. Pixels with more noise get more samples, up to "

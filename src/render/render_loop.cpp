@@ -72,6 +72,7 @@ class Worker {
         tile_(film.format(), {}),
         axis_(job.camera.ray({float(format_.settings.width) / 2, float(format_.settings.height) / 2}, {0.5f, 0.5f}).d) {
     if (format_.splatting) kernel_.emplace(job.filter);
+    if (format_.channels.has("albedo")) bundle_.albedo_samples = kAlbedoSamples;
     if (has_fixed_wavelengths_) bundle_.lambda.fill(job.wavelengths.sample(0));
   }
 
@@ -200,6 +201,8 @@ class Worker {
   }
 
   static constexpr uint32_t kBundle = PathBundle::kMost;
+  /// As in pbrt-v4. A denoiser takes noise of the albedo, which would be that of the colours, for structure.
+  static constexpr int kAlbedoSamples = 16;
   static_assert(kBundle == FilmTile::kBlock);
 
   const RenderJob& job_;

@@ -91,6 +91,11 @@ void apply_overrides(const SceneOverrides& overrides, SceneSettings& description
     override_plugin(*text, registry.integrators.get(text->name, {}), {}, description.integrator);
   if (const auto& text = overrides.filter)
     override_plugin(*text, registry.filters.get(text->name, {}), {}, description.filter);
+  if (overrides.separate_pixels) {
+    ParsedPlugin& filter = description.filter;
+    override_plugin({filter.name, {{"reconstruction", "importance"}}}, registry.filters.get(filter.name, filter.where),
+                    {}, filter);
+  }
   if (!overrides.wavelengths.empty())
     set_wavelengths(description, overrides.wavelengths, {std::make_shared<const std::string>("--wavelengths")});
   if (overrides.seed) description.seed = overrides.seed;

@@ -24,6 +24,7 @@ struct SceneOverrides {
   std::string wavelengths = {};  ///< a PluginText; empty: the scene's
   /// A plug-in of the scene's type overrides only the given parameters; another one replaces it.
   std::optional<PluginText> integrator = {}, filter = {};
+  bool separate_pixels = false;  ///< pixels share no samples: the filter's reconstruction becomes importance
   std::optional<uint64_t> seed = {};
   bool quick = false;  ///< half the resolution, a sixteenth of the samples
 };

@@ -1,5 +1,6 @@
 #include "spectra/color/color_management.h"
 
+#include <OpenColorIO/OpenColorIO.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 namespace frond {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -158,13 +160,63 @@ TEST_F(ColorManagement, DefaultsAreSrgbAndStandard) {
   EXPECT_EQ(manager.source(), "built-in");
 }
 
+/// Values of the sRGB display of OpenColorIO's cg-config-v1.0.0_aces-v1.3_ocio-v2.1, from ACES2065-1.
+TEST_F(ColorManagement, TheAcesViewIsThatOfTheAcesConfigurations) {
+  std::vector<float> rgb{0.18f, 0.18f, 0.18f, 1, 1, 1, 0.05f, 0.08f, 0.03f, 8, 8, 8};
+  const ColorManager manager;
+  manager.display(rgb, "ACES2065-1", "sRGB", "ACES 1.0 - SDR Video");
+  const std::vector<double> expected{0.355952, 0.355953, 0.355953, 0.811975, 0.811975, 0.811975,
+                                     0.036138, 0.214535, 0.058260, 0.984430, 0.984430, 0.984430};
+  for (size_t i = 0; i < rgb.size(); ++i) EXPECT_NEAR(double(rgb[i]), expected[i], 2e-5) << i;
+}
+
+/// The form of the ACES configurations: a reference space that is ACES2065-1, scene-referred spaces, a shared view
+/// transform and displays.
+TEST_F(ColorManagement, AnAcesConfigurationOfTheUserWorks) {
+  const UserConfig file(R"(ocio_profile_version: 2
+roles: {aces_interchange: ACES2065-1, cie_xyz_d65_interchange: CIE-XYZ-D65, default: ACES2065-1}
+file_rules: [!<Rule> {name: Default, colorspace: default}]
+shared_views: [!<View> {name: ACES 1.0 - SDR Video, view_transform: SDR, display_colorspace: <USE_DISPLAY_NAME>}]
+displays: {"sRGB - Display": [!<Views> [ACES 1.0 - SDR Video]]}
+view_transforms:
+  - !<ViewTransform>
+    name: SDR
+    from_scene_reference: !<BuiltinTransform> {style: ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - SDR-VIDEO_1.0}
+display_colorspaces:
+  - !<ColorSpace> {name: CIE-XYZ-D65}
+  - !<ColorSpace>
+    name: sRGB - Display
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_sRGB}
+colorspaces: [!<ColorSpace> {name: ACES2065-1}]
+)");
+  auto theirs = colors(), ours = colors();
+  ColorManager().display(theirs, "linear SMPTE-C", "", "");
+  unsetenv("OCIO");
+  ColorManager().display(ours, "linear SMPTE-C", "sRGB", "ACES 1.0 - SDR Video");
+  for (size_t i = 0; i < ours.size(); ++i) EXPECT_NEAR(double(theirs[i]), double(ours[i]), 2e-5) << i;
+}
+
+/// OpenColorIO has configurations of its own since 2.2; before, the message says so.
+TEST_F(ColorManagement, OpenColorIOsOwnConfigurations) {
+  if (OCIO_NAMESPACE::GetVersionHex() < 0x02020000) {
+    EXPECT_THAT(error_of([] { ColorManager("ocio://default"); }),
+                AllOf(HasSubstr("2.2 and later have"), HasSubstr("OpenColorIO-Config-ACES")));
+    return;
+  }
+  auto theirs = colors(), ours = colors();
+  ColorManager("ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1").display(theirs, "linear sRGB", "", "");
+  ColorManager().display(ours, "linear sRGB", "sRGB", "ACES 1.0 - SDR Video");
+  for (size_t i = 0; i < ours.size(); ++i) EXPECT_NEAR(double(theirs[i]), double(ours[i]), 2e-5) << i;
+  EXPECT_FALSE(ColorManager("ocio://default").displays().empty());
+}
+
 TEST_F(ColorManagement, UnknownNamesAreAnsweredWithWhatThereIs) {
   const ColorManager manager;
   std::vector<float> rgb{0, 0, 0};
   EXPECT_EQ(error_of([&] { manager.display(rgb, "XYZ", "rsGB", ""); }),
             "unknown display \"rsGB\"; did you mean \"sRGB\"?");
   EXPECT_EQ(error_of([&] { manager.check_display("XYZ", "sRGB", "Filmic"); }),
-            "unknown view of display sRGB \"Filmic\"; there are Standard, Raw");
+            "unknown view of display sRGB \"Filmic\"; there are Standard, ACES 1.0 - SDR Video, Raw");
   EXPECT_THAT(error_of([&] { manager.convert(rgb, "linear SMPTE", "XYZ"); }),
               HasSubstr("unknown color space \"linear SMPTE\"; did you mean \"linear SMPTE-C\"?"));
 }

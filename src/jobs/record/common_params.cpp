@@ -37,6 +37,12 @@ SceneOverrides overrides_of(const Arguments& args) {
   if (args.declares("wavelengths")) overrides.wavelengths = wavelengths_text(args);
   if (has(args, "integrator")) overrides.integrator = parse_plugin_text(args.text("integrator"), {});
   if (has(args, "filter")) overrides.filter = parse_plugin_text(args.text("filter"), {});
+  overrides.separate_pixels = args.declares("for-denoiser") && args.flag("for-denoiser");
+  if (overrides.separate_pixels && overrides.filter)
+    for (const auto& [name, value] : overrides.filter->params)
+      if (name == "reconstruction" && value != "importance")
+        fail({}, "{} means \"reconstruction=importance\": {} asks for \"{}\"", args.spelled("for-denoiser"),
+             args.spelled("filter"), value);
   if (has(args, "seed")) overrides.seed = args.seed("seed");
   overrides.quick = args.declares("quick") && args.flag("quick");
   return overrides;

@@ -103,10 +103,16 @@ void RenderTask::apply_arguments() {
   film_file_ = film.filename;
   film_where_ = description_.film.where;
   if (args.given("samples")) samples_ = range_of(args);
-  const std::string channels = args.text("channels");
+  std::vector<std::string> channels;
+  if (const std::string text = args.text("channels"); !text.empty()) channels = split(text, ',');
+  if (args.flag("for-denoiser")) {
+    channels.emplace_back("normal");
+    const bool has_colors = !make_wavelengths(description_, session.registry())->film_space().empty();
+    if (has_colors) channels.emplace_back("albedo");  // a colour, which a film of bands cannot hold
+  }
   request_ = {.pixels = film.crop,
               .is_part = args.given("part"),
-              .channels = channels.empty() ? std::vector<std::string>() : split(channels, ','),
+              .channels = channels,
               .color_space = args.text("color-space"),
               .adaptive = is_adaptive(),
               .command = identifying_command(kRenderJob, args)};

@@ -27,7 +27,20 @@ std::filesystem::path config_in_use(const std::filesystem::path& config) {
   return environment ? environment : "";
 }
 
+/// OpenColorIO reads its own configurations (ocio://default) since 2.2; older versions look for a file of that name.
+void check_uri(const std::filesystem::path& path) {
+  constexpr int kFirstWithConfigurations = 0x02020000;
+  if (!path.string().starts_with("ocio://") || OCIO::GetVersionHex() >= kFirstWithConfigurations) return;
+  fail({},
+       "OCIO=\"{}\": OpenColorIO {} of this machine has no configurations of its own; 2.2 and later have. Set OCIO to "
+       "a file, such as cg-config-v1.0.0_aces-v1.3_ocio-v2.1.ocio from "
+       "https://github.com/AcademySoftwareFoundation/OpenColorIO-Config-ACES/releases, or unset it: frond's own "
+       "configuration has the view \"ACES 1.0 - SDR Video\" of the display sRGB",
+       path.string(), OCIO::GetVersion());
+}
+
 OCIO::ConstConfigRcPtr read_config(const std::filesystem::path& path) try {
+  check_uri(path);
   return OCIO::Config::CreateFromFile(path.c_str());
 } catch (const OCIO::Exception& e) {
   fail({}, "cannot read the OpenColorIO configuration \"{}\" (environment variable OCIO): {}", path.string(), e.what());

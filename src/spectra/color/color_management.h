@@ -14,8 +14,8 @@ namespace frond {
 /// which the two are connected. Every function throws InputError for an unknown name, with a suggestion.
 class ColorManager {
  public:
-  /// `config` is a configuration file; empty: the file named by the environment variable OCIO, else the built-in one.
-  /// Throws InputError if the file cannot be read.
+  /// `config` is a configuration file, or with OpenColorIO 2.2 one of its own (ocio://default); empty: the one named by
+  /// the environment variable OCIO, else frond's. Throws InputError if it cannot be read.
   explicit ColorManager(const std::filesystem::path& config = {});
   ~ColorManager();
   ColorManager(ColorManager&&) noexcept;
