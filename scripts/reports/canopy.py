@@ -1,18 +1,16 @@
-"""docs/radiometry.md: canopies against a reference, and which leaf model is enough in one."""
+"""docs/radiometry.md: which leaf model is accurate enough in a canopy."""
 
 import itertools
 import pathlib
-import shutil
 import tempfile
 import textwrap
-import time
 
 import numpy
 import pandas
 
 import charts
 import frond
-from tools import FROND, ROOT, arguments, machine, program, program_csv, rms, run, table, write_section
+from tools import arguments, machine, program, program_csv, rms, table, write_section
 
 DIFFUSE = "leaf_lambert,bihemispherical=true"
 MODELS = ["leaf_lambert", DIFFUSE, "leaf_simplified", "leaf_solved"]
@@ -40,26 +38,6 @@ NamedMaterial "leaf"
 ObjectBegin "leaf" Shape "disk" ObjectEnd
 Shape "instances" "string object" "leaf" "string filename" "leaves.npy"
 """
-
-
-def het01(folder, asked):
-    """Compares the BRF of the 76 angles with the reference; returns a paragraph."""
-    run("env", f"FROND={FROND}", ROOT / "scenes/canopy/make", folder)
-    shutil.copy(ROOT / "scenes/canopy/het01.pbrt", folder)
-    start = time.process_time()
-    ours = frond.brf(folder / "het01.pbrt", [800], zenith=range(-75, 76, 2), rms=asked)
-    cpu = time.process_time() - start
-    reference = pandas.read_csv(ROOT / "tests/reference/het01_brfpp.csv", comment="#")
-    both = ours.merge(reference, left_on="zenith_deg", right_on="vza_deg", suffixes=("", "_reference"), validate="one_to_one")
-    assert len(both) == len(ours)
-    relative, error = both.brf / both.brf_reference - 1, both.brf_se / both.brf_reference
-    z = (both.brf - both.brf_reference) / numpy.hypot(both.brf_se, both.brf_se_reference)
-    off, worst = ((abs(relative) > 0.005) & (abs(z) > 3)).sum(), abs(z).idxmax()
-    return textwrap.fill(
-        f"{len(both)} angles in {cpu:.0f} s of CPU time. Mean difference {100 * relative.mean():+.2f} ± "
-        f"{100 * rms(error) / len(both)**0.5:.2f} %; RMS difference {100 * rms(relative):.2f} %, with an RMS standard error of "
-        f"{100 * rms(error):.2f} %; largest difference {z[worst]:+.1f} standard errors, at {both.zenith_deg[worst]:g}°. Angles "
-        f"that differ by more than both 0.5 % and 3 standard errors: {off or 'none'}.", 130, break_on_hyphens=False)
 
 
 class Canopy:
@@ -118,14 +96,6 @@ def chart(path, canopies):
 SECTION = """## Measurements
 
 Machine: {machine}.
-
-### RAMI HET01 against Eradiate's reference
-
-The scene (`scenes/canopy/het01.pbrt`) has 15 balls of radius 10 m with 49,999 leaves each, over soil, in the near infrared. The
-positions of the leaves are drawn anew from the published description. The reference is from Eradiate's regression suite
-(`tests/reference/het01_brfpp.csv`).
-
-{het01}
 
 ### Accuracy of leaf models in homogeneous canopies
 
@@ -204,16 +174,10 @@ def verdict(canopies):
 
 
 def main():
-    options = arguments("canopy", ("--only", dict(choices=["het01", "study"], help="print this part alone; write no page")),
-                        ("--rms", dict(type=float, help="relative standard error of the BRFs")))
+    options = arguments("canopy", ("--rms", dict(type=float, help="relative standard error of the BRFs")))
     asked, paths = options.rms or (0.1 if options.quick else RMS), "1e4" if options.quick else "2e5"
     with tempfile.TemporaryDirectory(prefix="frond_canopy.") as name:
         folder = pathlib.Path(name)
-        if options.only != "study":
-            het = het01(folder, 0.03 if options.quick else 0.003)
-            print(het, flush=True)
-        if options.only == "het01":
-            return
         canopies = []
         for angles, index, sun in itertools.product(ANGLES, INDICES, SUNS):
             if not options.quick or (index, sun) == (3, 45):
@@ -221,12 +185,9 @@ def main():
                 print(canopies[-1].name(), flush=True)
     noise = 100 * rms(numpy.stack([c.difference(MODELS[0])[1] for c in canopies]))
     print(nadir_table(canopies), extremes_table(canopies), par_table(canopies), verdict(canopies), sep="\n")
-    if options.only:
-        return
     chart(options.docs / "images" / "canopy.svg", canopies)
     write_section(options.docs / "radiometry.md", "canopy",
-                  SECTION.format(machine=machine(), het01=het, noise=noise, nadir=nadir_table(canopies),
-                                 extremes=extremes_table(canopies),
+                  SECTION.format(machine=machine(), noise=noise, nadir=nadir_table(canopies), extremes=extremes_table(canopies),
                                  par=par_table(canopies), verdict=verdict(canopies)))
 
 
