@@ -232,8 +232,7 @@ public; the table has frond's values, with errors from the draws, and three chec
 energy.
 
 **Homogeneous layer**: disks with spherical leaf angles, leaf area index 3, between 0 and 2 m, leaves and soil as in HET01, sun at 30°.
-The reference is a solution by doubling of the turbid medium (`scripts/reports/turbid.py`), the limit of small leaves. Larger leaves
-have a wider hot spot, which raises the albedo. Errors are those of the mean of {draws} draws."""
+The reference is a solution by doubling of the turbid medium (`scripts/reports/turbid.py`), the limit of small leaves. Errors are those of the mean of {draws} draws."""
 
 
 def main():

@@ -91,6 +91,12 @@ TEST_F(Hostile, EveryReaderOfCsvNamesAFileWithoutRows) {
   }
 }
 
+TEST_F(Hostile, ATableOfNoInstancesIsRefused) {
+  const std::string csv = folder_.write("none.csv", "x,y,z\n").string();
+  EXPECT_THAT(refusal({"instances", csv, "-o", path("i.npy")}, "i.npy"),
+              HasSubstr("none.csv:1:1: the file has no rows"));
+}
+
 TEST_F(Hostile, WhatIsFixedIsWhatAMaterialTakes) {
   for (const std::string fixed : {"thickness=1e30", "thickness=1e-320", "chlorophylla=1e308", "spongyaspect=1e300"})
     EXPECT_THAT(refusal({"fit", "--data", "wavelength,R,T\n550,0.1,0.1\n", "--like", "soybean", "--fix", fixed, "-o",
