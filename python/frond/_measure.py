@@ -138,19 +138,26 @@ class Fit:
 
     rmse = property(lambda self: self.result.facts["rmse"], doc="Root mean square error of R and T together.")
     numbers = property(lambda self: self.result.tables["numbers"],
-                       doc="Table of the fitted parameters: value, relative_standard_error, identified.")
+                       doc="Table of the fitted parameters: value, unit, relative_standard_error, identified.")
+    contents = property(lambda self: self.result.tables["contents"],
+                        doc="Table of contents per leaf area: chlorophyll (a and b), carotenoids and anthocyanins in ug/cm2, "
+                            "water and drymatter in g/cm2; relative_standard_error.")
+    misfits = property(lambda self: self.result.tables["misfits"],
+                       doc="Table of the bands in which R or T is off by more than 0.01, with the lowest R that the fitted "
+                           "structure reaches there with any absorption.")
     spectra = property(lambda self: self.result.tables["spectra"], doc="Table of the measured and the fitted spectra.")
 
     @property
     def parameters(self):
         """{parameter: value} for Mitsuba's `frond_leaf`."""
-        return {"specimen": self.result.facts["specimen"], **self.leaf, "sieve": self.result.facts["sieve"]}
+        return {"specimen": self.result.facts["specimen"], **self.leaf, "absorption": self.result.facts["absorption"],
+                "sieve": self.result.facts["sieve"]}
 
     @property
     def material(self):
         """Parameters as text: ["specimen=soybean", "thickness=0.00017", ...]. Joined by commas behind "leaf_solved," they
         are a material for `swap` and the instruments."""
-        parts = [f"specimen={self.result.facts['specimen']}"] + [f"{name}={value!r}" for name, value in self.leaf.items()]
+        parts = [f"{name}={self.result.facts[name]}" for name in ("specimen", "absorption")] + [f"{name}={value!r}" for name, value in self.leaf.items()]
         return parts + (["sieve=true"] if self.result.facts["sieve"] else [])
 
     def scene(self, material="leaf"):
@@ -183,7 +190,7 @@ def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
 
     wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing. path: a file, in place of
     these arrays. sieve: True or False, absorption with sieve and detour effects; by default
-    whichever fits better. fix: {"chlorophylla": 3.9}.
+    whichever fits better. fix: {"chlorophylla": 3.9}, or per leaf area {"chlorophyll": "40ug/cm2", "water": "0.012g/cm2"}.
     Raises ValueError or InputError."""
     if (path is None) == (wavelengths is None):
         raise ValueError("fit takes measurements, or the path of a file with them")

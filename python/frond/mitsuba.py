@@ -24,10 +24,12 @@ from . import _frond
 from ._session import default_session
 
 #: Concentrations, which change the optical depth; each may be a texture.
-CHEMISTRY = ("chlorophylla", "chlorophyllb", "carotenoids", "protein", "cellulose", "lignin", "otherabsorption")
+CHEMISTRY = ("chlorophylla", "chlorophyllb", "carotenoids", "protein", "cellulose", "lignin", "anthocyanins", "drymatter",
+             "otherabsorption")
 _GEOMETRY = ("thickness", "mesophyllfraction")
-_NUMBERS = CHEMISTRY + _GEOMETRY + ("cuticleaspect", "epidermisaspect", "spongyaspect", "palisadeaspect")
-_WORDS = ("specimen", "incident")
+_NUMBERS = CHEMISTRY + _GEOMETRY + ("cuticleaspect", "epidermisaspect", "spongyaspect", "palisadeaspect", "spongyshare",
+                                     "cuticlerefractivity")
+_WORDS = ("specimen", "absorption", "incident")
 _RGB_NM = (608.0, 551.0, 455.0)
 _SPECTRUM_NM = numpy.arange(360.0, 830.1, 2.5)
 _COSINE_CELLS = 64

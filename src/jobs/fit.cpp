@@ -5,6 +5,7 @@
 
 #include "jobs/record/common_params.h"
 #include "leaf/fit/measured_spectra.h"
+#include "leaf/tissue/area_content.h"
 #include "report/chart.h"
 #include "report/fit_report.h"
 #include "report/text_output.h"
@@ -20,6 +21,7 @@ namespace {
 using enum ArgumentKind;
 
 constexpr std::string_view kStructures[] = {"bifacial", "unifacial"}, kSieve[] = {"on", "off"},
+                           kAbsorption[] = {"prospect", "baranoski"},
                            kMaterials[] = {"leaf", "leaf_solved", "leaf_simplified", "leaf_lambert", "abm"};
 
 constexpr JobParam kParams[] = {
@@ -39,29 +41,77 @@ constexpr JobParam kParams[] = {
              {.choices = kStructures, .decides = true}),
     JobParam("sieve", text, "Absorption with sieve and detour effects; by default the better fit.",
              {.choices = kSieve, .decides = true}),
-    JobParam("fix", texts, "NAME=NUMBER: keep a parameter at this value, in the units of scene files.",
-             {.type = "NAME=NUMBER", .decides = true}),
+    JobParam(
+        "absorption", text,
+        "Specific absorption of the leaf: PROSPECT-D's, with dry matter and anthocyanins, or the published model's, "
+        "with protein and cellulose.",
+        {.default_value = "prospect", .choices = kAbsorption, .decides = true}),
+    JobParam(
+        "fix", texts,
+        "NAME=NUMBER[UNIT]: keep a parameter at this value, in the units of scene files, or a content per leaf area "
+        "in ug/cm2, mg/cm2 or g/cm2 (chlorophyll=40ug/cm2, water=0.012g/cm2).",
+        {.type = "NAME=NUMBER", .decides = true}),
     JobParam("like", text, "Specimen used as a prior (standard deviation about one third).",
              {.choices = leaf::kSpecimenNames, .decides = true}),
     JobParam("material", text, "Material type to write.",
              {.default_value = "leaf", .choices = kMaterials, .decides = true}),
 };
 
+/// Units of contents that --fix accepts. "g/cm2" is last: the others end like it.
+constexpr leaf::AreaUnit kAreaUnits[] = {leaf::kMicrogramsPerCm2,
+                                         {"\u00b5g/cm2", leaf::kMicrogramsPerCm2.per_kg_per_m2},
+                                         leaf::kMilligramsPerCm2,
+                                         leaf::kGramsPerCm2};
+
+/// Whether the parameter is a concentration in the mesophyll.
+bool is_concentration(std::string_view name) {
+  if (name == "chlorophyllb" || name == "lignin") return true;
+  const auto* v = std::ranges::find(leaf::kFitVariables, name, &leaf::FitVariable::name);
+  return v != std::end(leaf::kFitVariables) && !v->is_structure && v->number != &leaf::TissueParams::thickness_m &&
+         v->number != &leaf::TissueParams::other_absorption;
+}
+
 /// Parses NAME=NUMBER for a fitted parameter, or for one that depends on a fitted parameter. Throws InputError.
 leaf::FitRequest::Fixed fixed_of(const std::string& word, const std::string& option) {
-  std::vector<std::string_view> names{"mesophyllfraction", "chlorophyllb", "lignin"};
+  std::vector<std::string_view> names{"mesophyllfraction", "chlorophyllb", "lignin", "chlorophyll", "water"};
   for (const leaf::FitVariable& v : leaf::kFitVariables) names.push_back(v.name);
   const size_t equals = word.find('=');
   const std::string name = word.substr(0, equals);
   if (std::ranges::find(names, name) == names.end())
     fail({}, "{}: there is no fit parameter \"{}\"{}", option, name, suggestion(name, names));
-  const auto value = equals == word.npos ? std::nullopt : parse_number(word.substr(equals + 1));
+  std::string number = equals == word.npos ? "" : word.substr(equals + 1);
+  const auto* unit =
+      std::ranges::find_if(kAreaUnits, [&](const leaf::AreaUnit& u) { return number.ends_with(u.name); });
+  const bool per_area = unit != std::end(kAreaUnits), only_per_area = name == "chlorophyll" || name == "water";
+  if (per_area) number.resize(number.size() - unit->name.size());
+  if (per_area && !only_per_area && !is_concentration(name))
+    fail({}, "{} {}: {} is not a content per leaf area", option, word, name);
+  if (only_per_area && !per_area)
+    fail({}, "{} {}: a unit is needed, such as {}", option, word,
+         name == "water" ? "water=0.012g/cm2" : "chlorophyll=40ug/cm2");
+  auto value = parse_number(number);
   if (!value || !(*value >= 0) || !std::isfinite(*value))
-    fail({}, "{} {}: {}=NUMBER is needed, 0 at least, in the scene's units", option, word, name);
+    fail({}, "{} {}: {}=NUMBER is needed, 0 at least, in the scene's units or with ug/cm2, mg/cm2 or g/cm2", option,
+         word, name);
   for (const leaf::FitVariable& v : leaf::kFitVariables)
     if (v.name == name && !(*value > 0) && (v.is_structure || v.number == &leaf::TissueParams::thickness_m))
       fail({}, "{} {}: {} is above 0", option, word, name);
-  return {name, *value};
+  if (name == "water" && !(*value > 0)) fail({}, "{} {}: {} is above 0", option, word, name);
+  return {name, per_area ? *value / unit->per_kg_per_m2 : *value, per_area};
+}
+
+/// Throws InputError for parameters that contradict each other.
+void check_contradictions(const leaf::FitRequest& request, const std::string& option) {
+  const auto given = [&](std::string_view name) {
+    return std::ranges::find(request.fixed, name, &leaf::FitRequest::Fixed::name) != request.fixed.end();
+  };
+  for (const leaf::FitRequest::Fixed& fixed : request.fixed)
+    if (fixed.name == "mesophyllfraction" && fixed.value == 0)
+      fail({}, "{}: a mesophyll fraction of 0 absorbs nothing", option);
+  if (given("water") && given("thickness"))
+    fail({}, "{}: water per area and the mesophyll fraction give the thickness", option);
+  if (given("chlorophyll") && (given("chlorophylla") || given("chlorophyllb")))
+    fail({}, "{}: chlorophyll is the sum of chlorophylla and chlorophyllb", option);
 }
 
 /// Returns the structure of --structure or --like; nullopt: fit both and select the better one. Throws InputError if
@@ -84,10 +134,15 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasure
   request.structure = structure_of(args, request.like);
   if (args.given("sieve")) request.sieve = args.text("sieve") == "on";
   for (const std::string& word : args.texts("fix")) request.fixed.push_back(fixed_of(word, args.spelled("fix")));
+  check_contradictions(request, args.spelled("fix"));
+  if (args.text("absorption") == "baranoski") request.absorption_tables = leaf::AbsorptionTables::baranoski;
   size_t values = 0;
   for (const leaf::LeafMeasurement& r : request.measurements) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
   // Fewer values than parameters leave the fit undetermined, unless a prior determines the rest.
-  const size_t all = std::size(leaf::kFitVariables), free = all - std::min(all, request.fixed.size());
+  const auto all = static_cast<size_t>(std::ranges::count_if(leaf::kFitVariables, [&](const leaf::FitVariable& v) {
+    return !v.only_with || *v.only_with == request.absorption_tables;
+  }));
+  const size_t free = all - std::min(all, request.fixed.size());
   const Location where =
       args.given("file") ? Location{std::make_shared<const std::string>(args.text("file")), 0, 0} : Location{};
   if (values == 0) fail(where, "there is no value to fit within 360 to 2500 nm");
@@ -100,10 +155,22 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasure
 /// Throws InputError for a value that the material would refuse.
 void check_fixed(const std::vector<leaf::FitRequest::Fixed>& fixed, const MaterialInfo& material,
                  const std::string& option) {
-  for (const auto& [name, value] : fixed)
-    if (const Param* p = find_param(material, name); p && !p->range.contains(value))
+  for (const auto& [name, value, per_area] : fixed)
+    if (const Param* p = find_param(material, name); p && !per_area && !p->range.contains(value))
       fail({}, "{} {}: {:g} is outside its range {:g} to {:g} {}", option, name, value, p->range.min, p->range.max,
            p->unit);
+}
+
+/// Throws InputError if contents per area that were given lead to a leaf that the material would refuse.
+void check_fitted(const leaf::TissueParams& fitted, const MaterialInfo& material, const std::string& option) {
+  const auto check = [&](std::string_view name, double value) {
+    const Param* p = find_param(material, name);
+    if (p && !p->range.contains(value))
+      fail({}, "{}: the contents per area need {} {:g}, outside its range {:g} to {:g} {}", option, name, value,
+           p->range.min, p->range.max, p->unit);
+  };
+  for (const leaf::FitVariable& v : leaf::kFitVariables) check(v.name, fitted.*v.number);
+  check("chlorophyllb", fitted.chlorophyll_b);
 }
 
 /// Reads the measurements of --file or --data. Rows outside 360 to 2500 nm are left out with a warning.
@@ -133,6 +200,7 @@ Result fit(const JobRun& run) {
   check_fixed(request.fixed, run.session().registry().materials.get(args.text("material"), {}), args.spelled("fix"));
   const double start = cpu_seconds();
   const leaf::FitResult fitted = leaf::fit_leaf(request, run.session().pool());
+  check_fitted(fitted.params, run.session().registry().materials.get(args.text("material"), {}), args.spelled("fix"));
   run.log().info(fmt::format("fitted in {:.2g} s of CPU", cpu_seconds() - start));
   std::string source = args.given("file") ? std::filesystem::path(args.text("file")).filename().string() : "data";
   if (args.given("leaf")) source += ", " + args.text("leaf");

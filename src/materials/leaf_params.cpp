@@ -50,6 +50,7 @@ leaf::DepthMap LeafParams::read(const Params& p) {
         Named{&TissueParams::chlorophyll_a, "chlorophylla"}, Named{&TissueParams::chlorophyll_b, "chlorophyllb"},
         Named{&TissueParams::carotenoids, "carotenoids"}, Named{&TissueParams::protein, "protein"},
         Named{&TissueParams::cellulose, "cellulose"}, Named{&TissueParams::lignin, "lignin"},
+        Named{&TissueParams::anthocyanins, "anthocyanins"}, Named{&TissueParams::dry_matter, "drymatter"},
         Named{&TissueParams::other_absorption, "otherabsorption"}})
     if (auto texture = replace(number, name))
       varying.push_back({[number = number](TissueParams& t) -> double& { return t.*number; }, std::move(texture)});
@@ -57,6 +58,11 @@ leaf::DepthMap LeafParams::read(const Params& p) {
               replace(&TissueParams::epidermis_aspect, "epidermisaspect"),
               replace(&TissueParams::spongy_aspect, "spongyaspect"),
               replace(&TissueParams::palisade_aspect, "palisadeaspect")};
+  if (p.given("absorption"))
+    tissue_.absorption_tables =
+        p.string("absorption") == "prospect" ? leaf::AbsorptionTables::prospect : leaf::AbsorptionTables::baranoski;
+  if (p.given("spongyshare")) tissue_.spongy_share = p.real("spongyshare");
+  if (p.given("cuticlerefractivity")) tissue_.cuticle_refractivity = p.real("cuticlerefractivity");
   if (p.given("sieve")) tissue_.sieve_and_detour = p.boolean("sieve");
   read_pigments(p, varying);
   return {tissue_, varying};

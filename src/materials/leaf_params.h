@@ -17,6 +17,7 @@ namespace detail {
 
 inline constexpr Unit kDensity = "kg/m^3";
 
+inline constexpr std::string_view kAbsorption[] = {"baranoski", "prospect"};
 inline constexpr std::string_view kIncident[] = {"traced", "light", "reciprocal"};
 
 // A parameter that may be a texture.
@@ -49,10 +50,32 @@ inline constexpr std::array kLeafParams{
     detail::leaf_number("cellulose", detail::kDensity, {0, 1500},
                         "Cellulose in the mesophyll; by default the specimen's."),
     detail::leaf_number("lignin", detail::kDensity, {0, 1500}, "Lignin in the mesophyll; by default the specimen's."),
+    detail::leaf_number("anthocyanins", detail::kDensity, {0, 100},
+                        "Anthocyanins in the mesophyll, with PROSPECT-D's spectrum; by default the specimen's."),
+    detail::leaf_number("drymatter", detail::kDensity, {0, 1500},
+                        "Dry matter in the mesophyll, with PROSPECT-D's spectrum, instead of protein, cellulose and "
+                        "lignin; by default the specimen's."),
     detail::leaf_number(
         "otherabsorption", "1/m", {0, 1e5},
         "Absorption coefficient of the mesophyll's other constituents (starch, sugars, tannins), the same "
         "at every wavelength; by default the specimen's."),
+    Param{.name = "absorption",
+          .kind = ParamKind::string,
+          .doc = "Specific absorption of chlorophylls, carotenoids and water. baranoski: as published with the model; "
+                 "prospect: as calibrated for PROSPECT-D; by default the specimen's.",
+          .choices = detail::kAbsorption},
+    Param{.name = "spongyshare",
+          .kind = ParamKind::real,
+          .range = {0, 1},
+          .doc =
+              "Share of the mesophyll's absorption that lies below the air space, in bifacial leaves; by default the "
+              "specimen's: 0 in the published model."},
+    Param{.name = "cuticlerefractivity",
+          .kind = ParamKind::real,
+          .range = {0.1, 2},
+          .doc = "Refractivity (refractive index - 1) of the cuticle, relative to the published one: 0.25 is an "
+                 "effective index of 1.13 at 550 nm, as of a surface that hardly reflects; by default the specimen's, "
+                 "1 in the published model."},
     detail::leaf_number("cuticleaspect", "", {0, 1000},
                         "Aspect ratio of the cuticle's undulations: the exponent of the surface lobe; by default the "
                         "specimen's."),

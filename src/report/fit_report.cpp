@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
+#include "leaf/tissue/area_content.h"
 #include "report/share_tables.h"
 
 namespace frond {
@@ -15,6 +17,7 @@ namespace {
 using leaf::FittedNumber;
 using leaf::TissueParams;
 
+/// A range of wavelengths by its usual name.
 struct NamedBand {
   std::string_view name;
   Interval nm;
@@ -23,7 +26,11 @@ constexpr NamedBand kBands[] = {{"visible", {360, 700}},
                                 {"red edge", {700, 760}},
                                 {"near infrared", {760, 1300}},
                                 {"short-wave infrared", {1300, 2500}}};
+/// Correlation above which two parameters are reported as not separated.
 constexpr double kGoTogether = 0.9;
+
+/// Whether the leaf absorbs with PROSPECT-D's tables.
+bool is_prospect(const leaf::FitResult& r) { return r.params.absorption_tables == leaf::AbsorptionTables::prospect; }
 
 /// A parameter of the leaf, by its name and in its unit in scene files.
 struct Said {
@@ -41,37 +48,68 @@ std::vector<Said> said(const FitReport& report) {
                         {"protein", p.protein},
                         {"cellulose", p.cellulose},
                         {"lignin", p.lignin},
+                        {"anthocyanins", p.anthocyanins},
+                        {"drymatter", p.dry_matter},
                         {"otherabsorption", p.other_absorption},
                         {"epidermisaspect", p.epidermis_aspect},
-                        {"spongyaspect", p.spongy_aspect}};
-  if (p.structure == leaf::Structure::bifacial) all.push_back({"palisadeaspect", p.palisade_aspect});
+                        {"spongyaspect", p.spongy_aspect},
+                        {"cuticlerefractivity", p.cuticle_refractivity}};
+  if (p.structure == leaf::Structure::bifacial) {
+    all.push_back({"palisadeaspect", p.palisade_aspect});
+    all.push_back({"spongyshare", p.spongy_share});
+  }
   return all;
-}
-
-/// Whether the leaf's structure has this parameter.
-bool exists(const FitReport& report, const FittedNumber& number) {
-  return report.result.params.structure == leaf::Structure::bifacial ||
-         number.variable->number != &TissueParams::palisade_aspect;
 }
 
 /// Returns the names of the parameters that the data do not determine.
 std::vector<std::string> not_told(const FitReport& report) {
   std::vector<std::string> names;
   for (const FittedNumber& n : report.result.numbers)
-    if (exists(report, n) && !n.is_fixed && !n.is_identified()) names.emplace_back(n.variable->name);
+    if (!n.is_fixed && !n.is_identified()) names.emplace_back(n.variable->name);
   return names;
 }
 
+/// Returns what the reader must know of an estimate; empty: nothing.
 std::string note(const FittedNumber& n) {
   if (n.is_fixed) return "as given";
   if (n.is_at_bound) return "at a limit of its range: not determined by the data";
   return n.is_identified() ? "" : "not determined by the data";
 }
 
+/// Returns the unit of a parameter in scene files; empty: none.
+std::string_view unit_of(const FittedNumber& n) {
+  if (n.variable->is_structure) return "";
+  if (n.variable->number == &TissueParams::thickness_m) return "m";
+  return n.variable->number == &TissueParams::other_absorption ? "1/m" : "kg/m^3";
+}
+
+/// The unit that the literature uses: micrograms for pigments, grams for water and dry matter.
+leaf::AreaUnit area_unit_of(const leaf::FittedContent& c) {
+  return c.name == "water" || c.name == "drymatter" ? leaf::kGramsPerCm2 : leaf::kMicrogramsPerCm2;
+}
+
+/// Whether the leaf's surface alone reflects more than was measured in the band.
+bool is_below_reach(const leaf::MisfitBand& band) { return !band.is_t && band.measured < band.lowest_r; }
+
+/// Table of the bands that the fitted leaf misses.
+std::string misfit_text(const FitReport& report) {
+  const auto& misfits = report.result.misfits;
+  if (misfits.empty()) return "";
+  const bool one_angle = distinct(report.request.measurements, &leaf::LeafMeasurement::theta_deg).size() == 1;
+  std::string text =
+      fmt::format("  off by more than {:<19.2g}fitted  measured  lowest R with any absorption\n", leaf::kMisfit);
+  for (const leaf::MisfitBand& band : misfits)
+    text += fmt::format("    {} {:4.0f} to {:4.0f} nm {:<15}{:.4f}    {:.4f}    {}\n", band.is_t ? "T" : "R",
+                        band.nm.min, band.nm.max, one_angle ? "" : fmt::format("at {:g} degrees", band.theta_deg),
+                        band.fitted, band.measured, band.is_t ? "" : fmt::format("{:.4f}", band.lowest_r));
+  return text;
+}
+
+/// Returns the estimates in the order of the correlations.
 std::vector<const FittedNumber*> free_numbers(const FitReport& report) {
   std::vector<const FittedNumber*> free;
   for (const FittedNumber& n : report.result.numbers)
-    if (exists(report, n) && !n.is_fixed) free.push_back(&n);
+    if (!n.is_fixed) free.push_back(&n);
   return free;
 }
 
@@ -85,6 +123,7 @@ std::string fit_scene(const FitReport& report) {
     text += fmt::format("# Not determined by the data, so no measurement: {}.\n", fmt::join(names, ", "));
   text += fmt::format("Material \"{}\" \"string specimen\" \"{}\"\n", report.material, result.specimen->name);
   for (const auto& [name, value] : said(report)) text += fmt::format("    \"float {}\" {:.6g}\n", name, value);
+  if (is_prospect(result)) text += "    \"string absorption\" \"prospect\"\n";
   if (result.params.sieve_and_detour) text += "    \"bool sieve\" true\n";
   return text;
 }
@@ -98,16 +137,28 @@ std::string fit_text(const FitReport& report) {
       text += fmt::format("  {:<20} {:4.0f} to {:4.0f} nm   RMSE {:.4f}\n", band.name, band.nm.min, band.nm.max, *rmse);
   if (const auto far = std::ranges::count(result.fitted, true, &leaf::FitResult::Fitted::is_outlier); far > 0)
     text += fmt::format("  outliers (residual above 0.06, less weight): {}\n", far);
+  text += misfit_text(report);
   text += fmt::format("structure of {}, {} the sieve effect\n", result.specimen->name,
                       result.params.sieve_and_detour ? "with" : "without");
   for (const FittedNumber& n : result.numbers)
-    if (exists(report, n))
-      text += fmt::format("  {:<16} {:>10.4g}  {}{}\n", n.variable->name, n.value,
-                          n.is_identified() ? fmt::format("+- {:.2g} %", 100 * n.relative_error) : "", note(n));
-  text += fmt::format(
-      "  chlorophyllb {:.4g} and lignin {:.4g} follow chlorophylla and cellulose, which absorb alike;\n"
-      "  mesophyllfraction {:.4g} acts by its product with the thickness alone\n",
-      result.params.chlorophyll_b, result.params.lignin, result.params.mesophyll_fraction);
+    text += fmt::format("  {:<20} {:>10.4g} {:<8}{}{}\n", n.variable->name, n.value, unit_of(n),
+                        n.is_identified() ? fmt::format("+- {:.2g} %", 100 * n.relative_error) : "", note(n));
+  text +=
+      fmt::format("  chlorophyllb {:.4g} follows chlorophylla, which absorbs alike;\n", result.params.chlorophyll_b);
+  if (result.params.lignin > 0)
+    text += fmt::format("  lignin {:.4g} follows cellulose, which absorbs alike;\n", result.params.lignin);
+  text += fmt::format("  mesophyllfraction {:.4g} acts by its product with the thickness alone\n",
+                      result.params.mesophyll_fraction);
+  constexpr double kExact = 1e-9;  // relative error of a content that was given
+  text += "per leaf area\n";
+  for (const leaf::FittedContent& c : result.contents) {
+    const auto [unit, scale] = area_unit_of(c);
+    text += fmt::format("  {:<20} {:>10.4g} {:<8}{}\n", c.name, c.kg_per_m2 * scale, unit,
+                        c.relative_error > kExact && c.relative_error < 0.5
+                            ? fmt::format("+- {:.2g} %", 100 * c.relative_error)
+                        : c.relative_error > kExact ? "not determined by the data"
+                                                    : "as given");
+  }
   const auto free = free_numbers(report);
   for (size_t a = 0; a < free.size(); ++a)
     for (size_t b = 0; b < a; ++b)
@@ -126,13 +177,15 @@ std::vector<Fact> fit_facts(const FitReport& report) {
           {"rmse_T", r.rmse_t},
           {"specimen", std::string(r.specimen->name)},
           {"structure", std::string(r.params.structure == leaf::Structure::bifacial ? "bifacial" : "unifacial")},
-          {"sieve", r.params.sieve_and_detour}};
+          {"sieve", r.params.sieve_and_detour},
+          {"absorption", std::string(is_prospect(r) ? "prospect" : "baranoski")}};
 }
 
 std::vector<Table> fit_tables(const FitReport& report) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const leaf::FitResult& result = report.result;
-  Table spectra{"spectra"}, leaf{"leaf"}, numbers{"numbers"}, bands{"bands"}, correlations{"correlations"};
+  Table spectra{"spectra"}, leaf{"leaf"}, numbers{"numbers"}, contents{"contents"}, bands{"bands"}, misfits{"misfits"},
+      correlations{"correlations"};
   for (size_t i = 0; i < result.fitted.size(); ++i) {
     const leaf::LeafMeasurement& r = report.request.measurements[i];
     spectra.add("theta_deg", r.theta_deg);
@@ -145,13 +198,30 @@ std::vector<Table> fit_tables(const FitReport& report) {
   }
   for (const auto& [name, value] : said(report)) leaf.add("name", std::string(name)), leaf.add("value", value);
   for (const FittedNumber& n : result.numbers) {
-    if (!exists(report, n)) continue;
     numbers.add("name", std::string(n.variable->name));
     numbers.add("value", n.value);
+    numbers.add("unit", std::string(unit_of(n)));
     numbers.add("relative_standard_error", n.relative_error);
     numbers.add_flag("fixed", n.is_fixed);
     numbers.add_flag("at_bound", n.is_at_bound);
     numbers.add_flag("identified", n.is_identified());
+  }
+  for (const leaf::FittedContent& c : result.contents) {
+    const auto [unit, scale] = area_unit_of(c);
+    contents.add("name", std::string(c.name));
+    contents.add("value", c.kg_per_m2 * scale);
+    contents.add("unit", std::string(unit));
+    contents.add("relative_standard_error", c.relative_error);
+  }
+  for (const leaf::MisfitBand& band : result.misfits) {
+    misfits.add("quantity", std::string(band.is_t ? "T" : "R"));
+    misfits.add("theta_deg", band.theta_deg);
+    misfits.add("from_nm", band.nm.min);
+    misfits.add("to_nm", band.nm.max);
+    misfits.add("measured", band.measured);
+    misfits.add("fitted", band.fitted);
+    misfits.add("lowest_R", band.lowest_r);
+    misfits.add_flag("below_reach", is_below_reach(band));
   }
   for (const NamedBand& band : kBands) {
     const auto rmse = leaf::rmse_between(report.request, result, band.nm);
@@ -167,8 +237,27 @@ std::vector<Table> fit_tables(const FitReport& report) {
     for (size_t b = 0; b < free.size(); ++b)
       correlations.add(std::string(free[b]->variable->name), result.correlations[a][b]);
   }
-  return {spectra, leaf, numbers, bands, correlations};
+  return {spectra, leaf, numbers, contents, bands, misfits, correlations};
 }
+
+namespace {
+
+/// Adds wide lines under the fitted curves where they are misfits, and the lowest R where that is above the measured.
+void add_misfits(Panel& panel, const FitReport& report, double theta_deg, const Series& r, const Series& t) {
+  std::string label = fmt::format("off by more than {:.2g}", leaf::kMisfit), lowest = "lowest R of this structure";
+  for (const leaf::MisfitBand& band : report.result.misfits) {
+    if (band.theta_deg != theta_deg) continue;
+    Series wide = line(std::exchange(label, ""), "#f0b27a", 8);
+    for (const ChartPoint& p : (band.is_t ? t : r).points)
+      if (band.nm.contains(p.x)) wide.points.push_back(p);
+    panel.series.push_back(wide);
+    if (is_below_reach(band))
+      panel.series.push_back(line(std::exchange(lowest, ""), kSeriesColors[2], 1.5, Dash::dashed,
+                                  {{band.nm.min, band.lowest_r}, {band.nm.max, band.lowest_r}}));
+  }
+}
+
+}  // namespace
 
 Chart fit_chart(const FitReport& report) {
   const auto all = distinct(report.request.measurements, &leaf::LeafMeasurement::theta_deg);
@@ -188,6 +277,7 @@ Chart fit_chart(const FitReport& report) {
       if (m.t) measured.points.push_back({m.lambda_nm, 1 - *m.t});
     }
     for (Series* curve : {&r, &t}) std::ranges::stable_sort(curve->points, {}, &ChartPoint::x);
+    add_misfits(panel, report, all[a], r, t);
     panel.series.insert(panel.series.end(), {r, t, measured});
   }
   return {1, {panel}, fmt::format("{}: RMSE {:.4f}", report.source, report.result.rmse)};

@@ -22,7 +22,7 @@ std::string fit_scene(const FitReport& report);
 std::string fit_text(const FitReport& report);
 /// Returns errors, and results that are not parameters of the leaf.
 std::vector<Fact> fit_facts(const FitReport& report);
-/// Returns the tables "spectra", "leaf", "numbers", "bands", "correlations".
+/// Returns the tables "spectra", "leaf", "numbers", "contents", "bands", "misfits", "correlations".
 std::vector<Table> fit_tables(const FitReport& report);
 /// Returns a chart of R from below and T from above: measured spectra as points, fitted spectra as lines.
 Chart fit_chart(const FitReport& report);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "leaf/tissue/absorption.h"
+#include "leaf/tissue/prospect.h"
 #include "leaf/tissue/specimens.h"
 #include "leaf/tissue/tissue.h"
 
@@ -36,6 +37,43 @@ TEST(LeafConstants, ChlorophyllAbsorbsLeastOfTheVisibleAt550To555) {
   const double least = constants_at(550).chlorophyll;
   EXPECT_EQ(constants_at(555).chlorophyll, least);
   for (double nm = 400; nm <= 680; nm += 5) EXPECT_GE(constants_at(nm).chlorophyll, least) << nm;
+}
+
+TEST(LeafConstants, OfProspectAreLinearBetweenNodes) {
+  EXPECT_DOUBLE_EQ(prospect_constants_at(400).carotenoids, 16734);
+  EXPECT_DOUBLE_EQ(prospect_constants_at(380).carotenoids, 16734);
+  EXPECT_NEAR(prospect_constants_at(402.5).anthocyanins, (6667.5 + 5669.9) / 2, 1e-9);
+  EXPECT_DOUBLE_EQ(prospect_constants_at(1000).dry_matter, 0);
+  for (double nm = 360; nm <= 2500; nm += 1) {
+    const ProspectConstants c = prospect_constants_at(nm);
+    for (const double absorption : {c.chlorophyll, c.carotenoids, c.anthocyanins, c.water, c.dry_matter})
+      ASSERT_TRUE(std::isfinite(absorption) && absorption >= 0) << nm;
+  }
+}
+
+TEST(TissueModel, TakesProspectsAbsorptionIfAsked) {
+  TissueParams p = find_specimen("soybean")->params;
+  const double published = absorption_coefficient(p, 670);
+  p.anthocyanins = 2, p.dry_matter = 100;
+  const ProspectConstants c = prospect_constants_at(670);
+  EXPECT_NEAR(absorption_coefficient(p, 670), published + 2 * c.anthocyanins + 100 * c.dry_matter, 1e-9 * published);
+  const double before = absorption_coefficient(p, 1450);
+  p.absorption_tables = AbsorptionTables::prospect;
+  EXPECT_NEAR(absorption_coefficient(p, 1450) - before, prospect_constants_at(1450).water - constants_at(1450).water,
+              1e-9 * before);
+}
+
+TEST(TissueModel, DividesAbsorptionAndScalesTheCuticle) {
+  TissueParams p = find_specimen("soybean")->params;
+  const TissueModel published(p);
+  EXPECT_EQ(published.at(550).optical_depth[4], 0);
+  p.spongy_share = 0.3, p.cuticle_refractivity = 0.5;
+  const TissueModel model(p);
+  const Tissue tissue = model.at(550);
+  const double depth = published.at(550).mesophyll_depth();
+  EXPECT_NEAR(tissue.mesophyll_depth(), depth, 1e-12);
+  EXPECT_NEAR(tissue.optical_depth[4], 0.3 * depth, 1e-12);
+  EXPECT_NEAR(tissue.n_cuticle() - 1, 0.5 * (constants_at(550).n_cuticle - 1), 1e-12);
 }
 
 TEST(TissueModel, SumsAbsorptionOverWhatTheMesophyllHolds) {

@@ -9,9 +9,10 @@
 #include <memory>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "leaf/fit/leaf_space.h"
 #include "leaf/fit/optics_surface.h"
 #include "leaf/solve/solver.h"
-#include "leaf/tissue/absorption.h"
+#include "leaf/tissue/area_content.h"
 
 namespace frond::leaf {
 namespace {
@@ -20,104 +21,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Grade = OpticsSurface::Grade;
-
-/// A parameter that follows a fitted one in a constant ratio.
-struct Companion {
-  std::string_view name;
-  double TissueParams::*number;
-  double TissueParams::*leader;
-};
-constexpr Companion kCompanions[] = {
-    {"chlorophyllb", &TissueParams::chlorophyll_b, &TissueParams::chlorophyll_a},
-    {"lignin", &TissueParams::lignin, &TissueParams::cellulose},
-};
-
-const Specimen& specimen_of(Structure structure) {
-  return *std::ranges::find(kSpecimens, structure, [](const Specimen& s) { return s.params.structure; });
-}
-
-double depth_of(const TissueParams& p, double lambda_nm) {
-  return p.thickness_m * p.mesophyll_fraction * absorption_coefficient(p, lambda_nm);
-}
-
-/// One kind of leaf (structure, sieve), and its free parameters.
-class LeafSpace {
- public:
-  LeafSpace(const FitRequest& request, Structure structure, bool sieve)
-      : specimen_(request.like && request.like->params.structure == structure ? *request.like : specimen_of(structure)),
-        origin_(specimen_.params) {
-    origin_.sieve_and_detour = sieve;
-    const auto fix = [&](std::string_view name, double TissueParams::*number) {
-      const auto found = std::ranges::find(request.fixed, name, &FitRequest::Fixed::name);
-      if (found != request.fixed.end()) origin_.*number = found->value;
-      return found != request.fixed.end();
-    };
-    fix("mesophyllfraction", &TissueParams::mesophyll_fraction);
-    for (const FitVariable& v : kFitVariables) {
-      const bool exists = v.number != &TissueParams::palisade_aspect || structure == Structure::bifacial;
-      if (fix(v.name, v.number) || !exists) continue;
-      free_.push_back(&v);
-      if (origin_.*v.number == 0) origin_.*v.number = kLittle;  // none has no logarithm
-    }
-    for (const Companion& c : kCompanions) {
-      if (fix(c.name, c.number)) continue;
-      const double leader = specimen_.params.*c.leader;
-      followers_.push_back({c.number, c.leader, leader > 0 ? specimen_.params.*c.number / leader : 0});
-      origin_.*c.number = origin_.*c.leader * followers_.back().ratio;
-    }
-  }
-
-  const Specimen& specimen() const { return specimen_; }
-  const TissueParams& origin() const { return origin_; }
-  const std::vector<const FitVariable*>& free() const { return free_; }
-  Index count() const { return static_cast<Index>(free_.size()); }
-
-  TissueParams with(TissueParams p, const FitVariable& v, double value) const {
-    p.*v.number = value;
-    for (const Follower& f : followers_)
-      if (f.leader == v.number) p.*f.number = f.ratio * value;
-    return p;
-  }
-
-  // The logistic function maps the search variables q, on the whole line, to logarithms within the range.
-  TissueParams at(const VectorXd& q) const {
-    TissueParams p = origin_;
-    for (Index i = 0; i < count(); ++i) p = with(p, variable(i), std::exp(log_at(i, q[i])));
-    return p;
-  }
-  VectorXd of(const TissueParams& p) const {
-    VectorXd q(count());
-    for (Index i = 0; i < count(); ++i) {
-      constexpr double kEdge = 0.03;  // nearer to the ends the derivative vanishes
-      const double s = (std::log(p.*variable(i).number) - low(i)) / width(i), c = std::clamp(s, kEdge, 1 - kEdge);
-      q[i] = std::log(c / (1 - c));
-    }
-    return q;
-  }
-  double log_at(Index i, double q) const { return low(i) + width(i) / (1 + std::exp(-q)); }
-  /// Derivative of the logarithm with respect to q.
-  double slope(Index i, double q) const {
-    const double s = 1 / (1 + std::exp(-q));
-    return width(i) * s * (1 - s);
-  }
-  const FitVariable& variable(Index i) const { return *free_[static_cast<size_t>(i)]; }
-
- private:
-  struct Follower {
-    double TissueParams::*number;
-    double TissueParams::*leader;
-    double ratio;
-  };
-  double low(Index i) const { return std::log(variable(i).range.min); }
-  double width(Index i) const { return std::log(variable(i).range.max) - low(i); }
-
-  static constexpr double kLittle = 30;  ///< 1/m: small beside the absorption of water and protein
-
-  const Specimen& specimen_;
-  TissueParams origin_;
-  std::vector<const FitVariable*> free_;
-  std::vector<Follower> followers_;
-};
 
 /// Huber's loss: returns the residual whose square is quadratic up to `kFar` and linear beyond it.
 struct Huber {
@@ -225,10 +128,11 @@ class Problem {
   double expectation() const { return request_.has_prior ? 0.03 : 3e-4; }
 
  private:
-  using Aspects = std::array<double, 3>;
+  using Structural = std::array<double, 5>;
 
   const OpticsSurface& surface_of(const TissueParams& p, Grade grade) const {
-    auto& surface = surfaces_[{grade, {p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect}}];
+    auto& surface = surfaces_[{
+        grade, {p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.spongy_share, p.cuticle_refractivity}}];
     if (!surface) surface = std::make_unique<OpticsSurface>(p, theta_deg_, first_nm_, last_nm_, grade, pool_);
     return *surface;
   }
@@ -242,7 +146,7 @@ class Problem {
   std::vector<size_t> angle_;  ///< of each measurement
   double first_nm_ = kConstantsRange_nm.max, last_nm_ = kConstantsRange_nm.min;
   Index rows_ = 0;
-  mutable std::map<std::pair<Grade, Aspects>, std::unique_ptr<OpticsSurface>> surfaces_;
+  mutable std::map<std::pair<Grade, Structural>, std::unique_ptr<OpticsSurface>> surfaces_;
 };
 
 /// End of a search.
@@ -261,8 +165,11 @@ double search(const Problem& problem, VectorXd& q, int most_evaluations, double 
   return solver.fnorm * solver.fnorm;
 }
 
-/// Structures at which a search starts, besides the specimen's.
-constexpr std::array<std::array<double, 3>, 3> kStarts{{{5, 5, 1}, {2, 2, 1}, {12, 8, 4}}};
+/// Structures at which a search starts.
+struct Start {
+  double epidermis, spongy, palisade, spongy_share;
+};
+constexpr Start kStarts[] = {{5, 5, 1, 0.05}, {2, 2, 1, 0.3}, {12, 8, 4, 0.15}, {3, 5, 2, 0.2}};
 
 /// The best leaf of each kind with only its chemistry free, the best one first.
 std::vector<Candidate> first_candidates(const FitRequest& request, const ThreadPool& pool) {
@@ -275,12 +182,13 @@ std::vector<Candidate> first_candidates(const FitRequest& request, const ThreadP
       if (request.sieve && *request.sieve != sieve) continue;
       Candidate candidate{std::make_unique<LeafSpace>(request, structure, sieve), {}, HUGE_VAL};
       const Problem problem(request, *candidate.space, Grade::coarse, false, pool);
-      for (const auto& [epidermis, spongy, palisade] : kStarts) {
+      for (const Start& start : kStarts) {
         TissueParams p = candidate.space->origin();
         for (const FitVariable* v : candidate.space->free()) {
-          if (v->number == &TissueParams::epidermis_aspect) p.epidermis_aspect = epidermis;
-          if (v->number == &TissueParams::spongy_aspect) p.spongy_aspect = spongy;
-          if (v->number == &TissueParams::palisade_aspect) p.palisade_aspect = palisade;
+          if (v->number == &TissueParams::epidermis_aspect) p.epidermis_aspect = start.epidermis;
+          if (v->number == &TissueParams::spongy_aspect) p.spongy_aspect = start.spongy;
+          if (v->number == &TissueParams::palisade_aspect) p.palisade_aspect = start.palisade;
+          if (v->number == &TissueParams::spongy_share) p.spongy_share = start.spongy_share;
         }
         VectorXd q = candidate.space->of(p);
         const double cost = search(problem, q, kEvaluations, kRoughly);
@@ -320,6 +228,20 @@ void solve_measurements(const FitRequest& request, FitResult& result, const Thre
   });
 }
 
+/// A constituent whose content per area is reported.
+struct Content {
+  std::string_view name;
+  double (*of)(const TissueParams&);  ///< kg/m^2
+};
+constexpr Content kContents[] = {
+    {"chlorophyll", [](const TissueParams& p) { return area_content(p, p.chlorophyll_a + p.chlorophyll_b); }},
+    {"carotenoids", [](const TissueParams& p) { return area_content(p, p.carotenoids); }},
+    {"anthocyanins", [](const TissueParams& p) { return area_content(p, p.anthocyanins); }},
+    {"water", [](const TissueParams& p) { return area_content(p, kWaterConcentration); }},
+    {"drymatter",
+     [](const TissueParams& p) { return area_content(p, p.dry_matter + p.protein + p.cellulose + p.lignin); }},
+};
+
 void judge(const FitRequest& request, const Problem& problem, const LeafSpace& space, FitResult& result) {
   std::vector<double> r, t;
   for (size_t i = 0; i < request.measurements.size(); ++i) {
@@ -356,6 +278,7 @@ void judge(const FitRequest& request, const Problem& problem, const LeafSpace& s
       result.correlations[static_cast<size_t>(a)][static_cast<size_t>(b)] =
           covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
   for (const FitVariable& v : kFitVariables) {
+    if (!space.has(v)) continue;
     FittedNumber number{&v, result.params.*v.number};
     const auto place = std::ranges::find(space.free(), &v);
     number.is_fixed = place == space.free().end();
@@ -366,6 +289,19 @@ void judge(const FitRequest& request, const Problem& problem, const LeafSpace& s
       number.is_at_bound = number.value < v.range.min * kNear || number.value > v.range.max / kNear;
     }
     result.numbers.push_back(number);
+  }
+  // Contents per area, with the errors of linearised products.
+  constexpr double kStep = 1e-4;
+  for (const Content& content : kContents) {
+    const double value = content.of(result.params);
+    if (!(value > 0)) continue;
+    VectorXd slope(n);
+    for (Index i = 0; i < n; ++i) {
+      const FitVariable& v = space.variable(i);
+      const TissueParams moved = space.with(result.params, v, result.params.*v.number * std::exp(kStep));
+      slope[i] = std::log(content.of(moved) / value) / kStep;
+    }
+    result.contents.push_back({content.name, value, std::sqrt(std::max(0.0, slope.dot(covariance * slope)))});
   }
 }
 
@@ -384,21 +320,26 @@ std::optional<double> rmse_between(const FitRequest& request, const FitResult& r
 }
 
 FitResult fit_leaf(const FitRequest& request, const ThreadPool& pool) {
-  constexpr size_t kKept = 2;  // kinds of leaves whose structure is fitted too
-  constexpr int kCoarse = 12, kCoarseOfSecond = 6, kFine = 8;
+  constexpr size_t kKept = 2;  // kinds of leaves that continue
+  constexpr int kFirst = 8, kCoarse = 30, kFine = 15;
   constexpr double kRoughly = 1e-2, kDone = 1e-3;
   std::vector<Candidate> candidates = first_candidates(request, pool);
+  const auto continue_all = [&](int evaluations, double done) {
+    for (Candidate& c : candidates)
+      c.cost = search(Problem(request, *c.space, Grade::coarse, true, pool), c.q, evaluations, done);
+    std::ranges::sort(candidates, {}, &Candidate::cost);
+  };
+  continue_all(kFirst, kRoughly);
   candidates.resize(std::min(candidates.size(), kKept));
-  for (Candidate& c : candidates)
-    c.cost = search(Problem(request, *c.space, Grade::coarse, true, pool), c.q,
-                    &c == &candidates.front() ? kCoarse : kCoarseOfSecond, kRoughly);
-  Candidate& best = *std::ranges::min_element(candidates, {}, &Candidate::cost);
+  continue_all(kCoarse, kDone);
+  Candidate& best = candidates.front();
   const Problem problem(request, *best.space, Grade::fine, true, pool);
   search(problem, best.q, kFine, kDone);
   FitResult result;
   result.params = best.space->at(best.q), result.specimen = &best.space->specimen();
   solve_measurements(request, result, pool);
   judge(request, problem, *best.space, result);
+  result.misfits = misfit_bands(request, result);
   return result;
 }
 

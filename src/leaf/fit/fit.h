@@ -24,23 +24,37 @@ struct FitVariable {
   /// The member of TissueParams to fit, and the range to search; units as in TissueParams.
   double TissueParams::*number;
   Interval range;
-  bool is_structure = false;  ///< an aspect ratio: it shapes the lobes; the others act through the optical depth
+  /// Start of the search where the specimen has none of it.
+  double little = 0;
+  bool is_structure = false;  ///< shapes lobes or surfaces; the others act through the optical depth
+  std::optional<AbsorptionTables> only_with = {};  ///< fitted with these tables alone
 };
 
 /// Chlorophyll a is fitted for both chlorophylls, which absorb alike here: b follows by the specimen's ratio. Likewise
 /// lignin follows cellulose. `mesophyllfraction` is kept at the specimen's value, since it acts only through its
-/// product with the thickness. The cuticle is not fitted: it shapes reflected light and absorbs nothing.
+/// product with the thickness. The cuticle's aspect ratio is not fitted: it shapes reflected light and absorbs nothing.
 inline constexpr FitVariable kFitVariables[] = {
     {"thickness", &TissueParams::thickness_m, {2e-6, 1e-2}},
     {"chlorophylla", &TissueParams::chlorophyll_a, {1e-3, 100}},
     {"carotenoids", &TissueParams::carotenoids, {1e-3, 100}},
-    {"protein", &TissueParams::protein, {0.1, 1500}},
-    {"cellulose", &TissueParams::cellulose, {0.1, 1500}},
-    {"otherabsorption", &TissueParams::other_absorption, {1, 1e4}},
-    {"epidermisaspect", &TissueParams::epidermis_aspect, {0.7, 20}, true},
-    {"spongyaspect", &TissueParams::spongy_aspect, {0.7, 20}, true},
-    {"palisadeaspect", &TissueParams::palisade_aspect, {0.7, 20}, true},  // of bifacial leaves
+    {"anthocyanins", &TissueParams::anthocyanins, {1e-3, 100}, 0.05, false, AbsorptionTables::prospect},
+    {"protein", &TissueParams::protein, {0.1, 1500}, 30, false, AbsorptionTables::baranoski},
+    {"cellulose", &TissueParams::cellulose, {0.1, 1500}, 30, false, AbsorptionTables::baranoski},
+    {"drymatter", &TissueParams::dry_matter, {0.1, 1500}, 100, false, AbsorptionTables::prospect},
+    {"otherabsorption", &TissueParams::other_absorption, {1, 1e4}, 30},
+    {"epidermisaspect", &TissueParams::epidermis_aspect, {0.7, 20}, 1, true},
+    {"spongyaspect", &TissueParams::spongy_aspect, {0.7, 20}, 1, true},
+    {"palisadeaspect", &TissueParams::palisade_aspect, {0.7, 20}, 1, true},  // of bifacial leaves
+    {"spongyshare", &TissueParams::spongy_share, {1e-4, 0.95}, 0.05, true},  // of bifacial leaves
+    /// Index of the cuticle at 550 nm from 1.10 to 1.66.
+    {"cuticlerefractivity", &TissueParams::cuticle_refractivity, {0.2, 1.3}, 1, true},
 };
+
+/// Whether leaves of this structure have the parameter.
+inline bool has_variable(Structure structure, const FitVariable& v) {
+  return structure == Structure::bifacial ||
+         (v.number != &TissueParams::palisade_aspect && v.number != &TissueParams::spongy_share);
+}
 
 /// Input of `fit_leaf`.
 struct FitRequest {
@@ -53,10 +67,15 @@ struct FitRequest {
   /// Use `like` as a prior with a standard deviation of about 0.3 in each parameter's logarithm; otherwise the prior is
   /// almost flat.
   bool has_prior = false;
+  /// Specific absorption of the fitted leaf. With `prospect`, dry matter takes the place of protein, cellulose and
+  /// lignin.
+  AbsorptionTables absorption_tables = AbsorptionTables::prospect;
   /// A parameter that is kept at a given value.
   struct Fixed {
-    std::string name;  ///< of kFitVariables, or mesophyllfraction, chlorophyllb, lignin
+    /// Of kFitVariables, or mesophyllfraction, chlorophyllb, lignin; per area also chlorophyll (a and b), water.
+    std::string name;
     double value;
+    bool per_area = false;  ///< `value` is the content, kg/m^2 (leaf/tissue/area_content.h)
   };
   std::vector<Fixed> fixed = {};
   /// Lower bound of the standard error that is assumed for a measured R or T.
@@ -75,6 +94,23 @@ struct FittedNumber {
   bool is_identified() const { return !is_fixed && !is_at_bound && relative_error < 0.5; }
 };
 
+/// Content of a constituent per leaf area.
+struct FittedContent {
+  std::string_view name;
+  double kg_per_m2;
+  double relative_error = 0;  ///< standard error of its logarithm; 0 if fixed
+};
+
+/// Range of wavelengths in which the fitted leaf differs from the measurements.
+struct MisfitBand {
+  double theta_deg;
+  Interval nm;      ///< first and last measurement
+  bool is_t;        ///< T, else R
+  double measured;  ///< means over the band's measurements
+  double fitted;
+  double lowest_r;  ///< lowest R in the band that a leaf of the fitted structure reaches with any absorption
+};
+
 /// Output of `fit_leaf`.
 struct FitResult {
   TissueParams params;
@@ -86,12 +122,21 @@ struct FitResult {
     double r, t;
     bool is_outlier;  ///< its residual is too large for the others' spread: it has less weight
   };
+  std::vector<FittedContent> contents;      ///< per leaf area: chlorophyll, carotenoids, ..., water, drymatter
+  std::vector<MisfitBand> misfits;          ///< see misfit_bands
   std::vector<Fitted> fitted;               ///< [measurement], solved with the fitted parameters
   double rmse = 0, rmse_r = 0, rmse_t = 0;  ///< root mean square of the residuals: all, R alone, T alone
 };
 
 /// Root mean square of the residuals at wavelengths within `nm`, R and T together; none if there are no measurements.
 std::optional<double> rmse_between(const FitRequest& request, const FitResult& result, const Interval& nm);
+
+/// Residuals above this are a misfit; so is a band of them that is at least this wide.
+inline constexpr double kMisfit = 0.01, kMisfitWidth_nm = 25;
+
+/// Returns the bands in which R or T is off by more than kMisfit at every measurement, with one sign. Single bad points
+/// are none: a band reaches halfway to the measurements beside it and is at least kMisfitWidth_nm wide.
+std::vector<MisfitBand> misfit_bands(const FitRequest& request, const FitResult& result);
 
 /// Returns the leaf whose solved walk fits the measurements best, by the method of Levenberg and Marquardt from several
 /// starts: least squares, except that outliers are weighted by their distance (Huber 1964). The chemistry acts through

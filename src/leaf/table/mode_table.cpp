@@ -68,7 +68,7 @@ int cells_for(double tolerance, int cells, double error) {
 /// Judged by the column that absorbs least, where f is largest.
 int first_guess(const ModeTableRequest& request, const std::vector<Tissue>& tissues) {
   constexpr int kCells = 8;
-  const Tissue& tissue = *std::ranges::min_element(tissues, {}, [](const Tissue& t) { return t.optical_depth[2]; });
+  const Tissue& tissue = *std::ranges::min_element(tissues, {}, &Tissue::mesophyll_depth);
   return cells_for(request.tolerance, kCells, interpolation_error(solve(request, tissue, kCells), tissue));
 }
 

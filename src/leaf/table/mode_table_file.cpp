@@ -199,7 +199,7 @@ std::vector<ModeTableColumn> columns_of(const ModeTableRequest& request) {
   const TissueModel model(request.params);
   std::vector<ModeTableColumn> columns;
   for (const double nm : request.wavelengths_nm) {
-    if (request.depths.empty()) columns.push_back({nm, model.at(nm).optical_depth[2], {}});
+    if (request.depths.empty()) columns.push_back({nm, model.at(nm).mesophyll_depth(), {}});
     for (const double depth : request.depths.depths()) columns.push_back({nm, depth, {}});
   }
   return columns;

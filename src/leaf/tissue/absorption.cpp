@@ -1,11 +1,26 @@
 #include "leaf/tissue/absorption.h"
 
+#include "leaf/tissue/prospect.h"
+
 namespace frond::leaf {
 
+Constants constants_at(double lambda_nm, AbsorptionTables tables) {
+  Constants c = constants_at(lambda_nm);
+  if (tables == AbsorptionTables::prospect) {
+    const ProspectConstants other = prospect_constants_at(lambda_nm);
+    c.chlorophyll = other.chlorophyll, c.carotenoids = other.carotenoids, c.water = other.water;
+  }
+  return c;
+}
+
 double absorption_coefficient(const TissueParams& p, double lambda_nm) {
-  const Constants c = constants_at(lambda_nm);
+  const Constants c = constants_at(lambda_nm, p.absorption_tables);
   double sum = (p.chlorophyll_a + p.chlorophyll_b) * c.chlorophyll + p.carotenoids * c.carotenoids +
                p.protein * c.protein + (p.cellulose + p.lignin) * c.cellulose + c.water + p.other_absorption;
+  if (p.anthocyanins > 0 || p.dry_matter > 0) {
+    const ProspectConstants other = prospect_constants_at(lambda_nm);
+    sum += p.anthocyanins * other.anthocyanins + p.dry_matter * other.dry_matter;
+  }
   const auto [i, t] = kAbsorptionGrid.cell(lambda_nm);
   for (const Pigment& pigment : p.pigments) {
     const std::vector<double>& s = pigment.specific_absorption;

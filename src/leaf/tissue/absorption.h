@@ -35,6 +35,10 @@ struct WavelengthGrid {
 inline constexpr WavelengthGrid kAbsorptionGrid{360, 5, 429};
 static_assert(kAbsorptionGrid.nm(0) == kConstantsRange_nm.min && kAbsorptionGrid.nm(428) == kConstantsRange_nm.max);
 
+/// Returns the optical constants of a leaf with these tables of absorption: `constants_at`, where PROSPECT-D's replace
+/// chlorophyll, carotenoids and water with `prospect`.
+Constants constants_at(double lambda_nm, AbsorptionTables tables);
+
 /// Returns the absorption coefficient of the mesophyll, 1/m: the sum over pigments, proteins, fibres and water of
 /// concentration times specific absorption, plus `other_absorption`.
 double absorption_coefficient(const TissueParams& params, double lambda_nm);

@@ -15,7 +15,9 @@ TissueModel::TissueModel(const TissueParams& params)
   const std::vector<double> absorption = absorption_coefficients(params);
   for (size_t i = 0; i < kAbsorptionGrid.size(); ++i) {
     const Constants c = constants_at(kAbsorptionGrid.nm(i));
-    optics_.push_back({c.n_cuticle, c.n_mesophyll, c.n_antidermal_wall, absorption[i] * thickness});
+    const double n_cuticle =
+        params.cuticle_refractivity == 1 ? c.n_cuticle : 1 + params.cuticle_refractivity * (c.n_cuticle - 1);
+    optics_.push_back({n_cuticle, c.n_mesophyll, c.n_antidermal_wall, absorption[i] * thickness});
   }
 }
 
@@ -58,7 +60,8 @@ Tissue TissueModel::build(const Optics& optics, const InterfaceLobes& lobes) con
   const auto [n_cuticle, n_mesophyll, n_antidermal_wall, depth] = optics;
   const bool bifacial = params_.structure == Structure::bifacial;
   return {.n = {1, n_cuticle, n_mesophyll, 1, bifacial ? n_antidermal_wall : n_mesophyll, n_cuticle, 1},
-          .optical_depth = {0, 0, depth, 0, bifacial ? 0 : depth, 0, 0},
+          .optical_depth = {0, 0, bifacial ? (1 - params_.spongy_share) * depth : depth, 0,
+                            bifacial ? params_.spongy_share * depth : depth, 0, 0},
           .lobes = &lobes,
           .air_space_moves = !bifacial,
           .sieve_and_detour = params_.sieve_and_detour};

@@ -31,6 +31,8 @@ struct Tissue {
   bool air_space_moves;
   bool sieve_and_detour;
 
+  /// Optical depth of the whole mesophyll along the normal.
+  double mesophyll_depth() const { return air_space_moves ? optical_depth[2] : optical_depth[2] + optical_depth[4]; }
   /// Index of the cuticle, which is the epidermis's.
   double n_cuticle() const { return n[1]; }
   /// Lobe of a ray that meets the interface going up or down; nullptr: none.

@@ -20,17 +20,30 @@ struct Pigment {
   friend bool operator==(const Pigment&, const Pigment&) = default;
 };
 
+/// Specific absorption of chlorophylls, carotenoids and water.
+enum class AbsorptionTables : uint8_t {
+  baranoski,  ///< the model's, as published (constants.h)
+  prospect,   ///< PROSPECT-D's, calibrated with measured leaves (prospect.h)
+};
+
 /// Biological parameters of a leaf: structure and chemistry.
 struct TissueParams {
   Structure structure = Structure::bifacial;
   double thickness_m = 0;
   double mesophyll_fraction = 0;  ///< share of the thickness that absorbs, in [0, 1]
+  AbsorptionTables absorption_tables = AbsorptionTables::baranoski;
   /// Concentrations in the mesophyll, kg/m^3.
   double chlorophyll_a = 0, chlorophyll_b = 0, carotenoids = 0, protein = 0, cellulose = 0, lignin = 0;
+  /// The same for constituents that the published model has not (prospect.h).
+  double anthocyanins = 0, dry_matter = 0;
   double other_absorption = 0;  ///< 1/m, independent of wavelength: absorption by anything else
   std::vector<Pigment> pigments = {};
   /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
   double cuticle_aspect = 0, epidermis_aspect = 0, spongy_aspect = 0, palisade_aspect = 0;
+  /// Share of the absorption that lies below the air space of a bifacial leaf, in [0, 1]; 0 as published.
+  double spongy_share = 0;
+  /// Refractivity (index - 1) of the cuticle and epidermis, relative to the published one; above 0.
+  double cuticle_refractivity = 1;
   bool sieve_and_detour = false;  ///< the later form of Beer's law, with cos(cos theta) for cos theta
 
   friend bool operator==(const TissueParams&, const TissueParams&) = default;
