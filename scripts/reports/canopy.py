@@ -101,15 +101,15 @@ Machine: {machine}.
 
 The canopies are soybean leaves, disks of radius 5 cm at random positions, over soil, lit by the sun alone. The views lie in the
 principal plane, from −60 to 60°; negative angles are on the sun's side. The differences are relative to the BRF with `leaf_solved`,
-the BSDF that the random walk converges to. They are the errors of three lobes scaled by a table (`leaf_simplified`) and of two Lambertian leaves (`leaf_lambert`): one with
-the near-normal reflectance and transmittance of an integrating sphere (8°), as plant codes use them, and one with the means under
-diffuse light (`bihemispherical`). The standard error of a difference is about
+the BSDF that the random walk converges to. They are the errors of three lobes scaled by a table (`leaf_simplified`) and of two
+Lambertian leaves (`leaf_lambert`): one with the near-normal reflectance and transmittance of an integrating sphere (8°), as plant
+codes use them, and one with the means under diffuse light (`bihemispherical`). The standard error of a difference is about
 {noise:.1f} %. All leaves are reciprocal ([conventions](conventions.md)).
 
 ![BRF differences from leaf_solved against view zenith angle, for six bands](images/canopy.svg)
 
-*Leaf area index 3, sun zenith angle 45°. Solid: `leaf_lambert`; dotted: with `bihemispherical`; dashed: `leaf_simplified`. Blue: spherical leaf angles; vermilion:
-planophile; green: erectophile. Bars: standard errors.*
+*Leaf area index 3, sun zenith angle 45°. Solid: `leaf_lambert`; dotted: with `bihemispherical`; dashed: `leaf_simplified`. Blue:
+spherical leaf angles; vermilion: planophile; green: erectophile. Bars: standard errors.*
 
 {nadir}
 *View from the nadir: spherical leaf angles, leaf area index 3, sun zenith angle 30°. BRF with `leaf_solved`, and differences from it.*
