@@ -179,7 +179,7 @@ def test_values_that_do_not_go_together_are_refused_alike(name, given, message, 
 
 #: A value for each parameter of render that decides its result, other than the default.
 DECIDING = {"scene": None, "wavelengths": "smpte", "swap": "leaf=leaf_lambert", "seed": "7", "integrator": "path,maxdepth=2",
-            "filter": "box", "channels": "normal", "quick": "true", "color-space": "linear P3-D65",
+            "filter": "box", "channels": "normal", "for-denoiser": "true", "quick": "true", "color-space": "linear P3-D65",
             "disable-pixel-jitter": "true", "disable-texture-filtering": "true", "disable-wavelength-jitter": "true",
             "ignore-unsupported": "all"}
 #: Those that do not: the samples and pixels of a part are in its coverage, not in its identity.

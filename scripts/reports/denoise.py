@@ -1,5 +1,6 @@
 """Measures the recipe of docs/rendering.md for a denoiser: the section of that page on the errors before and after."""
 
+import importlib.metadata
 import pathlib
 import re
 import shutil
@@ -78,7 +79,7 @@ renders of many samples, whose own noise is left out. `pot` has the size of its 
 
 {table(("scene", "default, noisy", "default, denoised", "`--for-denoiser`, noisy", "colours alone", "recipe", "recipe over its noisy image",
         "recipe over the default, noisy"), body)}
-Machine: {machine()}; Open Image Denoise {pyoidn.__version__}.
+Machine: {machine()}; Open Image Denoise {importlib.metadata.version("pyoidn")}.
 """
 
 

@@ -68,8 +68,8 @@ MATERIALS = {
            'MakeNamedMaterial "blue" "string type" "diffuse" "rgb reflectance" [ 0.1 0.2 0.6 ]\n'
            'Texture "stripes" "float" "checkerboard" "float uscale" 12 "float vscale" 0.5 "float tex1" 1 "float tex2" 0\n'
            'Material "mix" "string materials" [ "gold" "blue" ] "texture amount" "stripes"',
-    "leaf_simplified": 'Material "leaf_simplified" "string specimen" "maize"',
-}
+} | {name: f'Material "{name}" "string specimen" "soybean-lopex"'
+     for name in ("abm", "leaf", "leaf_lambert", "leaf_simplified", "leaf_solved")}
 SPECTRUM_TEXTURES = {
     "constant": 'Texture "pattern" "spectrum" "constant" "rgb value" [ 0.15 0.4 0.2 ]',
     "scale": 'Texture "image" "spectrum" "imagemap" "string filename" "letter.ppm"\n'
