@@ -102,7 +102,13 @@ def test_fit_of_arrays_and_of_a_file(reference):
     shares = frond.spectrophotometer(["leaf_solved"] + of_file.material, 800, rays=100_000)
     measured = [r for nm, r in zip(table["wavelength_nm"], table["R"]) if nm == 800][0]
     assert abs(shares["R"][0] - measured) < 0.02
-    with pytest.raises(frond.InputError, match="fewer than the 9 parameters"):
+    contents = {name: value for name, value in zip(of_file.contents["name"], of_file.contents["value"])}
+    leaf = of_file.leaf
+    area = leaf["thickness"] * leaf["mesophyllfraction"]  # kg/m3 times this is kg/m2
+    assert abs(contents["chlorophyll"] / (1e5 * area * (leaf["chlorophylla"] + leaf["chlorophyllb"])) - 1) < 1e-9
+    assert abs(contents["water"] / (100 * area) - 1) < 1e-9
+    assert set(of_file.misfits["quantity"]) <= {"R", "T"}
+    with pytest.raises(frond.InputError, match="fewer than the 11 parameters"):
         frond.fit([550], [0.1])
     with pytest.raises(ValueError, match="takes measurements, or the path"):
         frond.fit()

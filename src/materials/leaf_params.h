@@ -38,8 +38,10 @@ inline constexpr std::array kLeafParams{
               "structure, and the parameters that are not given.",
           .choices = leaf::kSpecimenNames},
     detail::leaf_number("thickness", "m", {1e-6, 1e-2}, "Thickness of the leaf; by default the specimen's."),
-    detail::leaf_number("mesophyllfraction", "", {0, 1},
-                        "Share of the thickness that absorbs; by default the specimen's."),
+    detail::leaf_number(
+        "mesophyllfraction", "", {0, 1},
+        "Share of the thickness that absorbs; by default the specimen's. A content per leaf area is concentration "
+        "x thickness x mesophyllfraction: 1 kg/m^2 is 1e5 ug/cm2 or 0.1 g/cm2 (docs/fit.md)."),
     detail::leaf_number("chlorophylla", detail::kDensity, {0, 100},
                         "Chlorophyll a in the mesophyll; by default the specimen's."),
     detail::leaf_number("chlorophyllb", detail::kDensity, {0, 100},

@@ -242,19 +242,25 @@ std::vector<Table> fit_tables(const FitReport& report) {
 
 namespace {
 
-/// Adds wide lines under the fitted curves where they are misfits, and the lowest R where that is above the measured.
+/// Adds wide lines where the fitted curves are misfits: to be covered by the curves.
 void add_misfits(Panel& panel, const FitReport& report, double theta_deg, const Series& r, const Series& t) {
-  std::string label = fmt::format("off by more than {:.2g}", leaf::kMisfit), lowest = "lowest R of this structure";
+  std::string label = fmt::format("off by more than {:.2g}", leaf::kMisfit);
   for (const leaf::MisfitBand& band : report.result.misfits) {
     if (band.theta_deg != theta_deg) continue;
     Series wide = line(std::exchange(label, ""), "#f0b27a", 8);
     for (const ChartPoint& p : (band.is_t ? t : r).points)
       if (band.nm.contains(p.x)) wide.points.push_back(p);
     panel.series.push_back(wide);
-    if (is_below_reach(band))
-      panel.series.push_back(line(std::exchange(lowest, ""), kSeriesColors[2], 1.5, Dash::dashed,
-                                  {{band.nm.min, band.lowest_r}, {band.nm.max, band.lowest_r}}));
   }
+}
+
+/// Adds the lowest R where it is above the measured R: to cover the curves.
+void add_lowest(Panel& panel, const FitReport& report, double theta_deg) {
+  std::string label = "lowest R of this structure";
+  for (const leaf::MisfitBand& band : report.result.misfits)
+    if (band.theta_deg == theta_deg && is_below_reach(band))
+      panel.series.push_back(line(std::exchange(label, ""), kSeriesColors[2], 2, Dash::dashed,
+                                  {{band.nm.min, band.lowest_r}, {band.nm.max, band.lowest_r}}));
 }
 
 }  // namespace
@@ -279,6 +285,7 @@ Chart fit_chart(const FitReport& report) {
     for (Series* curve : {&r, &t}) std::ranges::stable_sort(curve->points, {}, &ChartPoint::x);
     add_misfits(panel, report, all[a], r, t);
     panel.series.insert(panel.series.end(), {r, t, measured});
+    add_lowest(panel, report, all[a]);
   }
   return {1, {panel}, fmt::format("{}: RMSE {:.4f}", report.source, report.result.rmse)};
 }

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "jobs/record/job.h"
@@ -58,6 +59,12 @@ TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
   };
   EXPECT_THAT(error({"--fix", "chlorophylla"}), HasSubstr("chlorophylla=NUMBER"));
   EXPECT_THAT(error({"--fix", "clorophylla=1"}), HasSubstr("did you mean \"chlorophylla\"?"));
+  EXPECT_THAT(error({"--fix", "chlorophyll=40"}), HasSubstr("chlorophyll=40ug/cm2"));
+  EXPECT_THAT(error({"--fix", "chlorophylla=40ug/m2"}), HasSubstr("ug/cm2, mg/cm2 or g/cm2"));
+  EXPECT_THAT(error({"--fix", "spongyaspect=4ug/cm2"}), HasSubstr("is not a content per leaf area"));
+  EXPECT_THAT(error({"--fix", "water=0.01g/cm2", "--fix", "thickness=1e-4"}), HasSubstr("give the thickness"));
+  EXPECT_THAT(error({"--fix", "chlorophyll=40ug/cm2", "--fix", "chlorophylla=2"}), HasSubstr("is the sum of"));
+  EXPECT_THAT(error({"--fix", "water=9g/cm2"}), HasSubstr("outside its range"));
   EXPECT_THAT(error({"--like", "oak"}), HasSubstr("one of soybean, maize"));
   EXPECT_THAT(error({"--like", "maize", "--structure", "bifacial"}), HasSubstr("unifacial"));
   EXPECT_THAT(error({"--leaf", "oak"}), HasSubstr("has no names of leaves"));
@@ -66,6 +73,43 @@ TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
   const auto done = frond_command({"fit", short_one});
   EXPECT_NE(done.code, 0);
   EXPECT_THAT(done.err, HasSubstr("fewer"));
+}
+
+TEST_F(Fitting, TakesAndReportsContentsPerLeafArea) {
+  const std::string json = name_of("leaf.json");
+  const auto done =
+      frond_command({"fit", spectrum_, "--json", json, "--structure", "bifacial", "--sieve", "on", "--fix",
+                     "chlorophyll=40ug/cm2", "--fix", "water=8mg/cm2", "--fix", "drymatter=0.004g/cm2"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("per leaf area"), HasSubstr("ug/cm2"), HasSubstr("as given")));
+  const auto contents = nlohmann::json::parse(bytes_of(json))["contents"];
+  std::map<std::string, double> value;
+  for (const auto& row : contents) value[row["name"]] = row["value"];
+  EXPECT_NEAR(value["chlorophyll"], 40, 1e-6);
+  EXPECT_NEAR(value["water"], 0.008, 1e-9);
+  EXPECT_NEAR(value["drymatter"], 0.004, 1e-9);
+}
+
+/// 0.001 in the red is darker than any surface of the model.
+TEST_F(Fitting, NamesTheBandsThatItMisses) {
+  std::string dark = "nm,R,T\n";
+  for (int nm = 400; nm <= 1000; nm += 20)
+    dark += fmt::format("{},{},{}\n", nm, nm < 700 ? 0.001 : 0.44, nm < 700 ? 0.001 : 0.45);
+  const std::string json = name_of("leaf.json"), chart = name_of("leaf.svg");
+  const auto done = frond_command({"fit", folder_.write("dark.csv", dark).string(), "--json", json, "--plot", chart});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("off by more than 0.01"), HasSubstr("lowest R")));
+  EXPECT_THAT(bytes_of(chart), AllOf(HasSubstr("off by more than 0.01"), HasSubstr("lowest R of this structure")));
+  bool found = false;
+  const auto j = nlohmann::json::parse(bytes_of(json));
+  for (const auto& band : j["misfits"])
+    if (band["quantity"] == "R" && band["below_reach"]) {
+      found = true;
+      EXPECT_GT(band["lowest_R"], 0.01);
+      EXPECT_GE(band["from_nm"], 400);
+      EXPECT_LE(band["to_nm"], 700);
+    }
+  EXPECT_TRUE(found);
 }
 
 /// Arguments of the job as a program gives them: measurements in a text, names without dashes.

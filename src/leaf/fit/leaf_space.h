@@ -88,7 +88,10 @@ class LeafSpace {
   // The logistic function maps the search variables q, on the whole line, to logarithms within the range.
   TissueParams at(const Eigen::VectorXd& q) const {
     TissueParams p = origin_;
-    for (Eigen::Index i = 0; i < count(); ++i) p = with(p, variable(i), std::exp(log_at(i, q[i])));
+    for (Eigen::Index i = 0; i < count(); ++i) {
+      const Interval& range = variable(i).range;  // the exponential of its ends may lie beyond them
+      p = with(p, variable(i), std::clamp(std::exp(log_at(i, q[i])), range.min, range.max));
+    }
     return p;
   }
   Eigen::VectorXd of(const TissueParams& p) const {
