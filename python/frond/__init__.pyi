@@ -29,7 +29,7 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     filter: PLUGIN[,parameter=value...]: pixel filter; parameters that are not given keep the scene's values if the type is the scene's. gaussian,reconstruction=importance: each sample counts in one pixel only.
     channels: Additional channels with data of the first surface that camera rays hit; names separated by commas (docs/scene_format.md).
     for_denoiser: Render for a denoiser: pixels without common samples (the filter's reconstruction becomes importance), and the channels albedo and normal (docs/rendering.md).
-    max_rms: Stop when the RMS noise of the image's linear colours is below this; pixels with more noise get more samples, up to spp. Range: above 0. Excludes samples.
+    max_rms: Stop when the RMS noise of the image's linear colours is below this: a number is in film units (1: white), 2% is relative to each colour's mean over the image. Pixels with more noise get more samples, up to spp. Range: above 0. Excludes samples.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     quick: Preview: half the resolution, a sixteenth of the samples.
     pilot: Select the models of open leaves and report them; render nothing.
@@ -74,7 +74,7 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
 
     Returns the job's table."""
 
-def fit(wavelengths = None, R = None, T = None, *, path = None, sieve = None, file: str | os.PathLike | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike = 'prospect', fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
+def fit(wavelengths = None, R = None, T = None, *, path = None, sieve: str | os.PathLike | None = None, file: str | os.PathLike | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike = 'prospect', fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
     """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit.
 
     wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing. path: a file, in place of
@@ -119,7 +119,7 @@ def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen:
 def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,800', zenith: float | Sequence[float] | str = '-75:75:5', *, azimuth: float | Sequence[float] | str = '0', hemisphere: bool = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 65536, rms: float | None = None, time_limit: float | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, compare: str | Sequence[str] | Mapping[str, str] | None = None, reference: str | os.PathLike = 'leaf_solved', within: float = 0.02, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> pandas.DataFrame | dict:
     """Measure the bidirectional reflectance factor of a scene from far away.
 
-    Leaves without "incident" use incident=reciprocal; abm uses incident=light.
+    Under more than one sun, as with a sky, the result is the hemispherical-directional reflectance factor (HDRF). Leaves without "incident" use incident=reciprocal; abm uses incident=light.
 
     scene: Scene file (pbrt-v4 format).
     wavelengths: Wavelengths, as in 450,550,670 or 400:700:10, or bands,responses=... Unit: nm. Default: 450,550,670,800.
@@ -129,7 +129,7 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
     paths: Number of paths for each view. Range: from 1 to 4294967296. Default: 65536.
-    rms: Stop when the RMS of the standard errors, relative to the mean, is below this; paths is then not used. Range: above 0.
+    rms: Relative standard error (0.01 is 1 % of the BRF): stop when the RMS over all views and wavelengths is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
@@ -147,10 +147,13 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
 
     Returns the job's table."""
 
-def flux(scene, wavelengths = None, *, by_instance = False, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, by: str | os.PathLike | None = None, irradiance: str | os.PathLike = 'solar-am1.5-global', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
-    """Returns the table of reflected, transmitted and absorbed shares of the incident light. With by_instance=True also a
-    dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][wavelength]`, "areas" `[instance]`, and
-    "wavelengths_nm".
+def flux(scene, wavelengths: str | os.PathLike = '450,550,670,800', *, by: str | os.PathLike | None = None, target: float | Sequence[float] | str | None = None, period: float | Sequence[float] | str | None = None, paths: int = 1000000, rms: float | None = None, time_limit: float | None = None, irradiance: str | os.PathLike = 'solar-am1.5-global', swap: str | Sequence[str] | Mapping[str, str] | None = None, integrator: str | os.PathLike | None = None, seed: int | None = None, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, progress = None, session: Session | None | None = None) -> object:
+    """Returns the table of reflected, transmitted and absorbed shares of the incident light. In the rows of PAR photons
+    "wavelength_nm" is NaN; they require wavelengths from 400 to 700 nm, at most 50 nm apart ("400:700:20").
+
+    With by="instance" also a dictionary of arrays: "absorbed" and "absorbed_se" (standard error) `[instance][wavelength]`,
+    "areas" `[instance]`, "wavelengths_nm", and if there is PAR, "par_umol_m2_s" and "par_umol_m2_s_se" `[instance]`: absorbed
+    photons by leaf area.
 
     Measure the light budget of a scene: reflection, transmission, absorption.
 
@@ -161,7 +164,7 @@ def flux(scene, wavelengths = None, *, by_instance = False, target: float | Sequ
     target: x0,x1,y0,y1,z: horizontal rectangle to measure; by default one period, or the whole scene, at its top.
     period: Lengths along x and y after which the scene is repeated periodically. Range: above 0.
     paths: Number of light paths. Default: 1e6.
-    rms: Stop when the RMS standard error of the reflected and absorbed shares of the incident light is below this; paths is then not used. Range: above 0.
+    rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, one row each. One of instance.
     irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, or an .spd file. Unit: W/(m2 nm). Default: solar-am1.5-global.
@@ -224,7 +227,7 @@ def describe(name: str | os.PathLike | None = None, markdown: bool = False, comm
     markdown: Print Markdown; without a name, for every plug-in.
     commands: Print Markdown for every command. Excludes markdown."""
 
-def conform(material, *, session = None, sweep: bool = False, samples: int = 20000, angles: float | Sequence[float] | str = '0,30,60,80,89', wavelengths: float | Sequence[float] | str = '608,551,455', seed: int = 1, lossless: bool = False, reciprocal: bool = False, false_alarm_rate: float = 1e-06, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, map: str | os.PathLike | None = None, progress = None) -> object:
+def conform(material, *, session: Session | None | None = None, sweep: bool = False, samples: int = 20000, angles: float | Sequence[float] | str = '0,30,60,80,89', wavelengths: float | Sequence[float] | str = '608,551,455', seed: int = 1, lossless: bool = False, reciprocal: bool = False, false_alarm_rate: float = 1e-06, csv: str | os.PathLike | None = None, json: str | os.PathLike | None = None, map: str | os.PathLike | None = None, progress = None) -> object:
     """Tests whether a BSDF obeys the laws of scattering. material: text, or an object of `frond.Bsdf`. Returns a dictionary:
     "laws" {law: verdict}, "findings" a table, "all_hold" True if no law is broken.
 
@@ -348,7 +351,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     filter: PLUGIN[,parameter=value...]: pixel filter; parameters that are not given keep the scene's values if the type is the scene's. gaussian,reconstruction=importance: each sample counts in one pixel only.
     channels: Additional channels with data of the first surface that camera rays hit; names separated by commas (docs/scene_format.md).
     for_denoiser: Render for a denoiser: pixels without common samples (the filter's reconstruction becomes importance), and the channels albedo and normal (docs/rendering.md).
-    max_rms: Stop when the RMS noise of the image's linear colours is below this; pixels with more noise get more samples, up to spp. Range: above 0. Excludes samples.
+    max_rms: Stop when the RMS noise of the image's linear colours is below this: a number is in film units (1: white), 2% is relative to each colour's mean over the image. Pixels with more noise get more samples, up to spp. Range: above 0. Excludes samples.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     quick: Preview: half the resolution, a sixteenth of the samples.
     pilot: Select the models of open leaves and report them; render nothing.
