@@ -148,7 +148,9 @@ class SceneRender {
   void prepare() {
     task_.read(files_);
     find_paths();
-    constexpr double kPilotPart = 0.25;  // of the time limit
+    // A pilot that takes longer than this part of the time limit ends with the exact models: an image with noise is
+    // worth more than a better choice of models without time to use them.
+    constexpr double kPilotPart = 0.25;
     task_.choose(output_ ? &*output_ : nullptr,
                  run_.control_until(kPilotPart * run_.args.real("time-limit"), start_).deadline);
     if (run_.args.flag("pilot")) return;
@@ -256,6 +258,7 @@ class SceneRender {
 
   /// Logs the image's noise; warns if it exceeds --max-rms.
   void report_noise(const Film& film) const {
+    // In the unit of the request: per cent of the means, or film units.
     const bool is_relative = run_.args.is_relative("max-rms");
     const NoiseEstimate noise = image_noise(film, noise_z(), noise_unit(film, is_relative));
     const double max_rms = run_.args.real("max-rms");
