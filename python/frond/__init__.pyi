@@ -74,7 +74,7 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
 
     Returns the job's table."""
 
-def fit(wavelengths = None, R = None, T = None, *, path = None, sieve: str | os.PathLike | None = None, file: str | os.PathLike | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike = 'prospect', fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
+def fit(wavelengths = None, R = None, T = None, *, path = None, sieve: str | os.PathLike | None = None, file: str | os.PathLike | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
     """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit.
 
     wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing. path: a file, in place of
@@ -94,7 +94,7 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, sieve: str | os.
     angle: Angle of incidence, if the file does not state it. Unit: degrees. Range: from 0 to 180. Default: 8.
     structure: Structure of the leaf; by default the better fit. One of bifacial, unifacial.
     sieve: Absorption with sieve and detour effects; by default the better fit. One of on, off.
-    absorption: Specific absorption of the leaf: PROSPECT-D's, with dry matter and anthocyanins, or the published model's, with protein and cellulose. One of prospect, baranoski. Default: prospect.
+    absorption: Specific absorption of the leaf: PROSPECT-D's, with dry matter and anthocyanins, or the published model's (baranoski), with protein and cellulose. By default that of like, or else prospect. One of prospect, baranoski.
     fix: NAME=NUMBER[UNIT]: keep a parameter at this value, in the units of scene files, or a content per leaf area in ug/cm2, mg/cm2 or g/cm2 (chlorophyll=40ug/cm2, water=0.012g/cm2). Repeatable.
     like: Specimen used as a prior (standard deviation about one third). One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex.
     material: Material type to write. One of leaf, leaf_solved, leaf_simplified, leaf_lambert, abm. Default: leaf."""

@@ -43,9 +43,9 @@ constexpr JobParam kParams[] = {
              {.choices = kSieve, .decides = true}),
     JobParam(
         "absorption", text,
-        "Specific absorption of the leaf: PROSPECT-D's, with dry matter and anthocyanins, or the published model's, "
-        "with protein and cellulose.",
-        {.default_value = "prospect", .choices = kAbsorption, .decides = true}),
+        "Specific absorption of the leaf: PROSPECT-D's, with dry matter and anthocyanins, or the published model's "
+        "(baranoski), with protein and cellulose. By default that of --like, or else prospect.",
+        {.choices = kAbsorption, .decides = true}),
     JobParam(
         "fix", texts,
         "NAME=NUMBER[UNIT]: keep a parameter at this value, in the units of scene files, or a content per leaf area "
@@ -135,7 +135,10 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasure
   if (args.given("sieve")) request.sieve = args.text("sieve") == "on";
   for (const std::string& word : args.texts("fix")) request.fixed.push_back(fixed_of(word, args.spelled("fix")));
   check_contradictions(request, args.spelled("fix"));
-  if (args.text("absorption") == "baranoski") request.absorption_tables = leaf::AbsorptionTables::baranoski;
+  if (request.like) request.absorption_tables = request.like->params.absorption_tables;
+  if (args.given("absorption"))
+    request.absorption_tables =
+        args.text("absorption") == "baranoski" ? leaf::AbsorptionTables::baranoski : leaf::AbsorptionTables::prospect;
   size_t values = 0;
   for (const leaf::LeafMeasurement& r : request.measurements) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
   // Fewer values than parameters leave the fit undetermined, unless a prior determines the rest.

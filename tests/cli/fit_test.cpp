@@ -90,6 +90,20 @@ TEST_F(Fitting, TakesAndReportsContentsPerLeafArea) {
   EXPECT_NEAR(value["drymatter"], 0.004, 1e-9);
 }
 
+TEST_F(Fitting, AbsorbsAsTheSpecimenThatItIsLike) {
+  const auto absorption = [this](std::vector<std::string> more) {
+    const std::string json = name_of("leaf.json");
+    std::vector<std::string> words{"fit", spectrum_, "--json", json, "--sieve", "on"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(frond_command(words).code, 0);
+    return nlohmann::json::parse(bytes_of(json))["absorption"].get<std::string>();
+  };
+  EXPECT_EQ(absorption({"--structure", "bifacial"}), "prospect");
+  EXPECT_EQ(absorption({"--like", "soybean"}), "baranoski");
+  EXPECT_EQ(absorption({"--like", "soybean", "--absorption", "prospect"}), "prospect");
+  EXPECT_EQ(absorption({"--like", "walnut"}), "prospect");
+}
+
 /// 0.001 in the red is darker than any surface of the model.
 TEST_F(Fitting, NamesTheBandsThatItMisses) {
   std::string dark = "nm,R,T\n";
