@@ -24,8 +24,8 @@ Machine: {machine}.
 
 All leaves except grape and toyon are from LOPEX93. PROSPECT-D (prosail {version}) has seven parameters to fit: N, chlorophyll,
 carotenoids, anthocyanins, brown pigments, water and dry matter. SciPy's `least_squares` fits them within their ranges, from four
-starts. Both models use the absorption spectra of PROSPECT-D, except for dry matter. Nothing in frond is calibrated with these seven
-leaves: leaving one out changes no fit.
+starts. Both models use the absorption spectra of PROSPECT-D, except for the plateau of dry matter. No number of frond is calibrated
+with these seven leaves, so that leaving one out changes no fit of another.
 
 RMSE of R and T together, and for frond also of R and of T alone, 400 to 2500 nm. CPU time of one fit on one core, for frond
 including the start of the program:
