@@ -53,7 +53,7 @@ TEST(MeasuredTable, TellsLeafTablesFromSpectra) {
   EXPECT_TRUE(is_leaf_table("Rd,T\r\n"));
   EXPECT_FALSE(is_leaf_table("wavelength,R,T\n500,.1,.1\n"));
   EXPECT_FALSE(is_leaf_table("500 .1 .1\n# Rs,Rd\n"));
-  EXPECT_FALSE(is_leaf_table(""));
+  EXPECT_TRUE(is_leaf_table("# neither\n"));
 }
 
 }  // namespace

@@ -73,6 +73,7 @@ MeasuredTable measured_table(const MeasuredSpectra& spectra, double surface, con
 }
 
 bool is_leaf_table(std::string_view text) {
+  if (text.find('\0') != text.npos) return true;
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
@@ -88,7 +89,7 @@ bool is_leaf_table(std::string_view text) {
     }
     return false;
   }
-  return false;
+  return true;
 }
 
 MeasuredTable read_table_or_spectra(const std::filesystem::path& path, const Location& where,
