@@ -30,7 +30,7 @@ REQUESTS = [0.02, 0.01, 0.005, 0.002, 0.001]
 OTHER_REQUESTS = [0.02, 0.005]
 # One for each scene at full size.
 FULL_SIZE_REQUESTS = {"near and far": 0.005, "maize": 0.02, "dark": 0.002, "spotted": 0.005, "hundred leaves": 0.002,
-                      "shade": 0.005, "pot": 0.02, "vase": 0.02, "soybean front": 0.005, "soybean back": 0.01,
+                      "shade": 0.005, "pot": 0.02, "vase": 0.1, "soybean front": 0.005, "soybean back": 0.01,
                       "soybean ambient": 0.01, "closed": 0.005}
 RESOLUTION = 96
 RESOLUTIONS = [64, 128, 256, 512]

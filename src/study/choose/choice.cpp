@@ -20,7 +20,7 @@ constexpr uint64_t kMostScreening = 64, kMostSamples = 4096;
 constexpr size_t kLooks = 10;
 static_assert(kFirstSamples << (kLooks - 1) == kMostSamples);
 /// Share of the time that the cheapest options could save which a pilot may take.
-constexpr double kLargestPart = 0.5;
+constexpr double kLargestPart = 0.25;
 /// Share of the final render's paths that a pilot may trace if its answer is what is wanted, and the least number of
 /// samples that it may take then.
 constexpr double kLargestPartOfQuestion = 0.25;
