@@ -163,9 +163,6 @@ class LeafLambert final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
-  /// Step of the natural logarithm of depth, as in leaf_simplified.
-  static constexpr double kDepthStep = 0.1;
-
   // Angles of the adaxial side, then of the abaxial side in reverse, so that they ascend; a unifacial leaf is
   // symmetric. Shares are needed at these few angles only, so tables are small.
   leaf::TableRequest request_for(const WavelengthStrategy& wavelengths) const {
@@ -192,7 +189,7 @@ class LeafLambert final : public Material {
     const leaf::TableRequest request = request_for(preparation.wavelengths);
     const leaf::DepthTable table = leaf::make_depth_table(
         leaf::TissueModel(request.params), request.theta_deg, index_wavelengths(preparation.wavelengths),
-        depth_axis(leaf_.depth(), preparation.wavelengths, kDepthStep), preparation.pool);
+        depth_axis(leaf_.depth(), preparation.wavelengths, kSharesDepthStep), preparation.pool);
     return {table.wavelengths_nm, table.depths, means(table.theta_deg, table.shares), has_fixed_lanes(preparation)};
   }
 

@@ -52,10 +52,6 @@ constexpr auto kLeafSimplified = with_leaf_params(kOwn);
 // Parameters that have no effect with "tablefile".
 constexpr std::string_view kOfTable[] = {"tablemethod", "tablerays", "tablestep"};
 
-/// Step of the natural logarithm of depth in tables. With `index_wavelengths`, errors of shares stay below 4e-4, their
-/// mean below 3e-5.
-constexpr double kDepthStep = 0.1;
-
 /// Returns even angles that include 90 degrees. A unifacial leaf is symmetric and requires only one side.
 std::vector<double> table_angles(const leaf::TissueParams& params, double most_step_deg) {
   constexpr double kRounding = 1e-6;  // tolerates steps such as 90 / 7, written in decimals
@@ -145,7 +141,7 @@ class LeafSimplified final : public Material {
     const std::vector<double> wavelengths = index_wavelengths(preparation.wavelengths);
     const leaf::DepthTable table =
         leaf::make_depth_table(leaf::TissueModel(request_.params), request_.theta_deg, wavelengths,
-                               depth_axis(leaf_.depth(), preparation.wavelengths, kDepthStep), preparation.pool);
+                               depth_axis(leaf_.depth(), preparation.wavelengths, kSharesDepthStep), preparation.pool);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     preparation.log.info(fmt::format("leaf table: {}, {} wavelengths x {} depths x {} angles, solve, {:.2g} s",
                                      leaf_.specimen(), wavelengths.size(), table.depths.depths().size(),

@@ -27,6 +27,10 @@ std::string wavelengths_key(const WavelengthStrategy& strategy);
 /// the step is 40 nm.
 std::vector<double> index_wavelengths(const WavelengthStrategy& strategy);
 
+/// Step of the natural logarithm of depth in tables of reflectance and transmittance. With `index_wavelengths`, errors
+/// of shares stay below 4e-4, their mean below 3e-5.
+inline constexpr double kSharesDepthStep = 0.1;
+
 /// Axis over all depths that a leaf's textures can give at these wavelengths, in steps of at most `step` of their
 /// logarithm.
 leaf::DepthAxis depth_axis(const leaf::DepthMap& depth, const WavelengthStrategy& strategy, double step);

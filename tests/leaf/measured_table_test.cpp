@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "leaf/table/table_file.h"
 #include "tests/support/input_error.h"
 
 namespace frond::leaf {

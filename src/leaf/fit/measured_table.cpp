@@ -72,26 +72,6 @@ MeasuredTable measured_table(const MeasuredSpectra& spectra, double surface, con
   return result;
 }
 
-bool is_leaf_table(std::string_view text) {
-  if (text.find('\0') != text.npos) return true;
-  while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
-    const size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == line.npos || line[begin] == '#') continue;
-    for (size_t at = 0; at <= line.size();) {
-      const size_t end = std::min(line.find(',', at), line.size());
-      std::string_view field = line.substr(at, end - at);
-      field.remove_prefix(std::min(field.find_first_not_of(" \t\r"), field.size()));
-      field = field.substr(0, field.find_last_not_of(" \t\r") + 1);
-      if (field == "Rs" || field == "Rd") return true;
-      at = end + 1;
-    }
-    return false;
-  }
-  return true;
-}
-
 MeasuredTable read_table_or_spectra(const std::filesystem::path& path, const Location& where,
                                     const SpectraMeasurement& how, double surface) {
   const std::string text = read_file_bytes(path, where, "leaf table");

@@ -21,11 +21,6 @@ struct MeasuredTable {
 /// degrees.
 MeasuredTable measured_table(const MeasuredSpectra& spectra, double surface, const std::string& name);
 
-/// Returns whether the text is to be read as a leaf table (docs/file_formats.md) rather than as measured spectra:
-/// whether its first row names a column "Rs" or "Rd". A file without rows, or that is no text, is neither; the reader
-/// of tables reports it.
-bool is_leaf_table(std::string_view text);
-
 /// Reads a file of either kind: a leaf table, which has its own Rs, or measured spectra. Throws InputError as their
 /// readers do, or at `where` if the file cannot be read.
 MeasuredTable read_table_or_spectra(const std::filesystem::path& path, const Location& where,

@@ -215,6 +215,18 @@ Table parse_table(std::string_view text, const std::string& name) {
   return table;
 }
 
+bool is_leaf_table(std::string_view text) {
+  if (text.find('\0') != text.npos) return true;
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
+    return std::ranges::any_of(split(line, {}),
+                               [](const Field& f) { return f.text == kNames[kRs] || f.text == kNames[kRd]; });
+  }
+  return true;
+}
+
 Table read_table(const std::filesystem::path& path, const Location& where) {
   return parse_table(read_file_bytes(path, where, "leaf table"), path.string());
 }
