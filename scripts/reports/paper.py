@@ -3,6 +3,7 @@
 import argparse
 import pathlib
 import re
+import shlex
 
 import numpy
 
@@ -65,7 +66,8 @@ ELSEWHERE = """
 
 
 def page(runs, images, measured, tables, command):
-    commands = "\n".join(measured["front"][part]["notes"][0].replace(f"{ROOT}/", "") for part in ("comparison", "manner"))
+    commands = "\n".join(shlex.join(["frond", *map(str, runs.comparison_words(part, SETS[0]))]).replace(f"{ROOT}/", "")
+                         for part in ("comparison", "manner"))
     used = sum(m["comparison"]["cpu_seconds"] + m["manner"]["cpu_seconds"] +
                sum(r["cpu_seconds"] for halves in m["images"].values() for r in halves) for m in measured.values())
     return f"""# The paper's experiments
@@ -103,7 +105,7 @@ The other scenes use the same commands with their own `--target`.
 
 def measure(runs):
     """{set: its measurements}, one experiment after the other."""
-    measured = {s.name: {"comparison": runs.comparison(s), "manner": runs.manner(s)} for s in SETS}
+    measured = {s.name: {part: runs.compared(part, s) for part in ("comparison", "manner")} for s in SETS}
     for s in SETS:
         measured[s.name]["ends"] = curves_of(runs, s, measured[s.name]["manner"])
     for s in SETS:

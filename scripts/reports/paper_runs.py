@@ -95,22 +95,20 @@ class Runs:
 
         return self.kept(f"table-{method}", measure)
 
-    def compared(self, name, s, candidates, arguments):
+    def comparison_words(self, name, s):
+        """Arguments of frond for a comparison. `manner` is by the paper's method, which needs few samples for its times; it is
+        separate, because one candidate has more noise than all others together."""
+        candidates, arguments = {"comparison": (CANDIDATES, self.setting.compare),
+                                 "manner": (CANDIDATES + [PUBLISHED], self.setting.manner)}[name]
+        return ["compare", s.scene(), "--materials", ";".join(candidates), "--wavelengths", "smpte", "--target", s.name, *arguments]
+
+    def compared(self, name, s):
         def measure():
             report = self.folder / f"{name}-{s.name}-report"
-            program("compare", s.scene(), "-o", report, "--materials", ";".join(candidates), "--wavelengths", "smpte", "--target",
-                    s.name, *arguments, *self.threads, "-q")
+            program(*self.comparison_words(name, s), "-o", report, *self.threads, "-q")
             return (report / "compare.json").read_text()
 
         return self.kept(f"{name}-{s.name}", measure)
-
-    def comparison(self, s):
-        return self.compared("comparison", s, CANDIDATES, self.setting.compare)
-
-    def manner(self, s):
-        """By the paper's method, which needs few samples for its times. A separate comparison, because one candidate has more
-        noise than all others together."""
-        return self.compared("manner", s, CANDIDATES + [PUBLISHED], self.setting.manner)
 
     def ends(self, s, model, cutoff):
         """Report of a render whose paths are cut off at this attenuation; 0: never."""
