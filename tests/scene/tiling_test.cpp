@@ -1,5 +1,7 @@
 // A scene with a period against instances of it written out side by side.
 
+#include "scene/geometry/tiling.h"
+
 #include <gtest/gtest.h>
 
 #include "core/log.h"
@@ -62,6 +64,24 @@ TEST(Tiling, IsMetWhereItsCopiesAre) {
   }
   EXPECT_GT(hits, 5000) << "the test has lost its power";
   EXPECT_LE(differ, 4) << "rays along an edge";
+}
+
+/// Leaves at the border of a plot make it a little wider than its period.
+TEST(Tiling, VisitsAnOverlappingRepetitionOnlyNearTheBorder) {
+  const Tiling tiling({1, 1}, {{0, 0, 0}, {1.1f, 1.1f, 2}});
+  const auto visited = [&](float x, float y) {
+    std::vector<std::pair<float, float>> shifts;
+    tiling.march({{x, y, 3}, {0, 0, -1}}, [&](const Tiling::Repeat& repeat) {
+      shifts.emplace_back(repeat.shift.x, repeat.shift.y);
+      return false;
+    });
+    return shifts;
+  };
+  using Shifts = std::vector<std::pair<float, float>>;
+  EXPECT_EQ(visited(0.5f, 0.5f), (Shifts{{0, 0}}));
+  EXPECT_EQ(visited(0.05f, 0.5f), (Shifts{{0, 0}, {-1, 0}}));
+  EXPECT_EQ(visited(0.5f, 0.05f), (Shifts{{0, 0}, {0, -1}}));
+  EXPECT_EQ(visited(3.05f, -1.95f), (Shifts{{3, -2}, {3, -3}, {2, -2}, {2, -3}}));
 }
 
 TEST(Tiling, AFlatRayBetweenThingsLeavesTheScene) {

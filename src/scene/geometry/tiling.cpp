@@ -7,7 +7,8 @@ Tiling::Tiling(Vec2 period, const Bounds& bounds) {
   const auto axis = [](float length, float least, float most) {
     const double width = std::max(0.0, double(most) - double(least));
     constexpr double kRounding = 1e-6;
-    return Axis{double(length), double(least), std::max(0, int(std::ceil(width / double(length) - kRounding)) - 1)};
+    return Axis{double(length), double(least), width,
+                std::max(0, int(std::ceil(width / double(length) - kRounding)) - 1)};
   };
   x_ = axis(period.x, bounds.min.x, bounds.max.x);
   y_ = axis(period.y, bounds.min.y, bounds.max.y);

@@ -26,14 +26,22 @@ class Tiling {
 
  private:
   static constexpr int kMostCells = 10000;
+  /// Share of the period by which segments within cells are enlarged, so that surfaces on their borders are not missed.
+  static constexpr double kSlack = 1e-5;
 
   /// Repetition along x or y.
   struct Axis {
     double period, least;
-    int overlap;  ///< number of preceding repetitions that overlap a cell
+    double width;  ///< of the scene; may exceed the period
+    int overlap;   ///< number of preceding repetitions that overlap a cell
 
     /// Index of the cell of x: an integer, possibly very large.
     double cell(double x) const { return std::floor((x - least) / period); }
+    /// Whether a segment within a cell, from `from` to `to`, reaches the part of the cell that the repetition which
+    /// begins `back` cells before it covers.
+    bool reaches(double from, double to, double cell, int back) const {
+      return std::min(from, to) - (least + cell * period) <= width - back * period + kSlack * period;
+    }
     /// Returns the distance at which a ray leaves the cell; infinity if it does not.
     double exit(double o, double d, double cell) const {
       if (d == 0) return INFINITY;
@@ -57,20 +65,22 @@ bool Tiling::march(const Ray& ray, const Meets& meets) const {
     end = std::min(end, std::max(a, b));
   }
   if (!(t < end)) return false;
-  // The segment within a cell is slightly enlarged, so that surfaces on its border are not missed.
-  const double slack = 1e-5 * std::max(x_.period, y_.period) / std::max(1e-30, length(d));
+  const double slack = kSlack * std::max(x_.period, y_.period) / std::max(1e-30, length(d));
   double i = x_.cell(o.x + t * d.x), j = y_.cell(o.y + t * d.y);
   for (int cells = 0; cells < kMostCells && t < end; ++cells) {
     const double exit_x = x_.exit(o.x, d.x, i), exit_y = y_.exit(o.y, d.y, j);
     const double exit = std::min({exit_x, exit_y, end}), enter = std::max(0.0, t - slack);
+    const Vec3d from = o + d * enter, to = o + d * (exit + slack);
     bool met = false;
-    for (int a = 0; a <= x_.overlap; ++a)
+    for (int a = 0; a <= x_.overlap; ++a) {
+      if (!x_.reaches(from.x, to.x, i, a)) break;
       for (int b = 0; b <= y_.overlap; ++b) {
+        if (!y_.reaches(from.y, to.y, j, b)) break;
         const Vec3d shift{(i - a) * x_.period, (j - b) * y_.period, 0};
-        const Ray there{to_float(o + d * enter - shift), ray.d,
-                        float(std::min(exit + slack, double(ray.t_max)) - enter)};
+        const Ray there{to_float(from - shift), ray.d, float(std::min(exit + slack, double(ray.t_max)) - enter)};
         met |= meets(Repeat{to_float(shift), there, float(enter)});
       }
+    }
     if (met) return true;
     t = std::max(t, exit);
     if (exit_x <= exit_y)
