@@ -1,5 +1,7 @@
 #pragma once
 
+#include <new>
+
 #include "core/plugin.h"
 #include "core/ray.h"
 #include "core/transform.h"
@@ -13,6 +15,11 @@ class Camera {
   /// Ray in world space, with unit direction, through the point `film` (in pixels, y down), for a uniform sample `lens`
   /// of the lens in [0, 1)^2.
   virtual Ray ray(Vec2 film, Vec2 lens) const = 0;
+  /// Constructs the rays of `count` points: exactly those of `ray`. A camera overrides it where that is faster.
+  virtual void rays(const Vec2* film, const Vec2* lens, int count, Ray* to) const {
+    // In place: copying a ray right after its members were written would stall on store forwarding.
+    for (int i = 0; i < count; ++i) ::new (to + i) Ray(ray(film[i], lens[i]));
+  }
   /// True if `ray` depends on `lens`.
   virtual bool uses_lens() const = 0;
   /// True if neighbouring pixels are unrelated views, such as a list of view directions: a filter must not mix them.

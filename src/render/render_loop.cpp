@@ -156,6 +156,7 @@ class Worker {
     if (job_.camera.uses_lens()) sampler.get2d(b.samples, dimension++, on_lens.data());
     if (!job_.pixel_jitter) on_lens.fill({0.5f, 0.5f});
     b.dimension = dimension;
+    std::array<Vec2, kBundle> on_film;
     for (size_t i = 0; i < kBundle; ++i) {
       if (!(b.lanes >> i & 1)) continue;
       const Vec2 on = on_filter[i];
@@ -163,12 +164,12 @@ class Worker {
         filter_[i] = kernel_ ? Filter::Sample{{on.x - 0.5f, on.y - 0.5f}, 1} : job_.filter.sample(on);
       else
         filter_[i] = {{0, 0}, 1};
-      const Vec2 film_point{float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
-      // Constructed in place: copying a ray right after its members were written would stall on store forwarding.
-      ::new (&b.rays[i]) Ray(job_.camera.ray(film_point, on_lens[i]));
+      on_film[i] = {float(at.x) + 0.5f + filter_[i].offset.x, float(at.y) + 0.5f + filter_[i].offset.y};
       if (!has_fixed_wavelengths_) b.lambda[i] = job_.wavelengths.sample_in_turn(first + i, u[i]);
       b.keys[i] = sample_key(job_.seed, at.x, at.y, first + i);
     }
+    for (size_t i = 0; i < kBundle; i += RayPacket::kWidth)
+      if (b.lanes >> i & 1) job_.camera.rays(&on_film[i], &on_lens[i], RayPacket::kWidth, &b.rays[i]);
     tracer_->trace(b);
   }
 
@@ -185,10 +186,13 @@ class Worker {
       const PathResult& path = bundle_.results[i];
       const SampledWavelengths& lambda = bundle_.lambda[i];
       const auto& [offset, weight] = filter_[i];
-      ::new (&samples_[i]) FilmTile::Sample{job_.wavelengths.sensor(path.radiance, lambda),
-                                            double(weight),
-                                            path.first.is_leaf,
-                                            {offset.x + 0.5f, offset.y + 0.5f}};
+      // Most strategies multiply by a matrix; black is black in every colour space.
+      const bool is_black = format_.bands == 0 && path.radiance.is_black();
+      ::new (&samples_[i]) FilmTile::Sample{
+          is_black ? SensorResponse(std::array<double, 3>{}) : job_.wavelengths.sensor(path.radiance, lambda),
+          double(weight),
+          path.first.is_leaf,
+          {offset.x + 0.5f, offset.y + 0.5f}};
       if (path.first.is_hit && has_channels) {
         Features features(format_.channels, {path.first, bundle_.rays[i], axis_, albedo(path.first, lambda)});
         features.from_center = std::hypot(offset.x, offset.y), features.sample = bundle_.samples.first + i;

@@ -480,6 +480,26 @@ TEST(Cameras, SphericalOnesHaveYAtTheTop) {
   expect(equal, {20, 40}, {0, 0, 1});
 }
 
+/// Rays of several points are those of each, to the bit; 7 is no multiple of the number that is computed at once.
+TEST(Cameras, RaysOfSeveralPointsAreThoseOfEach) {
+  for (const std::string camera :
+       {"LookAt 1 2 3 0 0.5 0 0 0 1 Camera \"perspective\"",
+        "LookAt 1 2 3 0 0.5 0 0 0 1 Camera \"perspective\" \"float lensradius\" .1 \"float focaldistance\" 3",
+        "Scale 1e18 1e18 1e18 Camera \"perspective\"", "Camera \"orthographic\"", "Camera \"spherical\""}) {
+    const Loaded loaded(camera + " WorldBegin LightSource \"infinite\"");
+    RandomStream random(3);
+    std::array<Vec2, 7> film, lens;
+    for (Vec2& p : film) p = {1280 * random.uniform(), 720 * random.uniform()};
+    for (Vec2& p : lens) p = {random.uniform(), random.uniform()};
+    std::array<Ray, 7> rays;
+    loaded.scene->camera().rays(film.data(), lens.data(), int(rays.size()), rays.data());
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const Ray ray = loaded.scene->camera().ray(film[i], lens[i]);
+      EXPECT_TRUE(rays[i].o == ray.o && rays[i].d == ray.d && rays[i].t_max == ray.t_max) << camera << ' ' << i;
+    }
+  }
+}
+
 TEST(Cameras, OpenTimeIsAFactorOfTheFilm) {
   const auto exposure = [](const std::string& camera, const std::string& film) {
     return Loaded(camera + " Film \"rgb\" " + film + " WorldBegin LightSource \"infinite\"").scene->film().exposure;

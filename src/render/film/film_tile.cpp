@@ -45,6 +45,7 @@ class Exposure {
   bool expose(const FilmTile::Sample& sample, Double4& value) const {
     const std::array<double, kLanes>& response = sample.sensor.value;
     value = Double4{response[0], response[1], response[2], response[3]};
+    if (is_within(value, 0)) return true;
     const bool is_finite = std::isfinite((value[0] + value[1]) + (value[2] + value[3]));
     if (!is_finite) value = Double4{};
     // As in pbrt, the limit applies to the sensor's response.

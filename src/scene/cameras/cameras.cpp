@@ -3,6 +3,7 @@
 
 #include "core/camera.h"
 #include "core/error.h"
+#include "core/float4.h"
 #include "core/sampling.h"
 #include "scene/math/equal_area.h"
 
@@ -55,8 +56,38 @@ class ProjectiveCamera : public Camera {
     }
     return {world_from_camera_.point(o), normalize_any(world_from_camera_.vector(normalize_any(d)))};
   }
+  /// The same, of a camera without a lens, for four rays from the camera's position through points of the plane z = 1.
+  /// Returns false if a length is extreme.
+  bool to_world(Float4 x, Float4 y, Ray* to) const {
+    Vec3x4 d{x, y, Float4{} + 1};
+    if (!normalize(d)) return false;
+    const auto& rows = world_from_camera_.rows();
+    const auto row = [&](size_t i) { return rows[i][0] * d.x + rows[i][1] * d.y + rows[i][2] * d.z; };
+    d = {row(0), row(1), row(2)};
+    if (!normalize(d)) return false;
+    const Vec3 o = world_from_camera_.point({});
+    for (int i = 0; i < 4; ++i) ::new (to + i) Ray{o, {d.x[i], d.y[i], d.z[i]}};
+    return true;
+  }
+  Float4 screen_x(const Vec2* film) const {
+    return origin_.x + Float4{film[0].x, film[1].x, film[2].x, film[3].x} * step_.x;
+  }
+  Float4 screen_y(const Vec2* film) const {
+    return origin_.y + Float4{film[0].y, film[1].y, film[2].y, film[3].y} * step_.y;
+  }
 
  private:
+  using Vec3x4 = Vec3T<Float4>;
+
+  /// As normalize_any; returns false where that takes its slow path.
+  static bool normalize(Vec3x4& v) {
+    const Float4 square = dot(v, v);
+    const auto is_moderate = (square > 1e-30f) & (square < 1e30f);
+    if (!(is_moderate[0] & is_moderate[1] & is_moderate[2] & is_moderate[3])) return false;
+    v = v * (1 / square_root(square));
+    return true;
+  }
+
   Transform world_from_camera_;
   Vec2 origin_, step_;
   float lens_radius_, focal_distance_;
@@ -70,6 +101,12 @@ class PerspectiveCamera final : public ProjectiveCamera {
   Ray ray(Vec2 film, Vec2 lens) const override {
     const Vec2 s = screen_point(film);
     return to_world({0, 0, 0}, {s.x, s.y, 1}, lens);
+  }
+  void rays(const Vec2* film, const Vec2* lens, int count, Ray* to) const override {
+    int i = 0;
+    for (; i + 4 <= count && !uses_lens(); i += 4)
+      if (!to_world(screen_x(film + i), screen_y(film + i), to + i)) break;
+    Camera::rays(film + i, lens + i, count - i, to + i);
   }
 };
 
