@@ -27,7 +27,11 @@ constexpr Number kNumbers[] = {
     {&TissueParams::protein, "protein"},
     {&TissueParams::cellulose, "cellulose"},
     {&TissueParams::lignin, "lignin"},
+    {&TissueParams::anthocyanins, "anthocyanins"},
+    {&TissueParams::dry_matter, "drymatter"},
     {&TissueParams::other_absorption, "otherabsorption"},
+    {&TissueParams::spongy_share, "spongyshare"},
+    {&TissueParams::cuticle_refractivity, "cuticlerefractivity"},
     {&TissueParams::cuticle_aspect, "cuticleaspect"},
     {&TissueParams::epidermis_aspect, "epidermisaspect"},
     {&TissueParams::spongy_aspect, "spongyaspect"},
@@ -66,6 +70,13 @@ void add_leaf(Theme& theme, std::string name, const TissueParams& params, double
   if (bounds.f > 0) row.add(Method::solved_f, compare_solved_f(solved, tissue, {10, 40, 55, 75}, bounds.f));
 }
 
+/// Soybean with PROSPECT-D's absorption, instead of the published one.
+void add_prospect_absorption(Theme& theme) {
+  TissueParams params = find_specimen("soybean")->params;
+  params.absorption_tables = leaf::AbsorptionTables::prospect;
+  add_leaf(theme, "absorption \"prospect\"", params, 551, {});
+}
+
 /// Pigments change f only through the optical depth of the mesophyll, as thickness and fraction do.
 bool shapes_f(std::string_view name) { return name == "thickness" || name == "mesophyllfraction"; }
 
@@ -73,7 +84,7 @@ bool is_aspect(std::string_view name) { return name.ends_with("aspect"); }
 
 /// The wavelength at which the parameter has the largest effect.
 double telling_nm(std::string_view name) {
-  if (name == "protein" || name == "cellulose" || name == "lignin") return 2100;
+  if (name == "protein" || name == "cellulose" || name == "lignin" || name == "drymatter") return 2100;
   return is_aspect(name) ? 800 : 551;
 }
 
@@ -173,6 +184,7 @@ Theme ends_of_ranges() {
     if (range.min == 0) add_value(theme, n, 1e-12);
     add_value(theme, n, range.max, bounds);
   }
+  add_prospect_absorption(theme);
   for (const double cuticle : {0.0, 0.2, 5.0, 1000.0})
     add_value(theme, known("cuticleaspect"), cuticle, {.f = kModesTolerance});
   const Bounds edge{5e-4, 2e-3, kEdgeOfF}, narrow{1e-5, 2e-3}, narrow_with_f{1e-5, 2e-3, kNarrowestF};
