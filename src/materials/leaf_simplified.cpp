@@ -100,6 +100,7 @@ class LeafSimplified final : public Material {
     else
       lookup_ =
           preparation.share<leaf::TableLookup>(key_of_request(preparation), [&] { return made_lookup(preparation); });
+    fixed_ = varies_ ? leaf::TableSelection() : lookup_->select(preparation.wavelengths.sample(0));
     reciprocal_.reset();
     if (leaf_.is_reciprocal())
       reciprocal_ = std::make_shared<const leaf::ReciprocalLookup>(
@@ -107,12 +108,11 @@ class LeafSimplified final : public Material {
   }
 
   const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const override {
-    const leaf::TableSelection selection =
-        varies_ ? lookup_->select(lambda, leaf_.depth().at(hit.at, lambda)) : lookup_->select(lambda);
+    // Lobe and selection lie in the arena or in this material, which both outlive the BSDF.
     const leaf::Lobe* surface = surface_texture_
                                     ? arena.make<leaf::Lobe>(static_cast<double>(surface_texture_->evaluate(hit.at)))
                                     : surface_.get();
-    LeafHit at{lookup_.get(), selection, surface, lane_mask(lambda)};
+    LeafHit at{lookup_.get(), selection(hit, lambda, arena), surface, lane_mask(lambda)};
     if (reciprocal_) {
       at.reciprocal = reciprocal_.get();
       at.exponent = reciprocal_->position(static_cast<float>(surface->exponent()));
@@ -124,6 +124,11 @@ class LeafSimplified final : public Material {
   bool is_leaf() const override { return true; }
 
  private:
+  const leaf::TableSelection* selection(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const {
+    if (varies_) return arena.make<leaf::TableSelection>(lookup_->select(lambda, leaf_.depth().at(hit.at, lambda)));
+    return fixed_.lane_count == 0 ? &fixed_ : arena.make<leaf::TableSelection>(lookup_->select(lambda));
+  }
+
   void refuse_textures(const Params& p) const {
     leaf_.refuse_wall_textures(p);
     // Only the solver shares its work between depths (leaf/solve/solver.h).
@@ -183,6 +188,7 @@ class LeafSimplified final : public Material {
   bool varies_;  ///< the optical depth varies over the leaf
   leaf::TableRequest request_;
   std::shared_ptr<const leaf::TableLookup> lookup_;
+  leaf::TableSelection fixed_;                                ///< of every path, if its lane_count is 0
   std::shared_ptr<const leaf::ReciprocalLookup> reciprocal_;  ///< nullptr: not reciprocal
   LeafParams::Aspect surface_texture_;                        ///< exponent of the surface's lobe; nullptr: constant
   double exponent_;                                           ///< of the surface's lobe if it is constant

@@ -13,7 +13,7 @@ namespace frond {
 /// Data of a ThreeLobeBsdf: a leaf at a hit, at the wavelengths of the path. Objects pointed to must outlive the BSDF.
 struct LeafHit {
   const leaf::TableLookup* table;
-  leaf::TableSelection selection;  ///< the table's columns for this hit
+  const leaf::TableSelection* selection;  ///< the table's columns for this hit
   const leaf::Lobe* surface;
   SampledSpectrum active;                              ///< 1 in active lanes, 0 elsewhere
   const leaf::ReciprocalLookup* reciprocal = nullptr;  ///< of a reciprocal leaf
@@ -98,7 +98,7 @@ class ThreeLobeBsdf final : public Bsdf {
     if (incidence_.cos_theta == cos_theta) return incidence_.shares;
     incidence_.cos_theta = cos_theta;
     leaf::SampledShares& shares = incidence_.shares;
-    shares = (*hit_.table)(cos_theta, hit_.selection);
+    shares = (*hit_.table)(cos_theta, *hit_.selection);
     shares.surface *= hit_.active;
     shares.subsurface *= hit_.active;
     shares.transmitted *= hit_.active;
@@ -134,8 +134,8 @@ class ThreeLobeBsdf final : public Bsdf {
   float spread(const Vec3& wo, const Vec3& wi) const { return manner_.surface_direct ? surface_.spread(wo, wi) : 0; }
 
   Mutual mutual_at(float cos_theta) const {
-    Mutual m{cos_theta, (*hit_.table)(cos_theta, hit_.selection),
-             (*hit_.reciprocal)(cos_theta, hit_.exponent, hit_.selection)};
+    Mutual m{cos_theta, (*hit_.table)(cos_theta, *hit_.selection),
+             (*hit_.reciprocal)(cos_theta, hit_.exponent, *hit_.selection)};
     m.factors.surface *= hit_.active;
     m.factors.subsurface *= hit_.active;
     return m;
