@@ -186,6 +186,50 @@ TEST(Fit, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(fit_leaf(request, ThreadPool(1)).params, fit_leaf(request, ThreadPool(3)).params);
 }
 
+/// The search interpolates; what it reports does not. 4 nodes per segment, as the fit has, are within 5e-4 of more.
+TEST(Fit, ReportsTheSolvedWalk) {
+  const FitRequest request{.measurements = spectra_of(another_of_prospect(), {8}, 50)};
+  const FitResult result = fit_leaf(request, ThreadPool(1));
+  const TissueModel model(result.params);
+  for (size_t i = 0; i < request.measurements.size(); ++i) {
+    const Tissue tissue = model.at(request.measurements[i].lambda_nm);
+    const Shares same = solve(tissue, std::array{8.0}, 4)[0], better = solve(tissue, std::array{8.0})[0];
+    EXPECT_NEAR(result.fitted[i].r, same.surface + same.subsurface, 2e-6);
+    EXPECT_NEAR(result.fitted[i].t, same.transmitted, 2e-6);
+    EXPECT_NEAR(result.fitted[i].r, better.surface + better.subsurface, 5e-4);
+    EXPECT_NEAR(result.fitted[i].t, better.transmitted, 5e-4);
+  }
+}
+
+/// Of more than 450 rows not every one is solved.
+TEST(Fit, FitsSpectraOfManyWavelengthsAsThoseOfFew) {
+  const TissueParams truth = another_of_prospect();
+  FitRequest request{.measurements = spectra_of(truth, {8, 172}, 7), .structure = truth.structure, .sieve = true};
+  std::ranges::reverse(request.measurements);
+  const FitResult result = fit_leaf(request, ThreadPool(2));
+  ASSERT_GT(request.measurements.size(), 450u);
+  EXPECT_LT(result.rmse, 1e-4);
+  const TissueModel model(result.params);
+  for (size_t i = 0; i < request.measurements.size(); i += 3) {
+    const LeafMeasurement& m = request.measurements[i];
+    const Shares same = solve(model.at(m.lambda_nm), std::array{m.theta_deg}, 4)[0];
+    EXPECT_NEAR(result.fitted[i].r, same.surface + same.subsurface, 2e-4);
+    EXPECT_NEAR(result.fitted[i].t, same.transmitted, 2e-4);
+  }
+}
+
+TEST(Fit, IsTheSameWithACacheOfOtherFits) {
+  FitCache cache;
+  const auto of = [](const char* specimen) {
+    return FitRequest{.measurements = spectra_of(find_specimen(specimen)->params, {8}, 100)};
+  };
+  const FitResult alone = fit_leaf(of("maize"), ThreadPool(1));
+  fit_leaf(of("soybean"), ThreadPool(1), &cache);
+  const FitResult later = fit_leaf(of("maize"), ThreadPool(1), &cache);
+  EXPECT_EQ(alone.params, later.params);
+  EXPECT_EQ(alone.rmse, later.rmse);
+}
+
 TEST(MeasuredSpectra, AreReadAsInstrumentsWriteThem) {
   const auto read = [](std::string_view text, const SpectraMeasurement& how = {}) {
     return parse_measured_spectra(text, "a.csv", how);

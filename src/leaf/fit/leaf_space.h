@@ -10,7 +10,7 @@
 #include "leaf/tissue/absorption.h"
 #include "leaf/tissue/area_content.h"
 
-/// Parameters of a fit. Included by fit.cpp alone, which keeps Eigen out of other modules.
+/// Parameters of a fit. Included by .cpp files of this folder alone, which keeps Eigen out of other modules.
 namespace frond::leaf {
 
 /// A parameter that follows a fitted one in a constant ratio.
@@ -28,13 +28,35 @@ inline const Specimen& specimen_of(Structure structure) {
   return *std::ranges::find(kSpecimens, structure, [](const Specimen& s) { return s.params.structure; });
 }
 
-/// Optical depth of the mesophyll.
-inline double depth_of(const TissueParams& p, double lambda_nm) {
-  return p.thickness_m * p.mesophyll_fraction * absorption_coefficient(p, lambda_nm);
+/// Amounts per leaf area of all that absorbs, and what one unit of each adds to the optical depth at one wavelength:
+/// the depth is their scalar product. The first is the water.
+using Constituents = Eigen::Array<double, 8, 1>;
+inline constexpr double TissueParams::*kConcentrations[] = {
+    &TissueParams::chlorophyll_a, &TissueParams::carotenoids, &TissueParams::protein,         &TissueParams::cellulose,
+    &TissueParams::anthocyanins,  &TissueParams::dry_matter,  &TissueParams::other_absorption};
+
+inline Constituents amounts_of(const TissueParams& p) {
+  Constituents amounts;
+  amounts << 1, p.chlorophyll_a + p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose + p.lignin, p.anthocyanins,
+      p.dry_matter, p.other_absorption;
+  return amounts * (p.thickness_m * p.mesophyll_fraction);
 }
 
-/// One kind of leaf (structure, sieve), and its free parameters: the variables q of a search, unbounded, stand for
-/// their logarithms within their ranges.
+inline Constituents specific_depths(AbsorptionTables tables, double lambda_nm) {
+  TissueParams of;
+  of.absorption_tables = tables;
+  Constituents depths;
+  depths[0] = absorption_coefficient(of, lambda_nm);
+  Eigen::Index i = 1;
+  for (const auto concentration : kConcentrations) {
+    TissueParams one = of;
+    one.*concentration = 1;
+    depths[i++] = absorption_coefficient(one, lambda_nm) - depths[0];
+  }
+  return depths;
+}
+
+/// One kind of leaf (structure, sieve), and its free parameters. A search varies their logarithms.
 class LeafSpace {
  public:
   LeafSpace(const FitRequest& request, Structure structure, bool sieve)
@@ -85,30 +107,24 @@ class LeafSpace {
     return p;
   }
 
-  // The logistic function maps the search variables q, on the whole line, to logarithms within the range.
-  TissueParams at(const Eigen::VectorXd& q) const {
+  /// Logarithms of the free parameters, within their ranges.
+  Eigen::VectorXd logs_of(const TissueParams& p) const {
+    Eigen::VectorXd logs(count());
+    for (Eigen::Index i = 0; i < count(); ++i) logs[i] = std::clamp(std::log(p.*variable(i).number), low(i), high(i));
+    return logs;
+  }
+  TissueParams at(const Eigen::VectorXd& logs) const {
     TissueParams p = origin_;
     for (Eigen::Index i = 0; i < count(); ++i) {
       const Interval& range = variable(i).range;  // the exponential of its ends may lie beyond them
-      p = with(p, variable(i), std::clamp(std::exp(log_at(i, q[i])), range.min, range.max));
+      p.*variable(i).number = std::clamp(std::exp(logs[i]), range.min, range.max);
     }
+    settle(p);
     return p;
   }
-  Eigen::VectorXd of(const TissueParams& p) const {
-    Eigen::VectorXd q(count());
-    for (Eigen::Index i = 0; i < count(); ++i) {
-      constexpr double kEdge = 0.03;  // nearer to the ends the derivative vanishes
-      const double s = (std::log(p.*variable(i).number) - low(i)) / width(i), c = std::clamp(s, kEdge, 1 - kEdge);
-      q[i] = std::log(c / (1 - c));
-    }
-    return q;
-  }
-  double log_at(Eigen::Index i, double q) const { return low(i) + width(i) / (1 + std::exp(-q)); }
-  /// Derivative of the logarithm with respect to q.
-  double slope(Eigen::Index i, double q) const {
-    const double s = 1 / (1 + std::exp(-q));
-    return width(i) * s * (1 - s);
-  }
+  /// Ends of a parameter's range, as logarithms.
+  double low(Eigen::Index i) const { return std::log(variable(i).range.min); }
+  double high(Eigen::Index i) const { return std::log(variable(i).range.max); }
   const FitVariable& variable(Eigen::Index i) const { return *free_[static_cast<size_t>(i)]; }
 
  private:
@@ -156,9 +172,6 @@ class LeafSpace {
     per_area_.push_back({&TissueParams::chlorophyll_b, (1 - a) * found->value});
     return true;
   }
-
-  double low(Eigen::Index i) const { return std::log(variable(i).range.min); }
-  double width(Eigen::Index i) const { return std::log(variable(i).range.max) - low(i); }
 
   const Specimen& specimen_;
   TissueParams origin_;

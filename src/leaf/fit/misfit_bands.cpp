@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 
+#include "leaf/fit/bare_leaf.h"
 #include "leaf/fit/fit.h"
+#include "leaf/solve/lobe_mean.h"
 #include "leaf/solve/solver.h"
 
 namespace frond::leaf {
@@ -11,7 +13,8 @@ std::vector<MisfitBand> misfit_bands(const FitRequest& request, const FitResult&
     double nm, measured, fitted;
     int sign;  ///< 0: small
   };
-  const TissueModel model(result.params);
+  const BareLeaf leaf(result.params);
+  LobeMeans means;
   std::vector<double> angles;
   for (const LeafMeasurement& m : request.measurements)
     if (std::ranges::find(angles, m.theta_deg) == angles.end()) angles.push_back(m.theta_deg);
@@ -38,7 +41,8 @@ std::vector<MisfitBand> misfit_bands(const FitRequest& request, const FitResult&
           band.measured += all[i].measured / count, band.fitted += all[i].fitted / count;
         constexpr double kOpaque = 1e3;  // optical depth
         for (const double nm : {band.nm.min, (band.nm.min + band.nm.max) / 2, band.nm.max}) {
-          const Shares s = solve(model.at(nm, kOpaque, model.lobes()), std::array{theta_deg})[0];
+          const Tissue tissue = leaf.at(nm, kOpaque);
+          const Shares s = solve_depths({&tissue, 1}, {&theta_deg, 1}, kFitNodes, means)[0][0];
           band.lowest_r = std::min(band.lowest_r, s.surface + s.subsurface);
         }
         bands.push_back(band);

@@ -1,44 +1,68 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
-#include "core/parallel.h"
+#include "leaf/solve/quadrature.h"
 #include "leaf/tissue/tissue_params.h"
 
 namespace frond::leaf {
 
-/// Reflectance and transmittance of a leaf of one structure, and their derivatives with respect to its optical depth,
-/// through which alone the leaf's chemistry acts. Interpolates in a table over depth and wavelength, which determines
-/// the refractive indices.
+class LobeMeans;
+
+/// Reflectance and transmittance of a leaf of one structure as a function of wavelength and optical depth, through
+/// which alone the leaf's chemistry acts. The interpolation is within 3e-4 of the walk as it is solved with the same
+/// nodes (4e-3 where the cuticle's index is near the mesophyll's). Made for searches, whose end solves the walk anew.
+///
+/// Surfaces of one kind of leaf are added like vectors: to first order a surface of another structure is this one plus
+/// the differences that the structure's numbers make.
 class OpticsSurface {
  public:
-  /// Accuracy of R and T: `coarse` 1e-3, `fine` 1e-4.
-  enum class Grade { coarse, fine };
+  static constexpr size_t kWavelengths = 5, kTerms = 12;
 
-  /// Uses the structure, the aspect ratios of the walls and the sieve effect of `params`. Angles of incidence as in
-  /// `solve` (leaf/solve/solver.h), degrees in [0, 180]; wavelengths from `first_nm` to `last_nm`.
-  OpticsSurface(const TissueParams& params, const std::vector<double>& theta_deg, double first_nm, double last_nm,
-                Grade grade, const ThreadPool& pool);
+  /// Weights of the solved wavelengths in the interpolation to another one.
+  using Weights = std::array<double, kWavelengths>;
+  /// Returns the weights for a wavelength within kConstantsRange_nm. At a given depth R and T depend on the wavelength
+  /// through the refractive indices alone, in which they are interpolated.
+  static Weights weights(double lambda_nm);
 
-  /// R and T at one angle, wavelength and depth.
-  struct Value {
-    double r, t;              ///< shares of the incident light that are reflected and transmitted
-    double r_slope, t_slope;  ///< derivatives with respect to the optical depth
+  /// Polynomials of depth, and their derivatives with respect to the depth.
+  struct Terms {
+    std::array<double, kTerms> value, slope;
   };
-  /// `angle` is an index in `theta_deg`; `depth` is the optical depth of the mesophyll along the leaf's normal.
-  Value at(size_t angle, double lambda_nm, double depth) const;
+  /// `depth`: optical depth of the mesophyll along the leaf's normal, at least 0. Beyond 40, where a leaf is opaque,
+  /// the value of 40 is used.
+  static Terms terms(double depth);
 
- private:
+  OpticsSurface() = default;  ///< of no leaf, to be replaced
+  /// Uses the structure, the aspect ratios of the walls, the cuticle and the sieve effect of `params`. Angles of
+  /// incidence as in `solve`, degrees in [0, 180]. `means`: lobe_mean.h.
+  OpticsSurface(const TissueParams& params, std::span<const double> theta_deg, const NodeRule& rule, LobeMeans& means);
+
+  /// Adds `factor` times the other surface, of as many angles.
+  void add(double factor, const OpticsSurface& other);
+
+  void scale(double factor);
+
+  /// R and T, or their derivatives.
   struct Pair {
-    double r, t;
+    double r = 0, t = 0;
   };
-  const Pair& node(size_t angle, size_t wavelength, size_t depth) const {
-    return nodes_[(angle * wavelengths_nm_.size() + wavelength) * depth_count_ + depth];
+  /// Returns the sum of the polynomials `terms` (values or slopes) at one angle, an index of the constructor's.
+  Pair sum(size_t angle, const Weights& weights, const std::array<double, kTerms>& terms) const {
+    Pair result;
+    for (size_t w = 0; w < kWavelengths; ++w) {
+      const std::array<Pair, kTerms>& part = series_[angle * kWavelengths + w];
+      double r = 0, t = 0;
+      for (size_t k = 0; k < kTerms; ++k) r += part[k].r * terms[k], t += part[k].t * terms[k];
+      result.r += weights[w] * r, result.t += weights[w] * t;
+    }
+    return result;
   }
 
-  std::vector<double> wavelengths_nm_;
-  size_t depth_count_;
-  std::vector<Pair> nodes_;  ///< [angle][wavelength][depth]
+ private:
+  std::vector<std::array<Pair, kTerms>> series_;  ///< Chebyshev coefficients, [angle][wavelength]
 };
 
 }  // namespace frond::leaf

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "leaf/solve/azimuth.h"
+#include "leaf/solve/lobe_mean.h"
 #include "leaf/tissue/fresnel.h"
 
 namespace frond::leaf {
@@ -16,31 +17,62 @@ using Eigen::VectorXd;
 /// A segment of the range of k: cosines from `from` to `to` in the medium of index n.
 struct Segment {
   double n, from, to;
+  int nodes;
 };
 
+/// Number of nodes for a segment that carries this share of the light in its medium, where it is diffuse.
+int nodes_for(double share, int most) {
+  constexpr double kSteps[] = {0.1, 0.02, 0.002};
+  int nodes = most;
+  for (const double step : kSteps)
+    if (share < step) --nodes;
+  return std::max(nodes, 1);
+}
+
 /// Segments ascending in k, cut at each medium's index, where its critical angles are.
-std::vector<Segment> segments(const Tissue& tissue) {
+std::vector<Segment> segments(const Tissue& tissue, const NodeRule& rule) {
   std::vector<double> indices(tissue.n.begin(), tissue.n.end());
   std::sort(indices.begin(), indices.end());
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  constexpr double kGraded[] = {1, 0.3, 0.05, 0}, kHardly[] = {1, 0.3, 0}, kWhole[] = {1, 0};
+  constexpr double kLittle = 0.02, kSome = 0.2;  // shares of the light
   std::vector<Segment> result;
   double below = 0;
   for (const double n : indices) {
-    const double widest = std::sqrt(1 - below * below / (n * n));
-    constexpr double kGrading[] = {1, 0.3, 0.05, 0};
-    for (size_t i = 0; i + 1 < std::size(kGrading); ++i)
-      result.push_back({n, kGrading[i + 1] * widest, kGrading[i] * widest});
+    const double share = 1 - below * below / (n * n), widest = std::sqrt(share);
+    const std::span<const double> grading = !rule.by_flux || share > kSome ? std::span<const double>(kGraded)
+                                            : share > kLittle              ? std::span<const double>(kHardly)
+                                                                           : std::span<const double>(kWhole);
+    for (size_t i = 0; i + 1 < grading.size(); ++i) {
+      const double to = grading[i], from = grading[i + 1];
+      const int nodes = rule.by_flux ? nodes_for(share * (to * to - from * from), rule.nodes) : rule.nodes;
+      result.push_back({n, from * widest, to * widest, nodes});
+    }
     below = n;
   }
   return result;
 }
 
-Directions directions_in(double n, std::span<const Segment> parts, std::span<const QuadratureNode> rule) {
+/// Rules of quadrature by their number of nodes. The small ones are made once for all chains.
+const std::vector<QuadratureNode>& rule_of(int nodes, std::vector<QuadratureNode>& own) {
+  static const std::vector<std::vector<QuadratureNode>> small = [] {
+    constexpr int kSmall = 12;
+    std::vector<std::vector<QuadratureNode>> rules;
+    for (int n = 0; n <= kSmall; ++n) rules.push_back(gauss_legendre(n));
+    return rules;
+  }();
+  if (static_cast<size_t>(nodes) < small.size()) return small[static_cast<size_t>(nodes)];
+  if (own.size() != static_cast<size_t>(nodes)) own = gauss_legendre(nodes);
+  return own;
+}
+
+Directions directions_in(double n, std::span<const Segment> parts) {
   std::vector<double> mu, weight;
+  std::vector<QuadratureNode> own;
   for (const Segment& part : parts) {
     if (part.n > n) break;
     const double ratio2 = part.n * part.n / (n * n), width = part.to - part.from;
-    for (const auto& [x, w] : rule) {
+    for (const auto& [x, w] : rule_of(part.nodes, own)) {
       const double mu_own = part.to - x * width;
       // 1 - ratio2 (1 - mu_own^2), but for grazing directions between almost equal indices, where that leaves no
       // digits.
@@ -70,24 +102,24 @@ std::vector<MatrixXd> lobe_modes(double exponent, const VectorXd& axes, const Ve
   return result;
 }
 
-Chain::Chain(const Tissue& tissue, int nodes, size_t modes) : tissue_(tissue) {
-  const std::vector<Segment> parts = segments(tissue);
-  const std::vector<QuadratureNode> rule = gauss_legendre(nodes);
-  for (size_t m = 0; m < Tissue::kMedia; ++m) directions_[m] = directions_in(tissue.n[m], parts, rule);
+Chain::Chain(const Tissue& tissue, const NodeRule& rule, size_t modes, LobeMeans* means) : tissue_(tissue) {
+  const std::vector<Segment> parts = segments(tissue, rule);
+  for (size_t m = 0; m < Tissue::kMedia; ++m) directions_[m] = directions_in(tissue.n[m], parts);
   for (size_t m = kFirst; m <= kLast; ++m)
     for (const bool up : {false, true})
       for (const bool refracts : {false, true}) {
         const size_t to = refracts ? next(m, up) : m;
-        if (const Lobe* l = lobe(m, up, refracts); l && to >= kFirst && to <= kLast) make_kernel(*l, to, modes);
+        if (const Lobe* l = lobe(m, up, refracts); l && to >= kFirst && to <= kLast) make_kernel(*l, to, modes, means);
       }
 }
 
-void Chain::make_kernel(const Lobe& lobe, size_t medium, size_t modes) {
+void Chain::make_kernel(const Lobe& lobe, size_t medium, size_t modes, LobeMeans* means) {
   const auto [place, is_new] = kernels_.try_emplace({lobe.exponent(), tissue_.n[medium]});
   if (!is_new) return;
   const Directions& d = directions_[medium];
   Kernel& kernel = place->second;
-  kernel.shares = lobe_modes(lobe.exponent(), d.mu, d.mu, modes);
+  kernel.shares =
+      means ? std::vector{means->of(lobe.exponent()).among(d.mu)} : lobe_modes(lobe.exponent(), d.mu, d.mu, modes);
   kernel.kept = kernel.shares[0] * d.weight;
   for (MatrixXd& shares : kernel.shares)
     shares = kernel.kept.cwiseInverse().asDiagonal() * shares * d.weight.asDiagonal();

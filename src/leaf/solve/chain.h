@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/spectrum.h"
+#include "leaf/solve/quadrature.h"
 #include "leaf/tissue/tissue.h"
 
 /// Shared by the solvers of the walk. Included by their .cpp files alone, which keeps Eigen out of other modules.
@@ -23,6 +24,8 @@ struct Directions {
 std::vector<Eigen::MatrixXd> lobe_modes(double exponent, const Eigen::VectorXd& axes, const Eigen::VectorXd& directions,
                                         size_t modes);
 
+class LobeMeans;
+
 /// The walk through one leaf as a Markov chain, one mode of azimuth at a time, without absorption.
 ///
 /// No event of the walk depends on the azimuth. So mode m of the rays' density, its integral over azimuth with cos(m
@@ -36,8 +39,11 @@ class Chain {
  public:
   static constexpr size_t kFirst = 1, kLast = 5;  ///< media of the leaf
 
-  /// `nodes` per segment; modes 0 to `modes` - 1. `tissue` must outlive the chain.
-  Chain(const Tissue& tissue, int nodes, size_t modes);
+  /// Modes 0 to `modes` - 1. `tissue` must outlive the chain.
+  Chain(const Tissue& tissue, int nodes, size_t modes) : Chain(tissue, NodeRule{nodes}, modes, nullptr) {}
+  /// The same with another rule. `means`, unless it is nullptr, gives mode 0 of the lobes, the only one: much faster
+  /// for exponents that are not whole.
+  Chain(const Tissue& tissue, const NodeRule& rule, size_t modes, LobeMeans* means);
 
   const Tissue& tissue() const { return tissue_; }
   /// Nodes of a medium of the leaf, kFirst to kLast.
@@ -70,7 +76,7 @@ class Chain {
   /// Number of nodes, the last ones, at which both interfaces of a medium reflect everything without a change of
   /// direction.
   Eigen::Index totally_reflected(size_t medium) const;
-  void make_kernel(const Lobe& lobe, size_t medium, size_t modes);
+  void make_kernel(const Lobe& lobe, size_t medium, size_t modes, LobeMeans* means);
 
   const Tissue& tissue_;
   std::array<Directions, Tissue::kMedia> directions_;

@@ -3,12 +3,13 @@
 #include <span>
 #include <vector>
 
+#include "leaf/solve/quadrature.h"
 #include "leaf/tissue/tissue.h"
 
 namespace frond::leaf {
 
 /// Version of the solution. Increase with any change that may change results: tables on disk are stored under it.
-inline constexpr int kSolverVersion = 5;
+inline constexpr int kSolverVersion = 6;
 
 /// Shares of the light that meets the leaf at one angle that are reflected and transmitted; the rest is absorbed.
 struct Shares {
@@ -40,5 +41,10 @@ std::vector<Shares> solve(const Tissue& tissue, std::span<const double> theta_de
 std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg);
 std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg,
                                               int nodes);
+
+class LobeMeans;
+/// The same with another rule, and twice its nodes as positions of a unifacial leaf's air space. `means`: lobe_mean.h.
+std::vector<std::vector<Shares>> solve_depths(std::span<const Tissue> tissues, std::span<const double> theta_deg,
+                                              const NodeRule& rule, LobeMeans& means);
 
 }  // namespace frond::leaf

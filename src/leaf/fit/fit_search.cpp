@@ -1,0 +1,287 @@
+#include "leaf/fit/fit_search.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <mutex>
+
+#include "leaf/fit/bare_leaf.h"
+#include "leaf/solve/lobe_mean.h"
+#include "leaf/solve/solver.h"
+
+namespace frond::leaf {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using Pair = OpticsSurface::Pair;
+
+/// Surfaces by all that decides them.
+struct FitCache::Content {
+  std::mutex mutex;
+  std::map<std::vector<double>, std::shared_ptr<const OpticsSurface>> known;
+};
+
+FitCache::FitCache() : content_(std::make_unique<Content>()) {}
+FitCache::~FitCache() = default;
+
+namespace {
+
+/// Structures at which a search starts.
+struct Start {
+  double epidermis, spongy, palisade, spongy_share;
+};
+constexpr Start kStarts[] = {{5, 5, 1, 0.05}, {2, 2, 1, 0.3}, {12, 8, 4, 0.15}, {3, 5, 2, 0.2}};
+
+/// Rows in the search, before its end.
+constexpr size_t kSearchRows = 110;
+
+/// A kind of leaf (structure, sieve) and the best leaf of it so far.
+struct Candidate {
+  std::unique_ptr<LeafSpace> space;
+  std::unique_ptr<FitRows> rows;
+  std::unique_ptr<FitProblem> problem;
+  VectorXd logs;
+  double cost = HUGE_VAL;
+  SurfaceExpansion expansion;
+};
+
+TissueParams started(const LeafSpace& space, const Start& start) {
+  TissueParams p = space.origin();
+  for (const FitVariable* v : space.free()) {
+    if (v->number == &TissueParams::epidermis_aspect) p.epidermis_aspect = start.epidermis;
+    if (v->number == &TissueParams::spongy_aspect) p.spongy_aspect = start.spongy;
+    if (v->number == &TissueParams::palisade_aspect) p.palisade_aspect = start.palisade;
+    if (v->number == &TissueParams::spongy_share) p.spongy_share = start.spongy_share;
+  }
+  return p;
+}
+
+/// Makes surfaces for a search.
+class Surfaces {
+ public:
+  Surfaces(const std::vector<double>& theta_deg, FitCache::Content& cache) : theta_deg_(theta_deg), cache_(cache) {}
+
+  OpticsSurface search(const TissueParams& p) { return {p, theta_deg_, kSearchNodes, means_}; }
+  OpticsSurface fine(const TissueParams& p) { return {p, theta_deg_, kFitNodes, means_}; }
+  /// `search` for a structure that many searches need. The result is the same whether it was known or not.
+  std::shared_ptr<const OpticsSurface> shared(const TissueParams& p) {
+    std::vector<double> key{static_cast<double>(p.structure),
+                            p.sieve_and_detour ? 1.0 : 0.0,
+                            p.epidermis_aspect,
+                            p.spongy_aspect,
+                            p.palisade_aspect,
+                            p.spongy_share,
+                            p.cuticle_refractivity};
+    key.insert(key.end(), theta_deg_.begin(), theta_deg_.end());
+    {
+      const std::lock_guard lock(cache_.mutex);
+      if (const auto found = cache_.known.find(key); found != cache_.known.end()) return found->second;
+    }
+    auto made = std::make_shared<const OpticsSurface>(search(p));
+    const std::lock_guard lock(cache_.mutex);
+    return cache_.known.emplace(key, std::move(made)).first->second;
+  }
+
+  /// Returns the differences by each free structural parameter from `base`, the surface at `logs`. `is_start`: other
+  /// searches need them too.
+  std::vector<OpticsSurface> slopes(const LeafSpace& space, const VectorXd& logs, const OpticsSurface& base,
+                                    bool is_start = false) {
+    constexpr double kStep = 0.1;
+    std::vector<OpticsSurface> result;
+    for (Index i = 0; i < space.count(); ++i) {
+      if (!space.variable(i).is_structure) continue;
+      VectorXd moved = logs;
+      const double step = logs[i] + kStep <= space.high(i) ? kStep : -kStep;
+      moved[i] += step;
+      OpticsSurface& slope = result.emplace_back(is_start ? *shared(space.at(moved)) : search(space.at(moved)));
+      slope.add(-1, base);
+      slope.scale(1 / step);
+    }
+    return result;
+  }
+
+ private:
+  static constexpr NodeRule kSearchNodes{.nodes = 3, .by_flux = true};
+
+  const std::vector<double>& theta_deg_;
+  FitCache::Content& cache_;
+  LobeMeans means_;
+};
+
+/// The best leaf of each kind with only its chemistry free, the best one first.
+std::vector<Candidate> first_candidates(const FitRequest& request, const FitRows& all, Surfaces& surfaces) {
+  std::vector<Candidate> best;
+  for (const Structure structure : {Structure::bifacial, Structure::unifacial}) {
+    if (request.structure && *request.structure != structure) continue;
+    for (const bool sieve : {false, true}) {
+      if (request.sieve && *request.sieve != sieve) continue;
+      Candidate c;
+      c.space = std::make_unique<LeafSpace>(request, structure, sieve);
+      c.rows = std::make_unique<FitRows>(all.thinned(kSearchRows));
+      c.problem = std::make_unique<FitProblem>(request, *c.space, *c.rows);
+      for (const Start& start : kStarts) {
+        VectorXd logs = c.space->logs_of(started(*c.space, start));
+        SurfaceExpansion expansion{logs, *surfaces.shared(c.space->at(logs)), {}, {}};
+        const double cost =
+            c.problem->minimise(expansion, {.structure_is_free = false, .most_steps = 30, .done = 1e-3}, logs);
+        if (cost < c.cost) c.cost = cost, c.logs = logs, c.expansion = std::move(expansion);
+      }
+      c.expansion.slopes = surfaces.slopes(*c.space, c.expansion.at, c.expansion.base, true);
+      best.push_back(std::move(c));
+    }
+  }
+  std::ranges::sort(best, {}, &Candidate::cost);
+  return best;
+}
+
+/// Broyden's update: corrects the slopes by what a step has shown.
+void learn(const FitProblem& problem, const VectorXd& step, const OpticsSurface& found, const OpticsSurface& expected,
+           SurfaceExpansion& expansion) {
+  double square = 0;
+  for (const Index i : problem.structural()) square += step[i] * step[i];
+  if (square == 0) return;
+  for (size_t k = 0; k < expansion.slopes.size(); ++k) {
+    const double share = step[problem.structural()[k]] / square;
+    expansion.slopes[k].add(share, found), expansion.slopes[k].add(-share, expected);
+  }
+}
+
+double largest_step(const FitProblem& problem, const VectorXd& step) {
+  double largest = 0;
+  for (const Index i : problem.structural()) largest = std::max(largest, std::abs(step[i]));
+  return largest;
+}
+
+/// Frees the structure: alternates between a search in the expansion and the surface of the structure found.
+/// `done`: relative change of the sum of squares at which the search ends.
+void refine(Candidate& c, Surfaces& surfaces, int rounds, double done) {
+  constexpr double kLargest = 1.5, kSmallest = 0.02;
+  double radius = 0.7;
+  bool is_fresh = true;
+  for (int round = 0; round < rounds; ++round) {
+    VectorXd logs = c.logs;
+    c.problem->minimise(c.expansion, {.structure_is_free = true, .radius = radius, .most_steps = 20, .done = 1e-4},
+                        logs);
+    const VectorXd step = logs - c.logs;
+    const OpticsSurface expected = c.problem->surface(c.expansion, logs);
+    SurfaceExpansion there{logs, surfaces.search(c.space->at(logs)), {}, {}};
+    // The chemistry of the new structure's own surface.
+    const double cost = c.problem->minimise(there, {.structure_is_free = false, .most_steps = 6, .done = 1e-3}, logs);
+    learn(*c.problem, step, there.base, expected, c.expansion);
+    const double moved = largest_step(*c.problem, step), gain = (c.cost - cost) / c.cost;
+    if (cost < c.cost) {
+      if (moved > 0.9 * radius) radius = std::min(kLargest, 2 * radius);
+      c.cost = cost, c.logs = logs;
+      c.expansion.at = logs, c.expansion.base = std::move(there.base);
+    } else {
+      radius = moved / 3;
+    }
+    if (gain < done || radius < kSmallest) {
+      if (is_fresh && (gain >= 0 || radius < kSmallest)) break;
+      if (!is_fresh) {
+        c.expansion.slopes = surfaces.slopes(*c.space, c.logs, c.expansion.base);
+        is_fresh = true, radius = std::max(radius, 0.1);
+        continue;
+      }
+    }
+    is_fresh = false;
+  }
+}
+
+/// Continues with all rows and accurate surfaces.
+void polish(Candidate& c, const FitProblem& problem, Surfaces& surfaces) {
+  constexpr int kRounds = 6;
+  constexpr double kDone = 1e-3, kRadius = 0.5;
+  c.expansion.base = surfaces.fine(c.space->at(c.logs));
+  c.cost = problem.cost(c.expansion, c.logs);
+  for (int round = 0; round < kRounds; ++round) {
+    VectorXd logs = c.logs;
+    problem.minimise(c.expansion, {.structure_is_free = true, .radius = kRadius, .most_steps = 20, .done = 1e-4}, logs);
+    SurfaceExpansion there{logs, surfaces.fine(c.space->at(logs)), {}, {}};
+    const double cost = problem.minimise(there, {.structure_is_free = false, .most_steps = 6, .done = 1e-4}, logs);
+    learn(problem, logs - c.logs, there.base, problem.surface(c.expansion, logs), c.expansion);
+    const double gain = (c.cost - cost) / c.cost;
+    if (gain > 0) {
+      c.cost = cost, c.logs = logs;
+      c.expansion.at = logs, c.expansion.base = std::move(there.base);
+    }
+    if (gain < kDone) break;
+  }
+}
+
+/// Ends a search with R and T that are solved at the measurements: what they differ from the surface is added to it,
+/// until that changes the fit no more.
+FoundLeaf finish(Candidate& c, const FitProblem& problem, const FitRows& rows, Surfaces& surfaces,
+                 const ThreadPool& pool) {
+  constexpr int kRounds = 4;
+  constexpr double kDone = 1e-3, kRadius = 0.2;
+  std::vector<Pair> solved = solve_rows(rows, c.space->at(c.logs), pool);
+  c.cost = problem.cost(solved, c.logs);
+  for (int round = 0; round < kRounds; ++round) {
+    c.expansion.corrections = problem.values(c.expansion, c.logs);
+    for (size_t i = 0; i < solved.size(); ++i) {
+      Pair& correction = c.expansion.corrections[i];
+      correction = {solved[i].r - correction.r, solved[i].t - correction.t};
+    }
+    VectorXd logs = c.logs;
+    const double expected = problem.minimise(
+        c.expansion, {.structure_is_free = true, .radius = kRadius, .most_steps = 20, .done = 1e-4}, logs);
+    if (c.cost - expected < kDone * c.cost) break;
+    std::vector<Pair> there = solve_rows(rows, c.space->at(logs), pool);
+    const double cost = problem.cost(there, logs);
+    if (!(cost < c.cost)) break;
+    c.cost = cost, c.logs = logs, solved = std::move(there);
+  }
+  // The slopes that the search has learnt serve it, but not the errors of the parameters.
+  c.expansion.slopes = surfaces.slopes(*c.space, c.logs, surfaces.search(c.space->at(c.logs)));
+  return {std::move(c.space), c.logs, std::move(solved), std::move(c.expansion)};
+}
+
+}  // namespace
+
+std::vector<Pair> solve_rows(const FitRows& rows, const TissueParams& params, const ThreadPool& pool) {
+  const BareLeaf leaf(params);
+  const Constituents amounts = amounts_of(params);
+  LobeMeans made;
+  for (const double exponent : {params.epidermis_aspect, params.spongy_aspect, params.palisade_aspect})
+    made.of(exponent);
+  const std::vector<size_t> chosen = rows.spread(kMostSolvedRows);
+  std::vector<Pair> solved(chosen.size());
+  constexpr size_t kChunk = 16;
+  const size_t chunks = (chosen.size() + kChunk - 1) / kChunk;
+  pool.for_each(static_cast<int64_t>(chunks), [&](int64_t chunk, int) {
+    LobeMeans means = made;
+    const size_t first = static_cast<size_t>(chunk) * kChunk, end = std::min(first + kChunk, chosen.size());
+    for (size_t i = first; i < end; ++i) {
+      const FitRow& row = rows.rows[chosen[i]];
+      const Tissue tissue = leaf.at(row.lambda_nm, (amounts * row.specific).sum());
+      const Shares s = solve_depths({&tissue, 1}, {&rows.theta_deg[row.angle], 1}, kFitNodes, means)[0][0];
+      solved[i] = {s.surface + s.subsurface, s.transmitted};
+    }
+  });
+  if (chosen.size() == rows.rows.size()) {
+    std::vector<Pair> result(solved.size());
+    for (size_t i = 0; i < chosen.size(); ++i) result[chosen[i]] = solved[i];
+    return result;
+  }
+  const OpticsSurface surface(params, rows.theta_deg, kFitNodes, made);
+  return rows.filled(chosen, solved, surface, amounts);
+}
+
+FoundLeaf search_leaf(const FitRequest& request, const FitRows& rows, const ThreadPool& pool, FitCache& cache) {
+  constexpr size_t kKept = 2;  // kinds of leaves that continue
+  Surfaces surfaces(rows.theta_deg, cache.content());
+  std::vector<Candidate> candidates = first_candidates(request, rows, surfaces);
+  for (Candidate& c : candidates) refine(c, surfaces, 3, 1e-2);
+  std::ranges::sort(candidates, {}, &Candidate::cost);
+  candidates.resize(std::min(candidates.size(), kKept));
+  for (Candidate& c : candidates) {
+    refine(c, surfaces, 15, 1e-3);
+    const FitProblem problem(request, *c.space, rows);
+    polish(c, problem, surfaces);
+  }
+  Candidate& best = *std::ranges::min_element(candidates, {}, &Candidate::cost);
+  return finish(best, FitProblem(request, *best.space, rows), rows, surfaces, pool);
+}
+
+}  // namespace frond::leaf
