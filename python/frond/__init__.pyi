@@ -74,23 +74,26 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
 
     Returns the job's table."""
 
-def fit(wavelengths = None, R = None, T = None, *, path = None, sieve: str | os.PathLike | None = None, file: str | os.PathLike | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
-    """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit.
+def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = False, sieve: str | os.PathLike | None = None, file: str | Sequence[str] | Mapping[str, str] | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
+    """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit, or with all_leaves=True the table
+    of all leaves of the files: one row for each, with its parameters, their standard errors (columns ending in _se), contents
+    per leaf area, and in "status" why it could not be fitted.
 
     wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing. path: a file, in place of
-    these arrays. sieve: True or False, absorption with sieve and detour effects; by default
+    these arrays; with all_leaves a list of files, too. sieve: True or False, absorption with sieve and detour effects; by default
     whichever fits better. fix: {"chlorophylla": 3.9}, or per leaf area {"chlorophyll": "40ug/cm2", "water": "0.012g/cm2"}.
     Raises ValueError or InputError.
 
     Fit a leaf to measured reflectance and transmittance.
 
-    file: Measured spectra: CSV as written by frond spectrophotometer or by spectroradiometers. Excludes data.
+    file: Measured spectra: CSV as written by frond spectrophotometer or by spectroradiometers. Of several files, all leaves are fitted. Excludes data.
     data: Measured spectra as a string, in the format of such a file.
-    output: Scene file to write, with the leaf's Material directive; - is standard output.
+    output: Scene file to write, with the leaf's Material directive, or a MakeNamedMaterial directive for each of all leaves; - is standard output.
     json: JSON file to write; - is standard output.
     csv: CSV file to write; - is standard output.
     plot: Chart of measured and fitted spectra: .svg or .png.
-    leaf: Name of the leaf to fit, if the file has several.
+    leaf: Name of the leaf to fit, if the file has several. Excludes all_leaves.
+    all_leaves: Fit every leaf; csv has one row for each, with its parameters, their standard errors and, if it could not be fitted, the reason.
     angle: Angle of incidence, if the file does not state it. Unit: degrees. Range: from 0 to 180. Default: 8.
     structure: Structure of the leaf; by default the better fit. One of bifacial, unifacial.
     sieve: Absorption with sieve and detour effects; by default the better fit. One of on, off.

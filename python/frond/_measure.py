@@ -185,19 +185,28 @@ def _csv(wavelengths, R, T):
 
 
 @_with_keywords_of("fit")
-def fit(wavelengths=None, R=None, T=None, *, path=None, sieve=None, **options):
-    """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit.
+def fit(wavelengths=None, R=None, T=None, *, path=None, all_leaves=False, sieve=None, **options):
+    """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit, or with all_leaves=True the table
+    of all leaves of the files: one row for each, with its parameters, their standard errors (columns ending in _se), contents
+    per leaf area, and in "status" why it could not be fitted.
 
     wavelengths: in nm. R, T: shares of the incident light, in [0, 1]; one of them may be missing. path: a file, in place of
-    these arrays. sieve: True or False, absorption with sieve and detour effects; by default
+    these arrays; with all_leaves a list of files, too. sieve: True or False, absorption with sieve and detour effects; by default
     whichever fits better. fix: {"chlorophylla": 3.9}, or per leaf area {"chlorophyll": "40ug/cm2", "water": "0.012g/cm2"}.
     Raises ValueError or InputError."""
     if (path is None) == (wavelengths is None):
         raise ValueError("fit takes measurements, or the path of a file with them")
-    source = {"file": path_text(path)} if path is not None else {"data": _csv(wavelengths, R, T)}
+    if path is None:
+        source = {"data": _csv(wavelengths, R, T)}
+    else:
+        files = path if isinstance(path, (list, tuple)) else [path]
+        if len(files) != 1 and not all_leaves:
+            raise ValueError(f"fit: path has {len(files)} files; all_leaves=True fits the leaves of several")
+        source = {"file": [path_text(file) for file in files]}
     if isinstance(sieve, bool):
         sieve = "on" if sieve else "off"
-    return Fit(run("fit", **source, sieve=sieve, **options))
+    result = run("fit", **source, all_leaves=all_leaves, sieve=sieve, **options)
+    return result.table if all_leaves else Fit(result)
 
 
 def read_spectra(path, *, leaf="", angle=8.0):

@@ -114,6 +114,30 @@ def test_fit_of_arrays_and_of_a_file(reference):
         frond.fit()
 
 
+def test_fit_of_all_leaves(tmp_path, reference):
+    spectra = "leaf,nm,R,T\n" + "".join(
+        f"{leaf},{nm},{share * r},{share * t}\n" for leaf, share in (("one", 1), ("two", 0.9)) for nm, r, t in (
+            (450, .045, .016), (550, .08, .15), (650, .05, .05), (680, .045, .02), (720, .25, .28), (800, .44, .45),
+            (1200, .41, .44), (1450, .12, .15), (1650, .29, .33), (1940, .04, .03), (2200, .12, .16)))
+    (tmp_path / "leaves.csv").write_text(spectra + "bad,450,x,.1\n")
+    (tmp_path / "other.csv").write_text(spectra.replace("one", "three"))
+    shape = {"structure": "bifacial", "sieve": True}
+    table = frond.fit(path=tmp_path / "leaves.csv", all_leaves=True, **shape)
+    assert list(table["leaf"]) == ["one", "two", "bad"]
+    assert [status == "fitted" for status in table["status"]] == [True, True, False]
+    assert "leaves.csv:24:9" in table["status"][2]
+    alone = frond.fit(path=tmp_path / "leaves.csv", leaf="two", **shape)
+    assert table["chlorophylla"][1] == alone.leaf["chlorophylla"]
+    assert abs(table["rmse"][1] - alone.rmse) < 1e-12
+    both = frond.fit(path=[tmp_path / "leaves.csv", str(tmp_path / "other.csv")], all_leaves=True, **shape)
+    assert list(both["file"]) == ["leaves.csv"] * 3 + ["other.csv"] * 2
+    assert both["thickness"][0] == table["thickness"][0]
+    with pytest.raises(ValueError, match="2 files; all_leaves=True"):
+        frond.fit(path=[tmp_path / "leaves.csv"] * 2)
+    with pytest.raises(frond.InputError, match="all_leaves takes all"):
+        frond.fit(path=tmp_path / "other.csv")
+
+
 def test_brf_and_flux_of_a_scene(tmp_path):
     (tmp_path / "canopy.pbrt").write_text("""
 WorldBegin

@@ -34,10 +34,14 @@ void TerminalLine::show(const std::string& text) {
   std::fflush(stderr);
 }
 
-/// "samples" are paths; the remaining time assumes a constant rate.
+/// "samples" are paths, which not all work consists of; the remaining time assumes a constant rate.
 void ProgressLine::update(double fraction, const RenderStatistics& s) {
   if (!line_.is_due(s.wall_seconds)) return;
   const double left = fraction > 0 ? s.wall_seconds * (1 - fraction) / fraction : 0;
+  if (s.paths == 0) {
+    line_.show(fmt::format("{:5.1f} %  {:.0f} s left", 100 * fraction, left));
+    return;
+  }
   line_.show(fmt::format("{:5.1f} %  {:.1f} M samples  {:.2f} M rays/s  {:.0f} s left", 100 * fraction,
                          double(s.paths) * 1e-6, double(s.rays) / s.wall_seconds * 1e-6, left));
 }

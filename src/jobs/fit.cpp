@@ -1,7 +1,9 @@
 #include "leaf/fit/fit.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <mutex>
 
 #include "jobs/record/common_params.h"
 #include "leaf/fit/measured_spectra.h"
@@ -25,16 +27,25 @@ constexpr std::string_view kStructures[] = {"bifacial", "unifacial"}, kSieve[] =
                            kMaterials[] = {"leaf", "leaf_solved", "leaf_simplified", "leaf_lambert", "abm"};
 
 constexpr JobParam kParams[] = {
-    JobParam("file", text, "Measured spectra: CSV as written by frond spectrophotometer or by spectroradiometers.",
+    JobParam("file", texts,
+             "Measured spectra: CSV as written by frond spectrophotometer or by spectroradiometers. Of several files, "
+             "all leaves are fitted.",
              {.type = "FILE", .path = PathUse::read, .decides = true, .positional = true, .excludes = "data"}),
     JobParam("data", text, "Measured spectra as a string, in the format of such a file.",
              {.type = "CSV", .decides = true}),
-    JobParam("output", text, "Scene file to write, with the leaf's Material directive; - is standard output.",
+    JobParam("output", text,
+             "Scene file to write, with the leaf's Material directive, or a MakeNamedMaterial directive for each of "
+             "all leaves; - is standard output.",
              {.type = "FILE", .aliases = "o", .path = PathUse::write}),
     kJsonParam,
     kCsvParam,
     chart_param("plot", "Chart of measured and fitted spectra: .svg or .png."),
-    JobParam("leaf", text, "Name of the leaf to fit, if the file has several.", {.type = "LEAF", .decides = true}),
+    JobParam("leaf", text, "Name of the leaf to fit, if the file has several.",
+             {.type = "LEAF", .decides = true, .excludes = "all-leaves"}),
+    JobParam("all-leaves", flag,
+             "Fit every leaf; --csv has one row for each, with its parameters, their standard errors and, if it could "
+             "not be fitted, the reason.",
+             {.decides = true}),
     JobParam("angle", real, "Angle of incidence, if the file does not state it.",
              {.default_value = "8", .unit = "degrees", .range = {0, 180}, .decides = true}),
     JobParam("structure", text, "Structure of the leaf; by default the better fit.",
@@ -126,9 +137,9 @@ std::optional<leaf::Structure> structure_of(const Arguments& args, const leaf::S
   return like->params.structure;
 }
 
-/// Builds the request. Throws InputError if there are fewer values than free parameters and no prior.
-leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasurement> measurements) {
-  leaf::FitRequest request{.measurements = std::move(measurements)};
+/// Builds the request, without measurements, from the options.
+leaf::FitRequest request_of(const Arguments& args) {
+  leaf::FitRequest request;
   request.like = leaf::find_specimen(args.text("like"));
   request.has_prior = request.like != nullptr;
   request.structure = structure_of(args, request.like);
@@ -139,6 +150,11 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasure
   if (args.given("absorption"))
     request.absorption_tables =
         args.text("absorption") == "baranoski" ? leaf::AbsorptionTables::baranoski : leaf::AbsorptionTables::prospect;
+  return request;
+}
+
+/// Throws InputError at `where` if there are fewer values than free parameters and no prior.
+void check_values(const Arguments& args, const leaf::FitRequest& request, const Location& where) {
   size_t values = 0;
   for (const leaf::LeafMeasurement& r : request.measurements) values += (r.r ? 1 : 0) + (r.t ? 1 : 0);
   // Fewer values than parameters leave the fit undetermined, unless a prior determines the rest.
@@ -146,13 +162,10 @@ leaf::FitRequest request_of(const Arguments& args, std::vector<leaf::LeafMeasure
     return !v.only_with || *v.only_with == request.absorption_tables;
   }));
   const size_t free = all - std::min(all, request.fixed.size());
-  const Location where =
-      args.given("file") ? Location{std::make_shared<const std::string>(args.text("file")), 0, 0} : Location{};
   if (values == 0) fail(where, "there is no value to fit within 360 to 2500 nm");
   if (values < free && !request.has_prior)
     fail(where, "{} values are fewer than the {} parameters to fit: use {} or {}", values, free, args.spelled("fix"),
          args.spelled("like"));
-  return request;
 }
 
 /// Throws InputError for a value that the material would refuse.
@@ -176,36 +189,43 @@ void check_fitted(const leaf::TissueParams& fitted, const MaterialInfo& material
   check("chlorophyllb", fitted.chlorophyll_b);
 }
 
-/// Reads the measurements of --file or --data. Rows outside 360 to 2500 nm are left out with a warning.
-std::vector<leaf::LeafMeasurement> measurements_of(const JobRun& run) {
-  const Arguments& args = run.args;
-  if (!args.given("file") && !args.given("data"))
-    fail({}, "measured spectra are needed: a file, or {}", args.spelled("data"));
-  const leaf::SpectraMeasurement how{args.text("leaf"), args.real("angle"), args.spelled("leaf")};
-  leaf::MeasuredSpectra measured = args.given("file")
-                                       ? leaf::read_measured_spectra(args.text("file"), how)
-                                       : leaf::parse_measured_spectra(args.text("data"), args.spelled("data"), how);
-  // A warning, because it changes the numbers: -q shows it too.
+/// A file as a whole.
+Location location_of(const std::string& file) { return {std::make_shared<const std::string>(file), 0, 0}; }
+
+/// Warns of what the reader has changed: it changes the numbers, so -q shows it too. `name`: of the leaf, or empty.
+void warn_of_changes(const JobRun& run, const leaf::MeasuredSpectra& measured, const std::string& name) {
+  const std::string of = name.empty() ? "" : name + ": ";
   if (!measured.in_percent.empty())
-    run.log().warn({}, fmt::format("the values of {} are in percent: they are divided by 100", measured.in_percent));
-  if (measured.left_out > 0)
     run.log().warn({},
-                   fmt::format("{} rows are left out: beyond 360 to 2500 nm, or without a number", measured.left_out));
-  return std::move(measured.measurements);
+                   fmt::format("{}the values of {} are in percent: they are divided by 100", of, measured.in_percent));
+  if (measured.left_out > 0)
+    run.log().warn(
+        {}, fmt::format("{}{} rows are left out: beyond 360 to 2500 nm, or without a number", of, measured.left_out));
 }
 
-/// The job: fits the leaf, and writes scene file, chart and tables.
-Result fit(const JobRun& run) {
-  const StopScope stop(run.control.stop);
+/// Options of the reader, with the names that its messages use.
+leaf::SpectraMeasurement reader_of(const Arguments& args) {
+  return {args.text("leaf"), args.real("angle"), args.spelled("leaf"), args.spelled("all-leaves")};
+}
+
+/// Fits one leaf of --file or --data.
+Result fit_one(const JobRun& run) {
   const Arguments& args = run.args;
-  check_chart_param(run, "plot");
-  const leaf::FitRequest request = request_of(args, measurements_of(run));
-  check_fixed(request.fixed, run.session().registry().materials.get(args.text("material"), {}), args.spelled("fix"));
+  const std::string file = args.given("file") ? args.texts("file")[0] : "";
+  leaf::MeasuredSpectra measured =
+      args.given("file") ? leaf::read_measured_spectra(file, reader_of(args))
+                         : leaf::parse_measured_spectra(args.text("data"), args.spelled("data"), reader_of(args));
+  warn_of_changes(run, measured, "");
+  leaf::FitRequest request = request_of(args);
+  request.measurements = std::move(measured.measurements);
+  check_values(args, request, file.empty() ? Location{} : location_of(file));
+  const MaterialInfo& material = run.session().registry().materials.get(args.text("material"), {});
+  check_fixed(request.fixed, material, args.spelled("fix"));
   const double start = cpu_seconds();
   const leaf::FitResult fitted = leaf::fit_leaf(request, run.session().pool());
-  check_fitted(fitted.params, run.session().registry().materials.get(args.text("material"), {}), args.spelled("fix"));
+  check_fitted(fitted.params, material, args.spelled("fix"));
   run.log().info(fmt::format("fitted in {:.2g} s of CPU", cpu_seconds() - start));
-  std::string source = args.given("file") ? std::filesystem::path(args.text("file")).filename().string() : "data";
+  std::string source = file.empty() ? "data" : std::filesystem::path(file).filename().string();
   if (args.given("leaf")) source += ", " + args.text("leaf");
   const FitReport report{request, fitted, source, args.text("material")};
   if (args.given("output")) write_text(args.text("output"), fit_scene(report));
@@ -216,6 +236,102 @@ Result fit(const JobRun& run) {
           .facts = std::move(facts),
           .notes = {fmt::format("{}, fitted by frond fit: RMSE {:.4f}", source, fitted.rmse)},
           .text = fit_text(report)};
+}
+
+/// Appends the leaves of one file, or of --data if `file` is empty, with their measurements or errors. An error of the
+/// file as a whole is that of a leaf with the file's name, if `keeps_errors`.
+void read_leaves(const JobRun& run, const std::string& file, bool keeps_errors, std::vector<LeafFitReport>& leaves) {
+  const std::filesystem::path path(file);
+  const std::string name = path.filename().string(), stem = file.empty() ? "data" : path.stem().string();
+  std::vector<leaf::MeasuredLeaf> read;
+  try {
+    read = file.empty()
+               ? leaf::parse_measured_leaves(run.args.text("data"), run.args.spelled("data"), reader_of(run.args))
+               : leaf::read_measured_leaves(path, reader_of(run.args));
+  } catch (const InputError& e) {
+    if (!keeps_errors) throw;
+    leaves.push_back({name, stem, e.what()});
+    return;
+  }
+  // The warnings of all leaves are those of the file: a thousand lines would hide other messages.
+  leaf::MeasuredSpectra changes;
+  for (leaf::MeasuredLeaf& one : read) {
+    if (changes.in_percent.empty()) changes.in_percent = one.spectra.in_percent;
+    changes.left_out += one.spectra.left_out;
+    LeafFitReport& leaf = leaves.emplace_back(LeafFitReport{name, one.name.empty() ? stem : one.name, one.error});
+    leaf.measurements = one.spectra.measurements.size();
+    leaf.request.measurements = std::move(one.spectra.measurements);
+  }
+  warn_of_changes(run, changes, name);
+}
+
+/// Fits one of many leaves. Sets the report's result or its error.
+void fit_one_of_many(const Arguments& args, const MaterialInfo& material, leaf::FitRequest request,
+                     leaf::FitCache& cache, LeafFitReport& leaf) {
+  try {
+    request.measurements = std::move(leaf.request.measurements);
+    check_values(args, request, {});
+    leaf.result = leaf::fit_leaf(request, ThreadPool(1), &cache);
+    check_fitted(leaf.result.params, material, args.spelled("fix"));
+    if (!std::isfinite(leaf.result.rmse)) fail({}, "the search found no leaf");
+  } catch (const InputError& e) {
+    leaf.error = e.what();
+  }
+  // A table has no spectra: of a thousand leaves they would take a hundred megabytes.
+  request.measurements.clear(), leaf.result.fitted.clear();
+  leaf.request = std::move(request);
+}
+
+/// Fits every leaf of the files, each on one thread: the result does not depend on their number.
+Result fit_all(const JobRun& run) {
+  const Arguments& args = run.args;
+  if (args.given("plot")) fail({}, "{} draws one leaf: {} selects it", args.spelled("plot"), args.spelled("leaf"));
+  // Errors in the options end the job before any file is read; errors of one leaf do not.
+  const leaf::FitRequest request = request_of(args);
+  const MaterialInfo& material = run.session().registry().materials.get(args.text("material"), {});
+  check_fixed(request.fixed, material, args.spelled("fix"));
+  const std::vector<std::string> files = args.given("file") ? args.texts("file") : std::vector<std::string>{""};
+  std::vector<LeafFitReport> leaves;
+  for (const std::string& file : files) read_leaves(run, file, files.size() > 1, leaves);
+
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu = cpu_seconds();
+  leaf::FitCache cache;
+  std::mutex mutex;
+  size_t done = 0;
+  run.session().pool().for_each(static_cast<int64_t>(leaves.size()), [&](int64_t i, int) {
+    LeafFitReport& leaf = leaves[static_cast<size_t>(i)];
+    if (leaf.error.empty()) fit_one_of_many(args, material, request, cache, leaf);
+    const std::lock_guard lock(mutex);
+    RenderStatistics so_far;
+    so_far.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    so_far.cpu_seconds = cpu_seconds() - cpu;
+    if (run.control.progress) run.control.progress->update(double(++done) / double(leaves.size()), so_far);
+  });
+  if (run.control.progress) run.control.progress->finish();
+  // A table without any leaf would look like a success.
+  if (std::ranges::none_of(leaves, [](const LeafFitReport& leaf) { return leaf.error.empty(); }))
+    fail({}, "no leaf could be fitted; the first, {}: {}", leaves[0].leaf, leaves[0].error);
+  run.log().info(fmt::format("fitted in {:.3g} s of CPU", cpu_seconds() - cpu));
+  if (args.given("output")) write_text(args.text("output"), leaves_scene(leaves, args.text("material")));
+  return {.tables = {leaves_table(leaves, request.absorption_tables)},
+          .facts = leaves_facts(leaves),
+          .notes = {"leaves fitted by frond fit"},
+          .text = leaves_text(leaves)};
+}
+
+/// The job: fits the leaf, and writes scene file, chart and tables.
+Result fit(const JobRun& run) {
+  const StopScope stop(run.control.stop);
+  const Arguments& args = run.args;
+  check_chart_param(run, "plot");
+  if (!args.given("file") && !args.given("data"))
+    fail({}, "measured spectra are needed: a file, or {}", args.spelled("data"));
+  // Several files are as good as --all-leaves: there is no leaf that could be meant.
+  const bool has_files = args.given("file") && args.texts("file").size() > 1;
+  if (has_files && args.given("leaf"))
+    fail({}, "{} selects a leaf of one file, but there are {}", args.spelled("leaf"), args.texts("file").size());
+  return args.flag("all-leaves") || has_files ? fit_all(run) : fit_one(run);
 }
 
 }  // namespace

@@ -115,14 +115,17 @@ std::vector<const FittedNumber*> free_numbers(const FitReport& report) {
 
 }  // namespace
 
-std::string fit_scene(const FitReport& report) {
+std::string fit_scene(const FitReport& report, const std::string& name) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("# Fitted to {} by frond fit: RMSE {:.4f} (R {:.4f}, T {:.4f}).\n", report.source,
                                  result.rmse, result.rmse_r, result.rmse_t);
   if (const auto names = not_told(report); !names.empty())
     text += fmt::format("# Not determined by the data, so no measurement: {}.\n", fmt::join(names, ", "));
-  text += fmt::format("Material \"{}\" \"string specimen\" \"{}\"\n", report.material, result.specimen->name);
-  for (const auto& [name, value] : said(report)) text += fmt::format("    \"float {}\" {:.6g}\n", name, value);
+  text += name.empty() ? fmt::format("Material \"{}\"", report.material)
+                       : fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"", name, report.material);
+  text += fmt::format(" \"string specimen\" \"{}\"\n", result.specimen->name);
+  for (const auto& [parameter, value] : said(report))
+    text += fmt::format("    \"float {}\" {:.6g}\n", parameter, value);
   if (is_prospect(result)) text += "    \"string absorption\" \"prospect\"\n";
   if (result.params.sieve_and_detour) text += "    \"bool sieve\" true\n";
   return text;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "leaf/fit/fit.h"
 #include "report/chart.h"
@@ -16,8 +17,9 @@ struct FitReport {
   std::string material;  ///< plug-in of the Material directive
 };
 
-/// Returns a `Material` directive with comments: the source, and the parameters that the data do not determine.
-std::string fit_scene(const FitReport& report);
+/// Returns a `Material` directive with comments: the source, and the parameters that the data do not determine. With a
+/// name, a `MakeNamedMaterial` directive.
+std::string fit_scene(const FitReport& report, const std::string& name = {});
 /// Returns text for a terminal: errors by band, parameters with errors, strong correlations, undetermined parameters.
 std::string fit_text(const FitReport& report);
 /// Returns errors, and results that are not parameters of the leaf.
@@ -26,5 +28,26 @@ std::vector<Fact> fit_facts(const FitReport& report);
 std::vector<Table> fit_tables(const FitReport& report);
 /// Returns a chart of R from below and T from above: measured spectra as points, fitted spectra as lines.
 Chart fit_chart(const FitReport& report);
+
+/// One leaf of a fit of many.
+struct LeafFitReport {
+  std::string file;        ///< name of the file; empty: none
+  std::string leaf;        ///< its name
+  std::string error = {};  ///< why it was not fitted; empty: it was
+  size_t measurements = 0;
+  leaf::FitRequest request = {};  ///< what was fitted; may lack the measurements
+  leaf::FitResult result = {};    ///< only without `error`
+};
+
+/// Returns the table "leaves", a row for each leaf: file, leaf, status, errors, kind, parameters and contents with
+/// their standard errors. `tables`: absorption of all of the fits, which determines the columns.
+Table leaves_table(const std::vector<LeafFitReport>& leaves, leaf::AbsorptionTables tables);
+/// Returns numbers of leaves and the median and largest RMSE.
+std::vector<Fact> leaves_facts(const std::vector<LeafFitReport>& leaves);
+/// Returns text for a terminal: these facts, and the first leaves that failed.
+std::string leaves_text(const std::vector<LeafFitReport>& leaves);
+/// Returns `MakeNamedMaterial` directives of all fitted leaves, by their names; a name that several files have is
+/// preceded by the file's.
+std::string leaves_scene(const std::vector<LeafFitReport>& leaves, const std::string& material);
 
 }  // namespace frond

@@ -126,6 +126,115 @@ TEST_F(Fitting, NamesTheBandsThatItMisses) {
   EXPECT_TRUE(found);
 }
 
+/// Fits of many leaves: of the leaf column of a file, and of several files.
+class FittingMany : public Fitting {
+ protected:
+  /// Rows of kSpectrum as those of a leaf, times `scale`.
+  static std::string rows(const std::string& leaf, double scale) {
+    std::string text;
+    for (const auto& [nm, r, t] : std::initializer_list<std::array<double, 3>>{{450, .045, .016},
+                                                                               {550, .08, .15},
+                                                                               {650, .05, .05},
+                                                                               {680, .045, .02},
+                                                                               {720, .25, .28},
+                                                                               {800, .44, .45},
+                                                                               {1200, .41, .44},
+                                                                               {1450, .12, .15},
+                                                                               {1650, .29, .33},
+                                                                               {1940, .04, .03},
+                                                                               {2200, .12, .16}})
+      text += fmt::format("{},{},{},{}\n", leaf, nm, r * scale, t * scale);
+    return text;
+  }
+  /// Runs frond fit with --structure and --sieve, which save time, and returns the table.
+  CsvTable fitted(std::vector<std::string> words) {
+    const std::string csv = name_of("fits.csv");
+    words.insert(words.begin(), "fit");
+    words.insert(words.end(), {"--structure", "bifacial", "--sieve", "on", "--csv", csv});
+    done_ = frond_command(words);
+    EXPECT_EQ(done_.code, 0) << done_.err;
+    return parse_csv(bytes_of(csv));
+  }
+  static std::vector<std::string> words_of(const CsvTable& table, const std::string& column) {
+    std::vector<std::string> words;
+    for (size_t row = 0; row < table.rows.size(); ++row) words.push_back(table.text(row, column));
+    return words;
+  }
+  Outcome done_{};
+};
+
+TEST_F(FittingMany, ABadLeafLosesNoOther) {
+  const std::string file = folder_
+                               .write("many.csv", "leaf,nm,R,T\n" + rows("good", 1) + "bad,450,.1,.1\nbad,550,x,.1\n" +
+                                                      rows("dim", .9) + "few,450,.1,.1\nabove,450,.9,.9\n")
+                               .string();
+  const CsvTable table = fitted({file, "--all-leaves", "-o", name_of("leaves.pbrt")});
+  ASSERT_EQ(table.rows.size(), 5u);
+  const auto column = [&](const char* name) { return words_of(table, name); };
+  EXPECT_THAT(column("leaf"), ::testing::ElementsAre("good", "bad", "dim", "few", "above"));
+  const auto status = column("status");
+  EXPECT_EQ(status[0], "fitted");
+  EXPECT_THAT(status[1], AllOf(HasSubstr("many.csv:14:9"), HasSubstr("\"x\" was given")));
+  EXPECT_EQ(status[2], "fitted");
+  EXPECT_THAT(status[3], HasSubstr("fewer than the"));
+  EXPECT_THAT(status[4], HasSubstr("R + T is 1.8"));
+  EXPECT_THAT(done_.out, AllOf(HasSubstr("5 leaves: 2 fitted, 3 failed"), HasSubstr("bad: ")));
+  EXPECT_EQ(column("rmse")[1], "");
+  EXPECT_GT(std::stod(column("chlorophylla_se")[0]), 0);
+  const std::string scene = bytes_of(name_of("leaves.pbrt"));
+  EXPECT_THAT(scene, AllOf(HasSubstr("MakeNamedMaterial \"good\" \"string type\" \"leaf\""), HasSubstr("\"dim\"")));
+  EXPECT_THAT(scene, ::testing::Not(HasSubstr("\"bad\"")));
+}
+
+/// A leaf's fit depends neither on the others nor on the number of threads.
+TEST_F(FittingMany, IsTheFitOfEachLeafAlone) {
+  const std::string file =
+      folder_.write("two.csv", "leaf,nm,R,T\n" + rows("a", 1) + rows("b", 0.8) + rows("c", 0.9)).string();
+  const CsvTable one = fitted({file, "--all-leaves", "--threads", "1"});
+  const std::string csv = bytes_of(name_of("fits.csv"));
+  fitted({file, "--all-leaves", "--threads", "3"});
+  EXPECT_EQ(csv, bytes_of(name_of("fits.csv")));
+  const std::string json = name_of("b.json");
+  ASSERT_EQ(
+      frond_command({"fit", file, "--leaf", "b", "--structure", "bifacial", "--sieve", "on", "--json", json}).code, 0);
+  const auto j = nlohmann::json::parse(bytes_of(json));
+  EXPECT_NEAR(std::stod(words_of(one, "rmse")[1]), j["rmse"].get<double>(), 1e-9);
+  for (const auto& number : j["numbers"])
+    EXPECT_NEAR(std::stod(words_of(one, number["name"].get<std::string>())[1]) / number["value"].get<double>(), 1,
+                1e-8);
+}
+
+TEST_F(FittingMany, FilesCanShareNamesOfLeaves) {
+  const std::string a = folder_.write("a.csv", "leaf,nm,R,T\n" + rows("oak", 1)).string(),
+                    b = folder_.write("b.csv", "leaf,nm,R,T\n" + rows("oak", .9)).string();
+  const CsvTable table = fitted({a, b, spectrum_, name_of("missing.csv"), "-o", name_of("leaves.pbrt")});
+  EXPECT_THAT(words_of(table, "file"), ::testing::ElementsAre("a.csv", "b.csv", "leaf.csv", "missing.csv"));
+  EXPECT_THAT(words_of(table, "leaf"), ::testing::ElementsAre("oak", "oak", "leaf", "missing"));
+  EXPECT_EQ(words_of(table, "status")[1], "fitted");
+  EXPECT_NE(words_of(table, "thickness")[0], words_of(table, "thickness")[1]);
+  EXPECT_THAT(words_of(table, "status")[3], HasSubstr("missing.csv"));
+  EXPECT_THAT(bytes_of(name_of("leaves.pbrt")), AllOf(HasSubstr("\"a.csv/oak\""), HasSubstr("\"b.csv/oak\"")));
+}
+
+TEST_F(FittingMany, OfOneLeafIsATableToo) { EXPECT_EQ(fitted({spectrum_, "--all-leaves"}).rows.size(), 1u); }
+
+TEST_F(FittingMany, SaysWhatIsWrongBeforeItBegins) {
+  const auto error = [](std::vector<std::string> words) {
+    words.insert(words.begin(), "fit");
+    const auto done = frond_command(words);
+    EXPECT_NE(done.code, 0);
+    return done.err;
+  };
+  EXPECT_THAT(error({spectrum_, "--all-leaves", "--leaf", "oak"}), HasSubstr("--all-leaves"));
+  EXPECT_THAT(error({spectrum_, spectrum_, "--leaf", "oak"}), HasSubstr("selects a leaf of one file"));
+  EXPECT_THAT(error({spectrum_, "--all-leaves", "--plot", "a.svg"}), HasSubstr("--plot draws one leaf"));
+  EXPECT_THAT(error({spectrum_, "--all-leaves", "--fix", "clorophylla=1"}), HasSubstr("did you mean"));
+  EXPECT_THAT(error({name_of("none.csv"), "--all-leaves"}), HasSubstr("none.csv"));
+  const std::string two = folder_.write("two.csv", "leaf,nm,R\na,550,.1\nb,550,.1\n").string();
+  EXPECT_THAT(error({two}), AllOf(HasSubstr("--leaf selects one of a, b"), HasSubstr("--all-leaves takes all")));
+  EXPECT_THAT(error({two, "--all-leaves"}), AllOf(HasSubstr("no leaf could be fitted"), HasSubstr("fewer")));
+}
+
 /// Arguments of the job as a program gives them: measurements in a text, names without dashes.
 class FittingData : public ::testing::Test {
  protected:

@@ -280,6 +280,28 @@ TEST(MeasuredSpectra, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(error("nm,R\n500,inf\n"), HasSubstr("a.csv:2:5"));
 }
 
+TEST(MeasuredLeaves, AreReadInOrderWithTheErrorsOfEach) {
+  const std::vector<MeasuredLeaf> leaves = parse_measured_leaves(
+      "leaf,nm,R\noak,550,.1\nelm,550,.2\noak,560,.3\nash,nan,.1\nash,550,.1\nelm,100000,.2\nfir,550\n", "a.csv", {});
+  ASSERT_EQ(leaves.size(), 4u);
+  EXPECT_EQ(leaves[0].name, "oak");
+  EXPECT_EQ(leaves[0].spectra.measurements.size(), 2u);
+  EXPECT_EQ(leaves[0].error, "");
+  EXPECT_EQ(leaves[1].spectra.left_out, 1u);
+  EXPECT_THAT(leaves[2].error, AllOf(HasSubstr("a.csv:5:5"), HasSubstr("above 0")));
+  EXPECT_THAT(leaves[3].error, AllOf(HasSubstr("a.csv:8:1"), HasSubstr("3 columns")));
+  EXPECT_EQ(parse_measured_leaves("nm,R\n550,.1\n", "a.csv", {})[0].name, "");
+  EXPECT_THAT(error_of([] { parse_measured_leaves("leaf,nm,x\noak,1,2\n", "a.csv", {}); }), HasSubstr("\"R\""));
+  EXPECT_THAT(error_of([] { parse_measured_leaves("leaf,nm,R\n", "a.csv", {}); }), HasSubstr("no spectra"));
+}
+
+TEST(MeasuredLeaves, HaveOneUnitForAll) {
+  const std::vector<MeasuredLeaf> leaves =
+      parse_measured_leaves("leaf,nm,R\ndark,550,.9\nlight,550,40\nlight,560,50\n", "a.csv", {});
+  EXPECT_DOUBLE_EQ(*leaves[0].spectra.measurements[0].r, 0.009);
+  EXPECT_EQ(leaves[1].spectra.in_percent, "R");
+}
+
 TEST(MeasuredSpectra, AreInPercentIfMostValuesOrTheirColumnsSaySo) {
   const auto is_in_percent = [](std::string_view text) {
     return !parse_measured_spectra(text, "a.csv", {}).in_percent.empty();

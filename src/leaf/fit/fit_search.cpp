@@ -214,7 +214,7 @@ void polish(Candidate& c, const FitProblem& problem, Surfaces& surfaces) {
 FoundLeaf finish(Candidate& c, const FitProblem& problem, const FitRows& rows, Surfaces& surfaces,
                  const ThreadPool& pool) {
   constexpr int kRounds = 4;
-  constexpr double kDone = 1e-3, kRadius = 0.2;
+  constexpr double kDone = 3e-3, kRadius = 0.2;
   std::vector<Pair> solved = solve_rows(rows, c.space->at(c.logs), pool);
   c.cost = problem.cost(solved, c.logs);
   for (int round = 0; round < kRounds; ++round) {

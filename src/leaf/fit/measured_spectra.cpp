@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -86,8 +87,9 @@ Column column_of(std::string_view name) {
 
 class Reader {
  public:
-  Reader(const std::string& name, const SpectraMeasurement& how)
-      : how_(how), where_{std::make_shared<const std::string>(name), 0, 1} {}
+  /// `all`: reads every leaf, and collects the errors of each.
+  Reader(const std::string& name, const SpectraMeasurement& how, bool all)
+      : how_(how), all_(all), where_{std::make_shared<const std::string>(name), 0, 1} {}
 
   void line(std::string_view text) {
     ++where_.line;
@@ -101,19 +103,33 @@ class Reader {
     row(fields);
   }
 
+  std::vector<MeasuredLeaf> finish_all() {
+    if (columns_.empty() || entries_.empty()) fail(where_, "there are no spectra in this file");
+    scale();
+    std::vector<MeasuredLeaf> result;
+    for (Entry& e : entries_) result.push_back({std::move(e.name), std::move(e.spectra), std::move(e.error)});
+    return result;
+  }
+
   MeasuredSpectra finish() {
     if (columns_.empty()) fail(where_, "there are no spectra in this file");
-    if (how_.leaf.empty() && leaves_.size() > 1)
-      fail(first_row_, "the file has {} leaves: {} selects one of {}", leaves_.size(), how_.leaf_option,
-           fmt::join(leaves_, ", "));
+    if (how_.leaf.empty() && leaves_.size() > 1) {
+      constexpr size_t kNamed = 12;
+      const std::vector<std::string> named(leaves_.begin(),
+                                           std::next(leaves_.begin(), ptrdiff_t(std::min(leaves_.size(), kNamed))));
+      fail(first_row_, "the file has {} leaves: {} selects one of {}{}{}", leaves_.size(), how_.leaf_option,
+           fmt::join(named, ", "), leaves_.size() > kNamed ? ", ..." : "",
+           how_.all_option.empty() ? "" : fmt::format("; {} takes all", how_.all_option));
+    }
     if (!how_.leaf.empty() && !leaves_.contains(how_.leaf)) {
       if (leaves_.empty()) fail(first_row_, "the file has no names of leaves: {} has no effect", how_.leaf_option);
       const std::string_view meant = nearest(how_.leaf, std::vector<std::string_view>(leaves_.begin(), leaves_.end()));
       fail(first_row_, "there is no leaf \"{}\" in this file{}", how_.leaf,
            meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant));
     }
+    if (entries_.empty()) return {};
     scale();
-    return std::move(result_);
+    return std::move(entries_[0].spectra);
   }
 
  private:
@@ -145,7 +161,43 @@ class Reader {
     return true;
   }
 
+  /// Measurements of one leaf.
+  struct Entry {
+    std::string name;
+    MeasuredSpectra spectra = {};
+    std::vector<std::array<Field, 2>> fields = {};  ///< R and T of the measurements
+    std::string error = {};
+  };
+
+  /// Returns the entry for a row, which all leaves share unless all are read; nullptr if the row is of another leaf.
+  Entry* entry_of(const std::vector<Field>& fields) {
+    const auto column = static_cast<size_t>(std::ranges::find(columns_, Column::leaf) - columns_.begin());
+    std::string name;
+    if (column < columns_.size() && column < fields.size()) {
+      name = fields[column].text;
+      leaves_.insert(name);
+      if (!all_ && !how_.leaf.empty() && name != how_.leaf) return nullptr;
+    }
+    const auto [place, is_new] = places_.try_emplace(all_ ? name : std::string(), entries_.size());
+    if (is_new) entries_.push_back({place->first});
+    return &entries_[place->second];
+  }
+
   void row(const std::vector<Field>& fields) {
+    Entry* const entry = entry_of(fields);
+    if (!entry || !entry->error.empty()) return;
+    if (!all_ || (entry->name.empty() && fields.size() != columns_.size())) {
+      add(fields, *entry);
+      return;
+    }
+    try {
+      add(fields, *entry);
+    } catch (const InputError& e) {
+      entry->error = e.what();
+    }
+  }
+
+  void add(const std::vector<Field>& fields, Entry& entry) {
     if (fields.size() != columns_.size())
       fail(where_, "{} fields, but the file has {} columns", fields.size(), columns_.size());
     LeafMeasurement measurement{0, how_.theta_deg, {}, {}};
@@ -176,9 +228,6 @@ class Reader {
           is_below = below(fields[i]);
           break;
         case Column::leaf:
-          leaves_.insert(std::string(text));
-          if (!how_.leaf.empty() && text != how_.leaf) return;
-          break;
         case Column::other:
           break;
       }
@@ -186,11 +235,11 @@ class Reader {
     if (is_below && measurement.theta_deg <= 90) measurement.theta_deg = 180 - measurement.theta_deg;
     if (measurement.theta_deg == 90) fail(where_, "light along the leaf, at 90 degrees, meets neither side");
     if ((!measurement.r && !measurement.t) || !kConstantsRange_nm.contains(measurement.lambda_nm)) {
-      ++result_.left_out;
+      ++entry.spectra.left_out;
       return;
     }
-    result_.measurements.push_back(measurement);
-    fields_.push_back(of_row);
+    entry.spectra.measurements.push_back(measurement);
+    entry.fields.push_back(of_row);
   }
 
   double wavelength(const Field& field) const {
@@ -232,8 +281,9 @@ class Reader {
     constexpr double kLargestFraction = 1.5;
     size_t all = 0, large = 0;
     double most = 0;
-    for (const LeafMeasurement& m : result_.measurements)
-      if (m.*share) ++all, large += *(m.*share) > kLargestFraction ? 1 : 0, most = std::max(most, *(m.*share));
+    for (const Entry& e : entries_)
+      for (const LeafMeasurement& m : e.spectra.measurements)
+        if (m.*share) ++all, large += *(m.*share) > kLargestFraction ? 1 : 0, most = std::max(most, *(m.*share));
     if (2 * large > all) return Unit::percent;
     return all > 0 && most <= 1 ? Unit::fraction : Unit::unknown;
   }
@@ -259,11 +309,25 @@ class Reader {
 
   /// Converts percent, and refuses what no spectrometer gives.
   void scale() {
-    constexpr double kNoise = 0.05;
     find_units();
+    for (Entry& e : entries_) {
+      if (!all_) {
+        scale(e);
+        continue;
+      }
+      try {
+        scale(e);
+      } catch (const InputError& error) {
+        if (e.error.empty()) e.error = error.what();
+      }
+    }
+  }
+
+  void scale(Entry& entry) {
+    constexpr double kNoise = 0.05;
     std::array<bool, 2> is_there{};
-    for (size_t row = 0; row < result_.measurements.size(); ++row) {
-      LeafMeasurement& measurement = result_.measurements[row];
+    for (size_t row = 0; row < entry.spectra.measurements.size(); ++row) {
+      LeafMeasurement& measurement = entry.spectra.measurements[row];
       for (size_t i = 0; i < 2; ++i) {
         std::optional<double>& share = measurement.*kShares[i];
         if (!share) continue;
@@ -271,33 +335,36 @@ class Reader {
         const bool is_in_percent = units_[i] == Unit::percent;
         if (is_in_percent) *share /= 100;
         if (*share < -kNoise || *share > 1 + kNoise)
-          fail(fields_[row][i].where, "{} is a share of the light, from 0 to 1{}; \"{}\" was given", kNames[i],
+          fail(entry.fields[row][i].where, "{} is a share of the light, from 0 to 1{}; \"{}\" was given", kNames[i],
                is_in_percent ? " or, as in this column, from 0 to 100 percent"
                              : " (most values of this column are not in percent)",
-               fields_[row][i].text);
+               entry.fields[row][i].text);
       }
       const double sum = measurement.r.value_or(0) + measurement.t.value_or(0);
-      if (sum > 1 + kNoise) fail(fields_[row][0].where, "R + T is {:.4g}: a leaf scatters 1 at most", sum);
+      if (sum > 1 + kNoise) fail(entry.fields[row][0].where, "R + T is {:.4g}: a leaf scatters 1 at most", sum);
     }
+    std::string& in_percent = entry.spectra.in_percent;
     for (size_t i = 0; i < 2; ++i)
       if (is_there[i] && units_[i] == Unit::percent)
-        result_.in_percent += fmt::format("{}{}", result_.in_percent.empty() ? "" : " and ", kNames[i]);
+        in_percent += fmt::format("{}{}", in_percent.empty() ? "" : " and ", kNames[i]);
   }
 
   const SpectraMeasurement& how_;
+  bool all_;
   Location where_, first_row_;
   std::optional<char> separator_;
   std::vector<Column> columns_;
   std::set<std::string> leaves_;
-  MeasuredSpectra result_;
-  std::vector<std::array<Field, 2>> fields_;  ///< R and T of the measurements
-  std::array<Unit, 2> units_{};               ///< of R and T
+  std::vector<Entry> entries_;
+  std::map<std::string, size_t> places_;  ///< of entries, by name
+  std::array<Unit, 2> units_{};           ///< of R and T
 };
 
 }  // namespace
 
-MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how) {
-  Reader reader(name, how);
+namespace {
+
+void read_lines(std::string_view text, Reader& reader) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   while (!text.empty()) {
@@ -305,7 +372,25 @@ MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string&
     reader.line(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
+}
+
+}  // namespace
+
+MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how) {
+  Reader reader(name, how, false);
+  read_lines(text, reader);
   return reader.finish();
+}
+
+std::vector<MeasuredLeaf> parse_measured_leaves(std::string_view text, const std::string& name,
+                                                const SpectraMeasurement& how) {
+  Reader reader(name, how, true);
+  read_lines(text, reader);
+  return reader.finish_all();
+}
+
+std::vector<MeasuredLeaf> read_measured_leaves(const std::filesystem::path& path, const SpectraMeasurement& how) {
+  return parse_measured_leaves(read_file_bytes(path, {}, "measured spectra"), path.string(), how);
 }
 
 MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraMeasurement& how) {

@@ -15,6 +15,7 @@ struct SpectraMeasurement {
   std::string leaf = {};               ///< leaf to read from a file with several leaves; empty: the file has one
   double theta_deg = 8;                ///< angle of incidence if no column gives it
   std::string leaf_option = "--leaf";  ///< option that selects the leaf, for messages
+  std::string all_option = {};         ///< option that reads all leaves, for messages; empty: there is none
 };
 
 /// Content of a file of measured spectra.
@@ -32,6 +33,22 @@ struct MeasuredSpectra {
 /// where no name has a unit, if most of its values are above 1.5. Decimals may have a comma if fields are not separated
 /// by one. Throws InputError with `name`, line and column.
 MeasuredSpectra parse_measured_spectra(std::string_view text, const std::string& name, const SpectraMeasurement& how);
+
+/// One leaf of a file with several.
+struct MeasuredLeaf {
+  std::string name;  ///< empty: the file has no names of leaves
+  MeasuredSpectra spectra;
+  std::string error = {};  ///< what is wrong with its rows, with file, line and column; empty: nothing
+};
+
+/// Reads all leaves of such a text, in the order of their first rows; `how.leaf` has no effect. Columns have one unit
+/// for all leaves. What is wrong with the rows of one leaf becomes its `error`. Throws InputError for what is wrong
+/// with the text as a whole, such as missing columns.
+std::vector<MeasuredLeaf> parse_measured_leaves(std::string_view text, const std::string& name,
+                                                const SpectraMeasurement& how);
+
+/// Reads a file by `parse_measured_leaves`. Throws InputError, also if the file cannot be read.
+std::vector<MeasuredLeaf> read_measured_leaves(const std::filesystem::path& path, const SpectraMeasurement& how);
 
 /// Reads a file by `parse_measured_spectra`. Throws InputError, also if the file cannot be read.
 MeasuredSpectra read_measured_spectra(const std::filesystem::path& path, const SpectraMeasurement& how);

@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "leaf/tissue/area_content.h"
+#include "report/fit_report.h"
+
+// Reports of fits of many leaves.
+
+namespace frond {
+namespace {
+
+using leaf::FitVariable;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Column of a content per leaf area, in the unit that the literature uses.
+struct ContentColumn {
+  std::string_view content, column;
+  leaf::AreaUnit unit;
+};
+constexpr ContentColumn kContents[] = {{"chlorophyll", "chlorophyll_ug_cm2", leaf::kMicrogramsPerCm2},
+                                       {"carotenoids", "carotenoids_ug_cm2", leaf::kMicrogramsPerCm2},
+                                       {"anthocyanins", "anthocyanins_ug_cm2", leaf::kMicrogramsPerCm2},
+                                       {"water", "water_g_cm2", leaf::kGramsPerCm2},
+                                       {"drymatter", "drymatter_g_cm2", leaf::kGramsPerCm2}};
+
+void add_parameters(const LeafFitReport& leaf, leaf::AbsorptionTables tables, Table& table) {
+  std::vector<std::string_view> undetermined;
+  for (const FitVariable& v : leaf::kFitVariables) {
+    if (v.only_with && *v.only_with != tables) continue;
+    const auto& numbers = leaf.result.numbers;
+    const auto n = std::ranges::find(numbers, &v, &leaf::FittedNumber::variable);
+    const bool has = leaf.error.empty() && n != numbers.end();
+    // The error is that of the logarithm; a given number has none.
+    table.add(std::string(v.name), has ? n->value : kNone, has && !n->is_fixed ? n->value * n->relative_error : kNone);
+    if (has && !n->is_fixed && !n->is_identified()) undetermined.push_back(v.name);
+  }
+  table.add("chlorophyllb", leaf.error.empty() ? leaf.result.params.chlorophyll_b : kNone);
+  table.add("mesophyllfraction", leaf.error.empty() ? leaf.result.params.mesophyll_fraction : kNone);
+  table.add("undetermined", fmt::format("{}", fmt::join(undetermined, " ")));
+}
+
+void add_contents(const LeafFitReport& leaf, Table& table) {
+  for (const ContentColumn& c : kContents) {
+    const auto& contents = leaf.result.contents;
+    const auto found = std::ranges::find(contents, c.content, &leaf::FittedContent::name);
+    const bool has = leaf.error.empty() && found != contents.end();
+    const double value = has ? found->kg_per_m2 * c.unit.per_kg_per_m2 : kNone;
+    table.add(std::string(c.column), value, has ? value * found->relative_error : kNone);
+  }
+}
+
+void document(Table& table) {
+  table.document("status", "fitted, or why the leaf was not fitted");
+  table.document("rmse", "root mean square error of R and T together; rmse_R, rmse_T: of one of them");
+  table.document("misfits", "number of bands in which R or T is off by more than 0.01");
+  table.document("thickness",
+                 "m; concentrations in kg/m^3, otherabsorption in 1/m; columns ending in _se: standard errors, those "
+                 "of the logarithms times the value, blank for a given value");
+  table.document("undetermined", "parameters that the data do not determine: no measurements, they complete the leaf");
+}
+
+std::vector<double> errors_of(const std::vector<LeafFitReport>& leaves) {
+  std::vector<double> errors;
+  for (const LeafFitReport& leaf : leaves)
+    if (leaf.error.empty()) errors.push_back(leaf.result.rmse);
+  std::ranges::sort(errors);
+  return errors;
+}
+
+/// Mean of the two middle values, if their number is even.
+double median(const std::vector<double>& sorted) {
+  return sorted.empty() ? kNone : (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]) / 2;
+}
+
+}  // namespace
+
+Table leaves_table(const std::vector<LeafFitReport>& leaves, leaf::AbsorptionTables tables) {
+  Table table{"leaves"};
+  for (const LeafFitReport& leaf : leaves) {
+    const leaf::FitResult& r = leaf.result;
+    const bool is_fitted = leaf.error.empty();
+    table.add("file", leaf.file);
+    table.add("leaf", leaf.leaf);
+    table.add("status", is_fitted ? "fitted" : leaf.error);
+    table.add("measurements", double(leaf.measurements));
+    table.add("rmse", is_fitted ? r.rmse : kNone);
+    table.add("rmse_R", is_fitted ? r.rmse_r : kNone);
+    table.add("rmse_T", is_fitted ? r.rmse_t : kNone);
+    table.add("misfits", is_fitted ? double(r.misfits.size()) : kNone);
+    const bool is_bifacial = r.params.structure == leaf::Structure::bifacial;
+    table.add("specimen", is_fitted ? std::string(r.specimen->name) : "");
+    table.add("structure", !is_fitted ? "" : is_bifacial ? "bifacial" : "unifacial");
+    table.add("sieve", !is_fitted ? "" : r.params.sieve_and_detour ? "true" : "false");
+    table.add("absorption", tables == leaf::AbsorptionTables::prospect ? "prospect" : "baranoski");
+    add_parameters(leaf, tables, table);
+    add_contents(leaf, table);
+  }
+  if (!leaves.empty()) document(table);
+  return table;
+}
+
+std::vector<Fact> leaves_facts(const std::vector<LeafFitReport>& leaves) {
+  const std::vector<double> errors = errors_of(leaves);
+  return {{"leaves", double(leaves.size())},
+          {"fitted", double(errors.size())},
+          {"failed", double(leaves.size() - errors.size())},
+          {"median_rmse", median(errors)},
+          {"largest_rmse", errors.empty() ? kNone : errors.back()}};
+}
+
+std::string leaves_text(const std::vector<LeafFitReport>& leaves) {
+  constexpr size_t kNamed = 10;
+  const std::vector<double> errors = errors_of(leaves);
+  const size_t failed = leaves.size() - errors.size();
+  std::string text = fmt::format("{} leaves: {} fitted, {} failed", leaves.size(), errors.size(), failed);
+  if (!errors.empty()) text += fmt::format("; RMSE: median {:.4f}, largest {:.4f}", median(errors), errors.back());
+  text += '\n';
+  size_t named = 0;
+  for (const LeafFitReport& leaf : leaves)
+    if (!leaf.error.empty() && named++ < kNamed) text += fmt::format("  {}: {}\n", leaf.leaf, leaf.error);
+  if (failed > kNamed) text += fmt::format("  and {} more: column \"status\" of the table\n", failed - kNamed);
+  return text;
+}
+
+std::string leaves_scene(const std::vector<LeafFitReport>& leaves, const std::string& material) {
+  std::map<std::string, size_t> uses;
+  for (const LeafFitReport& leaf : leaves) ++uses[leaf.leaf];
+  std::string text;
+  for (const LeafFitReport& leaf : leaves) {
+    if (!leaf.error.empty()) continue;
+    std::string name = uses[leaf.leaf] > 1 ? leaf.file + "/" + leaf.leaf : leaf.leaf;
+    std::erase_if(name, [](char c) { return c == '"' || c == '\\'; });  // which end or escape a string of a scene
+    const std::string source = leaf.file.empty() ? leaf.leaf : leaf.file + ", " + leaf.leaf;
+    text += fit_scene({leaf.request, leaf.result, source, material}, name);
+  }
+  return text;
+}
+
+}  // namespace frond
