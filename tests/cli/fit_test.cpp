@@ -216,6 +216,22 @@ TEST_F(FittingMany, FilesCanShareNamesOfLeaves) {
   EXPECT_THAT(bytes_of(name_of("leaves.pbrt")), AllOf(HasSubstr("\"a.csv/oak\""), HasSubstr("\"b.csv/oak\"")));
 }
 
+/// As Ctrl-C requests it.
+TEST_F(FittingMany, WritesNothingIfItIsStopped) {
+  const JobInfo& job = find_job("fit");
+  Arguments args(params_of(job), command_spelling);
+  args.set("file", folder_.write("two.csv", "leaf,nm,R,T\n" + rows("a", 1) + rows("b", 0.8)).string());
+  args.set("all-leaves", "true");
+  args.set("csv", name_of("fits.csv"));
+  args.set("output", name_of("leaves.pbrt"));
+  JobContext context(silent_log(), session_options(args));
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_THROW(run_job(job, {context, args, {.stop = source.get_token()}}), Stopped);
+  EXPECT_FALSE(std::filesystem::exists(name_of("fits.csv")));
+  EXPECT_FALSE(std::filesystem::exists(name_of("leaves.pbrt")));
+}
+
 TEST_F(FittingMany, OfOneLeafIsATableToo) { EXPECT_EQ(fitted({spectrum_, "--all-leaves"}).rows.size(), 1u); }
 
 TEST_F(FittingMany, SaysWhatIsWrongBeforeItBegins) {

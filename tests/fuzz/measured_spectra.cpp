@@ -21,4 +21,8 @@ static void check(const leaf::MeasuredSpectra& spectra, size_t bytes) {
 FROND_FUZZ_TARGET(measured_spectra, bytes) {
   for (const char* name : {"", "a"})  // a file of one leaf, and a leaf among several
     fuzz::accepts([&] { check(leaf::parse_measured_spectra(bytes, "leaf.csv", {.leaf = name}), bytes.size()); });
+  fuzz::accepts([&] {
+    for (const leaf::MeasuredLeaf& leaf : leaf::parse_measured_leaves(bytes, "leaf.csv", {}))
+      if (leaf.error.empty()) check(leaf.spectra, bytes.size());
+  });
 }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "leaf/fit/measured_spectra.h"
 #include "leaf/solve/solver.h"
 #include "leaf/tissue/area_content.h"
@@ -165,6 +167,39 @@ TEST(Fit, IsNotLedAstrayByBadPoints) {
   EXPECT_GE(std::ranges::count(result.fitted, true, &FitResult::Fitted::is_outlier), 5);
 }
 
+/// Noise moves the contents by as much as their errors say. With a fixed seed the test always ends the same way; with
+/// another one a correct fit fails with a probability of 1e-3: 18 numbers beyond 4 standard errors, each 6e-5.
+TEST(Fit, ErrorsAreThoseOfTheNoise) {
+  const TissueParams truth = another_of_prospect();
+  const std::vector<LeafMeasurement> exact = spectra_of(truth, {8}, 20);
+  RandomStream rng(5);
+  const auto normal = [&rng] {
+    return std::sqrt(-2 * std::log(1 - rng.uniform_double())) * std::cos(2 * std::numbers::pi * rng.uniform_double());
+  };
+  constexpr double kNoise = 0.003;
+  FitCache cache;
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < 6; ++i) {
+    FitRequest request{.measurements = exact, .structure = truth.structure, .sieve = true};
+    for (LeafMeasurement& m : request.measurements) *m.r += kNoise * normal(), *m.t += kNoise * normal();
+    const FitResult result = fit_leaf(request, ThreadPool(1), &cache);
+    EXPECT_NEAR(result.rmse, kNoise, 0.2 * kNoise);
+    for (const FittedContent& c : result.contents) {
+      double expected = 0;
+      if (c.name == "chlorophyll") expected = area_content(truth, truth.chlorophyll_a + truth.chlorophyll_b);
+      if (c.name == "water") expected = area_content(truth, kWaterConcentration);
+      if (c.name == "drymatter") expected = area_content(truth, truth.dry_matter);
+      if (expected == 0) continue;
+      const double z = std::log(c.kg_per_m2 / expected) / c.relative_error;
+      EXPECT_LT(std::abs(z), 4) << c.name;
+      sum += z * z, ++count;
+    }
+  }
+  EXPECT_EQ(count, 18);
+  EXPECT_GT(sum / count, 0.2);  // the errors are not much too large
+}
+
 /// Visible light alone says nothing of what absorbs beyond.
 TEST(Fit, SaysWhatTheDataDoNotTell) {
   const TissueParams truth = find_specimen("soybean")->params;
@@ -228,6 +263,21 @@ TEST(Fit, IsTheSameWithACacheOfOtherFits) {
   const FitResult later = fit_leaf(of("maize"), ThreadPool(1), &cache);
   EXPECT_EQ(alone.params, later.params);
   EXPECT_EQ(alone.rmse, later.rmse);
+}
+
+TEST(Fit, ThreadsThatShareACacheFindTheSame) {
+  FitCache cache;
+  std::vector<FitRequest> requests;
+  for (const double scale : {1.0, 0.95, 0.9, 0.85}) {
+    requests.push_back({.measurements = spectra_of(find_specimen("soybean")->params, {8}, 100)});
+    for (LeafMeasurement& m : requests.back().measurements) *m.r *= scale;
+  }
+  std::vector<FitResult> results(requests.size());
+  ThreadPool(3).for_each(static_cast<int64_t>(requests.size()), [&](int64_t i, int) {
+    results[static_cast<size_t>(i)] = fit_leaf(requests[static_cast<size_t>(i)], ThreadPool(1), &cache);
+  });
+  for (size_t i = 0; i < requests.size(); ++i)
+    EXPECT_EQ(results[i].params, fit_leaf(requests[i], ThreadPool(1)).params) << i;
 }
 
 TEST(MeasuredSpectra, AreReadAsInstrumentsWriteThem) {
