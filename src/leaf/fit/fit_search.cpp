@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <mutex>
 
@@ -62,6 +63,7 @@ class Surfaces {
   Surfaces(const std::vector<double>& theta_deg, FitCache::Content& cache) : theta_deg_(theta_deg), cache_(cache) {}
 
   OpticsSurface search(const TissueParams& p) { return {p, theta_deg_, kSearchNodes, means_}; }
+  OpticsSurface even(const TissueParams& p) { return {p, theta_deg_, kEvenNodes, means_}; }
   OpticsSurface fine(const TissueParams& p) { return {p, theta_deg_, kFitNodes, means_}; }
   /// `search` for a structure that many searches need. The result is the same whether it was known or not.
   std::shared_ptr<const OpticsSurface> shared(const TissueParams& p) {
@@ -82,26 +84,38 @@ class Surfaces {
     return cache_.known.emplace(key, std::move(made)).first->second;
   }
 
-  /// Returns the differences by each free structural parameter from `base`, the surface at `logs`. `is_start`: other
-  /// searches need them too.
-  std::vector<OpticsSurface> slopes(const LeafSpace& space, const VectorXd& logs, const OpticsSurface& base,
-                                    bool is_start = false) {
-    constexpr double kStep = 0.1;
+  /// Differences by each free structural parameter, of surfaces that are all solved with one rule.
+  using Solve = std::function<OpticsSurface(const TissueParams&)>;
+  static std::vector<OpticsSurface> slopes(const LeafSpace& space, const VectorXd& logs, double step,
+                                           const Solve& solve) {
+    const OpticsSurface base = solve(space.at(logs));
     std::vector<OpticsSurface> result;
     for (Index i = 0; i < space.count(); ++i) {
       if (!space.variable(i).is_structure) continue;
       VectorXd moved = logs;
-      const double step = logs[i] + kStep <= space.high(i) ? kStep : -kStep;
-      moved[i] += step;
-      OpticsSurface& slope = result.emplace_back(is_start ? *shared(space.at(moved)) : search(space.at(moved)));
+      const double change = logs[i] + step <= space.high(i) ? step : -step;
+      moved[i] += change;
+      OpticsSurface& slope = result.emplace_back(solve(space.at(moved)));
       slope.add(-1, base);
-      slope.scale(1 / step);
+      slope.scale(1 / change);
     }
     return result;
   }
+  std::vector<OpticsSurface> search_slopes(const LeafSpace& space, const VectorXd& logs) {
+    return slopes(space, logs, kSearchStep, [this](const TissueParams& p) { return search(p); });
+  }
+  std::vector<OpticsSurface> shared_slopes(const LeafSpace& space, const VectorXd& logs) {
+    return slopes(space, logs, kSearchStep, [this](const TissueParams& p) { return *shared(p); });
+  }
+  /// The same with as many nodes for every structure, so that they do not change where the indices move a limit.
+  std::vector<OpticsSurface> even_slopes(const LeafSpace& space, const VectorXd& logs) {
+    constexpr double kStep = 0.05;
+    return slopes(space, logs, kStep, [this](const TissueParams& p) { return even(p); });
+  }
 
  private:
-  static constexpr NodeRule kSearchNodes{.nodes = 3, .by_flux = true};
+  static constexpr NodeRule kSearchNodes{.nodes = 3, .by_flux = true}, kEvenNodes{.nodes = 3};
+  static constexpr double kSearchStep = 0.1;
 
   const std::vector<double>& theta_deg_;
   FitCache::Content& cache_;
@@ -126,7 +140,7 @@ std::vector<Candidate> first_candidates(const FitRequest& request, const FitRows
             c.problem->minimise(expansion, {.structure_is_free = false, .most_steps = 30, .done = 1e-3}, logs);
         if (cost < c.cost) c.cost = cost, c.logs = logs, c.expansion = std::move(expansion);
       }
-      c.expansion.slopes = surfaces.slopes(*c.space, c.expansion.at, c.expansion.base, true);
+      c.expansion.slopes = surfaces.shared_slopes(*c.space, c.expansion.at);
       best.push_back(std::move(c));
     }
   }
@@ -160,7 +174,7 @@ void refine(Candidate& c, Surfaces& surfaces, int rounds, double done) {
   bool is_fresh = true;
   for (int round = 0; round < rounds; ++round) {
     VectorXd logs = c.logs;
-    c.problem->minimise(c.expansion, {.structure_is_free = true, .radius = radius, .most_steps = 20, .done = 1e-4},
+    c.problem->minimise(c.expansion, {.structure_is_free = true, .radius = radius, .most_steps = 20, .done = 1e-5},
                         logs);
     const VectorXd step = logs - c.logs;
     const OpticsSurface expected = c.problem->surface(c.expansion, logs);
@@ -179,7 +193,7 @@ void refine(Candidate& c, Surfaces& surfaces, int rounds, double done) {
     if (gain < done || radius < kSmallest) {
       if (is_fresh && (gain >= 0 || radius < kSmallest)) break;
       if (!is_fresh) {
-        c.expansion.slopes = surfaces.slopes(*c.space, c.logs, c.expansion.base);
+        c.expansion.slopes = surfaces.search_slopes(*c.space, c.logs);
         is_fresh = true, radius = std::max(radius, 0.1);
         continue;
       }
@@ -190,15 +204,15 @@ void refine(Candidate& c, Surfaces& surfaces, int rounds, double done) {
 
 /// Continues with all rows and accurate surfaces.
 void polish(Candidate& c, const FitProblem& problem, Surfaces& surfaces) {
-  constexpr int kRounds = 6;
-  constexpr double kDone = 1e-3, kRadius = 0.5;
-  c.expansion.base = surfaces.fine(c.space->at(c.logs));
+  constexpr int kRounds = 12;
+  constexpr double kDone = 1e-4, kRadius = 0.5;
+  c.expansion.base = surfaces.fine(c.space->at(c.logs)), c.expansion.slopes = surfaces.even_slopes(*c.space, c.logs);
   c.cost = problem.cost(c.expansion, c.logs);
   for (int round = 0; round < kRounds; ++round) {
     VectorXd logs = c.logs;
-    problem.minimise(c.expansion, {.structure_is_free = true, .radius = kRadius, .most_steps = 20, .done = 1e-4}, logs);
+    problem.minimise(c.expansion, {.structure_is_free = true, .radius = kRadius, .most_steps = 20, .done = 1e-5}, logs);
     SurfaceExpansion there{logs, surfaces.fine(c.space->at(logs)), {}, {}};
-    const double cost = problem.minimise(there, {.structure_is_free = false, .most_steps = 6, .done = 1e-4}, logs);
+    const double cost = problem.minimise(there, {.structure_is_free = false, .most_steps = 6, .done = 1e-5}, logs);
     learn(problem, logs - c.logs, there.base, problem.surface(c.expansion, logs), c.expansion);
     const double gain = (c.cost - cost) / c.cost;
     if (gain > 0) {
@@ -214,7 +228,7 @@ void polish(Candidate& c, const FitProblem& problem, Surfaces& surfaces) {
 FoundLeaf finish(Candidate& c, const FitProblem& problem, const FitRows& rows, Surfaces& surfaces,
                  const ThreadPool& pool) {
   constexpr int kRounds = 4;
-  constexpr double kDone = 3e-3, kRadius = 0.2;
+  constexpr double kDone = 1e-3, kRadius = 0.2;
   std::vector<Pair> solved = solve_rows(rows, c.space->at(c.logs), pool);
   c.cost = problem.cost(solved, c.logs);
   for (int round = 0; round < kRounds; ++round) {
@@ -225,7 +239,7 @@ FoundLeaf finish(Candidate& c, const FitProblem& problem, const FitRows& rows, S
     }
     VectorXd logs = c.logs;
     const double expected = problem.minimise(
-        c.expansion, {.structure_is_free = true, .radius = kRadius, .most_steps = 20, .done = 1e-4}, logs);
+        c.expansion, {.structure_is_free = true, .radius = kRadius, .most_steps = 20, .done = 1e-5}, logs);
     if (c.cost - expected < kDone * c.cost) break;
     std::vector<Pair> there = solve_rows(rows, c.space->at(logs), pool);
     const double cost = problem.cost(there, logs);
@@ -233,7 +247,7 @@ FoundLeaf finish(Candidate& c, const FitProblem& problem, const FitRows& rows, S
     c.cost = cost, c.logs = logs, solved = std::move(there);
   }
   // The slopes that the search has learnt serve it, but not the errors of the parameters.
-  c.expansion.slopes = surfaces.slopes(*c.space, c.logs, surfaces.search(c.space->at(c.logs)));
+  c.expansion.slopes = surfaces.even_slopes(*c.space, c.logs);
   return {std::move(c.space), c.logs, std::move(solved), std::move(c.expansion)};
 }
 
@@ -275,11 +289,12 @@ FoundLeaf search_leaf(const FitRequest& request, const FitRows& rows, const Thre
   for (Candidate& c : candidates) refine(c, surfaces, 3, 1e-2);
   std::ranges::sort(candidates, {}, &Candidate::cost);
   candidates.resize(std::min(candidates.size(), kKept));
-  for (Candidate& c : candidates) {
-    refine(c, surfaces, 15, 1e-3);
-    const FitProblem problem(request, *c.space, rows);
-    polish(c, problem, surfaces);
-  }
+  for (Candidate& c : candidates) refine(c, surfaces, 15, 1e-3);
+  std::ranges::sort(candidates, {}, &Candidate::cost);
+  // The surfaces of the search do not decide between kinds that are almost equally good.
+  constexpr double kAlmost = 1.5;
+  while (candidates.back().cost > kAlmost * candidates.front().cost) candidates.pop_back();
+  for (Candidate& c : candidates) polish(c, FitProblem(request, *c.space, rows), surfaces);
   Candidate& best = *std::ranges::min_element(candidates, {}, &Candidate::cost);
   return finish(best, FitProblem(request, *best.space, rows), rows, surfaces, pool);
 }
