@@ -79,9 +79,13 @@ TEST(LobeMean, IsTheMeanOverAzimuth) {
   for (const double exponent : {0.5, 0.7, 1.0, 1.9, 5.0, 12.34, 20.0, 30.0}) {
     const AzimuthModes lobe(exponent);
     const Eigen::MatrixXd means = LobeMean(exponent).among(mu);
-    for (Eigen::Index i = 0; i < mu.size(); ++i)
-      for (Eigen::Index j = 0; j < mu.size(); ++j)
+    for (Eigen::Index i = 0; i < mu.size(); ++i) {
+      const Eigen::RowVectorXd row = LobeMean(exponent).toward(mu[i], mu);
+      for (Eigen::Index j = 0; j < mu.size(); ++j) {
         EXPECT_NEAR(means(i, j), lobe.mean(mu[i], mu[j]), 1e-5) << exponent << ' ' << mu[i] << ' ' << mu[j];
+        EXPECT_NEAR(row[j], means(i, j), 1e-12);
+      }
+    }
   }
 }
 

@@ -102,24 +102,25 @@ std::vector<MatrixXd> lobe_modes(double exponent, const VectorXd& axes, const Ve
   return result;
 }
 
-Chain::Chain(const Tissue& tissue, const NodeRule& rule, size_t modes, LobeMeans* means) : tissue_(tissue) {
+Chain::Chain(const Tissue& tissue, const NodeRule& rule, size_t modes, LobeMeans* means)
+    : tissue_(tissue), means_(means) {
   const std::vector<Segment> parts = segments(tissue, rule);
   for (size_t m = 0; m < Tissue::kMedia; ++m) directions_[m] = directions_in(tissue.n[m], parts);
   for (size_t m = kFirst; m <= kLast; ++m)
     for (const bool up : {false, true})
       for (const bool refracts : {false, true}) {
         const size_t to = refracts ? next(m, up) : m;
-        if (const Lobe* l = lobe(m, up, refracts); l && to >= kFirst && to <= kLast) make_kernel(*l, to, modes, means);
+        if (const Lobe* l = lobe(m, up, refracts); l && to >= kFirst && to <= kLast) make_kernel(*l, to, modes);
       }
 }
 
-void Chain::make_kernel(const Lobe& lobe, size_t medium, size_t modes, LobeMeans* means) {
+void Chain::make_kernel(const Lobe& lobe, size_t medium, size_t modes) {
   const auto [place, is_new] = kernels_.try_emplace({lobe.exponent(), tissue_.n[medium]});
   if (!is_new) return;
   const Directions& d = directions_[medium];
   Kernel& kernel = place->second;
   kernel.shares =
-      means ? std::vector{means->of(lobe.exponent()).among(d.mu)} : lobe_modes(lobe.exponent(), d.mu, d.mu, modes);
+      means_ ? std::vector{means_->of(lobe.exponent()).among(d.mu)} : lobe_modes(lobe.exponent(), d.mu, d.mu, modes);
   kernel.kept = kernel.shares[0] * d.weight;
   for (MatrixXd& shares : kernel.shares)
     shares = kernel.kept.cwiseInverse().asDiagonal() * shares * d.weight.asDiagonal();

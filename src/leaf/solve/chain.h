@@ -46,6 +46,8 @@ class Chain {
   Chain(const Tissue& tissue, const NodeRule& rule, size_t modes, LobeMeans* means);
 
   const Tissue& tissue() const { return tissue_; }
+  /// As given to the constructor.
+  LobeMeans* means() const { return means_; }
   /// Nodes of a medium of the leaf, kFirst to kLast.
   const Directions& directions(size_t medium) const { return directions_[medium]; }
   Eigen::Index count(size_t medium) const { return directions_[medium].mu.size(); }
@@ -76,9 +78,10 @@ class Chain {
   /// Number of nodes, the last ones, at which both interfaces of a medium reflect everything without a change of
   /// direction.
   Eigen::Index totally_reflected(size_t medium) const;
-  void make_kernel(const Lobe& lobe, size_t medium, size_t modes, LobeMeans* means);
+  void make_kernel(const Lobe& lobe, size_t medium, size_t modes);
 
   const Tissue& tissue_;
+  LobeMeans* means_;
   std::array<Directions, Tissue::kMedia> directions_;
   std::map<std::pair<double, double>, Kernel> kernels_;  ///< by exponent and index
 };

@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "leaf/solve/lobe_mean.h"
 #include "leaf/solve/quadrature.h"
 #include "leaf/tissue/fresnel.h"
 
@@ -19,9 +20,12 @@ using Eigen::VectorXd;
 constexpr size_t kAdaxial = Chain::kFirst, kUpper = 2, kAir = 3, kLower = 4, kAbaxial = Chain::kLast;
 
 /// Distribution of a lobe's rays over the nodes; division by the sum replaces the cut and conserves energy exactly.
-RowVectorXd spread(const Lobe& lobe, double mu_axis, const Directions& to) {
+RowVectorXd spread(const Chain& chain, const Lobe& lobe, double mu_axis) {
+  const Directions& to = chain.directions(kAdaxial);
   const VectorXd axis = VectorXd::Constant(1, mu_axis);
-  const RowVectorXd row = lobe_modes(lobe.exponent(), axis, to.mu, 1)[0].row(0).cwiseProduct(to.weight.transpose());
+  const RowVectorXd lobe_means = chain.means() ? chain.means()->of(lobe.exponent()).toward(mu_axis, to.mu)
+                                               : RowVectorXd(lobe_modes(lobe.exponent(), axis, to.mu, 1)[0].row(0));
+  const RowVectorXd row = lobe_means.cwiseProduct(to.weight.transpose());
   return row / row.sum();
 }
 
@@ -87,8 +91,7 @@ DepthSolver::DepthSolver(const Chain& chain, std::span<const double> theta_deg)
     const Crossing surface = fresnel(mu, 1 / tissue.n_cuticle());
     const auto [place, is_new] = known.emplace(std::pair(is_above, surface.cos_t), entrances_.size());
     if (is_new) {
-      const RowVectorXd all_ways =
-          spread(lobe, surface.cos_t, chain.directions(kAdaxial)) * (is_above ? top : bottom).inward;
+      const RowVectorXd all_ways = spread(chain, lobe, surface.cos_t) * (is_above ? top : bottom).inward;
       const Index inward = all_ways.size() - 1;
       entrances_.push_back({is_above, all_ways.head(inward), all_ways[inward]});
     }

@@ -1,5 +1,6 @@
 #include "leaf/solve/lobe_mean.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -68,6 +69,14 @@ MatrixXd LobeMean::among(const VectorXd& mu) const {
     result(i, j) = result(j, i) = mean[k];
   }
   return result;
+}
+
+Eigen::RowVectorXd LobeMean::toward(double mu_axis, const VectorXd& mu) const {
+  const double sine = std::sqrt(std::max(0.0, 1 - mu_axis * mu_axis));
+  const ArrayXd a = mu_axis * mu.array(), b = sine * (1 - mu.array().square()).max(0).sqrt();
+  const ArrayXd peak = a + b, x = ((a - b).abs() / peak).sqrt();
+  const ArrayXd mean = (a >= b).select(sum(uncut_, x), sum(cut_, x));
+  return (mean.max(0) * (exponent_ * peak.log()).exp()).matrix().transpose();
 }
 
 }  // namespace frond::leaf

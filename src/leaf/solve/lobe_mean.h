@@ -18,6 +18,8 @@ class LobeMean {
 
   /// Matrix of the means: axes by directions, both with the cosines `mu` in (0, 1].
   Eigen::MatrixXd among(const Eigen::VectorXd& mu) const;
+  /// The means from one axis toward directions.
+  Eigen::RowVectorXd toward(double mu_axis, const Eigen::VectorXd& mu) const;
 
  private:
   static constexpr size_t kTerms = 24;
