@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/geometry/geometry.h"
+#include "scene/geometry/huge_pages.h"
 
 namespace frond {
 
@@ -16,8 +17,9 @@ struct GeometryInstances {
   std::vector<const GeometryObject*> objects;  ///< by row; a single element applies to all rows
   uint64_t first_id = 0;                       ///< first instance number, within the containing object
   std::vector<uint64_t> ids = {};              ///< by row, relative to first_id; empty: all rows contain equally many
-  std::vector<AffineMap::Inverse> inverses = {};  ///< of the table's maps; empty: computed on demand
-  AffineMap::Inverse from_placement = {};         ///< valid if instances.is_placed
+  /// Of the table's maps; empty: computed on demand.
+  std::vector<AffineMap::Inverse, HugePages<AffineMap::Inverse>> inverses = {};
+  AffineMap::Inverse from_placement = {};  ///< valid if instances.is_placed
 
   const GeometryObject& object(size_t row) const { return *objects[objects.size() == 1 ? 0 : row]; }
   /// `made`: storage for an inverse that is computed on demand.
