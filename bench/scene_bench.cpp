@@ -3,8 +3,8 @@
 #include "bench/scene_study.h"
 #include "render/render_loop.h"
 
-/// Leaf models in whole scenes: CPU time of a sample and error of the image. docs/performance.md defines the counters.
-/// Names do not change between releases.
+/// Leaf models in whole scenes: CPU time of a bundle of samples and error of the image. docs/performance.md defines the
+/// counters. Names do not change between releases.
 namespace frond {
 namespace {
 
@@ -17,20 +17,21 @@ SceneStudy& study_of(const std::string& scene) {
   return *study;
 }
 
-/// A render on one thread that adds one sample per pixel at a time.
+/// A render on one thread that adds a bundle of samples per pixel at a time: a render of fewer traces the camera rays
+/// of whole packets all the same, and its time says little about renders of many samples.
 class Meter {
  public:
   Meter(SceneStudy& study, const std::string& material)
       : scene_(study.scene(material)), film_({.settings = study.film()}), pool_(1) {
-    add_sample();  // allocates memory; not counted
+    add_bundle();  // allocates memory; not counted
     paths_ = cpu_seconds_ = 0;
   }
 
-  void add_sample() {
+  void add_bundle() {
     const RenderJob job{scene_,          scene_.camera(),  scene_.integrator(), scene_.wavelengths(),
                         scene_.filter(), scene_.sampler(), scene_.seed()};
-    const RenderStatistics s = render(job, plan_of(film_, {samples_, samples_ + 1}), film_, pool_);
-    ++samples_;
+    const RenderStatistics s = render(job, plan_of(film_, {samples_, samples_ + PathBundle::kMost}), film_, pool_);
+    samples_ += PathBundle::kMost;
     paths_ += double(s.paths), cpu_seconds_ += s.cpu_seconds;
   }
   double seconds_per_path() const { return cpu_seconds_ / paths_; }
@@ -66,17 +67,17 @@ void tell_errors(benchmark::State& state, const Accuracy& accuracy) {
   tell(state, "variance", accuracy.noise.value, accuracy.noise.standard_error);
 }
 
-/// Renders samples of both in turn, each as often the first as the second, so that other load affects both equally.
+/// Renders bundles of both in turn, each as often the first as the second, so that other load affects both equally.
 /// Google Benchmark times only `own`.
 void render_in_turn(benchmark::State& state, Meter& own, Meter& baseline) {
   bool first = true;
   for (auto _ : state) {
     state.PauseTiming();
-    if (!first) baseline.add_sample();
+    if (!first) baseline.add_bundle();
     state.ResumeTiming();
-    own.add_sample();
+    own.add_bundle();
     state.PauseTiming();
-    if (first) baseline.add_sample();
+    if (first) baseline.add_bundle();
     first = !first;
     state.ResumeTiming();
   }
