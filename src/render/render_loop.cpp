@@ -186,7 +186,7 @@ class Worker {
       const PathResult& path = bundle_.results[i];
       const SampledWavelengths& lambda = bundle_.lambda[i];
       const auto& [offset, weight] = filter_[i];
-      // Most strategies multiply by a matrix; black is black in every colour space.
+      // No radiance gives no response: the conversion is linear.
       const bool is_black = format_.bands == 0 && path.radiance.is_black();
       ::new (&samples_[i]) FilmTile::Sample{
           is_black ? SensorResponse(std::array<double, 3>{}) : job_.wavelengths.sensor(path.radiance, lambda),

@@ -181,8 +181,7 @@ class Disk final : public Quadric {
     const double t = (height_ - o.z) / d.z;
     if (!within(t, t_min, ray)) return {};
     const Vec3d p{o.x + t * d.x, o.y + t * d.y, height_};
-    // Not hypot, which takes as long as the rest of the function: `within` has excluded overflow.
-    const double r = std::sqrt(p.x * p.x + p.y * p.y);
+    const double r = std::sqrt(p.x * p.x + p.y * p.y);  // hypot is slower; the product of floats cannot overflow
     if (r > radius_ || r < inner_) return {};
     const double phi = azimuth(p);
     if (phi > phi_max()) return {};
