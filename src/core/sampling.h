@@ -34,6 +34,13 @@ inline Vec3 sample_cosine_hemisphere(Vec2 u) {
   return {d.x, d.y, std::sqrt(std::max(0.f, 1 - d.x * d.x - d.y * d.y))};
 }
 
+/// Stretches a number that lies in [begin, end) to [0, 1). A number that has chosen one of several lobes then samples
+/// that lobe: a stratified set of pairs gives each lobe an even set, which separate numbers for the choice would not.
+inline float stretched(float u, float begin, float end) {
+  constexpr float kBelowOne = 0x1.fffffep-1f;
+  return std::min((u - begin) / (end - begin), kBelowOne);
+}
+
 /// MIS weight, by the power heuristic with exponent 2, of a sample from density `a` beside one sample from density `b`
 /// (Veach and Guibas 1995): a^2 / (a^2 + b^2); 1 if `a` is infinite, 0 if it is 0.
 inline float power_heuristic(float a, float b) {

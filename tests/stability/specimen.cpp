@@ -145,8 +145,11 @@ Shares read_off(const Bsdf& simplified, const Vec3& wo) {
   Shares shares;
   shares.subsurface = double(simplified.f(wo, ahead, rng)[0]) * std::numbers::pi;
   shares.transmitted = double(simplified.f(wo, -ahead, rng)[0]) * std::numbers::pi;
-  const auto s = simplified.sample(wo, 0, {0.3f, 0.4f}, rng);
-  if (s && any(s->flags & Lobes::surface)) shares.surface = double(s->f[0]) * double(std::abs(s->wi.z));
+  // Small first numbers choose the surface's lobe, whatever its probability.
+  for (float u = 0.5f; u > 1e-7f && shares.surface == 0; u /= 2) {
+    const auto s = simplified.sample(wo, 0, {u, 0.4f}, rng);
+    if (s && any(s->flags & Lobes::surface)) shares.surface = double(s->f[0]) * double(std::abs(s->wi.z));
+  }
   return shares;
 }
 

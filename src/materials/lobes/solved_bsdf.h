@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/bsdf.h"
+#include "core/sampling.h"
 #include "leaf/table/mode_lookup.h"
 #include "leaf/table/surface_scaling.h"
 #include "materials/lobes/incident.h"
@@ -38,12 +39,16 @@ class SolvedBsdf final : public Bsdf {
     return leaf_scatters(wo, wi) ? SampledSpectrum(leaf_f(wo, wi, surface_.spread(wo, wi))) : SampledSpectrum();
   }
 
-  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
+  std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream& rng) const override {
     if (std::abs(wo.z) < kLeastCosine) return {};
     const Choice& choice = choice_at(wo);
-    if (uc < choice.surface)
+    const float diffuse = choice.surface + choice.reflected;
+    if (u.x < choice.surface) {
+      u.x = stretched(u.x, 0, choice.surface);
       return sampled(wo, surface_.sample(wo, u, rng), Lobes::reflection | Lobes::glossy | Lobes::surface);
-    const bool reflects = uc < choice.surface + choice.reflected;
+    }
+    const bool reflects = u.x < diffuse;
+    u.x = reflects ? stretched(u.x, choice.surface, diffuse) : stretched(u.x, diffuse, 1);
     Vec3 wi = sample_cosine_hemisphere(u);
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};

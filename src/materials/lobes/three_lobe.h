@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/bsdf.h"
+#include "core/sampling.h"
 #include "leaf/table/lookup.h"
 #include "leaf/table/reciprocal_lookup.h"
 #include "materials/lobes/incident.h"
@@ -43,12 +44,14 @@ class ThreeLobeBsdf final : public Bsdf {
     return leaf_scatters(wo, wi) ? leaf_f(wo, wi, spread(wo, wi)) : SampledSpectrum();
   }
 
-  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
+  std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream& rng) const override {
     if (std::abs(wo.z) < kLeastCosine) return {};
     const Choice& choice = choice_at(wo);
-    if (uc < choice.surface) return sample_surface(choice, wo, u, rng);
+    const float diffuse = choice.surface + choice.subsurface;
+    if (u.x < choice.surface) return sample_surface(choice, wo, {stretched(u.x, 0, choice.surface), u.y}, rng);
+    const bool reflects = u.x < diffuse;
+    u.x = reflects ? stretched(u.x, choice.surface, diffuse) : stretched(u.x, diffuse, 1);
     Vec3 wi = sample_cosine_hemisphere(u);
-    const bool reflects = uc < choice.surface + choice.subsurface;
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     if (std::abs(wi.z) < kLeastCosine) return {};
     if (reflects) return reflected(wo, wi, Lobes::reflection | Lobes::diffuse);

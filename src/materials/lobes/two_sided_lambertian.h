@@ -37,8 +37,10 @@ class TwoSidedLambertianBsdf final : public Bsdf {
     return (side > 0 ? lit.reflected : lit.transmitted) * kInvPi;
   }
 
-  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2 u, RandomStream& rng) const override {
-    const bool reflects = uc < chances_[side_of(wo)].reflect;
+  std::optional<BsdfSample> sample(const Vec3& wo, float, Vec2 u, RandomStream& rng) const override {
+    const float reflect = chances_[side_of(wo)].reflect;
+    const bool reflects = u.x < reflect;
+    u.x = reflects ? stretched(u.x, 0, reflect) : stretched(u.x, reflect, 1);
     Vec3 wi = sample_cosine_hemisphere(u);
     if ((wo.z < 0) == reflects) wi.z = -wi.z;
     const float density = pdf(wo, wi);
