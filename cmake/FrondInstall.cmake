@@ -15,6 +15,8 @@ if(FROND_INSTRUCTIONS STREQUAL both)
 endif()
 install(TARGETS frond_image_codec LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT runtime)
 install(FILES LICENSE NOTICE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT runtime)
+# Licences of figures that the libraries contain.
+install(FILES LICENSES/BSD-3-Clause.txt LICENSES/MIT.txt DESTINATION "${CMAKE_INSTALL_DOCDIR}/LICENSES" COMPONENT runtime)
 install(DIRECTORY "${frond_manual_dir}/man1" DESTINATION "${CMAKE_INSTALL_MANDIR}" COMPONENT runtime)
 install(FILES "${frond_manual_dir}/frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT runtime)
 install(FILES "${frond_manual_dir}/frond.fish" DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d"

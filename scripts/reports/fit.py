@@ -70,7 +70,8 @@ are about these.
 
 def leaves():
     """Returns the measured leaves by name: tables of wavelength_nm, R and T."""
-    spectra = dict(iter(pandas.read_csv(REFERENCE / "leaf_spectra.csv", comment="#").groupby("leaf")))
+    spectra = {name: table for file in ("lopex93_leaves.csv", "davis_leaves.csv")
+               for name, table in pandas.read_csv(REFERENCE / file, comment="#").groupby("leaf")}
     soybean = pandas.read_csv(REFERENCE / "lopex93_soybean.csv", comment="#")
     spectra["soybean"] = soybean.rename(columns={"R_mean": "R", "T_mean": "T"})
     return {name: spectra[name][["wavelength_nm", "R", "T"]] for name in sorted(spectra)}
@@ -78,7 +79,8 @@ def leaves():
 
 def by_frond(name):
     """Fits a leaf with frond; returns the program's JSON and its CPU time."""
-    words = ["lopex93_soybean.csv"] if name == "soybean" else ["leaf_spectra.csv", "--leaf", name]
+    file = "davis_leaves.csv" if name in ("grape_0000", "toyon_0000") else "lopex93_leaves.csv"
+    words = ["lopex93_soybean.csv"] if name == "soybean" else [file, "--leaf", name]
     use = Use(FROND, "fit", REFERENCE / words[0], *words[1:], "--json", "-", "-q", "--threads", 1)
     return json.loads(use.output), use.cpu
 

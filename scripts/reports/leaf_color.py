@@ -11,7 +11,6 @@ import frond
 from tools import ROOT, arguments, frond_table, machine, program, table, write_section
 
 STRATEGIES = ("hero", "smpte", "meyer,white=D65")
-FOLIAGE = 3  # row of color_checker.csv, from 0
 #: A diffuse surface with the reflectance of a leaf, lit by D65 so that a white one has the colour (1, 1, 1).
 SCENE = """
 LookAt 0 0 1  0 0 0  0 1 0
@@ -86,14 +85,7 @@ def measured_leaf(observer):
     return numpy.interp(observer.nm, data["wavelength_nm"], data["R_mean"])
 
 
-def foliage(observer):
-    """The patch "foliage" of a ColorChecker; that of the nearest end outside of the data."""
-    lines = (ROOT / "src/spectra/data/color_checker.csv").read_text(encoding="utf-8").splitlines()
-    values = numpy.array([line for line in lines if not line.startswith("#")][FOLIAGE].split(","), float)
-    return numpy.interp(observer.nm, numpy.arange(380, 731, 10), values)
-
-
-def page(rows, strategies, paper, measured, patch):
+def page(rows, strategies, paper, measured):
     share = float(rows[0][2])
     worst = max(numpy.abs(rgb(found["hero"]) - rgb(by_hand)).max() for _, by_hand, found in strategies)
     body = []
@@ -107,10 +99,9 @@ Reflectance at 8° of the upper side (`frond table --angles 8`), integrated with
 15:2004, every 5 nm). Y: luminance, white is 1. Chroma and hue: C* and h of CIELAB. G/R: green over red of linear sRGB.
 
 {table(("surface", "R at 550 nm", "of this the leaf's surface", "Y", "chroma", "hue", "G/R"), rows)}
-The measured leaf is the mean of LOPEX93's soybeans (Hosgood et al. 1994), the patch that of D. Pascale, BabelColor, 2012
-(`src/spectra/data/color_checker.csv`). The colour of `soybean`, the leaf of Baranoski 2006, is dull beside them: its chroma is
-{chroma(paper):.1f}, those of the measured leaf and of the patch are {chroma(measured):.1f} and {chroma(patch):.1f}. The white reflection
-of its surface is {share:.0%} of what it reflects at 550 nm.
+The measured leaf is the mean of LOPEX93's soybeans (Hosgood et al. 1994). The colour of `soybean`, the leaf of Baranoski 2006, is
+dull beside it: its chroma is {chroma(paper):.1f}, that of the measured leaf is {chroma(measured):.1f}. The white reflection of its
+surface is {share:.0%} of what it reflects at 550 nm.
 
 ## Colours of the wavelength strategies
 
@@ -135,13 +126,13 @@ def main():
         if name in ("soybean", "soybean-lopex"):
             found = {s: rendered(reflectance, observer.nm, s, samples) for s in STRATEGIES}
             strategies.append((name, colors[name], found))
-    others = {"measured soybean": measured_leaf(observer), "ColorChecker, foliage": foliage(observer)}
-    rows += [row(name, observer.nm, r, None, observer.xyz(r)) for name, r in others.items()]
+    soybean = measured_leaf(observer)
+    measured = observer.xyz(soybean)
+    rows.append(row("measured soybean", observer.nm, soybean, None, measured))
     if options.quick:
         options.docs.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / "docs" / "color.md", options.docs)
-    measured, patch = map(observer.xyz, others.values())
-    write_section(options.docs / "color.md", "color", page(rows, strategies, colors["soybean"], measured, patch))
+    write_section(options.docs / "color.md", "color", page(rows, strategies, colors["soybean"], measured))
 
 
 if __name__ == "__main__":

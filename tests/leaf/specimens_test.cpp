@@ -61,11 +61,13 @@ TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
     const size_t said = specimen.source.find("RMSE ");
     if (said == std::string_view::npos) continue;
     ++fitted;
-    const auto measurements =
-        name == "soybean-lopex"
-            ? read_measured_spectra(folder + "lopex93_soybean.csv", {}).measurements
-            : read_measured_spectra(folder + "leaf_spectra.csv", {.leaf = name.substr(0, name.find('-')) + "_0000"})
-                  .measurements;
+    const std::string species = name.substr(0, name.find('-'));
+    const bool is_of_davis = species == "grape" || species == "toyon";
+    const auto measurements = read_measured_spectra(folder + (species == "soybean" ? "lopex93_soybean.csv"
+                                                              : is_of_davis        ? "davis_leaves.csv"
+                                                                                   : "lopex93_leaves.csv"),
+                                                    {.leaf = species == "soybean" ? "" : species + "_0000"})
+                                  .measurements;
     EXPECT_NEAR(rmse(specimen, measurements), std::stod(std::string(specimen.source.substr(said + 5))), 2e-4) << name;
   }
   EXPECT_EQ(fitted, 7);

@@ -24,7 +24,7 @@ TEST(FilmSensor, TheEyeIsTheObserver) {
     for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(eye.at(nm)[c], cie_xyz(nm)[c], 1e-12) << nm;
 }
 
-/// The light that is to be white is white, of the luminance that it has: exactly to the eye; to cameras as well as 24
+/// The light that is to be white is white, of the luminance that it has: exactly to the eye; to cameras as well as the
 /// patches can be matched at once.
 TEST(FilmSensor, BalancesWhite) {
   const Triple white = kD65White.xyz();

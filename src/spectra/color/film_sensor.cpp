@@ -69,14 +69,14 @@ Triple responses(const std::vector<Triple>& curves, const Spectrum& illuminant, 
   return sum;
 }
 
-/// Returns the matrix from a camera's response to XYZ that best maps (least squares) the patches of the ColorChecker
-/// under the camera's white to their XYZ under D65.
+/// Returns the matrix from a camera's response to XYZ that best maps (least squares) the training patches under the
+/// camera's white to their XYZ under D65.
 Matrix3 xyz_from_camera(const std::vector<Triple>& curves, const Spectrum& white) {
   const std::vector<Triple> eye = observer();
   const SpectrumPtr d65 = unit_d65();
   const double luminance = responses(eye, white)[1] / responses(eye, *d65)[1];
   Matrix3 squares, products;
-  for (const Row& patch : rows_of(color_checker_csv, "")) {
+  for (const Row& patch : rows_of(training_patches_csv, "")) {
     const Triple seen = responses(curves, white, &patch), wanted = responses(eye, *d65, &patch);
     for (size_t i = 0; i < 3; ++i)
       for (size_t j = 0; j < 3; ++j) {
