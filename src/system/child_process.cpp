@@ -1,5 +1,6 @@
 #include "system/child_process.h"
 
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,8 +9,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <span>
+#include <sstream>
 
 #include "core/error.h"
 
@@ -52,24 +56,21 @@ int wait_for(pid_t child) {
   return status;
 }
 
-}  // namespace
-
-std::optional<ChildResult> run_child(const std::vector<std::string>& command, const std::string& input) {
-  std::array<StreamFile, 3> streams;
-  streams[0].fill(input);
+/// Starts a program with these descriptors as its first ones. Returns nothing if there is no such program.
+std::optional<pid_t> start(const std::vector<std::string>& command, std::span<const int> descriptors) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  for (int i = 0; i < 3; ++i)
-    posix_spawn_file_actions_adddup2(&actions, streams[static_cast<size_t>(i)].descriptor(), i);
+  for (int i = 0; i < int(descriptors.size()); ++i)
+    posix_spawn_file_actions_adddup2(&actions, descriptors[size_t(i)], i);
   std::vector<char*> argv;
   for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
-  // Signals that main ignores have their default meaning in the child.
+  // Signals that this process ignores have their default meaning in the child.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t ignored;
   sigemptyset(&ignored);
-  sigaddset(&ignored, SIGPIPE), sigaddset(&ignored, SIGXFSZ);
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT}) sigaddset(&ignored, signal);
   posix_spawnattr_setsigdefault(&attributes, &ignored);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   pid_t child = 0;
@@ -78,8 +79,49 @@ std::optional<ChildResult> run_child(const std::vector<std::string>& command, co
   posix_spawn_file_actions_destroy(&actions);
   if (error == ENOENT) return {};
   if (error != 0) fail({}, "cannot run {}: {}", command[0], std::strerror(error));
-  const int status = wait_for(child);
+  return child;
+}
+
+}  // namespace
+
+std::optional<ChildResult> run_child(const std::vector<std::string>& command, const std::string& input) {
+  std::array<StreamFile, 3> streams;
+  streams[0].fill(input);
+  const auto child =
+      start(command, std::array{streams[0].descriptor(), streams[1].descriptor(), streams[2].descriptor()});
+  if (!child) return {};
+  const int status = wait_for(*child);
   return ChildResult{status, streams[1].content(), streams[2].content()};
+}
+
+std::optional<int> run_attached(const std::vector<std::string>& command) {
+  struct sigaction ignore {
+  }, before{};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGINT, &ignore, &before);
+  std::optional<pid_t> child;
+  try {
+    child = start(command, {});
+  } catch (...) {
+    sigaction(SIGINT, &before, nullptr);
+    throw;
+  }
+  const std::optional<int> status = child ? std::optional(wait_for(*child)) : std::nullopt;
+  sigaction(SIGINT, &before, nullptr);
+  return status;
+}
+
+bool is_in_path(const std::string& program) {
+  const char* variable = std::getenv("PATH");
+  std::istringstream folders(variable ? variable : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((folder.empty() ? program : folder + "/" + program).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+std::string ending(int status) {
+  if (WIFSIGNALED(status)) return fmt::format("signal {}", WTERMSIG(status));
+  return fmt::format("exit code {}", WEXITSTATUS(status));
 }
 
 }  // namespace frond

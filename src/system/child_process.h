@@ -16,4 +16,15 @@ struct ChildResult {
 /// nothing if there is no such program. Throws InputError if it cannot be run for any other reason.
 std::optional<ChildResult> run_child(const std::vector<std::string>& command, const std::string& input);
 
+/// Runs a program, which is searched for in PATH, on this process's standard streams, and waits until it ends. As in
+/// system(3), SIGINT from the terminal ends the program and not this process. Returns the status as from waitpid, or
+/// nothing if there is no such program. Throws InputError if it cannot be run for any other reason.
+std::optional<int> run_attached(const std::vector<std::string>& command);
+
+/// Returns whether PATH has a program of this name.
+bool is_in_path(const std::string& program);
+
+/// Returns the end of a program for an error message: "exit code 1", "signal 9".
+std::string ending(int status);
+
 }  // namespace frond
