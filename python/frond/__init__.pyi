@@ -332,18 +332,19 @@ def difference(images: str | Sequence[str] | Mapping[str, str], output: str | os
     scale: Luminance difference that is drawn in full colour. Range: above 0. Default: 0.1.
     json: Print JSON."""
 
-def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
-    """Write the scripts of a Slurm array job that renders ranges of samples, and of the job that merges them; --run submits them.
+def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
+    """Write a job that renders ranges of samples and merges them, for Slurm, Open Job Description or Snakemake; --run starts it.
 
     The options of frond render are passed on to the tasks.
 
     scene: Scene file.
-    output: Image that the merge job writes.
+    output: Image that the merge writes.
     spp: Number of samples per pixel. Range: from 1 to 1073741824.
     tasks: Number of tasks, among which the samples are divided. Range: from 1 to 1000000.
-    slurm: Write a job for Slurm.
-    run: Also submit the job with sbatch.
-    folder: Folder of the job's scripts, parts and logs; OUTPUT.slurm by default.
+    engine: Program that schedules the tasks: Slurm, Open Job Description, or Snakemake. One of slurm, openjd, snakemake.
+    slurm: The same as engine slurm. Excludes engine.
+    run: Also start the job: submit it with sbatch, or run it here with openjd or snakemake.
+    folder: Folder of the job's files, parts and logs; OUTPUT.ENGINE by default.
     wavelengths: Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in nm: 450,550,850 or 400:1000:10.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     seed: Seed of all random numbers.

@@ -51,7 +51,7 @@ def section(page, name):
 
 def own(name, param):
     """Not of the job that this one extends, which the page names in one line."""
-    return name != "submit" or param["name"] in ("scene", "output", "spp", "tasks", "slurm", "run", "folder")
+    return name != "submit" or param["name"] in ("scene", "output", "spp", "tasks", "engine", "slurm", "run", "folder")
 
 
 @pytest.mark.parametrize("name, param", PARAMS, ids=IDS)
@@ -309,5 +309,5 @@ def test_commands_are_functions(scene_text, tmp_path, monkeypatch):
     assert numpy.array_equal(ours, theirs)
     frond.canopy(output="leaves.npy", count=10, size=(1, 1), scale=0.1)
     assert Path("leaves.npy").exists()
-    frond.submit("scene.pbrt", output="out.exr", spp=4, tasks=2, slurm=True, wavelengths="smpte", session=frond.Session(cache="tables"))
-    assert f"'--wavelengths' 'smpte' '--cache' '{tmp_path}/tables'" in Path("out.exr.slurm/render.sbatch").read_text()
+    frond.submit("scene.pbrt", output="out.exr", spp=4, tasks=2, engine="slurm", wavelengths="smpte", session=frond.Session(cache="tables"))
+    assert f"--wavelengths smpte --cache {tmp_path}/tables" in Path("out.exr.slurm/render.sbatch").read_text()

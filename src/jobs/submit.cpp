@@ -1,18 +1,18 @@
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "core/error.h"
+#include "jobs/submit/engine.h"
 #include "jobs/support/render_task.h"
-#include "jobs/support/templates.h"
 #include "report/text_output.h"
 #include "system/atomic_file.h"
 #include "system/child_process.h"
 
 namespace frond {
 
-// `frond submit`: a cluster job of one array of tasks, each with a range of samples, and a job that merges their parts
+// `frond submit`: a job of tasks, each with a range of samples, and a merge of their parts, for one of several engines
 // (docs/many_machines.md).
 
 namespace {
@@ -20,40 +20,35 @@ namespace {
 namespace fs = std::filesystem;
 using enum ArgumentKind;
 
+/// Returns the names of all engines: "slurm", "openjd", ...
+std::vector<std::string_view> engine_names() {
+  std::vector<std::string_view> names;
+  for (const Engine& engine : engines()) names.push_back(engine.name);
+  return names;
+}
+
+const std::vector<std::string_view> kEngineNames = engine_names();
+
 /// Parameters of the job itself; those of `frond render` are added by JobInfo::extends.
-constexpr JobParam kParams[] = {
+const JobParam kParams[] = {
     JobParam("scene", text, "Scene file.",
              {.type = "SCENE", .path = PathUse::read, .positional = true, .required = true}),
-    JobParam("output", text, "Image that the merge job writes.",
+    JobParam("output", text, "Image that the merge writes.",
              {.type = "FILE", .aliases = "o,outfile", .path = PathUse::write, .required = true}),
     JobParam("spp", count, "Number of samples per pixel.", {.range = {1, 1 << 30}, .required = true}),
     JobParam("tasks", count, "Number of tasks, among which the samples are divided.",
              {.range = {1, 1e6}, .required = true}),
-    JobParam("slurm", flag, "Write a job for Slurm.", {.required = true}),
-    JobParam("run", flag, "Also submit the job with sbatch."),
-    JobParam("folder", text, "Folder of the job's scripts, parts and logs; OUTPUT.slurm by default.",
+    JobParam("engine", text, "Program that schedules the tasks: Slurm, Open Job Description, or Snakemake.",
+             {.choices = kEngineNames}),
+    JobParam("slurm", flag, "The same as --engine slurm.", {.excludes = "engine"}),
+    JobParam("run", flag, "Also start the job: submit it with sbatch, or run it here with openjd or snakemake."),
+    JobParam("folder", text, "Folder of the job's files, parts and logs; OUTPUT.ENGINE by default.",
              {.type = "FOLDER", .path = PathUse::write}),
 };
 
 /// Parameters of `frond render` that each task sets itself.
 constexpr std::string_view kSetByTasks[] = {"part",       "samples", "checkpoint", "resume",
                                             "time-limit", "threads", "pilot"};
-
-/// Quotes a word for a POSIX shell.
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
-  return text + "'";
-}
-
-/// Replaces each name in the template by its value.
-std::string filled(std::string_view text_template, const std::vector<std::pair<std::string, std::string>>& values) {
-  std::string text(text_template);
-  for (const auto& [name, value] : values)
-    for (size_t at = 0; (at = text.find(name, at)) != std::string::npos; at += value.size())
-      text.replace(at, name.size(), value);
-  return text;
-}
 
 /// Returns the frond program that tasks run: this executable, or from Python the one on the tasks' PATH.
 std::string program() {
@@ -109,58 +104,111 @@ std::vector<std::string> task_options(const JobRun& run, std::span<const JobPara
   return words;
 }
 
-/// The job: writes the scripts of an array job and its merge job; render.sbatch is written last and marks the folder as
-/// complete.
+/// Returns the engine of --engine or --slurm.
+const Engine& chosen_engine(const Arguments& args) {
+  const std::string name = args.flag("slurm") ? "slurm" : args.text("engine");
+  if (name.empty()) fail({}, "submit: {} is needed: {}", args.spelled("engine"), fmt::join(kEngineNames, ", "));
+  return *std::ranges::find(engines(), name, &Engine::name);
+}
+
+/// Returns the absolute path of the image. Throws InputError if it is not the name of a file, or if the engine would
+/// take a part of it for something else.
+fs::path image_path(const Arguments& args, const Engine& engine) {
+  const fs::path path = fs::absolute(args.text("output"));
+  if (!path.has_filename())
+    fail({}, "{} is not the name of an image: \"{}\"", args.spelled("output"), args.text("output"));
+  if (path.string().find_first_of(engine.reserved) != std::string::npos)
+    fail({}, "{}: {} cannot have any of {} in the path of an image: \"{}\"", args.spelled("output"), engine.name,
+         engine.reserved, path.string());
+  return path;
+}
+
+/// Returns the engine's command for a shell.
+std::string command_text(const Engine& engine, const fs::path& folder) {
+  std::string text;
+  for (const std::string& word : command_of(engine, folder)) text += (text.empty() ? "" : " ") + shell_word(word);
+  return text;
+}
+
+/// Throws InputError if the folder contains a job, of whichever engine: parts of two jobs have the same names.
+void check_vacant(const fs::path& folder) {
+  std::error_code error;
+  for (const Engine& engine : engines())
+    if (fs::exists(folder / engine.files.back().name, error))
+      fail({}, "\"{}\" already contains a job: this renders the missing samples: {}; delete the folder to start anew",
+           folder.string(), command_text(engine, folder));
+}
+
+/// Returns the values of the @NAMES@ in the engine's files.
+std::vector<std::pair<std::string, std::string>> values_of(const JobRun& run, const Engine& engine,
+                                                           const fs::path& folder, const fs::path& output,
+                                                           std::span<const JobParam* const> params) {
+  const int64_t tasks = run.args.count("tasks");
+  std::string options;
+  for (const std::string& word : task_options(run, params))
+    options += (options.empty() ? std::string_view() : engine.separator), options += engine.literal(word);
+  return {{"@FROND@", engine.literal(program())},
+          {"@SCENE@", engine.literal(fs::absolute(run.args.text("scene")).string())},
+          {"@OUT@", engine.literal(output.string())},
+          {"@FOLDER@", engine.literal(folder.string())},
+          {"@OPTIONS@", options},
+          {"@SPP@", std::to_string(run.args.count("spp"))},
+          {"@TASKS@", std::to_string(tasks)},
+          {"@LAST_TASK@", std::to_string(tasks - 1)}};
+}
+
+/// Starts the job. Returns what a queue has answered, or nothing if the engine has run the job and printed as it did.
+/// Throws InputError if the engine fails.
+std::string start(const Engine& engine, const fs::path& folder) {
+  const std::vector<std::string> command = command_of(engine, folder);
+  if (engine.is_queue) {
+    const auto child = run_child(command, "");
+    if (!child || child->status != 0)
+      fail({}, "\"{}\" could not submit the job: {}", command.front(), child ? child->err : "it cannot be run");
+    return child->out;
+  }
+  const auto status = run_attached(command);
+  if (!status) fail({}, "{} cannot be run", engine.program);
+  if (*status != 0)
+    fail({}, "{} ended with {}; this renders what is missing: {}", engine.program, ending(*status),
+         command_text(engine, folder));
+  return "";
+}
+
+/// The job: writes the engine's files; the last one marks the folder as complete.
 Result submit(const JobRun& run) {
   const Arguments& args = run.args;
+  const Engine& engine = chosen_engine(args);
   const int64_t tasks = args.count("tasks"), samples = args.count("spp");
   if (tasks > samples) fail({}, "{} tasks cannot share {} samples: each needs at least one", tasks, samples);
-  const std::string output = args.text("output");
-  if (!fs::path(output).has_filename())
-    fail({}, "{} is not the name of an image: \"{}\"", args.spelled("output"), output);
-  const fs::path folder = fs::absolute(args.given("folder") ? args.text("folder") : output + ".slurm");
-  std::error_code error;
-  if (fs::exists(folder / "render.sbatch", error))
-    fail({}, "\"{}\" already contains a job: its submit.sh renders the missing samples; delete it to start anew",
-         folder.string());
+  const fs::path output = image_path(args, engine);
+  if (args.flag("run") && !is_in_path(std::string(engine.program)))
+    fail({}, "{} needs {}, which is not in PATH; to install it: {}", args.spelled("run"), engine.program,
+         engine.package);
+  const fs::path folder =
+      fs::absolute(args.given("folder") ? args.text("folder") : fmt::format("{}.{}", args.text("output"), engine.name));
+  check_vacant(folder);
   const auto params = handed_on(run);
+  const auto values = values_of(run, engine, folder, output, params);
   make_folders(folder / "parts");
   try_out(run, folder, params);
-  std::string options;
-  for (const std::string& word : task_options(run, params)) options += (options.empty() ? "" : " ") + quoted(word);
-  const std::vector<std::pair<std::string, std::string>> values{
-      {"@FROND@", quoted(program())},
-      {"@SCENE@", quoted(fs::absolute(args.text("scene")).string())},
-      {"@OUT@", quoted(fs::absolute(output).string())},
-      {"@OPTIONS@", options},
-      {"@SPP@", std::to_string(samples)},
-      {"@TASKS@", std::to_string(tasks)},
-      {"@LAST_TASK@", std::to_string(tasks - 1)}};
-  // render.sbatch is written last: its existence marks a complete job.
-  const fs::path script = folder / "submit.sh";
-  write_text((folder / "merge.sbatch").string(), filled(merge_sbatch, values));
-  write_text(script.string(), filled(submit_sh, values));
-  fs::permissions(script, fs::perms::owner_exec | fs::perms::group_exec, fs::perm_options::add);
-  write_text((folder / "render.sbatch").string(), filled(render_sbatch, values));
-  Result result{.facts = {{"script", script.string()}}};
-  if (!args.flag("run")) {
-    result.text = fmt::format(
-        "{} submits {} tasks and the merge job; first adapt render.sbatch in the same folder to your cluster\n",
-        script.string(), tasks);
-    return result;
+  for (const EngineFile& file : engine.files) {
+    const fs::path path = folder / file.name;
+    write_text(path.string(), filled(file.content, values));
+    if (file.is_executable) fs::permissions(path, fs::perms::owner_exec | fs::perms::group_exec, fs::perm_options::add);
   }
-  const auto child = run_child({script.string()}, "");
-  if (!child || child->status != 0)
-    fail({}, "\"{}\" could not submit the job: {}", script.string(), child ? child->err : "it cannot be run");
-  result.text = child->out;
-  return result;
+  const std::string command = command_text(engine, folder);
+  const std::string text = args.flag("run")
+                               ? start(engine, folder)
+                               : fmt::format("{}\n  starts {} tasks and the merge{}\n", command, tasks, engine.advice);
+  return {.facts = {{"command", command}}, .text = text};
 }
 
 }  // namespace
 
 extern const JobInfo kSubmitJob("submit", "Cluster",
-                                "Write the scripts of a Slurm array job that renders ranges of samples, and of the job "
-                                "that merges them; --run submits them.",
+                                "Write a job that renders ranges of samples and merges them, for Slurm, Open Job "
+                                "Description or Snakemake; --run starts it.",
                                 "The options of frond render are passed on to the tasks.", kParams, SessionUse::all,
                                 submit, &kRenderJob);
 

@@ -61,7 +61,7 @@ const std::map<std::string, Layers> kAllowedInside{
     {"render", {{"film", {}}, {"parts", {"film"}}, {"", {"film", "parts"}}}},
     {"instruments", {{"errors", {}}, {"", {"errors"}}, {"conformance", {"", "errors"}}}},
     {"study", {{"", {}}, {"compare", {""}}, {"compare/report", {"compare", ""}}, {"choose", {""}}}},
-    {"jobs", {{"record", {}}, {"support", {"record"}}, {"", {"record", "support"}}}},
+    {"jobs", {{"record", {}}, {"support", {"record"}}, {"submit", {"support"}}, {"", {"record", "support", "submit"}}}},
 };
 
 struct Include {

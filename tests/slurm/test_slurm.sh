@@ -8,7 +8,7 @@ set -euo pipefail
 [[ ${FROND_SLOW_TESTS:-1} != 0 ]] || { echo "skipped: takes a minute, scripts/test --slow runs it" && exit 77; }
 
 here=$(cd "$(dirname "$0")" && pwd)
-templates=$here/../../src/jobs/slurm
+templates=$here/../../src/jobs/submit/slurm
 # A cluster that this test itself runs on has no say in the test's jobs.
 unset "${!SLURM@}" "${!SBATCH@}"
 export SOURCE_DATE_EPOCH=0 # images are compared byte for byte
@@ -80,7 +80,7 @@ make_main() {
     make_job "$1" "$frond" "$spp" "$2"
     return
   fi
-  "$frond" submit "$scene" -o "$tmp/$1/out.exr" --folder "$tmp/$1" --spp "$spp" --tasks "$2" --slurm "${options[@]}"
+  "$frond" submit "$scene" -o "$tmp/$1/out.exr" --folder "$tmp/$1" --spp "$spp" --tasks "$2" --engine slurm "${options[@]}"
   sed -Ei 's/^checkpoint_seconds=.*/checkpoint_seconds=1/' "$tmp/$1/render.sbatch"
 }
 
