@@ -1,0 +1,103 @@
+"""Files that earlier versions wrote, in tests/data/VERSION, are read, and what they offered is still there
+(docs/compatibility.md)."""
+
+import ast
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import numpy
+import pytest
+
+import frond
+
+ROOT = pathlib.Path(__file__).parents[2]
+VERSIONS = sorted((ROOT / "tests/data").iterdir())
+sys.path.insert(0, str(ROOT / "tests/compatibility"))
+from record import block_means  # noqa: E402
+
+pytestmark = pytest.mark.parametrize("version", VERSIONS, ids=lambda folder: folder.name)
+
+
+@pytest.fixture
+def copy(version, tmp_path):
+    return pathlib.Path(shutil.copytree(version, tmp_path / version.name))
+
+
+def expected(version):
+    return {name: numpy.array(values) for name, values in json.loads((version / "expected.json").read_text()).items()}
+
+
+def test_parts_are_merged(version, copy):
+    frond.merge([copy / "0.part", copy / "32.part"], copy / "merged.exr")
+    # Sums are exact, but for the rounding to the file's floats.
+    numpy.testing.assert_allclose(block_means(copy / "merged.exr"), expected(version)["merged"], rtol=1e-6)
+
+
+def test_a_scene_with_tables_renders_the_same(version, copy):
+    """16 seeds against the recorded means, whose noise is 16 times smaller in variance. By Student's t with 15 degrees of
+    freedom, a correct image exceeds 8 standard errors in one of 48 means with probability 5e-5."""
+    renders = []
+    for seed in range(16):
+        frond.render(copy / "scene.pbrt", copy / "image.exr", seed=seed, spp=64)
+        renders.append(block_means(copy / "image.exr"))
+    error = numpy.std(renders, axis=0, ddof=1) / 4
+    difference = numpy.mean(renders, axis=0) - expected(version)["mean"]
+    # Blocks of the even sky have no noise, only rounding.
+    assert (abs(difference) <= 8 * numpy.hypot(error, error / 4) + 1e-6).all()
+
+
+def test_a_leaf_file_is_read(version, copy):
+    table = frond.leaf_table("leaf_solved,specimen=soybean,incident=reciprocal", [551])
+    table.save(copy / "now.leaf")
+    old, now = ((copy / name).read_bytes() for name in ("soybean.leaf", "now.leaf"))
+    assert len(old) == len(now) and old[:16] == now[:16], "the format changed: give it another version, and read both"
+    compiler = shutil.which("g++")
+    if not compiler:
+        pytest.skip("there is no g++")
+    program = copy / "leaf_albedo"
+    subprocess.run([compiler, "-std=c++17", "-O1", ROOT / "exports/cpp/leaf_albedo.cpp", "-o", program], check=True)
+    albedos = [subprocess.run([program, copy / name, "551", "30"], capture_output=True, text=True, check=True).stdout
+               for name in ("soybean.leaf", "now.leaf")]
+    assert albedos[0] == albedos[1]
+
+
+def words_of(page):
+    """Pairs of a heading and of a name in its table: plug-ins or commands with their parameters."""
+    found, heading = set(), None
+    for line in page.read_text(encoding="utf-8").splitlines():
+        if line.startswith("#"):
+            heading = line.strip("# ")
+        elif name := re.match(r"\| `([^`]+)` \|", line):
+            found.add((heading, name[1]))
+    return found
+
+
+@pytest.mark.parametrize("page", ["plugins.md", "commands.md"])
+def test_plugins_commands_and_parameters_remain(version, page):
+    missing = words_of(version / page) - words_of(ROOT / "docs" / page)
+    assert not missing, f"{version.name} had these; keep them, or say in CHANGELOG.md what replaces them: {sorted(missing)}"
+
+
+def functions(stub):
+    """Names of parameters by the function or method."""
+    found = {}
+    for node in ast.walk(ast.parse(stub.read_text(encoding="utf-8"))):
+        inside = node.body if isinstance(node, (ast.ClassDef, ast.Module)) else []
+        for child in inside:
+            if isinstance(child, ast.FunctionDef) and not child.name.startswith("_"):
+                name = f"{node.name}.{child.name}" if isinstance(node, ast.ClassDef) else child.name
+                arguments = child.args
+                found[name] = ([a.arg for a in arguments.posonlyargs + arguments.args], {a.arg for a in arguments.kwonlyargs})
+    return found
+
+
+def test_python_functions_remain(version):
+    now = functions(ROOT / "python/frond/__init__.pyi")
+    for name, (positional, keywords) in functions(version / "frond.pyi").items():
+        assert name in now, f"frond.{name} of {version.name} is gone"
+        assert now[name][0][:len(positional)] == positional, f"the order of parameters of frond.{name} has changed"
+        assert keywords <= now[name][1] | set(now[name][0]), f"a parameter of frond.{name} is gone"
