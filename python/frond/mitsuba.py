@@ -13,8 +13,18 @@ mode table has an axis of optical depth, and f has derivatives: `params["leaf.ch
 608, 551 and 455 nm, or the three numbers of `wavelengths`; mono variants require one wavelength; spectral variants use 360 to
 830 nm. Both sides of a surface are leaf: `twosided` is not needed.
 
-Set a variant before importing this module, and call `register` after setting another one.
+`frond_diffuse` is a Lambertian reflector and transmitter, for frond's materials diffusetransmission and leaf_lambert:
+`reflectance` and `transmittance`, numbers or textures, and `back_reflectance` and `back_transmittance` for rays from the back,
+by default the same.
+
+Set a variant before importing this module, and call `register` after setting another one. To render a scene that
+`frond export --format mitsuba` has written:
+
+    python -m frond.mitsuba FOLDER/scene.xml -o image.exr
 """
+
+import argparse
+import sys
 
 import mitsuba as mi
 import drjit as dr
@@ -487,21 +497,121 @@ def _make_scalar(variant):
     return FrondLeaf
 
 
+def _make_refused(variant):
+    """Returns a class for variants without `frond_leaf`, which refuses to be loaded."""
+
+    class FrondLeaf(mi.BSDF):
+        def __init__(self, props):
+            mi.BSDF.__init__(self, props)
+            raise RuntimeError(f"frond_leaf is for JIT variants, scalar_mono and scalar_rgb, not for {variant}")
+
+    return FrondLeaf
+
+
+def _make_diffuse():
+    """Returns the class of `frond_diffuse` for the current variant."""
+
+    class FrondDiffuse(mi.BSDF):
+        def __init__(self, props):
+            mi.BSDF.__init__(self, props)
+            names = ("reflectance", "transmittance")
+            self.front = [props.get_texture(n, 0.25) for n in names]
+            self.back = [props.get_texture("back_" + n) if "back_" + n in props else t for n, t in zip(names, self.front)]
+            sides = mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
+            self.m_components = [mi.BSDFFlags.DiffuseReflection | sides, mi.BSDFFlags.DiffuseTransmission | sides]
+            if any(t.is_spatially_varying() for t in self.front + self.back):
+                self.m_components = [c | mi.BSDFFlags.SpatiallyVarying for c in self.m_components]
+            self.m_flags = self.m_components[0] | self.m_components[1]
+
+        def _shares(self, si, active):
+            """Returns reflectance and transmittance for the side of `si.wi`, and the probability to sample reflection."""
+            is_front = si.wi.z > 0
+            reflected, transmitted = [a.eval(si, active) if a is b else
+                                      dr.select(is_front, a.eval(si, active), b.eval(si, active))
+                                      for a, b in zip(self.front, self.back)]
+            r, t = dr.mean(reflected), dr.mean(transmitted)
+            return reflected, transmitted, dr.detach(dr.select(r + t > 0, r / dr.maximum(r + t, 1e-20), 0.5))
+
+        def _value(self, si, wo, active):
+            reflected, transmitted, choice = self._shares(si, active)
+            reflects, cosine = si.wi.z * wo.z > 0, dr.abs(wo.z) * dr.inv_pi
+            active = active & (si.wi.z != 0) & (wo.z != 0)
+            return (dr.select(active, dr.select(reflects, reflected, transmitted) * cosine, 0),
+                    dr.select(active, dr.select(reflects, choice, 1 - choice) * cosine, 0))
+
+        def eval(self, ctx, si, wo, active=True):
+            return self._value(si, wo, mi.Mask(active))[0]
+
+        def pdf(self, ctx, si, wo, active=True):
+            return self._value(si, wo, mi.Mask(active))[1]
+
+        def eval_pdf(self, ctx, si, wo, active=True):
+            return self._value(si, wo, mi.Mask(active))
+
+        def sample(self, ctx, si, sample1, sample2, active=True):
+            active = mi.Mask(active)
+            reflected, transmitted, choice = self._shares(si, active)
+            reflects = sample1 < choice
+            above = mi.warp.square_to_cosine_hemisphere(sample2)
+            cosine = dr.abs(above.z)
+            bs = dr.zeros(mi.BSDFSample3f)
+            bs.wo = mi.Vector3f(above.x, above.y, dr.select(reflects == (si.wi.z > 0), cosine, -cosine))
+            bs.eta = 1
+            chance = dr.select(reflects, choice, 1 - choice)
+            bs.pdf = chance * cosine * dr.inv_pi
+            bs.sampled_component = dr.select(reflects, mi.UInt32(0), mi.UInt32(1))
+            bs.sampled_type = dr.select(reflects, mi.UInt32(+mi.BSDFFlags.DiffuseReflection),
+                                        mi.UInt32(+mi.BSDFFlags.DiffuseTransmission))
+            active = active & (bs.pdf > 0) & (si.wi.z != 0)
+            return bs, dr.select(active, dr.select(reflects, reflected, transmitted) / chance, 0)
+
+        def traverse(self, callback):
+            put = callback.put if hasattr(callback, "put") else callback.put_object
+            for name, texture in zip(("reflectance", "transmittance"), self.front):
+                put(name, texture, mi.ParamFlags.Differentiable)
+            for name, texture, front in zip(("back_reflectance", "back_transmittance"), self.back, self.front):
+                if texture is not front:
+                    put(name, texture, mi.ParamFlags.Differentiable)
+
+        def to_string(self):
+            return f"FrondDiffuse[{self.front}, {self.back}]"
+
+    return FrondDiffuse
+
+
 _registered = {}
 
 
 def register():
-    """Registers `frond_leaf` with the current variant."""
+    """Registers `frond_leaf` and `frond_diffuse` with the current variant."""
     variant = mi.variant()
     if variant is None:
         raise RuntimeError("set a variant first: mitsuba.set_variant(\"llvm_ad_rgb\")")
     if "polarized" in variant:
         raise RuntimeError("frond_leaf does not support polarized variants")
-    if variant.startswith("scalar_spectral"):
-        raise RuntimeError(f"frond_leaf is for JIT variants, scalar_mono and scalar_rgb, not for {variant}")
-    if variant not in _registered:
-        _registered[variant] = (_make_scalar if variant.startswith("scalar") else _make)(variant)
-        mi.register_bsdf("frond_leaf", _registered[variant])
+    if variant in _registered:
+        return
+    make = _make_refused if variant.startswith("scalar_spectral") else _make_scalar if variant.startswith("scalar") else _make
+    _registered[variant] = {"frond_diffuse": _make_diffuse(), "frond_leaf": make(variant)}
+    for name, plugin in _registered[variant].items():
+        mi.register_bsdf(name, plugin)
 
 
+def main():
+    """Renders a scene file of Mitsuba with the plug-ins of this module."""
+    parser = argparse.ArgumentParser(prog="python -m frond.mitsuba", description=main.__doc__)
+    parser.add_argument("scene", help="scene.xml, as frond export --format mitsuba writes it")
+    parser.add_argument("-o", "--output", required=True, help="image file: .exr, .png or .jpg")
+    parser.add_argument("--variant", default="llvm_ad_rgb", help="Mitsuba's variant (default: %(default)s)")
+    parser.add_argument("--samples", type=int, default=0, help="samples per pixel (default: the scene's)")
+    parser.add_argument("--seed", type=int, default=0, help="seed (default: %(default)s)")
+    args = parser.parse_args()
+    mi.set_variant(args.variant)
+    register()
+    image = mi.render(mi.load_file(args.scene), spp=args.samples, seed=args.seed)
+    mi.util.write_bitmap(args.output, image, write_async=False)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
 register()

@@ -4,16 +4,18 @@
 #include <cmath>
 
 #include "exports/format.h"
+#include "exports/mitsuba/scene_export.h"
 #include "instruments/given_wavelengths.h"
 #include "jobs/record/common_params.h"
 #include "radiometry/radiometer_scene.h"
 #include "render/material_words.h"
 #include "render/measured_material.h"
 #include "report/text_output.h"
+#include "system/atomic_file.h"
 
 namespace frond {
 
-// `frond export`: BSDFs for other renderers and programs (docs/other_renderers.md).
+// `frond export`: BSDFs, or a scene, for other renderers and programs (docs/other_renderers.md).
 
 namespace {
 
@@ -21,16 +23,19 @@ using enum ArgumentKind;
 
 constexpr Interval kBelowHorizon_deg{0, 89.9999};
 
+/// The format of a whole scene; all others are formats of a material.
+constexpr std::string_view kMitsuba = "mitsuba";
+
 /// Returns the names of all export formats: "radiance", "csv", ...
 std::vector<std::string_view> format_names() {
-  std::vector<std::string_view> names;
+  std::vector<std::string_view> names{kMitsuba};
   for (const ExportFormat* format : export_formats()) names.push_back(format->name);
   return names;
 }
 
 /// Returns the help of --format, which is assembled from the formats' own descriptions.
 std::string format_doc() {
-  std::string doc = "File format.";
+  std::string doc = "File format. mitsuba: a scene for Mitsuba 3, as a folder.";
   for (const ExportFormat* format : export_formats()) doc += fmt::format(" {}: {}.", format->name, format->doc);
   return doc;
 }
@@ -39,11 +44,16 @@ const std::vector<std::string_view> kFormatNames = format_names();
 const std::string kFormatDoc = format_doc();
 
 const JobParam kParams[] = {
-    kMaterialParam,
+    JobParam(
+        "material", texts,
+        "NAME[,parameter=value...]: material, as in abm,specimen=maize; for mitsuba a scene file (pbrt-v4 format).",
+        {.type = "MATERIAL|SCENE", .decides = true, .positional = true, .required = true}),
     JobParam("format", text, kFormatDoc, {.choices = kFormatNames, .decides = true, .required = true}),
-    JobParam("output", text, "File to write; - is standard output, for text formats only.",
-             {.type = "FILE", .aliases = "o", .path = PathUse::write, .required = true}),
-    JobParam("wavelengths", numbers, "Wavelengths, ascending; for osl those of red,green,blue.",
+    JobParam("output", text, "File to write; - is standard output, for text formats only. For mitsuba a folder.",
+             {.type = "FILE|FOLDER", .aliases = "o", .path = PathUse::write, .required = true}),
+    JobParam("wavelengths", numbers,
+             "Wavelengths, ascending; for osl those of red,green,blue. For mitsuba one (mono variants), those of "
+             "red,green,blue (rgb variants, by default 608,551,455) or more (spectral variants).",
              {.unit = "nm", .range = {360, 2500}, .decides = true}),
     JobParam("angles", numbers, "Angles between the normal and the light, on both sides, in a table.",
              {.unit = "degrees", .range = kBelowHorizon_deg, .decides = true}),
@@ -55,6 +65,8 @@ const JobParam kParams[] = {
     JobParam("rays", count, "Number of rays for each value of R and T that is measured by rays.",
              {.range = {2, kCounts.max}, .decides = true}),
     kSeedParam,
+    kSwapParam,
+    kIgnoreUnsupportedParam,
 };
 
 /// Throws InputError for a given option that the format does not use; the message names the formats that do.
@@ -77,16 +89,46 @@ void check_arguments(const Arguments& args, const ExportFormat& format) {
     fail({}, "{} {} is no text: it cannot be written to standard output", args.spelled("format"), format.name);
 }
 
+/// Throws InputError for options of materials' formats, or of scenes.
+void check_options(const Arguments& args, bool is_scene) {
+  constexpr std::string_view kOfMaterials[] = {"angles", "view-angles", "view-azimuths", "rays", "seed"},
+                             kOfScenes[] = {"swap", "ignore-unsupported"};
+  for (const std::string_view name : kOfMaterials)
+    if (is_scene && args.given(name))
+      fail({}, "{} has no effect with {} mitsuba", args.spelled(name), args.spelled("format"));
+  for (const std::string_view name : kOfScenes)
+    if (!is_scene && args.given(name)) fail({}, "{} is for {} mitsuba", args.spelled(name), args.spelled("format"));
+}
+
+/// Exports a scene.
+Result export_scene(const JobRun& run) {
+  const Arguments& args = run.args;
+  const std::vector<std::string> files = args.texts("material");
+  if (files.size() != 1) fail({}, "{} mitsuba takes one scene file, {} given", args.spelled("format"), files.size());
+  if (args.text("output") == "-") fail({}, "{} mitsuba writes a folder, not standard output", args.spelled("format"));
+  Session& session = run.session();
+  SceneDescription description = session.read(files.front(), unsupported_of(args));
+  apply_swaps(description, swaps_of(args), session.registry(), run.log());
+  export_to_mitsuba(std::move(description), session.registry(),
+                    {args.text("output"), args.numbers("wavelengths"), files.front()}, session.pool(), run.log(),
+                    run.context.options().cache);
+  return {};
+}
+
 /// The job: prepares the material in groups of wavelengths as the format requests them.
 Result export_material(const JobRun& run) {
   const StopScope stop(run.control.stop);
   const Arguments& args = run.args;
+  const bool is_scene = args.text("format") == kMitsuba;
+  check_options(args, is_scene);
+  if (is_scene) return export_scene(run);
   const ExportFormat& format =
       **std::ranges::find(export_formats(), args.text("format"), [](const ExportFormat* f) { return f->name; });
   check_arguments(args, format);
   const ExportRequest request{args.numbers("wavelengths"), args.numbers("angles"), args.numbers("view-angles"),
                               args.numbers("view-azimuths"), args.count("rays")};
   format.check(request);
+  if (args.text("output") != "-") check_replaceable(args.text("output"));
   const std::string material = material_text(args.texts("material"), run.log());
   Session& session = run.session();
   const auto prepare = [&](const std::vector<double>& nm) -> std::shared_ptr<const Material> {
@@ -101,7 +143,8 @@ Result export_material(const JobRun& run) {
 
 }  // namespace
 
-extern const JobInfo kExportJob("export", "Materials", "Write a material's BSDF as a file for other programs.", "",
-                                kParams, SessionUse::all, export_material);
+extern const JobInfo kExportJob("export", "Materials",
+                                "Write a material's BSDF, or a scene, as files for other programs.", "", kParams,
+                                SessionUse::all, export_material);
 
 }  // namespace frond

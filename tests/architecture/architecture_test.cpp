@@ -28,7 +28,7 @@ const Layers kAllowed{
     {"integrators", {"core", "spectra", "scene"}},
     {"render", {"core", "system", "spectra", "image", "scene", "integrators", "materials", "instruments"}},
     {"instruments", {"core", "spectra"}},
-    {"exports", {"core", "system", "spectra", "instruments"}},
+    {"exports", {"core", "system", "spectra", "image", "scene", "instruments"}},
     {"radiometry", {"core", "system", "spectra", "scene", "instruments", "render"}},
     {"report", {"core", "system", "spectra", "leaf", "instruments", "radiometry"}},
     {"study", {"core", "system", "spectra", "image", "scene", "render", "instruments", "report"}},
@@ -60,6 +60,7 @@ const std::map<std::string, Layers> kAllowedInside{
     {"materials", {{"lobes", {}}, {"", {"lobes"}}}},
     {"render", {{"film", {}}, {"parts", {"film"}}, {"", {"film", "parts"}}}},
     {"instruments", {{"errors", {}}, {"", {"errors"}}, {"conformance", {"", "errors"}}}},
+    {"exports", {{"", {}}, {"mitsuba", {""}}}},
     {"study", {{"", {}}, {"compare", {""}}, {"compare/report", {"compare", ""}}, {"choose", {""}}}},
     {"jobs", {{"record", {}}, {"support", {"record"}}, {"submit", {"support"}}, {"", {"record", "support", "submit"}}}},
 };

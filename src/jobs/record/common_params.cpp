@@ -29,11 +29,16 @@ std::vector<std::string> materials_of(const JobRun& run) {
   return texts;
 }
 
+std::vector<MaterialSwap> swaps_of(const Arguments& args) {
+  std::vector<MaterialSwap> swaps;
+  for (const std::string& text : args.texts("swap")) swaps.push_back(parse_swap(text, args));
+  return swaps;
+}
+
 /// Jobs declare different subsets of the parameters; undeclared ones are skipped.
 SceneOverrides overrides_of(const Arguments& args) {
   SceneOverrides overrides;
-  if (has(args, "swap"))
-    for (const std::string& text : args.texts("swap")) overrides.swaps.push_back(parse_swap(text, args));
+  if (has(args, "swap")) overrides.swaps = swaps_of(args);
   if (args.declares("wavelengths")) overrides.wavelengths = wavelengths_text(args);
   if (has(args, "integrator")) overrides.integrator = parse_plugin_text(args.text("integrator"), {});
   if (has(args, "filter")) overrides.filter = parse_plugin_text(args.text("filter"), {});

@@ -55,6 +55,8 @@ inline constexpr JobParam kWithParam("with", ArgumentKind::texts, "NAME[,paramet
 
 /// Returns the job's material and those of --with, in the grammar of material_text.
 std::vector<std::string> materials_of(const JobRun& run);
+/// Returns the replacements by --swap. Throws InputError.
+std::vector<MaterialSwap> swaps_of(const Arguments& args);
 /// Returns the overrides by --swap, --wavelengths, --integrator, --filter, --for-denoiser, --seed and --quick; the
 /// job may declare a subset. Throws InputError.
 SceneOverrides overrides_of(const Arguments& args);

@@ -1,0 +1,168 @@
+#include "exports/mitsuba/view.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "exports/mitsuba/shapes.h"
+
+namespace frond::mitsuba {
+namespace {
+
+/// Part of the camera's plane z = 1, before the scaling by the field of view, that the film covers.
+struct Window {
+  double x0, x1, y0, y1;
+  double half_width() const { return (x1 - x0) / 2; }
+  double half_height() const { return (y1 - y0) / 2; }
+};
+
+/// As frond's cameras: the shorter axis spans -1 to 1 unless the scene states a window.
+Window window_of(const Params& p, const FilmSettings& film) {
+  const double aspect = p.given("frameaspectratio") ? p.real("frameaspectratio") : double(film.width) / film.height;
+  const auto given = p.reals("screenwindow");
+  if (given.size() == 4) return {given[0], given[1], given[2], given[3]};
+  return aspect > 1 ? Window{-aspect, aspect, -1, 1} : Window{-1, 1, -1 / aspect, 1 / aspect};
+}
+
+/// Length of the camera's x axis in the world, which its lens and its parallel rays are scaled by. Throws InputError if
+/// the transform is not a rotation with a scaling.
+double scale_of(const AffineMap& world_from_camera, const Location& where) {
+  const auto square = world_from_camera.area_scale();
+  if (!square) fail(where, "a camera transform that stretches has no equivalent in Mitsuba");
+  return std::sqrt(double(*square));
+}
+
+/// Film, filter and sampler, as parts of the open sensor.
+void write_film(Context& context, Xml& xml, const FilmSettings& film, int samples) {
+  const ParsedPlugin& filter = context.description.filter;
+  const Params p(context.registry.filters.get(filter.name, filter.where), filter, context.resolver);
+  const double x = p.real("xradius"), y = p.real("yradius");
+  const auto need = [&](bool is_equal, std::string_view what) {
+    if (!is_equal)
+      fail(filter.where, "filter \"{}\" with radii {:g} and {:g} has no equivalent in Mitsuba: {}", filter.name, x, y,
+           what);
+  };
+  need(x == y, "one radius has");
+  {
+    const Element sampler(xml, "sampler", {{"type", "independent"}});
+    xml.integer("sample_count", samples);
+  }
+  const Element element(xml, "film", {{"type", "hdrfilm"}});
+  xml.integer("width", film.width);
+  xml.integer("height", film.height);
+  if (film.crop != Crop{0, 0, film.width, film.height}) {
+    xml.integer("crop_offset_x", film.crop.x0);
+    xml.integer("crop_offset_y", film.crop.y0);
+    xml.integer("crop_width", film.crop.width());
+    xml.integer("crop_height", film.crop.height());
+  }
+  xml.text("pixel_format", context.spectra.variants() == Variants::mono ? "luminance" : "rgb");
+  xml.text("component_format", "float32");
+  // Samples beyond the border contribute to its pixels, as in frond.
+  if (filter.name != "box") xml.flag("sample_border", true);
+  if (filter.name == "box") {
+    need(x == 0.5, "0.5 has");
+    xml.element("rfilter", {{"type", "box"}});
+  } else if (filter.name == "triangle") {
+    const Element tent(xml, "rfilter", {{"type", "tent"}});
+    xml.number("radius", x);
+  } else if (filter.name == "gaussian") {
+    const double sigma = p.real("sigma");
+    if (std::abs(x - 4 * sigma) > 1e-6)
+      context.warn(filter.where, fmt::format("Mitsuba's gaussian filter has a radius of 4 sigma, {:g} pixels, instead "
+                                             "of {:g}",
+                                             4 * sigma, x));
+    const Element gaussian(xml, "rfilter", {{"type", "gaussian"}});
+    xml.number("stddev", sigma);
+  } else if (filter.name == "mitchell") {
+    need(x == 2, "2 has");
+    const Element mitchell(xml, "rfilter", {{"type", "mitchell"}});
+    xml.number("A", p.real("B"));
+    xml.number("B", p.real("C"));
+  } else if (filter.name == "sinc") {
+    need(x == p.real("tau") && x == std::floor(x), "a whole radius equal to \"tau\" has");
+    const Element lanczos(xml, "rfilter", {{"type", "lanczos"}});
+    xml.integer("lobes", int(x));
+  } else {
+    fail(filter.where, "filter \"{}\" has no equivalent in Mitsuba", filter.name);
+  }
+  if (std::isfinite(film.max_component))
+    context.warn(context.description.film.where,
+                 "\"maxcomponentvalue\" has no equivalent in Mitsuba: nothing is clamped");
+}
+
+/// Mitsuba's camera space has x to the left, frond's to the right of the image. A mirrored window mirrors the image.
+Transform::RowsDouble mirrored_x(Transform::RowsDouble rows, double x, double y) {
+  for (auto& row : rows) row[0] *= -x, row[1] *= y;
+  return rows;
+}
+
+/// Cameras are written with their distance in Mitsuba's units; the field of view does not depend on them.
+void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samples) {
+  const ParsedPlugin& camera = context.description.camera;
+  const bool is_perspective = camera.name == "perspective";
+  if (!is_perspective && camera.name != "orthographic")
+    fail(camera.where, "camera \"{}\" has no equivalent in Mitsuba: perspective and orthographic have", camera.name);
+  const Params p(context.registry.cameras.get(camera.name, camera.where), camera, context.resolver);
+  const Window window = window_of(p, film);
+  const double aspect = double(film.width) / film.height;
+  const AffineMap map{context.description.camera_from_world.inverse().rows()};
+  const double scale = scale_of(map, camera.where), units = context.units;
+  const double lens = p.real("lensradius");
+  Transform::RowsDouble rows = rows_of(map);
+  if (is_perspective) {
+    if (std::abs(std::abs(window.half_width() / window.half_height()) / aspect - 1) > 1e-6)
+      fail(camera.where, "pixels that are not square have no equivalent in Mitsuba");
+    for (auto& row : rows)
+      for (size_t j = 0; j < 3; ++j) row[j] /= scale;  // a perspective does not depend on the scale
+    rows = mirrored_x(rows, std::copysign(1.0, window.half_width()), std::copysign(1.0, window.half_height()));
+  } else {
+    if (lens > 0) fail(p.where("lensradius"), "an orthographic camera with a lens has no equivalent in Mitsuba");
+    // Mitsuba's film spans -1 to 1 along x.
+    for (auto& row : rows) row[3] += row[0] * (window.x0 + window.x1) / 2 + row[1] * (window.y0 + window.y1) / 2;
+    rows = mirrored_x(rows, window.half_width(), window.half_height() * aspect);
+    for (auto& row : rows)
+      for (size_t j = 0; j < 3; ++j) row[j] *= units;
+  }
+  for (auto& row : rows) row[3] *= units;
+  const Element sensor(xml, "sensor",
+                       {{"type", !is_perspective ? "orthographic"
+                                 : lens > 0      ? "thinlens"
+                                                 : "perspective"}});
+  if (is_perspective) {
+    const double tangent = std::tan(p.real("fov") * std::numbers::pi / 360);
+    xml.number("fov", std::atan(tangent * std::abs(window.half_width())) * 360 / std::numbers::pi);
+    xml.text("fov_axis", "x");
+    // As shares of the film's width and height.
+    const double x = (window.x0 + window.x1) / (2 * (window.x1 - window.x0)),
+                 y = (window.y0 + window.y1) / (2 * (window.y1 - window.y0));
+    if (x != 0) xml.number("principal_point_offset_x", -x);
+    if (y != 0) xml.number("principal_point_offset_y", y);
+    if (lens > 0) {
+      xml.number("aperture_radius", lens * scale * units);
+      xml.number("focus_distance", p.real("focaldistance") * scale * units);
+    }
+  }
+  // frond has no clipping planes.
+  xml.number("near_clip", is_perspective ? 1e-3 * units : 1e-6);
+  xml.number("far_clip", is_perspective ? 1e6 * units : 1e6);
+  xml.matrix("to_world", rows);
+  write_film(context, xml, film, samples);
+}
+
+}  // namespace
+
+/// Mitsuba counts path segments, frond scattering events.
+void write_view(Context& context, Xml& xml, const FilmSettings& film, int samples) {
+  const ParsedPlugin& integrator = context.description.integrator;
+  const Params p(context.registry.integrators.get(integrator.name, integrator.where), integrator, context.resolver);
+  if (integrator.name != "path") fail(integrator.where, "integrator \"{}\" is not exported: path is", integrator.name);
+  if (p.string("termination") != "roulette")
+    context.warn(p.where("termination"), "paths end by Russian roulette in Mitsuba, without bias");
+  {
+    const Element path(xml, "integrator", {{"type", "path"}});
+    xml.integer("max_depth", p.integer("maxdepth") + 1);
+  }
+  write_sensor(context, xml, film, samples);
+}
+
+}  // namespace frond::mitsuba
