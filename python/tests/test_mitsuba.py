@@ -180,3 +180,62 @@ def test_what_is_refused():
     with pytest.raises(Exception, match="JIT variants"):
         mi.load_dict({"type": "frond_leaf"})
     mitsuba.set_variant("llvm_ad_rgb")
+
+
+SCENE = """Scale -1 1 1
+LookAt 0 -5 3  0 0 0.5  0 0 1
+Camera "perspective" "float fov" 30
+Film "rgb" "integer xresolution" 48 "integer yresolution" 32
+Sampler "paddedsobol" "integer pixelsamples" 16
+Integrator "path" "integer maxdepth" 6
+PixelFilter "box"
+WorldBegin
+LightSource "distant" "point3 from" [ 1 -1 2 ] "point3 to" [ 0 0 0 ] "float scale" 3
+LightSource "infinite" "rgb L" [ 0.4 0.5 0.7 ]
+MakeNamedMaterial "leaf" "string type" "leaf_solved" "string incident" "reciprocal"
+MakeNamedMaterial "paper" "string type" "diffusetransmission" "rgb reflectance" [ 0.5 0.3 0.2 ] "float scale" 1.2
+ObjectBegin "card"
+NamedMaterial "leaf"
+Shape "trianglemesh" "integer indices" [ 0 1 2 1 3 2 ] "point3 P" [ -0.5 0 0  0.5 0 0  -0.5 0.3 1  0.5 0.3 1 ]
+ObjectEnd
+NamedMaterial "paper"
+Shape "disk" "float radius" 2.5
+AttributeBegin
+Translate -0.6 0 0.1
+ObjectInstance "card"
+AttributeEnd
+AttributeBegin
+Translate 0.6 0 0.1
+Rotate 200 0 0 1
+ObjectInstance "card"
+AttributeEnd
+"""
+
+
+@pytest.mark.parametrize("name", ["llvm_ad_rgb", "scalar_rgb"])
+def test_an_exported_scene_is_the_same_image(name, tmp_path):
+    """Means of the image, in three colours: a difference of 4.5 standard errors fails. The chance of a false alarm is 2e-5."""
+    mi, dr = variant(name)
+    (tmp_path / "scene.pbrt").write_text(SCENE)
+    frond.export(str(tmp_path / "scene.pbrt"), format="mitsuba", output=str(tmp_path / "out"))
+    scene = mi.load_file(str(tmp_path / "out" / "scene.xml"))
+    samples = 128 if name == "llvm_ad_rgb" else 8
+    theirs = [numpy.array(mi.render(scene, spp=samples, seed=s), dtype=numpy.float64)[:, :, :3] for s in (1, 2)]
+    ours = [frond.load(tmp_path / "scene.pbrt", wavelengths="smpte", seed=s).render(128).rgb.astype(numpy.float64) for s in (1, 2)]
+    difference = (sum(theirs) - sum(ours)).mean((0, 1)) / 2
+    # The difference of two renders estimates each pixel's variance.
+    error = numpy.sqrt(sum((a - b) ** 2 / 4 for a, b in (ours, theirs)).sum((0, 1))) / ours[0][:, :, 0].size
+    assert (error < 0.01 * sum(ours).mean()).all()
+    assert (abs(difference) < 4.5 * error).all()
+
+
+@pytest.mark.parametrize("old, new, message", [
+    ('Camera "perspective" "float fov" 30', 'Camera "spherical"', "camera .spherical. has no equivalent"),
+    ('"leaf_solved" "string incident" "reciprocal"', '"coateddiffuse"', "coateddiffuse.* has no equivalent.*--swap"),
+    ('"float radius" 2.5', '"float radius" 2.5 "float phimax" 90', "part of a disk has no equivalent"),
+])
+def test_an_export_refuses_what_mitsuba_lacks(old, new, message, tmp_path):
+    (tmp_path / "scene.pbrt").write_text(SCENE.replace(old, new))
+    with pytest.raises(frond.InputError, match=message):
+        frond.export(str(tmp_path / "scene.pbrt"), format="mitsuba", output=str(tmp_path / "out"))
+    assert not (tmp_path / "out" / "scene.xml").exists()

@@ -1,5 +1,6 @@
 #include "exports/mitsuba/lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -18,7 +19,7 @@ std::vector<double> emitted(const Context& context, double scale, const At& at) 
 }
 
 /// Rows of the map by latitude and longitude for each row of the square image: its texels are then narrower.
-constexpr int kRowsPerRow = 4;
+constexpr int kRowsPerRow = 16, kMostRows = 2048;
 
 /// Writes an image light as a map by latitude and longitude, because Mitsuba has no other.
 void write_environment(Context& context, Xml& xml, const EnvironmentLight& light, const Params& p,
@@ -27,7 +28,7 @@ void write_environment(Context& context, Xml& xml, const EnvironmentLight& light
     fail(p.where("filename"), "images of lights are for mono and rgb variants: give one wavelength or three");
   context.warn(plugin.where, "Mitsuba's environment map has other texels: the image is sampled again");
   const bool is_mono = context.spectra.variants() == Variants::mono;
-  const int height = kRowsPerRow * texels, width = 2 * height;
+  const int height = std::max(std::min(kRowsPerRow * texels, kMostRows), 2 * texels), width = 2 * height;
   Image image(width, height, {"R", "G", "B"});
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {

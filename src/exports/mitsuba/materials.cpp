@@ -157,6 +157,15 @@ void Materials::write_dielectric(Xml& xml, const ParsedPlugin& plugin, const Par
   xml.number("alpha", alpha);
 }
 
+/// Returns whether a material reflects or transmits into single directions.
+bool Materials::is_smooth(const ParsedPlugin& plugin) {
+  if (plugin.name == "thindielectric" || plugin.name == "interface") return true;
+  if (plugin.name != "conductor" && plugin.name != "dielectric") return false;
+  const Params p(context_.registry.materials.get(plugin.name, plugin.where), split_bend(plugin, false),
+                 context_.resolver);
+  return roughness(plugin, p) == 0;
+}
+
 /// Mitsuba's weight is the share of the second BSDF, as frond's amount.
 void Materials::write_mix(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id, size_t index) {
   const auto& names =
@@ -169,6 +178,10 @@ void Materials::write_mix(Xml& xml, const ParsedPlugin& plugin, const Params& p,
     if (has_image(part)) with_image_.insert(index);
     parts.push_back(part);
   }
+  if (is_smooth(materials[parts[0]].plugin) || is_smooth(materials[parts[1]].plugin))
+    fail(plugin.where,
+         "a mixture with a smooth material is not exported: Mitsuba's blendbsdf adds the probability of a mirror "
+         "direction to the density of the other BSDF");
   const FloatValue amount = float_value(context_, plugin, p, "amount");
   if (amount.image) with_image_.insert(index);
   const Element bsdf(xml, "bsdf", {{"type", "blendbsdf"}, {"id", id}});

@@ -25,6 +25,7 @@ class Materials {
   void write_conductor(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id);
   void write_dielectric(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id);
   void write_mix(Xml& xml, const ParsedPlugin& plugin, const Params& p, const std::string& id, size_t index);
+  bool is_smooth(const ParsedPlugin& plugin);
   double roughness(const ParsedPlugin& plugin, const Params& p);
 
   Context& context_;

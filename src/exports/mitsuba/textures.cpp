@@ -57,9 +57,10 @@ struct ImageFrame {
     xml.text("filter_type", filter == "point" ? "nearest" : "bilinear");
     xml.text("wrap_mode", wrap);
     const Element transform(xml, "transform", {{"name", "to_uv"}});
-    xml.element(
-        "matrix",
-        {{"value", fmt::format("{:.9g} 0 {:.9g} 0 {:.9g} {:.9g} 0 0 1", u_scale, u_delta, -v_scale, 1 - v_delta)}});
+    // A map of the plane, whose translation is in the fourth column.
+    const std::string rows =
+        fmt::format("{:.9g} 0 0 {:.9g} 0 {:.9g} 0 {:.9g} 0 0 1 0 0 0 0 1", u_scale, u_delta, -v_scale, 1 - v_delta);
+    xml.element("matrix", {{"value", rows}});
   }
 };
 

@@ -1,9 +1,11 @@
 #include "exports/mitsuba/view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "exports/mitsuba/shapes.h"
+#include "scene/format/plugin_text.h"
 
 namespace frond::mitsuba {
 namespace {
@@ -135,8 +137,8 @@ void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samp
     // As shares of the film's width and height.
     const double x = (window.x0 + window.x1) / (2 * (window.x1 - window.x0)),
                  y = (window.y0 + window.y1) / (2 * (window.y1 - window.y0));
-    if (x != 0) xml.number("principal_point_offset_x", -x);
-    if (y != 0) xml.number("principal_point_offset_y", y);
+    if (x != 0) xml.number("principal_point_offset_x", x);
+    if (y != 0) xml.number("principal_point_offset_y", -y);
     if (lens > 0) {
       xml.number("aperture_radius", lens * scale * units);
       xml.number("focus_distance", p.real("focaldistance") * scale * units);
@@ -149,6 +151,16 @@ void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samp
   write_film(context, xml, film, samples);
 }
 
+/// True if a shape states its opacity.
+bool has_alpha(const SceneDescription& description) {
+  const auto states_it = [](const std::vector<ShapeDescription>& shapes) {
+    return std::ranges::any_of(
+        shapes, [](const ShapeDescription& shape) { return find_param(shape.plugin.params, "alpha") != nullptr; });
+  };
+  return states_it(description.shapes) ||
+         std::ranges::any_of(description.objects, [&](const auto& object) { return states_it(object.shapes); });
+}
+
 }  // namespace
 
 /// Mitsuba counts path segments, frond scattering events.
@@ -159,7 +171,8 @@ void write_view(Context& context, Xml& xml, const FilmSettings& film, int sample
   if (p.string("termination") != "roulette")
     context.warn(p.where("termination"), "paths end by Russian roulette in Mitsuba, without bias");
   {
-    const Element path(xml, "integrator", {{"type", "path"}});
+    // Shadow rays of Mitsuba's path tracer are blocked by masks; those of its volumetric path tracer are not.
+    const Element path(xml, "integrator", {{"type", has_alpha(context.description) ? "volpath" : "path"}});
     xml.integer("max_depth", p.integer("maxdepth") + 1);
   }
   write_sensor(context, xml, film, samples);
