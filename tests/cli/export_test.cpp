@@ -157,7 +157,7 @@ TEST_F(ExportCommand, RefusesTheImpossible) {
   EXPECT_THAT(refusal({"conductor", "--format", "csv", "--wavelengths", "551", "-o", out}), HasSubstr("delta lobe"));
   EXPECT_THAT(refusal({"dielectric,roughness=0.3", "--format", "radiance", "-o", out}), HasSubstr("refracts"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "cvs", "-o", out}),
-              HasSubstr("one of radiance, csv, npz, netcdf, osl is needed; \"cvs\""));
+              HasSubstr("one of mitsuba, radiance, csv, npz, netcdf, osl is needed; \"cvs\""));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "-o", out}), HasSubstr("a table needs wavelengths"));
   EXPECT_THAT(refusal({"leaf_solved", "--format", "csv", "--wavelengths", "551,550", "-o", out}),
               HasSubstr("wavelengths must ascend: 550 follows 551"));

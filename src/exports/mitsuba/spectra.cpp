@@ -11,7 +11,7 @@ namespace frond::mitsuba {
 namespace {
 
 constexpr double kSmpte_nm[] = {608, 551, 455};
-constexpr double kYbarIntegral_nm = 106.856895;  // of ybar, by which Mitsuba's film divides (MI_CIE_Y_NORMALIZATION)
+constexpr double kYbarIntegral_nm = 106.7502594;  // of ybar, by which Mitsuba's film divides (MI_CIE_Y_NORMALIZATION)
 
 /// Strategy of spectral variants: any wavelength of the list's range.
 class AnyWavelength final : public WavelengthStrategy {
