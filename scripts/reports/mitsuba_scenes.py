@@ -150,9 +150,9 @@ space, spot and point light, sphere as a light), `orthographic` (metal, glass, p
 - `images`: Mitsuba interpolates between reflectances, frond between colours before it converts them. With `"string filter" "point"` the
   difference is within noise.
 - `sky`: Mitsuba's map by latitude and longitude has sampled the image again, whose texels have random colours here.
-- `soybean-back`: with 4096 samples the difference is +0.19 % ± 0.03 %. It is that of a few pixels in which a leaflet is seen and lit at
-  grazing angles, the same in all colours. With `diffusetransmission` for the leaves it is +0.02 % ± 0.01 %. The part of `frond_leaf`
-  that causes it is not known; its surface reflection within a degree of grazing was not compared before."""
+- `soybean-back`: with 4096 samples the difference is +0.19 % ± 0.03 %. Most of it lies in a few bright pixels of one leaflet, by the same amount in all
+  colours, as a difference of the surface reflection at grazing angles would be. With `diffusetransmission` for the leaves it is
+  +0.02 % ± 0.01 %. The cause in `frond_leaf` is not known."""
 
 
 def make_files(folder):
