@@ -267,18 +267,20 @@ def bench(material: str | Sequence[str] | Mapping[str, str], with_: str | Sequen
     json: File for Google Benchmark's JSON with frond's counters; - is standard output.
     plot: Chart of variance against the cost of a hit: .svg or .png."""
 
-def export(material: str | Sequence[str] | Mapping[str, str], format: str | os.PathLike, output: str | os.PathLike, *, wavelengths: float | Sequence[float] | str | None = None, angles: float | Sequence[float] | str | None = None, view_angles: float | Sequence[float] | str | None = None, view_azimuths: float | Sequence[float] | str | None = None, rays: int | None = None, seed: int | None = None, progress = None, session: Session | None | None = None) -> Result:
-    """Write a material's BSDF as a file for other programs.
+def export(material: str | Sequence[str] | Mapping[str, str], format: str | os.PathLike, output: str | os.PathLike, *, wavelengths: float | Sequence[float] | str | None = None, angles: float | Sequence[float] | str | None = None, view_angles: float | Sequence[float] | str | None = None, view_azimuths: float | Sequence[float] | str | None = None, rays: int | None = None, seed: int | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, ignore_unsupported: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+    """Write a material's BSDF, or a scene, as files for other programs.
 
-    material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    format: File format. radiance: BSDF of 145 x 145 Klems patches in XML, for Radiance and WINDOW. csv: R, T and f as a table, a line for each number. npz: the same table for numpy.load. netcdf: the same table as a classic NetCDF file. osl: an OSL shader of three lobes for Blender's Cycles. One of radiance, csv, npz, netcdf, osl.
-    output: File to write; - is standard output, for text formats only.
-    wavelengths: Wavelengths, ascending; for osl those of red,green,blue. Unit: nm. Range: from 360 to 2500.
+    material: NAME[,parameter=value...]: material, as in abm,specimen=maize; for mitsuba a scene file (pbrt-v4 format).
+    format: File format. mitsuba: a scene for Mitsuba 3, as a folder. radiance: BSDF of 145 x 145 Klems patches in XML, for Radiance and WINDOW. csv: R, T and f as a table, a line for each number. npz: the same table for numpy.load. netcdf: the same table as a classic NetCDF file. osl: an OSL shader of three lobes for Blender's Cycles. One of mitsuba, radiance, csv, npz, netcdf, osl.
+    output: File to write; - is standard output, for text formats only. For mitsuba a folder.
+    wavelengths: Wavelengths, ascending; for osl those of red,green,blue. For mitsuba one (mono variants), those of red,green,blue (rgb variants, by default 608,551,455) or more (spectral variants). Unit: nm. Range: from 360 to 2500.
     angles: Angles between the normal and the light, on both sides, in a table. Unit: degrees. Range: from 0 to 89.9999.
     view_angles: Angles between the normal and the viewer in a table. Unit: degrees. Range: from 0 to 89.9999.
     view_azimuths: Azimuths from the light to the viewer in a table; the mirror direction is at 180. Unit: degrees. Range: from 0 to 359.9999.
     rays: Number of rays for each value of R and T that is measured by rays.
-    seed: Seed of all random numbers."""
+    seed: Seed of all random numbers.
+    swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement."""
 
 def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
     """Read scenes and all files that they name, and report all errors.
