@@ -232,6 +232,8 @@ The reference is a solution by doubling of the turbid medium (`scripts/reports/t
 
 def main():
     options = arguments("rami", ("--published", dict(type=pathlib.Path, help="folder with het01_UNI_sphere.def and het01_brfpp.csv")))
+    if not (options.published or options.quick):
+        raise SystemExit("scripts/rami: the page has HET01, which needs --published FOLDER; --quick leaves it out")
     asked, paths = (0.03, 20_000) if options.quick else (0.003, 1_000_000)
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="frond_rami.") as name:

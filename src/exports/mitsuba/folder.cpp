@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/random.h"
 #include "image/image_file.h"
 #include "system/atomic_file.h"
 
 namespace frond::mitsuba {
 namespace {
 
-/// FNV-1a, 64 bits.
-uint64_t hash_of(std::span<const unsigned char> bytes, uint64_t h = 0xcbf29ce484222325u) {
-  for (const unsigned char b : bytes) h = (h ^ b) * 0x100000001b3u;
-  return h;
+uint64_t hash_of(std::span<const unsigned char> bytes, uint64_t seed = 0) {
+  return hash_bytes({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, seed);
 }
 
 /// Bytes of an array.
