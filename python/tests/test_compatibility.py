@@ -3,6 +3,7 @@
 
 import ast
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -65,6 +66,31 @@ def test_a_leaf_file_is_read(version, copy):
     # Machines with other instructions round differently.
     old, now = ([float(number) for number in re.findall(r"\d+\.\d+", text)] for text in albedos)
     assert old and old == pytest.approx(now, rel=1e-4, abs=1e-6)
+
+
+def test_plugins_of_the_version_compile_and_load(version):
+    """Those that tests/CMakeLists.txt compiled from the version's sources."""
+    folder = pathlib.Path(os.environ["FROND_TEST_PLUGIN"]).parent / version.name
+    for source in (version / "plugins").glob("*.cpp"):
+        found = subprocess.run([os.environ["FROND"], "list", "--plugin", folder / f"{source.stem}.so"], capture_output=True, text=True)
+        assert found.returncode == 0, found.stderr
+    described = subprocess.run([os.environ["FROND"], "describe", "--plugin", folder / "soil.so", "soil"], capture_output=True, text=True)
+    assert "soil" in described.stdout
+
+
+def test_a_program_of_the_version_compiles_and_runs(version, tmp_path):
+    program = pathlib.Path(os.environ["FROND_TEST_PLUGIN"]).parent / version.name / "embed"
+    scene = tmp_path / "scene.pbrt"
+    scene.write_text("""Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+WorldBegin
+LightSource "infinite"
+Translate 0 0 3
+Material "leaf_simplified"
+Shape "disk"
+""")
+    ran = subprocess.run([program, scene], capture_output=True, text=True)
+    assert ran.returncode == 0 and "pixels; green differs" in ran.stdout, ran.stderr
 
 
 def words_of(page):

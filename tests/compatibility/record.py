@@ -35,6 +35,9 @@ Shape "instances" "string object" "leaf" "string filename" "leaves.npy"
 Material "leaf_solved" "string specimen" "soybean" "string tablefile" "soybean.modes"
 Shape "disk" "float radius" 1
 """
+# Plug-ins of all kinds, and a program: tests/CMakeLists.txt compiles them with the headers of every later version.
+SOURCES = {"plugins": ["tests/plugins/kinds.cpp", "examples/plugins/blade.cpp", "examples/plugins/led.cpp", "examples/plugins/soil.cpp"],
+           "programs": ["examples/embed/embed.cpp"]}
 LEAVES = "x,y,z,nx,ny,nz\n" + "".join(f"{x / 2},{y / 2},{0.3 + 0.1 * x},{x / 5},{y / 5},1\n" for x in (-1, 0, 1) for y in (-1, 0, 1))
 
 
@@ -73,6 +76,10 @@ def main():
     for name in ("commands.md", "plugins.md"):
         shutil.copy(ROOT / "docs" / name, folder)
     shutil.copy(ROOT / "python" / "frond" / "__init__.pyi", folder / "frond.pyi")
+    for kind, sources in SOURCES.items():
+        (folder / kind).mkdir()
+        for source in sources:
+            shutil.copy(ROOT / source, folder / kind)
 
 
 if __name__ == "__main__":
