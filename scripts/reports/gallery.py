@@ -86,6 +86,9 @@ SPECTRUM_TEXTURES = {
     "directionmix": 'Texture "pattern" "spectrum" "directionmix" "vector3 dir" [ 0 0 1 ]\n'
                     '  "rgb tex1" [ 0.7 0.7 0.75 ] "rgb tex2" [ 0.1 0.25 0.05 ]',
     "marble": 'Texture "pattern" "spectrum" "marble" "float scale" 3 "float variation" 0.6 "integer octaves" 6',
+    "soil": 'Texture "noise" "float" "fbm" "integer octaves" 6\n'
+            'Texture "moisture" "float" "mix" "texture amount" "noise" "float tex1" 5 "float tex2" 50\n'
+            'Texture "pattern" "spectrum" "soil" "string soil" "dry_sand" "texture moisture" "moisture"',
 }
 FLOAT_TEXTURES = {
     "constant": 'Texture "heights" "float" "constant" "float value" 0.5',

@@ -19,7 +19,7 @@ extern const FloatTextureInfo constant_float_texture, scale_float_texture, mix_f
     dots_float_texture, fbm_float_texture, windy_float_texture, wrinkled_float_texture;
 extern const SpectrumTextureInfo constant_spectrum_texture, scale_spectrum_texture, mix_spectrum_texture,
     image_spectrum_texture, bilerp_spectrum_texture, checkerboard_spectrum_texture, direction_mix_spectrum_texture,
-    dots_spectrum_texture, marble_spectrum_texture;
+    dots_spectrum_texture, marble_spectrum_texture, soil_spectrum_texture;
 
 namespace {
 
@@ -37,10 +37,11 @@ constexpr std::array kFloatTextures{&constant_float_texture,      &scale_float_t
                                     &direction_mix_float_texture, &image_float_texture, &bilerp_float_texture,
                                     &checkerboard_float_texture,  &dots_float_texture,  &fbm_float_texture,
                                     &wrinkled_float_texture,      &windy_float_texture, &instance_float_texture};
-constexpr std::array kSpectrumTextures{
-    &constant_spectrum_texture,      &scale_spectrum_texture, &mix_spectrum_texture,
-    &direction_mix_spectrum_texture, &image_spectrum_texture, &bilerp_spectrum_texture,
-    &checkerboard_spectrum_texture,  &dots_spectrum_texture,  &marble_spectrum_texture};
+constexpr std::array kSpectrumTextures{&constant_spectrum_texture,     &scale_spectrum_texture,
+                                       &mix_spectrum_texture,          &direction_mix_spectrum_texture,
+                                       &image_spectrum_texture,        &bilerp_spectrum_texture,
+                                       &checkerboard_spectrum_texture, &dots_spectrum_texture,
+                                       &marble_spectrum_texture,       &soil_spectrum_texture};
 
 }  // namespace
 

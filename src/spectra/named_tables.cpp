@@ -36,10 +36,10 @@ double field(std::string_view line, size_t index) {
 
 }  // namespace
 
-std::vector<SpectrumPoint> named_column(std::string_view name) {
+std::vector<SpectrumPoint> table_column(std::string_view csv, std::string_view name) {
   std::vector<SpectrumPoint> points;
   size_t column = 0;
-  for (std::string_view rest = named_csv; !rest.empty();) {
+  for (std::string_view rest = csv; !rest.empty();) {
     const std::string_view line = cut(rest, '\n');
     if (line.empty() || line.front() == '#') continue;
     if (line.starts_with("nm,"))
@@ -47,9 +47,11 @@ std::vector<SpectrumPoint> named_column(std::string_view name) {
     else if (column > 0)
       points.push_back({field(line, 0), field(line, column)});
   }
-  if (points.empty()) throw std::logic_error("named.csv has no column " + std::string(name));
+  if (points.empty()) throw std::logic_error("src/spectra/data has no column " + std::string(name));
   return points;
 }
+
+std::vector<SpectrumPoint> named_column(std::string_view name) { return table_column(named_csv, name); }
 
 SpectrumPtr named_table(std::string_view name) {
   std::vector<SpectrumPoint> points = named_column(name);

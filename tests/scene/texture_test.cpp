@@ -15,7 +15,7 @@ namespace frond {
 
 extern const FloatTextureInfo bilerp_float_texture, checkerboard_float_texture, dots_float_texture, fbm_float_texture,
     wrinkled_float_texture, image_float_texture;
-extern const SpectrumTextureInfo image_spectrum_texture;
+extern const SpectrumTextureInfo image_spectrum_texture, soil_spectrum_texture;
 
 namespace {
 
@@ -283,6 +283,35 @@ TEST(NoiseTextures, StayInTheirRangesAndLoseWhatIsFinerThanTheFootprint) {
   EXPECT_EQ(value(fbm_float_texture, {}, coarse), 0);
   // The mean of all eight octaves, and of the first once more: so it is in pbrt-v4.
   EXPECT_NEAR(value(wrinkled_float_texture, {}, coarse), 0.2 * (3 - std::pow(0.5, 7)), 1e-5);
+}
+
+TEST(SoilTexture, IsDarkerWhereItIsWet) {
+  const SampledWavelengths lambda{
+      .nm = {450, 670, 860, 1650}, .pdf = {1, 1, 1, 1}, .active = {true, true, true, true}, .count = 4};
+  const auto soil = [&](std::vector<ParsedParam> params) {
+    return make_plugin(soil_spectrum_texture, std::move(params), TexturePlacement{})->evaluate({}, lambda);
+  };
+  const auto word = [](const char* name) {
+    return ParsedParam{"string", "soil", {}, {}, std::vector<std::string>{name}};
+  };
+  const SampledSpectrum dry = soil({}), damp = soil({number("float", "moisture", {20})}),
+                        wet = soil({number("float", "moisture", {50})});
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_GT(dry[i], damp[i]);
+    EXPECT_GT(damp[i], wet[i]);
+  }
+  const std::vector<double> clay{0.459, 0.011, -0.009, 0.038};
+  EXPECT_EQ(soil({number("float", "coefficients", clay)})[1], dry[1]) << "dry_clay is the default";
+  EXPECT_NE(error_of([&] {
+              soil({word("dry_sand"), number("float", "coefficients", clay)});
+            }).find("exclude each other"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] {
+              soil({number("float", "coefficients", {1, 2})});
+            }).find("needs 4 values"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { soil({word("mud")}); }).find("dry_clay"), std::string::npos);
+  EXPECT_NE(error_of([&] { soil({number("float", "moisture", {60})}); }).find("55"), std::string::npos);
 }
 
 }  // namespace
