@@ -16,7 +16,7 @@ import pytest
 import frond
 
 ROOT = pathlib.Path(__file__).parents[2]
-VERSIONS = sorted((ROOT / "tests/data").iterdir())
+VERSIONS = sorted(folder for folder in (ROOT / "tests/data").iterdir() if folder.is_dir())
 sys.path.insert(0, str(ROOT / "tests/compatibility"))
 from record import block_means  # noqa: E402
 
