@@ -1,6 +1,7 @@
 include(CMakePackageConfigHelpers)
 
-# Two components: what runs, and what other programs and plug-ins are built with (cmake/FrondPackage.cmake).
+# Two components: what runs, and what other programs and plug-ins are built with (cmake/FrondPackage.cmake). A wheel has one of
+# its own (python/CMakeLists.txt), and the files of share.
 set(frond_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/frond")
 
 install(TARGETS frond RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime)
@@ -14,21 +15,29 @@ if(FROND_INSTRUCTIONS STREQUAL both)
           NAMELINK_SKIP)
 endif()
 install(TARGETS frond_image_codec LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT runtime)
-install(FILES LICENSE NOTICE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT runtime)
+
+set(frond_share_component runtime)
+if(SKBUILD)
+  set(frond_share_component python)
+endif()
+install(FILES LICENSE NOTICE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT ${frond_share_component})
 # Licences of figures that the libraries contain.
-install(FILES LICENSES/BSD-3-Clause.txt LICENSES/MIT.txt DESTINATION "${CMAKE_INSTALL_DOCDIR}/LICENSES" COMPONENT runtime)
-install(DIRECTORY "${frond_manual_dir}/man1" DESTINATION "${CMAKE_INSTALL_MANDIR}" COMPONENT runtime)
-install(FILES "${frond_manual_dir}/frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT runtime)
+install(FILES LICENSES/BSD-3-Clause.txt LICENSES/MIT.txt DESTINATION "${CMAKE_INSTALL_DOCDIR}/LICENSES"
+        COMPONENT ${frond_share_component})
+install(DIRECTORY "${frond_manual_dir}/man1" DESTINATION "${CMAKE_INSTALL_MANDIR}" COMPONENT ${frond_share_component})
+install(FILES "${frond_manual_dir}/frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions"
+        COMPONENT ${frond_share_component})
 install(FILES "${frond_manual_dir}/frond.fish" DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d"
-        COMPONENT runtime)
+        COMPONENT ${frond_share_component})
 set(frond_zsh_folder site-functions)
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(frond_zsh_folder vendor-completions)  # Debian's, for packages
 endif()
-install(FILES "${frond_manual_dir}/_frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${frond_zsh_folder}" COMPONENT runtime)
+install(FILES "${frond_manual_dir}/_frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${frond_zsh_folder}"
+        COMPONENT ${frond_share_component})
 # As they are in the repository; canopy/make makes the tables of leaves that those of canopy name.
-install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/frond" COMPONENT runtime USE_SOURCE_PERMISSIONS
-        PATTERN ".gitignore" EXCLUDE PATTERN "*.md" EXCLUDE PATTERN "image.*" EXCLUDE PATTERN "generator" EXCLUDE
+install(DIRECTORY scenes DESTINATION "${CMAKE_INSTALL_DATADIR}/frond" COMPONENT ${frond_share_component}
+        USE_SOURCE_PERMISSIONS PATTERN ".gitignore" EXCLUDE PATTERN "*.md" EXCLUDE PATTERN "image.*" EXCLUDE PATTERN "generator" EXCLUDE
         REGEX "scenes/canopy/[^/]*[.]npy$" EXCLUDE)
 
 install(EXPORT frond NAMESPACE frond:: DESTINATION "${frond_package_dir}" COMPONENT development)

@@ -1,0 +1,13 @@
+# Debian's libwebp-dev has no CMake config.
+find_package(PkgConfig REQUIRED)
+foreach(library webp webpdemux webpmux)
+  if(NOT TARGET PkgConfig::${library})
+    pkg_check_modules(${library} REQUIRED IMPORTED_TARGET GLOBAL lib${library})
+  endif()
+endforeach()
+if(NOT TARGET WebP::webp)
+  add_library(WebP::webp ALIAS PkgConfig::webp)
+  add_library(WebP::webpdemux ALIAS PkgConfig::webpdemux)
+  add_library(WebP::libwebpmux ALIAS PkgConfig::webpmux)
+endif()
+set(WebP_FOUND TRUE)
