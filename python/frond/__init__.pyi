@@ -99,7 +99,7 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = Fal
     sieve: Absorption with sieve and detour effects; by default the better fit. One of on, off.
     absorption: Specific absorption of the leaf: PROSPECT-D's, with dry matter and anthocyanins, or the published model's (baranoski), with protein and cellulose. By default that of like, or else prospect. One of prospect, baranoski.
     fix: NAME=NUMBER[UNIT]: keep a parameter at this value, in the units of scene files, or a content per leaf area in ug/cm2, mg/cm2 or g/cm2 (chlorophyll=40ug/cm2, water=0.012g/cm2). Repeatable.
-    like: Specimen used as a prior (standard deviation about one third). One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex.
+    like: Specimen used as a prior (standard deviation about one third). One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex, red, autumn.
     material: Material type to write. One of leaf, leaf_solved, leaf_simplified, leaf_lambert, abm. Default: leaf."""
 
 def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen: str | os.PathLike | None = None, method: str | os.PathLike = 'solve', *, wavelengths: float | Sequence[float] | str, angles: float | Sequence[float] | str = '0:180:1', rays: int = 1000000, nodes: int | None = None, depths: float | Sequence[float] | str | None = None, seed: int | None = None, equalsides: bool = False, output: str | os.PathLike, progress = None, session: Session | None | None = None) -> Result:
@@ -108,7 +108,7 @@ def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen:
     leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as FILE.leaf the complete material for other programs.
 
     leaf: MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a name leaf_simplified.
-    specimen: Specimen of the leaf; soybean by default. One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex.
+    specimen: Specimen of the leaf; soybean by default. One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex, red, autumn.
     method: Method: solve (deterministic, without noise) or montecarlo (random walks, as published). One of solve, montecarlo. Default: solve.
     wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence, ascending; above 90 on the abaxial side. Unit: degrees. Range: from 0 to 180. Default: 0:180:1.

@@ -34,8 +34,8 @@ from . import _frond
 from ._session import default_session
 
 #: Concentrations, which change the optical depth; each may be a texture.
-CHEMISTRY = ("chlorophylla", "chlorophyllb", "carotenoids", "protein", "cellulose", "lignin", "anthocyanins", "drymatter",
-             "otherabsorption")
+CHEMISTRY = ("chlorophylla", "chlorophyllb", "carotenoids", "protein", "cellulose", "lignin", "anthocyanins",
+             "brownpigments", "drymatter", "otherabsorption")
 _GEOMETRY = ("thickness", "mesophyllfraction")
 _NUMBERS = CHEMISTRY + _GEOMETRY + ("cuticleaspect", "epidermisaspect", "spongyaspect", "palisadeaspect", "spongyshare",
                                      "cuticlerefractivity")

@@ -64,12 +64,13 @@ nb::dict leaf_chemistry(const std::shared_ptr<SessionHandle>& owner, const std::
   const LeafParams leaf = leaf_of(*owner, material);
   const leaf::TissueParams& p = leaf.tissue();
   if (!p.pigments.empty()) fail({}, "leaf_chemistry: further pigments are none of its numbers");
-  std::vector<double> chlorophyll, carotenoids, protein, cellulose, water, anthocyanins, dry_matter;
+  std::vector<double> chlorophyll, carotenoids, protein, cellulose, water, anthocyanins, brown_pigments, dry_matter;
   for (const double nm : wavelengths_nm) {
     if (!leaf::kConstantsRange_nm.contains(nm)) fail({}, "leaf_chemistry: {} nm is not within 360 to 2500 nm", nm);
     const leaf::Constants c = leaf::constants_at(nm, p.absorption_tables);
     const leaf::ProspectConstants further = leaf::prospect_constants_at(nm);
     anthocyanins.push_back(further.anthocyanins), dry_matter.push_back(further.dry_matter);
+    brown_pigments.push_back(further.brown_pigments);
     chlorophyll.push_back(c.chlorophyll), carotenoids.push_back(c.carotenoids), protein.push_back(c.protein);
     cellulose.push_back(c.cellulose), water.push_back(c.water);
   }
@@ -79,11 +80,13 @@ nb::dict leaf_chemistry(const std::shared_ptr<SessionHandle>& owner, const std::
   absorption["carotenoids"] = to_array(carotenoids, shape), absorption["protein"] = to_array(protein, shape);
   absorption["cellulose"] = to_array(cellulose, shape), absorption["lignin"] = to_array(cellulose, shape);
   absorption["anthocyanins"] = to_array(anthocyanins, shape), absorption["drymatter"] = to_array(dry_matter, shape);
+  absorption["brownpigments"] = to_array(brown_pigments, shape);
   absorption["water"] = to_array(water, shape);
   absorption["otherabsorption"] = to_array(std::vector<double>(wavelengths_nm.size(), 1), shape);
   amount["chlorophylla"] = p.chlorophyll_a, amount["chlorophyllb"] = p.chlorophyll_b;
   amount["carotenoids"] = p.carotenoids, amount["protein"] = p.protein, amount["cellulose"] = p.cellulose;
   amount["anthocyanins"] = p.anthocyanins, amount["drymatter"] = p.dry_matter;
+  amount["brownpigments"] = p.brown_pigments;
   amount["lignin"] = p.lignin, amount["water"] = 1.0, amount["otherabsorption"] = p.other_absorption;
   nb::dict d;
   d["specific_absorption"] = absorption, d["amount"] = amount;

@@ -50,8 +50,8 @@ leaf::DepthMap LeafParams::read(const Params& p) {
         Named{&TissueParams::chlorophyll_a, "chlorophylla"}, Named{&TissueParams::chlorophyll_b, "chlorophyllb"},
         Named{&TissueParams::carotenoids, "carotenoids"}, Named{&TissueParams::protein, "protein"},
         Named{&TissueParams::cellulose, "cellulose"}, Named{&TissueParams::lignin, "lignin"},
-        Named{&TissueParams::anthocyanins, "anthocyanins"}, Named{&TissueParams::dry_matter, "drymatter"},
-        Named{&TissueParams::other_absorption, "otherabsorption"}})
+        Named{&TissueParams::anthocyanins, "anthocyanins"}, Named{&TissueParams::brown_pigments, "brownpigments"},
+        Named{&TissueParams::dry_matter, "drymatter"}, Named{&TissueParams::other_absorption, "otherabsorption"}})
     if (auto texture = replace(number, name))
       varying.push_back({[number = number](TissueParams& t) -> double& { return t.*number; }, std::move(texture)});
   aspects_ = {replace(&TissueParams::cuticle_aspect, "cuticleaspect"),

@@ -54,6 +54,9 @@ inline constexpr std::array kLeafParams{
     detail::leaf_number("lignin", detail::kDensity, {0, 1500}, "Lignin in the mesophyll; by default the specimen's."),
     detail::leaf_number("anthocyanins", detail::kDensity, {0, 100},
                         "Anthocyanins in the mesophyll, with PROSPECT-D's spectrum; by default the specimen's."),
+    detail::leaf_number("brownpigments", "1/m", {0, 1e5},
+                        "Brown pigments in the mesophyll, of dying leaves, with PROSPECT-D's spectrum; x thickness x "
+                        "mesophyllfraction it is PROSPECT's content of them; by default the specimen's."),
     detail::leaf_number("drymatter", detail::kDensity, {0, 1500},
                         "Dry matter in the mesophyll, with PROSPECT-D's spectrum, instead of protein, cellulose and "
                         "lignin; by default the specimen's."),

@@ -25,6 +25,7 @@ struct ContentColumn {
 constexpr ContentColumn kContents[] = {{"chlorophyll", "chlorophyll_ug_cm2", leaf::kMicrogramsPerCm2},
                                        {"carotenoids", "carotenoids_ug_cm2", leaf::kMicrogramsPerCm2},
                                        {"anthocyanins", "anthocyanins_ug_cm2", leaf::kMicrogramsPerCm2},
+                                       {"brownpigments", "brownpigments_content", leaf::kProspectUnits},
                                        {"water", "water_g_cm2", leaf::kGramsPerCm2},
                                        {"drymatter", "drymatter_g_cm2", leaf::kGramsPerCm2}};
 
@@ -59,7 +60,8 @@ void document(Table& table) {
   table.document("rmse", "root mean square error of R and T together; rmse_R, rmse_T: of one of them");
   table.document("misfits", "number of bands in which R or T is off by more than 0.01");
   table.document("thickness",
-                 "m; concentrations in kg/m^3, otherabsorption in 1/m; columns ending in _se: standard errors, those "
+                 "m; concentrations in kg/m^3, otherabsorption and brownpigments in 1/m; columns ending in _se: "
+                 "standard errors, those "
                  "of the logarithms times the value, blank for a given value");
   table.document("undetermined", "parameters that the data do not determine: no measurements, they complete the leaf");
 }

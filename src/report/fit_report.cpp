@@ -49,6 +49,7 @@ std::vector<Said> said(const FitReport& report) {
                         {"cellulose", p.cellulose},
                         {"lignin", p.lignin},
                         {"anthocyanins", p.anthocyanins},
+                        {"brownpigments", p.brown_pigments},
                         {"drymatter", p.dry_matter},
                         {"otherabsorption", p.other_absorption},
                         {"epidermisaspect", p.epidermis_aspect},
@@ -80,11 +81,15 @@ std::string note(const FittedNumber& n) {
 std::string_view unit_of(const FittedNumber& n) {
   if (n.variable->is_structure) return "";
   if (n.variable->number == &TissueParams::thickness_m) return "m";
-  return n.variable->number == &TissueParams::other_absorption ? "1/m" : "kg/m^3";
+  const bool is_per_length =
+      n.variable->number == &TissueParams::other_absorption || n.variable->number == &TissueParams::brown_pigments;
+  return is_per_length ? "1/m" : "kg/m^3";
 }
 
-/// The unit that the literature uses: micrograms for pigments, grams for water and dry matter.
+/// The unit that the literature uses: micrograms for pigments, PROSPECT's unit for brown ones, grams for water and dry
+/// matter.
 leaf::AreaUnit area_unit_of(const leaf::FittedContent& c) {
+  if (c.name == "brownpigments") return leaf::kProspectUnits;
   return c.name == "water" || c.name == "drymatter" ? leaf::kGramsPerCm2 : leaf::kMicrogramsPerCm2;
 }
 

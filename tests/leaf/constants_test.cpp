@@ -54,9 +54,10 @@ TEST(LeafConstants, OfProspectAreLinearBetweenNodes) {
 TEST(TissueModel, TakesProspectsAbsorptionIfAsked) {
   TissueParams p = find_specimen("soybean")->params;
   const double published = absorption_coefficient(p, 670);
-  p.anthocyanins = 2, p.dry_matter = 100;
+  p.anthocyanins = 2, p.dry_matter = 100, p.brown_pigments = 3000;
   const ProspectConstants c = prospect_constants_at(670);
-  EXPECT_NEAR(absorption_coefficient(p, 670), published + 2 * c.anthocyanins + 100 * c.dry_matter, 1e-9 * published);
+  EXPECT_NEAR(absorption_coefficient(p, 670),
+              published + 2 * c.anthocyanins + 100 * c.dry_matter + 3000 * c.brown_pigments, 1e-9 * published);
   const double before = absorption_coefficient(p, 1450);
   p.absorption_tables = AbsorptionTables::prospect;
   EXPECT_NEAR(absorption_coefficient(p, 1450) - before, prospect_constants_at(1450).water - constants_at(1450).water,

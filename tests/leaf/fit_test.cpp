@@ -376,5 +376,105 @@ TEST(MeasuredSpectra, FieldsInQuotesCanHoldTheSeparator) {
   EXPECT_EQ(read.measurements.size(), 1u);
 }
 
+/// R and T of three leaves by PROSPECT-D (Feret et al. 2017), as prosail 2.0.5 computes them. Contents: chlorophyll 40,
+/// 20 and 5 ug/cm2, carotenoids 8, 6 and 3, anthocyanins 0, 20 and 2, brown pigments 0, 0 and 0.8, water 0.01, 0.01 and
+/// 0.004 g/cm2, dry matter 0.009, 0.009 and 0.012 g/cm2.
+struct ProspectRow {
+  double lambda_nm, green_r, green_t, red_r, red_t, brown_r, brown_t;
+};
+constexpr ProspectRow kProspectLeaves[] = {
+    {400, 0.043118, 0.000331, 0.043142, 0.000472, 0.049524, 0.002102},
+    {420, 0.042077, 0.000591, 0.042307, 0.001592, 0.062750, 0.007906},
+    {440, 0.041406, 0.000631, 0.041713, 0.001917, 0.072020, 0.012460},
+    {460, 0.041634, 0.003500, 0.041990, 0.004520, 0.087243, 0.020189},
+    {480, 0.042268, 0.006192, 0.041873, 0.005176, 0.095345, 0.024618},
+    {500, 0.050520, 0.022996, 0.042687, 0.008169, 0.114438, 0.035214},
+    {520, 0.110251, 0.101381, 0.045760, 0.015769, 0.146935, 0.054689},
+    {540, 0.154255, 0.152226, 0.047226, 0.020124, 0.173744, 0.072666},
+    {560, 0.141082, 0.140682, 0.051491, 0.029255, 0.192966, 0.087105},
+    {580, 0.096717, 0.092370, 0.062519, 0.047951, 0.207360, 0.099096},
+    {600, 0.078995, 0.072191, 0.082986, 0.077344, 0.225084, 0.113582},
+    {620, 0.062590, 0.051235, 0.092880, 0.091394, 0.232634, 0.120675},
+    {640, 0.053905, 0.039037, 0.093186, 0.092773, 0.236280, 0.124387},
+    {660, 0.040585, 0.015928, 0.066948, 0.058640, 0.213215, 0.108149},
+    {680, 0.036002, 0.005272, 0.049458, 0.032455, 0.185716, 0.089146},
+    {700, 0.127387, 0.135124, 0.210328, 0.227152, 0.332935, 0.199736},
+    {720, 0.306582, 0.330005, 0.364602, 0.389868, 0.393330, 0.250006},
+    {740, 0.405740, 0.434521, 0.423880, 0.453063, 0.423032, 0.276746},
+    {800, 0.442543, 0.474635, 0.442543, 0.474635, 0.470263, 0.318895},
+    {900, 0.441550, 0.474204, 0.441550, 0.474204, 0.506919, 0.351062},
+    {1000, 0.433982, 0.470121, 0.433982, 0.470121, 0.515785, 0.362017},
+    {1100, 0.434498, 0.478460, 0.434498, 0.478460, 0.520033, 0.372695},
+    {1200, 0.413188, 0.464797, 0.413188, 0.464797, 0.509207, 0.370717},
+    {1300, 0.403342, 0.462742, 0.403342, 0.462742, 0.497289, 0.367580},
+    {1400, 0.241646, 0.294920, 0.241646, 0.294920, 0.403255, 0.291306},
+    {1500, 0.209295, 0.266873, 0.209295, 0.266873, 0.355251, 0.258237},
+    {1600, 0.297307, 0.379965, 0.297307, 0.379965, 0.409561, 0.318599},
+    {1700, 0.294325, 0.389333, 0.294325, 0.389333, 0.392254, 0.314599},
+    {1800, 0.270037, 0.370101, 0.270037, 0.370101, 0.384692, 0.316213},
+    {1900, 0.051677, 0.076179, 0.051677, 0.076179, 0.183011, 0.134699},
+    {2000, 0.072066, 0.114719, 0.072066, 0.114719, 0.208932, 0.162269},
+    {2100, 0.126360, 0.204010, 0.126360, 0.204010, 0.225455, 0.184307},
+    {2200, 0.154747, 0.253136, 0.154747, 0.253136, 0.244657, 0.211366},
+    {2300, 0.107624, 0.191474, 0.107624, 0.191474, 0.177670, 0.152888},
+    {2400, 0.072390, 0.137475, 0.072390, 0.137475, 0.158028, 0.138288},
+    {2500, 0.033560, 0.058345, 0.033560, 0.058345, 0.097886, 0.077320},
+};
+
+/// Measurements of one of them; `leaf` is 0, 1 or 2.
+std::vector<LeafMeasurement> prospect_leaf(int leaf) {
+  std::vector<LeafMeasurement> measurements;
+  for (const ProspectRow& row : kProspectLeaves) {
+    const double r[] = {row.green_r, row.red_r, row.brown_r}, t[] = {row.green_t, row.red_t, row.brown_t};
+    measurements.push_back({row.lambda_nm, 8, r[leaf], t[leaf]});
+  }
+  return measurements;
+}
+
+double content(const FitResult& result, std::string_view name) {
+  return std::ranges::find(result.contents, name, &FittedContent::name)->kg_per_m2;
+}
+
+TEST(Fit, FindsTheAnthocyaninsAndBrownPigmentsOfAutumn) {
+  const ThreadPool pool(2);
+  const FitResult green = fit_leaf({.measurements = prospect_leaf(0)}, pool),
+                  red = fit_leaf({.measurements = prospect_leaf(1)}, pool),
+                  brown = fit_leaf({.measurements = prospect_leaf(2)}, pool);
+  EXPECT_LT(green.rmse, 0.01);
+  EXPECT_LT(red.rmse, 0.01);
+  EXPECT_LT(brown.rmse, 0.02);
+  // The models differ, so contents agree only about: within a tenth where a pigment dominates.
+  EXPECT_NEAR(content(red, "anthocyanins") * kMicrogramsPerCm2.per_kg_per_m2, 20, 2);
+  EXPECT_NEAR(content(red, "chlorophyll") * kMicrogramsPerCm2.per_kg_per_m2, 20, 2);
+  EXPECT_NEAR(content(brown, "brownpigments"), 0.8, 0.15);
+  EXPECT_LT(content(green, "anthocyanins") * kMicrogramsPerCm2.per_kg_per_m2, 1);
+  EXPECT_LT(content(green, "brownpigments"), 0.04);
+  // What the leaf absorbs more or less than the green one, by band.
+  for (const Interval& nm : {Interval{500, 600}, Interval{600, 680}, Interval{680, 760}})
+    for (const auto& [leaf, other] : {std::pair(1, &red), std::pair(2, &brown)}) {
+      double truth = 0, fitted = 0;
+      const auto there = prospect_leaf(leaf), here = prospect_leaf(0);
+      for (size_t i = 0; i < here.size(); ++i) {
+        if (!nm.contains(here[i].lambda_nm)) continue;
+        truth += *there[i].r + *there[i].t - *here[i].r - *here[i].t;
+        fitted += other->fitted[i].r + other->fitted[i].t - green.fitted[i].r - green.fitted[i].t;
+      }
+      EXPECT_NEAR(fitted / truth, 1, 0.2) << leaf << " from " << nm.min << " nm";
+    }
+}
+
+TEST(Fit, SpecimensOfAutumnAreThoseLeaves) {
+  for (const auto& [name, leaf] : {std::pair("red", 1), std::pair("autumn", 2)}) {
+    const TissueModel model(find_specimen(name)->params);
+    double sum = 0;
+    const auto measurements = prospect_leaf(leaf);
+    for (const LeafMeasurement& m : measurements) {
+      const Shares s = solve(model.at(m.lambda_nm), std::array{m.theta_deg})[0];
+      sum += std::pow(s.surface + s.subsurface - *m.r, 2) + std::pow(s.transmitted - *m.t, 2);
+    }
+    EXPECT_LT(std::sqrt(sum / double(2 * measurements.size())), 0.02) << name;
+  }
+}
+
 }  // namespace
 }  // namespace frond::leaf

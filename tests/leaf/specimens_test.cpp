@@ -59,7 +59,7 @@ TEST(Specimens, ThatAreFittedAreAsNearAsTheySay) {
   for (const Specimen& specimen : kSpecimens) {
     const std::string name(specimen.name);
     const size_t said = specimen.source.find("RMSE ");
-    if (said == std::string_view::npos) continue;
+    if (said == std::string_view::npos || specimen.source.find("PROSPECT") != std::string_view::npos) continue;
     ++fitted;
     const std::string species = name.substr(0, name.find('-'));
     const bool is_of_davis = species == "grape" || species == "toyon";

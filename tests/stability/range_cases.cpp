@@ -19,23 +19,15 @@ struct Number {
   std::string_view name;
 };
 constexpr Number kNumbers[] = {
-    {&TissueParams::thickness_m, "thickness"},
-    {&TissueParams::mesophyll_fraction, "mesophyllfraction"},
-    {&TissueParams::chlorophyll_a, "chlorophylla"},
-    {&TissueParams::chlorophyll_b, "chlorophyllb"},
-    {&TissueParams::carotenoids, "carotenoids"},
-    {&TissueParams::protein, "protein"},
-    {&TissueParams::cellulose, "cellulose"},
-    {&TissueParams::lignin, "lignin"},
-    {&TissueParams::anthocyanins, "anthocyanins"},
-    {&TissueParams::dry_matter, "drymatter"},
-    {&TissueParams::other_absorption, "otherabsorption"},
-    {&TissueParams::spongy_share, "spongyshare"},
-    {&TissueParams::cuticle_refractivity, "cuticlerefractivity"},
-    {&TissueParams::cuticle_aspect, "cuticleaspect"},
-    {&TissueParams::epidermis_aspect, "epidermisaspect"},
-    {&TissueParams::spongy_aspect, "spongyaspect"},
-    {&TissueParams::palisade_aspect, "palisadeaspect"},
+    {&TissueParams::thickness_m, "thickness"},        {&TissueParams::mesophyll_fraction, "mesophyllfraction"},
+    {&TissueParams::chlorophyll_a, "chlorophylla"},   {&TissueParams::chlorophyll_b, "chlorophyllb"},
+    {&TissueParams::carotenoids, "carotenoids"},      {&TissueParams::protein, "protein"},
+    {&TissueParams::cellulose, "cellulose"},          {&TissueParams::lignin, "lignin"},
+    {&TissueParams::anthocyanins, "anthocyanins"},    {&TissueParams::brown_pigments, "brownpigments"},
+    {&TissueParams::dry_matter, "drymatter"},         {&TissueParams::other_absorption, "otherabsorption"},
+    {&TissueParams::spongy_share, "spongyshare"},     {&TissueParams::cuticle_refractivity, "cuticlerefractivity"},
+    {&TissueParams::cuticle_aspect, "cuticleaspect"}, {&TissueParams::epidermis_aspect, "epidermisaspect"},
+    {&TissueParams::spongy_aspect, "spongyaspect"},   {&TissueParams::palisade_aspect, "palisadeaspect"},
 };
 
 const Number& known(std::string_view name) { return *std::ranges::find(kNumbers, name, &Number::name); }

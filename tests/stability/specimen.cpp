@@ -110,6 +110,7 @@ Parameters words_for(const TissueParams& leaf) {
           real("cellulose", leaf.cellulose),
           real("lignin", leaf.lignin),
           real("anthocyanins", leaf.anthocyanins),
+          real("brownpigments", leaf.brown_pigments),
           real("drymatter", leaf.dry_matter),
           real("otherabsorption", leaf.other_absorption),
           words("absorption", {leaf.absorption_tables == leaf::AbsorptionTables::prospect ? "prospect" : "baranoski"}),

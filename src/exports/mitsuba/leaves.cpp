@@ -10,9 +10,9 @@ namespace frond::mitsuba {
 namespace {
 
 // Parameters of frond_leaf, by type; those of the first list may be images (python/frond/mitsuba.py).
-constexpr std::array kContents{"thickness",    "mesophyllfraction", "chlorophylla",   "chlorophyllb",
-                               "carotenoids",  "protein",           "cellulose",      "lignin",
-                               "anthocyanins", "drymatter",         "otherabsorption"};
+constexpr std::array kContents{"thickness",    "mesophyllfraction", "chlorophylla", "chlorophyllb",
+                               "carotenoids",  "protein",           "cellulose",    "lignin",
+                               "anthocyanins", "brownpigments",     "drymatter",    "otherabsorption"};
 constexpr std::array kNumbers{"cuticleaspect",  "epidermisaspect", "spongyaspect",
                               "palisadeaspect", "spongyshare",     "cuticlerefractivity"};
 constexpr std::array kWords{"specimen", "absorption", "incident"};

@@ -37,6 +37,7 @@ constexpr Content kContents[] = {
     {"chlorophyll", [](const TissueParams& p) { return area_content(p, p.chlorophyll_a + p.chlorophyll_b); }},
     {"carotenoids", [](const TissueParams& p) { return area_content(p, p.carotenoids); }},
     {"anthocyanins", [](const TissueParams& p) { return area_content(p, p.anthocyanins); }},
+    {"brownpigments", [](const TissueParams& p) { return area_content(p, p.brown_pigments); }},
     {"water", [](const TissueParams& p) { return area_content(p, kWaterConcentration); }},
     {"drymatter",
      [](const TissueParams& p) { return area_content(p, p.dry_matter + p.protein + p.cellulose + p.lignin); }},

@@ -39,6 +39,7 @@ inline constexpr FitVariable kFitVariables[] = {
     {"chlorophylla", &TissueParams::chlorophyll_a, {1e-3, 100}},
     {"carotenoids", &TissueParams::carotenoids, {1e-3, 100}},
     {"anthocyanins", &TissueParams::anthocyanins, {1e-3, 100}, 0.05, false, AbsorptionTables::prospect},
+    {"brownpigments", &TissueParams::brown_pigments, {1, 1e5}, 20, false, AbsorptionTables::prospect},
     {"protein", &TissueParams::protein, {0.1, 1500}, 30, false, AbsorptionTables::baranoski},
     {"cellulose", &TissueParams::cellulose, {0.1, 1500}, 30, false, AbsorptionTables::baranoski},
     {"drymatter", &TissueParams::dry_matter, {0.1, 1500}, 100, false, AbsorptionTables::prospect},

@@ -30,15 +30,16 @@ inline const Specimen& specimen_of(Structure structure) {
 
 /// Amounts per leaf area of all that absorbs, and what one unit of each adds to the optical depth at one wavelength:
 /// the depth is their scalar product. The first is the water.
-using Constituents = Eigen::Array<double, 8, 1>;
+using Constituents = Eigen::Array<double, 9, 1>;
 inline constexpr double TissueParams::*kConcentrations[] = {
-    &TissueParams::chlorophyll_a, &TissueParams::carotenoids, &TissueParams::protein,         &TissueParams::cellulose,
-    &TissueParams::anthocyanins,  &TissueParams::dry_matter,  &TissueParams::other_absorption};
+    &TissueParams::chlorophyll_a, &TissueParams::carotenoids,     &TissueParams::protein,
+    &TissueParams::cellulose,     &TissueParams::anthocyanins,    &TissueParams::brown_pigments,
+    &TissueParams::dry_matter,    &TissueParams::other_absorption};
 
 inline Constituents amounts_of(const TissueParams& p) {
   Constituents amounts;
   amounts << 1, p.chlorophyll_a + p.chlorophyll_b, p.carotenoids, p.protein, p.cellulose + p.lignin, p.anthocyanins,
-      p.dry_matter, p.other_absorption;
+      p.brown_pigments, p.dry_matter, p.other_absorption;
   return amounts * (p.thickness_m * p.mesophyll_fraction);
 }
 
@@ -68,7 +69,7 @@ class LeafSpace {
       if (origin_.dry_matter == 0) origin_.dry_matter = origin_.protein + origin_.cellulose + origin_.lignin;
       origin_.protein = origin_.cellulose = origin_.lignin = 0;
     } else {
-      origin_.anthocyanins = origin_.dry_matter = 0;
+      origin_.anthocyanins = origin_.brown_pigments = origin_.dry_matter = 0;
     }
     fix(request, "mesophyllfraction", &TissueParams::mesophyll_fraction);
     const bool has_water = fix_water(request);

@@ -40,9 +40,10 @@ std::string describe(const TissueParams& p) {
       p.cuticle_aspect, p.epidermis_aspect, p.spongy_aspect, p.palisade_aspect, p.sieve_and_detour);
   // Only where they differ from the published model, whose tables keep their keys.
   const bool prospect = p.absorption_tables == AbsorptionTables::prospect;
-  if (prospect || p.anthocyanins != 0 || p.dry_matter != 0)
+  if (prospect || p.anthocyanins != 0 || p.dry_matter != 0 || p.brown_pigments != 0)
     text += fmt::format("# PROSPECT-D's absorption {:016x}: {}, kg/m3: anthocyanins {}, dry matter {}\n",
                         prospect_hash(), prospect ? "all" : "these", p.anthocyanins, p.dry_matter);
+  if (p.brown_pigments != 0) text += fmt::format("# brown pigments {} 1/m\n", p.brown_pigments);
   if (p.spongy_share != 0) text += fmt::format("# share below the air space {}\n", p.spongy_share);
   if (p.cuticle_refractivity != 1)
     text += fmt::format("# relative refractivity of the cuticle {}\n", p.cuticle_refractivity);

@@ -17,9 +17,10 @@ double absorption_coefficient(const TissueParams& p, double lambda_nm) {
   const Constants c = constants_at(lambda_nm, p.absorption_tables);
   double sum = (p.chlorophyll_a + p.chlorophyll_b) * c.chlorophyll + p.carotenoids * c.carotenoids +
                p.protein * c.protein + (p.cellulose + p.lignin) * c.cellulose + c.water + p.other_absorption;
-  if (p.anthocyanins > 0 || p.dry_matter > 0) {
+  if (p.anthocyanins > 0 || p.dry_matter > 0 || p.brown_pigments > 0) {
     const ProspectConstants other = prospect_constants_at(lambda_nm);
-    sum += p.anthocyanins * other.anthocyanins + p.dry_matter * other.dry_matter;
+    sum +=
+        p.anthocyanins * other.anthocyanins + p.dry_matter * other.dry_matter + p.brown_pigments * other.brown_pigments;
   }
   const auto [i, t] = kAbsorptionGrid.cell(lambda_nm);
   for (const Pigment& pigment : p.pigments) {

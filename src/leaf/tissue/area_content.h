@@ -21,6 +21,6 @@ struct AreaUnit {
   double per_kg_per_m2;  ///< this many of the unit are 1 kg/m^2
 };
 inline constexpr AreaUnit kMicrogramsPerCm2{"ug/cm2", 1e5}, kMilligramsPerCm2{"mg/cm2", 100},
-    kGramsPerCm2{"g/cm2", 0.1};
+    kGramsPerCm2{"g/cm2", 0.1}, kProspectUnits{"", 1};  ///< the last: of brown pigments
 
 }  // namespace frond::leaf

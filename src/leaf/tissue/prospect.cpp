@@ -13,7 +13,7 @@ namespace frond::leaf {
 namespace {
 
 constexpr WavelengthGrid kGrid{400, 5, 421};
-using Row = std::array<double, 6>;  ///< columns of the file
+using Row = std::array<double, 7>;  ///< columns of the file
 
 Row row_of(std::string_view line) {
   Row row{};
@@ -33,8 +33,8 @@ std::vector<ProspectConstants> read() {
     const std::string_view line = prospect_csv.substr(begin, end - begin);
     begin = end + 1;
     if (line.empty() || line[0] < '0' || line[0] > '9') continue;  // a comment or the names
-    const auto [nm, chlorophyll, carotenoids, anthocyanins, water, dry_matter] = row_of(line);
-    nodes.push_back({chlorophyll, carotenoids, anthocyanins, water, dry_matter});
+    const auto [nm, chlorophyll, carotenoids, anthocyanins, water, dry_matter, brown] = row_of(line);
+    nodes.push_back({chlorophyll, carotenoids, anthocyanins, water, dry_matter, brown});
   }
   assert(nodes.size() == kGrid.size());
   const double plateau = std::ranges::min(nodes, {}, &ProspectConstants::dry_matter).dry_matter;
@@ -49,8 +49,9 @@ ProspectConstants prospect_constants_at(double lambda_nm) {
   const auto [i, t] = kGrid.cell(lambda_nm);
   const ProspectConstants &a = nodes[i], &b = nodes[i + 1];
   const auto between = [t = t](double x, double y) { return (1 - t) * x + t * y; };
-  return {between(a.chlorophyll, b.chlorophyll), between(a.carotenoids, b.carotenoids),
-          between(a.anthocyanins, b.anthocyanins), between(a.water, b.water), between(a.dry_matter, b.dry_matter)};
+  return {between(a.chlorophyll, b.chlorophyll),   between(a.carotenoids, b.carotenoids),
+          between(a.anthocyanins, b.anthocyanins), between(a.water, b.water),
+          between(a.dry_matter, b.dry_matter),     between(a.brown_pigments, b.brown_pigments)};
 }
 
 uint64_t prospect_hash() {

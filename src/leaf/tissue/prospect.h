@@ -15,6 +15,7 @@ struct ProspectConstants {
   /// Dry matter without PROSPECT's constant plateau of 0.23 m^2/kg, which holds up to 1200 nm: `other_absorption`
   /// represents it, and so leaves can have more or less of it.
   double dry_matter;
+  double brown_pigments;  ///< per unit of PROSPECT's content, which has no dimension
 };
 
 /// Returns the constants: linear between the nodes of the file, every 5 nm from 400 to 2500 nm. Below, the first value.

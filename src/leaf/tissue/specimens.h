@@ -15,8 +15,9 @@ struct Specimen {
 
 /// Separate from the specimens, which contain vectors: with UBSan g++ 12 does not accept an array of those as a
 /// constant.
-inline constexpr std::string_view kSpecimenNames[] = {"soybean", "maize", "lettuce",       "tomato",     "walnut",
-                                                      "grape",   "toyon", "soybean-lopex", "maize-lopex"};
+inline constexpr std::string_view kSpecimenNames[] = {"soybean",     "maize", "lettuce", "tomato",
+                                                      "walnut",      "grape", "toyon",   "soybean-lopex",
+                                                      "maize-lopex", "red",   "autumn"};
 
 /// Sources of the first two: Baranoski 2006 (Remote Sensing of Environment 100:335-347); Baranoski and Eng 2007 (IEEE
 /// TGRS 45:2593-2599).
@@ -194,6 +195,48 @@ inline const Specimen kSpecimens[] = {
       .palisade_aspect = 6.775,
       .spongy_share = 0.1635,
       .cuticle_refractivity = 1.278,
+      .sieve_and_detour = true}},
+    // Fitted to leaves that PROSPECT-D computes (docs/outdoors.md has their contents), not to measurements.
+    {kSpecimenNames[9],
+     "Red leaf, with half the chlorophyll of a green one and 20 ug/cm2 of anthocyanins.",
+     "Fitted to a leaf of PROSPECT-D: RMSE 0.0052.",
+     {.structure = Structure::bifacial,
+      .thickness_m = 0.0001889,
+      .mesophyll_fraction = 0.5,
+      .absorption_tables = AbsorptionTables::prospect,
+      .chlorophyll_a = 1.685,
+      .chlorophyll_b = 0.4919,
+      .carotenoids = 0.5272,
+      .anthocyanins = 2.147,
+      .dry_matter = 728.5,
+      .other_absorption = 234.2,
+      .cuticle_aspect = 5,
+      .epidermis_aspect = 1.972,
+      .spongy_aspect = 20,
+      .palisade_aspect = 20,
+      .spongy_share = 0.1063,
+      .cuticle_refractivity = 0.9331,
+      .sieve_and_detour = true}},
+    {kSpecimenNames[10],
+     "Autumn leaf, brown and dry, with little chlorophyll.",
+     "Fitted to a leaf of PROSPECT-D: RMSE 0.0123.",
+     {.structure = Structure::bifacial,
+      .thickness_m = 8.906e-05,
+      .mesophyll_fraction = 0.5,
+      .absorption_tables = AbsorptionTables::prospect,
+      .chlorophyll_a = 0.8552,
+      .chlorophyll_b = 0.2497,
+      .carotenoids = 0.8634,
+      .anthocyanins = 0.4352,
+      .dry_matter = 1500,
+      .brown_pigments = 18590,
+      .other_absorption = 671.4,
+      .cuticle_aspect = 5,
+      .epidermis_aspect = 0.7,
+      .spongy_aspect = 3.356,
+      .palisade_aspect = 1.595,
+      .spongy_share = 0.2919,
+      .cuticle_refractivity = 0.8863,
       .sieve_and_detour = true}},
 };
 

@@ -12,7 +12,7 @@ enum class Structure : uint8_t {
   unifacial,  ///< one kind of mesophyll on both sides of an air space, whose depth varies from ray to ray
 };
 
-/// A pigment that green leaves lack, such as the anthocyanins of petals and autumn leaves.
+/// A pigment that green leaves lack, such as those of petals.
 struct Pigment {
   double concentration = 0;                 ///< in the mesophyll, kg/m^3
   std::vector<double> specific_absorption;  ///< m^2/kg, at kAbsorptionGrid
@@ -36,6 +36,7 @@ struct TissueParams {
   double chlorophyll_a = 0, chlorophyll_b = 0, carotenoids = 0, protein = 0, cellulose = 0, lignin = 0;
   /// The same for constituents that the published model has not (prospect.h).
   double anthocyanins = 0, dry_matter = 0;
+  double brown_pigments = 0;    ///< 1/m: PROSPECT's content per leaf area, which has no dimension, per mesophyll
   double other_absorption = 0;  ///< 1/m, independent of wavelength: absorption by anything else
   std::vector<Pigment> pigments = {};
   /// Aspect ratios: of the cuticle's undulations and of cell caps. They are the exponents of the lobes.
