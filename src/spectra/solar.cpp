@@ -1,30 +1,19 @@
 #include "spectra/solar.h"
 
-#include <array>
-#include <charconv>
 #include <vector>
 
+#include "spectra/csv_columns.h"
 #include "spectra/data_files.h"
 #include "spectra/tabulated.h"
 
 namespace frond {
 namespace {
 
-constexpr size_t kColumns = 4;  // wavelength_nm, extraterrestrial, global, direct
-
 /// Returns a column of solar.csv as a spectrum over the wavelengths in column 0.
 SpectrumPtr column(size_t index) {
+  const auto columns = csv_columns(solar_csv);  // wavelength_nm, extraterrestrial, global, direct
   std::vector<SpectrumPoint> points;
-  for (size_t begin = 0; begin < solar_csv.size();) {
-    const size_t end = solar_csv.find('\n', begin);
-    const std::string_view line = solar_csv.substr(begin, end - begin);
-    begin = end == std::string_view::npos ? solar_csv.size() : end + 1;
-    if (line.empty() || line.front() == '#') continue;
-    std::array<double, kColumns> values{};
-    const char* at = line.data();
-    for (double& value : values) at = std::from_chars(at, line.data() + line.size(), value).ptr + 1;
-    points.push_back({values[0], values[index]});
-  }
+  for (size_t i = 0; i < columns[0].size(); ++i) points.push_back({columns[0][i], columns[index][i]});
   return make_tabulated(points);
 }
 
