@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "core/plugin.h"
 #include "core/shape.h"
@@ -50,6 +51,11 @@ class Light {
   virtual std::optional<LightBounds> bounds() const { return {}; }
   /// Emission spectrum up to a factor; for a light with an image, the spectrum of its white.
   virtual const Spectrum& emission() const = 0;
+  /// Direction toward the sun that an extended light contains, unit; empty if it has none. Most of such a light can
+  /// come from a solid angle so small that only `sample` finds it. Delta lights leave it empty.
+  virtual std::optional<Vec3> sun() const { return {}; }
+  /// Line for the log: physical quantities of the light that its parameters do not state. Empty if there are none.
+  virtual std::string summary() const { return {}; }
   /// Wavelengths (nm) for which there are emission data.
   Interval range_nm() const { return emission().range_nm(); }
 

@@ -101,7 +101,8 @@ class Incoming {
       : lights_(lights), irradiance_(lights, wavelengths) {
     const SampledWavelengths lambda = wavelengths.sample(0.5f);
     for (const Light* light : lights) {
-      const auto* sky = dynamic_cast<const EnvironmentLight*>(light);
+      // Directions sampled with the cosine would hardly ever find a sun's disc.
+      const auto* sky = light->sun() ? nullptr : dynamic_cast<const EnvironmentLight*>(light);
       evenly_.push_back(sky && spread(*light, sky, lambda) < spread(*light, nullptr, lambda) ? sky : nullptr);
     }
   }

@@ -113,11 +113,15 @@ std::optional<Vec3> direction_to_sun(std::span<const Light* const> lights) {
   std::optional<Vec3> sun;
   const std::vector<double> any{550};
   for (const Light* light : lights) {
-    if (!light->is_distant() || !light->is_delta()) continue;
-    const auto sample = light->sample({}, {}, lanes_at(any));
-    if (!sample || sample->wi.z <= 0) continue;
+    if (!light->is_distant()) continue;
+    std::optional<Vec3> toward = light->sun();
+    if (light->is_delta()) {
+      const auto sample = light->sample({}, {}, lanes_at(any));
+      if (sample) toward = sample->wi;
+    }
+    if (!toward || toward->z <= 0) continue;
     if (sun) return {};
-    sun = sample->wi;
+    sun = toward;
   }
   return sun;
 }

@@ -34,8 +34,8 @@ class HorizontalIrradiance {
   std::vector<double> shares_, bands_;
 };
 
-/// Returns the direction toward the scene's only directional light, if it is above the horizon; nullopt if there is
-/// none or more than one.
+/// Returns the direction toward the scene's only directional light or sun (Light::sun), if it is above the horizon;
+/// nullopt if there is none or more than one.
 std::optional<Vec3> direction_to_sun(std::span<const Light* const> lights);
 
 }  // namespace frond

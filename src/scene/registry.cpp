@@ -12,7 +12,8 @@ extern const SamplerInfo independent_sampler, padded_sobol_sampler;
 extern const FilterInfo box_filter, triangle_filter, gaussian_filter, mitchell_filter, sinc_filter;
 extern const ShapeInfo triangle_mesh_shape, ply_mesh_shape, sphere_shape, disk_shape, cylinder_shape,
     bilinear_mesh_shape, curve_shape, loop_subdivision_shape, instances_shape;
-extern const LightInfo infinite_light, distant_light, point_light, spot_light, projection_light, goniometric_light;
+extern const LightInfo infinite_light, distant_light, point_light, spot_light, projection_light, goniometric_light,
+    sky_light;
 extern const AreaLightInfo diffuse_area_light;
 extern const FloatTextureInfo constant_float_texture, scale_float_texture, mix_float_texture, image_float_texture,
     instance_float_texture, bilerp_float_texture, checkerboard_float_texture, direction_mix_float_texture,
@@ -30,8 +31,8 @@ constexpr std::array kFilters{&box_filter, &triangle_filter, &gaussian_filter, &
 constexpr std::array kShapes{&triangle_mesh_shape, &ply_mesh_shape,         &sphere_shape,
                              &disk_shape,          &cylinder_shape,         &bilinear_mesh_shape,
                              &curve_shape,         &loop_subdivision_shape, &instances_shape};
-constexpr std::array kLights{&infinite_light, &distant_light,    &point_light,
-                             &spot_light,     &projection_light, &goniometric_light};
+constexpr std::array kLights{&infinite_light,   &distant_light,     &point_light, &spot_light,
+                             &projection_light, &goniometric_light, &sky_light};
 constexpr std::array kAreaLights{&diffuse_area_light};
 constexpr std::array kFloatTextures{&constant_float_texture,      &scale_float_texture, &mix_float_texture,
                                     &direction_mix_float_texture, &image_float_texture, &bilerp_float_texture,

@@ -306,6 +306,7 @@ class SceneBuilder {
         check_coordinates(p, "this light reaches to", where);
         reach_ = std::max(reach_, largest_coordinate(p));
       }
+    if (const std::string summary = light->summary(); !summary.empty()) log_.info(summary);
     const Light* const added = light.get();
     if (period_) light_where_.emplace(added, where);
     lights_->add(std::move(light));

@@ -18,7 +18,7 @@ std::optional<double> stated_total(const Params& p, std::string_view name) {
 float light_scale(const Params& p, std::string_view total, double unit_total) {
   const std::optional<double> stated = stated_total(p, total);
   if (!stated) return float(p.real("scale"));
-  if (!(unit_total > 0)) fail(p.where(total), "the image is black: it has no {} to scale", total);
+  if (!(unit_total > 0)) fail(p.where(total), "the light is black: it has no {} to scale", total);
   return float(p.real("scale") * *stated / unit_total);
 }
 
