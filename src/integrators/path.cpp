@@ -306,7 +306,7 @@ class PathTracer final : public Tracer {
       set_shadow_ray(point.hit, *sample, shadow_rays_[i]);
       shadow_keys_[i] = path.key.of(Use::shadow_ray);
       lit.add(i);
-      alike = alike && (light->is_delta() || !light->is_distant());
+      alike = alike && (light->is_delta() || !light->is_distant() || light->sun());
     }
     at_ = nullptr;
     bundle_->traced += lit.size();
@@ -323,7 +323,7 @@ class PathTracer final : public Tracer {
     return dark;
   }
 
-  /// The same in packets, for coherent rays: toward delta or nearby lights from the first hit.
+  /// The same in packets, for coherent rays: toward delta or nearby lights, or mostly to a sun, from the first hit.
   uint32_t occluded_alike(const LaneList& lit) const {
     uint32_t dark = 0;
     for (size_t first = 0; first < kMost; first += kWidth) {

@@ -9,7 +9,6 @@
 #include "scene/lights/sky_shape.h"
 #include "scene/math/direction_map.h"
 #include "scene/math/distribution.h"
-#include "scene/math/equal_area.h"
 #include "spectra/cie.h"
 #include "spectra/spectrl2.h"
 #include "spectra/tabulated.h"
@@ -22,13 +21,50 @@ constexpr double kSunRadius = 0.2666 * kRadians;  ///< at the mean distance
 constexpr double kOvercastTransmission = 0.25;  ///< Kasten and Czeplak 1980, cloud cover 8/8: of the clear sky's global
 constexpr int kCieOvercast = 1;                 ///< CIE standard overcast sky
 
-/// Equal-area map from the unit square to the upper hemisphere: to the diamond that holds this half of
-/// sphere_from_square's square.
-Vec3 hemisphere_from_square(Vec2 uv) { return sphere_from_square({(uv.x + uv.y) / 2, (uv.x - uv.y + 1) / 2}); }
-Vec2 square_from_hemisphere(const Vec3& d) {
-  const Vec2 at = square_from_sphere(d);
-  return {at.x + at.y - 0.5f, at.x - at.y + 0.5f};
+/// Octahedral map from the unit square to the upper hemisphere. It is not equal-area, but needs no arc tangent.
+Vec3 hemisphere_from_square(Vec2 uv) {
+  const float x = uv.x + uv.y - 1, y = uv.x - uv.y;
+  return normalize_any(Vec3{x, y, std::max(0.f, 1 - std::abs(x) - std::abs(y))});
 }
+/// Returns the sum of a direction's absolute coordinates. The map's solid angle per area is twice its cube.
+float octahedral_norm(const Vec3& d) { return std::abs(d.x) + std::abs(d.y) + d.z; }
+float solid_angle_per_area(float norm) { return 2 * norm * norm * norm; }
+
+/// Piecewise constant density over the square that is mapped to the hemisphere.
+class HemisphereTable {
+ public:
+  /// `weights`: row by row, kSide in each.
+  explicit HemisphereTable(const std::vector<float>& weights) : cells_(weights, kSide) {
+    for (size_t i = 0; i < weights.size(); ++i) densities_.push_back(cells_.pdf(center(i)));
+  }
+  /// Returns the point of the square at a place in a cell; `offset` in [0, 1)^2.
+  static Vec2 point(size_t cell, Vec2 offset) {
+    return {(float(cell % kSide) + offset.x) / kSide, (float(cell / kSide) + offset.y) / kSide};
+  }
+  static constexpr int kSide = 64;  ///< about 2 degrees
+
+  struct Sample {
+    Vec3 direction;
+    float pdf;  ///< per solid angle
+  };
+  Sample sample(Vec2 u) const {
+    const auto [uv, density] = cells_.sample(u);
+    const Vec3 d = hemisphere_from_square(uv);
+    return {d, density / solid_angle_per_area(octahedral_norm(d))};
+  }
+  /// Returns the density per solid angle; `d.z` > 0.
+  float pdf(const Vec3& d) const {
+    const float norm = octahedral_norm(d), x = d.x / norm, y = d.y / norm;
+    const auto cell = [](float at) { return std::min(size_t(std::max(0.f, at * (kSide / 2.f))), size_t(kSide - 1)); };
+    return densities_[cell(x - y + 1) * kSide + cell(x + y + 1)] / solid_angle_per_area(norm);
+  }
+
+ private:
+  static Vec2 center(size_t cell) { return point(cell, {0.5f, 0.5f}); }
+
+  Distribution2D cells_;
+  std::vector<float> densities_;  ///< per area of the square, by cell
+};
 
 /// The disc of the sun, of uniform radiance.
 class SunDisc {
@@ -37,7 +73,7 @@ class SunDisc {
   SunDisc(const Vec3& toward, double radius)
       : frame_(Frame::around(toward)),
         sine_(float(std::sin(radius))),
-        chord2_(float(4 * std::pow(std::sin(radius / 2), 2))),
+        chord2_(float(4 * std::pow(std::sin(radius / 2), 2) * (1 + kRounding))),
         density_(float(1 / (2 * kPiD * (1 - std::cos(radius))))) {}
 
   const Vec3& toward() const { return frame_.z; }
@@ -46,13 +82,14 @@ class SunDisc {
   /// Samples the disc. The density over solid angle varies by 1e-5 and counts as constant.
   Vec3 sample(Vec2 u) const {
     const float r = sine_ * std::sqrt(u.x), phi = 2 * kPi * u.y;
-    return normalize_any(frame_.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)}));
+    return frame_.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)});
   }
   float density() const { return density_; }
   /// Projected solid angle on a plane that faces the sun: irradiance over radiance.
   double projected() const { return kPiD * double(sine_) * double(sine_); }
 
  private:
+  static constexpr double kRounding = 2e-5;  ///< samples of the edge are on the disc
   Frame frame_;
   float sine_, chord2_, density_;
 };
@@ -138,6 +175,63 @@ struct ShapeIntegrals {
   }
 };
 
+/// Spectra of the sun's disc and of the sky, linear between the same points. A look-up takes constant time, while that
+/// of a TabulatedSpectrum, a binary search for each lane and spectrum, took longer than all other calls of the light.
+class SkySpectra {
+ public:
+  struct Sample {
+    SampledSpectrum sky, disc;
+  };
+  SkySpectra() = default;
+  SkySpectra(const SkyModel& model, double sky_factor, double disc_factor) : first_(float(model.nm.front())) {
+    for (size_t i = 0; i < model.nm.size(); ++i)
+      points_.push_back({float(model.nm[i]), float(model.diffuse[i] * sky_factor),
+                         float(model.direct_normal[i] * disc_factor),
+                         i + 1 < model.nm.size() ? float(1 / (model.nm[i + 1] - model.nm[i])) : 0});
+    const auto bins = size_t((model.nm.back() - model.nm.front()) / kBin_nm) + 1;
+    for (size_t bin = 0, i = 0; bin < bins; ++bin) {
+      while (i + 2 < points_.size() && double(points_[i + 1].nm) <= model.nm.front() + double(bin) * kBin_nm) ++i;
+      guide_.push_back(uint8_t(i));
+    }
+  }
+  Sample at(const SampledWavelengths& lambda) const {
+    if (lambda.count == kLanes) {
+      // Not written lane by lane, since the load of the register would then wait for the stores (HACKING.md).
+      const Values a = at(lambda.nm[0]), b = at(lambda.nm[1]), c = at(lambda.nm[2]), d = at(lambda.nm[3]);
+      return {SampledSpectrum(Float4{a.sky, b.sky, c.sky, d.sky}),
+              SampledSpectrum(Float4{a.disc, b.disc, c.disc, d.disc})};
+    }
+    Sample s;
+    for (int lane = 0; lane < lambda.count; ++lane) {
+      const Values v = at(lambda.nm[size_t(lane)]);
+      s.sky[lane] = v.sky, s.disc[lane] = v.disc;
+    }
+    return s;
+  }
+
+ private:
+  struct Values {
+    float sky, disc;
+  };
+  Values at(float lambda_nm) const {
+    const float nm = std::clamp(lambda_nm, first_, points_.back().nm);
+    size_t i = guide_[size_t((nm - first_) * float(1 / kBin_nm))];
+    if (nm >= points_[i + 1].nm && i + 2 < points_.size()) ++i;  // at most one point in a bin
+    const Point &low = points_[i], &high = points_[i + 1];
+    const float t = (nm - low.nm) * low.per_nm;
+    return {low.sky + t * (high.sky - low.sky), low.disc + t * (high.disc - low.disc)};
+  }
+
+  static constexpr double kBin_nm = 2.5;  ///< less than the distance of any two points
+  struct Point {
+    float nm, sky, disc;
+    float per_nm;  ///< 1 / distance to the next point
+  };
+  float first_ = 0;
+  std::vector<Point> points_;
+  std::vector<uint8_t> guide_;  ///< the last point up to the begin of each bin
+};
+
 SpectrumPtr spectrum(const SkyModel& model, const std::vector<double>& values, double factor) {
   std::vector<SpectrumPoint> points;
   for (size_t i = 0; i < values.size(); ++i) points.push_back({model.nm[i], values[i] * factor});
@@ -159,9 +253,9 @@ class SkyLight final : public EnvironmentLight {
   }
   SampledSpectrum radiance(const Vec3&, const Vec3& direction, const SampledWavelengths& lambda) const override {
     const float distance2 = distance2_to_sun(direction);
-    SampledSpectrum result = sky_radiance(direction, distance2, lambda);
-    if (has_sun_ && disc_.contains(distance2)) result += disc_radiance_->sample(lambda);
-    return result;
+    const SkySpectra::Sample spectra = spectra_.at(lambda);
+    const SampledSpectrum sky = spectra.sky * relative_radiance(direction, distance2);
+    return is_sun(distance2) ? sky + spectra.disc : sky;
   }
   float pdf(const Vec3&, const Vec3& direction) const override { return density(by_irradiance_, direction); }
   float competing_pdf(const Vec3&, const Vec3& direction) const override { return density(by_excess_, direction); }
@@ -174,22 +268,21 @@ class SkyLight final : public EnvironmentLight {
   std::string summary() const override { return summary_; }
 
  private:
-  static constexpr float kPerHemisphere = 0.5f * kInvPi;
-  static constexpr int kTable = 64;  ///< cells along each side of the tables, about 2 degrees
-
   /// Share of the sun among samples, and distribution of the others over the sky.
   struct Sampling {
     float sun;
-    Distribution2D sky;
+    HemisphereTable sky;
+    float on_disc = 0;  ///< density on the disc
   };
 
   SkyLight(const Params& p, const Transform& world_from_light, const SkyModel& model)
       : SkyLight(p, DirectionMap(world_from_light), model, ShapeIntegrals(model.shape, model.sun_zenith_deg())) {}
   SkyLight(const Params& p, const DirectionMap& directions, const SkyModel& model, const ShapeIntegrals& integrals)
-      : shape_(model.shape),
+      : tables_(model.shape),
         frame_(Frame::along(directions.to_world({0, 0, 1}), directions.to_world(to_float(model.toward_sun)))),
         disc_(directions.to_world(to_float(model.toward_sun)), model.sun_radius),
         has_sun_(model.direct_total() > 0),
+        at_sun_(relative_radiance(disc_.toward(), 0)),
         by_irradiance_(sampling_by_irradiance(model)),
         by_excess_(sampling_by_excess(model, integrals)) {
     if (!directions.is_rotation()) fail(p.where(), "the light's transform is not a rotation: it distorts the sky");
@@ -202,8 +295,8 @@ class SkyLight final : public EnvironmentLight {
     const double scale = double(light_scale(p, "illuminance", photometric(*spectrum(model, total, 1))));
     total_ = spectrum(model, total, scale);
     scalar_illuminance_ = photometric(*spectrum(model, scalar, scale));
-    disc_radiance_ = spectrum(model, model.direct_normal, scale / disc_.projected());
-    sky_ = spectrum(model, model.diffuse, scale / integrals.irradiance);
+    spectra_ = SkySpectra(model, scale / integrals.irradiance, scale / disc_.projected());
+    for (Sampling* sampling : {&by_irradiance_, &by_excess_}) sampling->on_disc = sun_density(*sampling);
     const double direct = scale * model.direct_total(), diffuse = scale * model.diffuse_total();
     summary_ = fmt::format(
         "sky: {}, sun {:.4g} degrees above the horizon; irradiance of a horizontal plane from 300 to 2500 nm: total "
@@ -212,25 +305,21 @@ class SkyLight final : public EnvironmentLight {
         photometric(*total_) / kPiD);
   }
 
-  /// Returns the mean of a function of cosine and relative radiance over each cell of a table.
+  /// Returns the integral of a function of cosine and relative radiance over each cell of a table, up to a factor.
   template <class Weight>
   static std::vector<float> cells(const SkyModel& model, const Weight& weight) {
     constexpr int kPoints = 3;  // for each cell, along each side
     const double zenith = model.sun_zenith_deg() * kRadians;
     const Vec3 sun = to_float(Vec3d{std::sin(zenith), 0, std::cos(zenith)});
-    std::vector<float> means;
-    for (int y = 0; y < kTable; ++y)
-      for (int x = 0; x < kTable; ++x) {
-        float sum = 0;
-        for (int k = 0; k < kPoints * kPoints; ++k) {
-          const Vec2 at{(float(x) + (float(k % kPoints) + 0.5f) / kPoints) / kTable,
-                        (float(y) + (float(k / kPoints) + 0.5f) / kPoints) / kTable};
-          const Vec3 d = hemisphere_from_square(at);
-          if (d.z > 0) sum += weight(d.z, model.shape.radiance(d.z, angle_of(dot(d - sun, d - sun))));
-        }
-        means.push_back(sum / (kPoints * kPoints));
+    std::vector<float> sums(size_t(HemisphereTable::kSide * HemisphereTable::kSide));
+    for (size_t cell = 0; cell < sums.size(); ++cell)
+      for (int k = 0; k < kPoints * kPoints; ++k) {
+        const Vec2 offset{(float(k % kPoints) + 0.5f) / kPoints, (float(k / kPoints) + 0.5f) / kPoints};
+        const Vec3 d = hemisphere_from_square(HemisphereTable::point(cell, offset));
+        const float angle = 2 * std::asin(std::min(1.f, length(d - sun) / 2));
+        sums[cell] += weight(d.z, model.shape.radiance(d.z, angle)) * solid_angle_per_area(octahedral_norm(d));
       }
-    return means;
+    return sums;
   }
   /// Returns the sun's share of samples: that of its light, averaged over the wavelengths, but leaves some for each.
   /// The factors convert direct normal and diffuse irradiance to what is compared.
@@ -241,67 +330,77 @@ class SkyLight final : public EnvironmentLight {
       const double direct = direct_factor * model.direct_normal[i], diffuse = diffuse_factor * model.diffuse[i];
       if (direct > 0) share += direct / (direct + diffuse) / double(model.nm.size());
     }
-    return float(std::clamp(share, kLeastShare, 1 - kLeastShare));
+    return float(std::clamp(share, kLeastSun, 1 - kLeastSky));
   }
   static Sampling sampling_by_irradiance(const SkyModel& model) {
     return {sun_share(model, model.toward_sun.z, 1),
-            Distribution2D(cells(model, [](float cosine, float radiance) { return cosine * radiance; }), kTable)};
+            HemisphereTable(cells(model, [](float cosine, float radiance) { return cosine * radiance; }))};
   }
   /// Sun and sky count by the light that arrives from all directions, since surfaces may face any.
   static Sampling sampling_by_excess(const SkyModel& model, const ShapeIntegrals& integrals) {
-    std::vector<float> radiances = cells(model, [](float, float radiance) { return radiance; });
-    double mean = 0, excess = 0;
-    for (const float r : radiances) mean += double(r) / double(radiances.size());
-    for (float& r : radiances) {
-      r = std::max(0.f, r - float(mean));
-      excess += double(r) / double(radiances.size());
-    }
-    const double covered = mean > 0 ? excess / mean : 0;
-    return {sun_share(model, 1, covered * integrals.sphere / integrals.irradiance), Distribution2D(radiances, kTable)};
+    const auto mean = float(integrals.sphere / (2 * kPiD));
+    const auto sum = [&](const auto& weight) {
+      double total = 0;
+      for (const float w : cells(model, weight)) total += double(w);
+      return total;
+    };
+    const auto excess = [mean](float, float radiance) { return std::max(0.f, radiance - mean); };
+    const double covered = sum(excess) / sum([](float, float radiance) { return radiance; });
+    return {sun_share(model, 1, covered * integrals.sphere / integrals.irradiance),
+            HemisphereTable(cells(model, excess))};
   }
 
-  /// Returns the angle of which `distance2` is the squared chord on the unit sphere.
-  static float angle_of(float distance2) { return 2 * std::asin(std::min(1.f, std::sqrt(distance2) / 2)); }
   float distance2_to_sun(const Vec3& direction) const {
     const Vec3 d = direction - disc_.toward();
     return dot(d, d);
   }
-  SampledSpectrum sky_radiance(const Vec3& direction, float distance2, const SampledWavelengths& lambda) const {
+  bool is_sun(float distance2) const { return has_sun_ && disc_.contains(distance2); }
+  /// Returns the relative radiance of the sky without the sun.
+  float relative_radiance(const Vec3& direction, float distance2) const {
     const float z = dot(direction, frame_.z);
-    if (!(z > 0)) return {};
-    return sky_->sample(lambda) * shape_.radiance(z, angle_of(distance2));
+    return z > 0 ? tables_.radiance(z, distance2) : 0;
+  }
+  float sky_density(const Sampling& sampling, const Vec3& direction) const {
+    const Vec3 local = frame_.to_local(direction);
+    if (!(local.z > 0)) return 0;
+    return (1 - sampling.sun) * sampling.sky.pdf(local);
+  }
+  /// On the disc, the sky's part, of the order of 1e-4, is that of its centre.
+  float sun_density(const Sampling& sampling) const {
+    return sampling.sun * disc_.density() + sky_density(sampling, disc_.toward());
   }
   float density(const Sampling& sampling, const Vec3& direction) const {
-    float density = has_sun_ && disc_.contains(distance2_to_sun(direction)) ? sampling.sun * disc_.density() : 0;
-    const Vec3 local = frame_.to_local(direction);
-    if (local.z > 0) density += (1 - sampling.sun) * sampling.sky.pdf(square_from_hemisphere(local)) * kPerHemisphere;
-    return density;
+    return is_sun(distance2_to_sun(direction)) ? sampling.on_disc : sky_density(sampling, direction);
   }
   /// Returns nullopt if no light comes from the sampled direction.
   std::optional<LightSample> sample_from(const Sampling& sampling, Vec2 u, const SampledWavelengths& lambda) const {
-    Vec3 wi;
+    const SkySpectra::Sample spectra = spectra_.at(lambda);
     if (u.x < sampling.sun) {
-      wi = disc_.sample({stretched(u.x, 0, sampling.sun), u.y});
-    } else {
-      const auto at = sampling.sky.sample({stretched(u.x, sampling.sun, 1), u.y});
-      wi = frame_.to_world(hemisphere_from_square(at.uv));
+      const Vec3 wi = disc_.sample({stretched(u.x, 0, sampling.sun), u.y});
+      return LightSample{spectra.disc + spectra.sky * at_sun_, wi, INFINITY, sampling.on_disc};
     }
-    const SampledSpectrum arriving = radiance({}, wi, lambda);
-    if (arriving.is_black()) return {};
-    const float pdf = density(sampling, wi);
-    if (!(pdf > 0)) return {};
+    const auto [local, density] = sampling.sky.sample({stretched(u.x, sampling.sun, 1), u.y});
+    const Vec3 wi = frame_.to_world(local);
+    const float distance2 = distance2_to_sun(wi);
+    const bool on_disc = is_sun(distance2);
+    SampledSpectrum arriving = spectra.sky * relative_radiance(wi, distance2);
+    if (on_disc) arriving += spectra.disc;
+    if (arriving.is_black() || !(density > 0)) return {};
+    const float pdf = on_disc ? sampling.on_disc : (1 - sampling.sun) * density;
     return LightSample{arriving, wi, INFINITY, pdf};
   }
 
-  static constexpr double kLeastShare = 0.1;  ///< of the sun and of the sky among samples: one may be in shadow
+  // Least shares of the samples: the sun or the bright part of the sky may be in shadow. Scattered rays find the sky,
+  // too.
+  static constexpr double kLeastSun = 0.1, kLeastSky = 0.03;
 
-  SkyShape shape_;
+  SkyTables tables_;
   Frame frame_;  ///< world space: z is up, x toward the azimuth of the sun
   SunDisc disc_;
   bool has_sun_;
+  float at_sun_;  ///< relative radiance of the sky at the centre of the sun
   Sampling by_irradiance_, by_excess_;
-  SpectrumPtr disc_radiance_;  ///< W m^-2 sr^-1 nm^-1
-  SpectrumPtr sky_;            ///< the same for shape_ 1
+  SkySpectra spectra_;  ///< W m^-2 sr^-1 nm^-1; of the sky, where its relative radiance is 1
   SpectrumPtr total_;
   double scalar_illuminance_ = 0;  ///< integral of the luminance over all directions
   std::string summary_;

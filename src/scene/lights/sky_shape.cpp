@@ -88,6 +88,14 @@ constexpr double kCie[kCieSkies][5] = {
 
 }  // namespace
 
+SkyTables::SkyTables(const SkyShape& shape) {
+  for (size_t i = 0; i <= kCells; ++i) {
+    const float x = float(i) / kCells;
+    gradation_[i] = shape.gradation(x);
+    indicatrix_[i] = shape.indicatrix(2 * std::asin(x));
+  }
+}
+
 SkyShape perez_sky(double sun_zenith_deg, double direct_normal, double diffuse) {
   constexpr double kSolarConstant = 1361;                                               // W/m^2
   constexpr double kLeastBrightness = 0.2, kFromClearness = 1.065, kToClearness = 2.8;  // see the header

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/vec.h"
@@ -16,13 +17,42 @@ struct SkyShape {
   float c, d, e;  ///< d: 1/rad
   float offset = 0;
 
-  /// Returns the relative radiance of a direction above the horizon. `sun_angle`: gamma, rad.
-  float radiance(float cos_zenith, float sun_angle) const {
-    const float cos_gamma = std::cos(sun_angle);
-    const float gradation = 1 + a * std::exp(b / cos_zenith);
-    const float indicatrix = 1 + c * (std::exp(d * sun_angle) - offset) + e * cos_gamma * cos_gamma;
-    return std::max(0.f, gradation) * std::max(0.f, indicatrix);
+  /// Returns the gradation at a cosine of the zenith angle in [0, 1].
+  float gradation(float cos_zenith) const {
+    const float at_horizon = b < 0 ? 0.f : 1.f;
+    return std::max(0.f, 1 + a * (cos_zenith > 0 ? std::exp(b / cos_zenith) : at_horizon));
   }
+  /// Returns the indicatrix. `sun_angle`: gamma, rad.
+  float indicatrix(float sun_angle) const {
+    const float cosine = std::cos(sun_angle);
+    return std::max(0.f, 1 + c * (std::exp(d * sun_angle) - offset) + e * cosine * cosine);
+  }
+  /// Returns the relative radiance of a direction above the horizon.
+  float radiance(float cos_zenith, float sun_angle) const { return gradation(cos_zenith) * indicatrix(sun_angle); }
+};
+
+/// Tables of a shape, for evaluation without transcendental functions; within 1e-3 of it.
+class SkyTables {
+ public:
+  explicit SkyTables(const SkyShape& shape);
+  /// Returns the relative radiance of a direction above the horizon. `distance2`: squared distance of its unit vector from
+  /// that toward the sun.
+  float radiance(float cos_zenith, float distance2) const {
+    return at(gradation_, cos_zenith) * at(indicatrix_, std::sqrt(distance2) / 2);
+  }
+
+ private:
+  static constexpr int kCells = 1024;
+  using Table = std::array<float, kCells + 1>;
+  /// Interpolates linearly; `x` in [0, 1], except for rounding.
+  static float at(const Table& table, float x) {
+    const float place = std::min(x, 1.f) * kCells;
+    const auto i = std::min(size_t(place), size_t(kCells - 1));
+    return table[i] + (place - float(i)) * (table[i + 1] - table[i]);
+  }
+
+  Table gradation_;   ///< over the cosine of the zenith angle
+  Table indicatrix_;  ///< over half the distance
 };
 
 /// Returns the all-weather sky of Perez, Seals and Michalsky (1993) for a zenith angle of the sun below 90 degrees. The
