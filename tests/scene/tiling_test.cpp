@@ -117,7 +117,7 @@ TEST(Tiling, BadPeriodsAreRefused) {
   // A ray would visit each of the cells.
   EXPECT_NE(error("Option \"float period\" [1 1]\n", "Shape \"sphere\" \"float radius\" 1e4").find("periods wide: 64"),
             std::string::npos);
-  const std::string outside = "takes light from outside alone: \"distant\", or \"infinite\" without a portal";
+  const std::string outside = "takes light from outside alone: \"distant\", \"sky\", or \"infinite\" without a portal";
   const std::string two = "Option \"float period\" [1 1]\n", even = "LightSource \"infinite\"\n";
   for (const char* light :
        {"LightSource \"point\"", "LightSource \"infinite\" \"point3 portal\" [0 0 0 0 1 0 1 1 0 1 0 0]",

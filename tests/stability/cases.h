@@ -26,5 +26,7 @@ Theme instruments();
 Theme tails();
 /// Scenes: tilted shading normals, objects far from the origin.
 Theme scenes();
+/// The light "sky": positions of the sun, ends of the ranges of its atmosphere.
+Theme skies();
 
 }  // namespace frond::stability

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::string_view kHowToRead = R"(# Limits of the methods
 
-For readers who need to know what frond's leaf methods do at the ends of their parameter ranges, at grazing angles and
-with wrong input.
+For readers who need to know what frond's leaf methods and its sky do at the ends of their parameter ranges, at grazing
+angles and with wrong input.
 
 ```sh
 scripts/stability
@@ -63,6 +63,8 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"path, simplified", "the same with `leaf_simplified`"},
     {"path, solved leaf", "the same with `leaf_solved`"},
     {"path, lambert", "the same with `leaf_lambert`, whose R and T are those of 8 degrees"},
+    {"sky", "light `sky`: radiance and densities over all directions, and 20,000 samples"},
+    {"path, sky", "the path integrator, rendering a white plane that faces up, under the light `sky`"},
 }};
 
 /// Escapes the characters that Markdown interprets.

@@ -9,7 +9,7 @@
 
 namespace frond::stability {
 
-/// Methods that compute a leaf's optics: the columns of the page.
+/// Methods that compute a leaf's optics, and the sky light: the columns of the page.
 enum class Method : uint8_t {
   walk_analog,
   walk_weighted,
@@ -31,12 +31,14 @@ enum class Method : uint8_t {
   path_simplified,
   path_solved,
   path_lambert,
+  sky_light,
+  path_sky,
 };
 struct MethodName {
   std::string_view name, doc;
 };
 const MethodName& describe(Method method);
-inline constexpr size_t kMethods = 20;
+inline constexpr size_t kMethods = 22;
 
 /// Result of one method in one case.
 struct Cell {

@@ -5,10 +5,10 @@
 #include "core/error.h"
 #include "core/light.h"
 #include "core/sampling.h"
+#include "scene/lights/hemisphere_table.h"
 #include "scene/lights/light_params.h"
 #include "scene/lights/sky_shape.h"
 #include "scene/math/direction_map.h"
-#include "scene/math/distribution.h"
 #include "spectra/cie.h"
 #include "spectra/spectrl2.h"
 #include "spectra/tabulated.h"
@@ -20,51 +20,6 @@ constexpr double kPiD = std::numbers::pi, kRadians = kPiD / 180;
 constexpr double kSunRadius = 0.2666 * kRadians;  ///< at the mean distance
 constexpr double kOvercastTransmission = 0.25;  ///< Kasten and Czeplak 1980, cloud cover 8/8: of the clear sky's global
 constexpr int kCieOvercast = 1;                 ///< CIE standard overcast sky
-
-/// Octahedral map from the unit square to the upper hemisphere. It is not equal-area, but needs no arc tangent.
-Vec3 hemisphere_from_square(Vec2 uv) {
-  const float x = uv.x + uv.y - 1, y = uv.x - uv.y;
-  return normalize_any(Vec3{x, y, std::max(0.f, 1 - std::abs(x) - std::abs(y))});
-}
-/// Returns the sum of a direction's absolute coordinates. The map's solid angle per area is twice its cube.
-float octahedral_norm(const Vec3& d) { return std::abs(d.x) + std::abs(d.y) + d.z; }
-float solid_angle_per_area(float norm) { return 2 * norm * norm * norm; }
-
-/// Piecewise constant density over the square that is mapped to the hemisphere.
-class HemisphereTable {
- public:
-  /// `weights`: row by row, kSide in each.
-  explicit HemisphereTable(const std::vector<float>& weights) : cells_(weights, kSide) {
-    for (size_t i = 0; i < weights.size(); ++i) densities_.push_back(cells_.pdf(center(i)));
-  }
-  /// Returns the point of the square at a place in a cell; `offset` in [0, 1)^2.
-  static Vec2 point(size_t cell, Vec2 offset) {
-    return {(float(cell % kSide) + offset.x) / kSide, (float(cell / kSide) + offset.y) / kSide};
-  }
-  static constexpr int kSide = 64;  ///< about 2 degrees
-
-  struct Sample {
-    Vec3 direction;
-    float pdf;  ///< per solid angle
-  };
-  Sample sample(Vec2 u) const {
-    const auto [uv, density] = cells_.sample(u);
-    const Vec3 d = hemisphere_from_square(uv);
-    return {d, density / solid_angle_per_area(octahedral_norm(d))};
-  }
-  /// Returns the density per solid angle; `d.z` > 0.
-  float pdf(const Vec3& d) const {
-    const float norm = octahedral_norm(d), x = d.x / norm, y = d.y / norm;
-    const auto cell = [](float at) { return std::min(size_t(std::max(0.f, at * (kSide / 2.f))), size_t(kSide - 1)); };
-    return densities_[cell(x - y + 1) * kSide + cell(x + y + 1)] / solid_angle_per_area(norm);
-  }
-
- private:
-  static Vec2 center(size_t cell) { return point(cell, {0.5f, 0.5f}); }
-
-  Distribution2D cells_;
-  std::vector<float> densities_;  ///< per area of the square, by cell
-};
 
 /// The disc of the sun, of uniform radiance.
 class SunDisc {
@@ -85,7 +40,7 @@ class SunDisc {
     return frame_.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)});
   }
   float density() const { return density_; }
-  /// Projected solid angle on a plane that faces the sun: irradiance over radiance.
+  /// Irradiance over radiance on a plane that faces the sun.
   double projected() const { return kPiD * double(sine_) * double(sine_); }
 
  private:
@@ -103,7 +58,9 @@ struct SkyModel {
   SkyShape shape{};
 
   explicit SkyModel(const Params& p);
-  bool is_black() const { return !(integral(nm, diffuse) > 0); }
+  /// Factor on the radiance of a disc that the horizon cuts: what remains gives SPECTRL2's irradiance on a horizontal
+  /// plane.
+  double horizon_factor() const;
   double sun_zenith_deg() const { return std::acos(std::clamp(toward_sun.z, -1.0, 1.0)) / kRadians; }
   /// Irradiance of the sun on a horizontal plane, W m^-2.
   double direct_total() const { return integral(nm, direct_normal) * std::max(0.0, toward_sun.z); }
@@ -136,7 +93,7 @@ SkyModel::SkyModel(const Params& p) : toward_sun(frond::toward_sun(p)), is_overc
   sun_radius = kSunRadius * std::sqrt(sun_distance_factor(air.day));
   const ClearSkyIrradiance clear = spectrl2(air);
   nm = clear.nm, direct_normal = clear.direct_normal, diffuse = clear.diffuse;
-  const bool is_night = zenith >= 90 || is_black();
+  const bool is_night = zenith >= 90 || !(direct_total() + diffuse_total() > 0);
   if (is_night)
     p.warn(p.given("sundirection") ? "sundirection" : "elevation",
            "the sun is not above the horizon: this light is black (twilight is not modelled)");
@@ -147,10 +104,18 @@ SkyModel::SkyModel(const Params& p) : toward_sun(frond::toward_sun(p)), is_overc
   }
   if (p.given("cietype"))
     shape = cie_sky(p.integer("cietype"));
-  else if (is_overcast || is_night)
+  else if (is_overcast || !(diffuse_total() > 0))
     shape = cie_sky(kCieOvercast);
   else
     shape = perez_sky(zenith, integral(nm, direct_normal), integral(nm, diffuse));
+}
+
+double SkyModel::horizon_factor() const {
+  const double t = toward_sun.z / std::sin(sun_radius);
+  if (!(t < 1) || t <= 0) return 1;
+  // Mean of max(0, t + y) over the unit disc; t for a whole disc.
+  const double mean = (t * (kPiD / 2 + std::asin(t)) + (2 + t * t) / 3 * std::sqrt(1 - t * t)) / kPiD;
+  return t / mean;
 }
 
 /// Returns the integrals over the upper hemisphere of a sky's shape: of its radiance times the cosine, and of its
@@ -252,6 +217,7 @@ class SkyLight final : public EnvironmentLight {
     return sample_from(by_excess_, u, lambda);
   }
   SampledSpectrum radiance(const Vec3&, const Vec3& direction, const SampledWavelengths& lambda) const override {
+    if (!(dot(direction, frame_.z) > 0)) return {};
     const float distance2 = distance2_to_sun(direction);
     const SkySpectra::Sample spectra = spectra_.at(lambda);
     const SampledSpectrum sky = spectra.sky * relative_radiance(direction, distance2);
@@ -295,7 +261,7 @@ class SkyLight final : public EnvironmentLight {
     const double scale = double(light_scale(p, "illuminance", photometric(*spectrum(model, total, 1))));
     total_ = spectrum(model, total, scale);
     scalar_illuminance_ = photometric(*spectrum(model, scalar, scale));
-    spectra_ = SkySpectra(model, scale / integrals.irradiance, scale / disc_.projected());
+    spectra_ = SkySpectra(model, scale / integrals.irradiance, scale * model.horizon_factor() / disc_.projected());
     for (Sampling* sampling : {&by_irradiance_, &by_excess_}) sampling->on_disc = sun_density(*sampling);
     const double direct = scale * model.direct_total(), diffuse = scale * model.diffuse_total();
     summary_ = fmt::format(
@@ -377,6 +343,7 @@ class SkyLight final : public EnvironmentLight {
     const SkySpectra::Sample spectra = spectra_.at(lambda);
     if (u.x < sampling.sun) {
       const Vec3 wi = disc_.sample({stretched(u.x, 0, sampling.sun), u.y});
+      if (!(dot(wi, frame_.z) > 0)) return {};
       return LightSample{spectra.disc + spectra.sky * at_sun_, wi, INFINITY, sampling.on_disc};
     }
     const auto [local, density] = sampling.sky.sample({stretched(u.x, sampling.sun, 1), u.y});
