@@ -213,7 +213,8 @@ class SceneBuilder {
       if (!light->is_distant()) {
         const auto known = light_where_.find(light);
         fail(known == light_where_.end() ? period_where_ : known->second,
-             "a scene with a \"period\" takes light from outside alone: \"distant\", \"sky\", or \"infinite\" without a portal");
+             "a scene with a \"period\" takes light from outside alone: \"distant\", \"sky\", or \"infinite\" without "
+             "a portal");
       }
   }
 

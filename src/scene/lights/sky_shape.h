@@ -35,8 +35,8 @@ struct SkyShape {
 class SkyTables {
  public:
   explicit SkyTables(const SkyShape& shape);
-  /// Returns the relative radiance of a direction above the horizon. `distance2`: squared distance of its unit vector from
-  /// that toward the sun.
+  /// Returns the relative radiance of a direction above the horizon. `distance2`: squared distance of its unit vector
+  /// from that toward the sun.
   float radiance(float cos_zenith, float distance2) const {
     return at(gradation_, cos_zenith) * at(indicatrix_, std::sqrt(distance2) / 2);
   }
