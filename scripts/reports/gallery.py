@@ -119,7 +119,7 @@ SHAPES["plymesh"] = f'Scale 14 14 14  Translate -0.045 0 0  Rotate -40 0 1 0  Ro
 LIGHTS = {
     "distant": 'LightSource "distant" "point3 from" [ -2 -3 4 ] "float scale" 3',
     "infinite": 'LightSource "infinite" "spectrum L" "stdillum-D65"',
-    "sky": 'LightSource "sky" "float elevation" 40 "float azimuth" 240 "float illuminance" 3',
+    "sky": 'LightSource "sky" "float elevation" 40 "float azimuth" 240 "float albedo" 0.3 "float illuminance" 3',
     "point": 'LightSource "point" "point3 from" [ -1.6 -1.6 2.2 ] "float scale" 12',
     "spot": 'LightSource "spot" "point3 from" [ -1.6 -1.6 3 ] "point3 to" [ 0 0 0.6 ] "float coneangle" 16 "float scale" 30',
     "projection": 'AttributeBegin\n  Translate -1.2 -3 3  Rotate -128 1 0 0  Rotate 20 0 1 0\n'

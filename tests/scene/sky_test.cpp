@@ -230,6 +230,15 @@ TEST(SkyLight, AnOvercastSkyIsAQuarterOfTheClearDayWithoutSun) {
   EXPECT_NEAR(double(sky.radiance({0, 0, 1})[1] / sky.radiance(direction(89.9 * kRadians, 0))[1]), 3, 0.03);
 }
 
+TEST(SkyLight, BelowTheHorizonIsALambertianGroundOfTheAlbedo) {
+  const Sky sky("\"float albedo\" 0.4 \"float scale\" 2");
+  const ClearSkyIrradiance e = spectrl2({.albedo = 0.4});
+  const auto i = size_t(std::ranges::find(e.nm, 550) - e.nm.begin());
+  const double expected = 2 * 0.4 / kPiD * (e.direct_normal[i] * std::cos(30 * kRadians) + e.diffuse[i]);
+  for (const Vec3& d : {Vec3{0, 0, -1}, Vec3{0.6f, 0, -0.8f}})
+    EXPECT_NEAR(double(sky.radiance(d)[1]), expected, 1e-4 * expected);
+}
+
 TEST(SkyLight, ItsTransformTurnsIt) {
   const Sky up_is_y("\"float elevation\" 40", "Rotate -90 1 0 0\n"), up_is_z("\"float elevation\" 40");
   for (const Vec3& d : {direction(0.2, 0.3), direction(1.2, 2), direction(50 * kRadians, 0)}) {

@@ -203,7 +203,7 @@ SpectrumPtr spectrum(const SkyModel& model, const std::vector<double>& values, d
   return make_tabulated(points);
 }
 
-/// Sun and clear sky, or overcast sky. Black below the horizon.
+/// Sun and clear sky, or overcast sky. Below the horizon is a Lambertian ground, which only scattered rays find.
 class SkyLight final : public EnvironmentLight {
  public:
   SkyLight(const Params& p, const Transform& world_from_light) : SkyLight(p, world_from_light, SkyModel(p)) {}
@@ -217,9 +217,9 @@ class SkyLight final : public EnvironmentLight {
     return sample_from(by_excess_, u, lambda);
   }
   SampledSpectrum radiance(const Vec3&, const Vec3& direction, const SampledWavelengths& lambda) const override {
-    if (!(dot(direction, frame_.z) > 0)) return {};
-    const float distance2 = distance2_to_sun(direction);
     const SkySpectra::Sample spectra = spectra_.at(lambda);
+    if (!(dot(direction, frame_.z) > 0)) return spectra.sky * ground_by_sky_ + spectra.disc * ground_by_disc_;
+    const float distance2 = distance2_to_sun(direction);
     const SampledSpectrum sky = spectra.sky * relative_radiance(direction, distance2);
     return is_sun(distance2) ? sky + spectra.disc : sky;
   }
@@ -256,12 +256,16 @@ class SkyLight final : public EnvironmentLight {
     const double per_diffuse = integrals.sphere / integrals.irradiance;
     for (size_t i = 0; i < total.size(); ++i) {
       total[i] = model.direct_normal[i] * std::max(0.0, model.toward_sun.z) + model.diffuse[i];
-      scalar[i] = model.direct_normal[i] + model.diffuse[i] * per_diffuse;
+      scalar[i] = model.direct_normal[i] + model.diffuse[i] * per_diffuse + 2 * p.real("albedo") * total[i];
     }
     const double scale = double(light_scale(p, "illuminance", photometric(*spectrum(model, total, 1))));
     total_ = spectrum(model, total, scale);
     scalar_illuminance_ = photometric(*spectrum(model, scalar, scale));
     spectra_ = SkySpectra(model, scale / integrals.irradiance, scale * model.horizon_factor() / disc_.projected());
+    // Radiance of the ground: reflectance times irradiance over pi.
+    const double reflectance = p.real("albedo") / kPiD, sine = std::max(0.0, model.toward_sun.z);
+    ground_by_sky_ = float(reflectance * integrals.irradiance);
+    ground_by_disc_ = float(reflectance * sine * disc_.projected() / model.horizon_factor());
     for (Sampling* sampling : {&by_irradiance_, &by_excess_}) sampling->on_disc = sun_density(*sampling);
     const double direct = scale * model.direct_total(), diffuse = scale * model.diffuse_total();
     summary_ = fmt::format(
@@ -367,7 +371,8 @@ class SkyLight final : public EnvironmentLight {
   bool has_sun_;
   float at_sun_;  ///< relative radiance of the sky at the centre of the sun
   Sampling by_irradiance_, by_excess_;
-  SkySpectra spectra_;  ///< W m^-2 sr^-1 nm^-1; of the sky, where its relative radiance is 1
+  SkySpectra spectra_;                            ///< W m^-2 sr^-1 nm^-1; of the sky, where its relative radiance is 1
+  float ground_by_sky_ = 0, ground_by_disc_ = 0;  ///< the ground's radiance over that of sky and disc in spectra_
   SpectrumPtr total_;
   double scalar_illuminance_ = 0;  ///< integral of the luminance over all directions
   std::string summary_;
@@ -434,9 +439,9 @@ constexpr Param kSky[] = {
      .kind = ParamKind::real,
      .default_value = 0.0,
      .range = {0, 1},
-     .doc =
-         "Ground albedo, which adds light reflected between ground and sky to the diffuse; leave it at 0 if the ground "
-         "is in the scene."},
+     .doc = "Albedo of the ground, for light reflected between ground and sky and for the radiance below the horizon; "
+            "leave it "
+            "at 0, which is black, if the ground is in the scene."},
     {.name = "day",
      .kind = ParamKind::integer,
      .default_value = 172,
