@@ -39,6 +39,15 @@ endmacro()
 late_library(NETCDF netcdf netcdf "frond export --format netcdf")
 late_library(RSVG librsvg-2.0 rsvg-2 "charts as .png")
 
+# Optional: only the program that reads model files links it.
+pkg_check_modules(ASSIMP QUIET IMPORTED_TARGET assimp)
+if(ASSIMP_FOUND)
+  add_library(frond_assimp_library INTERFACE IMPORTED GLOBAL)
+  target_link_libraries(frond_assimp_library INTERFACE PkgConfig::ASSIMP)
+else()
+  message(STATUS "assimp is not found: \"frond import\" will be refused")
+endif()
+
 include("${CMAKE_CURRENT_LIST_DIR}/FrondFmt.cmake")
 foreach(library oiio ocio exr zstd embree)
   add_library(frond_${library} INTERFACE IMPORTED GLOBAL)

@@ -291,6 +291,20 @@ def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: st
     ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
     strict: Treat warnings as errors."""
 
+def import_(model: str | os.PathLike, output: str | os.PathLike, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, single_sided: str | Sequence[str] | Mapping[str, str] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
+    """Write a plant model of another program, OBJ or glTF, as a scene.
+
+    The model is read in a process of its own; files that it names are read in its folder and below only. Names of materials, their colours, opacity and normal maps, and instances are kept.
+
+    model: Model to read: .obj, .gltf or .glb.
+    output: Scene file to write, .pbrt, with a camera and lights. Materials and shapes go to NAME-plant.pbrt beside it, meshes and images into the folder NAME-files.
+    leaf: NAME=PLUGIN[,parameter=value...]: leaf material for the model's materials of this name, with * and ? for any characters, as in "leaf*=leaf,specimen=maize". Repeatable.
+    unit: Length unit of the model, which is converted to metres; by default m, glTF's unit. One of m, cm, mm, inch. Excludes scale.
+    scale: Metres for one unit of the model. Range: from 1e-12 to 1e+12.
+    up: Axis that is up in the model; z is up in the scene. By default y, glTF's axis. One of y, z.
+    single_sided: Material, by name with * and ?, whose leaves are two sheets, front and back: remove the second sheet. Repeatable.
+    strict: Treat warnings as errors."""
+
 def canopy(output: str | os.PathLike, lai: float = 3.0, count: int | None = None, *, ball: float | None = None, angles: str | os.PathLike = 'spherical', scale: float = 0.05, leaf_area: float = 3.141592653589793, size: float | Sequence[float] | str = '10,10', heights: float | Sequence[float] | str = '0,1', apart: float | None = None, column: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Write an instance table of randomly placed leaves, for Shape "instances".
 

@@ -57,6 +57,7 @@ def _words(param, value):
 
 
 def python_name(name):
+    """Returns the Python name of a job or parameter: time_limit for time-limit, import_ for import."""
     return name.replace("-", "_") + ("_" if keyword.iskeyword(name) else "")
 
 
@@ -169,10 +170,10 @@ def _function(job):
         bound = signature.bind(*args, **by_alias(job["params"], kwargs))
         return run(job["name"], **bound.arguments)
 
-    call.__name__ = call.__qualname__ = job["name"]
+    call.__name__ = call.__qualname__ = python_name(job["name"])
     call.__signature__, call.__doc__, call.__module__ = signature, _docstring(job), "frond"
     return call
 
 
 JOBS = {job["name"]: job for job in _frond.jobs()}
-FUNCTIONS = {name: _function(job) for name, job in JOBS.items()}
+FUNCTIONS = {python_name(name): _function(job) for name, job in JOBS.items()}

@@ -18,6 +18,7 @@ extern const JobInfo kExportJob;
 extern const JobInfo kFitJob;
 extern const JobInfo kFluxJob;
 extern const JobInfo kGoniophotometerJob;
+extern const JobInfo kImportJob;
 extern const JobInfo kInstancesJob;
 extern const JobInfo kListJob;
 extern const JobInfo kManJob;
@@ -43,6 +44,7 @@ std::span<const JobInfo* const> all_jobs() {
       &kBenchJob,
       &kExportJob,  // Materials
       &kCheckJob,
+      &kImportJob,
       &kCanopyJob,
       &kInstancesJob,  // Scenes
       &kConvertJob,

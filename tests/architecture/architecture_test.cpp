@@ -29,12 +29,14 @@ const Layers kAllowed{
     {"render", {"core", "system", "spectra", "image", "scene", "integrators", "materials", "instruments"}},
     {"instruments", {"core", "spectra"}},
     {"exports", {"core", "system", "spectra", "image", "scene", "instruments"}},
+    {"imports", {"core", "system", "image", "scene"}},
+    {"assimp", {"imports"}},
     {"radiometry", {"core", "system", "spectra", "scene", "instruments", "render"}},
     {"report", {"core", "system", "spectra", "leaf", "instruments", "radiometry"}},
     {"study", {"core", "system", "spectra", "image", "scene", "render", "instruments", "report"}},
     {"jobs",
      {"core", "system", "spectra", "leaf", "materials", "image", "scene", "integrators", "render", "instruments",
-      "exports", "radiometry", "report", "study"}},
+      "exports", "imports", "radiometry", "report", "study"}},
     {"cli", {"core", "system", "scene", "render", "report", "jobs"}},
 };
 
@@ -278,6 +280,21 @@ TEST(Architecture, OpenImageIOIsCalledByItsModuleAlone) {
       if (line.starts_with("#include <OpenImageIO/")) {
         ++includes;
         EXPECT_EQ(entry.path().parent_path().filename(), "openimageio") << entry.path();
+      }
+  }
+  EXPECT_GE(includes, 1);
+}
+
+// It reads files of strangers: only the program that imports/model_reader.h starts calls it.
+TEST(Architecture, AssimpIsCalledByItsModuleAlone) {
+  static const std::regex library(R"re(#include <assimp/)re");
+  int includes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(FROND_SOURCE_DIR "/src")) {
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_search(line, library)) {
+        ++includes;
+        EXPECT_EQ(entry.path().parent_path().filename(), "assimp") << entry.path();
       }
   }
   EXPECT_GE(includes, 1);

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <assimp/IOSystem.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace frond {
+
+/// Limits of this process, which reads files of strangers. Each file that is opened raises those of memory and time in
+/// proportion to its size. Memory: 1 GB and 128 times the files, at most the machine's; processor time: 60 s and 2 s
+/// for each MB; each file that is read: 4 GB; output: 4 times the memory. No file can be written.
+class ProcessLimits {
+ public:
+  ProcessLimits();
+  void allow_file(uint64_t bytes);
+
+ private:
+  void apply() const;
+  uint64_t memory_, seconds_ = 60, most_memory_;
+};
+
+/// The files that the library may open: regular files in the model's folder and below it, through symbolic links too.
+/// Files cannot be written.
+class ModelFiles final : public Assimp::IOSystem {
+ public:
+  ModelFiles(const std::filesystem::path& model, ProcessLimits& limits);
+
+  bool Exists(const char* name) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override;
+
+  /// Messages about files that were asked for and not opened.
+  const std::vector<std::string>& refusals() const { return refusals_; }
+
+ private:
+  /// Returns the file's path, or an empty one if it must not be read.
+  std::filesystem::path permitted(const char* name, std::string* problem) const;
+  void refuse(const char* name, const std::string& problem);
+
+  std::filesystem::path folder_;
+  ProcessLimits& limits_;
+  std::vector<std::string> refusals_;
+};
+
+}  // namespace frond

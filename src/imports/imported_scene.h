@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace frond {
+
+/// Scene of a model file (OBJ, glTF) as plain data, independent of the library that reads the file.
+
+/// Image that a material names: a file, or bytes that the model file contains.
+struct ImportedImage {
+  std::string name;                  ///< path as in the model file, or a name for an embedded image
+  std::vector<unsigned char> bytes;  ///< content of an embedded image; empty: `name` is a file
+  std::string extension;             ///< of an embedded image, without the dot: "png"
+  bool operator==(const ImportedImage&) const = default;
+};
+
+/// Use of an image by a material.
+struct ImportedTexture {
+  int32_t image = -1;  ///< index; -1: no texture
+  uint32_t uv_set = 0;
+  std::array<float, 6> to_image{1, 0, 0, 0, 1, 0};  ///< affine map of texture coordinates, two rows of a 2 x 3 matrix
+  enum class Wrap : uint8_t { repeat, clamp, mirror } wrap = Wrap::repeat;
+  /// Whether both use the same texture coordinates.
+  bool shares_uv(const ImportedTexture& other) const { return uv_set == other.uv_set && to_image == other.to_image; }
+  bool operator==(const ImportedTexture&) const = default;
+};
+
+struct ImportedMaterial {
+  enum class Alpha : uint8_t { opaque, mask, blend };
+
+  std::string name;
+  std::array<float, 3> color{0.5f, 0.5f, 0.5f};  ///< linear sRGB; a factor if there is a texture
+  float opacity = 1;
+  Alpha alpha = Alpha::blend;  ///< use of the opacity and of the alpha channel of `color_texture`
+  float cutoff = 0.5f;         ///< Alpha::mask: opacity below it counts as 0, otherwise as 1
+  ImportedTexture color_texture = {}, opacity_texture = {}, normal_texture = {};
+  float metalness = 0, roughness = 1;
+  std::vector<std::string> left_out = {};  ///< properties that have no counterpart: "emission", ...
+
+  /// The texture whose coordinates meshes have; they are already mapped by its `to_image`.
+  const ImportedTexture& uv_texture() const {
+    return color_texture.image >= 0 ? color_texture : opacity_texture.image >= 0 ? opacity_texture : normal_texture;
+  }
+  bool operator==(const ImportedMaterial&) const = default;
+};
+
+/// Triangles of one material. Vertex attributes are empty or as many as positions.
+struct ImportedMesh {
+  std::string name;
+  uint32_t material = 0;
+  std::vector<std::array<float, 3>> positions = {}, normals = {};
+  std::vector<std::array<float, 2>> uvs = {};  ///< (0, 0) is the lower left corner of an image
+  std::vector<std::array<uint32_t, 3>> triangles = {};
+  bool operator==(const ImportedMesh&) const = default;
+};
+
+/// Node of the hierarchy. A parent precedes its children.
+struct ImportedNode {
+  std::string name;
+  int32_t parent = -1;                 ///< index; -1: none
+  std::array<double, 12> to_parent{};  ///< three rows of a 3 x 4 matrix
+  std::vector<uint32_t> meshes = {};
+  bool operator==(const ImportedNode&) const = default;
+};
+
+struct ImportedScene {
+  std::vector<ImportedImage> images;
+  std::vector<ImportedMaterial> materials;
+  std::vector<ImportedMesh> meshes;
+  std::vector<ImportedNode> nodes;
+  std::vector<std::string> left_out;  ///< parts of the scene that have no counterpart: "2 animations", ...
+  std::vector<std::string> warnings;
+  bool operator==(const ImportedScene&) const = default;
+};
+
+}  // namespace frond

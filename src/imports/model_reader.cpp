@@ -1,0 +1,107 @@
+#include "imports/model_reader.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <csignal>
+#include <new>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "imports/scene_stream.h"
+#include "system/child_process.h"
+#include "system/shared_object.h"
+
+namespace frond {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Returns the program that reads models: beside the library, or where it is installed. The library may be one of those
+/// in glibc-hwcaps, two folders below.
+fs::path reader_program() {
+  const fs::path own = own_file().parent_path(), name = FROND_MODEL_READER_FILE;
+  for (const fs::path& folder : {own, own / "frond", own / "../..", own / "../../frond"}) {
+    std::error_code error;
+    if (fs::is_regular_file(folder / name, error)) return folder / name;
+  }
+  fail({},
+       "models are read by the program {}, which is not installed: build frond where assimp is found (Debian: "
+       "libassimp-dev)",
+       FROND_MODEL_READER_FILE);
+}
+
+void check_name(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  if (extension != ".obj" && extension != ".gltf" && extension != ".glb")
+    fail({}, "cannot import \"{}\": models are .obj, .gltf or .glb files; Blender and MeshLab convert others",
+         path.string());
+  std::error_code error;
+  if (!fs::exists(path, error)) fail({}, "cannot read \"{}\": there is no such file", path.string());
+  if (!fs::is_regular_file(path, error)) fail({}, "cannot read \"{}\": it is no regular file", path.string());
+}
+
+/// Whether text is well-formed UTF-8, up to surrogates and overlong forms.
+bool is_utf8(const std::string& text) {
+  for (size_t i = 0; i < text.size();) {
+    const auto c = static_cast<unsigned char>(text[i++]);
+    const int more = c < 0x80 ? 0 : c >> 5 == 6 ? 1 : c >> 4 == 14 ? 2 : c >> 3 == 30 ? 3 : -1;
+    if (more < 0) return false;
+    for (int k = 0; k < more; ++k)
+      if (i == text.size() || (static_cast<unsigned char>(text[i++]) >> 6) != 2) return false;
+  }
+  return true;
+}
+
+/// Makes a name printable: names in OBJ files may be in any encoding.
+void make_printable(std::string& name) {
+  const bool is_text = is_utf8(name);
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f || (!is_text && static_cast<unsigned char>(c) >= 0x80))
+      c = '_';
+}
+
+/// Returns what went wrong in the child, in words.
+std::string problem_of(const ChildResult& child) {
+  if (WIFSIGNALED(child.status)) {
+    const int signal = WTERMSIG(child.status);
+    if (signal == SIGXCPU || signal == SIGKILL) return "it takes more time than 60 s and 2 s for each MB of its files";
+    if (signal == SIGXFSZ) return "its triangles need more memory than this machine has";
+    return "it is damaged: the reader was ended by " + ending(child.status);
+  }
+  std::string text = child.err.substr(0, 2000);
+  std::ranges::replace(text, '\n', ' ');
+  const auto says = [&text](const char* words) { return text.find(words) != std::string::npos; };
+  if (says("no faces") || says("No meshes remaining") || says("mNumMeshes is 0") || says("it has no triangles"))
+    return "it has no triangles; of a point cloud, MeshLab or CloudCompare makes a mesh";
+  if (says("No suitable reader"))
+    return "its content is not of the format that its name states, or of a version that is not read, such as the "
+           "binary files of glTF 1";
+  if (says("bad_alloc")) return "it needs more memory than 1 GB and 128 times its files' size";
+  return text.empty() ? "the reader ended with " + ending(child.status) : text;
+}
+
+}  // namespace
+
+ImportedScene read_model(const fs::path& path) {
+  check_name(path);
+  const fs::path program = reader_program();
+  const auto child = run_child({program.string(), fs::absolute(path).string()}, "");
+  if (!child) fail({}, "cannot run \"{}\"", program.string());
+  if (WIFSIGNALED(child->status) && WTERMSIG(child->status) == SIGINT) fail({}, "the import was interrupted");
+  if (child->status != 0) fail({}, "cannot read \"{}\": {}", path.string(), problem_of(*child));
+  try {
+    ImportedScene scene = decode(child->out);
+    for (ImportedMaterial& material : scene.materials) make_printable(material.name);
+    for (ImportedMesh& mesh : scene.meshes) make_printable(mesh.name);
+    for (std::string& warning : scene.warnings) make_printable(warning);
+    return scene;
+  } catch (const std::runtime_error& error) {
+    fail({}, "cannot read \"{}\": {}", path.string(), error.what());
+  } catch (const std::length_error&) {
+    fail({}, "cannot read \"{}\": it is damaged", path.string());
+  }
+}
+
+}  // namespace frond

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+#include "imports/imported_scene.h"
+#include "scene/math/affine_map.h"
+
+namespace frond {
+
+/// Affine map in double precision, three rows of a 3 x 4 matrix: of a node to the world.
+struct NodeMap {
+  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+  Vec3d point(const Vec3d& p) const { return vector(p) + Vec3d{m[3], m[7], m[11]}; }
+  Vec3d vector(const Vec3d& v) const;
+  /// Transforms a normal by the cofactor matrix, times the sign of the determinant; not normalized.
+  Vec3d normal(const Vec3d& n) const;
+  double determinant() const;
+  /// Returns this map after `first`.
+  NodeMap after(const NodeMap& first) const;
+};
+
+/// Returns the map in single precision.
+AffineMap affine_map(const NodeMap& map);
+
+/// Triangles of one material, in the space of an object or of the world.
+struct PlantMesh {
+  std::string name;  ///< of the material, or of an object and its material
+  uint32_t material = 0;
+  std::vector<Vec3> p = {}, n = {};
+  std::vector<Vec2> uv = {};
+  std::vector<std::array<uint32_t, 3>> triangles = {};
+};
+
+/// Meshes that several nodes have, and where.
+struct PlantObject {
+  std::string name;
+  std::vector<PlantMesh> meshes = {};
+  std::vector<NodeMap> instances = {};
+};
+
+/// Geometry of a model in the space of the scene to write: z is up.
+struct PlantGeometry {
+  std::vector<PlantMesh> meshes = {};  ///< of nodes whose meshes no other node has, joined by material, in world space
+  std::vector<PlantObject> objects = {};
+  size_t flat_nodes = 0;  ///< nodes that are left out, because their transform has no inverse
+  Vec3d least{}, most{};  ///< bounds
+
+  size_t triangle_count() const;  ///< each mesh of an object once
+  size_t instance_count() const;
+};
+
+/// Returns the geometry of all nodes under `to_world`. Throws InputError if there is none, or if coordinates are beyond
+/// what frond renders.
+PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world);
+
+/// Returns a mesh as a binary PLY file.
+std::vector<unsigned char> ply_file(const PlantMesh& mesh);
+
+}  // namespace frond

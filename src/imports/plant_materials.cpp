@@ -1,0 +1,186 @@
+#include "imports/plant_materials.h"
+
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/error.h"
+
+namespace frond {
+namespace {
+
+/// Returns a name for a quoted string of a scene file.
+std::string quotable(std::string name) {
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < ' ' || c == '"' || c == '\\') c = '_';
+  return name.empty() ? "unnamed" : name;
+}
+
+/// Returns a parameter in the syntax of a scene file.
+std::string parameter(const ParsedParam& p) {
+  const std::string head = fmt::format("\"{} {}\" ", p.type, p.name);
+  if (const auto* numbers = std::get_if<std::vector<double>>(&p.values))
+    return head + fmt::format("[ {} ]", fmt::join(*numbers, " "));
+  if (const auto* flags = std::get_if<std::vector<bool>>(&p.values)) return head + (flags->front() ? "true" : "false");
+  std::vector<std::string> words = std::get<std::vector<std::string>>(p.values);
+  for (std::string& word : words) {
+    std::string escaped;
+    for (const char c : word) escaped += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
+    word = '"' + escaped + '"';
+  }
+  return head + fmt::format("[ {} ]", fmt::join(words, " "));
+}
+
+/// Writes the materials one by one.
+class MaterialWriter {
+ public:
+  MaterialWriter(const std::vector<MaterialRule>& rules, PlantImages& images, const Log& log)
+      : rules_(rules), images_(images), log_(log) {}
+
+  void write(const ImportedMaterial& m, PlantMaterials& out) {
+    const std::string& name = out.names.emplace_back(unique(quotable(m.name)));
+    out.alpha.push_back(alpha_parameter(m, name));
+    text_.clear();
+    const auto rule = std::ranges::find_if(rules_, [&m](const MaterialRule& r) { return matches(r.pattern, m.name); });
+    const std::string type = rule != rules_.end() ? ruled(*rule) : plain(m, name);
+    out.types.push_back(type);
+    out.text += textures_ + fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"{}\n", name, type, text_);
+    textures_.clear();
+    const bool is_metal = m.metalness >= 0.5f;
+    for (const std::string& what : m.left_out)
+      if (!(is_metal && what == "gloss")) out.left_out[what].push_back(m.name);
+    add_normal_map(m, out);
+  }
+  /// Throws InputError for a rule that no material has used.
+  void check_rules(const ImportedScene& scene, const std::vector<bool>& used) const {
+    for (const MaterialRule& rule : rules_) {
+      if (used_rules_.contains(&rule)) continue;
+      std::vector<std::string> names;
+      for (size_t i = 0; i < used.size(); ++i)
+        if (used[i]) names.push_back('"' + scene.materials[i].name + '"');
+      fail({}, "leaf {}: the model has no such material; its materials are {}", rule.text, fmt::join(names, ", "));
+    }
+  }
+
+ private:
+  std::string unique(const std::string& name) {
+    std::string result = name;
+    for (int i = 2; !names_.insert(result).second; ++i) result = fmt::format("{}-{}", name, i);
+    return result;
+  }
+
+  std::string ruled(const MaterialRule& rule) {
+    used_rules_.insert(&rule);
+    for (const ParsedParam& p : rule.material.params) text_ += "\n  " + parameter(p);
+    return rule.material.name;
+  }
+
+  /// Diffuse, or metal: glTF's alpha is the square of its roughness.
+  std::string plain(const ImportedMaterial& m, const std::string& name) {
+    const bool is_metal = m.metalness >= 0.5f;
+    text_ += "\n  " + color_parameter(m, name);
+    if (!is_metal) return "diffuse";
+    text_ += fmt::format("\n  \"float roughness\" {} \"bool remaproughness\" false", m.roughness * m.roughness);
+    return "conductor";
+  }
+
+  std::string color_parameter(const ImportedMaterial& m, const std::string& name) {
+    const auto [r, g, b] = m.color;
+    if (!images_.pixels(m.color_texture.image)) return fmt::format("\"rgb reflectance\" [ {} {} {} ]", r, g, b);
+    const bool is_grey = std::max({r, g, b}) - std::min({r, g, b}) < 1e-3f;
+    const std::string path = is_grey ? images_.original(m.color_texture.image)
+                                     : images_.tinted(m.color_texture.image, m.color, m.name + "-color");
+    add_texture(name + "-color", "spectrum", path, m.color_texture, is_grey && r < 0.999f ? r : 1);
+    return fmt::format("\"texture reflectance\" \"{}-color\"", name);
+  }
+
+  void add_texture(const std::string& name, const char* kind, const std::string& path, const ImportedTexture& use,
+                   float scale) {
+    std::string more;
+    if (use.wrap == ImportedTexture::Wrap::clamp) more += " \"string wrap\" \"clamp\"";
+    if (use.wrap == ImportedTexture::Wrap::mirror)
+      log_.warn({}, fmt::format("texture \"{}\" is mirrored beyond its edges: it is repeated instead", name));
+    if (scale != 1) more += fmt::format(" \"float scale\" {}", scale);
+    if (std::string_view(kind) == "float") more += " \"string encoding\" \"linear\"";
+    textures_ +=
+        fmt::format("Texture \"{}\" \"{}\" \"imagemap\" \"string filename\" \"{}\"{}\n", name, kind, path, more);
+  }
+
+  /// Opacity of a texel: alpha of the image, or the mean of its channels if it is an opacity map without alpha.
+  static float opacity_at(const Image& image, int x, int y, bool is_opacity_map) {
+    const size_t channels = image.channels.size();
+    if (channels == 2 || channels == 4) return image.at(x, y, channels - 1);
+    if (!is_opacity_map) return 1;
+    float sum = 0;
+    for (size_t c = 0; c < channels; ++c) sum += image.at(x, y, c);
+    return sum / float(channels);
+  }
+
+  /// An opacity map that is the image of the colour, and has no alpha, is a mistake of the exporter.
+  std::string alpha_parameter(const ImportedMaterial& m, const std::string& name) {
+    using Alpha = ImportedMaterial::Alpha;
+    if (m.alpha == Alpha::opaque) return {};
+    const auto cut = [&m](float v) { return m.alpha == Alpha::mask ? (v >= m.cutoff ? 1.f : 0.f) : v; };
+    const bool is_map = images_.pixels(m.opacity_texture.image) && m.opacity_texture.image != m.color_texture.image;
+    const ImportedTexture& use = is_map ? m.opacity_texture : m.color_texture;
+    const ImageFile* file = images_.pixels(use.image);
+    std::vector<float> values;
+    if (file)
+      for (int y = 0; y < file->image.height; ++y)
+        for (int x = 0; x < file->image.width; ++x)
+          values.push_back(cut(m.opacity * opacity_at(file->image, x, y, is_map)));
+    if (std::ranges::any_of(values, [](float v) { return v < 1; }) && values.size() > 1 && cut(m.opacity) > 0) {
+      const std::string path =
+          images_.grey(file->image.width, file->image.height, std::move(values), m.name + "-alpha");
+      add_texture(name + "-alpha", "float", path, use, 1);
+      return fmt::format(" \"texture alpha\" \"{}-alpha\"", name);
+    }
+    const float opacity = cut(m.opacity);
+    if (opacity <= 0) log_.warn({}, fmt::format("material \"{}\" has opacity 0: it is invisible", m.name));
+    return opacity < 1 ? fmt::format(" \"float alpha\" {}", opacity) : std::string();
+  }
+
+  void add_normal_map(const ImportedMaterial& m, PlantMaterials& out) {
+    if (!images_.pixels(m.normal_texture.image)) return;
+    if (!m.normal_texture.shares_uv(m.uv_texture())) {
+      out.left_out["normal map with texture coordinates of its own"].push_back(m.name);
+      return;
+    }
+    out.text.insert(out.text.size() - 1,
+                    fmt::format("\n  \"string normalmap\" \"{}\"", images_.original(m.normal_texture.image)));
+  }
+
+  const std::vector<MaterialRule>& rules_;
+  PlantImages& images_;
+  const Log& log_;
+  std::string text_, textures_;
+  std::set<std::string> names_;
+  std::set<const MaterialRule*> used_rules_;
+};
+
+}  // namespace
+
+bool matches(const std::string& pattern, const std::string& name) {
+  return fnmatch(pattern.c_str(), name.c_str(), FNM_CASEFOLD | FNM_NOESCAPE) == 0;
+}
+
+PlantMaterials plant_materials(const ImportedScene& scene, const std::vector<bool>& used,
+                               const std::vector<MaterialRule>& rules, PlantImages& images, const Log& log) {
+  PlantMaterials out;
+  MaterialWriter writer(rules, images, log);
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    if (used[i]) {
+      writer.write(scene.materials[i], out);
+    } else {
+      out.names.push_back(scene.materials[i].name);
+      out.types.emplace_back();
+      out.alpha.emplace_back();
+    }
+  }
+  writer.check_rules(scene, used);
+  return out;
+}
+
+}  // namespace frond

@@ -1,0 +1,248 @@
+#include "imports/scene_import.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <span>
+
+#include "core/error.h"
+#include "imports/model_reader.h"
+#include "imports/output_folder.h"
+#include "scene/geometry/instance_writer.h"
+
+namespace frond {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostDirectives = 1000;      ///< instances of an object; more are a table
+constexpr size_t kMostSearched = 10'000'000;  ///< triangles, for double sheets
+constexpr double kSheetDistance = 1e-3;       ///< largest distance of double sheets, relative to the model's size
+
+/// Map of a model to the scene: z is up.
+NodeMap to_scene(const ImportOptions& options) {
+  const double s = options.scale;
+  if (options.z_is_up) return {{s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0}};
+  return {{s, 0, 0, 0, 0, 0, -s, 0, 0, s, 0, 0}};
+}
+
+/// Writes the directives and files of a model.
+class SceneWriter {
+ public:
+  SceneWriter(const ImportOptions& options, const PlantMaterials& materials, const std::string& stem,
+              OutputFolder& folder)
+      : options_(options), materials_(materials), stem_(stem), folder_(folder) {}
+
+  std::string plant(const PlantGeometry& geometry) {
+    text_ = fmt::format(
+        "# Written by frond {}: frond import {}. Materials and shapes; z is up. A scene in this folder includes it by\n"
+        "#   Include \"{}-plant.pbrt\"\n\n{}\n",
+        FROND_VERSION, options_.model.filename().string(), stem_, materials_.text);
+    for (const PlantMesh& mesh : geometry.meshes) shape(mesh);
+    for (const PlantObject& object : geometry.objects) {
+      const std::string name = unique(plain_name(object.name), objects_);
+      text_ += fmt::format("\nObjectBegin \"{}\"\n", name);
+      for (const PlantMesh& mesh : object.meshes) shape(mesh);
+      text_ += "ObjectEnd\n";
+      object.instances.size() > kMostDirectives ? table(object, name) : directives(object, name);
+    }
+    return std::move(text_);
+  }
+
+ private:
+  static std::string unique(const std::string& name, std::set<std::string>& taken) {
+    std::string result = name;
+    for (int i = 2; !taken.insert(result).second; ++i) result = fmt::format("{}-{}", name, i);
+    return result;
+  }
+
+  void shape(const PlantMesh& mesh) {
+    constexpr size_t kMostVertices = 2'147'483'647;  // an index of a PLY file is an int
+    if (mesh.p.size() > kMostVertices) fail({}, "\"{}\" has {} vertices, more than 2^31", mesh.name, mesh.p.size());
+    const std::string file = stem_ + "-files/" + unique(plain_name(mesh.name), files_) + ".ply";
+    folder_.write(file, ply_file(mesh));
+    text_ += fmt::format(
+        "AttributeBegin\n  NamedMaterial \"{}\"\n  Shape \"plymesh\" \"string filename\" \"{}\"{}\n"
+        "AttributeEnd\n",
+        materials_.names[mesh.material], file, materials_.alpha[mesh.material]);
+  }
+
+  /// pbrt's matrices are stored by columns.
+  void directives(const PlantObject& object, const std::string& name) {
+    for (const NodeMap& map : object.instances) {
+      std::vector<double> m;
+      for (size_t column = 0; column < 4; ++column) {
+        for (size_t row = 0; row < 3; ++row) m.push_back(map.m[4 * row + column]);
+        m.push_back(column == 3 ? 1 : 0);
+      }
+      text_ += fmt::format("AttributeBegin\n  ConcatTransform [ {} ]\n  ObjectInstance \"{}\"\nAttributeEnd\n",
+                           fmt::join(m, " "), name);
+    }
+  }
+
+  void table(const PlantObject& object, const std::string& name) {
+    const std::string file = stem_ + "-files/" + unique(name, files_) + ".npy";
+    InstanceWriter writer(folder_.file(file), object.instances.size(), {});
+    for (const NodeMap& map : object.instances) writer.add(affine_map(map), {});
+    writer.finish();
+    text_ += fmt::format("Shape \"instances\" \"string object\" \"{}\" \"string filename\" \"{}\"\n", name, file);
+  }
+
+  const ImportOptions& options_;
+  const PlantMaterials& materials_;
+  const std::string& stem_;
+  OutputFolder& folder_;
+  std::string text_;
+  std::set<std::string> files_, objects_;
+};
+
+/// Returns the nearest point from which a camera with this field of view (tangent of its half) sees the whole bounding
+/// box, with a margin. `toward` is the direction to the camera.
+Vec3d viewpoint(const PlantGeometry& geometry, const Vec3d& toward, double tangent) {
+  constexpr double kMargin = 1.05;
+  const Vec3d center = (geometry.least + geometry.most) / 2.0, half = (geometry.most - geometry.least) / 2.0;
+  const Vec3d right = normalize(cross(Vec3d{0, 0, 1}, toward)), up = cross(toward, right);
+  double distance = 1e-6;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d p{corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y, corner & 4 ? half.z : -half.z};
+    const double off_axis = std::max(std::abs(dot(p, right)), std::abs(dot(p, up)));
+    distance = std::max(distance, off_axis * kMargin / tangent + dot(p, toward));
+  }
+  return center + toward * distance;
+}
+
+/// Camera that sees all of the model, from the front (-y) and above; a sky of even radiance 0.4 and a sun, in which a
+/// horizontal white surface has the value 1.
+std::string view(const PlantGeometry& geometry, const ImportOptions& options, const std::string& stem) {
+  constexpr double kTangent = 0.2679491924;  // of half the field of view, 15 degrees
+  const Vec3d center = (geometry.least + geometry.most) / 2.0, size = geometry.most - geometry.least;
+  const Vec3d eye = viewpoint(geometry, normalize(Vec3d{0.35, -1, 0.35}), kTangent);
+  return fmt::format(
+      "# Written by frond {}: frond import {}. z is up; the model is {:.6g} x {:.6g} x {:.6g} units.\n\n"
+      "Scale -1 1 1  # right-handed space\n"
+      "LookAt {:.9g} {:.9g} {:.9g}   {:.9g} {:.9g} {:.9g}   0 0 1\n"
+      "Camera \"perspective\" \"float fov\" 30\n"
+      "Film \"rgb\" \"integer xresolution\" 800 \"integer yresolution\" 800 \"string filename\" \"{}.png\"\n"
+      "Sampler \"paddedsobol\" \"integer pixelsamples\" 64\n"
+      "Integrator \"path\" \"integer maxdepth\" 64\n\n"
+      "WorldBegin\n\n"
+      "# Sky and sun: a horizontal white surface has the value 1.\n"
+      "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\" \"float scale\" 0.4\n"
+      "LightSource \"distant\" \"spectrum L\" \"stdillum-D65\" \"point3 from\" [ -0.5 -0.6 1 ] \"point3 to\" [ 0 0 0 "
+      "]\n"
+      "  \"float illuminance\" 2.392\n\n"
+      "Include \"{}-plant.pbrt\"\n",
+      FROND_VERSION, options.model.filename().string(), size.x, size.y, size.z, eye.x, eye.y, eye.z, center.x, center.y,
+      center.z, stem, stem);
+}
+
+/// Which materials have triangles.
+std::vector<bool> used_materials(const ImportedScene& scene, const PlantGeometry& geometry) {
+  std::vector<bool> used(scene.materials.size());
+  for (const PlantMesh& mesh : geometry.meshes) used[mesh.material] = true;
+  for (const PlantObject& object : geometry.objects)
+    for (const PlantMesh& mesh : object.meshes) used[mesh.material] = true;
+  return used;
+}
+
+/// Which materials' second sheets are removed. Throws InputError for a pattern that matches none.
+std::vector<bool> single_sided(const ImportedScene& scene, const std::vector<std::string>& patterns) {
+  std::vector<bool> remove(scene.materials.size());
+  for (const std::string& pattern : patterns) {
+    bool is_used = false;
+    for (size_t i = 0; i < remove.size(); ++i)
+      if (matches(pattern, scene.materials[i].name)) remove[i] = is_used = true;
+    if (!is_used) fail({}, "single-sided: the model has no material \"{}\"", pattern);
+  }
+  return remove;
+}
+
+/// Searches meshes and objects; the results of one material are added.
+std::vector<DoubleSheet> searched(PlantGeometry& geometry, const std::vector<bool>& remove, const Log& log) {
+  if (geometry.triangle_count() > kMostSearched) {
+    log.info(fmt::format("double leaf sheets are searched up to {} triangles: not here", kMostSearched));
+    return {};
+  }
+  const double tolerance = kSheetDistance * length(geometry.most - geometry.least);
+  std::vector<DoubleSheet> all = double_sheets(geometry.meshes, tolerance, remove);
+  for (PlantObject& object : geometry.objects) {
+    const double stretch = std::cbrt(std::abs(object.instances.front().determinant()));
+    for (DoubleSheet sheet : double_sheets(object.meshes, tolerance / stretch, remove)) {
+      sheet.apart *= stretch;
+      const auto same = std::ranges::find(all, sheet.material, &DoubleSheet::material);
+      if (same == all.end()) {
+        all.push_back(sheet);
+      } else {
+        same->triangles += sheet.triangles;
+        same->apart = std::max(same->apart, sheet.apart);
+      }
+    }
+  }
+  return all;
+}
+
+/// Returns the name for files beside the scene, which scene files quote.
+std::string stem_of(const fs::path& scene) {
+  const std::string stem = scene.stem().string();
+  const bool is_quotable =
+      std::ranges::none_of(stem, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '"' || c == '\\'; });
+  return is_quotable ? stem : plain_name(stem);
+}
+
+/// Returns the summary of what is to be written.
+ImportSummary summary_of(const ImportedScene& scene, const PlantGeometry& geometry, const PlantMaterials& materials,
+                         const std::vector<DoubleSheet>& sheets) {
+  const Vec3d size = geometry.most - geometry.least;
+  ImportSummary summary{.materials = materials.names,
+                        .triangles = std::vector<size_t>(scene.materials.size()),
+                        .types = materials.types,
+                        .instances = geometry.instance_count(),
+                        .objects = geometry.objects.size(),
+                        .double_sheets = sheets,
+                        .left_out = scene.left_out,
+                        .size = {size.x, size.y, size.z}};
+  constexpr size_t kMostNames = 5;
+  for (const auto& [what, names] : materials.left_out) {
+    const std::span listed = std::span(names).first(std::min(names.size(), kMostNames));
+    summary.left_out.push_back(fmt::format("{} of \"{}\"", what, fmt::join(listed, "\", \"")));
+    if (names.size() > kMostNames) summary.left_out.back() += fmt::format(" and {} more", names.size() - kMostNames);
+  }
+  const auto count = [&summary](const std::vector<PlantMesh>& meshes) {
+    for (const PlantMesh& mesh : meshes) summary.triangles[mesh.material] += mesh.triangles.size();
+  };
+  count(geometry.meshes);
+  for (const PlantObject& object : geometry.objects) count(object.meshes);
+  return summary;
+}
+
+}  // namespace
+
+ImportSummary import_scene(const ImportOptions& options, const Log& log,
+                           const std::function<void(const ImportSummary&)>& accept) {
+  if (options.scene.extension() != ".pbrt")
+    fail({}, "the scene \"{}\" needs the extension .pbrt", options.scene.string());
+  const ImportedScene scene = read_model(options.model);
+  for (const std::string& warning : scene.warnings) log.warn({}, warning);
+  PlantGeometry geometry = plant_geometry(scene, to_scene(options));
+  if (geometry.flat_nodes > 0)
+    log.warn({}, fmt::format("{} nodes are left out: their transforms have no inverse", geometry.flat_nodes));
+  const auto sheets = searched(geometry, single_sided(scene, options.single_sided), log);
+  const std::string stem = stem_of(options.scene);
+  PlantImages images(scene.images, options.model, stem + "-files", log);
+  const PlantMaterials materials = plant_materials(scene, used_materials(scene, geometry), options.rules, images, log);
+  const ImportSummary summary = summary_of(scene, geometry, materials, sheets);
+  accept(summary);
+
+  std::vector<fs::path> inputs = images.inputs();
+  inputs.push_back(options.model);
+  OutputFolder folder(options.scene.parent_path(), inputs);
+  for (const PlantFile& file : images.files()) folder.write(file.path, file.bytes);
+  folder.write(stem + "-plant.pbrt", SceneWriter(options, materials, stem, folder).plant(geometry));
+  folder.write(options.scene.filename().string(), view(geometry, options, stem));
+  folder.finish();
+  return summary;
+}
+
+}  // namespace frond

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "core/log.h"
+#include "imports/double_sheets.h"
+#include "imports/plant_materials.h"
+
+namespace frond {
+
+/// What `frond import` does with a model.
+struct ImportOptions {
+  std::filesystem::path model, scene;  ///< file to read, scene file to write
+  std::vector<MaterialRule> rules = {};
+  double scale = 1;                            ///< scene units for one unit of the model
+  bool z_is_up = false;                        ///< in the model; false: y
+  std::vector<std::string> single_sided = {};  ///< patterns of material names whose second sheets are removed
+};
+
+/// What was written.
+struct ImportSummary {
+  std::vector<std::string> materials;  ///< names in the scene file
+  std::vector<size_t> triangles;       ///< by material; those of an object once
+  std::vector<std::string> types;      ///< by material: "leaf (by --leaf)", "diffuse"
+  size_t instances = 0, objects = 0;
+  std::vector<DoubleSheet> double_sheets;  ///< material: index in `materials`
+  std::vector<std::string> left_out;
+  std::array<double, 3> size{};  ///< of the model, scene units
+};
+
+/// Reads a model and writes it as a scene: SCENE.pbrt with camera and lights, SCENE-plant.pbrt with materials and
+/// shapes, and the folder SCENE-files with meshes and images. The files appear together after `accept`, which may
+/// throw. Throws InputError.
+ImportSummary import_scene(const ImportOptions& options, const Log& log,
+                           const std::function<void(const ImportSummary&)>& accept);
+
+}  // namespace frond

@@ -1,0 +1,318 @@
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "image/image_codec.h"
+#include "image/image_file.h"
+#include "tests/cli/command.h"
+#include "tests/support/input_error.h"
+
+#ifdef FROND_HAS_ASSIMP
+
+namespace frond {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t v = 0;
+    for (size_t k = 0; k < 3; ++k) v = v << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : kDigits[v >> (18 - 6 * k) & 63];
+  }
+  return out;
+}
+
+/// Content of a buffer with one quadrilateral, 1 x 1, in the xy plane: positions, texture coordinates, indices.
+std::string quad_buffer() {
+  const float p[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, uv[] = {0, 1, 1, 1, 1, 0, 0, 0};
+  const uint16_t indices[] = {0, 1, 2, 0, 2, 3};
+  std::string bytes(sizeof p + sizeof uv + sizeof indices, '\0');
+  std::memcpy(bytes.data(), p, sizeof p);
+  std::memcpy(bytes.data() + sizeof p, uv, sizeof uv);
+  std::memcpy(bytes.data() + sizeof p + sizeof uv, indices, sizeof indices);
+  return bytes;
+}
+
+/// glTF with the quadrilateral as mesh 0. `buffer` is its JSON without the length, `views` are further buffer views.
+std::string gltf(const std::string& nodes, const std::string& materials, const std::string& buffer,
+                 const std::string& more = "", size_t length = 92, const std::string& views = "") {
+  return fmt::format(R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{}],
+"meshes":[{{"name":"blade","primitives":[{{"attributes":{{"POSITION":0,"TEXCOORD_0":1}},"indices":2,"material":0}}]}}],
+"materials":[{}],"buffers":[{{{}"byteLength":{}}}],
+"bufferViews":[{{"buffer":0,"byteOffset":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":32}},
+{{"buffer":0,"byteOffset":80,"byteLength":12}}{}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
+{{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"}},
+{{"bufferView":2,"componentType":5123,"count":6,"type":"SCALAR"}}]{}}})",
+                     nodes, materials, buffer, length, views, more);
+}
+
+std::string embedded() { return "\"uri\":\"data:application/octet-stream;base64," + base64(quad_buffer()) + "\","; }
+
+/// A binary glTF file of this JSON and buffer.
+std::string glb(std::string json, std::string binary) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  binary.resize((binary.size() + 3) / 4 * 4, '\0');
+  const auto word = [](size_t v) {
+    const auto number = uint32_t(v);
+    return std::string(reinterpret_cast<const char*>(&number), 4);
+  };
+  return "glTF" + word(2) + word(28 + json.size() + binary.size()) + word(json.size()) + "JSON" + json +
+         word(binary.size()) + std::string("BIN\0", 4) + binary;
+}
+
+/// PNG with alpha: opaque left half, then transparent.
+std::string png_with_alpha() {
+  Image image(8, 8, {"R", "G", "B", "A"});
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) image.at(x, y, 1) = 0.7f, image.at(x, y, 3) = x < 4 ? 1.f : 0.3f;
+  const auto bytes = image_codec().encode("leaf.png", image, {});
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class ImportCommand : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return folder_.name_of(name); }
+  /// Imports to scene.pbrt; the result passes the check, and its image has a value that is not the sky's.
+  Outcome imported(const std::string& model, std::vector<std::string> options = {}) {
+    options.insert(options.begin(), {"import", path(model), "-o", path("scene.pbrt")});
+    const Outcome o = frond_command(options);
+    EXPECT_EQ(o.code, 0) << o.err;
+    if (o.code != 0) return o;
+    const Outcome checked = frond_command({"check", path("scene.pbrt"), "--strict"});
+    EXPECT_EQ(checked.code, 0) << checked.err << checked.out;
+    const Outcome rendered = frond_command({"render", path("scene.pbrt"), "-o", path("scene.exr"), "--pixels",
+                                            "300,500,300,500", "--spp", "1", "-q", "--no-cache"});
+    EXPECT_EQ(rendered.code, 0) << rendered.err;
+    const Image image = read_image(path("scene.exr"), {}).image;
+    const size_t green = *image.channel("G");
+    std::set<float> values;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) values.insert(image.at(x, y, green));
+    EXPECT_GT(*values.rbegin(), 0);
+    EXPECT_TRUE(std::isfinite(*values.rbegin()));
+    EXPECT_GT(values.size(), 10u);  // not the sky alone
+    return o;
+  }
+  /// Returns the message of an import that has to fail, and to write nothing.
+  std::string refusal(const std::string& model, std::vector<std::string> options = {}) {
+    const auto files = [this] {
+      std::set<fs::path> all;
+      for (const auto& entry : fs::recursive_directory_iterator(path(""))) all.insert(entry.path());
+      return all;
+    };
+    const auto before = files();
+    options.insert(options.begin(), {"import", path(model), "-o", path("refused.pbrt")});
+    const Outcome o = frond_command(options);
+    EXPECT_EQ(o.code, 1) << o.err << o.out;
+    EXPECT_EQ(files(), before);
+    return o.err;
+  }
+  std::string plant() const { return text_of(path("scene-plant.pbrt")); }
+
+  TestFolder folder_{"import"};
+};
+
+constexpr const char* kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+
+TEST_F(ImportCommand, ObjWithTwoMaterialsAndAnOpacityMap) {
+  folder_.write("leaf.png", png_with_alpha());
+  folder_.write("plant.mtl",
+                "newmtl Leaf 1\nKd 0 0 0\nmap_Kd C:\\art\\leaf.png\nmap_d leaf.png\nnewmtl stem\nKd .3 .2 .1\nd 0.5\n");
+  folder_.write("plant.obj", std::string("mtllib plant.mtl\n") + kQuad +
+                                 "v 0 0 1\nv 1 0 1\nv 1 1 1\nusemtl Leaf 1\nf 1/1 2/2 3/3 4/4\nusemtl stem\nf 5 6 7\n");
+  const Outcome o = imported("plant.obj");
+  EXPECT_THAT(o.err, HasSubstr("its unit is taken as m (--unit) and y as up (--up)"));
+  EXPECT_THAT(o.out, AllOf(HasSubstr("Leaf 1: diffuse, 2 triangles"), HasSubstr("stem: diffuse, 1 triangle")));
+  EXPECT_THAT(plant(), AllOf(HasSubstr("\"texture alpha\" \"Leaf 1-alpha\""), HasSubstr("\"float alpha\" 0.5"),
+                             HasSubstr("\"rgb reflectance\" [ 0.3 0.2 0.1 ]"),
+                             HasSubstr("\"string filename\" \"scene-files/leaf.png\"")));
+  EXPECT_EQ(text_of(path("scene-files/leaf.png")), png_with_alpha());  // as it is
+  const Image alpha = read_image(path("scene-files/Leaf_1-alpha.png"), {}).image;
+  EXPECT_EQ(alpha.channels.size(), 1u);
+  EXPECT_EQ(alpha.at(0, 0, 0), 1);
+  EXPECT_NEAR(alpha.at(7, 0, 0), 0.3f, 0.01f);
+}
+
+TEST_F(ImportCommand, LeavesAreMaterialsByName) {
+  folder_.write("plant.obj", std::string(kQuad) + "usemtl Leaf.001\nf 1/1 2/2 3/3 4/4\nusemtl bark\nf 1 2 4\n");
+  imported("plant.obj", {"--leaf", "leaf*=leaf_lambert,specimen=maize,thickness=2e-4"});
+  EXPECT_THAT(plant(),
+              AllOf(HasSubstr("MakeNamedMaterial \"Leaf.001\" \"string type\" \"leaf_lambert\""),
+                    HasSubstr("\"string specimen\" [ \"maize\" ]"), HasSubstr("\"float thickness\" [ 0.0002 ]"),
+                    HasSubstr("MakeNamedMaterial \"bark\" \"string type\" \"diffuse\"")));
+  EXPECT_THAT(refusal("plant.obj", {"--leaf", "laef*=leaf"}), HasSubstr("its materials are \"Leaf.001\", \"bark\""));
+  EXPECT_THAT(refusal("plant.obj", {"--leaf", "leaf*=laef"}), HasSubstr("unknown material \"laef\""));
+  EXPECT_THAT(refusal("plant.obj", {"--leaf", "leaf*=leaf,thicknes=1"}), HasSubstr("did you mean \"thickness\""));
+  EXPECT_THAT(refusal("plant.obj", {"--leaf", "leaf*"}), HasSubstr("--leaf takes NAME=PLUGIN"));
+}
+
+TEST_F(ImportCommand, UnitAndAxis) {
+  folder_.write("plant.obj", "v 0 0 0\nv 0 0 250\nv 50 10 0\nf 1 2 3\n");
+  const Outcome o = imported("plant.obj", {"--up", "z", "--unit", "cm"});
+  EXPECT_THAT(o.out, HasSubstr("0.5 x 0.1 x 2.5 m"));
+  EXPECT_THAT(o.err, Not(HasSubstr("does not state")));
+  EXPECT_THAT(imported("plant.obj", {"--scale", "0.1"}).out, HasSubstr("5 x 25 x 1 m"));
+  EXPECT_EQ(frond_command({"import", path("plant.obj"), "-o", path("y.pbrt"), "--scale", "1", "--unit", "m"}).code, 1);
+}
+
+/// Root turned by 90 degrees about y, and shifted; its two children have the quadrilateral, one of them mirrored.
+TEST_F(ImportCommand, GltfNodesAreInstances) {
+  folder_.write("plant.gltf",
+                gltf(R"({"name":"root","children":[1,2],"translation":[10,20,30],"rotation":[0,0.7071067811865476,0,
+0.7071067811865476]},{"mesh":0,"scale":[2,2,2]},{"mesh":0,"translation":[0,0,5],"scale":[-1,1,1]})",
+                     R"({"name":"leaf","pbrMetallicRoughness":{"baseColorFactor":[0.1,0.4,0.1,1],"metallicFactor":0}})",
+                     embedded()));
+  const Outcome o = imported("plant.gltf");
+  EXPECT_THAT(o.out, HasSubstr("2 instances of 1 objects"));
+  EXPECT_THAT(o.err, Not(HasSubstr("does not state")));
+  // Columns of the first map: x = (2,0,0) turns to -z of glTF, which is +y of the scene; y is up.
+  EXPECT_THAT(plant(), AllOf(HasSubstr("ObjectBegin \"blade\""), HasSubstr("ObjectInstance \"blade\"")));
+  const std::string text = plant();
+  const size_t at = text.find("ConcatTransform [ ");
+  std::istringstream numbers(text.substr(at + 18));
+  const double expected[] = {0, 2, 0, 0, 0, 0, 2, 0, 2, 0, 0, 0, 10, -30, 20, 1};
+  for (const double e : expected) {
+    double v = 0;
+    numbers >> v;
+    EXPECT_NEAR(v, e, 1e-5);
+  }
+}
+
+TEST_F(ImportCommand, ManyInstancesAreATable) {
+  std::string children, nodes;
+  for (int i = 1; i <= 1500; ++i) {
+    children += fmt::format("{}{}", i > 1 ? "," : "", i);
+    nodes += fmt::format(",{{\"mesh\":0,\"translation\":[{},{},0]}}", i % 40 * 2, i / 40 * 2);
+  }
+  folder_.write("field.gltf", gltf("{\"children\":[" + children + "]}" + nodes, "{\"name\":\"leaf\"}", embedded()));
+  EXPECT_THAT(imported("field.gltf").out, HasSubstr("1500 instances of 1 objects"));
+  EXPECT_THAT(plant(), AllOf(HasSubstr("Shape \"instances\" \"string object\" \"blade\" \"string filename\" "
+                                       "\"scene-files/blade.npy\""),
+                             Not(HasSubstr("ObjectInstance"))));
+  EXPECT_GT(fs::file_size(path("scene-files/blade.npy")), 1500u * 48);
+}
+
+/// The image is part of the file; alpha below the cutoff is cut, and the colour factor tints it.
+TEST_F(ImportCommand, GlbWithAnImageInsideAndACutoff) {
+  const std::string png = png_with_alpha();
+  const std::string image = fmt::format(R"(,"images":[{{"bufferView":3,"mimeType":"image/png","name":"blade"}}],
+"textures":[{{"source":0}}])");
+  folder_.write("plant.glb",
+                glb(gltf(R"({"mesh":0})",
+                         R"({"name":"leaf","alphaMode":"MASK","alphaCutoff":0.5,"normalTexture":{"index":0},
+"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"baseColorFactor":[1,0.5,1,1],"metallicFactor":0}})",
+                         "", image, 92 + png.size(),
+                         fmt::format(",{{\"buffer\":0,\"byteOffset\":92,\"byteLength\":{}}}", png.size())),
+                    quad_buffer() + png));
+  imported("plant.glb");
+  EXPECT_THAT(plant(), AllOf(HasSubstr("\"texture alpha\" \"leaf-alpha\""), HasSubstr("\"string normalmap\"")));
+  const Image alpha = read_image(path("scene-files/leaf-alpha.png"), {}).image;
+  EXPECT_EQ(alpha.at(0, 0, 0), 1);
+  EXPECT_EQ(alpha.at(7, 0, 0), 0);
+  // 0.7 in sRGB is 0.4479 in linear values, half of it 0.2239, which is 0.5108 in sRGB.
+  EXPECT_NEAR(read_image(path("scene-files/leaf-color.png"), {}).image.at(0, 0, 1), 0.5108f, 0.005f);
+}
+
+TEST_F(ImportCommand, DoubleSheetsAreReportedAndRemoved) {
+  folder_.write("plant.obj", std::string(kQuad) + "usemtl leaf\nf 1/1 2/2 3/3 4/4\nf 4/4 3/3 2/2 1/1\n");
+  EXPECT_THAT(imported("plant.obj").err,
+              HasSubstr("\"leaf\" has sheets that are there twice, front and back, in the same place; triangles of the "
+                        "second one: 2; --single-sided \"leaf\" removes them"));
+  const std::vector<std::string> leaf{"--leaf", "leaf=leaf_lambert"};
+  EXPECT_THAT(refusal("plant.obj", {leaf[0], leaf[1], "--strict"}), HasSubstr("light would pass two leaves"));
+  const Outcome removed = imported("plant.obj", {leaf[0], leaf[1], "--strict", "--single-sided", "LEAF"});
+  EXPECT_THAT(removed.err, HasSubstr("removed"));
+  EXPECT_THAT(removed.out, HasSubstr("leaf: leaf_lambert, 2 triangles"));
+  EXPECT_THAT(refusal("plant.obj", {"--single-sided", "stem"}), HasSubstr("has no material \"stem\""));
+}
+
+TEST_F(ImportCommand, WhatCannotBeMappedIsNamed) {
+  folder_.write("plant.gltf",
+                gltf(R"({"mesh":0,"children":[1]},{"camera":0})",
+                     R"({"name":"pot","emissiveFactor":[1,1,1],"pbrMetallicRoughness":{"roughnessFactor":0.2,
+"metallicFactor":0}})",
+                     embedded(), R"(,"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}])"));
+  EXPECT_THAT(imported("plant.gltf").err, HasSubstr("left out: 1 camera, emission of \"pot\", gloss of \"pot\""));
+  folder_.write("bad.mtl", "newmtl leaf\nmap_Kd nowhere.png\nnewmtl stem\nmap_Kd text.png\n");
+  folder_.write("text.png", "not an image");
+  folder_.write("bad.obj", std::string("mtllib bad.mtl\n") + kQuad + "usemtl leaf\nf 1 2 3\nusemtl stem\nf 1 3 4\n");
+  EXPECT_THAT(imported("bad.obj").err, AllOf(HasSubstr("image \"nowhere.png\" is left out: there is no such file"),
+                                             HasSubstr("image \"text.png\" is left out: cannot read image")));
+}
+
+TEST_F(ImportCommand, FilesOutsideTheFolderAreNotRead) {
+  const std::string secret = folder_.write("secret/quad.bin", quad_buffer()).string();
+  const std::string nodes = "{\"mesh\":0}", material = "{\"name\":\"leaf\"}";
+  for (const std::string& uri : {std::string("../secret/quad.bin"), secret, "file://" + secret,
+                                 std::string("http://localhost/quad.bin"), std::string("..\\\\secret\\\\quad.bin")}) {
+    folder_.write("model/plant.gltf", gltf(nodes, material, "\"uri\":\"" + uri + "\","));
+    EXPECT_THAT(refusal("model/plant.gltf"), HasSubstr("plant.gltf\"")) << uri;
+  }
+  fs::create_symlink(secret, path("model/link.bin"));
+  folder_.write("model/plant.gltf", gltf(nodes, material, "\"uri\":\"link.bin\","));
+  EXPECT_THAT(refusal("model/plant.gltf"), HasSubstr("it is outside the model's folder"));
+  folder_.write("secret/leaf.png", png_with_alpha());
+  folder_.write("model/plant.mtl", "newmtl leaf\nmap_Kd ../secret/leaf.png\n");
+  folder_.write("model/plant.obj", std::string("mtllib plant.mtl\n") + kQuad + "usemtl leaf\nf 1/1 2/2 3/3\n");
+  EXPECT_THAT(imported("model/plant.obj").err, HasSubstr("image \"../secret/leaf.png\" is left out"));
+  EXPECT_FALSE(fs::exists(path("scene-files/leaf.png")));
+}
+
+TEST_F(ImportCommand, DamagedFilesAreErrors) {
+  const std::string good = glb(gltf("{\"mesh\":0}", "{\"name\":\"leaf\"}", ""), quad_buffer());
+  for (const size_t size : {0u, 3u, 12u, 20u, 100u, unsigned(good.size()) / 2, unsigned(good.size()) - 40}) {
+    folder_.write("cut.glb", good.substr(0, size));
+    EXPECT_THAT(refusal("cut.glb"), HasSubstr("cannot read \"")) << size;
+  }
+  const auto gltf_error = [this](const std::string& text) {
+    folder_.write("bad.gltf", text);
+    return refusal("bad.gltf");
+  };
+  EXPECT_THAT(gltf_error("{"), HasSubstr("bad.gltf"));
+  EXPECT_THAT(gltf_error(gltf(R"({"mesh":0,"children":[1]},{"mesh":0,"children":[0]})", "{}", embedded())),
+              HasSubstr("recursive reference"));
+  std::string huge = gltf("{\"mesh\":0}", "{}", embedded());
+  for (size_t at; (at = huge.find("\"count\":4,")) != std::string::npos;) huge.replace(at, 10, "\"count\":2000000000,");
+  EXPECT_THAT(gltf_error(huge), HasSubstr("bad.gltf"));
+  folder_.write("points.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\n");
+  EXPECT_THAT(refusal("points.obj"), HasSubstr("it has no triangles; of a point cloud"));
+  folder_.write("far.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\nf 1 2 9\n");
+  EXPECT_THAT(refusal("far.obj"), HasSubstr("far.obj"));
+}
+
+TEST_F(ImportCommand, ArgumentsAreChecked) {
+  folder_.write("plant.fbx", "x");
+  EXPECT_THAT(refusal("plant.fbx"), HasSubstr("models are .obj, .gltf or .glb files"));
+  EXPECT_THAT(refusal("none.obj"), HasSubstr("there is no such file"));
+  folder_.write("plant.obj", std::string(kQuad) + "f 1 2 3\n");
+  EXPECT_THAT(frond_command({"import", path("plant.obj"), "-o", path("plant.txt")}).err,
+              HasSubstr("needs the extension .pbrt"));
+}
+
+/// The folder of the files to write is that of the model's images.
+TEST_F(ImportCommand, InputsAreNotReplaced) {
+  folder_.write("refused-files/leaf.png", png_with_alpha());
+  folder_.write("refused-files/plant.mtl", "newmtl leaf\nmap_Kd leaf.png\n");
+  folder_.write("refused-files/plant.obj", std::string("mtllib plant.mtl\n") + kQuad + "usemtl leaf\nf 1/1 2/2 3/3\n");
+  EXPECT_THAT(refusal("refused-files/plant.obj"), HasSubstr("would replace its input"));
+}
+
+}  // namespace
+}  // namespace frond
+
+#endif
