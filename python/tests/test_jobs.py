@@ -73,6 +73,7 @@ def test_every_front_end_documents_every_parameter(name, param, documents):
                    re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", line.split("|")[1]))
         for fact in (param["default"], param["unit"], *param["choices"]):
             assert fact in row
+    name = _jobs.python_name(name)
     function = getattr(frond, name)
     keyword = _jobs.python_name(param["name"])
     parameters = inspect.signature(_jobs.FUNCTIONS[name]).parameters
@@ -311,3 +312,16 @@ def test_commands_are_functions(scene_text, tmp_path, monkeypatch):
     assert Path("leaves.npy").exists()
     frond.submit("scene.pbrt", output="out.exr", spp=4, tasks=2, engine="slurm", wavelengths="smpte", session=frond.Session(cache="tables"))
     assert f"--wavelengths smpte --cache {tmp_path}/tables" in Path("out.exr.slurm/render.sbatch").read_text()
+
+
+def test_a_command_that_is_a_word_of_python_has_an_underscore(tmp_path):
+    model = tmp_path / "plant.obj"
+    model.write_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nusemtl leaf.1\nf 1 2 3\n")
+    try:
+        found = frond.import_(model, tmp_path / "plant.pbrt", leaf={"leaf*": "leaf_lambert,specimen=maize"}, up="z", unit="cm")
+    except frond.InputError as error:
+        if "frond-assimp, which is not installed" not in str(error):
+            raise
+        pytest.skip("built without assimp")
+    assert list(found.table["type"]) == ["leaf_lambert"] and found.facts["height"] == pytest.approx(0.01)
+    assert frond.load(tmp_path / "plant.pbrt", swap="leaf_solved")
