@@ -13,6 +13,10 @@ _ANNOTATIONS = {"flag": "bool", "count": "int", "seed": "int", "real": "float", 
                 "text": "str | os.PathLike", "texts": "str | Sequence[str] | Mapping[str, str]"}
 
 
+def _annotation(param):
+    return "float | str" if param["type"] == "STOPS" else _ANNOTATIONS[param["kind"]]
+
+
 def _text(value):
     """Returns a value as text, in the grammar of the command line. Numbers keep all digits."""
     if hasattr(value, "item") and getattr(value, "ndim", 0) == 0:
@@ -101,7 +105,7 @@ def _signature(job):
     kinds, parameters = inspect.Parameter, []
     for i, param in enumerate(job["params"]):
         kind = kinds.POSITIONAL_OR_KEYWORD if i < 3 else kinds.KEYWORD_ONLY
-        parameters.append(kinds(python_name(param["name"]), kind, default=_default(param), annotation=_ANNOTATIONS[param["kind"]]))
+        parameters.append(kinds(python_name(param["name"]), kind, default=_default(param), annotation=_annotation(param)))
     # Python requires parameters without a default before those with one.
     seen_default = False
     for i, parameter in enumerate(parameters[:3]):

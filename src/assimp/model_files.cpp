@@ -65,7 +65,9 @@ void ProcessLimits::allow_file(uint64_t bytes) {
 /// Applies to this process from now on; memory beyond the limit is std::bad_alloc, time beyond it SIGXCPU.
 void ProcessLimits::apply() const {
   const uint64_t memory = std::min(memory_, most_memory_);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which reserve terabytes of addresses
   set_limit(RLIMIT_AS, memory);
+#endif
   set_limit(RLIMIT_FSIZE, 4 * memory);  // standard output, a file
   set_limit(RLIMIT_CPU, seconds_);
 }

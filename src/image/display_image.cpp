@@ -11,14 +11,28 @@ void check_display_choice(const std::string& path, const ColorManager& colors, c
   if (!is_exr(path)) return colors.check_names(choice.display, choice.view);
   if (!choice.display.empty() || !choice.view.empty())
     fail({}, "--display and --view are for .png and .jpg: {} holds linear values", path);
+  if (choice.exposure)
+    fail({}, "--exposure is for .png and .jpg: {} holds the scene's radiance; frond convert --exposure changes a copy",
+         path);
 }
 
-void write_display_image(const std::string& path, const Image& image, std::string_view space,
-                         const ColorManager& colors, const DisplayChoice& choice,
-                         const std::map<std::string, std::string>& text) {
+/// The header's stops, and those of the command, repeat an automatic exposure exactly.
+AppliedExposure write_display_image(const std::string& path, const Image& image, std::string_view space,
+                                    const ColorManager& colors, const DisplayChoice& choice,
+                                    std::map<std::string, std::string> text) {
   Image shown = image.selected(std::array<size_t, 3>{0, 1, 2}, {"R", "G", "B"});
+  AppliedExposure applied{0, measure_exposure(shown, space)};
+  if (choice.exposure) {
+    applied.stops = choice.exposure->is_auto ? applied.meter.stops : choice.exposure->stops;
+    text["frond:exposure"] = fmt::format("{:.6g}", applied.stops);
+    if (const auto command = text.find("frond:command"); command != text.end())
+      command->second += fmt::format(" --exposure={:.6g}", applied.stops);
+    expose(shown, applied.stops);
+    applied.meter = measure_exposure(shown, space);
+  }
   colors.display(shown.pixels, space, choice.display, choice.view);
   write_image(path, shown, {.color_space = "", .text = text});
+  return applied;
 }
 
 }  // namespace frond

@@ -4,23 +4,27 @@
 #include <string>
 
 #include "core/image.h"
+#include "image/exposure.h"
 #include "spectra/color/color_management.h"
 
 namespace frond {
 
-/// OpenColorIO display and view by which a PNG or JPEG is encoded; empty: the configuration's defaults.
+/// OpenColorIO display and view by which a PNG or JPEG is encoded; empty: the configuration's defaults. Exposure, if it
+/// is chosen.
 struct DisplayChoice {
   std::string display, view;
+  std::optional<ExposureChoice> exposure = {};
 };
 
-/// Throws InputError if the OpenColorIO configuration lacks the display or the view, or if one is set for an EXR, whose
-/// values are linear.
+/// Throws InputError if the OpenColorIO configuration lacks the display or the view, or if one of these or an exposure
+/// is set for an EXR, whose values are linear.
 void check_display_choice(const std::string& path, const ColorManager& colors, const DisplayChoice& choice);
 
 /// Writes the first three channels of an image, which are linear in `space`, as PNG or JPEG encoded by a display
-/// transform. `text` are header attributes by name. Throws InputError.
-void write_display_image(const std::string& path, const Image& image, std::string_view space,
-                         const ColorManager& colors, const DisplayChoice& choice,
-                         const std::map<std::string, std::string>& text);
+/// transform. `text` are header attributes by name; that of the exposure is added. Throws
+/// InputError.
+AppliedExposure write_display_image(const std::string& path, const Image& image, std::string_view space,
+                                    const ColorManager& colors, const DisplayChoice& choice,
+                                    std::map<std::string, std::string> text);
 
 }  // namespace frond

@@ -22,7 +22,10 @@ constexpr JobParam kParams[] = {
         "Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy "
         "light is 1.",
         {.type = "R,G,B", .unit = "nm", .range = kAboveZero, .values = 3}),
-    JobParam("exposure", real, "Change of exposure.", {.default_value = "0", .unit = "stops", .range = {-64, 64}}),
+    JobParam("exposure", text,
+             "Change of exposure, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid "
+             "grey (docs/color.md).",
+             {.type = "STOPS", .default_value = "0", .unit = "stops"}),
     kDisplayParam,
     kViewParam,
     JobParam("color-space", text,
@@ -67,23 +70,37 @@ LinearFile mean_of(const std::vector<std::string>& paths, const JobRun& run) {
   return mean;
 }
 
+/// Returns the exposure that a light meter chooses for the mean of a sum of images.
+double metered_stops(const LinearFile& sum, size_t count) {
+  Image mean = sum.image;
+  for (float& v : mean.pixels) v /= float(count);
+  return measure_exposure(mean, sum.space).stops;
+}
+
 /// The job: averages the images, applies the exposure, and writes the mean.
 Result convert(const JobRun& run) {
   const std::string output = run.args.text("output");
-  const DisplayChoice display = display_choice(run.args);
+  const ExposureChoice exposure = exposure_choice(run.args);
+  const DisplayChoice display{run.args.text("display"), run.args.text("view")};
   check_writable(output);
   const ColorManager colors;
   check_display_choice(output, colors, display);
   const auto paths = run.args.texts("images");
   LinearFile mean = mean_of(paths, run);
-  const float scale = float(std::exp2(run.args.real("exposure")) / double(paths.size()));
+  const double stops = exposure.is_auto ? metered_stops(mean, paths.size()) : exposure.stops;
+  const float scale = float(std::exp2(stops) / double(paths.size()));
   for (float& v : mean.image.pixels) v *= scale;
-  std::map<std::string, std::string> attributes{{"frond:version", FROND_VERSION}};
+  std::map<std::string, std::string> attributes{{"frond:version", FROND_VERSION}}, of_display;
+  if (run.args.given("exposure"))
+    attributes["frond:exposure"] = of_display["frond:exposure"] = fmt::format("{:.6g}", stops);
   if (mean.correlated_pixels > 1) attributes["frond:correlated_pixels"] = fmt::format("{:.3f}", mean.correlated_pixels);
+  std::optional<AppliedExposure> applied;
   if (is_exr(output))
     write_image(output, mean.image, {mean.space, attributes});
   else
-    write_display_image(output, mean.image, mean.space, colors, display, {});
+    applied = write_display_image(output, mean.image, mean.space, colors, display, of_display);
+  if (exposure.is_auto) applied = AppliedExposure{stops, {}};
+  report_exposure(run, exposure.is_auto, applied, output);
   return {};
 }
 

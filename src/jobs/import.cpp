@@ -98,13 +98,20 @@ Result import_model(const JobRun& run) {
   options.scale = scale_of(run);
   options.z_is_up = run.args.text("up") == "z";
   options.single_sided = run.args.texts("single-sided");
-  const ImportSummary summary = import_scene(options, run.log(), [&](const ImportSummary& found) {
+  const auto accept = [&](const ImportSummary& found) {
     report_assumptions(run, options, found);
     report_double_sheets(run, options, found);
     if (!found.left_out.empty()) run.log().info(fmt::format("left out: {}", fmt::join(found.left_out, ", ")));
     run.context.log().check();
     run.check_stop();
-  });
+  };
+  ImportSummary summary;
+  try {
+    summary = import_scene(options, run.log(), accept);
+  } catch (const InputError&) {
+    run.check_stop();  // Ctrl-C ends the process that reads the model
+    throw;
+  }
   Result result{.tables = {{"materials"}}};
   for (size_t i = 0; i < summary.materials.size(); ++i) {
     if (summary.triangles[i] == 0) continue;

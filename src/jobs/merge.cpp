@@ -19,6 +19,7 @@ constexpr JobParam kParams[] = {
     JobParam("allow-holes", flag, "Write an image although samples or pixels are missing."),
     kDisplayParam,
     kViewParam,
+    kExposureParam,
 };
 
 /// Throws InputError, or warns with --allow-holes, if samples or pixels are missing.
@@ -37,7 +38,8 @@ void write_merged(const RenderPart& whole, const ImageOutput& output, const JobR
     run.log().warn({},
                    "pixels at the edges lack samples of neighbouring pixels within the filter's radius: other parts of "
                    "the image contain them");
-  output.write(whole.film, finished_image(whole));
+  const auto& exposure = output.display().exposure;
+  report_exposure(run, exposure && exposure->is_auto, output.write(whole.film, finished_image(whole)), output.path());
 }
 
 /// The job: merges all parts in memory, then writes an image or a part.

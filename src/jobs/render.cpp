@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "jobs/record/common_params.h"
+#include "jobs/support/display_params.h"
 #include "jobs/support/kept_file.h"
 #include "jobs/support/render_task.h"
 #include "jobs/support/render_views.h"
@@ -81,6 +82,7 @@ constexpr JobParam kParams[] = {
              "OpenColorIO display of PNG and JPEG output; sRGB by default. tev: the same as --display-server "
              "127.0.0.1:14158."),
     JobParam("view", text, "View of the display."),
+    kExposureParam,
     JobParam("color-space", text,
              "Colour space of R, G and B in an EXR file if the scene names none, such as linear sRGB.",
              {.decides = true}),
@@ -251,7 +253,11 @@ class SceneRender {
           {}, fmt::format("0.1 % of the pixels contain {:.0f} % of the noise: rare samples dominate "
                           "there, and noise is underestimated",
                           100 * tail.share));
-    if (output_) output_->write(part.film, finished_image(part));
+    if (output_) {
+      const auto& exposure = output_->display().exposure;
+      const auto applied = output_->write(part.film, finished_image(part));
+      report_exposure(run_, exposure && exposure->is_auto, applied, output_->path());
+    }
     views_.finish_display(output_ && output_->rounds_to_halves(part.film));
     report(part.film, samples, tail.share, result);
   }

@@ -25,7 +25,7 @@ void ImageOutput::check(const ImageFormat& format) const {
   if (!is_exr(path_)) colors_.check_display(format.space, display_.display, display_.view);
 }
 
-void ImageOutput::write(const Film& film, const ImageFormat& format) const {
+std::optional<AppliedExposure> ImageOutput::write(const Film& film, const ImageFormat& format) const {
   check(format);
   const Image image = film_image(film, format);
   auto attributes = format.attributes;
@@ -44,6 +44,7 @@ void ImageOutput::write(const Film& film, const ImageFormat& format) const {
   const std::string space = format.space.empty() ? preview_space(format.bands) : format.space;
   write_image(path_, image, {space, attributes, s.crop.x0, s.crop.y0, s.width, s.height, full_precision},
               s.half ? ExrDepth::half : ExrDepth::single);
+  return {};
 }
 
 bool ImageOutput::rounds_to_halves(const Film& film) const { return is_exr(path_) && film.settings().half; }

@@ -18,14 +18,15 @@ class ImageOutput {
   /// Throws InputError if the display or view does not support the image's colour space, or for bands in PNG or JPEG.
   void check(const ImageFormat& format) const;
 
-  /// Writes the image. EXR: all channels of film_image, linear. PNG and JPEG: R G B after the display transform. Throws
-  /// InputError if the file cannot be written.
-  void write(const Film& film, const ImageFormat& format) const;
+  /// Writes the image. EXR: all channels of film_image, linear. PNG and JPEG: R G B after exposure and display
+  /// transform; returns their exposure. Throws InputError if the file cannot be written.
+  std::optional<AppliedExposure> write(const Film& film, const ImageFormat& format) const;
 
   /// True if `write` rounds colours or bands to 16-bit floats.
   bool rounds_to_halves(const Film& film) const;
 
   const std::string& path() const { return path_; }
+  const DisplayChoice& display() const { return display_; }
 
  private:
   std::string path_;

@@ -551,7 +551,7 @@ TEST_F(Commands, NumbersThatAreNoneAreToldInFewWords) {
       {{"spectrophotometer", "abm", "--wavelengths", "551", "--se", "nan"}, "--se: a number above 0 is needed"},
       {{"conform", "abm", "--false-alarm-rate", "1"}, "--false-alarm-rate: a number from 1e-12 to 0.5 is needed"},
       {{"convert", "a.exr", "-o", "b.png", "--exposure", "abc"},
-       "--exposure: a number from -64 to 64 (stops) is needed; \"abc\" was given"},
+       "--exposure: a number from -64 to 64 (stops) or auto is needed; \"abc\" was given"},
       {{"convert", "a.exr", "-o", "b.png", "--bands", "650,x,450"},
        "--bands: 3 numbers above 0 (nm) with commas between are needed; \"650,x,450\" was given"},
       {{"compare", "s.pbrt", "-o", "r", "--exposure", "99"},

@@ -46,6 +46,47 @@ Shape "sphere" "float radius" .5
   TestFolder folder_{"display"};
 };
 
+TEST_F(LiveDisplay, ExposureIsForDisplaysAndInTheHeader) {
+  ASSERT_EQ(render("plain.png", {"--seed", "3"}).code, 0);
+  const Outcome up = render("up.png", {"--seed", "3", "--exposure", "1"});
+  ASSERT_EQ(up.code, 0) << up.err;
+  const Outcome metered = render("auto.png", {"--seed", "3", "--exposure", "auto"});
+  EXPECT_THAT(metered.err, HasSubstr("auto.png: exposure -"));  // the sky is brighter than mid grey
+  const auto header = [this](const char* name) { return read_image(path(name), {}).header.text; };
+  EXPECT_EQ(header("up.png").at("frond:exposure"), "1");
+  EXPECT_THAT(header("up.png").at("frond:command"), HasSubstr(" --exposure=1"));
+  EXPECT_FALSE(header("plain.png").contains("frond:exposure"));
+  const auto green = [this](const char* name) { return read_image(path(name), {}).image.at(24, 20, 1); };
+  EXPECT_LT(green("auto.png"), green("plain.png"));
+  EXPECT_LT(green("plain.png"), green("up.png"));
+  // The exposure of the header repeats the image.
+  const std::string stops = header("auto.png").at("frond:exposure");
+  ASSERT_EQ(render("again.png", {"--seed", "3", "--exposure=" + stops}).code, 0);
+  EXPECT_EQ(read_image(path("again.png"), {}).image.pixels, read_image(path("auto.png"), {}).image.pixels);
+
+  EXPECT_THAT(render("x.exr", {"--exposure", "auto"}).err, HasSubstr("--exposure is for .png and .jpg"));
+  EXPECT_THAT(render("x.png", {"--exposure", "bright"}).err, HasSubstr("(stops) or auto is needed"));
+}
+
+TEST_F(LiveDisplay, AnExposureIsSuggestedForABlackImageAndConvertHasIt) {
+  const Outcome dark = render("dark.png", {"--swap", "diffuse=diffuse,reflectance=0", "--pixels", "24,26,19,21"});
+  EXPECT_EQ(dark.code, 0) << dark.err;  // black, not dark: no exposure helps
+  EXPECT_THAT(dark.err, Not(HasSubstr("--exposure")));
+  ASSERT_EQ(render("a.exr", {}).code, 0);
+  const auto converted = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"convert", path("a.exr"), "-o", path("c.png")};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome o = frond_command(words);
+    EXPECT_EQ(o.code, 0) << o.err;
+    return o.err;
+  };
+  EXPECT_THAT(converted({"--exposure=-9"}),
+              HasSubstr("nearly all of the image is too dark to be seen: --exposure auto"));
+  EXPECT_THAT(converted({"--exposure", "9"}), HasSubstr("of the image is brighter than white"));
+  EXPECT_THAT(converted({"--exposure", "auto"}), HasSubstr("c.png: exposure -"));
+  EXPECT_THAT(converted({}), IsEmpty());
+}
+
 TEST_F(LiveDisplay, ShowsWhatTheFileHoldsInTheEnd) {
   for (const std::vector<std::string>& more : {std::vector<std::string>{},
                                                {"--filter", "box"},

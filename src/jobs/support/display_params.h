@@ -9,7 +9,36 @@ inline constexpr JobParam kDisplayParam("display", ArgumentKind::text,
                                         "OpenColorIO display of PNG and JPEG output; sRGB by default.");
 inline constexpr JobParam kViewParam("view", ArgumentKind::text, "View of the display.");
 
-/// Returns the choice of --display and --view.
-inline DisplayChoice display_choice(const Arguments& args) { return {args.text("display"), args.text("view")}; }
+inline constexpr JobParam kExposureParam(
+    "exposure", ArgumentKind::text,
+    "Change of the exposure of PNG and JPEG output, a number from -64 to 64, or auto: a light meter, which makes the "
+    "mean luminance mid grey (docs/color.md).",
+    {.type = "STOPS", .unit = "stops"});
+
+/// Parses --exposure. Throws InputError.
+inline ExposureChoice exposure_choice(const Arguments& args) {
+  const std::string text = args.text("exposure");
+  const auto choice = parse_exposure(text);
+  if (!choice)
+    fail({}, "{}: a number from -64 to 64 (stops) or auto is needed; \"{}\" was given", args.spelled("exposure"), text);
+  return *choice;
+}
+
+/// Returns the choice of --display, --view and, if it is given, --exposure. Throws InputError.
+inline DisplayChoice display_choice(const Arguments& args) {
+  DisplayChoice choice{args.text("display"), args.text("view")};
+  if (args.declares("exposure") && args.given("exposure")) choice.exposure = exposure_choice(args);
+  return choice;
+}
+
+/// Reports an automatic exposure, or suggests one for an image that is nearly all black or mostly clipped. `applied` is
+/// that of the written image; empty for an EXR.
+inline void report_exposure(const JobRun& run, bool is_auto, const std::optional<AppliedExposure>& applied,
+                            const std::string& output) {
+  if (!applied) return;
+  if (is_auto) return run.log().info(fmt::format("{}: exposure {} stops", output, stops_text(applied->stops)));
+  const std::string advice = exposure_advice(applied->meter, run.args.spelled("exposure"));
+  if (!advice.empty()) run.log().info(fmt::format("{}: {}", output, advice));
+}
 
 }  // namespace frond

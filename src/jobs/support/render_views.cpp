@@ -7,11 +7,14 @@
 #include "core/error.h"
 #include "image/spectral_layout.h"
 #include "image/tev_packets.h"
+#include "jobs/support/display_params.h"
 
 namespace frond {
 
 DisplayChoice display_of(const Arguments& args) {
-  return {args.text("display") == "tev" ? "" : args.text("display"), args.text("view")};
+  DisplayChoice choice = display_choice(args);
+  if (choice.display == "tev") choice.display = "";
+  return choice;
 }
 
 RenderViews::RenderViews(const Arguments& args) : display_(display_of(args)) {
