@@ -51,7 +51,7 @@ void extend(PlantGeometry& geometry, const std::vector<PlantMesh>& meshes, const
     for (const Vec3& p : mesh.p) {
       const Vec3d q = map.point(to_double(p));
       if (!(std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) < kLargest))
-        fail({}, "the model has a vertex at {} {} {}, beyond {}; --scale makes it smaller", q.x, q.y, q.z, kLargest);
+        fail({}, "the model has a vertex at {} {} {}, beyond {}: it needs a smaller scale", q.x, q.y, q.z, kLargest);
       geometry.least = {std::min(geometry.least.x, q.x), std::min(geometry.least.y, q.y),
                         std::min(geometry.least.z, q.z)};
       geometry.most = {std::max(geometry.most.x, q.x), std::max(geometry.most.y, q.y), std::max(geometry.most.z, q.z)};

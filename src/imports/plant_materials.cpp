@@ -60,7 +60,7 @@ class MaterialWriter {
       std::vector<std::string> names;
       for (size_t i = 0; i < used.size(); ++i)
         if (used[i]) names.push_back('"' + scene.materials[i].name + '"');
-      fail({}, "leaf {}: the model has no such material; its materials are {}", rule.text, fmt::join(names, ", "));
+      fail({}, "{}: the model has no such material; its materials are {}", rule.text, fmt::join(names, ", "));
     }
   }
 

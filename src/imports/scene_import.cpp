@@ -28,6 +28,14 @@ NodeMap to_scene(const ImportOptions& options) {
   return {{s, 0, 0, 0, 0, 0, -s, 0, 0, s, 0, 0}};
 }
 
+/// Returns the model's name for a comment: a line break in it would begin directives.
+std::string comment_name(const fs::path& model) {
+  std::string name = model.filename().string();
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < ' ') c = '_';
+  return name;
+}
+
 /// Writes the directives and files of a model.
 class SceneWriter {
  public:
@@ -39,7 +47,7 @@ class SceneWriter {
     text_ = fmt::format(
         "# Written by frond {}: frond import {}. Materials and shapes; z is up. A scene in this folder includes it by\n"
         "#   Include \"{}-plant.pbrt\"\n\n{}\n",
-        FROND_VERSION, options_.model.filename().string(), stem_, materials_.text);
+        FROND_VERSION, comment_name(options_.model), stem_, materials_.text);
     for (const PlantMesh& mesh : geometry.meshes) shape(mesh);
     for (const PlantObject& object : geometry.objects) {
       const std::string name = unique(plain_name(object.name), objects_);
@@ -134,7 +142,7 @@ std::string view(const PlantGeometry& geometry, const ImportOptions& options, co
       "]\n"
       "  \"float illuminance\" 2.392\n\n"
       "Include \"{}-plant.pbrt\"\n",
-      FROND_VERSION, options.model.filename().string(), size.x, size.y, size.z, eye.x, eye.y, eye.z, center.x, center.y,
+      FROND_VERSION, comment_name(options.model), size.x, size.y, size.z, eye.x, eye.y, eye.z, center.x, center.y,
       center.z, stem, stem);
 }
 
@@ -154,7 +162,7 @@ std::vector<bool> single_sided(const ImportedScene& scene, const std::vector<std
     bool is_used = false;
     for (size_t i = 0; i < remove.size(); ++i)
       if (matches(pattern, scene.materials[i].name)) remove[i] = is_used = true;
-    if (!is_used) fail({}, "single-sided: the model has no material \"{}\"", pattern);
+    if (!is_used) fail({}, "the model has no material \"{}\", whose second sheets are to be removed", pattern);
   }
   return remove;
 }

@@ -48,8 +48,8 @@ std::vector<MaterialRule> rules_of(const JobRun& run) {
     const size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
       fail({}, "{} takes NAME=PLUGIN[,parameter=value...], \"{}\" was given", run.args.spelled("leaf"), text);
-    rules.push_back(
-        {text.substr(0, equals), parse_material(text.substr(equals + 1), run.session().registry()).plugin, text});
+    rules.push_back({text.substr(0, equals), parse_material(text.substr(equals + 1), run.session().registry()).plugin,
+                     run.args.spelled("leaf") + " " + text});
   }
   return rules;
 }

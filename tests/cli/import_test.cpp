@@ -155,7 +155,8 @@ TEST_F(ImportCommand, LeavesAreMaterialsByName) {
               AllOf(HasSubstr("MakeNamedMaterial \"Leaf.001\" \"string type\" \"leaf_lambert\""),
                     HasSubstr("\"string specimen\" [ \"maize\" ]"), HasSubstr("\"float thickness\" [ 0.0002 ]"),
                     HasSubstr("MakeNamedMaterial \"bark\" \"string type\" \"diffuse\"")));
-  EXPECT_THAT(refusal("plant.obj", {"--leaf", "laef*=leaf"}), HasSubstr("its materials are \"Leaf.001\", \"bark\""));
+  EXPECT_THAT(refusal("plant.obj", {"--leaf", "laef*=leaf"}),
+              HasSubstr("--leaf laef*=leaf: the model has no such material; its materials are \"Leaf.001\", \"bark\""));
   EXPECT_THAT(refusal("plant.obj", {"--leaf", "leaf*=laef"}), HasSubstr("unknown material \"laef\""));
   EXPECT_THAT(refusal("plant.obj", {"--leaf", "leaf*=leaf,thicknes=1"}), HasSubstr("did you mean \"thickness\""));
   EXPECT_THAT(refusal("plant.obj", {"--leaf", "leaf*"}), HasSubstr("--leaf takes NAME=PLUGIN"));
@@ -302,6 +303,14 @@ TEST_F(ImportCommand, ArgumentsAreChecked) {
   folder_.write("plant.obj", std::string(kQuad) + "f 1 2 3\n");
   EXPECT_THAT(frond_command({"import", path("plant.obj"), "-o", path("plant.txt")}).err,
               HasSubstr("needs the extension .pbrt"));
+}
+
+/// Names of a stranger's files and materials are no directives.
+TEST_F(ImportCommand, NamesAreQuoted) {
+  folder_.write("a\nInclude \"x\".obj", std::string(kQuad) + "usemtl a\"b\\c\nf 1 2 3\nusemtl \xff\nf 1 3 4\n");
+  imported("a\nInclude \"x\".obj");
+  EXPECT_THAT(plant(), AllOf(HasSubstr("import a_Include \"x\".obj"), HasSubstr("MakeNamedMaterial \"a_b_c\""),
+                             HasSubstr("MakeNamedMaterial \"_\"")));
 }
 
 /// The folder of the files to write is that of the model's images.

@@ -99,7 +99,7 @@ TEST(PlantGeometry, WithoutTrianglesOrBeyondAllBoundsIsAnError) {
   EXPECT_EQ(error_of([&] { plant_geometry(scene, {}); }), "the model has no node with triangles");
   scene = a_scene();
   scene.meshes[0].positions[0][0] = 1e18f;
-  EXPECT_THAT(error_of([&] { plant_geometry(scene, {}); }), ::testing::HasSubstr("makes it smaller"));
+  EXPECT_THAT(error_of([&] { plant_geometry(scene, {}); }), ::testing::HasSubstr("it needs a smaller scale"));
 }
 
 TEST(PlantMaterials, PatternsMatchNames) {
