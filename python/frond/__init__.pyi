@@ -13,7 +13,7 @@ from ._session import (Image as Image, Scene as Scene, Session as Session, defau
 
 __version__: str
 
-def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
     """Render a pbrt-v4 scene file.
 
     scene: Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the next file begins another.
@@ -36,6 +36,7 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     display: OpenColorIO display of PNG and JPEG output; sRGB by default. tev: the same as display_server 127.0.0.1:14158.
     view: View of the display.
     exposure: Change of the exposure of PNG and JPEG output, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops.
+    white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K.
     color_space: Colour space of R, G and B in an EXR file if the scene names none, such as linear sRGB.
     display_server: Show the image in the viewer tev while it is rendered.
     preview: Show the image in the terminal while it is rendered, and at the end.
@@ -330,13 +331,14 @@ def instances(csv: str | os.PathLike, output: str | os.PathLike, *, progress = N
     csv: CSV file to read.
     output: Instance table to write, a NumPy file (.npy)."""
 
-def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike, bands: float | Sequence[float] | str | None = None, *, exposure: float | str = '0', display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike, bands: float | Sequence[float] | str | None = None, *, exposure: float | str = '0', white_balance: str | os.PathLike | None = None, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Average linear images, and write the mean as EXR or through a display transform.
 
     images: EXR files of one size and colour space.
     output: Image to write: .png, .jpg or .exr.
     bands: Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy light is 1. Unit: nm. Range: above 0.
     exposure: Change of exposure, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops. Default: 0.
+    white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K.
     display: OpenColorIO display of PNG and JPEG output; sRGB by default.
     view: View of the display.
     color_space: Colour space of images that do not state one, as after other programs, such as linear SMPTE-C or XYZ; by default linear sRGB (Rec. 709), as OpenEXR defines."""
@@ -349,7 +351,7 @@ def difference(images: str | Sequence[str] | Mapping[str, str], output: str | os
     scale: Luminance difference that is drawn in full colour. Range: above 0. Default: 0.1.
     json: Print JSON."""
 
-def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
     """Write a job that renders ranges of samples and merges them, for Slurm, Open Job Description or Snakemake; --run starts it.
 
     The options of frond render are passed on to the tasks.
@@ -379,6 +381,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     display: OpenColorIO display of PNG and JPEG output; sRGB by default. tev: the same as display_server 127.0.0.1:14158.
     view: View of the display.
     exposure: Change of the exposure of PNG and JPEG output, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops.
+    white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K.
     color_space: Colour space of R, G and B in an EXR file if the scene names none, such as linear sRGB.
     display_server: Show the image in the viewer tev while it is rendered.
     preview: Show the image in the terminal while it is rendered, and at the end.
@@ -393,7 +396,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     strict: Treat warnings as errors.
     json: Print the statistics as JSON on standard output."""
 
-def merge(parts: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, part: str | os.PathLike | None = None, *, allow_holes: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, progress = None, session: Session | None | None = None) -> Result:
+def merge(parts: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, part: str | os.PathLike | None = None, *, allow_holes: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Merge parts of a render, written by frond render --part.
 
     parts: Parts of one render, without common samples.
@@ -402,4 +405,5 @@ def merge(parts: str | Sequence[str] | Mapping[str, str], output: str | os.PathL
     allow_holes: Write an image although samples or pixels are missing.
     display: OpenColorIO display of PNG and JPEG output; sRGB by default.
     view: View of the display.
-    exposure: Change of the exposure of PNG and JPEG output, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops."""
+    exposure: Change of the exposure of PNG and JPEG output, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops.
+    white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K."""

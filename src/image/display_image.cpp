@@ -11,16 +11,36 @@ void check_display_choice(const std::string& path, const ColorManager& colors, c
   if (!is_exr(path)) return colors.check_names(choice.display, choice.view);
   if (!choice.display.empty() || !choice.view.empty())
     fail({}, "--display and --view are for .png and .jpg: {} holds linear values", path);
+  if (choice.white) fail({}, "--white-balance is for .png and .jpg: {} holds the scene's radiance", path);
   if (choice.exposure)
     fail({}, "--exposure is for .png and .jpg: {} holds the scene's radiance; frond convert --exposure changes a copy",
          path);
 }
+
+namespace {
+
+/// Balances the white of the image and adds the white to the header. An automatic balance of an image whose header does
+/// not state its scene's light, because there is none, changes nothing.
+void balance(Image& image, std::string_view space, const WhiteChoice& choice,
+             std::map<std::string, std::string>& text) {
+  const auto light = text.find(kLightWhiteKey);
+  const auto of_scene = light == text.end() ? std::nullopt : parse_chromaticity(light->second);
+  const auto white = choice.is_auto ? of_scene : daylight_white(choice.kelvin);
+  if (!white) return;
+  balance_white(image, space, *white);
+  text["frond:white_balance"] = chromaticity_text(*white);
+  if (const auto command = text.find("frond:command"); command != text.end())
+    command->second += choice.is_auto ? " --white-balance auto" : fmt::format(" --white-balance {:.6g}", choice.kelvin);
+}
+
+}  // namespace
 
 /// The header's stops, and those of the command, repeat an automatic exposure exactly.
 AppliedExposure write_display_image(const std::string& path, const Image& image, std::string_view space,
                                     const ColorManager& colors, const DisplayChoice& choice,
                                     std::map<std::string, std::string> text) {
   Image shown = image.selected(std::array<size_t, 3>{0, 1, 2}, {"R", "G", "B"});
+  if (choice.white) balance(shown, space, *choice.white, text);
   AppliedExposure applied{0, measure_exposure(shown, space)};
   if (choice.exposure) {
     applied.stops = choice.exposure->is_auto ? applied.meter.stops : choice.exposure->stops;

@@ -5,19 +5,21 @@
 
 #include "core/image.h"
 #include "image/exposure.h"
+#include "image/white_balance.h"
 #include "spectra/color/color_management.h"
 
 namespace frond {
 
-/// OpenColorIO display and view by which a PNG or JPEG is encoded; empty: the configuration's defaults. Exposure, if it
-/// is chosen.
+/// OpenColorIO display and view by which a PNG or JPEG is encoded; empty: the configuration's defaults. Exposure and
+/// white balance, if they are chosen.
 struct DisplayChoice {
   std::string display, view;
   std::optional<ExposureChoice> exposure = {};
+  std::optional<WhiteChoice> white = {};
 };
 
-/// Throws InputError if the OpenColorIO configuration lacks the display or the view, or if one of these or an exposure
-/// is set for an EXR, whose values are linear.
+/// Throws InputError if the OpenColorIO configuration lacks the display or the view, or if one of these, an
+/// exposure or a white balance is set for an EXR, whose values are linear.
 void check_display_choice(const std::string& path, const ColorManager& colors, const DisplayChoice& choice);
 
 /// Writes the first three channels of an image, which are linear in `space`, as PNG or JPEG encoded by a display

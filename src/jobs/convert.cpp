@@ -26,6 +26,7 @@ constexpr JobParam kParams[] = {
              "Change of exposure, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid "
              "grey (docs/color.md).",
              {.type = "STOPS", .default_value = "0", .unit = "stops"}),
+    kWhiteParam,
     kDisplayParam,
     kViewParam,
     JobParam("color-space", text,
@@ -70,6 +71,19 @@ LinearFile mean_of(const std::vector<std::string>& paths, const JobRun& run) {
   return mean;
 }
 
+/// Returns the attribute with the light of the first image's scene, for an automatic white balance. Throws InputError
+/// if the image has none.
+std::map<std::string, std::string> light_attributes(const JobRun& run, const DisplayChoice& display,
+                                                    const std::vector<std::string>& paths) {
+  if (!display.white || !display.white->is_auto) return {};
+  const ImageHeader header = read_image(paths[0], {}).header;
+  const auto light = header.text.find(kLightWhiteKey);
+  if (light == header.text.end() || !parse_chromaticity(light->second))
+    fail({}, "{} auto: {} does not state the light of its scene, as images of frond render do; give a temperature",
+         run.args.spelled("white-balance"), paths[0]);
+  return {*light};
+}
+
 /// Returns the exposure that a light meter chooses for the mean of a sum of images.
 double metered_stops(const LinearFile& sum, size_t count) {
   Image mean = sum.image;
@@ -81,7 +95,7 @@ double metered_stops(const LinearFile& sum, size_t count) {
 Result convert(const JobRun& run) {
   const std::string output = run.args.text("output");
   const ExposureChoice exposure = exposure_choice(run.args);
-  const DisplayChoice display{run.args.text("display"), run.args.text("view")};
+  const DisplayChoice display{run.args.text("display"), run.args.text("view"), {}, white_choice(run.args)};
   check_writable(output);
   const ColorManager colors;
   check_display_choice(output, colors, display);
@@ -90,7 +104,8 @@ Result convert(const JobRun& run) {
   const double stops = exposure.is_auto ? metered_stops(mean, paths.size()) : exposure.stops;
   const float scale = float(std::exp2(stops) / double(paths.size()));
   for (float& v : mean.image.pixels) v *= scale;
-  std::map<std::string, std::string> attributes{{"frond:version", FROND_VERSION}}, of_display;
+  std::map<std::string, std::string> attributes{{"frond:version", FROND_VERSION}};
+  std::map<std::string, std::string> of_display = light_attributes(run, display, paths);
   if (run.args.given("exposure"))
     attributes["frond:exposure"] = of_display["frond:exposure"] = fmt::format("{:.6g}", stops);
   if (mean.correlated_pixels > 1) attributes["frond:correlated_pixels"] = fmt::format("{:.3f}", mean.correlated_pixels);

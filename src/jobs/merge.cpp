@@ -20,6 +20,7 @@ constexpr JobParam kParams[] = {
     kDisplayParam,
     kViewParam,
     kExposureParam,
+    kWhiteParam,
 };
 
 /// Throws InputError, or warns with --allow-holes, if samples or pixels are missing.

@@ -83,6 +83,7 @@ constexpr JobParam kParams[] = {
              "127.0.0.1:14158."),
     JobParam("view", text, "View of the display."),
     kExposureParam,
+    kWhiteParam,
     JobParam("color-space", text,
              "Colour space of R, G and B in an EXR file if the scene names none, such as linear sRGB.",
              {.decides = true}),

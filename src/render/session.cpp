@@ -2,7 +2,9 @@
 
 #include <fmt/ranges.h>
 
+#include "image/white_balance.h"
 #include "render/film/adaptive.h"
+#include "render/light_white.h"
 #include "render/parts/inputs.h"
 #include "render/plugins.h"
 #include "spectra/color/color_management.h"
@@ -71,6 +73,7 @@ ImageFormat image_of(const SceneSettings& description, const ImageRequest& reque
   image.attributes["frond:version"] = FROND_VERSION;
   image.attributes["frond:seed"] = std::to_string(scene.seed());
   image.attributes["frond:wavelengths"] = scene.wavelengths_name();
+  if (const auto white = light_white(scene)) image.attributes[kLightWhiteKey] = chromaticity_text(*white);
   image.attributes["frond:scene_hash"] = fmt::format("{:016x}", description.content_hash);
   return image;
 }

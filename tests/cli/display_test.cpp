@@ -87,6 +87,41 @@ TEST_F(LiveDisplay, AnExposureIsSuggestedForABlackImageAndConvertHasIt) {
   EXPECT_THAT(converted({}), IsEmpty());
 }
 
+/// In the light of a lamp a grey surface is grey, by the lights of the scene, by their temperature, and in a
+/// conversion.
+TEST_F(LiveDisplay, WhiteBalanceMakesTheScenesLightWhite) {
+  folder_.write(
+      "scene.pbrt",
+      "Camera \"orthographic\"\nFilm \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n"
+      "LightSource \"infinite\" \"spectrum L\" \"stdillum-A\"\nMaterial \"diffuse\"\nTranslate 0 0 1\n"
+      "Shape \"disk\" \"float radius\" 9\n");
+  const auto color = [this](const char* name) {
+    const Image image = read_image(path(name), {}).image;
+    return std::pair(image.at(4, 4, 0) / image.at(4, 4, 1), image.at(4, 4, 2) / image.at(4, 4, 1));
+  };
+  const std::vector<std::string> many{"--spp", "256"};
+  ASSERT_EQ(render("lamp.png", many).code, 0);
+  EXPECT_GT(color("lamp.png").first, 1.3);
+  for (const char* white : {"auto", "2856"}) {
+    const Outcome o = render("white.png", {many[0], many[1], "--white-balance", white});
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NEAR(color("white.png").first, 1, 0.02) << white;
+    EXPECT_NEAR(color("white.png").second, 1, 0.02) << white;
+    const auto text = read_image(path("white.png"), {}).header.text;
+    EXPECT_THAT(text.at("frond:white_balance"), StartsWith("0.44"));
+    EXPECT_THAT(text.at("frond:command"), HasSubstr(std::string(" --white-balance ") + white));
+  }
+  ASSERT_EQ(render("a.exr", many).code, 0);
+  EXPECT_EQ(read_image(path("a.exr"), {}).header.text.at("frond:light_white").substr(0, 4), "0.44");
+  EXPECT_EQ(frond_command({"convert", path("a.exr"), "-o", path("c.png"), "--white-balance", "auto"}).code, 0);
+  EXPECT_NEAR(color("c.png").first, 1, 0.02);
+  EXPECT_EQ(frond_command({"convert", path("a.exr"), "-o", path("b.exr")}).code, 0);
+  EXPECT_THAT(frond_command({"convert", path("b.exr"), "-o", path("c.png"), "--white-balance", "auto"}).err,
+              HasSubstr("does not state the light of its scene"));
+  EXPECT_THAT(render("x.exr", {"--white-balance", "auto"}).err, HasSubstr("--white-balance is for .png and .jpg"));
+  EXPECT_THAT(render("x.png", {"--white-balance", "warm"}).err, HasSubstr("(K) or auto is needed"));
+}
+
 TEST_F(LiveDisplay, ShowsWhatTheFileHoldsInTheEnd) {
   for (const std::vector<std::string>& more : {std::vector<std::string>{},
                                                {"--filter", "box"},

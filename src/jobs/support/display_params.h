@@ -15,6 +15,12 @@ inline constexpr JobParam kExposureParam(
     "mean luminance mid grey (docs/color.md).",
     {.type = "STOPS", .unit = "stops"});
 
+inline constexpr JobParam kWhiteParam("white-balance", ArgumentKind::text,
+                                      "Light that PNG and JPEG output shows as white: a colour temperature from 1000 "
+                                      "to 100000, of daylight or below 4000 "
+                                      "of a blackbody, or auto: the scene's light (docs/color.md).",
+                                      {.type = "KELVIN", .unit = "K"});
+
 /// Parses --exposure. Throws InputError.
 inline ExposureChoice exposure_choice(const Arguments& args) {
   const std::string text = args.text("exposure");
@@ -24,9 +30,20 @@ inline ExposureChoice exposure_choice(const Arguments& args) {
   return *choice;
 }
 
-/// Returns the choice of --display, --view and, if it is given, --exposure. Throws InputError.
+/// Returns the choice of --white-balance, if it is given. Throws InputError.
+inline std::optional<WhiteChoice> white_choice(const Arguments& args) {
+  if (!args.declares("white-balance") || !args.given("white-balance")) return {};
+  const std::string text = args.text("white-balance");
+  const auto choice = parse_white(text);
+  if (!choice)
+    fail({}, "{}: a number from 1000 to 100000 (K) or auto is needed; \"{}\" was given", args.spelled("white-balance"),
+         text);
+  return choice;
+}
+
+/// Returns the choice of --display, --view and, if they are given, --exposure and --white-balance. Throws InputError.
 inline DisplayChoice display_choice(const Arguments& args) {
-  DisplayChoice choice{args.text("display"), args.text("view")};
+  DisplayChoice choice{args.text("display"), args.text("view"), {}, white_choice(args)};
   if (args.declares("exposure") && args.given("exposure")) choice.exposure = exposure_choice(args);
   return choice;
 }
