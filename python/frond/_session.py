@@ -103,7 +103,7 @@ class Session:
 
 #: Parameters of the job `render` that belong to `Scene.render` and `Image.save`, not to loading.
 _NOT_OF_LOADING = {"scene", "output", "part", "samples", "checkpoint", "resume", "time-limit", "pilot", "preview",
-                   "display", "view", "display-server", "json"}
+                   "display", "view", "exposure", "white-balance", "display-server", "json"}
 _default = None
 _default_lock = threading.Lock()
 

@@ -193,7 +193,7 @@ def test_all_parameters_of_a_render_are_sorted():
     names = {p["name"] for p in JOBS["render"]["params"]}
     assert {p["name"] for p in JOBS["render"]["params"] if p["decides"]} == set(DECIDING)
     assert names - set(DECIDING) - COVERAGE - set(INDIFFERENT) == {
-        "output", "part", "resume", "pilot", "display", "view", "preview"}
+        "output", "part", "resume", "pilot", "display", "view", "exposure", "white-balance", "preview"}
 
 
 @pytest.fixture(scope="module")

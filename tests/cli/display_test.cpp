@@ -66,6 +66,11 @@ TEST_F(LiveDisplay, ExposureIsForDisplaysAndInTheHeader) {
 
   EXPECT_THAT(render("x.exr", {"--exposure", "auto"}).err, HasSubstr("--exposure is for .png and .jpg"));
   EXPECT_THAT(render("x.png", {"--exposure", "bright"}).err, HasSubstr("(stops) or auto is needed"));
+  EXPECT_THAT(frond_command({"render", path("scene.pbrt"), "--part", path("a.part"), "--exposure", "1"}).err,
+              HasSubstr("--exposure is for an image: frond merge"));
+  ASSERT_EQ(frond_command({"render", path("scene.pbrt"), "--part", path("a.part"), "--seed", "3", "-q"}).code, 0);
+  ASSERT_EQ(frond_command({"merge", path("a.part"), "-o", path("merged.png"), "--exposure", "auto"}).code, 0);
+  EXPECT_EQ(read_image(path("merged.png"), {}).image.pixels, read_image(path("auto.png"), {}).image.pixels);
 }
 
 TEST_F(LiveDisplay, AnExposureIsSuggestedForABlackImageAndConvertHasIt) {
