@@ -14,6 +14,7 @@ namespace {
 
 using enum ArgumentKind;
 
+/// Units and axes by their names in --unit and --up.
 constexpr std::string_view kUnits[] = {"m", "cm", "mm", "inch"};
 constexpr double kMetres[] = {1, 0.01, 0.001, 0.0254};
 constexpr std::string_view kAxes[] = {"y", "z"};
@@ -54,6 +55,7 @@ std::vector<MaterialRule> rules_of(const JobRun& run) {
   return rules;
 }
 
+/// Returns metres for one unit of the model, by --scale or --unit.
 double scale_of(const JobRun& run) {
   if (run.args.given("scale")) return run.args.real("scale");
   if (!run.args.given("unit")) return 1;
@@ -105,6 +107,7 @@ Result import_model(const JobRun& run) {
     run.context.log().check();
     run.check_stop();
   };
+  // The files are written after `accept`, so that a warning in strict mode leaves none.
   ImportSummary summary;
   try {
     summary = import_scene(options, run.log(), accept);

@@ -169,6 +169,7 @@ class SceneRender {
     const Arguments& args = run_.args;
     if (args.given("part")) {
       const std::string part = args.text("part");
+      // A part is linear.
       for (const char* name : {"exposure", "white-balance"})
         if (args.given(name))
           fail({}, "{} is for an image: frond merge, which makes one of parts, has it", args.spelled(name));
