@@ -172,7 +172,7 @@ def flux(scene, wavelengths: str | os.PathLike = '450,550,670,800', *, by: str |
     rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, one row each. One of instance.
-    irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, or an .spd file. Unit: W/(m2 nm). Default: solar-am1.5-global.
+    irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, or scene: that of the scene's lights, which have to be in W/(m2 nm), as those of the light sky. Unit: W/(m2 nm). Default: solar-am1.5-global.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.

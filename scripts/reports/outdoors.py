@@ -7,7 +7,7 @@ import numpy
 
 import charts
 import frond
-from tools import ROOT, arguments, machine, rms, table, write_section
+from tools import ROOT, arguments, machine, program, rms, table, write, write_section
 
 REFERENCE = ROOT / "tests" / "reference"
 SHARED = 4  # conditions of spectrl2.csv in the chart; the table has all
@@ -143,6 +143,14 @@ def chart_noise(path, curves):
     charts.save(of, path)
 
 
+def with_part(page_file, text):
+    """The page with `text` in its section "A day outdoors"; without a page, the text alone."""
+    if not page_file.exists():
+        return text
+    before, rest = page_file.read_text(encoding="utf-8").split("## A day outdoors\n")
+    return f"{before}## A day outdoors\n\n{text}\n\n## {rest.split(chr(10) + '## ', 1)[1]}"
+
+
 def page(found, differences, curves):
     rows = []
     for inputs, nm, direct, diffuse, mean, error in found:
@@ -174,8 +182,31 @@ over its mean, against CPU time.
 {table(("light", "µs per path", "relative", f"error at {int(baseline[2] / 160**2)} samples per pixel"), costs)}"""
 
 
+#: Scenes of the gallery, with what changes in each.
+GALLERY = {"morning": "An hour after sunrise in haze", "noon": "Noon in June", "overcast": "An overcast day",
+           "wet": "After rain: wet soil", "autumn": "Autumn"}
+
+
+def gallery(docs):
+    """Renders the gallery's scenes, and returns its section: images with the lines that differ."""
+    text = ["Five scenes of `scenes/outdoors`, one field. Each line below is all that the scene says of light, soil and season; PNG and JPEG are",
+            "exposed by `--exposure auto`, since a morning has a tenth of noon's light."]
+    for name, title in GALLERY.items():
+        scene, image = ROOT / "scenes/outdoors" / f"{name}.pbrt", docs / "images/outdoors" / f"{name}.jpg"
+        image.parent.mkdir(parents=True, exist_ok=True)
+        program("render", scene, "--exposure", "auto", "-o", image, *(["--quick", "--spp", 2] if docs != ROOT / "docs" else []))
+        lines = scene.read_text(encoding="utf-8").split("WorldBegin\n")[1].replace('Include "field.pbrt"\n', "").strip()
+        text.append(f"\n**{title}.** `scenes/outdoors/{name}.pbrt`\n\n![{title}](images/outdoors/{name}.jpg)\n\n```\n{lines}\n```")
+        print(name, flush=True)
+    return "\n".join(text)
+
+
 def main():
-    options = arguments("outdoors")
+    options = arguments("outdoors", ("--gallery", {"action": "store_true", "help": "render the images of the page instead"}))
+    if options.gallery:
+        page_file = options.docs / "outdoors.md"
+        write(page_file, with_part(page_file, gallery(options.docs)))
+        return
     samples, ladder = (64, [4, 16]) if options.quick else (2048, [4, 16, 64, 256])
     images = options.docs / "images"
     found = irradiances(samples)

@@ -9,6 +9,7 @@
 #include "radiometry/photons.h"
 #include "spectra/named.h"
 #include "spectra/spd_file.h"
+#include "spectra/tabulated.h"
 
 namespace frond {
 
@@ -32,10 +33,11 @@ constexpr JobParam kParams[] = {
     kTimeLimitParam,
     JobParam("by", text, "Measure the absorption of each instance of an object, one row each.",
              {.choices = kBy, .decides = true}),
-    JobParam(
-        "irradiance", text,
-        "Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, or an .spd file.",
-        {.type = "SPECTRUM", .default_value = "solar-am1.5-global", .unit = "W/(m2 nm)"}),
+    JobParam("irradiance", text,
+             "Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, "
+             "or scene: "
+             "that of the scene's lights, which have to be in W/(m2 nm), as those of the light sky.",
+             {.type = "SPECTRUM", .default_value = "solar-am1.5-global", .unit = "W/(m2 nm)"}),
     kSwapParam,
     kIntegratorParam,
     kSeedParam,
@@ -175,11 +177,27 @@ std::optional<FluxMeasurement> measure(const JobRun& run, FluxMeter& meter, cons
   return measurement ? std::move(measurement) : meter.read();
 }
 
-/// Returns the weights of bands in the PAR photon flux; nullopt if the bands do not cover 400 to 700 nm.
-std::optional<PhotonWeights> photon_weights(const Scene& scene, const Spectrum& irradiance) {
+/// The value of --irradiance for that of the scene's lights.
+constexpr std::string_view kOfScene = "scene";
+
+/// Returns the spectrum that --irradiance names; nullptr for that of the scene.
+SpectrumPtr named_irradiance(const JobRun& run) {
+  const std::string light = run.args.text("irradiance");
+  if (light == kOfScene) return nullptr;
+  return light.ends_with(".spd") ? read_spd(light, {}) : named_spectrum(light, {});
+}
+
+/// Returns the weights of bands in the PAR photon flux; nullopt if the bands do not cover 400 to 700 nm. `irradiance`:
+/// nullptr for that of the scene.
+std::optional<PhotonWeights> photon_weights(const FluxMeter& meter, SpectrumPtr irradiance) {
   std::vector<double> nm;
-  for (const Band& band : scene.wavelengths().bands()) nm.push_back(band.nm);
-  return PhotonWeights::of(nm, irradiance);
+  std::vector<SpectrumPoint> points;
+  for (const Band& band : meter.scene().wavelengths().bands()) {
+    nm.push_back(band.nm);
+    points.push_back({band.nm, meter.irradiance()[points.size()]});
+  }
+  if (!irradiance && points.size() < 2) return {};
+  return PhotonWeights::of(nm, irradiance ? *irradiance : *make_tabulated(points));
 }
 
 /// Returns the table of instances. It is printed as CSV unless a file is written, because it may be long.
@@ -200,8 +218,7 @@ Result by_instance(const JobRun& run, FluxMeasurement& measurement, const std::o
 Result flux(const JobRun& run) {
   std::optional<KeptFile> kept;
   if (const auto names = kept_names_of(run.args)) kept.emplace(*names, run.control.stop, run.log());
-  const std::string light = run.args.text("irradiance");
-  const SpectrumPtr irradiance = light.ends_with(".spd") ? read_spd(light, {}) : named_spectrum(light, {});
+  const SpectrumPtr irradiance = named_irradiance(run);
   const bool is_by_instance = run.args.text("by") == "instance";
   const FluxRequest request{.target = target_of(run.args),
                             .period = period_of(run.args),
@@ -212,7 +229,7 @@ Result flux(const JobRun& run) {
   FluxMeter meter(run.session(), described_scene(run), request);
   loading.reset();
   run.context.log().check();
-  const auto photons = photon_weights(meter.scene(), *irradiance);
+  const auto photons = photon_weights(meter, irradiance);
   auto measured = measure(run, meter, kept ? &*kept : nullptr);
   if (!measured) {
     if (kept) kept->report_stop();

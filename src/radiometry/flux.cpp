@@ -124,6 +124,8 @@ class Incoming {
       weight[lane] = s->weight[lane] / (float(shares[i]) * irradiance[lane]);
     return Sample{s->direction, weight};
   }
+  /// In each band.
+  const std::vector<double>& irradiance() const { return irradiance_.bands(); }
 
  private:
   /// Cosine below which light is left out: its ray would begin far from the scene, or nowhere. Of a uniform sky this is
@@ -315,6 +317,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
 FluxMeter::~FluxMeter() = default;
 
 const Scene& FluxMeter::scene() const { return state_->scene(); }
+const std::vector<double>& FluxMeter::irradiance() const { return state_->incoming.irradiance(); }
 
 void FluxMeter::trace(uint64_t paths, ThreadPool& pool, const RenderControl& control,
                       const std::function<void()>& after_round) {

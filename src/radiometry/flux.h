@@ -63,6 +63,8 @@ class FluxMeter {
   /// of another measurement, or a truncated or damaged file.
   void resume(const std::filesystem::path& path);
   const Scene& scene() const;
+  /// Irradiance of a horizontal plane above the scene, in each band. Unit: unit of the lights' radiance, times sr.
+  const std::vector<double>& irradiance() const;
 
  private:
   class Sums;
