@@ -108,7 +108,7 @@ def test_fit_of_arrays_and_of_a_file(reference):
     assert abs(contents["chlorophyll"] / (1e5 * area * (leaf["chlorophylla"] + leaf["chlorophyllb"])) - 1) < 1e-9
     assert abs(contents["water"] / (100 * area) - 1) < 1e-9
     assert set(of_file.misfits["quantity"]) <= {"R", "T"}
-    with pytest.raises(frond.InputError, match="fewer than the 11 parameters"):
+    with pytest.raises(frond.InputError, match="fewer than the 12 parameters"):
         frond.fit([550], [0.1])
     with pytest.raises(ValueError, match="takes measurements, or the path"):
         frond.fit()

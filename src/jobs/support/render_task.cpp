@@ -139,6 +139,9 @@ void RenderTask::load(const ImageOutput* output) {
   const StopScope stop(run_.control.stop);
   const Arguments& args = run_.args;
   scene_.emplace(run_.session().load(std::move(description_), request_, pilot_.get()));
+  if (pilot_)  // it was loaded without a word, and its lights are taken over
+    for (const Light* light : scene_->scene().lights())
+      if (const std::string summary = light->summary(); !summary.empty()) run_.log().info(summary);
   if (!args.given("samples")) samples_ = {0, args.given("spp") ? uint64_t(args.count("spp")) : scene_->samples()};
   scene_->check_samples(samples_.count());
   if (args.given("max-rms") && args.given("spp") && samples_.count() < kLeastAdaptive)
