@@ -189,8 +189,8 @@ GALLERY = {"morning": "An hour after sunrise in haze", "noon": "Noon in June", "
 
 def gallery(docs):
     """Renders the gallery's scenes, and returns its section: images with the lines that differ."""
-    text = ["Five scenes of `scenes/outdoors`, one field. Each line below is all that the scene says of light, soil and season; PNG and JPEG are",
-            "exposed by `--exposure auto`, since a morning has a tenth of noon's light."]
+    text = ["Scenes of `scenes/outdoors`: a field, and a plant. The lines below are all that they say of light, soil and season. The images are",
+            "exposed by `--exposure auto`, since a morning has a seventh of noon's light."]
     for name, title in GALLERY.items():
         scene, image = ROOT / "scenes/outdoors" / f"{name}.pbrt", docs / "images/outdoors" / f"{name}.jpg"
         image.parent.mkdir(parents=True, exist_ok=True)
