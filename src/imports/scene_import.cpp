@@ -136,11 +136,9 @@ std::string view(const PlantGeometry& geometry, const ImportOptions& options, co
       "Sampler \"paddedsobol\" \"integer pixelsamples\" 64\n"
       "Integrator \"path\" \"integer maxdepth\" 64\n\n"
       "WorldBegin\n\n"
-      "# Sky and sun: a horizontal white surface has the value 1.\n"
-      "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\" \"float scale\" 0.4\n"
-      "LightSource \"distant\" \"spectrum L\" \"stdillum-D65\" \"point3 from\" [ -0.5 -0.6 1 ] \"point3 to\" [ 0 0 0 "
-      "]\n"
-      "  \"float illuminance\" 2.392\n\n"
+      "# Sun and sky: a horizontal white surface has the value 1. Without \"illuminance\" they are in physical units.\n"
+      "LightSource \"sky\" \"float elevation\" 50 \"float azimuth\" 230 \"float albedo\" 0.2 \"float illuminance\" "
+      "3.14159\n\n"
       "Include \"{}-plant.pbrt\"\n",
       FROND_VERSION, comment_name(options.model), size.x, size.y, size.z, eye.x, eye.y, eye.z, center.x, center.y,
       center.z, stem, stem);
