@@ -15,6 +15,12 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME frond)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${CMAKE_CURRENT_BINARY_DIR}")  # libfrond itself
+# What dpkg knows of the libraries; CPack's own list would have the library for AVX2 as a second one of the same name.
+set(soname_version "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/shlibs" "libfrond ${soname_version} frond (= ${PROJECT_VERSION})
+libfrond_image ${soname_version} frond (= ${PROJECT_VERSION})\n")
+file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/triggers" "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_BINARY_DIR}/shlibs;${CMAKE_CURRENT_BINARY_DIR}/triggers")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "librsvg2-2, fonts-dejavu-core")  # charts as .png
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "Renders scenes of pbrt-v4's format, and leaves in them by models of their
 tissue: a random walk of light, its solution, and simpler ones. Measures
