@@ -7,7 +7,7 @@ import numpy
 
 import charts
 import frond
-from tools import ROOT, arguments, machine, program, rms, table, write, write_section
+from tools import ROOT, arguments, machine, program, rms, table, write_section
 
 REFERENCE = ROOT / "tests" / "reference"
 SHARED = 4  # conditions of spectrl2.csv in the chart; the table has all
@@ -143,14 +143,6 @@ def chart_noise(path, curves):
     charts.save(of, path)
 
 
-def with_part(page_file, text):
-    """The page with `text` in its section "A day outdoors"; without a page, the text alone."""
-    if not page_file.exists():
-        return text
-    before, rest = page_file.read_text(encoding="utf-8").split("## A day outdoors\n")
-    return f"{before}## A day outdoors\n\n{text}\n\n## {rest.split(chr(10) + '## ', 1)[1]}"
-
-
 def page(found, differences, curves):
     rows = []
     for inputs, nm, direct, diffuse, mean, error in found:
@@ -204,8 +196,7 @@ def gallery(docs):
 def main():
     options = arguments("outdoors", ("--gallery", {"action": "store_true", "help": "render the images of the page instead"}))
     if options.gallery:
-        page_file = options.docs / "outdoors.md"
-        write(page_file, with_part(page_file, gallery(options.docs)))
+        write_section(options.docs / "outdoors.md", "gallery", gallery(options.docs), script="outdoors")
         return
     samples, ladder = (64, [4, 16]) if options.quick else (2048, [4, 16, 64, 256])
     images = options.docs / "images"

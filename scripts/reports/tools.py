@@ -39,23 +39,24 @@ def write(path, text):
     print(f"Written: {path}")
 
 
-def section_marks(name):
-    return f"<!-- {name}: written by scripts/{name} -->\n", f"<!-- end of {name} -->\n"
+def section_marks(name, script=None):
+    return f"<!-- {name}: written by scripts/{script or name} -->\n", f"<!-- end of {name} -->\n"
 
 
-def with_section(page, name, text):
+def with_section(page, name, text, script=None):
     """The page's text with another section of this name: what lies between its two marks."""
-    begin, end = section_marks(name)
+    begin, end = section_marks(name, script)
     if page.count(begin) != 1 or page.count(end) != 1:
         raise SystemExit(f"the page has no section {begin.strip()} ... {end.strip()}")
     before, rest = page.split(begin)
     return f"{before}{begin}\n{text.strip()}\n\n{end}{rest.split(end)[1]}"
 
 
-def write_section(path, name, text):
-    """Writes the section `name` of a page, which keeps its other text. A page that does not exist has this section alone."""
-    empty = "\n".join(section_marks(name))
-    write(path, with_section(path.read_text(encoding="utf-8") if path.exists() else empty, name, text))
+def write_section(path, name, text, script=None):
+    """Writes the section `name` of a page, which keeps its other text. A page that does not exist has this section alone.
+    `script`: what writes it, by default the script of this name."""
+    empty = "\n".join(section_marks(name, script))
+    write(path, with_section(path.read_text(encoding="utf-8") if path.exists() else empty, name, text, script))
 
 
 def run(*words, **more):
