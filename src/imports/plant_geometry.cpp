@@ -63,7 +63,7 @@ void extend(PlantGeometry& geometry, const PlantObject& object) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   PlantGeometry own{.least = {kInfinity, kInfinity, kInfinity}, .most = {-kInfinity, -kInfinity, -kInfinity}};
   extend(own, object.meshes, {});
-  PlantMesh box{.name = {}};
+  PlantMesh box;
   for (int corner = 0; corner < 8; ++corner)
     box.p.push_back(to_float({corner & 1 ? own.most.x : own.least.x, corner & 2 ? own.most.y : own.least.y,
                               corner & 4 ? own.most.z : own.least.z}));
@@ -78,7 +78,7 @@ PlantObject object_of(const ImportedScene& scene, const std::vector<uint32_t>& m
   PlantObject object{.name = name};
   for (const uint32_t m : meshes) {
     const ImportedMesh& mesh = scene.meshes[m];
-    PlantMesh own{.name = name + "-" + scene.materials[mesh.material].name, .material = mesh.material};
+    PlantMesh own{{}, name + "-" + scene.materials[mesh.material].name, mesh.material};
     append(own, mesh, {});
     if (!has_normals(mesh)) own.n.clear();
     object.meshes.push_back(std::move(own));
@@ -172,32 +172,6 @@ PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world
   if (geometry.triangle_count() == 0 || !(geometry.least.x <= geometry.most.x))
     fail({}, "the model has no node with triangles");
   return geometry;
-}
-
-std::vector<unsigned char> ply_file(const PlantMesh& mesh) {
-  std::string head = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.p.size());
-  for (const char* name : {"x", "y", "z"}) head += fmt::format("property float {}\n", name);
-  if (!mesh.n.empty())
-    for (const char* name : {"nx", "ny", "nz"}) head += fmt::format("property float {}\n", name);
-  if (!mesh.uv.empty()) head += "property float u\nproperty float v\n";
-  head += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", mesh.triangles.size());
-  std::vector<unsigned char> bytes(head.begin(), head.end());
-  const size_t vertex_size = sizeof(Vec3) * (mesh.n.empty() ? 1 : 2) + (mesh.uv.empty() ? 0 : sizeof(Vec2));
-  bytes.reserve(bytes.size() + mesh.p.size() * vertex_size + mesh.triangles.size() * 13);
-  const auto add = [&bytes](const auto& value) {
-    const auto* from = reinterpret_cast<const unsigned char*>(&value);
-    bytes.insert(bytes.end(), from, from + sizeof value);
-  };
-  for (size_t i = 0; i < mesh.p.size(); ++i) {
-    add(mesh.p[i]);
-    if (!mesh.n.empty()) add(mesh.n[i]);
-    if (!mesh.uv.empty()) add(mesh.uv[i]);
-  }
-  for (const auto& triangle : mesh.triangles) {
-    bytes.push_back(3);
-    add(triangle);
-  }
-  return bytes;
 }
 
 }  // namespace frond

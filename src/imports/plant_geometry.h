@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/shape.h"
 #include "core/vec.h"
 #include "imports/imported_scene.h"
 #include "scene/math/affine_map.h"
@@ -28,12 +29,9 @@ struct NodeMap {
 AffineMap affine_map(const NodeMap& map);
 
 /// Triangles of one material, in the space of an object or of the world.
-struct PlantMesh {
-  std::string name;  ///< of the material, or of an object and its material
+struct PlantMesh : TriangleMesh {
+  std::string name = {};  ///< of the material, or of an object and its material
   uint32_t material = 0;
-  std::vector<Vec3> p = {}, n = {};
-  std::vector<Vec2> uv = {};
-  std::vector<std::array<uint32_t, 3>> triangles = {};
 };
 
 /// Meshes that several nodes have, and where.
@@ -57,8 +55,5 @@ struct PlantGeometry {
 /// Returns the geometry of all nodes under `to_world`. Throws InputError if there is none, or if coordinates are beyond
 /// what frond renders.
 PlantGeometry plant_geometry(const ImportedScene& scene, const NodeMap& to_world);
-
-/// Returns a mesh as a binary PLY file.
-std::vector<unsigned char> ply_file(const PlantMesh& mesh);
 
 }  // namespace frond

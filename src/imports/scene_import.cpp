@@ -11,6 +11,7 @@
 #include "imports/model_reader.h"
 #include "imports/output_folder.h"
 #include "scene/geometry/instance_writer.h"
+#include "scene/shapes/ply_writer.h"
 
 namespace frond {
 namespace {

@@ -13,7 +13,7 @@ using ::testing::IsEmpty;
 /// Sheet of n x n quadrilaterals over a unit square at height z, curved along x; `front` faces +z. The diagonals of the
 /// quadrilaterals differ with `diagonal`.
 PlantMesh sheet(double z, bool front, uint32_t material = 0, int n = 8, bool diagonal = false) {
-  PlantMesh mesh{.name = "sheet", .material = material};
+  PlantMesh mesh{{}, "sheet", material};
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j) {
       const float x = float(i) / float(n), y = float(j) / float(n);
@@ -73,7 +73,7 @@ TEST(DoubleSheets, OtherNeighboursAreNone) {
 
 /// The opposite wall of a thin tube belongs to the same surface.
 TEST(DoubleSheets, AThinTubeIsNone) {
-  PlantMesh tube{.name = "tube"};
+  PlantMesh tube{{}, "tube"};
   constexpr uint32_t kSides = 12;
   for (uint32_t i = 0; i < kSides; ++i)
     for (const float z : {0.f, 1.f}) {

@@ -5,6 +5,7 @@
 
 #include "exports/mitsuba/textures.h"
 #include "scene/format/plugin_text.h"
+#include "scene/shapes/ply_writer.h"
 
 namespace frond::mitsuba {
 namespace {
@@ -183,7 +184,7 @@ void Shapes::write_mesh(Xml& xml, const Surface& surface, const TriangleMesh& me
   const ParsedParam* file = find_param(shape.plugin.params, "filename");
   std::string name = "mesh";
   if (file) name = std::filesystem::path(std::get<std::vector<std::string>>(file->values).front()).stem().string();
-  xml.text("filename", context_.folder.add("meshes", name, "ply", ply_of(mesh)));
+  xml.text("filename", context_.folder.add("meshes", name, "ply", ply_file(mesh)));
   if (mesh.n.empty()) xml.flag("face_normals", true);
   if (is_in_world && context_.units != 1) xml.matrix("to_world", in_units(rows_of(kIdentity), context_.units));
   write_appearance(xml, surface);

@@ -55,9 +55,6 @@ class Shapes {
   Bounds bounds_;
 };
 
-/// Returns the bytes of a binary PLY file.
-std::vector<unsigned char> ply_of(const TriangleMesh& mesh);
-
 /// Returns the transform as rows in double precision.
 Transform::RowsDouble rows_of(const AffineMap& map);
 /// Returns `rows` after a scaling by `units`.

@@ -7,19 +7,16 @@
 #include "core/sampling.h"
 #include "scene/lights/hemisphere_table.h"
 #include "scene/lights/light_params.h"
-#include "scene/lights/sky_shape.h"
+#include "scene/lights/sky_model.h"
+#include "scene/lights/sky_spectra.h"
 #include "scene/math/direction_map.h"
 #include "spectra/cie.h"
-#include "spectra/spectrl2.h"
 #include "spectra/tabulated.h"
 
 namespace frond {
 namespace {
 
 constexpr double kPiD = std::numbers::pi, kRadians = kPiD / 180;
-constexpr double kSunRadius = 0.2666 * kRadians;  ///< at the mean distance
-constexpr double kOvercastTransmission = 0.25;  ///< Kasten and Czeplak 1980, cloud cover 8/8: of the clear sky's global
-constexpr int kCieOvercast = 1;                 ///< CIE standard overcast sky
 
 /// The disc of the sun, of uniform radiance.
 class SunDisc {
@@ -47,154 +44,6 @@ class SunDisc {
   static constexpr double kRounding = 2e-5;  ///< samples of the edge are on the disc
   Frame frame_;
   float sine_, chord2_, density_;
-};
-
-/// What the parameters say: spectra, angular distribution and sun of a sky. z is up.
-struct SkyModel {
-  Vec3d toward_sun;   ///< unit, light space
-  double sun_radius;  ///< angle, rad
-  bool is_overcast;
-  std::vector<double> nm, direct_normal, diffuse;  ///< W m^-2 nm^-1; all 0 unless the sun is above the horizon
-  SkyShape shape{};
-
-  explicit SkyModel(const Params& p);
-  /// Factor on the radiance of a disc that the horizon cuts: what remains gives SPECTRL2's irradiance on a horizontal
-  /// plane.
-  double horizon_factor() const;
-  double sun_zenith_deg() const { return std::acos(std::clamp(toward_sun.z, -1.0, 1.0)) / kRadians; }
-  /// Irradiance of the sun on a horizontal plane, W m^-2.
-  double direct_total() const { return integral(nm, direct_normal) * std::max(0.0, toward_sun.z); }
-  double diffuse_total() const { return integral(nm, diffuse); }
-};
-
-/// Returns the direction toward the sun. Throws InputError if "sundirection" is 0 or is given besides the angles.
-Vec3d toward_sun(const Params& p) {
-  if (!p.given("sundirection")) {
-    const double elevation = p.real("elevation") * kRadians, azimuth = p.real("azimuth") * kRadians;
-    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
-  }
-  for (const char* angle : {"elevation", "azimuth"})
-    if (p.given(angle)) fail(p.where(angle), "\"{}\" and \"sundirection\" exclude each other", angle);
-  const Vec3d toward = to_double(p.vec3("sundirection"));
-  if (!(length(toward) > 0)) fail(p.where("sundirection"), "\"sundirection\" has the length 0: it is no direction");
-  return toward / length(toward);
-}
-
-SkyModel::SkyModel(const Params& p) : toward_sun(frond::toward_sun(p)), is_overcast(p.string("sky") == "overcast") {
-  const double zenith = sun_zenith_deg();
-  const Atmosphere air{.sun_zenith_deg = std::min(zenith, 90.0),
-                       .aerosol = p.real("aerosol"),
-                       .angstrom = p.real("angstrom"),
-                       .water_cm = p.real("water"),
-                       .ozone_atm_cm = p.real("ozone"),
-                       .pressure_Pa = p.real("pressure"),
-                       .albedo = p.real("albedo"),
-                       .day = p.integer("day")};
-  sun_radius = kSunRadius * std::sqrt(sun_distance_factor(air.day));
-  const ClearSkyIrradiance clear = spectrl2(air);
-  nm = clear.nm, direct_normal = clear.direct_normal, diffuse = clear.diffuse;
-  const bool is_night = zenith >= 90 || !(direct_total() + diffuse_total() > 0);
-  if (is_night)
-    p.warn(p.given("sundirection") ? "sundirection" : "elevation",
-           "the sun is not above the horizon: this light is black (twilight is not modelled)");
-  for (size_t i = 0; i < nm.size(); ++i) {
-    if (is_overcast) diffuse[i] = kOvercastTransmission * (direct_normal[i] * toward_sun.z + diffuse[i]);
-    if (is_night) diffuse[i] = 0;
-    if (is_night || is_overcast) direct_normal[i] = 0;
-  }
-  if (p.given("cietype"))
-    shape = cie_sky(p.integer("cietype"));
-  else if (is_overcast || !(diffuse_total() > 0))
-    shape = cie_sky(kCieOvercast);
-  else
-    shape = perez_sky(zenith, integral(nm, direct_normal), integral(nm, diffuse));
-}
-
-double SkyModel::horizon_factor() const {
-  const double t = toward_sun.z / std::sin(sun_radius);
-  if (!(t < 1) || t <= 0) return 1;
-  // Mean of max(0, t + y) over the unit disc; t for a whole disc.
-  const double mean = (t * (kPiD / 2 + std::asin(t)) + (2 + t * t) / 3 * std::sqrt(1 - t * t)) / kPiD;
-  return t / mean;
-}
-
-/// Returns the integrals over the upper hemisphere of a sky's shape: of its radiance times the cosine, and of its
-/// radiance.
-struct ShapeIntegrals {
-  double irradiance = 0, sphere = 0;
-  ShapeIntegrals(const SkyShape& shape, double sun_zenith_deg) {
-    constexpr int kRings = 512, kSectors = 512;
-    const Vec3d sun{std::sin(sun_zenith_deg * kRadians), 0, std::cos(sun_zenith_deg * kRadians)};
-    for (int i = 0; i < kRings; ++i) {
-      // Midpoints of cos^2, which is uniform for directions with the density of the cosine.
-      const double z = std::sqrt((i + 0.5) / kRings), r = std::sqrt(1 - z * z);
-      double sum = 0;
-      for (int j = 0; j < kSectors; ++j) {  // half of the sky, which is symmetric
-        const double phi = kPiD * (j + 0.5) / kSectors;
-        const double cos_gamma = std::clamp(r * std::cos(phi) * sun.x + z * sun.z, -1.0, 1.0);
-        sum += double(shape.radiance(float(z), float(std::acos(cos_gamma))));
-      }
-      irradiance += kPiD * sum / (kRings * kSectors);
-      sphere += kPiD * sum / (kRings * kSectors) / z;
-    }
-  }
-};
-
-/// Spectra of the sun's disc and of the sky, linear between the same points. A look-up takes constant time, while that
-/// of a TabulatedSpectrum, a binary search for each lane and spectrum, took longer than all other calls of the light.
-class SkySpectra {
- public:
-  struct Sample {
-    SampledSpectrum sky, disc;
-  };
-  SkySpectra() = default;
-  SkySpectra(const SkyModel& model, double sky_factor, double disc_factor) : first_(float(model.nm.front())) {
-    for (size_t i = 0; i < model.nm.size(); ++i)
-      points_.push_back({float(model.nm[i]), float(model.diffuse[i] * sky_factor),
-                         float(model.direct_normal[i] * disc_factor),
-                         i + 1 < model.nm.size() ? float(1 / (model.nm[i + 1] - model.nm[i])) : 0});
-    const auto bins = size_t((model.nm.back() - model.nm.front()) / kBin_nm) + 1;
-    for (size_t bin = 0, i = 0; bin < bins; ++bin) {
-      while (i + 2 < points_.size() && double(points_[i + 1].nm) <= model.nm.front() + double(bin) * kBin_nm) ++i;
-      guide_.push_back(uint8_t(i));
-    }
-  }
-  Sample at(const SampledWavelengths& lambda) const {
-    if (lambda.count == kLanes) {
-      // Not written lane by lane, since the load of the register would then wait for the stores (HACKING.md).
-      const Values a = at(lambda.nm[0]), b = at(lambda.nm[1]), c = at(lambda.nm[2]), d = at(lambda.nm[3]);
-      return {SampledSpectrum(Float4{a.sky, b.sky, c.sky, d.sky}),
-              SampledSpectrum(Float4{a.disc, b.disc, c.disc, d.disc})};
-    }
-    Sample s;
-    for (int lane = 0; lane < lambda.count; ++lane) {
-      const Values v = at(lambda.nm[size_t(lane)]);
-      s.sky[lane] = v.sky, s.disc[lane] = v.disc;
-    }
-    return s;
-  }
-
- private:
-  struct Values {
-    float sky, disc;
-  };
-  Values at(float lambda_nm) const {
-    const float nm = std::clamp(lambda_nm, first_, points_.back().nm);
-    size_t i = guide_[size_t((nm - first_) * float(1 / kBin_nm))];
-    if (nm >= points_[i + 1].nm && i + 2 < points_.size()) ++i;  // at most one point in a bin
-    const Point &low = points_[i], &high = points_[i + 1];
-    const float t = (nm - low.nm) * low.per_nm;
-    return {low.sky + t * (high.sky - low.sky), low.disc + t * (high.disc - low.disc)};
-  }
-
-  static constexpr double kBin_nm = 2.5;  ///< less than the distance of any two points
-  struct Point {
-    float nm, sky, disc;
-    float per_nm;  ///< 1 / distance to the next point
-  };
-  float first_ = 0;
-  std::vector<Point> points_;
-  std::vector<uint8_t> guide_;  ///< the last point up to the begin of each bin
 };
 
 SpectrumPtr spectrum(const SkyModel& model, const std::vector<double>& values, double factor) {

@@ -1,9 +1,10 @@
+#include "scene/shapes/ply_writer.h"
+
+#include <fmt/format.h>
+
 #include <bit>
-#include <cstring>
 
-#include "exports/mitsuba/shapes.h"
-
-namespace frond::mitsuba {
+namespace frond {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the PLY files are little endian");
@@ -15,8 +16,7 @@ void append(std::vector<unsigned char>& bytes, const void* data, size_t size) {
 
 }  // namespace
 
-/// Triangles are counter-clockwise seen from the front, as Mitsuba expects them.
-std::vector<unsigned char> ply_of(const TriangleMesh& mesh) {
+std::vector<unsigned char> ply_file(const TriangleMesh& mesh) {
   std::string head = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.p.size());
   for (const char* name : {"x", "y", "z"}) head += fmt::format("property float {}\n", name);
   if (!mesh.n.empty())
@@ -37,4 +37,4 @@ std::vector<unsigned char> ply_of(const TriangleMesh& mesh) {
   return bytes;
 }
 
-}  // namespace frond::mitsuba
+}  // namespace frond
