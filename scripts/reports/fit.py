@@ -120,6 +120,48 @@ def by_prospect(spectra):
     return rms(best.fun), time.process_time() - start
 
 
+#: Leaves that PROSPECT-D computes: the numbers of run_prospect, and the anthocyanins.
+SEASONS = {"green": ([1.5, 40, 8, 0, 0.01, 0.009], 0), "red": ([1.5, 20, 6, 0, 0.01, 0.009], 20),
+           "brown": ([2.2, 5, 3, 0.8, 0.004, 0.012], 2)}
+BANDS = ((500, 600), (600, 680), (680, 760))  # nm, where the leaves differ by their pigments
+
+
+def seasons():
+    """Fits leaves that PROSPECT-D computes; returns the section of docs/outdoors.md."""
+    rows, spectra = [], {}
+    for name, (numbers, anthocyanins) in SEASONS.items():
+        nm, r, t = (v[::10] for v in prosail.run_prospect(*numbers, ant=anthocyanins, prospect_version="D"))
+        fitted = frond.fit(nm, R=r, T=t)
+        spectra[name] = fitted.spectra
+        contents = fitted.contents.set_index("name")
+
+        def found(content, contents=contents):
+            value, error = contents.loc[content, ["value", "relative_standard_error"]]
+            return f"{value:.2g}" if error < 0.5 else f"{value:.2g}, not determined"
+
+        _, chlorophyll, carotenoids, brown, water, dry = numbers
+        rows.append((f"{name}, as computed", chlorophyll, carotenoids, anthocyanins, brown, water, dry, ""))
+        rows.append((f"{name}, as fitted", *map(found, ("chlorophyll", "carotenoids", "anthocyanins", "brownpigments", "water",
+                                                        "drymatter")), f"{fitted.rmse:.4f}"))
+    differences = []
+    for name in ("red", "brown"):
+        for least, most in BANDS:
+            band = spectra["green"].wavelength_nm.between(least, most)
+
+            def change(r, t, name=name, band=band):
+                return [(spectra[name][q] - spectra["green"][q])[band].mean() for q in (r, t)]
+
+            computed, fitted = change("R", "T"), change("R_fitted", "T_fitted")
+            differences.append((f"{name}, {least} to {most} nm", *(f"{v:.3f}" for pair in zip(computed, fitted) for v in pair),
+                                f"{sum(fitted) / sum(computed):.2f}"))
+    return f"""PROSPECT-D by prosail {version("prosail")}, every 10 nm from 400 to 2500 nm. Contents:
+
+{table(("leaf", "chlorophyll (µg/cm²)", "carotenoids", "anthocyanins", "brown pigments", "water (g/cm²)", "dry matter", "RMSE"), rows)}
+Mean differences from the green leaf, and the ratio of their sums, that is of the absorptance:
+
+{table(("leaf, band", "R, computed", "R, fitted", "T, computed", "T, fitted", "fitted over computed, R + T"), differences)}"""
+
+
 SIX_NM = (450, 550, 660, 720, 840, 1650)
 
 
@@ -239,6 +281,7 @@ def main():
                f"frond has the smaller RMSE for {(found.rmse < found.theirs).sum()} of {len(found)} leaves.")
     body = [[leaf, f"{rmse:.4f}", f"{r:.4f}", f"{t:.4f}", kind, f"{cpu:.2f} s", f"{theirs:.4f}", f"{their_cpu:.2f} s"]
             for leaf, rmse, r, t, kind, cpu, theirs, their_cpu in found.itertuples(index=False)]
+    write_section(options.docs / "outdoors.md", "seasons", seasons(), script="fit")
     write_section(options.docs / "fit.md", "fit", SECTION.format(
         machine=machine(), version=version("prosail"), summary=summary,
         leaves=table(["leaf", "frond", "frond, R", "frond, T", "structure", "CPU of frond", "PROSPECT-D", "CPU of PROSPECT-D"],
