@@ -92,7 +92,7 @@ def chart_shapes(path):
             panel.semilogy(angle[order], at[order, 6], "o--", color=charts.COLORS[hue], label=f"Hosek and Wilkie, {nm} nm")
             own = numpy.array([radiance(light, z) for z in angle]) / diffuse
             differences.append((f"{90 - sun:g}°", HOSEK[turbidity], nm, f"{100 * rms(own / at[:, 6] - 1):.0f} %"))
-        panel.set(title=f"sun at {sun:g}°, turbidity {turbidity}, aerosol {HOSEK[turbidity]}", xlabel="zenith angle in the sun's plane (degrees)")
+        panel.set(title=f"sun at {90 - sun:g}°, turbidity {turbidity}, aerosol {HOSEK[turbidity]}", xlabel="zenith angle in the sun's plane (degrees)")
     row[0].set_ylabel("radiance over diffuse irradiance (1/sr)")
     charts.legend(of, row[0], 4)
     charts.save(of, path)

@@ -189,7 +189,11 @@ std::vector<std::string> absolute_words(const Arguments& args, std::span<const J
 }
 
 std::string material_text(const std::vector<std::string>& words, const Log& log) {
-  const auto is_parameter = [](const std::string& word) { return word.find('=') != std::string::npos; };
+  // "abm,specimen=maize" is a material.
+  const auto is_parameter = [](const std::string& word) {
+    const size_t end = word.find_first_of("=,");
+    return end != std::string::npos && word[end] == '=';
+  };
   std::string text;
   bool is_old = words.size() > 1;
   for (const std::string& word : words) {
