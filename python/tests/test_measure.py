@@ -190,12 +190,6 @@ def test_flux_has_par_and_the_defaults_of_the_command(tmp_path):
     assert inspect.signature(frond.flux).parameters["wavelengths"].default == "450,550,670,800"
 
 
-def test_a_second_material_is_no_parameter_of_the_first():
-    words = ["leaf_solved,specimen=red", "leaf_solved,specimen=maize"]
-    ran = subprocess.run([os.environ["FROND"], "spectrophotometer", *words, "--wavelengths", "551"], capture_output=True, text=True)
-    assert ran.returncode == 1 and 'a parameter looks like name=value: "leaf_solved,specimen=maize"' in ran.stderr
-
-
 def test_flux_of_the_scenes_own_light_in_photons(tmp_path):
     """A black disk under a light of equal energy: all photons of the light are absorbed. A light of scale 1 has the radiance
     1 / 106.86 at every wavelength (docs/scene_format.md), and 119.627 J m / mol is Planck's constant x c x Avogadro's, in nm and

@@ -20,6 +20,10 @@ TEST(MaterialText, OldFormsAreOneWord) {
   EXPECT_EQ(material_text({"abm", "specimen=maize", "thickness=1e-4"}, log), "abm,specimen=maize,thickness=1e-4");
   EXPECT_EQ(material_text({"abm  specimen=maize thickness=1e-4"}, log), "abm,specimen=maize,thickness=1e-4");
   EXPECT_THAT(error_of([&] { material_text({"abm", "thickness"}, log); }), HasSubstr("looks like name=value"));
+  EXPECT_THAT(error_of([&] {
+                material_text({"abm,specimen=maize", "leaf,specimen=red"}, log);
+              }),
+              HasSubstr("looks like name=value: \"leaf,specimen=red\""));
   EXPECT_THAT(error_of([&] { material_text({""}, log); }), HasSubstr("a material is needed"));
   EXPECT_EQ(material_text({"diffuse", "reflectance=one half.spd"}, log), "diffuse,reflectance=one half.spd");
   EXPECT_EQ(material_text({"diffuse reflectance=one half.spd"}, log), "diffuse,reflectance=one half.spd");
