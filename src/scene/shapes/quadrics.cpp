@@ -21,7 +21,7 @@ class Quadric : public AnalyticShape {
   ShapePoint sample(unsigned, Vec2 u) const final {
     const Sample s = sample_own(u);
     ShapePoint point = s.point;
-    point.area = own_area() * stretch(s.normal);
+    point.area = area_at(s.normal);
     return point;
   }
   double area(unsigned) const final {
@@ -43,6 +43,8 @@ class Quadric : public AnalyticShape {
   virtual Sample sample_own(Vec2 u) const = 0;
   /// Returns the area in object space.
   virtual double own_area() const = 0;
+  /// Returns the area that the shape would have if it grew everywhere as at a point with this unit normal.
+  virtual double area_at(const Vec3d& n) const { return own_area() * stretch(n); }
 
   /// Returns a unit normal.
   Vec3 to_scene_normal(const Vec3d& n) const {
@@ -165,7 +167,8 @@ class Disk final : public Quadric {
         radius_(p.real("radius")),
         inner_(p.real("innerradius")),
         height_(p.real("height")),
-        ng_(to_scene_normal({0, 0, 1})) {
+        ng_(to_scene_normal({0, 0, 1})),
+        area_(Quadric::area_at({0, 0, 1})) {
     if (inner_ >= radius_)
       fail(p.where("innerradius"), "\"innerradius\" {} must be less than \"radius\" {}", inner_, radius_);
   }
@@ -206,6 +209,7 @@ class Disk final : public Quadric {
     return {at({r * double(std::cos(float(phi))), r * double(std::sin(float(phi))), height_}, r, phi, 0), {0, 0, 1}};
   }
   double own_area() const override { return phi_max() / 2 * (radius_ * radius_ - inner_ * inner_); }
+  double area_at(const Vec3d&) const override { return area_; }
 
   /// As in pbrt-v4, v decreases from the hole to the rim.
   SurfaceDerivatives derivatives(const ShapePoint& point) const override {
@@ -222,6 +226,7 @@ class Disk final : public Quadric {
 
   double radius_, inner_, height_;
   Vec3 ng_;
+  double area_;
 };
 
 /// Open cylinder around the z axis.
