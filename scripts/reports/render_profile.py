@@ -1,6 +1,8 @@
 """scripts/profile: samples a render with perf and writes a flame graph, a table by module and the stacks."""
 
 import argparse
+import json
+import os
 import pathlib
 import shlex
 import subprocess
@@ -9,6 +11,7 @@ import tempfile
 import flame_graph
 import stacks
 import tools
+from race import scenes
 
 FREQUENCY = 199  # samples per CPU second; divides no periodic event of a render
 STACK_BYTES = 32768
@@ -19,11 +22,14 @@ def arguments():
                                      allow_abbrev=False)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=tools.ROOT / "build" / "profile", metavar="FOLDER")
     parser.add_argument("--frequency", type=int, default=FREQUENCY, metavar="HZ", help=f"samples per CPU second; default: {FREQUENCY}")
-    parser.add_argument("scene", metavar="SCENE.pbrt")
+    parser.add_argument("--docs", action="store_true", help="write the table of stages of docs/performance.md and nothing else")
+    parser.add_argument("scene", nargs="?", metavar="SCENE.pbrt")
     parser.add_argument("options", nargs=argparse.REMAINDER, help="options of frond render")
     options = parser.parse_args()
     if not 1 <= options.frequency <= 10000:
         parser.error("--frequency: 1 to 10000")
+    if options.docs == bool(options.scene):
+        parser.error("either a scene or --docs")
     return options
 
 
@@ -63,6 +69,9 @@ def table(ways, frequency, notes):
     lines = [*notes, "", f"{'module':<20} {'itself':>15}  {'CPU time':>10}  {'with what it calls':>8}"]
     for module in sorted(below, key=lambda r: (-itself[r], -below[r], r)):
         lines.append(f"{module:<20} {row(itself[module], below[module])}")
+    lines += ["", f"{'stage of a path':<28} CPU time"]
+    for stage, count in stacks.stages(ways).items():
+        lines.append(f"{stage or 'not on a path':<28} {100 * count / total:.1f} %")
     lines += ["", f"{'function':<52} {'module':<18} itself"]
     for (name, module), count in stacks.functions(ways).most_common(20):
         shown = name if len(name) <= 52 else name[:51] + "…"
@@ -70,28 +79,63 @@ def table(ways, frequency, notes):
     return "\n".join(line.rstrip() for line in lines) + "\n"
 
 
-def main():
-    options = arguments()
-    folder = options.output
-    folder.mkdir(parents=True, exist_ok=True)
-    extra = options.options
-    has_output = any(word in ("-o", "--output", "--part") or word.startswith(("--output=", "--part=")) for word in extra)
-    output = [] if has_output else ["-o", str(folder / "image.exr")]
-    command = [str(tools.FROND), "render", options.scene, *extra, *output]
+def profile(command, folder, frequency):
+    """Stacks of a command as stacks.fold has them, their number, and how many were cut off and lost."""
     with tempfile.TemporaryDirectory(prefix="perf.", dir=folder) as scratch:
         data = pathlib.Path(scratch) / "perf.data"
-        record(command, data, options.frequency)
+        record(command, data, frequency)
         text = tools.run("perf", "script", "-i", data, "--no-demangle", "--no-inline", "-F", "comm,ip,sym,dso")
     sampled = stacks.parse(text)
     if not sampled:
         raise SystemExit("scripts/profile: the render ended before the first sample; use a larger --spp")
     whole, cut, lost = stacks.graft(sampled)
-    ways = stacks.fold(stacks.join_threads(whole), stacks.Modules.of_build(tools.BUILD))
+    return stacks.fold(stacks.join_threads(whole), stacks.Modules.of_build(tools.BUILD)), len(sampled), cut, lost
+
+
+# Scenes of scripts/race in the table of stages: (name, leaves, samples per pixel).
+STAGED = [("front", "opaque", 256), ("soybean-back", "leaf", 512), ("canopy", "leaf", 16)]
+
+
+def stages_of_scenes(frequency):
+    """Writes the table of stages of docs/performance.md."""
+    columns = []
+    with tempfile.TemporaryDirectory(prefix="frond_stages.", dir=os.environ.get("TMPDIR")) as temporary:
+        folder = pathlib.Path(temporary)
+        for name, leaves, samples in STAGED:
+            scene = folder / f"{name}.pbrt"
+            scenes.write_pbrt(scenes.SCENES[name](folder), scene, leaves, True, 256, tables=True)
+            command = [str(tools.FROND), "render", str(scene), "--spp", str(samples), "--threads", "1", "--wavelengths", "smpte",
+                       "-o", str(folder / "image.exr")]
+            per_path = json.loads(tools.run(*command, "--json"))["cpu_us_per_path"]
+            ways, *_ = profile([*command, "-q"], folder, frequency)
+            count = stacks.stages(ways)
+            del count[None]
+            columns.append((per_path, count))
+    rows = [[stage, *(f"{100 * count[stage] / sum(count.values()):.0f} %" for _, count in columns)] for stage, _ in stacks.STAGES]
+    rows.append(["CPU time per path", *(f"{per_path:.2f} µs" for per_path, _ in columns)])
+    head = ["stage", *(f"{name}, {'opaque' if leaves == 'opaque' else 'transmitting'} leaves" for name, leaves, _ in STAGED)]
+    tools.write_section(tools.ROOT / "docs" / "performance.md", "stages", f"""
+Share of the CPU time of paths in scenes of `scripts/race` (256 × 256 pixels, box filter, `--wavelengths smpte`, one thread;
+{tools.machine()}):
+
+{tools.table(head, rows)}
+""", "profile --docs")
+
+
+def main():
+    options = arguments()
+    if options.docs:
+        return stages_of_scenes(options.frequency)
+    folder = options.output
+    folder.mkdir(parents=True, exist_ok=True)
+    extra = options.options
+    has_output = any(word in ("-o", "--output", "--part") or word.startswith(("--output=", "--part=")) for word in extra)
+    output = [] if has_output else ["-o", str(folder / "image.exr")]
+    ways, sampled, cut, lost = profile([str(tools.FROND), "render", options.scene, *extra, *output], folder, options.frequency)
     (folder / "stacks.txt").write_text(
         "".join(f"{';'.join(name for name, _ in way)} {count}\n" for way, count in sorted(ways.items())), encoding="utf-8")
     title = shlex.join(["frond", "render", options.scene, *extra])
-    seconds = len(sampled) / options.frequency
-    notes = [f"{len(sampled)} samples, {options.frequency} per second: {seconds:.2f} s of CPU time, all threads",
+    notes = [f"{sampled} samples, {options.frequency} per second: {sampled / options.frequency:.2f} s of CPU time, all threads",
              tools.machine(),
              f"Stacks cut off at {STACK_BYTES // 1024} kB: {cut}, of which {lost} match no complete stack"]
     (folder / "profile.svg").write_text(flame_graph.svg(ways, title, notes), encoding="utf-8")

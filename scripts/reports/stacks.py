@@ -185,3 +185,27 @@ def functions(ways):
     for way, samples in ways.items():
         count[way[-1]] += samples
     return count
+
+
+# Stages of a path. A stack belongs to the first stage with a function that matches; the rest of a render has no stage.
+STAGES = [
+    ("surface at a hit", r"^Geometry::describe$|^place$"),
+    ("traversal", r"^Scene::(intersect|occluded)|^rtc(Intersect|Occluded)"),
+    ("film", r"^(FilmTile|Film|Splat\w*)::"),
+    ("camera rays and sampler", r"Camera::|Sampler::|^block_"),
+    ("lights", r"Light::|Emitter::|^Light(Selector|Tree)::"),
+    ("materials", r"Bsdf::|::evaluate$"),
+    ("integrator and render loop", r"Tracer::|^Integrator::|^Worker::"),
+]
+
+
+def stages(ways):
+    """Samples by stage, in the order of STAGES, and those of no stage under None. Embree below callers that are not known counts
+    as traversal."""
+    count = collections.Counter()
+    for way, samples in ways.items():
+        names = [name for name, _ in way]
+        if way[0][0] == CUT and way[-1][1] == "Embree":
+            names.append("rtcIntersect1")
+        count[next((stage for stage, pattern in STAGES if any(re.search(pattern, name) for name in names)), None)] += samples
+    return {stage: count[stage] for stage in [*(stage for stage, _ in STAGES), None]}

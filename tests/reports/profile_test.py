@@ -134,6 +134,16 @@ class StacksTest(unittest.TestCase):
         self.assertEqual(below["dynamic linking"], 1)
         self.assertEqual(stacks.functions(ways)["Embree", "Embree"], 3)
 
+    def test_a_stack_counts_in_one_stage(self):
+        start, trace = ("_start", "C and C++ library"), ("PathTracer::trace", "integrators")
+        hit, embree = ("Scene::intersect", "scene"), ("Embree", "Embree")
+        count = stacks.stages({(start, trace): 1, (start, trace, hit, ("rtcIntersect1", "Embree"), embree): 2,
+                               (start, trace, hit, ("Geometry::describe", "scene")): 4,
+                               (start, trace, ("Diffuse::evaluate", "materials")): 8, ((CUT, CUT), embree): 16,
+                               (start, ("Geometry::build", "scene"), embree): 32})
+        self.assertEqual({stage: n for stage, n in count.items() if n},
+                         {"integrator and render loop": 1, "traversal": 18, "surface at a hit": 4, "materials": 8, None: 32})
+
     def test_recursion_counts_once_below(self):
         _, below = stacks.shares({(("a", "scene"), ("E", "Embree"), ("b", "scene"), ("E", "Embree")): 5})
         self.assertEqual(below, {"scene": 5, "Embree": 5})
