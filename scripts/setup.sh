@@ -90,7 +90,7 @@ python_venv() {
 # Builds will have the Python module, and an environment that the reports run in; false where PyPI's packages cannot be had.
 # Mitsuba's LLVM variants, which it is tested with, load libllvm 19.
 with_python_module() {
-  python_venv python-venv nanobind==3.1.0 numpy pandas scipy==1.17.1 matplotlib==3.11.2 xarray pytest nbclient ipykernel mitsuba==3.9.1 reuse==6.2.0 ||
+  python_venv python-venv nanobind==3.1.0 numpy pandas scipy==1.17.1 matplotlib==3.11.2 xarray pytest nbclient ipykernel mitsuba==3.9.1 pvlib==0.16.1 reuse==6.2.0 ||
     return 1
   if apt-cache show libllvm19 >/dev/null 2>&1; then install_missing libllvm19; fi
   configure_options+=(-DFROND_PYTHON=ON "-DPython_EXECUTABLE=$root/build/python-venv/bin/python")
