@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 
 #include "core/random.h"
 #include "core/sampling.h"
@@ -101,9 +102,8 @@ class Incoming {
       : lights_(lights), irradiance_(lights, wavelengths) {
     const SampledWavelengths lambda = wavelengths.sample(0.5f);
     for (const Light* light : lights) {
-      // Directions sampled with the cosine would hardly ever find a sun's disc.
-      const auto* sky = light->sun() ? nullptr : dynamic_cast<const EnvironmentLight*>(light);
-      evenly_.push_back(sky && spread(*light, sky, lambda) < spread(*light, nullptr, lambda) ? sky : nullptr);
+      const auto* sky = dynamic_cast<const EnvironmentLight*>(light);
+      evenly_.push_back(sky && varies_less_by_cosine(*light, lambda) ? sky : nullptr);
     }
   }
 
@@ -145,16 +145,21 @@ class Incoming {
     return Sample{-s->wi, s->radiance * (s->wi.z / s->pdf)};
   }
 
-  /// Returns the relative variance of the weights.
-  static double spread(const Light& light, const EnvironmentLight* evenly, const SampledWavelengths& lambda) {
+  /// Returns whether the weights of directions sampled with the cosine have less variance than those of the light's own
+  /// samples. Both second moments, of the same mean, are estimated from the light's samples: directions sampled with
+  /// the cosine would hardly ever find a sun, and show less variance than they have.
+  static bool varies_less_by_cosine(const Light& light, const SampledWavelengths& lambda) {
     constexpr int kPoints = 4096;
     RandomStream random(1);
-    Moment moment;
+    double by_cosine = 0, own = 0;
     for (int i = 0; i < kPoints; ++i) {
-      const auto s = sample_one(light, evenly, {random.uniform(), random.uniform()}, lambda);
-      moment.add(s ? double(s->weight[0]) : 0);
+      const auto s = light.sample({}, {random.uniform(), random.uniform()}, lambda);
+      if (!s || s->wi.z < kGrazing || s->pdf <= 0) continue;
+      const double radiance = double(s->radiance[0]), weight = radiance * double(s->wi.z) / double(s->pdf);
+      by_cosine += weight * radiance * std::numbers::pi;
+      own += weight * weight;
     }
-    return moment.sum > 0 ? moment.square / (moment.sum * moment.sum) : INFINITY;
+    return by_cosine < own;
   }
 
   std::span<const Light* const> lights_;

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "image/image_file.h"
 #include "radiometry/brf.h"
 #include "radiometry/flux.h"
 #include "radiometry/horizontal_irradiance.h"
@@ -11,6 +12,7 @@
 #include "scene/scene_options.h"
 #include "spectra/csv_columns.h"
 #include "system/file_bytes.h"
+#include "tests/support/input_error.h"
 
 namespace frond {
 namespace {
@@ -68,6 +70,26 @@ TEST(SkyRadiometry, SharesOfTheLightAddUpToOne) {
       EXPECT_LT(sum.standard_error, 3e-3) << params;
     }
   }
+}
+
+/// One texel, of about the solid angle of the sun, sends five times the light of all others.
+TEST(SkyRadiometry, ASunInAnImageOfTheSkyIsSampled) {
+  constexpr int kSide = 512;
+  const TestFolder folder("painted_sun");
+  Image image(kSide, kSide, {"R", "G", "B"});
+  std::ranges::fill(image.pixels, 1.f);
+  for (size_t c = 0; c < 3; ++c) image.at(kSide / 2 + 60, kSide / 2 + 40, c) = 5.f * kSide * kSide;
+  write_image(folder.name_of("sky.exr"), image, {"linear sRGB", {}});
+  Session session(silent_log(), {2, {}, {}});
+  FluxMeter meter(session,
+                  description(fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n",
+                                          folder.name_of("sky.exr")) +
+                          kLeaves),
+                  {.period = std::array{2.0, 2.0}, .wavelengths = "bands,wavelengths=550"});
+  meter.trace(1 << 15, session.pool());
+  const MeanError sum = meter.read().sum[0];
+  EXPECT_LT(sum.standard_error, 0.01);  // with the cosine only one path in 90,000 would begin at this sun
+  EXPECT_NEAR(sum.mean, 1, kZ * sum.standard_error + 1e-3);
 }
 
 TEST(SkyRadiometry, APanelsReflectanceFactorIsItsReflectanceInEveryDirection) {
