@@ -189,6 +189,9 @@ double FitProblem::minimise(const SurfaceExpansion& expansion, const Effort& eff
     low[i] = std::max(low[i], at - radius), high[i] = std::min(high[i], at + radius);
   }
   constexpr double kFirst = 1e-3, kLeast = 1e-9, kMost = 1e6;
+  // Longest step of a logarithm. Without a limit a pigment can go to the end of its range in one step; there the leaf
+  // is black in its band, the gradient almost 0, and the pigment never returns.
+  constexpr double kLongest = 1;
   double damping = kFirst;
   Normal here = normal(expansion, logs);
   for (int step = 0; step < effort.most_steps && damping < kMost; ++step) {
@@ -206,7 +209,7 @@ double FitProblem::minimise(const SurfaceExpansion& expansion, const Effort& eff
     for (; damping < kMost; damping *= 5) {
       MatrixXd damped = system;
       damped.diagonal() *= 1 + damping;
-      const VectorXd change = damped.ldlt().solve(-gradient);
+      const VectorXd change = damped.ldlt().solve(-gradient).cwiseMax(-kLongest).cwiseMin(kLongest);
       VectorXd there = logs;
       for (size_t k = 0; k < free.size(); ++k)
         there[free[k]] = std::clamp(logs[free[k]] + change[static_cast<Index>(k)], low[free[k]], high[free[k]]);
