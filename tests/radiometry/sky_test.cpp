@@ -81,11 +81,11 @@ TEST(SkyRadiometry, ASunInAnImageOfTheSkyIsSampled) {
   for (size_t c = 0; c < 3; ++c) image.at(kSide / 2 + 60, kSide / 2 + 40, c) = 5.f * kSide * kSide;
   write_image(folder.name_of("sky.exr"), image, {"linear sRGB", {}});
   Session session(silent_log(), {2, {}, {}});
-  FluxMeter meter(session,
-                  description(fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n",
-                                          folder.name_of("sky.exr")) +
-                          kLeaves),
-                  {.period = std::array{2.0, 2.0}, .wavelengths = "bands,wavelengths=550"});
+  FluxMeter meter(
+      session,
+      description(fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n", folder.name_of("sky.exr")) +
+                  kLeaves),
+      {.period = std::array{2.0, 2.0}, .wavelengths = "bands,wavelengths=550"});
   meter.trace(1 << 15, session.pool());
   const MeanError sum = meter.read().sum[0];
   EXPECT_LT(sum.standard_error, 0.01);  // with the cosine only one path in 90,000 would begin at this sun
