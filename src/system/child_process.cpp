@@ -65,14 +65,17 @@ std::optional<pid_t> start(const std::vector<std::string>& command, std::span<co
   std::vector<char*> argv;
   for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
-  // Signals that this process ignores have their default meaning in the child.
+  // Signals that this process ignores or blocks have their default meaning in the child.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t ignored;
   sigemptyset(&ignored);
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT}) sigaddset(&ignored, signal);
   posix_spawnattr_setsigdefault(&attributes, &ignored);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
   pid_t child = 0;
   const int error = posix_spawnp(&child, argv[0], &actions, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
@@ -81,6 +84,53 @@ std::optional<pid_t> start(const std::vector<std::string>& command, std::span<co
   if (error != 0) fail({}, "cannot run {}: {}", command[0], std::strerror(error));
   return child;
 }
+
+volatile std::sig_atomic_t attached_child = 0;
+
+/// While it exists, SIGINT is ignored, because a terminal sends it to the child too, and requests to end are passed on
+/// to the child.
+class SignalsOfChild {
+ public:
+  SignalsOfChild() {
+    attached_child = 0;
+    set(SIGINT, SIG_IGN, before_[0]);
+    // A request that comes before the child is known has no effect, so that it is blocked until then.
+    sigemptyset(&requests_);
+    for (size_t i = 0; i < kRequests.size(); ++i) {
+      sigaddset(&requests_, kRequests[i]);
+      set(kRequests[i], pass_on, before_[i + 1]);
+    }
+    pthread_sigmask(SIG_BLOCK, &requests_, nullptr);
+  }
+  ~SignalsOfChild() {
+    sigaction(SIGINT, &before_[0], nullptr);
+    for (size_t i = 0; i < kRequests.size(); ++i) sigaction(kRequests[i], &before_[i + 1], nullptr);
+    pthread_sigmask(SIG_UNBLOCK, &requests_, nullptr);
+    attached_child = 0;
+  }
+  SignalsOfChild(const SignalsOfChild&) = delete;
+  SignalsOfChild& operator=(const SignalsOfChild&) = delete;
+
+  void pass_to(pid_t child) const {
+    attached_child = child;
+    pthread_sigmask(SIG_UNBLOCK, &requests_, nullptr);
+  }
+
+ private:
+  static constexpr std::array kRequests{SIGTERM, SIGHUP};
+
+  static void set(int signal, void (*handler)(int), struct sigaction& before) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    sigaction(signal, &action, &before);
+  }
+  static void pass_on(int signal) {
+    if (attached_child > 0) kill(pid_t(attached_child), signal);
+  }
+
+  std::array<struct sigaction, 1 + kRequests.size()> before_{};
+  sigset_t requests_{};
+};
 
 }  // namespace
 
@@ -95,20 +145,11 @@ std::optional<ChildResult> run_child(const std::vector<std::string>& command, co
 }
 
 std::optional<int> run_attached(const std::vector<std::string>& command) {
-  struct sigaction ignore {
-  }, before{};
-  ignore.sa_handler = SIG_IGN;
-  sigaction(SIGINT, &ignore, &before);
-  std::optional<pid_t> child;
-  try {
-    child = start(command, {});
-  } catch (...) {
-    sigaction(SIGINT, &before, nullptr);
-    throw;
-  }
-  const std::optional<int> status = child ? std::optional(wait_for(*child)) : std::nullopt;
-  sigaction(SIGINT, &before, nullptr);
-  return status;
+  const SignalsOfChild signals;
+  const auto child = start(command, {});
+  if (!child) return {};
+  signals.pass_to(*child);
+  return wait_for(*child);
 }
 
 bool is_in_path(const std::string& program) {

@@ -17,8 +17,9 @@ struct ChildResult {
 std::optional<ChildResult> run_child(const std::vector<std::string>& command, const std::string& input);
 
 /// Runs a program, which is searched for in PATH, on this process's standard streams, and waits until it ends. As in
-/// system(3), SIGINT from the terminal ends the program and not this process. Returns the status as from waitpid, or
-/// nothing if there is no such program. Throws InputError if it cannot be run for any other reason.
+/// system(3), SIGINT from the terminal ends the program and not this process; SIGTERM and SIGHUP are passed on to it.
+/// Returns the status as from waitpid, or nothing if there is no such program. Throws InputError if it cannot be run
+/// for any other reason. Not for two threads at once.
 std::optional<int> run_attached(const std::vector<std::string>& command);
 
 /// Returns whether PATH has a program of this name.

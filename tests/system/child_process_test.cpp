@@ -1,0 +1,54 @@
+#include "system/child_process.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+
+namespace frond {
+namespace {
+
+/// Runs `command` attached in a process of its own, whose standard output is a pipe, and sends that process `signal` as
+/// soon as the command has written something. Returns the status of that process: the exit code that the child's end
+/// gives, or 100.
+int status_after(int signal, const std::string& script) {
+  std::array<int, 2> pipe_ends{};
+  EXPECT_EQ(pipe(pipe_ends.data()), 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    dup2(pipe_ends[1], STDOUT_FILENO);
+    const auto status = run_attached({"sh", "-c", script});
+    _exit(!status ? 100 : WIFSIGNALED(*status) ? 50 + WTERMSIG(*status) : WEXITSTATUS(*status));
+  }
+  char ready = 0;
+  EXPECT_EQ(read(pipe_ends[0], &ready, 1), 1);
+  kill(parent, signal);
+  int status = 0;
+  waitpid(parent, &status, 0);
+  close(pipe_ends[0]), close(pipe_ends[1]);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+TEST(ChildProcess, RequestsToEndArePassedOn) {
+  for (const int signal : {SIGTERM, SIGHUP}) EXPECT_EQ(status_after(signal, "echo; exec sleep 600"), 50 + signal);
+  EXPECT_EQ(status_after(SIGTERM, "trap 'kill $!; exit 7' TERM; sleep 600 & echo; wait"), 7);
+}
+
+TEST(ChildProcess, ThisProcessTakesSignalsAgainAfterwards) {
+  EXPECT_EQ(run_attached({"true"}), 0);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    sigaction(signal, nullptr, &now);
+    EXPECT_EQ(now.sa_handler, SIG_DFL);
+  }
+  sigset_t blocked;
+  pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+  EXPECT_FALSE(sigismember(&blocked, SIGTERM));
+}
+
+TEST(ChildProcess, AMissingProgramIsNoError) { EXPECT_FALSE(run_attached({"/nonexistent/program"})); }
+
+}  // namespace
+}  // namespace frond
