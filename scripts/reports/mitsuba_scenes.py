@@ -152,9 +152,9 @@ space, spot and point light, sphere as a light), `orthographic` (metal, glass, p
 - `sky`: Mitsuba's map by latitude and longitude has sampled the image again, whose texels have random colours here.
 - `soybean-back`: with 4096 samples the difference is +0.21 % ± 0.03 %. Mitsuba begins a ray 9e-5 of the coordinates away from the
   surface, frond 8e-6. In the valleys of a curved leaflet the longer offset carries rays at grazing angles past the neighbouring
-  triangles. frond with an offset 12 times as long differs from frond by +0.21 % as well (+0.12, +0.08, +0.42 % in red, green, blue);
-  with a quarter of its offset by -0.01 % ± 0.01 %. With `diffusetransmission` for the leaves, whose light at grazing angles is
-  weak, the difference is +0.02 % ± 0.01 %."""
+  triangles. A build of frond with an offset 12 times as long differs from frond by +0.21 % as well (+0.12, +0.08, +0.42 % in red,
+  green, blue); one with a quarter of the offset by -0.01 % ± 0.01 %. With `diffusetransmission` for the leaves, whose light at
+  grazing angles is weak, the difference is +0.02 % ± 0.01 %."""
 
 
 def make_files(folder):
