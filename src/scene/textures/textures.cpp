@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
 #include "core/texture.h"
 #include "scene/textures/clamped.h"
@@ -48,7 +51,7 @@ class ScaleSpectrum final : public SpectrumTexture {
   bool is_clamped_ = false;
 };
 
-/// Linear interpolation of two float textures.
+/// Linear interpolation of two float textures; as in pbrt-v4, amounts outside [0, 1] extrapolate.
 class MixFloat final : public FloatTexture {
  public:
   explicit MixFloat(const Params& p)
@@ -57,11 +60,17 @@ class MixFloat final : public FloatTexture {
     const float t = amount_->evaluate(at);
     return (1 - t) * a_->evaluate(at) + t * b_->evaluate(at);
   }
+  /// Extreme values occur at the corners of the ranges.
   Interval range() const override {
     const Interval a = a_->range(), b = b_->range(), t = amount_->range();
-    const auto at = [](double x, double y, double s) { return (1 - s) * x + s * y; };
-    return {std::min(at(a.min, b.min, t.min), at(a.min, b.min, t.max)),
-            std::max(at(a.max, b.max, t.min), at(a.max, b.max, t.max))};
+    Interval all{INFINITY, -INFINITY};
+    for (const double x : {a.min, a.max})
+      for (const double y : {b.min, b.max})
+        for (const double s : {t.min, t.max}) {
+          const double value = (1 - s) * x + s * y;
+          all = {std::min(all.min, value), std::max(all.max, value)};
+        }
+    return all;
   }
   bool is_range_tight() const override {
     return a_->is_range_tight() && b_->is_range_tight() && amount_->is_range_tight();
@@ -71,24 +80,35 @@ class MixFloat final : public FloatTexture {
   std::shared_ptr<const FloatTexture> a_, b_, amount_;
 };
 
-/// Linear interpolation of two spectrum textures.
+/// Linear interpolation of two spectrum textures. Amounts outside [0, 1] extrapolate; the result is clamped to [0, 1],
+/// as pbrt-v4's materials clamp it.
 class MixSpectrum final : public SpectrumTexture {
  public:
   explicit MixSpectrum(const Params& p)
-      : a_(p.spectrum_texture("tex1")), b_(p.spectrum_texture("tex2")), amount_(p.float_texture("amount")) {}
+      : a_(p.spectrum_texture("tex1")), b_(p.spectrum_texture("tex2")), amount_(p.float_texture("amount")) {
+    const Interval t = amount_->range();
+    extrapolates_ = t.min < 0 || t.max > 1;
+  }
   SampledSpectrum evaluate(const TexturePoint& at, const SampledWavelengths& lambda) const override {
     const float t = amount_->evaluate(at);
-    return (1 - t) * a_->evaluate(at, lambda) + t * b_->evaluate(at, lambda);
+    const SampledSpectrum mixed = (1 - t) * a_->evaluate(at, lambda) + t * b_->evaluate(at, lambda);
+    return extrapolates_ ? SampledSpectrum(clamped_to_unit(mixed.v)) : mixed;
   }
   Interval range_nm() const override {
     const Interval a = a_->range_nm(), b = b_->range_nm();
     return {std::max(a.min, b.min), std::min(a.max, b.max)};
   }
-  float max_value() const override { return std::max(a_->max_value(), b_->max_value()); }
+  float max_value() const override {
+    const float a = a_->max_value(), b = b_->max_value(), above = std::max(1.f, float(amount_->range().max)),
+                below = std::min(0.f, float(amount_->range().min));
+    const float most = std::max({a, b, above * b, (1 - below) * a});
+    return extrapolates_ ? std::min(most, 1.f) : most;
+  }
 
  private:
   std::shared_ptr<const SpectrumTexture> a_, b_;
   std::shared_ptr<const FloatTexture> amount_;
+  bool extrapolates_;
 };
 
 std::unique_ptr<FloatTexture> make_constant_float(const Params& p, const TexturePlacement&) {
@@ -108,8 +128,7 @@ constexpr Param kFactor{.name = "scale", .kind = ParamKind::float_texture, .defa
 constexpr Param kAmount{.name = "amount",
                         .kind = ParamKind::float_texture,
                         .default_value = 0.5,
-                        .range = {0, 1},
-                        .doc = "Share of the second texture."};
+                        .doc = "Share of the second texture; outside 0 to 1 it extrapolates."};
 constexpr Param kConstantFloat[] = {{.name = "value", .kind = ParamKind::real, .default_value = 1.0, .doc = "Value."}};
 constexpr Param kConstantSpectrum[] = {
     {.name = "value", .kind = ParamKind::albedo, .default_value = 1.0, .doc = "Value."}};
