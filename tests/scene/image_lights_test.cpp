@@ -500,6 +500,19 @@ TEST(Cameras, RaysOfSeveralPointsAreThoseOfEach) {
   }
 }
 
+TEST(Films, ACropBeyondTheFilmIsClamped) {
+  const FilmSettings film =
+      Loaded(
+          "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20 \"float cropwindow\" [0.5 1.5 -1 1e30] "
+          "\"string filename\" \"a/b.pfm\" WorldBegin LightSource \"infinite\"")
+          .scene->film();
+  EXPECT_EQ(film.crop.x0, 20);
+  EXPECT_EQ(film.crop.x1, 40);
+  EXPECT_EQ(film.crop.y0, 0);
+  EXPECT_EQ(film.crop.y1, 20);
+  EXPECT_EQ(film.filename, "a/b.exr");  // with a warning: pbrt-v4 writes PFM too
+}
+
 TEST(Cameras, OpenTimeIsAFactorOfTheFilm) {
   const auto exposure = [](const std::string& camera, const std::string& film) {
     return Loaded(camera + " Film \"rgb\" " + film + " WorldBegin LightSource \"infinite\"").scene->film().exposure;

@@ -460,12 +460,14 @@ TEST_F(Shapes, OddInputIsNamed) {
             "levels\" 12 Shape \"loopsubdiv\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0] \"integer indices\" [0 1 2 "
             "1 3 2] \"integer levels\" 12"),
       HasSubstr("12 levels make 3.36e+07 triangles, of some 6 GB"));
-  // Curves of no width or length are not there; nothing else comes of them.
+  // Curves of no width or length, and quadrics of no radius, are not there; nothing else comes of them.
   const auto s = scene(
       "Shape \"curve\" \"float width\" 0 \"point3 P\" [0 0 0  1 0 0  2 0 0  3 0 0] "
-      "Shape \"curve\" \"point3 P\" [0 0 0  0 0 0  0 0 0  0 0 0]");
+      "Shape \"curve\" \"point3 P\" [0 0 0  0 0 0  0 0 0  0 0 0] "
+      "Shape \"sphere\" \"float radius\" 0 Shape \"cylinder\" \"float radius\" 0");
   SurfacePoint at;
   EXPECT_FALSE(meet(*s, {1, 0, 5}, {0, 0, -1}, at));
+  EXPECT_FALSE(meet(*s, {0, 0, 5}, {0, 0, -1}, at));
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
 #include "scene/cameras/films.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "spectra/color/film_sensor.h"
 
@@ -25,8 +28,7 @@ constexpr auto kRgb = std::to_array<Param>({
      .doc = "Height."},
     {.name = "cropwindow",
      .kind = ParamKind::real,
-     .range = {0, 1},
-     .doc = "Crop x0 x1 y0 y1 as fractions of the film.",
+     .doc = "Crop x0 x1 y0 y1 as fractions of the film; values outside 0 to 1 are clamped.",
      .list = true},
     {.name = "pixelbounds", .kind = ParamKind::integer, .doc = "Crop x0 x1 y0 y1 in pixels.", .list = true},
     {.name = "filename",
@@ -106,13 +108,24 @@ Crop crop_in(const Params& p, int width, int height) {
   return crop;
 }
 
+/// Returns the name of the image file. pbrt-v4 also writes the formats PFM and QOI; frond writes EXR instead.
+std::string file_name(const Params& p) {
+  std::filesystem::path name = p.string("filename");
+  if (const auto extension = name.extension(); extension == ".pfm" || extension == ".qoi") {
+    name.replace_extension(".exr");
+    p.warn("filename",
+           fmt::format("frond writes no {} files: the image goes to {}", extension.string(), name.string()));
+  }
+  return name.string();
+}
+
 /// Settings that both films share.
 FilmSettings make_rgb_film(const Params& p) {
   FilmSettings s;
   s.width = p.integer("xresolution");
   s.height = p.integer("yresolution");
   s.crop = crop_in(p, s.width, s.height);
-  s.filename = p.string("filename");
+  s.filename = file_name(p);
   s.half = p.boolean("savefp16");
   s.exposure = p.real("exposuretime") * p.real("iso") / 100;
   s.max_component =
@@ -134,7 +147,7 @@ FilmSettings make_gbuffer_film(const Params& p) {
 
 /// Ends are rounded up, so that adjacent windows neither overlap nor leave gaps.
 Crop crop_of_fractions(std::span<const double> window, int width, int height) {
-  const auto at = [](double fraction, int size) { return int(std::ceil(fraction * size)); };
+  const auto at = [](double fraction, int size) { return int(std::ceil(std::clamp(fraction, 0.0, 1.0) * size)); };
   return {at(window[0], width), at(window[2], height), at(window[1], width), at(window[3], height)};
 }
 

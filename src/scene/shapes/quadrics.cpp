@@ -314,15 +314,15 @@ constexpr Param kPhiMax{.name = "phimax",
                         .unit = "degrees",
                         .range = {1e-3, 360},
                         .doc = "Sweep angle."};
-constexpr Interval kLength{1e-30, 1e30};
+constexpr Interval kRadius{0, 1e30};
 constexpr Param kSphere[] = {
-    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Radius."},
+    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kRadius, .doc = "Radius."},
     {.name = "zmin", .kind = ParamKind::real, .doc = "Lower end along z; by default the whole sphere."},
     {.name = "zmax", .kind = ParamKind::real, .doc = "Upper end along z; by default the whole sphere."},
     kPhiMax,
     kAlphaParam};
 constexpr Param kDisk[] = {
-    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Outer radius."},
+    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kRadius, .doc = "Outer radius."},
     {.name = "innerradius",
      .kind = ParamKind::real,
      .default_value = 0.0,
@@ -333,14 +333,20 @@ constexpr Param kDisk[] = {
     kAlphaParam};
 
 constexpr Param kCylinder[] = {
-    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kLength, .doc = "Radius."},
+    {.name = "radius", .kind = ParamKind::real, .default_value = 1.0, .range = kRadius, .doc = "Radius."},
     {.name = "zmin", .kind = ParamKind::real, .default_value = -1.0, .doc = "Lower end along z."},
     {.name = "zmax", .kind = ParamKind::real, .default_value = 1.0, .doc = "Upper end along z."},
     kPhiMax,
     kAlphaParam};
 
+/// A shape of radius 0 has no surface, as in pbrt-v4.
 template <class T>
 MadeShape make_quadric(const Params& p, const ShapePlacement& placement) {
+  constexpr double kLeast = 1e-30;
+  if (p.real("radius") < kLeast) {
+    p.warn("radius", "the shape has no surface: its radius is 0");
+    return std::vector<ShapeGeometry>{};
+  }
   return std::vector<ShapeGeometry>{std::make_shared<const T>(p, placement)};
 }
 
