@@ -9,6 +9,7 @@ P(|t| > 8) = 0.002. Seeds are fixed, so the result is the same in every run of o
 
 import argparse
 import fnmatch
+import pathlib
 import re
 import sys
 
@@ -16,6 +17,7 @@ import numpy
 from scipy.ndimage import uniform_filter
 
 import frond
+import pbrt_scenes
 from tools import ROOT, machine, table, write_section
 
 FOLDER = ROOT / "tests" / "pbrt_reference"
@@ -146,7 +148,13 @@ def main():
                         help="render only the scenes of agrees.txt; exit with an error if one differs")
     parser.add_argument("--forget", action="store_true",
                         help="remove scenes that no longer agree from agrees.txt; without this option they stay and cause an error")
+    parser.add_argument("--scenes", type=pathlib.Path, metavar="FOLDER",
+                        help="instead check and render all scene files below this folder (scripts/reports/pbrt_scenes.py)")
+    parser.add_argument("--pbrt", metavar="PROGRAM", help="with --scenes: pbrt-v4, to compare with")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE.md", help="with --scenes: where the table goes")
     options = parser.parse_args()
+    if options.scenes:
+        return pbrt_scenes.scenes(options.scenes, options.spp, options.pbrt, options.output)
     if options.seeds < 2:
         parser.error("--seeds: 2 at least are needed to estimate the noise")
     names = sorted(path.stem for path in FOLDER.glob("*.csv"))
