@@ -48,6 +48,12 @@ else()
   message(STATUS "assimp is not found: \"frond import\" will be refused")
 endif()
 
+# Headers alone, which have no pkg-config file.
+find_path(FROND_NANOVDB_INCLUDE_DIR nanovdb/util/IO.h)
+if(NOT FROND_NANOVDB_INCLUDE_DIR)
+  message(STATUS "NanoVDB is not found: media \"nanovdb\" will be refused")
+endif()
+
 include("${CMAKE_CURRENT_LIST_DIR}/FrondFmt.cmake")
 foreach(library oiio ocio exr zstd embree)
   add_library(frond_${library} INTERFACE IMPORTED GLOBAL)

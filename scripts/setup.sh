@@ -27,7 +27,7 @@ build_packages=(
   g++ cmake ninja-build pkg-config ccache
   libembree-dev libopenimageio-dev libopenexr-dev libopencolorio-dev libfmt-dev libcli11-dev nlohmann-json3-dev libeigen3-dev
   libzstd-dev zlib1g-dev libboost-dev libgmock-dev libbenchmark-dev libnetcdf-dev libassimp-dev
-  librsvg2-dev
+  librsvg2-dev libnanovdb-dev
 )
 
 install_missing() {

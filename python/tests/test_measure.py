@@ -2,7 +2,9 @@ import inspect
 import json
 import math
 import os
+import pathlib
 import subprocess
+import sys
 
 import frond
 import numpy
@@ -152,6 +154,38 @@ Shape "bilinearmesh" "point3 P" [ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ]
     share = {q: (s, e) for q, s, e in zip(flux["quantity"], flux["share"], flux["share_se"])}
     assert abs(share["reflected"][0] - 0.4) < 5 * share["reflected"][1] + 1e-6
     assert abs(share["sum"][0] - 1) < 5 * share["sum"][1] + 1e-9
+
+
+TURBID = """
+Option "float period" [ 1 1 ]
+WorldBegin
+LightSource "distant" "point3 from" [ -0.5 0 0.8660254 ] "point3 to" [ 0 0 0 ] "spectrum L" "stdillum-E"
+MakeNamedMedium "leaves" "string type" "turbid" "float density" 3
+  "spectrum reflectance" [ 300 0.4957 2500 0.4957 ] "spectrum transmittance" [ 300 0.4409 2500 0.4409 ]
+AttributeBegin
+  Material "interface"
+  MediumInterface "leaves" ""
+  Shape "bilinearmesh" "point3 P" [ 0 0 1  1 0 1  0 1 1  1 1 1 ]
+AttributeEnd
+Material "diffuse" "spectrum reflectance" [ 300 0.159 2500 0.159 ]
+Shape "bilinearmesh" "point3 P" [ 0 0 0  1 0 0  0 1 0  1 1 0 ]
+"""
+
+
+def test_a_turbid_medium_has_the_brf_of_the_transfer_equation(tmp_path):
+    """Against a solution by doubling, which shares no code with frond (scripts/reports/turbid.py). 5 standard errors."""
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts" / "reports"))
+    from turbid import turbid_layer
+    (tmp_path / "turbid.pbrt").write_text(TURBID)
+    zenith = [-60, -30, 0, 30, 60]
+    for azimuth in (0, 90):
+        found = frond.brf(tmp_path / "turbid.pbrt", [800], zenith=zenith, azimuth=azimuth, rms=0.004)
+        views = [(abs(z), azimuth + (180 if z < 0 else 0)) for z in zenith]
+        _, _, true = turbid_layer(3, 0.4957, 0.4409, 0.159, 30, views)
+        z = (numpy.array(found["brf"]) - true) / numpy.array(found["brf_se"])
+        assert abs(z).max() < 5, z
+    with pytest.raises(frond.InputError, match="turbid.pbrt:5:17: flux does not trace participating media"):
+        frond.flux(tmp_path / "turbid.pbrt", [800], paths=64)
 
 
 CANOPY = """

@@ -19,7 +19,7 @@ struct KindTraits {
 };
 
 const KindTraits& traits(ParamKind kind) {
-  static const std::array<KindTraits, 15> table{{
+  static const std::array<KindTraits, 16> table{{
       {{"bool"}, 1},
       {{"integer"}, 1},
       {{"float"}, 1},
@@ -32,6 +32,7 @@ const KindTraits& traits(ParamKind kind) {
       {{"rgb", "spectrum", "blackbody"}, 0},
       {{"rgb", "spectrum", "blackbody"}, 0},
       {{"float", "rgb", "spectrum", "blackbody"}, 0},
+      {{"rgb"}, 3},
       {{"float", "texture"}, 1},
       {{"rgb", "spectrum", "blackbody", "texture"}, 0},
       {{"string"}, 1},
@@ -109,6 +110,7 @@ std::string_view wrong_default(const Param& declared) {
     case ParamKind::point3:
     case ParamKind::vector3:
     case ParamKind::normal3:
+    case ParamKind::rgb:
       return is_triple ? "" : "three numbers";
     case ParamKind::illuminant:
     case ParamKind::albedo:
@@ -300,6 +302,11 @@ std::vector<int> Params::integers(std::string_view name) const {
   result.reserve(v.size());
   for (const double x : v) result.push_back(static_cast<int>(x));
   return result;
+}
+
+std::string Params::color_space(std::string_view name) const {
+  const ParsedParam* parsed = find(name).parsed;
+  return parsed ? parsed->color_space : std::string();
 }
 
 std::vector<std::string> Params::strings(std::string_view name) const {

@@ -33,6 +33,7 @@ enum class ParamKind : uint8_t {
   illuminant,        ///< rgb, spectrum, blackbody: an emission
   albedo,            ///< rgb, spectrum: in [0, 1] at every wavelength
   unbounded,         ///< float, rgb, spectrum: at least 0 at every wavelength
+  rgb,               ///< rgb: colours, such as those of a grid
   float_texture,     ///< float, texture
   spectrum_texture,  ///< rgb, spectrum, texture: in [0, 1]
   material,          ///< string: the name of a material
@@ -131,6 +132,8 @@ class Params {
 
   std::vector<double> reals(std::string_view name) const;  ///< of points and vectors: all coordinates in one list
   std::vector<int> integers(std::string_view name) const;
+  /// Colour space of a parameter of type rgb; empty: the scene's.
+  std::string color_space(std::string_view name) const;
   std::vector<std::string> strings(std::string_view name) const;
   std::vector<Vec2> vec2s(std::string_view name) const;
   std::vector<Vec3> vec3s(std::string_view name) const;

@@ -17,6 +17,8 @@
 
 namespace frond {
 
+struct MediumInfo;  // scene/media/medium.h
+
 /// Version of the first two members of PluginModule, by which frond decides whether it can load a shared object. It
 /// changes if their position or meaning changes.
 inline constexpr uint32_t kPluginInterface = 2;
@@ -38,6 +40,7 @@ struct PluginModule {
   std::span<const AreaLightInfo* const> area_lights = {};
   std::span<const FloatTextureInfo* const> float_textures = {};
   std::span<const SpectrumTextureInfo* const> spectrum_textures = {};
+  std::span<const MediumInfo* const> media = {};
 };
 
 }  // namespace frond

@@ -8,12 +8,21 @@
 
 namespace frond {
 
+class Medium;  // scene/media/medium.h
+
+/// Participating media on the two sides of a surface; nullptr: vacuum.
+struct MediumInterface {
+  const Medium* inside = nullptr;   ///< on the side away from the geometric normal
+  const Medium* outside = nullptr;  ///< on the side of the geometric normal
+};
+
 /// Intersection of a ray with the scene.
 struct SurfacePoint {
   Hit hit;
   const Material* material = nullptr;
   const AreaLight* light = nullptr;  ///< nullptr if the surface does not emit
   uint32_t material_id = 0;          ///< index of the material in the scene's description
+  uint32_t medium_interface = 0;     ///< 1 + index in World::medium_interfaces; 0: the medium is the same on both sides
   uint64_t instance_id = 0;          ///< index of the instance of an object, from 1; 0 if the shape is not instanced
 };
 
@@ -43,6 +52,9 @@ class World {
   virtual std::span<const Light* const> lights() const = 0;
   /// The environment lights among `lights`.
   virtual std::span<const EnvironmentLight* const> environment() const = 0;
+  /// Media of the scene's surfaces, and the medium in which camera rays begin (nullptr: vacuum).
+  virtual std::span<const MediumInterface> medium_interfaces() const { return {}; }
+  virtual const Medium* camera_medium() const { return nullptr; }
   /// Radius of a sphere that contains the scene.
   virtual float radius() const = 0;
   /// Wavelength strategy of the render, for which the materials have been prepared.

@@ -23,7 +23,7 @@ class LightSelector {
     const Light* light;
     float probability;
   };
-  /// Position and unit geometric normal of a surface point, world space.
+  /// Position and unit geometric normal of a surface point, world space; a point of a medium has the normal 0.
   struct LitPoint {
     Vec3 p, n;
   };

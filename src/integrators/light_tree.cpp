@@ -175,7 +175,7 @@ float LightTree::importance(const Node& node, const Vec3& p, const Vec3& n) {
   const float sin_beyond = sin_of_difference(sin_facing, cos_facing, sin_spread, b.cos_spread);
   const float cos_least = cos_of_difference(sin_beyond, cos_beyond, sin_size, cos_size);
   if (cos_least <= b.cos_reach) return 0;
-  const float cos_in = std::abs(dot(w, n));
+  const float cos_in = n == Vec3{} ? 1 : std::abs(dot(w, n));  // a point of a medium has no normal
   const float cos_incident = cos_of_difference(sine(cos_in), cos_in, sin_size, cos_size);
   return std::clamp(node.intensity * cos_least * cos_incident / distance2, 0.f, 1e30f);
 }

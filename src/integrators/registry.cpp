@@ -4,10 +4,10 @@
 
 namespace frond {
 
-extern const IntegratorInfo path_integrator;
+extern const IntegratorInfo path_integrator, volpath_integrator;
 
 std::span<const IntegratorInfo* const> builtin_integrators() {
-  static constexpr std::array table{&path_integrator};
+  static constexpr std::array table{&path_integrator, &volpath_integrator};
   return table;
 }
 

@@ -36,6 +36,7 @@ constexpr std::string_view type_name(ParamKind kind) {
                                          "rgb | spectrum | blackbody",
                                          "rgb | spectrum",
                                          "float | rgb | spectrum",
+                                         "rgb",
                                          "float | texture",
                                          "rgb | spectrum | texture",
                                          "string"};

@@ -299,6 +299,9 @@ class FluxMeter::Sums {
 };
 
 FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxRequest& request) {
+  if (description.has_media())
+    fail(description.media.front().plugin.where,
+         "flux does not trace participating media; brf and render do, by integrator \"volpath\"");
   prepare_for_radiometry(session.registry(), request.wavelengths, request.period, request.keeps_depth, description);
   const char* what = request.by_instance ? "flux by instance" : "flux";
   LoadedScene loaded =

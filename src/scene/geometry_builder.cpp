@@ -172,7 +172,10 @@ class GeometryBuilder {
   Surface surface(ShapeGeometry geometry, const ShapeInfo& info, const ShapeDescription& shape, const Params& params) {
     const Location& where = shape.plugin.where;
     check_made(geometry, info, where);
-    Surface result{.geometry = std::move(geometry), .material = uint32_t(shape.material), .alpha = nullptr};
+    Surface result{.geometry = std::move(geometry),
+                   .material = uint32_t(shape.material),
+                   .alpha = nullptr,
+                   .medium_interface = shape.medium_interface};
     check_extent(result.geometry, where);
     if (const Param* declared = find_param(info, kAlphaParam.name); declared && declared->kind == kAlphaParam.kind)
       if (const auto alpha = params.float_texture("alpha"); !alpha->is_constant() || alpha->range().min < 1)

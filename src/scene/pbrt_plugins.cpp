@@ -20,6 +20,7 @@ struct StandIn {
   std::string_view feature;                   ///< kind for --ignore-unsupported; empty: the expected image is the same
   std::span<const std::string_view> of_pbrt;  ///< allowed parameters; empty: any
   std::string_view caution = {};
+  bool replaces_ours = false;  ///< also if frond has a plug-in of this name
 };
 
 constexpr std::string_view kRandomized[] = {"pixelsamples", "seed", "randomization"};
@@ -33,16 +34,19 @@ constexpr StandIn kSamplers[] = {
 constexpr std::string_view kPath[] = {"maxdepth", "lightsampler", "regularize"};
 constexpr std::string_view kSimplePath[] = {"maxdepth", "samplelights", "samplebsdf"};
 constexpr std::string_view kRandomWalk[] = {"maxdepth"};
-constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath},
+/// Integrators of pbrt-v4 that have the same expected image. In scenes with media volpath answers them.
+constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath, "", true},
                                     {"simplepath", "path", "", kSimplePath},
                                     {"randomwalk", "path", "", kRandomWalk},
-                                    {"simplevolpath", "path", "integrators", {}},
-                                    {"ambientocclusion", "path", "integrators", {}},
-                                    {"lightpath", "path", "integrators", {}},
-                                    {"bdpt", "path", "integrators", {}},
-                                    {"mlt", "path", "integrators", {}},
-                                    {"sppm", "path", "integrators", {}},
-                                    {"function", "path", "integrators", {}}};
+                                    {"simplevolpath", "path", "", kRandomWalk},
+                                    {"lightpath", "path", "", {}},
+                                    {"bdpt", "path", "", {}},
+                                    {"mlt", "path", "", {}},
+                                    {"sppm", "path", "", {}},
+                                    {"ambientocclusion", "path", "", {}},
+                                    {"function", "path", "", {}}};
+/// Those that compute another image: the replacement is a warning.
+constexpr std::string_view kOtherImages[] = {"ambientocclusion", "function"};
 constexpr StandIn kMaterials[] = {{"measured", "diffuse", "materials", {}},
                                   {"hair", "diffuse", "materials", {}},
                                   {"subsurface", "coateddiffuse", "materials", {}},
@@ -90,7 +94,8 @@ class Answerer {
       return false;
     }
     for (const StandIn& by : stand_ins) {
-      if (by.name != plugin.name || !ours.find(by.ours) || (ours.find(by.name) && by.name != by.ours)) continue;
+      if (by.name != plugin.name || !ours.find(by.ours)) continue;
+      if (ours.find(by.name) && by.name != by.ours && !by.replaces_ours) continue;
       replace(directive, *ours.find(by.ours), by, plugin);
       return true;
     }
@@ -160,6 +165,22 @@ void warn_of_regularize(const ParsedPlugin& integrator, const Log& log) {
     log.warn(p->where, "\"regularize\" has no effect: paths that pbrt blurs appear as noise");
 }
 
+/// Chooses volpath for scenes with media, which pbrt's integrators other than path and simplepath see; path for others.
+void answer_integrator(const Registry& registry, Answerer& answerer, const Log& log, SceneDescription& d) {
+  ParsedPlugin& integrator = d.integrator;
+  std::vector<StandIn> stand_ins(std::begin(kIntegrators), std::end(kIntegrators));
+  if (d.has_media() && registry.integrators.find("volpath")) {
+    if (!integrator.where.file) integrator.name = "volpath";
+    for (StandIn& by : stand_ins)
+      if (by.name != "simplepath" && by.name != "randomwalk") by.ours = "volpath";
+  }
+  const std::string name = integrator.name;
+  if (answerer.answer("Integrator", registry.integrators, stand_ins, kOldIntegrators, integrator) &&
+      std::ranges::find(kOtherImages, name) != std::end(kOtherImages))
+    log.warn(integrator.where,
+             fmt::format("Integrator \"{}\" is replaced by \"{}\", whose image is another", name, integrator.name));
+}
+
 /// Collects parameter names without duplicates.
 void add_params(std::span<const Param> params, std::vector<std::string_view>& names) {
   for (const Param& p : params)
@@ -173,7 +194,8 @@ void warn_of_attributes(const SceneSettings& description, const Registry& r, con
     for (const auto* info : table.all()) add_params(info->params, names[target]);
   };
   add("shape", r.shapes), add("light", r.lights), add("light", r.area_lights);
-  add("material", r.materials), add("texture", r.float_textures), add("texture", r.spectrum_textures);
+  add("medium", r.media), add("material", r.materials), add("texture", r.float_textures),
+      add("texture", r.spectrum_textures);
   add_params(normal_bend_params.params, names["material"]);
   for (const auto& [key, where] : description.attributes) {
     const auto& [target, name] = key;
@@ -228,7 +250,7 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   // Shadow rays of volpath pass through material "interface", those of path do not. volpath is pbrt's default.
   const bool sees_through_interfaces =
       !d.integrator.where.file || d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";
-  answerer.answer("Integrator", registry.integrators, kIntegrators, kOldIntegrators, d.integrator);
+  answer_integrator(registry, answerer, log, d);
   const bool is_realistic = d.camera.name == "realistic";
   if (answerer.answer("Camera", registry.cameras, kCameras, kOldCameras, d.camera) && is_realistic)
     problems.attempt([&] { set_field_of_view(d.camera, d.film); });
@@ -248,7 +270,8 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
   const auto answer_shapes = [&](std::vector<ShapeDescription>& shapes) {
     for (ShapeDescription& s : shapes) answerer.leave_out_displacement(s.plugin);
     std::erase_if(shapes, [&](const ShapeDescription& s) {
-      if (sees_through_interfaces && d.materials[s.material].plugin.name == "interface") return true;
+      if (sees_through_interfaces && s.medium_interface == 0 && d.materials[s.material].plugin.name == "interface")
+        return true;
       if (registry.shapes.find(s.plugin.name) || std::ranges::find(kOldShapes, s.plugin.name) == std::end(kOldShapes))
         return false;
       answerer.refuse_old("Shape", s.plugin);

@@ -62,6 +62,7 @@ void load_plugin(const fs::path& file, Registry& registry) {
   add_all(module.area_lights, file, registry.area_lights);
   add_all(module.float_textures, file, registry.float_textures);
   add_all(module.spectrum_textures, file, registry.spectrum_textures);
+  add_all(module.media, file, registry.media);
 }
 
 /// Empty entries of the path are ignored.

@@ -21,6 +21,8 @@ extern const FloatTextureInfo constant_float_texture, scale_float_texture, mix_f
 extern const SpectrumTextureInfo constant_spectrum_texture, scale_spectrum_texture, mix_spectrum_texture,
     image_spectrum_texture, bilerp_spectrum_texture, checkerboard_spectrum_texture, direction_mix_spectrum_texture,
     dots_spectrum_texture, marble_spectrum_texture, soil_spectrum_texture;
+extern const MediumInfo homogeneous_medium, uniform_grid_medium, rgb_grid_medium, cloud_medium, nanovdb_medium,
+    turbid_medium;
 
 namespace {
 
@@ -43,6 +45,8 @@ constexpr std::array kSpectrumTextures{&constant_spectrum_texture,     &scale_sp
                                        &image_spectrum_texture,        &bilerp_spectrum_texture,
                                        &checkerboard_spectrum_texture, &dots_spectrum_texture,
                                        &marble_spectrum_texture,       &soil_spectrum_texture};
+constexpr std::array kMedia{&homogeneous_medium, &uniform_grid_medium, &rgb_grid_medium,
+                            &cloud_medium,       &nanovdb_medium,      &turbid_medium};
 
 }  // namespace
 
@@ -59,7 +63,8 @@ Registry make_registry(std::span<const MaterialInfo* const> materials,
           .lights{"light", kLights},
           .area_lights{"area light", kAreaLights},
           .float_textures{"float texture", kFloatTextures},
-          .spectrum_textures{"spectrum texture", kSpectrumTextures}};
+          .spectrum_textures{"spectrum texture", kSpectrumTextures},
+          .media{"medium", kMedia}};
 }
 
 /// The order is the order of `frond list`.
@@ -68,6 +73,7 @@ std::vector<const PluginInfo*> all_plugins(const Registry& r) {
   const auto add = [&all](const auto& table) { all.insert(all.end(), table.all().begin(), table.all().end()); };
   add(r.materials), add(r.integrators), add(r.wavelengths), add(r.cameras), add(r.films), add(r.samplers);
   add(r.filters), add(r.shapes), add(r.lights), add(r.area_lights), add(r.float_textures), add(r.spectrum_textures);
+  add(r.media);
   return all;
 }
 

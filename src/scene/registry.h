@@ -9,6 +9,7 @@
 #include "core/sampler.h"
 #include "core/shape.h"
 #include "core/texture.h"
+#include "scene/media/medium.h"
 
 namespace frond {
 
@@ -27,6 +28,7 @@ struct Registry {
   PluginTable<AreaLightInfo> area_lights;
   PluginTable<FloatTextureInfo> float_textures;
   PluginTable<SpectrumTextureInfo> spectrum_textures;
+  PluginTable<MediumInfo> media;
 };
 
 /// Returns all plug-ins in the order of the tables.

@@ -32,6 +32,7 @@ void Scene::describe(const GeometryHit& at, SurfacePoint& point) const {
   point.material = material_at_[at.material];
   point.light = at.surface ? lights_->of_surface[*at.surface].at(at.primitive) : nullptr;
   point.material_id = at.material;
+  point.medium_interface = at.medium_interface;
   point.instance_id = at.instance;
   if (is_detailed_[at.material]) add_details(at.material, point.hit);
 }

@@ -41,6 +41,13 @@ struct LightTable {
   void add(std::unique_ptr<Light> light);
 };
 
+/// All media of a scene.
+struct MediumTable {
+  std::vector<std::unique_ptr<const Medium>> owned;  ///< by index in the description
+  std::vector<MediumInterface> interfaces;           ///< by index in the description
+  const Medium* of_camera = nullptr;
+};
+
 /// A scene ready to be rendered: geometry, materials, lights, camera, film, sampler and integrator.
 class Scene final : public World {
  public:
@@ -69,6 +76,8 @@ class Scene final : public World {
   uint32_t occluded(const RayPacket& packet) const override;
   std::span<const Light* const> lights() const override { return lights_->all; }
   std::span<const EnvironmentLight* const> environment() const override { return lights_->environment; }
+  std::span<const MediumInterface> medium_interfaces() const override { return media_->interfaces; }
+  const Medium* camera_medium() const override { return media_->of_camera; }
   float radius() const override { return radius_; }
 
   const WavelengthStrategy& wavelengths() const override { return *wavelengths_; }
@@ -113,6 +122,7 @@ class Scene final : public World {
   std::vector<const NormalBend*> bend_at_;           ///< by material index; nullptr: none
   Footprint footprint_;
   std::shared_ptr<const LightTable> lights_;
+  std::shared_ptr<const MediumTable> media_;
   std::shared_ptr<const Geometry> geometry_;
   std::optional<Vec2> period_;
   std::optional<Tiling> tiling_;

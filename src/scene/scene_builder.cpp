@@ -86,7 +86,9 @@ class SceneBuilder {
     const bool same_wavelengths = scene_.wavelengths_name_ == other.wavelengths_name_;
     if (same_wavelengths) {
       scene_.lights_ = other.lights_;
+      scene_.media_ = other.media_;
     } else {
+      build_media(*resolver);
       build_lights(*resolver);
       build_area_lights(*resolver);
     }
@@ -105,6 +107,7 @@ class SceneBuilder {
   /// Builds everything that is located in the scene.
   void build_world(const SceneDescription& description, SceneResolver& resolver) {
     check_declarations(resolver);
+    build_media(resolver);
     build_lights(resolver);
     scene_.geometry_ = build_geometry(description, registry_, resolver, pool_, log_, problems_);
     check_instance_textures(description_, *scene_.geometry_, log_);
@@ -216,6 +219,10 @@ class SceneBuilder {
              "a scene with a \"period\" takes light from outside alone: \"distant\", \"sky\", or \"infinite\" without "
              "a portal");
       }
+    for (size_t i = 0; i < description_.media.size(); ++i)
+      if (scene_.media_ && scene_.media_->owned[i] && !scene_.media_->owned[i]->is_homogeneous())
+        fail(description_.media[i].plugin.where,
+             "a scene with a \"period\" takes media that are the same everywhere: this one would not be repeated");
   }
 
   /// Repeats the geometry, if there is a period.
@@ -289,6 +296,23 @@ class SceneBuilder {
            "the scene with its camera and lights reaches to {:g} units from the origin, which in the space of its "
            "smallest instances are {:g}: {:g} is the limit",
            reach_, largest, kMost);
+  }
+
+  /// Media that fail are reported together.
+  void build_media(SceneResolver& resolver) {
+    auto table = std::make_shared<MediumTable>();
+    for (const MediumDescription& medium : description_.media) {
+      table->owned.emplace_back();
+      problems_.attempt(
+          [&] { table->owned.back() = make(registry_.media, medium.plugin, resolver, medium.world_from_medium); });
+    }
+    const auto at = [&table](const std::optional<size_t>& i) { return i ? table->owned[*i].get() : nullptr; };
+    for (const MediumPair& pair : description_.medium_interfaces)
+      table->interfaces.push_back({at(pair.inside), at(pair.outside)});
+    table->of_camera = at(description_.camera_medium);
+    scene_.media_ = std::move(table);
+    if (description_.has_media() && description_.integrator.name == "path")
+      log_.warn(description_.integrator.where, "integrator \"path\" ignores the scene's media; \"volpath\" does not");
   }
 
   /// Lights that fail are reported together.

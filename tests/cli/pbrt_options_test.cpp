@@ -27,8 +27,8 @@ class PbrtOptions : public ::testing::Test {
     folder_.write("bad.pbrt", std::string(kOptions) + "Sampler \"zobol\"\n" + std::string(kWorld) +
                                   "Shape \"sphere\" \"float radus\" 1\nTranslate 1 2\n"
                                   "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"disk\"\n");
-    folder_.write("media.pbrt", std::string(kOptions) + "Integrator \"sppm\"\n" + std::string(kWorld) +
-                                    "MediumInterface \"fog\" \"\" Shape \"sphere\"\n");
+    folder_.write("other.pbrt", std::string(kOptions) + std::string(kWorld) +
+                                    "Material \"hair\" Shape \"sphere\"\nTexture \"t\" \"float\" \"ptex\"\n");
   }
   std::string path(const std::string& name) const { return folder_.name_of(name); }
   TestFolder folder_{"pbrt_options"};
@@ -130,14 +130,14 @@ TEST_F(PbrtOptions, WhatRenderRefusesCheckRefuses) {
 }
 
 TEST_F(PbrtOptions, WarningsOfManyPlacesAreToldOnce) {
-  std::string fog, names;
-  for (int i = 0; i < 100; ++i) fog += "MediumInterface \"fog\" \"\" Shape \"sphere\"\n";
+  std::string hair, names;
+  for (int i = 0; i < 100; ++i) hair += "Material \"hair\" Shape \"sphere\"\n";
   for (int i = 0; i < 100; ++i) names += fmt::format("CoordSysTransform \"c{}\"\n", i);
-  folder_.write("fog.pbrt", std::string(kOptions) + std::string(kWorld) + fog + names);
-  const Outcome lenient = frond_command({"check", "--ignore-unsupported", path("fog.pbrt")});
+  folder_.write("hair.pbrt", std::string(kOptions) + std::string(kWorld) + hair + names);
+  const Outcome lenient = frond_command({"check", "--ignore-unsupported", path("hair.pbrt")});
   EXPECT_EQ(lenient.code, 0);
   EXPECT_EQ(std::ranges::count(lenient.err, '\n'), 1 + 1 + 20 + 1) << lenient.err;
-  EXPECT_THAT(lenient.err, AllOf(HasSubstr("fog.pbrt:5:1: warning: MediumInterface of pbrt-v4"),
+  EXPECT_THAT(lenient.err, AllOf(HasSubstr("hair.pbrt:5:10: warning: Material \"hair\" of pbrt-v4"),
                                  HasSubstr("here and at 99 more locations"), HasSubstr("here and 80 more like it")));
 }
 
@@ -151,13 +151,13 @@ TEST_F(PbrtOptions, StrictTellsWarningsBesideErrors) {
 
 TEST_F(PbrtOptions, RadiometersAndComparisonsReadScenesAsRenderDoes) {
   for (const char* command : {"brf", "flux"}) {
-    std::vector<std::string> words{command, path("media.pbrt"), "--paths", "64", "--integrator", "path"};
-    EXPECT_THAT(frond_command(words).err, HasSubstr("with --ignore-unsupported=media")) << command;
+    std::vector<std::string> words{command, path("other.pbrt"), "--paths", "64", "--integrator", "path"};
+    EXPECT_THAT(frond_command(words).err, HasSubstr("with --ignore-unsupported=materials")) << command;
     words.emplace_back("--ignore-unsupported");
-    EXPECT_THAT(frond_command(words).err, Not(HasSubstr("with --ignore-unsupported=media"))) << command;
+    EXPECT_THAT(frond_command(words).err, Not(HasSubstr("with --ignore-unsupported=materials"))) << command;
   }
   const Outcome compared =
-      frond_command({"compare", path("media.pbrt"), "-o", path("report"), "--ignore-unsupported", "--quick"});
+      frond_command({"compare", path("other.pbrt"), "-o", path("report"), "--ignore-unsupported", "--quick"});
   EXPECT_THAT(compared.err, HasSubstr("none of the materials is a leaf"));
 }
 
@@ -187,20 +187,20 @@ TEST_F(PbrtOptions, AllThatIsWrongIsTold) {
 }
 
 TEST_F(PbrtOptions, WhatIsUnsupportedCanBeLetPass) {
-  const Outcome refused = frond_command({"render", path("media.pbrt"), "-o", path("a.exr"), "--spp", "1"});
+  const Outcome refused = frond_command({"render", path("other.pbrt"), "-o", path("a.exr"), "--spp", "1"});
   EXPECT_EQ(refused.code, 1);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("media.pbrt:2:12: Integrator \"sppm\" of pbrt-v4 is not supported"),
-                                 HasSubstr("--ignore-unsupported=media")));
-  for (const std::vector<std::string>& words : {std::vector<std::string>{"--ignore-unsupported", path("media.pbrt")},
-                                                {"--ignore-unsupported", "media,integrators", path("media.pbrt")},
-                                                {"--ignore-unsupported=all", path("media.pbrt")}}) {
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("other.pbrt:5:10: Material \"hair\" of pbrt-v4 is not supported"),
+                                 HasSubstr("--ignore-unsupported=textures")));
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--ignore-unsupported", path("other.pbrt")},
+                                                {"--ignore-unsupported", "materials,textures", path("other.pbrt")},
+                                                {"--ignore-unsupported=all", path("other.pbrt")}}) {
     std::vector<std::string> command{"render", "-o", path("a.exr"), "--spp", "1"};
     command.insert(command.end(), words.begin(), words.end());
     const Outcome passed = frond_command(command);
     EXPECT_EQ(passed.code, 0) << passed.err;
-    EXPECT_THAT(passed.err, HasSubstr("warning: MediumInterface of pbrt-v4 is not supported"));
+    EXPECT_THAT(passed.err, HasSubstr("warning: Material \"hair\" of pbrt-v4 is not supported"));
   }
-  EXPECT_EQ(frond_command({"check", "--ignore-unsupported", "media", path("media.pbrt")}).code, 1);
+  EXPECT_EQ(frond_command({"check", "--ignore-unsupported", "materials", path("other.pbrt")}).code, 1);
 }
 
 TEST_F(PbrtOptions, StrictMakesErrorsOfWarnings) {

@@ -145,7 +145,7 @@ if ((${#COMPREPLY[@]})); then printf '%s\\n' "${COMPREPLY[@]}"; fi""", self.scri
     def test_names(self):
         self.assertEqual(self.offered("spectrophotometer", "leaf_so"), {"leaf_solved"})
         self.assertEqual(self.offered("spectrophotometer", "abm", "--with", "leaf_so"), {"leaf_solved"})
-        self.assertEqual(self.offered("render", "--integrator", ""), {"path"})
+        self.assertEqual(self.offered("render", "--integrator", ""), {"path", "volpath"})
         self.assertLess({"hero", "smpte", "bands"}, self.offered("render", "--wavelengths", ""))
         self.assertLess({"soybean", "maize"}, self.offered("table", "--specimen", ""))
         self.assertLess({"abm", "path", "perspective", "brf"}, self.offered("describe", ""))

@@ -47,8 +47,6 @@ TEST(ParserErrors, NameUnknownDirectives) {
 
 TEST(ParserErrors, NameWhatOfPbrtIsNotThereYet) {
   expect_errors({
-      {"\n MediumInterface \"fog\"",
-       "s:2:2: MediumInterface of pbrt-v4 is not supported; with --ignore-unsupported=media it is left out"},
       {"\n ActiveTransform EndTime",
        "s:2:2: ActiveTransform of pbrt-v4 is not supported; with --ignore-unsupported=motion it leaves all as it is at "
        "the start"},

@@ -310,25 +310,43 @@ TEST(PbrtFormat, VolpathSeesThroughInterfaces) {
   EXPECT_EQ(answer("Integrator \"path\"" + world).scene.shapes.size(), 2u);
 }
 
+TEST(PbrtFormat, ScenesWithMediaAreForVolpath) {
+  const std::string media =
+      " WorldBegin MakeNamedMedium \"m\" \"string type\" \"homogeneous\" MediumInterface \"m\" \"\" Material "
+      "\"interface\" Shape \"sphere\"";
+  for (const char* name : {"volpath", "bdpt", "mlt", "sppm", "lightpath", "simplevolpath"}) {
+    const std::string integrator = fmt::format("Integrator \"{}\"", name);
+    EXPECT_EQ(answer(integrator + media).scene.integrator.name, "volpath") << name;
+    EXPECT_EQ(answer(integrator + media).scene.shapes.size(), 1u) << name;
+    const Answer without = answer(integrator + " WorldBegin");
+    EXPECT_EQ(without.scene.integrator.name, "path") << name;
+    EXPECT_THAT(without.log.warnings, ElementsAre()) << name;
+  }
+  EXPECT_EQ(answer(media).scene.integrator.name, "volpath");
+  EXPECT_EQ(answer("Integrator \"path\"" + media).scene.integrator.name, "path");
+  EXPECT_THAT(answer("Integrator \"ambientocclusion\" WorldBegin").log.warnings,
+              ElementsAre(HasSubstr("whose image is another")));
+}
+
 TEST(PbrtFormat, WhatGivesAnotherImageHasToBeLetPass) {
   const std::string text =
       "Integrator \"bdpt\" Camera \"realistic\" \"string lensfile\" \"x.dat\" WorldBegin\n"
       "Material \"hair\" \"rgb color\" [.1 .2 .3]\nTexture \"t\" \"float\" \"ptex\" \"string filename\" \"x.ptx\"\n"
-      "MediumInterface \"fog\" \"\" ActiveTransform EndTime Translate 1 0 0 Shape \"disk\"";
+      "ActiveTransform EndTime Translate 1 0 0 Shape \"disk\"";
   const Answer refused = answer(text);
-  EXPECT_EQ(refused.problems.count(), 2u);  // media and motion: the file is not read on
+  EXPECT_EQ(refused.problems.count(), 1u);  // motion: the file is not read on
   const Answer passed = answer(text, "all");
   EXPECT_TRUE(passed.problems.empty());
-  EXPECT_EQ(passed.log.warnings.size(), 6u);
+  EXPECT_EQ(passed.log.warnings.size(), 4u);
   EXPECT_EQ(passed.scene.integrator.name, "path");
   EXPECT_EQ(passed.scene.camera.name, "perspective");
   EXPECT_EQ(passed.scene.materials.at(1).plugin.params.at(0).name, "reflectance");
   EXPECT_EQ(passed.scene.shapes.at(0).world_from_object, Transform());
-  const Answer some = answer(text, "media,motion");
-  EXPECT_EQ(some.problems.count(), 4u);
-  EXPECT_THAT(some.problems.messages()[0], HasSubstr("s:1:12: Integrator \"bdpt\" of pbrt-v4 is not supported; with "
-                                                     "--ignore-unsupported=integrators it is replaced by \"path\""));
-  EXPECT_THAT(error_of([] { Unsupported("fog"); }), HasSubstr("--ignore-unsupported takes all, or some of media"));
+  const Answer some = answer(text, "motion");
+  EXPECT_EQ(some.problems.count(), 3u);
+  EXPECT_THAT(some.problems.messages()[0], HasSubstr("s:1:26: Camera \"realistic\" of pbrt-v4 is not supported; with "
+                                                     "--ignore-unsupported=cameras it is replaced by \"perspective\""));
+  EXPECT_THAT(error_of([] { Unsupported("fog"); }), HasSubstr("--ignore-unsupported takes all, or some of materials"));
 }
 
 TEST(PbrtFormat, DisplacedMeshesHaveToBeLetPass) {

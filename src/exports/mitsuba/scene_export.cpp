@@ -33,6 +33,7 @@ void export_to_mitsuba(SceneDescription description, const Registry& registry, c
                        ThreadPool& pool, const Log& log, const std::filesystem::path& cache) {
   using namespace mitsuba;
   const Spectra spectra(request.wavelengths_nm);
+  if (description.has_media()) fail(description.media.front().plugin.where, "participating media are not exported");
   set_wavelengths(description, spectra.frond_wavelengths());
   check_options(description, log);
   Scene::check(description, registry, pool, silent_log());

@@ -48,6 +48,7 @@ std::vector<std::filesystem::path> input_files(const SceneDescription& scene, co
   for (const auto& t : scene.textures) add_files(t.plugin, scene, files);
   for (const auto& m : scene.materials) add_files(m.plugin, scene, files);
   for (const auto& a : scene.area_lights) add_files(a, scene, files);
+  for (const auto& m : scene.media) add_files(m.plugin, scene, files);
   for (const auto& s : scene.shapes) add_files(s.plugin, scene, files);
   for (const auto& l : scene.lights) add_files(l.plugin, scene, files);
   for (const auto& o : scene.objects)

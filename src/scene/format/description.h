@@ -33,6 +33,19 @@ struct TextureDescription {
   Transform world_from_texture;
 };
 
+/// A medium of the scene file.
+struct MediumDescription {
+  std::string name;
+  ParsedPlugin plugin;  ///< its name is the value of "string type"
+  Transform world_from_medium;
+};
+
+/// Media on the two sides of a shape: indices in SceneDescription::media; empty: vacuum.
+struct MediumPair {
+  std::optional<size_t> inside, outside;
+  friend bool operator==(const MediumPair&, const MediumPair&) = default;
+};
+
 /// A shape with its graphics state.
 struct ShapeDescription {
   ParsedPlugin plugin;
@@ -40,6 +53,7 @@ struct ShapeDescription {
   bool reverse_orientation = false;
   size_t material = 0;               ///< index in SceneDescription::materials
   std::optional<size_t> area_light;  ///< index in SceneDescription::area_lights
+  uint32_t medium_interface = 0;     ///< 1 + index in SceneDescription::medium_interfaces; 0: no change of medium
 };
 
 /// A light that is not an area light.
@@ -81,6 +95,12 @@ struct SceneSettings {
   std::map<std::string, Transform> coordinate_systems;  ///< "camera", "world" and those that the file defines
   std::vector<TextureDescription> textures;             ///< in file order; names are unique for each value type
   std::vector<MaterialDescription> materials;           ///< index 0 is the default before any `Material`: "diffuse"
+
+  std::vector<MediumDescription> media;       ///< names are unique
+  std::vector<MediumPair> medium_interfaces;  ///< those of shapes, each with two different media
+  std::optional<size_t> camera_medium;        ///< in which camera rays begin
+  /// Whether a shape or the camera has a medium.
+  bool has_media() const { return !medium_interfaces.empty() || camera_medium.has_value(); }
 
   std::vector<std::filesystem::path> files;  ///< the main file and included files, in reading order
   uint64_t content_hash = 0;                 ///< hash of the bytes of `files`, in order

@@ -22,11 +22,11 @@ ParsedPlugin with_name_of_interface(ParsedPlugin material) {
   return material;
 }
 
-/// Moves parameter "string type" of MakeNamedMaterial to the plug-in's name.
-ParsedPlugin typed_by_parameter(const std::string& name, ParsedPlugin plugin) {
+/// Moves parameter "string type" of MakeNamedMaterial or MakeNamedMedium to the plug-in's name.
+ParsedPlugin typed_by_parameter(std::string_view directive, const std::string& name, ParsedPlugin plugin) {
   const auto type =
       std::find_if(plugin.params.begin(), plugin.params.end(), [](const ParsedParam& p) { return p.name == "type"; });
-  if (type == plugin.params.end()) fail(plugin.where, "MakeNamedMaterial \"{}\" needs parameter \"string type\"", name);
+  if (type == plugin.params.end()) fail(plugin.where, "{} \"{}\" needs parameter \"string type\"", directive, name);
   if (type->type != "string") fail(type->where, "\"type\" is string, type {} was given", type->type);
   const auto& values = std::get<std::vector<std::string>>(type->values);
   if (values.size() != 1) fail(type->value_where, "\"type\" takes 1 value, {} given", values.size());
@@ -73,6 +73,7 @@ void DescriptionBuilder::finish(const Location& where, Problems& problems) {
       fail(saved_.back().where, "{} without {}", name_of(saved_.back().by), ender_of(saved_.back().by));
   }
   settle_unknown_materials(problems);
+  settle_unknown_media(problems);
   std::vector<std::string_view> defined;
   for (const auto& [text, name] : objects_)
     if (name.is_defined) defined.push_back(text);
@@ -102,6 +103,31 @@ void DescriptionBuilder::settle_unknown_materials(Problems& problems) {
                     defined.empty() ? "; MakeNamedMaterial makes them" : suggestion(text, defined));
     scene_.materials[name.index] = {"", {"diffuse", name.first_use, {}}};
     if (scene_.may_be_unread(text)) continue;
+    if (is_used[name.index])
+      problems.add(InputError(name.first_use, message));
+    else
+      log_.warn(name.first_use, message + "; no shape needs it");
+  }
+}
+
+/// Reports unknown media that a shape or the camera has.
+void DescriptionBuilder::settle_unknown_media(Problems& problems) {
+  std::vector<bool> is_used(scene_.media.size(), false);
+  const auto use = [&is_used](const std::optional<size_t>& medium) {
+    if (medium) is_used[*medium] = true;
+  };
+  for (const MediumPair& pair : scene_.medium_interfaces) use(pair.inside), use(pair.outside);
+  use(scene_.camera_medium);
+  std::vector<std::string_view> defined;
+  for (const auto& [text, name] : media_)
+    if (name.is_defined) defined.push_back(text);
+  for (const auto& [text, name] : media_) {
+    if (name.is_defined) continue;
+    scene_.media[name.index].plugin = {"homogeneous", name.first_use, {}};
+    if (scene_.may_be_unread(text)) continue;
+    const std::string message =
+        fmt::format("there is no medium \"{}\"{}", text,
+                    defined.empty() ? "; MakeNamedMedium makes them" : suggestion(text, defined));
     if (is_used[name.index])
       problems.add(InputError(name.first_use, message));
     else
@@ -145,6 +171,7 @@ void DescriptionBuilder::camera(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) fail(plugin.where, "the camera's transform cannot be inverted");
   set_option_plugin(&SceneDescription::camera, "Camera", std::move(plugin));
   scene_.camera_from_world = state_.transform;
+  scene_.camera_medium = state_.media.outside;
   scene_.coordinate_systems["camera"] = state_.transform.inverse();
 }
 
@@ -230,7 +257,6 @@ void DescriptionBuilder::end(std::string_view directive, std::string_view beginn
 
 /// Later values of the same parameter replace earlier ones.
 void DescriptionBuilder::attribute(const std::string& target, const Location& where, std::vector<ParsedParam> params) {
-  if (target == "medium") return;  // media are not supported
   const auto found = std::find(kTargets.begin(), kTargets.end(), target);
   if (found == kTargets.end())
     fail(where, "unknown target \"{}\" of Attribute{}", target, suggestion(target, {kTargets.begin(), kTargets.end()}));
@@ -305,9 +331,43 @@ void DescriptionBuilder::make_named_material(const std::string& name, ParsedPlug
   const Location where = plugin.where;
   Name& entry = material_called(name, where);
   if (entry.is_defined) fail(where, "material \"{}\" is defined again", name);
-  plugin = with_name_of_interface(typed_by_parameter(name, std::move(plugin)));
+  plugin = with_name_of_interface(typed_by_parameter("MakeNamedMaterial", name, std::move(plugin)));
   entry.is_defined = true;
   scene_.materials[entry.index].plugin = with_defaults(std::move(plugin), Target::material);
+}
+
+/// Returns the index of a name, which may be used before its MakeNamedMedium; nullopt for the empty name.
+std::optional<size_t> DescriptionBuilder::medium_called(const Quoted& name) {
+  if (name.text.empty()) return {};
+  if (const auto found = media_.find(name.text); found != media_.end()) return found->second.index;
+  scene_.media.push_back({name.text, {}, {}});
+  return media_.emplace(name.text, Name{scene_.media.size() - 1, name.where}).first->second.index;
+}
+
+void DescriptionBuilder::medium_interface(const Quoted& inside, const Quoted& outside) {
+  const std::optional<size_t> in = medium_called(inside);
+  state_.media = {in, medium_called(outside)};
+}
+
+/// As in pbrt, a shape with the same medium on both sides leaves rays in the medium in which they are.
+uint32_t DescriptionBuilder::current_interface() {
+  if (state_.media.inside == state_.media.outside) return 0;
+  auto& pairs = scene_.medium_interfaces;
+  const auto known = std::find(pairs.begin(), pairs.end(), state_.media);
+  const auto index = size_t(known - pairs.begin());
+  if (known == pairs.end()) pairs.push_back(state_.media);
+  return uint32_t(index) + 1;
+}
+
+/// The medium's space is that of the current transformation.
+void DescriptionBuilder::make_named_medium(const std::string& name, ParsedPlugin plugin) {
+  const Location where = plugin.where;
+  const size_t index = *medium_called({name, where});
+  if (media_.at(name).is_defined) fail(where, "medium \"{}\" is defined again", name);
+  plugin = typed_by_parameter("MakeNamedMedium", name, std::move(plugin));
+  if (!state_.transform.is_valid()) fail(where, "the medium's transform cannot be inverted");
+  media_.at(name).is_defined = true;
+  scene_.media[index] = {name, with_defaults(std::move(plugin), Target::medium), state_.transform};
 }
 
 /// float and spectrum textures have separate names, as in pbrt.
@@ -347,7 +407,7 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
     area_light.reset();
   }
   shapes.push_back({with_defaults(std::move(plugin), Target::shape), state_.transform, state_.reverse_orientation,
-                    state_.material, area_light});
+                    state_.material, area_light, current_interface()});
 }
 
 /// Lights are never part of instances, as in pbrt.

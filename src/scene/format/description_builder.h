@@ -60,9 +60,12 @@ class DescriptionBuilder {
   void material(ParsedPlugin plugin);
   void named_material(const std::string& name, const Location& where);
   void area_light(ParsedPlugin plugin);
+  /// Names may be empty: vacuum.
+  void medium_interface(const Quoted& inside, const Quoted& outside);
 
   // Things of the scene
   void make_named_material(const std::string& name, ParsedPlugin plugin);
+  void make_named_medium(const std::string& name, ParsedPlugin plugin);
   void texture(const Quoted& name, const Quoted& value, ParsedPlugin plugin);
   void shape(ParsedPlugin plugin);
   void light(ParsedPlugin plugin);
@@ -74,8 +77,8 @@ class DescriptionBuilder {
 
  private:
   /// Kinds of plug-ins with defaults by `Attribute`, in the order of kTargets.
-  enum class Target : uint8_t { shape, light, material, texture };
-  static constexpr std::array<std::string_view, 4> kTargets{"shape", "light", "material", "texture"};
+  enum class Target : uint8_t { shape, light, material, texture, medium };
+  static constexpr std::array<std::string_view, 5> kTargets{"shape", "light", "material", "texture", "medium"};
 
   /// Parameters by Attribute, for each target.
   using Defaults = std::array<std::vector<ParsedParam>, kTargets.size()>;
@@ -86,6 +89,7 @@ class DescriptionBuilder {
     bool reverse_orientation = false;
     size_t material = 0;
     std::optional<size_t> area_light;
+    MediumPair media;
     std::optional<size_t> open_object;
     std::string color_space = "srgb";
     Location color_space_where;
@@ -113,6 +117,9 @@ class DescriptionBuilder {
   /// As in pbrt, AttributeEnd also closes TransformBegin, and TransformEnd AttributeBegin.
   void end(std::string_view directive, std::string_view beginner, const Location& where);
   void settle_unknown_materials(Problems& problems);
+  void settle_unknown_media(Problems& problems);
+  std::optional<size_t> medium_called(const Quoted& name);
+  uint32_t current_interface();
   ParsedPlugin with_defaults(ParsedPlugin plugin, Target target);
   /// Counts a copy of a parameter by Attribute. Beyond a limit of all copies it throws InputError once; no further ones
   /// are made.
@@ -133,7 +140,7 @@ class DescriptionBuilder {
   bool has_too_many_copies_ = false;
   bool in_world_ = false;
   bool has_warned_of_transform_begin_ = false;
-  Names materials_, objects_;
+  Names materials_, objects_, media_;
   std::map<std::pair<TextureDescription::Value, std::string>, Location> textures_;
 };
 

@@ -134,12 +134,21 @@ void accelerator(Directive d) {
     d.context.log.warn(plugin.where, fmt::format("unknown accelerator \"{}\": Embree brings its own", plugin.name));
 }
 
-/// Both names may be empty, which means vacuum. A medium is an unsupported feature.
+/// A single name is that of both sides.
 void medium_interface(Directive d) {
-  const bool is_empty = d.text(d.quoted()).empty();
-  const bool is_outside_empty = d.context.tokens.peek().kind != Kind::string || d.text(d.quoted()).empty();
-  if (is_empty && is_outside_empty) return;
-  d.context.unsupported.handle("media", d.where, d.name, "is left out", d.context.log);
+  const auto name = [&d] {
+    const Token token = d.quoted();
+    return Quoted{d.text(token), d.location(token)};
+  };
+  const Quoted inside = name();
+  d.scene().medium_interface(inside, d.context.tokens.peek().kind == Kind::string ? name() : inside);
+}
+
+void make_named_medium(Directive d) {
+  ParsedPlugin plugin = d.plugin();
+  const std::string name = plugin.name;
+  if (name.empty()) fail(plugin.where, "MakeNamedMedium needs a name that is not empty");
+  d.scene().make_named_medium(name, std::move(plugin));
 }
 
 /// Motion is not supported: only the transform at the start time is used.
@@ -202,8 +211,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"LightSource", Block::world, with_plugin<&Builder::light>},
     {"LookAt", Block::any, look_at},
     {"MakeNamedMaterial", Block::world, make_named_material},
-    {"MakeNamedMedium", Block::any,
-     [](Directive d) { (void)d.plugin(); }},  // MediumInterface reports the unsupported feature
+    {"MakeNamedMedium", Block::any, make_named_medium},
     {"Material", Block::world, with_plugin<&Builder::material>},
     {"MediumInterface", Block::any, medium_interface},
     {"NamedMaterial", Block::world, with_name<&Builder::named_material>},

@@ -316,6 +316,7 @@ void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& r
   set_frame(hit, ns, ray.d);
   if (detailed.contains(surface.material)) set_derivatives(surface, at, lane, level, hit);
   met.material = surface.material;
+  met.medium_interface = surface.medium_interface;
   met.surface = level == 0 ? std::optional(at.geomID) : std::nullopt;
   met.primitive = at.primID;
 }

@@ -35,6 +35,7 @@ struct Surface {
   uint32_t material = 0;                      ///< index in the scene's description
   std::optional<uint32_t> area_light = {};    ///< index in the scene's description
   std::shared_ptr<const FloatTexture> alpha;  ///< null: opaque
+  uint32_t medium_interface = 0;              ///< as in SurfacePoint
 };
 
 /// Instances of objects, one for each row of the table.
@@ -57,6 +58,7 @@ struct GeometryHit {
   uint32_t material = 0;            ///< as in Surface
   std::optional<uint32_t> surface;  ///< index in Geometry::surfaces; empty for instances
   uint32_t primitive = 0;           ///< index within the surface
+  uint32_t medium_interface = 0;    ///< as in SurfacePoint
   uint64_t instance = 0;            ///< number of the instance, from 1; 0: the surface is not part of an object
 };
 

@@ -1,0 +1,75 @@
+#include "integrators/shadow_ray.h"
+
+namespace frond {
+
+/// Only media and surfaces without a BSDF let light pass, as in pbrt-v4.
+bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uint64_t& rays) {
+  constexpr int kMostPassed = 1000;
+  constexpr float kBeforeLight = 1 - 0x1p-13f;  // the ray ends short of the light's own surface
+  const bool is_distant = std::isinf(sample.distance);
+  const Vec3 end = is_distant ? Vec3{} : origin_.p + sample.wi * sample.distance;
+  Vec3 from = origin_.p, o = origin_.p + origin_.offset;
+  RandomStream rng(hash_key(key, uint64_t{1}));
+  float travelled = 0;
+  SurfacePoint point;
+  for (int passed = 0; passed < kMostPassed; ++passed) {
+    Ray ray{o, sample.wi};
+    if (!is_distant) {
+      const float rest = length(end - o);
+      ray.d = (end - o) / rest;
+      ray.t_max = rest * kBeforeLight;
+    }
+    ++rays;
+    const bool is_hit = world_.intersect(ray, hash_key(key, uint64_t(passed)), point);
+    if (is_hit) {
+      arena.reset();
+      if (point.material->evaluate(point.hit, lambda_, arena)) return false;
+    }
+    // An unbounded medium attenuates distant lights over the diameter of the scene, as in pbrt-v4.
+    const float way = is_hit       ? length(point.hit.p - from)
+                      : is_distant ? std::max(0.f, 2 * world_.radius() - travelled)
+                                   : length(end - from);
+    if (medium_ && !pass_medium({from, ray.d, way}, rng)) return false;
+    if (!is_hit) return true;
+    travelled += way;
+    medium_ = medium_beyond(world_, point, ray.d, medium_);
+    from = point.hit.p;
+    o = offset_origin(point.hit, ray.d);
+  }
+  return false;
+}
+
+/// Ratio tracking (Novak et al. 2014); in a homogeneous medium the transmittance itself, with probability 1.
+bool ShadowRay::pass_medium(const Ray& ray, RandomStream& rng) {
+  if (medium_->is_homogeneous()) {
+    MajorantSteps steps = medium_->along(ray, lambda_);
+    MajorantSteps::Step step;
+    while (steps.next(step)) {
+      const SampledSpectrum t = attenuated(step.sigma, step.end - step.begin);
+      path_.multiply(t, t, SampledSpectrum(1));
+    }
+    return !path_.beta.is_black();
+  }
+  const int h = path_.hero;
+  SampledSpectrum t;
+  const auto collide = [&](const Vec3& p, const SampledSpectrum& majorant, const SampledSpectrum& t_maj) {
+    const SampledSpectrum null = null_coefficient(majorant, medium_->at(p, lambda_));
+    const SampledSpectrum scaled = t_maj * (1 / (t_maj[h] * majorant[h]));
+    path_.multiply(scaled * null, scaled * null, scaled * majorant);
+    constexpr float kLow = 0.05f, kEnd = 0.75f;  // Russian roulette, as in pbrt-v4
+    const float sum = mean(path_.r_l + path_.r_u, lambda_);
+    if (!(path_.beta.max() > 0) || !(sum > 0)) return false;
+    if (path_.beta.max() < kLow * sum) {
+      if (rng.uniform() < kEnd) return false;
+      path_.beta *= 1 / (1 - kEnd);
+    }
+    return true;
+  };
+  const float u = rng.uniform();
+  if (!track(*medium_, ray, lambda_, h, u, rng, t, collide)) return false;
+  if (!(t[h] > 0)) return false;
+  path_.multiply(t * (1 / t[h]), t * (1 / t[h]), t * (1 / t[h]));
+  return true;
+}
+
+}  // namespace frond

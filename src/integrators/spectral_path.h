@@ -1,0 +1,69 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/random.h"
+#include "core/spectrum.h"
+#include "scene/media/medium.h"
+
+namespace frond {
+
+/// A path with the densities of its vertices, for single-sample multiple importance sampling over wavelengths (Miller
+/// et al. 2019, "A null-scattering path integral formulation of light transport"; pbrt 4th ed., 14.2.2). Distances in
+/// media are sampled for one lane, the hero, which is drawn uniformly for each path, so that the density of the whole
+/// is the mean over lanes. All members are relative to the density of the hero's sampling.
+struct SpectralPath {
+  SampledSpectrum beta;  ///< throughput
+  SampledSpectrum r_u;   ///< density of the same path if lane i were the hero
+  SampledSpectrum r_l;   ///< the same, without the density of the last direction: that of a light sample is a factor
+  int hero = 0;
+
+  void multiply(const SampledSpectrum& b, const SampledSpectrum& u, const SampledSpectrum& l) {
+    beta *= b, r_u *= u, r_l *= l;
+  }
+};
+
+/// exp(-sigma d) in each lane; 1 where sigma is 0, also over an infinite distance.
+inline SampledSpectrum attenuated(const SampledSpectrum& sigma, float d) {
+  d = std::min(d, std::numeric_limits<float>::max());
+  SampledSpectrum t;
+  for (int i = 0; i < kLanes; ++i) t[i] = std::exp(-sigma[i] * d);
+  return t;
+}
+
+inline SampledSpectrum null_coefficient(const SampledSpectrum& majorant, const MediumPoint& at) {
+  return SampledSpectrum(larger(majorant.v - at.sigma_a.v - at.sigma_s.v, Float4{}));
+}
+
+/// Delta tracking along a ray in a medium (Woodcock et al. 1965): at each tentative collision calls
+/// `collide(point, majorant, transmittance)`, where the transmittance is that of the majorants since the last call, and
+/// ends if it returns false. Returns true at the end of the ray; then `transmittance` is that since the last collision.
+/// `u` samples the first distance.
+template <class Collide>
+bool track(const Medium& medium, const Ray& ray, const SampledWavelengths& lambda, int hero, float u, RandomStream& rng,
+           SampledSpectrum& transmittance, const Collide& collide) {
+  MajorantSteps steps = medium.along(ray, lambda);
+  transmittance = SampledSpectrum(1);
+  MajorantSteps::Step step;
+  float depth = -std::log(1 - u);  // optical depth of the majorant to the next collision
+  while (steps.next(step)) {
+    const float sigma = step.sigma[hero];
+    float at = step.begin;
+    for (;;) {
+      const float t = sigma > 0 ? at + depth / sigma : INFINITY;
+      if (!(t < step.end)) break;
+      transmittance *= attenuated(step.sigma, t - at);
+      if (!collide(ray.o + ray.d * t, step.sigma, transmittance)) return false;
+      transmittance = SampledSpectrum(1);
+      depth = -std::log(1 - rng.uniform());
+      at = t;
+    }
+    if (sigma > 0) depth = std::max(0.f, depth - sigma * (step.end - at));
+    transmittance *= attenuated(step.sigma, step.end - at);
+  }
+  return true;
+}
+
+}  // namespace frond

@@ -1,0 +1,401 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/integrator.h"
+#include "core/sampling.h"
+#include "integrators/light_selector.h"
+#include "integrators/local_bsdf.h"
+#include "integrators/shadow_ray.h"
+#include "integrators/spectral_path.h"
+
+namespace frond {
+namespace {
+
+/// Uses of random streams at one path vertex.
+enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette, albedo, medium };
+
+/// Sampler dimensions of one vertex.
+enum class Number : uint32_t { distance, light, on_light, lobe, direction, count };
+
+constexpr std::string_view kLightSamplers[] = {"uniform", "power", "bvh"};
+constexpr Param kVolPath[] = {
+    {.name = "maxdepth",
+     .kind = ParamKind::integer,
+     .default_value = 5,
+     .range = {0, 1 << 20},
+     .doc = "Longest path, in scattering events at surfaces and in media."},
+    {.name = "sampledirect",
+     .kind = ParamKind::boolean,
+     .default_value = true,
+     .doc = "Sample lights at every scattering; false: only scattered rays find lights."},
+    {.name = "lightsampler",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("bvh"),
+     .doc = "Selection of a light. bvh: by a light tree's estimate of its contribution.",
+     .choices = kLightSamplers},
+};
+
+/// Values of the parameters.
+struct VolPathSettings {
+  int max_depth;
+  bool sample_lights;
+};
+
+/// Traces one path after the other. A loop iteration is one ray: its medium, then the surface that it meets.
+class VolPathTracer final : public Tracer {
+ public:
+  VolPathTracer(const World& world, const LightSelector& selector, const VolPathSettings& settings)
+      : world_(world), selector_(selector), settings_(settings) {}
+
+  void trace(PathBundle& bundle) override {
+    bundle_ = &bundle;
+    for (lane_ = 0; lane_ < PathBundle::kMost; ++lane_) {
+      if (!(bundle.wanted >> lane_ & 1)) continue;
+      try {
+        trace_path();
+      } catch (const InputError&) {
+        throw;
+      } catch (const Stopped&) {
+        throw;
+      } catch (const std::bad_alloc&) {
+        throw;
+      } catch (const std::exception& error) {
+        if (!at_) throw;
+        throw SurfaceError(at_->material_id, error.what());
+      } catch (...) {
+        if (!at_) throw;
+        throw SurfaceError(at_->material_id, "it threw an object that is no std::exception");
+      }
+    }
+  }
+
+ private:
+  void trace_path() {
+    begin();
+    SurfacePoint point;
+    for (vertex_ = 0; vertex_ - depth_ < kMostPassed; ++vertex_) {
+      key_ = hash_key(bundle_->keys[lane_], uint64_t(vertex_));
+      arena_.reset();
+      at_ = nullptr;
+      ++bundle_->traced;
+      const bool is_hit = world_.intersect(ray_, of(Use::ray), point);
+      if (medium_) {
+        const Ray in_medium{from_, ray_.d, is_hit ? length(point.hit.p - from_) : INFINITY};
+        const Passage passage = pass_medium(in_medium);
+        if (passage == Passage::ended) return;
+        if (passage == Passage::scattered) continue;
+      }
+      if (!is_hit) {
+        result().escaped = true;
+        return add_environment();
+      }
+      if (!meet(point)) return;
+    }
+  }
+
+  void begin() {
+    PathResult& r = result();
+    r.radiance = {};
+    r.first.is_hit = r.first.is_leaf = false;
+    r.scatterings = 0;
+    r.escaped = false;
+    r.fault = {};
+    ray_ = bundle_->rays[lane_];
+    ray_.d = normalize(ray_.d);
+    from_ = ray_.o;
+    lambda_ = bundle_->lambda[lane_];
+    SampledSpectrum in_use;
+    for (int i = 0; i < lambda_.count; ++i) in_use[i] = 1;
+    RandomStream rng(hash_key(bundle_->keys[lane_], ~uint64_t{0}));
+    path_ = {in_use, in_use, in_use, std::min(int(rng.uniform() * float(lambda_.count)), lambda_.count - 1)};
+    medium_ = world_.camera_medium();
+    is_specular_ = true;
+    power_factor_ = 1;
+    depth_ = 0;
+    previous_ = {ray_.o, {}};
+  }
+
+  enum class Passage : uint8_t { passed, scattered, ended };
+
+  /// Delta tracking through the medium of the ray. After a scattering, the next ray is set.
+  Passage pass_medium(const Ray& ray) {
+    RandomStream rng = stream(Use::medium);
+    Passage passage = Passage::passed;
+    SampledSpectrum t;
+    const bool emits = medium_->is_emissive();
+    const auto collide = [&](const Vec3& p, const SampledSpectrum& majorant, const SampledSpectrum& t_maj) {
+      const MediumPoint at = medium_->at(p, lambda_);
+      const int h = path_.hero;
+      if (emits && depth_ < settings_.max_depth) add_medium_emission(at, majorant, t_maj);
+      const float absorbed = at.sigma_a[h] / majorant[h], scattered = at.sigma_s[h] / majorant[h];
+      const float event = rng.uniform();
+      if (event < absorbed) {
+        passage = Passage::ended;
+        return false;
+      }
+      if (event < absorbed + scattered) {
+        if (depth_ >= settings_.max_depth) {
+          passage = Passage::ended;
+          return false;
+        }
+        const SampledSpectrum by = t_maj * at.sigma_s * (1 / (t_maj[h] * at.sigma_s[h]));
+        path_.multiply(by, by, by);
+        passage = scatter_in_medium(p, at, rng) ? Passage::scattered : Passage::ended;
+        return false;
+      }
+      const SampledSpectrum null = null_coefficient(majorant, at);
+      const float density = t_maj[h] * null[h];
+      if (density > 0)
+        path_.multiply(t_maj * null * (1 / density), t_maj * null * (1 / density), t_maj * majorant * (1 / density));
+      else
+        path_.beta = {};
+      if (!path_.beta.is_black()) return true;
+      passage = Passage::ended;
+      return false;
+    };
+    if (!track(*medium_, ray, lambda_, path_.hero, number(Number::distance), rng, t, collide)) return passage;
+    const float density = t[path_.hero];
+    if (!(density > 0)) return Passage::ended;
+    // Shadow rays pass a homogeneous medium with probability 1, others without a collision (ShadowRay).
+    const SampledSpectrum of_light = medium_->is_homogeneous() ? SampledSpectrum(1) : t;
+    path_.multiply(t * (1 / density), t * (1 / density), of_light * (1 / density));
+    return path_.beta.is_black() ? Passage::ended : Passage::passed;
+  }
+
+  void add_medium_emission(const MediumPoint& at, const SampledSpectrum& majorant, const SampledSpectrum& t_maj) {
+    const float density = t_maj[path_.hero] * majorant[path_.hero];
+    const float sum = mean(path_.r_u * majorant * t_maj, lambda_);
+    if (density > 0 && sum > 0) result().radiance += path_.beta * t_maj * at.emission * (1 / sum);
+  }
+
+  bool scatter_in_medium(const Vec3& p, const MediumPoint& at, RandomStream& rng) {
+    const Vec3 w = ray_.d;
+    const LightSelector::LitPoint place{p, {}};
+    if (settings_.sample_lights && !selector_.empty())
+      add_sampled_light(place, [&](const LightSample& sample, ShadowRay& shadow) {
+        shadow.begin({p, {}}, medium_);
+        const SampledSpectrum value = at.phase.value(dot(w, sample.wi));
+        return Scattered{value, value};
+      });
+    const Vec3 wi = at.phase.sample(w, path_.hero, pair(Number::direction), rng);
+    const SampledSpectrum value = at.phase.value(dot(w, wi));
+    const float density = value[path_.hero];
+    if (!(density > 0)) return false;
+    const SampledSpectrum before = path_.r_u;
+    path_.beta *= value * (1 / density);
+    path_.r_u *= value * (1 / density);
+    path_.r_l = before * (1 / density);
+    is_specular_ = !settings_.sample_lights;
+    previous_ = place;
+    ray_ = {p, wi};
+    from_ = p;
+    return survives();
+  }
+
+  /// Emission, light sample and scattering at a surface. Returns false if the path ends.
+  bool meet(const SurfacePoint& point) {
+    at_ = &point;
+    if (point.light) add_emission(point);
+    const Bsdf* bsdf = point.material->evaluate(point.hit, lambda_, arena_);
+    if (!bsdf) {
+      leave(point, ray_.d);
+      return true;
+    }
+    if (depth_ == 0) set_first_hit(point, *bsdf);
+    if (depth_ >= settings_.max_depth) return false;
+    LocalBsdf local;
+    local.set(*bsdf, point.hit, -ray_.d);
+    const LightSelector::LitPoint place{point.hit.p, point.hit.ng};
+    if (settings_.sample_lights && !selector_.empty())
+      add_sampled_light(place, [&](const LightSample& sample, ShadowRay& shadow) {
+        shadow.begin({point.hit.p, offset_origin(point.hit, sample.wi) - point.hit.p}, medium_beyond(point, sample.wi));
+        float pdf = 0;
+        const SampledSpectrum f = local.f_cos(sample.wi, stream(Use::light_bsdf), pdf);
+        if (!f.is_physical() || !(pdf >= 0 && pdf < INFINITY)) {
+          blame({PlugInFault::Kind::material, point.material_id});
+          return Scattered{};
+        }
+        return Scattered{f, SampledSpectrum(pdf)};
+      });
+    LocalBsdf::Sample sample;
+    if (!local.sample(number(Number::lobe), pair(Number::direction), stream(Use::bsdf), sample)) return false;
+    constexpr float kRounding = 1e-2f;
+    if (!sample.weight.is_physical() || !(sample.pdf > 0) || !(std::abs(dot(sample.wi, sample.wi) - 1) < kRounding)) {
+      blame({PlugInFault::Kind::material, point.material_id});
+      return false;
+    }
+    path_.beta *= sample.weight;
+    path_.r_l = path_.r_u * (1 / sample.pdf);
+    power_factor_ *= sample.power_factor;
+    lambda_.retire_black_lanes(path_.beta);
+    is_specular_ = !settings_.sample_lights || sample.is_specular;
+    previous_ = place;
+    leave(point, sample.wi);
+    at_ = nullptr;
+    return survives();
+  }
+
+  const Medium* medium_beyond(const SurfacePoint& point, const Vec3& w) const {
+    return frond::medium_beyond(world_, point, w, medium_);
+  }
+  /// Continues in the direction `w`.
+  void leave(const SurfacePoint& point, const Vec3& w) {
+    medium_ = medium_beyond(point, w);
+    from_ = point.hit.p;
+    ray_ = {offset_origin(point.hit, w), w};
+  }
+
+  void set_first_hit(const SurfacePoint& point, const Bsdf& bsdf) {
+    FirstHit& first = result().first;
+    first = {.is_hit = true,
+             .is_leaf = point.material->is_leaf(),
+             .material = point.material_id,
+             .instance = point.instance_id,
+             .p = point.hit.p,
+             .n = point.hit.shading.z,
+             .albedo = {}};
+    if (bundle_->albedo_samples == 0) return;
+    LocalBsdf local;
+    local.set(bsdf, point.hit, -ray_.d);
+    first.albedo = local.albedo(bundle_->albedo_samples, of(Use::albedo));
+  }
+
+  /// Value of the scattering toward a light sample, with the cosine at surfaces, and its density by wavelength.
+  struct Scattered {
+    SampledSpectrum value, density;
+  };
+
+  /// `scatter(sample, shadow)` begins the shadow ray and returns the scattering.
+  template <class Scatter>
+  void add_sampled_light(const LightSelector::LitPoint& place, const Scatter& scatter) {
+    const auto chosen = selector_.choose(place, selector_.has_choice() ? number(Number::light) : 0.f);
+    if (!chosen) return;
+    const auto [light, probability] = *chosen;
+    const auto sample =
+        light->sample_competing(place.p, selector_.has_extent() ? pair(Number::on_light) : Vec2{}, lambda_);
+    if (!sample || sample->radiance.is_black()) return;
+    ShadowRay shadow(world_, lambda_, path_.hero);
+    const Scattered scattered = scatter(*sample, shadow);
+    if (scattered.value.is_black()) return;
+    if (!sample->radiance.is_physical()) return blame({PlugInFault::Kind::light, uint32_t(light->index())});
+    if (!shadow.trace(*sample, of(Use::shadow_ray), shadow_arena_, bundle_->traced)) return;
+    const SampledSpectrum of_light = path_.r_u * shadow.path().r_l * (sample->pdf * probability);
+    const SampledSpectrum of_scattering =
+        light->is_delta() ? SampledSpectrum() : path_.r_u * shadow.path().r_u * scattered.density;
+    const float sum = mean(of_light + of_scattering, lambda_);
+    if (sum > 0) result().radiance += path_.beta * scattered.value * shadow.path().beta * sample->radiance * (1 / sum);
+  }
+
+  /// Radiance that the path meets, weighted by the balance heuristic over wavelengths and light samples.
+  template <class Pdf>
+  void add(const Light& light, const SampledSpectrum& radiance, const Pdf& light_pdf) {
+    if (!radiance.is_physical()) return blame({PlugInFault::Kind::light, uint32_t(light.index())});
+    SampledSpectrum density = path_.r_u;
+    if (!is_specular_) density += path_.r_l * (light_pdf() * selector_.probability(light, previous_));
+    const float sum = mean(density, lambda_);
+    if (sum > 0) result().radiance += path_.beta * radiance * (1 / sum);
+  }
+  void add_environment() {
+    for (const EnvironmentLight* light : world_.environment())
+      add(*light, light->radiance(previous_.p, ray_.d, lambda_),
+          [&] { return light->competing_pdf(previous_.p, ray_.d); });
+  }
+  void add_emission(const SurfacePoint& point) {
+    const EmittingPoint at{point.hit.p, point.hit.ng, point.hit.at.uv};
+    add(*point.light, point.light->radiance(at, -ray_.d, lambda_), [&] { return point.light->pdf(previous_.p, at); });
+  }
+
+  /// The film counts a sample that is not a number, and takes it as black.
+  void blame(PlugInFault fault) {
+    result().fault = fault;
+    result().radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());
+  }
+
+  /// Counts a scattering. Russian roulette as in the integrator path, on the throughput relative to its density.
+  bool survives() {
+    result().scatterings = ++depth_;
+    const float density = mean(path_.r_u, lambda_);
+    if (path_.beta.is_black() || !(density > 0)) return false;
+    const float survival = path_.beta.max() * power_factor_ / density;
+    if (depth_ < kSafeScatterings || survival >= 1) return true;
+    if (stream(Use::roulette).uniform() >= survival) return false;
+    path_.beta *= 1 / survival;
+    return true;
+  }
+
+  PathResult& result() { return bundle_->results[lane_]; }
+  /// The step differs from that of a stream's counter, so that streams do not overlap.
+  uint64_t of(Use use) const { return key_ + uint64_t(use) * 0xd1342543de82ef95ull; }
+  RandomStream stream(Use use) const { return RandomStream(of(use)); }
+  uint32_t dimension(Number n) const {
+    return bundle_->dimension + uint32_t(vertex_) * uint32_t(Number::count) + uint32_t(n);
+  }
+  PixelSamples sample() const {
+    const PixelSamples& s = bundle_->samples;
+    return {s.x, s.y, s.first + lane_, 1};
+  }
+  float number(Number n) const {
+    float u;
+    bundle_->sampler.get1d(sample(), dimension(n), &u);
+    return u;
+  }
+  Vec2 pair(Number n) const {
+    Vec2 u;
+    bundle_->sampler.get2d(sample(), dimension(n), &u);
+    return u;
+  }
+
+  static constexpr int kSafeScatterings = 5;  ///< Russian roulette starts after these
+  static constexpr int kMostPassed = 1000;    ///< invisible surfaces along one path
+
+  const World& world_;
+  const LightSelector& selector_;
+  const VolPathSettings& settings_;
+  PathBundle* bundle_ = nullptr;
+  size_t lane_ = 0;                   ///< of the bundle
+  const SurfacePoint* at_ = nullptr;  ///< surface whose plug-ins are called
+  Arena arena_, shadow_arena_;
+  // State of the path.
+  int vertex_ = 0, depth_ = 0;
+  uint64_t key_ = 0;
+  Ray ray_;
+  Vec3 from_;  ///< where the ray begins; its origin is offset from there, which is not to shorten its way in a medium
+  SampledWavelengths lambda_;
+  SpectralPath path_;
+  const Medium* medium_ = nullptr;
+  bool is_specular_ = true;  ///< no light sample competes with the next emission
+  float power_factor_ = 1;   ///< factor by which refraction alone has divided the throughput
+  LightSelector::LitPoint previous_;
+};
+
+/// Path tracing in participating media.
+class VolPathIntegrator final : public Integrator {
+ public:
+  explicit VolPathIntegrator(const Params& p)
+      : settings_{p.integer("maxdepth"), p.boolean("sampledirect")},
+        strategy_(
+            LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers)) {}
+
+  void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
+  std::unique_ptr<Tracer> tracer(const World& world) const override {
+    return std::make_unique<VolPathTracer>(world, selector_, settings_);
+  }
+
+ private:
+  VolPathSettings settings_;
+  LightSelector::Strategy strategy_;
+  LightSelector selector_;
+};
+
+std::unique_ptr<Integrator> make_volpath(const Params& p) { return std::make_unique<VolPathIntegrator>(p); }
+
+}  // namespace
+
+extern const IntegratorInfo volpath_integrator{
+    {"integrator", "volpath", "Path tracing in participating media, by delta and ratio tracking.",
+     "Miller et al. 2019; pbrt-v4", kVolPath},
+    make_volpath};
+
+}  // namespace frond
