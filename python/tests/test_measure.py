@@ -184,7 +184,7 @@ def test_a_turbid_medium_has_the_brf_of_the_transfer_equation(tmp_path):
         _, _, true = turbid_layer(3, 0.4957, 0.4409, 0.159, 30, views)
         z = (numpy.array(found["brf"]) - true) / numpy.array(found["brf_se"])
         assert abs(z).max() < 5, z
-    with pytest.raises(frond.InputError, match="turbid.pbrt:5:17: flux does not trace participating media"):
+    with pytest.raises(frond.InputError, match="turbid.pbrt:5:40: flux does not trace participating media"):
         frond.flux(tmp_path / "turbid.pbrt", [800], paths=64)
 
 

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "spectra/analytic.h"
+#include "spectra/cie.h"
 #include "tests/support/render_text.h"
 
 namespace frond {
@@ -97,6 +99,57 @@ TEST(VolPath, AnAbsorbingLayerEmits) {
   expect_radiance(looking_down(layer(R"("string type" "homogeneous" "spectrum sigma_a" [400 .3 700 2.4]
                                         "float sigma_s" 0 "spectrum Le" [300 1 900 1] "float Lescale" 3)")),
                   4096, [](double nm) { return 3 * (1 - std::exp(-ramp(nm, 0.3, 2.4))); });
+}
+
+/// Radiance of a layer of thickness 1 whose density is a grid of one cell, 1 - |u - 1/2|, by quadrature.
+/// `emitted(share)` is the emission over that of the sky, where the grid's share of its value is `share`.
+template <class Emitted>
+double emitting_layer(double sigma_a, const Emitted& emitted) {
+  constexpr int kSteps = 20000;
+  double radiance = 0, depth = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double share = 1 - std::abs((i + 0.5) / kSteps - 0.5), step = sigma_a * share / kSteps;
+    radiance += emitted(share) * std::exp(-depth - step / 2) * step;
+    depth += step;
+  }
+  return radiance;
+}
+const std::string kCell = R"( "float sigma_s" 0 "point3 p0" [-100 -100 -1] "point3 p1" [100 100 0])";
+
+// Le is scaled by a grid of one cell if nothing else is given, as in pbrt-v4.
+TEST(VolPath, AUniformGridEmits) {
+  expect_radiance(looking_down(layer(R"("string type" "uniformgrid" "float density" 1 "spectrum Le" [300 1 900 1]
+                            "spectrum sigma_a" [400 .3 700 2.4])" +
+                                     kCell)),
+                  4096,
+                  [](double nm) { return emitting_layer(ramp(nm, 0.3, 2.4), [](double share) { return share; }); });
+}
+
+// A blackbody of largest value 1; the sky has luminance 1 and the same value at each wavelength.
+TEST(VolPath, AUniformGridGlowsByItsTemperature) {
+  const double sky = 1 / photometric(ConstantSpectrum(1, {360, 830}));
+  expect_radiance(looking_down(layer(R"("string type" "uniformgrid" "float density" 1 "float temperature" 7000
+                            "float temperatureoffset" 1000 "float temperaturescale" .9
+                            "spectrum sigma_a" [400 .3 700 2.4])" +
+                                     kCell)),
+                  4096, [sky](double nm) {
+                    return emitting_layer(ramp(nm, 0.3, 2.4), [&](double share) {
+                      const double kelvin = (7000 * share - 1000) * 0.9;
+                      return double(BlackbodySpectrum(kelvin).at(float(nm))) * share / sky;
+                    });
+                  });
+}
+
+// Le of an rgb grid is not normalized: that of white is D65 whose integral is that of ybar.
+TEST(VolPath, AnRgbGridEmits) {
+  const double integral = photometric(ConstantSpectrum(1, {360, 830}));
+  expect_radiance(
+      looking_down(layer(R"("string type" "rgbgrid" "rgb Le" [1 1 1] "float Lescale" 2 "rgb sigma_a" [1.5 1.5 1.5]
+                            "rgb sigma_s" [0 0 0] "point3 p0" [-100 -100 -1] "point3 p1" [100 100 0])")),
+      4096, [integral](double nm) {
+        const double white = double(unit_d65()->at(float(nm))) * integral * integral;
+        return emitting_layer(1.5, [&](double share) { return 2 * share * white; });
+      });
 }
 
 // Nothing is lost or made by the phase function, by the choice of the hero wavelength or by roulette.
