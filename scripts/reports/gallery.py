@@ -127,6 +127,24 @@ LIGHTS = {
     "goniometric": 'AttributeBegin\n  Translate -1.2 -1.4 2.4\n'
                    '  LightSource "goniometric" "string filename" "letter.ppm" "float scale" 14\nAttributeEnd',
 }
+MEDIA = {
+    "homogeneous": 'MakeNamedMedium "medium" "string type" "homogeneous" "rgb sigma_a" [ 0.1 0.3 0.8 ] "rgb sigma_s" [ 3 4 5 ] "float g" 0.5',
+    "uniformgrid": 'MakeNamedMedium "medium" "string type" "uniformgrid" "integer nx" 3 "integer ny" 3 "integer nz" 3\n'
+                   '  "point3 p0" [ -0.7 -0.7 -0.7 ] "point3 p1" [ 0.7 0.7 0.7 ] "rgb sigma_s" [ 9 8 6 ] "rgb sigma_a" [ 0.5 1 2 ]\n'
+                   '  "float density" [ 2 0 2 0 0 0 2 0 2   0 0 0 0 2 0 0 0 0   2 0 2 0 0 0 2 0 2 ]',
+    "rgbgrid": 'MakeNamedMedium "medium" "string type" "rgbgrid" "integer nx" 2 "integer ny" 2 "integer nz" 2 "float scale" 2\n'
+               '  "point3 p0" [ -0.7 -0.7 -0.7 ] "point3 p1" [ 0.7 0.7 0.7 ]\n'
+               '  "rgb sigma_s" [ 5 1 1  1 5 1  1 1 5  5 5 1   1 5 5  5 1 5  5 3 1  3 3 3 ]\n'
+               '  "rgb sigma_a" [ 0 3 3  3 0 3  3 3 0  0 0 3   3 0 0  0 3 0  0 2 3  0 0 0 ]',
+    "cloud": 'MakeNamedMedium "medium" "string type" "cloud" "point3 p0" [ -1 0 -1 ] "point3 p1" [ 1 1 1 ] "float density" 1.4\n'
+             '  "float frequency" 2.5 "float sigma_a" 0 "float sigma_s" 25 "float g" 0.6',
+    "nanovdb": f'MakeNamedMedium "medium" "string type" "nanovdb" "string filename" "{ROOT}/tests/pbrt_reference/torus.nvdb"\n'
+               '  "rgb sigma_s" [ 10 9 7 ] "rgb sigma_a" [ 1 2 4 ]',
+    "turbid": 'MakeNamedMedium "medium" "string type" "turbid" "float density" 9 "rgb reflectance" [ 0.06 0.13 0.04 ]\n'
+              '  "rgb transmittance" [ 0.04 0.13 0.03 ]',
+}
+#: Where each stands: the transformation at MakeNamedMedium.
+MEDIA_PLACES = {"cloud": "Translate 0 0 0.25\nRotate 90 1 0 0", "nanovdb": "Translate 0 0 0.9\nRotate 60 1 0 0\nScale 0.75 0.75 0.75"}
 CAMERAS = {
     "perspective": 'Camera "perspective" "float fov" 27 "float lensradius" 0.12 "float focaldistance" 4.6',
     "orthographic": 'Camera "orthographic" "float screenwindow" [ -1.3 1.3 -1.3 1.3 ]',
@@ -140,7 +158,7 @@ KINDS = {
     "material": (MATERIALS, 'Material "{}"'), "integrator": ({}, 'Integrator "{}"'), "camera": (CAMERAS, None),
     "sampler": ({}, 'Sampler "{}" "integer pixelsamples" 4'), "pixel filter": ({}, 'PixelFilter "{}"'), "shape": (SHAPES, None),
     "light": (LIGHTS, None), "float texture": (FLOAT_TEXTURES, 'Texture "heights" "float" "{}"'),
-    "spectrum texture": (SPECTRUM_TEXTURES, 'Texture "pattern" "spectrum" "{}"'),
+    "spectrum texture": (SPECTRUM_TEXTURES, 'Texture "pattern" "spectrum" "{}"'), "medium": (MEDIA, None),
 }
 
 
@@ -157,6 +175,12 @@ def scene_of(kind, name, lines):
         things += RED + "AttributeBegin\nTranslate 0 0 0.82\n" + lines + "\nAttributeEnd\n"
     elif kind == "light":
         world, things = "", lines + "\n" + FLOOR + RED + BALL
+    elif kind == "medium":
+        radius = 0.8 if name in ("homogeneous", "turbid") else 1.5
+        things += (f"AttributeBegin\n{MEDIA_PLACES.get(name, 'Translate 0 0 0.8')}\n{lines}\nAttributeEnd\n"
+                   f'AttributeBegin\nTranslate 0 0 0.8\nMaterial "interface"\nMediumInterface "medium" ""\n'
+                   f'Shape "sphere" "float radius" {radius}\nAttributeEnd\n')
+        front += 'Integrator "volpath" "integer maxdepth" 50\n'
     elif kind == "camera":
         front = "\n".join(VIEW.splitlines()[:2]) + "\n" + lines + "\n" + FILM
         things += RED + BALL

@@ -28,5 +28,7 @@ Theme tails();
 Theme scenes();
 /// The light "sky": positions of the sun, ends of the ranges of its atmosphere.
 Theme skies();
+/// Participating media: no absorption, no scattering, ends of ranges.
+Theme media();
 
 }  // namespace frond::stability

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kHowToRead = R"(# Limits of the methods
 
-For readers who need to know what frond's leaf methods and its sky do at the ends of their parameter ranges, at grazing
+For readers who need to know what frond's leaf methods, its sky and its media do at the ends of their parameter ranges, at grazing
 angles and with wrong input.
 
 ```sh
@@ -65,6 +65,11 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"path, lambert", "the same with `leaf_lambert`, whose R and T are those of 8 degrees"},
     {"sky", "light `sky`: radiance and densities over all directions, and 20,000 samples"},
     {"path, sky", "the path integrator, rendering a white plane that faces up, under the light `sky`"},
+    {"homogeneous", "the volpath integrator, rendering a ball of the medium `homogeneous`"},
+    {"uniformgrid", "the same with `uniformgrid`"},
+    {"rgbgrid", "the same with `rgbgrid`"},
+    {"cloud", "the same with `cloud`"},
+    {"nanovdb", "the same with `nanovdb`, of a fog volume of a torus"},
 }};
 
 /// Escapes the characters that Markdown interprets.

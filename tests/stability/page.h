@@ -9,7 +9,7 @@
 
 namespace frond::stability {
 
-/// Methods that compute a leaf's optics, and the sky light: the columns of the page.
+/// Methods that compute a leaf's optics, the sky light, and media: the columns of the page.
 enum class Method : uint8_t {
   walk_analog,
   walk_weighted,
@@ -33,12 +33,17 @@ enum class Method : uint8_t {
   path_lambert,
   sky_light,
   path_sky,
+  homogeneous,
+  uniform_grid,
+  rgb_grid,
+  cloud,
+  nanovdb,
 };
 struct MethodName {
   std::string_view name, doc;
 };
 const MethodName& describe(Method method);
-inline constexpr size_t kMethods = 22;
+inline constexpr size_t kMethods = 27;
 
 /// Result of one method in one case.
 struct Cell {
