@@ -16,7 +16,7 @@ class Interface final : public Material {
 extern const MaterialInfo interface_material{
     {"material",
      "interface",
-     "Invisible surface: rays of a path pass straight through, shadow rays are blocked.",
+     "Invisible surface, such as the boundary of a medium. It blocks shadow rays of path, not those of volpath.",
      "pbrt-v4",
      {}},
     make_material<Interface>};

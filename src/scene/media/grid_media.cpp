@@ -2,6 +2,7 @@
 
 #include "scene/media/medium_params.h"
 #include "scene/media/sampled_grid.h"
+#include "spectra/analytic.h"
 #include "spectra/cie.h"
 #include "spectra/color/reflectance_table.h"
 
@@ -144,8 +145,8 @@ class ColorGrid {
       return s;
     });
   }
-  void bound(MajorantGrid& majorants, float other) const {
-    grid_.bound(majorants, [other](const GridColor& c) { return c.max_value() + other; });
+  void bound(MajorantGrid& majorants) const {
+    grid_.bound(majorants, [](const GridColor& c) { return c.max_value(); });
   }
 
  private:
@@ -190,15 +191,16 @@ class RgbGrid final : public Medium {
       : box_(medium_box(p, world_from_medium)),
         phase_(Phase::henyey_greenstein(float(p.real("g")))),
         scale_(float(p.real("scale"))),
-        emission_scale_(float(p.real("Lescale") * photometric_of_one())),
+        // pbrt-v4 does not divide this emission by the integral of ybar.
+        emission_scale_(float(p.real("Lescale") * photometric(ConstantSpectrum(1, kCieRange_nm)))),
         sigma_a_(given_colors(p, "sigma_a")),
         sigma_s_(given_colors(p, "sigma_s")),
         emission_(given_colors(p, "Le")),
         white_(unit_d65()) {
     if (!sigma_a_ && !sigma_s_) fail(p.where(), "medium \"rgbgrid\" needs \"rgb sigma_a\" or \"rgb sigma_s\"");
     if (emission_ && !sigma_a_) fail(p.where("Le"), "\"Le\" needs \"rgb sigma_a\": the medium emits sigma_a Le");
-    if (sigma_a_) sigma_a_->bound(of_absorption_, 0);
-    if (sigma_s_) sigma_s_->bound(of_scattering_, 0);
+    if (sigma_a_) sigma_a_->bound(of_absorption_);
+    if (sigma_s_) sigma_s_->bound(of_scattering_);
     std::array<int, 3> c;
     constexpr float kCell = 1 / float(kMajorantCells);
     for (c[2] = 0; c[2] < kMajorantCells; ++c[2])
@@ -236,13 +238,6 @@ class RgbGrid final : public Medium {
   bool is_emissive() const override { return emission_ && emission_scale_ > 0; }
 
  private:
-  /// Integral of ybar, nm: pbrt-v4 does not divide this emission by it.
-  static double photometric_of_one() {
-    double sum = 0;
-    for (double nm = kCieRange_nm.min; nm <= kCieRange_nm.max; ++nm) sum += cie_xyz(nm)[1];
-    return sum;
-  }
-
   MediumBox box_;
   Phase phase_;
   float scale_, emission_scale_;
