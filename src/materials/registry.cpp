@@ -16,16 +16,28 @@ extern const MaterialInfo leaf_material;
 extern const MaterialInfo leaf_lambert_material;
 extern const MaterialInfo leaf_simplified_material;
 extern const MaterialInfo leaf_solved_material;
+extern const MaterialInfo measured_material;
 extern const MaterialInfo mix_material;
 extern const MaterialInfo thin_dielectric_material;
 
 // By name; docs/plugins.md and the lists of the command line keep this order.
 std::span<const MaterialInfo* const> builtin_materials() {
   static constexpr std::array table{
-      &abm_material,        &coated_conductor_material, &coated_diffuse_material,       &conductor_material,
-      &dielectric_material, &diffuse_material,          &diffuse_transmission_material, &interface_material,
-      &leaf_material,       &leaf_lambert_material,     &leaf_simplified_material,      &leaf_solved_material,
-      &mix_material,        &thin_dielectric_material,
+      &abm_material,
+      &coated_conductor_material,
+      &coated_diffuse_material,
+      &conductor_material,
+      &dielectric_material,
+      &diffuse_material,
+      &diffuse_transmission_material,
+      &interface_material,
+      &leaf_material,
+      &leaf_lambert_material,
+      &leaf_simplified_material,
+      &leaf_solved_material,
+      &measured_material,
+      &mix_material,
+      &thin_dielectric_material,
   };
   return table;
 }

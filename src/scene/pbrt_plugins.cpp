@@ -47,8 +47,7 @@ constexpr StandIn kIntegrators[] = {{"volpath", "path", "", kPath, "", true},
                                     {"function", "path", "", {}}};
 /// Those that compute another image: the replacement is a warning.
 constexpr std::string_view kOtherImages[] = {"ambientocclusion", "function"};
-constexpr StandIn kMaterials[] = {{"measured", "diffuse", "materials", {}},
-                                  {"hair", "diffuse", "materials", {}},
+constexpr StandIn kMaterials[] = {{"hair", "diffuse", "materials", {}},
                                   {"subsurface", "coateddiffuse", "materials", {}},
                                   {"subsurface", "diffuse", "materials", {}}};
 constexpr StandIn kCameras[] = {{"realistic", "perspective", "cameras", {}, ", which lets in more light"}};

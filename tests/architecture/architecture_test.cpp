@@ -60,7 +60,7 @@ const std::map<std::string, Layers> kAllowedInside{
       {"solve", {"tissue"}},
       {"table", {"tissue", "walk", "solve"}},
       {"fit", {"tissue", "solve", "table"}}}},
-    {"materials", {{"lobes", {}}, {"", {"lobes"}}}},
+    {"materials", {{"lobes", {}}, {"measured", {"lobes"}}, {"", {"lobes", "measured"}}}},
     {"render", {{"film", {}}, {"parts", {"film"}}, {"", {"film", "parts"}}}},
     {"instruments", {{"errors", {}}, {"", {"errors"}}, {"conformance", {"", "errors"}}}},
     {"exports", {{"", {}}, {"mitsuba", {""}}}},

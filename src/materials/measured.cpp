@@ -1,0 +1,46 @@
+#include "core/material.h"
+#include "materials/measured/measured_data.h"
+#include "materials/measured/tensor_file.h"
+#include "spectra/check_range.h"
+#include "system/file_bytes.h"
+
+namespace frond {
+namespace {
+
+constexpr Param kMeasured[] = {
+    {.name = "filename", .kind = ParamKind::string, .doc = "Tensor file with spectra (RGL, EPFL).", .required = true},
+};
+
+std::unique_ptr<MeasuredData> read(const std::filesystem::path& path, const Location& where) {
+  std::string bytes = read_file_bytes(path, where, "measured BSDF");
+  return read_tensor_brdf(std::move(bytes), path.string(), where);
+}
+
+// Material "measured": a BSDF by measured values. Measurements are reciprocal within their errors only, so it is not
+// claimed.
+class Measured final : public Material {
+ public:
+  explicit Measured(const Params& p) : where_(p.where("filename")), data_(read(p.file("filename"), where_)) {
+    if (const std::string warning = data_->warning(); !warning.empty()) p.warn("filename", warning);
+  }
+
+  void prepare(const Preparation& preparation) override {
+    check_range(data_->range_nm(), preparation.wavelengths, where_, "filename");
+    data_->prepare(preparation.wavelengths);
+  }
+  const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
+    return data_->bsdf(lambda, arena);
+  }
+  bool needs_details() const override { return !data_->is_isotropic(); }
+
+ private:
+  Location where_;
+  std::unique_ptr<MeasuredData> data_;
+};
+
+}  // namespace
+
+extern const MaterialInfo measured_material{
+    {"material", "measured", "Measured BSDF.", "Dupuy and Jakob 2018; pbrt-v4", kMeasured}, make_material<Measured>};
+
+}  // namespace frond
