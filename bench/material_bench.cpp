@@ -32,7 +32,10 @@ std::unique_ptr<Material> make(const MaterialInfo& info, const Preparation& prep
     const MaterialInfo& child = materials().get(name == "one" ? "diffuse" : "diffusetransmission", {});
     return child.make(Params(child, {}, nothing));
   });
-  const SweepOptions options{.pinned = {word("tablemethod", "solve")}, .random_corners = 0, .random_points = 0};
+  const SweepOptions options{
+      .pinned = {word("tablemethod", "solve"), word("filename", FROND_SOURCE_DIR "/tests/pbrt_reference/metal.bsdf")},
+      .random_corners = 0,
+      .random_points = 0};
   auto made = info.make(Params(info, parameter_sweep(info, options).front().plugin, resolver));
   made->prepare(preparation);
   return made;

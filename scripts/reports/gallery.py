@@ -1,6 +1,7 @@
 """docs/gallery.md: an image for every plugin that a scene can name, and the lines that made it."""
 
 import pathlib
+import shutil
 import tempfile
 
 import frond
@@ -11,6 +12,8 @@ SAMPLES = 256
 
 # Made by this script beside a scene that reads it: an image with an up and a left.
 LETTER = "letter.ppm"
+# Copied there.
+MEASURED = ROOT / "tests" / "pbrt_reference" / "brushed.bsdf"
 
 VIEW = """Scale -1 1 1
 LookAt 0.4 -5 2.1   0 0 0.72   0 0 1
@@ -64,6 +67,7 @@ MATERIALS = {
     "coatedconductor": 'Material "coatedconductor" "float conductor.roughness" 0.1 "float thickness" 0.02',
     "diffuse": 'Material "diffuse" "rgb reflectance" [ 0.2 0.35 0.6 ]',
     "diffusetransmission": 'Material "diffusetransmission" "rgb reflectance" [ 0.3 0.2 0.1 ] "rgb transmittance" [ 0.1 0.3 0.4 ]',
+    "measured": f'Material "measured" "string filename" "{MEASURED.name}"',
     "mix": 'MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k"\n'
            'MakeNamedMaterial "blue" "string type" "diffuse" "rgb reflectance" [ 0.1 0.2 0.6 ]\n'
            'Texture "stripes" "float" "checkerboard" "float uscale" 12 "float vscale" 0.5 "float tex1" 1 "float tex2" 0\n'
@@ -205,6 +209,7 @@ def main():
             "Written by `scripts/gallery`. [All parameters](plugins.md)."]
     with tempfile.TemporaryDirectory() as folder:
         write_letter(pathlib.Path(folder) / LETTER)
+        shutil.copy(MEASURED, folder)
         for kind, (table, default) in KINDS.items():
             page += ["", f"## {kind[0].upper() + kind[1:]}", ""]
             for name, doc in frond.names(kind).items():

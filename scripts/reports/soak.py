@@ -48,7 +48,7 @@ RARE = {"reflectance", "power", "illuminance", "cutoff", "zmin", "zmax", "tablef
 NEVER = {"S", "faceIndices", "emissionfilename", "splitdepth", "scheme", "cropwindow", "pixelbounds", "screenwindow", "frameaspectratio",
          "shutteropen", "shutterclose", "film sensor", "film filename", "portal", "pigmentconcentrations", "diagonal", "savefp16", "target"}
 CHEMISTRY = {"thickness", "chlorophylla", "chlorophyllb", "carotenoids", "protein", "cellulose", "lignin"}
-FILES = {"leaf_simplified": "leaf.csv", "leaf_solved": "modes.txt", "plymesh": "mesh.ply", "instances": "leaves.npy",
+FILES = {"measured": "metal.bsdf sheet.csv", "leaf_simplified": "leaf.csv", "leaf_solved": "modes.txt", "plymesh": "mesh.ply", "instances": "leaves.npy",
          "imagemap": "image.exr image.png wide.exr", "infinite": "image.exr", "goniometric": "image.exr", "projection": "wide.exr", "diffuse": "wide.exr"}
 # Parameters whose values the ranges do not tell.
 TEXTS = {"object": '"string object" "object"', "column": '"string column" "chlorophylla"', "normalmap": '"string normalmap" "image.png"',
@@ -222,6 +222,8 @@ def make_inputs(frond):
     frond.canopy(INPUTS / "leaves.npy", count=30, size=[2, 2], column=["chlorophylla=2:5"])
     frond.run("table", specimen="soybean", wavelengths="360:830:10", output=INPUTS / "leaf.csv")
     frond.run("table", leaf=["leaf_solved"], wavelengths="450,550,650", output=INPUTS / "modes.txt")
+    frond.run("goniophotometer", material=["leaf_simplified"], angles="0,40,80", wavelengths="360,600,830", patches="10x8", rays=20000, csv=INPUTS / "sheet.csv")
+    shutil.copy(ROOT / "tests" / "pbrt_reference" / "metal.bsdf", INPUTS)
 
 
 def check_finite(arrays):

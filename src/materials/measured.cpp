@@ -8,11 +8,16 @@ namespace frond {
 namespace {
 
 constexpr Param kMeasured[] = {
-    {.name = "filename", .kind = ParamKind::string, .doc = "Tensor file with spectra (RGL, EPFL).", .required = true},
+    {.name = "filename",
+     .kind = ParamKind::string,
+     .doc =
+         "Tensor file with spectra (RGL, EPFL), or a table of BRDF and BTDF as frond goniophotometer writes it (CSV).",
+     .required = true},
 };
 
 std::unique_ptr<MeasuredData> read(const std::filesystem::path& path, const Location& where) {
   std::string bytes = read_file_bytes(path, where, "measured BSDF");
+  if (!is_tensor_file(bytes)) return read_goniometer_table(bytes, path.string());
   return read_tensor_brdf(std::move(bytes), path.string(), where);
 }
 
@@ -20,13 +25,12 @@ std::unique_ptr<MeasuredData> read(const std::filesystem::path& path, const Loca
 // claimed.
 class Measured final : public Material {
  public:
-  explicit Measured(const Params& p) : where_(p.where("filename")), data_(read(p.file("filename"), where_)) {
-    if (const std::string warning = data_->warning(); !warning.empty()) p.warn("filename", warning);
-  }
+  explicit Measured(const Params& p) : where_(p.where("filename")), data_(read(p.file("filename"), where_)) {}
 
   void prepare(const Preparation& preparation) override {
     check_range(data_->range_nm(), preparation.wavelengths, where_, "filename");
-    data_->prepare(preparation.wavelengths);
+    data_->prepare(preparation.wavelengths.range_nm());
+    if (const std::string warning = data_->warning(); !warning.empty()) preparation.log.warn(where_, warning);
   }
   const Bsdf* evaluate(const Hit&, const SampledWavelengths& lambda, Arena& arena) const override {
     return data_->bsdf(lambda, arena);

@@ -9,6 +9,7 @@
 #include "core/texture.h"
 #include "tests/laws/setup.h"
 #include "tests/planted/planted.h"
+#include "tests/support/goniometer_text.h"
 
 /// All laws over all built-in materials.
 namespace frond::test {
@@ -135,6 +136,23 @@ TEST(SmoothCoats, ObeyOverAMediumThatScattersEitherWay) {
                                given("integer", "maxdepth", 100.0)}}};
       expect_lawful(material(name), {&set, 1}, GivenWavelengths({608, 551, 455}), {});
     }
+}
+
+// A sheet whose sides differ, with few directions, in two files: with both sides lit, and with one.
+TEST(GoniometerTable, Obeys) {
+  const auto f = [](double incidence, double theta, double phi, double nm) {
+    const bool front = incidence <= 90, lobe = theta < 90 && std::abs(phi - 180) < 50;
+    return (front ? 0.08 : 0.03) * nm / 700 + (theta < 90 ? 0.02 : 0.05) + (lobe ? 0.3 : 0);
+  };
+  GoniometerAngles angles{{0, 50, 80}, {400, 550, 700}, {15, 40, 65, 85, 110, 150}, {0, 30, 130, 170, 180, 200, 290}};
+  for (const bool both : {false, true}) {
+    if (both) angles.incidences.insert(angles.incidences.end(), {120, 180});
+    const std::string path = ::testing::TempDir() + "frond_goniometer.csv";
+    std::ofstream(path) << goniometer_text(angles, f);
+    const ParameterSet set{both ? "both sides" : "one side", {"measured", {}, {given("string", "filename", path)}}};
+    expect_lawful(material("measured"), {&set, 1}, GivenWavelengths({608, 551, 455}),
+                  {.samples = 10000, .angles_deg = {0, 30, 80}});
+  }
 }
 
 void expect_lossless(std::string_view name, std::vector<ParsedParam> params) {

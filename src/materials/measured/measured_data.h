@@ -18,7 +18,7 @@ class MeasuredData {
   /// Whether only the difference of the azimuths matters.
   virtual bool is_isotropic() const { return true; }
   /// Makes tables for sampling at the wavelengths of a render.
-  virtual void prepare(const WavelengthStrategy&) {}
+  virtual void prepare(Interval /*range_nm*/) {}
   /// Returns the BSDF, allocated in `arena`.
   virtual const Bsdf* bsdf(const SampledWavelengths& lambda, Arena& arena) const = 0;
   /// What was changed or assumed, for a warning; empty: nothing.
@@ -27,5 +27,7 @@ class MeasuredData {
 
 /// Reads a tensor file, `bytes`, of Dupuy and Jakob 2018. `name` and `where` are for messages. Throws InputError.
 std::unique_ptr<MeasuredData> read_tensor_brdf(std::string bytes, const std::string& name, const Location& where);
+/// Reads a goniometer table (GoniometerTable). Throws InputError with `name`, line and column.
+std::unique_ptr<MeasuredData> read_goniometer_table(std::string_view text, const std::string& name);
 
 }  // namespace frond

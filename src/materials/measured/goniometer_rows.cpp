@@ -1,0 +1,136 @@
+#include "materials/measured/goniometer_rows.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace frond {
+namespace {
+
+enum Column : size_t { kIncidence, kWavelength, kTheta, kPhi, kF, kError, kPatch, kKind, kMaterial, kColumns };
+constexpr std::array<std::string_view, kColumns> kNames{
+    "incidence_deg", "wavelength_nm", "theta_deg", "phi_deg", "f_per_sr", "f_se", "projected_solid_angle_sr",
+    "kind",          "material"};
+constexpr size_t kRequired = kError, kNumbers = kKind;
+
+struct Field {
+  std::string_view text;
+  Location where;
+};
+
+std::string_view trimmed(std::string_view s) {
+  constexpr std::string_view kSpace = " \t\r";
+  const size_t begin = s.find_first_not_of(kSpace);
+  return begin == s.npos ? std::string_view() : s.substr(begin, s.find_last_not_of(kSpace) - begin + 1);
+}
+
+/// Splits at commas; a field in double quotes can contain them.
+std::vector<Field> split(std::string_view line, Location where) {
+  std::vector<Field> fields;
+  for (size_t begin = 0; begin <= line.size();) {
+    size_t search = begin;
+    if (begin < line.size() && line[begin] == '"') search = std::min(line.find('"', begin + 1), line.size());
+    const size_t end = std::min(line.find(',', search), line.size());
+    where.column = static_cast<int>(begin) + 1;
+    fields.push_back({trimmed(line.substr(begin, end - begin)), where});
+    begin = end + 1;
+  }
+  return fields;
+}
+
+double number(const Field& field, std::string_view column) {
+  double value = 0;
+  const char* const end = field.text.data() + field.text.size();
+  const auto [stop, error] = std::from_chars(field.text.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value))
+    fail(field.where, "\"{}\" is no number for the column {}", field.text, column);
+  return value;
+}
+
+/// Index of each column in a row; npos: the file lacks it.
+class Header {
+ public:
+  explicit Header(const std::vector<Field>& fields) : count_(fields.size()) {
+    for (size_t column = 0; column < kColumns; ++column) {
+      const auto found = std::ranges::find(fields, kNames[column], &Field::text);
+      at_[column] = found == fields.end() ? kNone : size_t(found - fields.begin());
+      if (at_[column] == kNone && column < kRequired)
+        fail(fields.front().where, "there is no column \"{}\"; a goniometer table needs the columns {}", kNames[column],
+             fmt::join(std::span(kNames).first(kRequired), ", "));
+    }
+  }
+
+  /// Throws InputError for values out of range.
+  GoniometerRow row(const std::vector<Field>& fields) {
+    if (fields.size() != count_)
+      fail(fields.front().where, "{} fields, but the file has {} columns", fields.size(), count_);
+    std::array<double, kNumbers> values{};
+    for (size_t column = 0; column < kNumbers; ++column)
+      if (at_[column] != kNone) values[column] = number(fields[at_[column]], kNames[column]);
+    for (const Column angle : {kIncidence, kTheta})
+      if (values[angle] < 0 || values[angle] > 180)
+        fail(fields[at_[angle]].where, "{} is {}, outside its range 0 to 180", kNames[angle], values[angle]);
+    if (values[kTheta] == 90) fail(fields[at_[kTheta]].where, "theta_deg is 90, on neither side; remove the row");
+    if (values[kWavelength] <= 0) fail(fields[at_[kWavelength]].where, "the wavelength is not positive");
+    GoniometerRow row{values[kIncidence], values[kWavelength], values[kTheta], turned(values[kPhi]),
+                      values[kF],         values[kError],      values[kPatch], fields[0].where};
+    check_kind(row, fields);
+    check_material(fields);
+    return row;
+  }
+
+ private:
+  static constexpr size_t kNone = size_t(-1);
+
+  /// Into [0, 360).
+  static double turned(double phi_deg) {
+    const double turns = phi_deg - 360 * std::floor(phi_deg / 360);
+    return turns < 360 ? turns : 0;
+  }
+  void check_kind(const GoniometerRow& row, const std::vector<Field>& fields) const {
+    if (at_[kKind] == kNone) return;
+    const auto& [kind, where] = fields[at_[kKind]];
+    const std::string_view expected = row.is_reflected() ? "BRDF" : "BTDF";
+    if (kind != expected)
+      fail(where, "\"{}\", but light at {} degrees and a detector at {} degrees measure the {}", kind,
+           row.incidence_deg, row.theta_deg, expected);
+  }
+  void check_material(const std::vector<Field>& fields) {
+    if (at_[kMaterial] == kNone) return;
+    const auto& [material, where] = fields[at_[kMaterial]];
+    if (material_.empty()) material_ = material;
+    if (material != material_)
+      fail(where, "the file has measurements of {} and {}; keep the rows of one", material_, material);
+  }
+
+  size_t count_;
+  std::array<size_t, kColumns> at_{};
+  std::string material_;
+};
+
+}  // namespace
+
+std::vector<GoniometerRow> parse_goniometer_rows(std::string_view text, const std::string& name) {
+  Location where{std::make_shared<const std::string>(name), 0, 1};
+  std::optional<Header> header;
+  std::vector<GoniometerRow> rows;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = trimmed(text.substr(begin, end - begin));
+    ++where.line;
+    begin = end + 1;
+    if (line.empty() || line.front() == '#') continue;
+    const std::vector<Field> fields = split(line, where);
+    if (!header)
+      header.emplace(fields);
+    else
+      rows.push_back(header->row(fields));
+  }
+  if (rows.empty()) fail(where, "it is neither a tensor file nor a goniometer table: there are no rows of numbers");
+  return rows;
+}
+
+}  // namespace frond
