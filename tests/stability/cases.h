@@ -30,5 +30,7 @@ Theme scenes();
 Theme skies();
 /// Participating media: no absorption, no scattering, ends of ranges.
 Theme media();
+/// Material "measured": valid and invalid goniometer tables, and a tensor file to the horizon.
+Theme measured();
 
 }  // namespace frond::stability

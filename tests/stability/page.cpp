@@ -70,6 +70,7 @@ constexpr std::array<MethodName, kMethods> kNames{{
     {"rgbgrid", "the same with `rgbgrid`"},
     {"cloud", "the same with `cloud`"},
     {"nanovdb", "the same with `nanovdb`, of a fog volume of a torus"},
+    {"measured", "material `measured`: f integrated over all directions, and `sample`"},
 }};
 
 /// Escapes the characters that Markdown interprets.

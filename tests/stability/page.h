@@ -38,12 +38,13 @@ enum class Method : uint8_t {
   rgb_grid,
   cloud,
   nanovdb,
+  measured,
 };
 struct MethodName {
   std::string_view name, doc;
 };
 const MethodName& describe(Method method);
-inline constexpr size_t kMethods = 27;
+inline constexpr size_t kMethods = 28;
 
 /// Result of one method in one case.
 struct Cell {

@@ -14,6 +14,13 @@ enum Column : size_t { kIncidence, kWavelength, kTheta, kPhi, kF, kError, kPatch
 constexpr std::array<std::string_view, kColumns> kNames{
     "incidence_deg", "wavelength_nm", "theta_deg", "phi_deg", "f_per_sr", "f_se", "projected_solid_angle_sr",
     "kind",          "material"};
+/// Values of a column that are accepted. Values of f that are large or negative are limited later, with a warning.
+struct Allowed {
+  Column column;
+  Interval range;
+};
+constexpr Allowed kAllowed[] = {
+    {kIncidence, {0, 180}}, {kWavelength, {1, 1e6}}, {kTheta, {0, 180}}, {kF, {-1e6, 1e6}}, {kPatch, {0, 7}}};
 constexpr size_t kRequired = kError, kNumbers = kKind;
 
 struct Field {
@@ -70,11 +77,11 @@ class Header {
     std::array<double, kNumbers> values{};
     for (size_t column = 0; column < kNumbers; ++column)
       if (at_[column] != kNone) values[column] = number(fields[at_[column]], kNames[column]);
-    for (const Column angle : {kIncidence, kTheta})
-      if (values[angle] < 0 || values[angle] > 180)
-        fail(fields[at_[angle]].where, "{} is {}, outside its range 0 to 180", kNames[angle], values[angle]);
+    for (const Allowed& a : kAllowed)
+      if (!(values[a.column] >= a.range.min && values[a.column] <= a.range.max))
+        fail(fields[at_[a.column]].where, "{} is {}, outside its range {} to {}", kNames[a.column], values[a.column],
+             a.range.min, a.range.max);
     if (values[kTheta] == 90) fail(fields[at_[kTheta]].where, "theta_deg is 90, on neither side; remove the row");
-    if (values[kWavelength] <= 0) fail(fields[at_[kWavelength]].where, "the wavelength is not positive");
     GoniometerRow row{values[kIncidence], values[kWavelength], values[kTheta], turned(values[kPhi]),
                       values[kF],         values[kError],      values[kPatch], fields[0].where};
     check_kind(row, fields);
@@ -87,8 +94,8 @@ class Header {
 
   /// Into [0, 360).
   static double turned(double phi_deg) {
-    const double turns = phi_deg - 360 * std::floor(phi_deg / 360);
-    return turns < 360 ? turns : 0;
+    const double turned = std::fmod(phi_deg, 360);
+    return turned < 0 ? std::fmod(turned + 360, 360) : turned;
   }
   void check_kind(const GoniometerRow& row, const std::vector<Field>& fields) const {
     if (at_[kKind] == kNone) return;

@@ -27,7 +27,7 @@ struct Rings {
   bool has_share() const { return std::abs(solid_angle - double(kPi)) < 1e-3; }
 };
 /// All of one lit side and one hemisphere by incidence (from the lit side's normal) and wavelength.
-using Hemisphere = std::map<Angle, std::map<double, Rings>>;
+using Hemisphere = std::map<Angle, std::map<float, Rings>>;
 
 /// Linear between the azimuths, around the turn.
 double at(const Ring& ring, Angle phi) {
@@ -68,7 +68,7 @@ double at(const std::map<Angle, Ring>& rings, Angle theta, Angle phi) {
 /// Rows in hemispheres: [lit side][side that the light leaves on, the lit one first].
 struct Sorted {
   std::array<std::array<Hemisphere, 2>, 2> hemispheres;
-  std::set<double> nm;
+  std::set<float> nm;
   size_t negative = 0;
 
   explicit Sorted(const std::vector<GoniometerRow>& rows) {
@@ -77,12 +77,12 @@ struct Sorted {
       const bool front = row.is_front_lit(), above = row.theta_deg < 90;
       const Angle incidence = rounded(front ? row.incidence_deg : 180 - row.incidence_deg);
       Hemisphere& hemisphere = hemispheres[front ? 0 : 1][row.is_reflected() ? 0 : 1];
-      Rings& rings = hemisphere[incidence][row.wavelength_nm];
+      Rings& rings = hemisphere[incidence][float(row.wavelength_nm)];
       Ring& ring = rings.by_theta[rounded(above ? row.theta_deg : 180 - row.theta_deg)];
       const Angle phi = rounded(row.phi_deg) % kTurn;
       const double value = std::max(0.0, row.f);
       negative += row.f < 0 ? 1 : 0;
-      nm.insert(row.wavelength_nm);
+      nm.insert(float(row.wavelength_nm));
       rings.solid_angle += row.projected_solid_angle, rings.share += value * row.projected_solid_angle;
       if (!ring.emplace(phi, value).second)
         fail(row.where, "there are two values for theta_deg {}, phi_deg {}, incidence_deg {} and {} nm", row.theta_deg,
@@ -96,7 +96,7 @@ struct Sorted {
     for (const auto& sides : hemispheres)
       for (const Hemisphere& hemisphere : sides) {
         for (const auto& [incidence, spectra] : hemisphere)
-          for (const double wanted : nm)
+          for (const float wanted : nm)
             if (!spectra.contains(wanted))
               fail(where, "{} nm is missing at an incidence of {} degrees from the lit side's normal", wanted,
                    degrees(incidence));
@@ -157,7 +157,7 @@ GoniometerTable::GoniometerTable(const std::vector<GoniometerRow>& rows) {
   Location where = rows.front().where;
   where.line = 0;
   sorted.check(where);
-  for (const double nm : sorted.nm) nm_.push_back(float(nm));
+  nm_.assign(sorted.nm.begin(), sorted.nm.end());
   for (const size_t side : {0u, 1u}) {
     const auto& [reflected, transmitted] = sorted.hemispheres[side];
     for (const auto& [incidence, spectra] : reflected.empty() ? transmitted : reflected)
