@@ -76,7 +76,7 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
 
     Returns the job's table."""
 
-def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = False, sieve: str | os.PathLike | None = None, file: str | Sequence[str] | Mapping[str, str] | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
+def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = False, sieve: str | os.PathLike | None = None, file: str | Sequence[str] | Mapping[str, str] | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, directions: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
     """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit, or with all_leaves=True the table
     of all leaves of the files: one row for each, with its parameters, their standard errors (columns ending in _se), contents
     per leaf area, and in "status" why it could not be fitted.
@@ -96,6 +96,7 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = Fal
     plot: Chart of measured and fitted spectra: .svg or .png.
     leaf: Name of the leaf to fit, if the file has several. Excludes all_leaves.
     all_leaves: Fit every leaf; csv has one row for each, with its parameters, their standard errors and, if it could not be fitted, the reason.
+    directions: Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction between it and leaf_solved with the fitted parameters. Excludes all_leaves.
     angle: Angle of incidence, if the file does not state it. Unit: degrees. Range: from 0 to 180. Default: 8.
     structure: Structure of the leaf; by default the better fit. One of bifacial, unifacial.
     sieve: Absorption with sieve and detour effects; by default the better fit. One of on, off.

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "jobs/record/common_params.h"
+#include "jobs/support/fit_directions.h"
 #include "leaf/fit/measured_spectra.h"
 #include "leaf/tissue/area_content.h"
 #include "report/chart.h"
@@ -46,6 +47,10 @@ constexpr JobParam kParams[] = {
              "Fit every leaf; --csv has one row for each, with its parameters, their standard errors and, if it could "
              "not be fitted, the reason.",
              {.decides = true}),
+    JobParam("directions", text,
+             "Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction "
+             "between it and leaf_solved with the fitted parameters.",
+             {.type = "FILE", .path = PathUse::read, .decides = true, .excludes = "all-leaves"}),
     JobParam("angle", real, "Angle of incidence, if the file does not state it.",
              {.default_value = "8", .unit = "degrees", .range = {0, 180}, .decides = true}),
     JobParam("structure", text, "Structure of the leaf; by default the better fit.",
@@ -232,10 +237,16 @@ Result fit_one(const JobRun& run) {
   if (args.given("plot")) write_chart(args.text("plot"), fit_chart(report));
   auto facts = fit_facts(report);
   facts.push_back({"scene", fit_scene(report)});
-  return {.tables = fit_tables(report),
+  std::vector<Table> tables = fit_tables(report);
+  std::string text = fit_text(report);
+  if (args.given("directions")) {
+    tables.push_back(compare_directions(run, args.text("directions"), fit_words(report, "leaf_solved")));
+    text += directions_text(tables.back());
+  }
+  return {.tables = std::move(tables),
           .facts = std::move(facts),
           .notes = {fmt::format("{}, fitted by frond fit: RMSE {:.4f}", source, fitted.rmse)},
-          .text = fit_text(report)};
+          .text = std::move(text)};
 }
 
 /// Appends the leaves of one file, or of --data if `file` is empty, with their measurements or errors. An error of the
@@ -329,6 +340,8 @@ Result fit(const JobRun& run) {
     fail({}, "measured spectra are needed: a file, or {}", args.spelled("data"));
   // Several files are as good as --all-leaves: there is no leaf that could be meant.
   const bool has_files = args.given("file") && args.texts("file").size() > 1;
+  if (has_files && args.given("directions"))
+    fail({}, "{} compares one leaf, but there are {} files", args.spelled("directions"), args.texts("file").size());
   if (has_files && args.given("leaf"))
     fail({}, "{} selects a leaf of one file, but there are {}", args.spelled("leaf"), args.texts("file").size());
   return args.flag("all-leaves") || has_files ? fit_all(run) : fit_one(run);

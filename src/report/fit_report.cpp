@@ -136,6 +136,15 @@ std::string fit_scene(const FitReport& report, const std::string& name) {
   return text;
 }
 
+std::string fit_words(const FitReport& report, const std::string& material) {
+  const leaf::FitResult& result = report.result;
+  std::string text = fmt::format("{},specimen={}", material, result.specimen->name);
+  for (const auto& [parameter, value] : said(report)) text += fmt::format(",{}={:.6g}", parameter, value);
+  if (is_prospect(result)) text += ",absorption=prospect";
+  if (result.params.sieve_and_detour) text += ",sieve=true";
+  return text;
+}
+
 std::string fit_text(const FitReport& report) {
   const leaf::FitResult& result = report.result;
   std::string text = fmt::format("{}: {} measurements, RMSE {:.4f} (R {:.4f}, T {:.4f})\n", report.source,

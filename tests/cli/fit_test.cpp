@@ -49,6 +49,32 @@ TEST_F(Fitting, WritesALeafThatAScenesReaderTakes) {
   EXPECT_EQ(frond_command({"check", "--strict", scene}).code, 0);
 }
 
+// The leaf that was measured is the one that is fitted, from its R and T, so that little remains by direction.
+TEST_F(Fitting, ComparesByDirection) {
+  const std::string table = name_of("directions.csv"), spectra = name_of("spectra.csv"), json = name_of("fit.json");
+  const std::string nm = "450,500,550,600,650,680,720,760,800,900,1000,1200,1450,1650";
+  ASSERT_EQ(frond_command({"goniophotometer", "leaf_solved,specimen=soybean-lopex", "--angles", "20", "--wavelengths",
+                           nm, "--integrate", "--csv", table})
+                .code,
+            0);
+  ASSERT_EQ(frond_command({"spectrophotometer", "measured,filename=" + table, "--angles", "20", "--wavelengths", nm,
+                           "--rays", "1e5", "--csv", spectra})
+                .code,
+            0);
+  const auto done = frond_command({"fit", spectra, "--directions", table, "--json", json});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("by direction"), HasSubstr("BRDF   RMS"), HasSubstr("BTDF   RMS")));
+  const auto rows = nlohmann::json::parse(bytes_of(json))["directions"];
+  ASSERT_EQ(rows.size(), 28u);
+  for (const auto& row : rows) {
+    EXPECT_NEAR(row["fitted_per_sr"], double(row["measured_per_sr"]), 0.003) << row;
+    EXPECT_LT(row["rms_per_sr"], 0.006) << row;
+  }
+  const auto wrong = frond_command({"fit", spectra, "--directions", spectrum_});
+  EXPECT_NE(wrong.code, 0);
+  EXPECT_THAT(wrong.err, HasSubstr("there is no column \"incidence_deg\""));
+}
+
 TEST_F(Fitting, SaysWhatIsWrongBeforeItBegins) {
   const auto error = [this](std::vector<std::string> more) {
     std::vector<std::string> words{"fit", spectrum_};
