@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
 
 #include "leaf/tissue/constants.h"
+#include "system/csv_fields.h"
 #include "system/file_bytes.h"
 
 namespace frond::leaf {
@@ -18,10 +18,7 @@ namespace {
 
 enum class Column : uint8_t { wavelength, r, t, theta, side, leaf, other };
 
-struct Field {
-  std::string_view text;
-  Location where;
-};
+using Field = CsvField;
 
 std::string lower(std::string_view s) {
   std::string result(s);
@@ -29,44 +26,10 @@ std::string lower(std::string_view s) {
   return result;
 }
 
-std::string_view trimmed(std::string_view s) {
-  constexpr std::string_view kSpace = " \t\r\"";
-  const size_t begin = s.find_first_not_of(kSpace);
-  return begin == s.npos ? std::string_view() : s.substr(begin, s.find_last_not_of(kSpace) - begin + 1);
-}
-
 char separator_of(std::string_view line) {
   for (const char c : {';', '\t', ','})
     if (line.find(c) != line.npos) return c;
   return ' ';
-}
-
-/// Returns the index behind a field that begins at `begin`. A field in double quotes can contain the separator.
-size_t end_of_field(std::string_view line, size_t begin, char separator) {
-  if (begin < line.size() && line[begin] == '"')
-    if (const size_t quote = line.find('"', begin + 1); quote != line.npos) begin = quote + 1;
-  return std::min(line.find(separator, begin), line.size());
-}
-
-std::vector<Field> split(std::string_view line, char separator, Location where) {
-  std::vector<Field> fields;
-  for (size_t begin = 0; begin <= line.size();) {
-    if (separator == ' ') begin = std::min(line.find_first_not_of(" \r", begin), line.size());
-    const size_t end = end_of_field(line, begin, separator);
-    where.column = static_cast<int>(begin) + 1;
-    if (separator != ' ' || end > begin) fields.push_back({trimmed(line.substr(begin, end - begin)), where});
-    begin = end + 1;
-  }
-  return fields;
-}
-
-std::optional<double> to_number(std::string_view text, char separator) {
-  std::string plain(text);
-  if (separator != ',') std::ranges::replace(plain, ',', '.');
-  double value = 0;
-  const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
-  if (error != std::errc() || end != plain.data() + plain.size()) return {};
-  return value;
 }
 
 /// "Reflectance (%)" is "reflectance".
@@ -96,7 +59,7 @@ class Reader {
     const std::string_view content = trimmed(text);
     if (content.empty() || content.front() == '#') return;
     if (!separator_) separator_ = separator_of(text);
-    const std::vector<Field> fields = split(text, *separator_, where_);
+    const std::vector<Field> fields = split_fields(text, *separator_, where_);
     if (columns_.empty()) {
       if (begin(fields)) return;
     }
@@ -136,7 +99,7 @@ class Reader {
   /// Returns true if the line held column names.
   bool begin(const std::vector<Field>& fields) {
     first_row_ = where_;
-    if (to_number(fields[0].text, *separator_)) {
+    if (field_number(fields[0].text, *separator_)) {
       if (fields.size() < 2 || fields.size() > 3)
         fail(where_,
              "a file without names of columns has wavelength, R and, if there are three, T: here are {} columns",
@@ -218,7 +181,7 @@ class Reader {
           of_row[1] = fields[i];
           break;
         case Column::theta: {
-          const auto theta = to_number(text, *separator_);
+          const auto theta = field_number(text, *separator_);
           if (!theta || !(*theta >= 0 && *theta <= 180))
             fail(where, "theta_deg is from 0 to 180 degrees, \"{}\" was given", text);
           measurement.theta_deg = *theta;
@@ -244,7 +207,7 @@ class Reader {
 
   double wavelength(const Field& field) const {
     constexpr double kMicrometres = 100;
-    const auto number = to_number(field.text, *separator_);
+    const auto number = field_number(field.text, *separator_);
     if (!number || !(*number > 0 && std::isfinite(*number)))
       fail(field.where, "a wavelength in nm is a number above 0, \"{}\" was given", field.text);
     return *number < kMicrometres ? *number * 1000 : *number;
@@ -254,7 +217,7 @@ class Reader {
   std::optional<double> value(const Field& field, std::string_view what) const {
     const std::string word = lower(field.text);
     if (word.empty() || word == "nan" || word == "na" || word == "null" || word == "-") return {};
-    const auto number = to_number(field.text, *separator_);
+    const auto number = field_number(field.text, *separator_);
     constexpr double kLeast = -5, kMost = 150;  // range accepted: noise about 0, and percentages
     if (!number || !(*number >= kLeast && *number <= kMost)) refuse_share(field.where, what, field.text);
     return number;

@@ -3,12 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <optional>
 
+#include "system/csv_fields.h"
 #include "system/file_bytes.h"
 
 namespace frond::leaf {
@@ -21,34 +21,7 @@ constexpr size_t kRequired = kT + 1;
 constexpr std::string_view kPassedOver[] = {"R", "A", "R_se", "A_se"};
 constexpr std::string_view kErrorComment = "# error ";
 
-std::string_view trimmed(std::string_view s) {
-  constexpr std::string_view kSpace = " \t\r";
-  const size_t begin = s.find_first_not_of(kSpace);
-  return begin == s.npos ? std::string_view() : s.substr(begin, s.find_last_not_of(kSpace) - begin + 1);
-}
-
-struct Field {
-  std::string_view text;
-  Location where;
-};
-
-std::vector<Field> split(std::string_view line, Location where) {
-  std::vector<Field> fields;
-  for (size_t begin = 0; begin <= line.size();) {
-    const size_t end = std::min(line.find(',', begin), line.size());
-    where.column = static_cast<int>(begin) + 1;
-    fields.push_back({trimmed(line.substr(begin, end - begin)), where});
-    begin = end + 1;
-  }
-  return fields;
-}
-
-std::optional<double> to_number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return {};
-  return value;
-}
+using Field = CsvField;
 
 struct Row {
   std::array<double, kColumns> value{};
@@ -104,7 +77,7 @@ class Header {
   }
 
   static double checked(size_t column, const Field& field) {
-    const auto number = to_number(field.text);
+    const auto number = field_number(field.text, ',');
     if (!number) fail(field.where, "{} is a number, \"{}\" was given", kNames[column], field.text);
     const double v = *number;
     if (column == kTheta && !(v >= 0 && v <= 180)) fail(field.where, "theta_deg is from 0 to 180, {} was given", v);
@@ -200,12 +173,13 @@ Table parse_table(std::string_view text, const std::string& name) {
     const size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.starts_with(kErrorComment)) error = to_number(trimmed(line.substr(kErrorComment.size()))).value_or(0);
+    if (line.starts_with(kErrorComment))
+      error = field_number(trimmed(line.substr(kErrorComment.size())), ',').value_or(0);
     if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
     if (header)
-      add(spectra, known, header->row(split(line, here)));
+      add(spectra, known, header->row(split_fields(line, ',', here)));
     else
-      header.emplace(split(line, here));
+      header.emplace(split_fields(line, ',', here));
   }
   if (spectra.empty())
     fail(here, "the table is empty: {}a row for each angle and wavelength is expected",
@@ -221,7 +195,7 @@ bool is_leaf_table(std::string_view text) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
     if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
-    return std::ranges::any_of(split(line, {}),
+    return std::ranges::any_of(split_fields(line, ',', {}),
                                [](const Field& f) { return f.text == kNames[kRs] || f.text == kNames[kRd]; });
   }
   return true;

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+
+#include "system/csv_fields.h"
 
 namespace frond {
 namespace {
@@ -23,38 +24,12 @@ constexpr Allowed kAllowed[] = {
     {kIncidence, {0, 180}}, {kWavelength, {1, 1e6}}, {kTheta, {0, 180}}, {kF, {-1e6, 1e6}}, {kPatch, {0, 7}}};
 constexpr size_t kRequired = kError, kNumbers = kKind;
 
-struct Field {
-  std::string_view text;
-  Location where;
-};
-
-std::string_view trimmed(std::string_view s) {
-  constexpr std::string_view kSpace = " \t\r";
-  const size_t begin = s.find_first_not_of(kSpace);
-  return begin == s.npos ? std::string_view() : s.substr(begin, s.find_last_not_of(kSpace) - begin + 1);
-}
-
-/// Splits at commas; a field in double quotes can contain them.
-std::vector<Field> split(std::string_view line, Location where) {
-  std::vector<Field> fields;
-  for (size_t begin = 0; begin <= line.size();) {
-    size_t search = begin;
-    if (begin < line.size() && line[begin] == '"') search = std::min(line.find('"', begin + 1), line.size());
-    const size_t end = std::min(line.find(',', search), line.size());
-    where.column = static_cast<int>(begin) + 1;
-    fields.push_back({trimmed(line.substr(begin, end - begin)), where});
-    begin = end + 1;
-  }
-  return fields;
-}
+using Field = CsvField;
 
 double number(const Field& field, std::string_view column) {
-  double value = 0;
-  const char* const end = field.text.data() + field.text.size();
-  const auto [stop, error] = std::from_chars(field.text.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value))
-    fail(field.where, "\"{}\" is no number for the column {}", field.text, column);
-  return value;
+  const auto value = field_number(field.text, ',');
+  if (!value || !std::isfinite(*value)) fail(field.where, "\"{}\" is no number for the column {}", field.text, column);
+  return *value;
 }
 
 /// Index of each column in a row; npos: the file lacks it.
@@ -126,11 +101,11 @@ std::vector<GoniometerRow> parse_goniometer_rows(std::string_view text, const st
   std::vector<GoniometerRow> rows;
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = trimmed(text.substr(begin, end - begin));
+    const std::string_view line = text.substr(begin, end - begin), content = trimmed(line);
     ++where.line;
     begin = end + 1;
-    if (line.empty() || line.front() == '#') continue;
-    const std::vector<Field> fields = split(line, where);
+    if (content.empty() || content.front() == '#') continue;
+    const std::vector<Field> fields = split_fields(line, ',', where);
     if (!header)
       header.emplace(fields);
     else
