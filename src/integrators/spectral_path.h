@@ -49,19 +49,22 @@ bool track(const Medium& medium, const Ray& ray, const SampledWavelengths& lambd
   MajorantSteps::Step step;
   float depth = -std::log(1 - u);  // optical depth of the majorant to the next collision
   while (steps.next(step)) {
-    const float sigma = step.sigma[hero];
-    float at = step.begin;
+    const float sigma = step.sigma[hero], reach = step.end - step.begin;
+    // Distance in this step, in double precision: in a dense medium far from the ray's origin the distance between two
+    // collisions is less than the spacing of floats there.
+    double at = 0;
     for (;;) {
-      const float t = sigma > 0 ? at + depth / sigma : INFINITY;
-      if (!(t < step.end)) break;
-      transmittance *= attenuated(step.sigma, t - at);
-      if (!collide(ray.o + ray.d * t, step.sigma, transmittance)) return false;
+      const double t = sigma > 0 ? at + double(depth / sigma) : double(INFINITY);
+      if (!(t < double(reach))) break;
+      transmittance *= attenuated(step.sigma, float(t - at));
+      if (!collide(ray.o + ray.d * float(double(step.begin) + t), step.sigma, transmittance)) return false;
       transmittance = SampledSpectrum(1);
       depth = -std::log(1 - rng.uniform());
       at = t;
     }
-    if (sigma > 0) depth = std::max(0.f, depth - sigma * (step.end - at));
-    transmittance *= attenuated(step.sigma, step.end - at);
+    const float rest = float(double(reach) - at);
+    if (sigma > 0) depth = std::max(0.f, depth - sigma * rest);
+    transmittance *= attenuated(step.sigma, rest);
   }
   return true;
 }

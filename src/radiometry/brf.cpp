@@ -76,6 +76,10 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
   const std::optional<Vec3> sun = direction_to_sun(scene.lights());
   description.camera = camera_of(request, target, scene, sun);
   description.camera_from_world = {};
+  // The sensor is outside the scene, where no medium is.
+  if (description.camera_medium && description.medium_interfaces.empty())
+    fail({}, "the medium of the camera has no bound, so that no light comes from outside: bound it by a surface");
+  description.camera_medium.reset();
   description.filter = {"box", {}, {}};
   description.film = {"rgb",
                       {},

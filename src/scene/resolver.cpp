@@ -1,5 +1,7 @@
 #include "scene/resolver.h"
 
+#include <limits>
+
 #include "core/problems.h"
 #include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"
@@ -58,6 +60,8 @@ SpectrumPtr constant_of(const ParsedParam& p) {
   const auto& v = numbers(p);
   if (v.size() != 1) fail(p.value_where, "\"{}\" takes one value as float, {} given", p.name, v.size());
   if (!(v[0] >= 0)) fail(p.value_where, "\"{}\" is {}, below 0", p.name, v[0]);
+  if (!(v[0] <= double(std::numeric_limits<float>::max())))
+    fail(p.value_where, "\"{}\" is {}, larger than any float", p.name, v[0]);
   return std::make_shared<ConstantSpectrum>(float(v[0]));
 }
 

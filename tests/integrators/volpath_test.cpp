@@ -246,6 +246,21 @@ TEST(VolPath, RatioTrackingFindsTheOpticalDepthOfAGrid) {
 }
 
 // Path and volpath render the same scene without media, in which every kind of light sample and hit occurs.
+/// Far from the camera floats are farther apart than the collisions of a dense cell, most of whose collisions are null.
+TEST(VolPath, ADenseCellFarFromTheCameraIsTracked) {
+  std::string densities = "1e5";
+  for (int i = 1; i < 64; ++i) densities += " 0";
+  const std::string far = looking_down(
+      "LightSource \"infinite\"\nTranslate .2501 .2501 0\nMakeNamedMedium \"m\" \"string type\" \"uniformgrid\" "
+      "\"integer nx\" 4 \"integer ny\" "
+      "4 "
+      "\"integer nz\" 4 \"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] \"float sigma_a\" 1 \"float sigma_s\" 0 "
+      "\"float density\" [" +
+      densities + "]\nMaterial \"interface\"\nMediumInterface \"m\" \"\"\nShape \"sphere\"\n");
+  const BandMeans through = band_means("Translate 0 0 3000\n" + far, 4);
+  for (size_t band = 0; band < kBands.size(); ++band) EXPECT_TRUE(std::isfinite(through.mean[band]));
+}
+
 TEST(VolPath, AgreesWithPathWithoutMedia) {
   const std::string world = R"(
 LightSource "infinite" "spectrum L" [300 1 900 1]

@@ -121,6 +121,30 @@ TEST_F(Radiometry, ALambertianPlaneHasItsReflectanceInEveryDirection) {
   }
 }
 
+/// The sensor is outside the scene, whatever medium the file's camera is in.
+TEST_F(Radiometry, TheMediumOfTheCameraIsNotThatOfTheSensor) {
+  const std::string mist =
+      "Integrator \"volpath\"\nMakeNamedMedium \"mist\" \"string type\" \"homogeneous\" \"float sigma_a\" 1\n";
+  const std::string world =
+      kSun + soil(0.3) +
+      "MediumInterface \"mist\" \"\" Material \"interface\" Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0.5  1 -1 0.5 "
+      " -1 1 0.5  1 1 0.5 ]\n";
+  const auto measured = [&](const std::string& camera) {
+    Session session(silent_log(), {2, {}, {}});
+    const BrfMeter meter(session, description(world, mist + camera),
+                         {.views = {{0, 0}, {60, 0}}, .period = kPlot, .wavelengths = "bands,wavelengths=450"});
+    RenderPart part = meter.scene().empty_part();
+    session.render(meter.scene(), {0, 1024}, part);
+    return meter.read(part.film);
+  };
+  const BrfMeasurement outside = measured(""), inside = measured("MediumInterface \"mist\" Camera \"perspective\"\n");
+  for (size_t view = 0; view < 2; ++view) {
+    EXPECT_GT(outside.at(view, 0).mean, 0);
+    EXPECT_NEAR(inside.at(view, 0).mean, outside.at(view, 0).mean,
+                kZ * std::hypot(inside.at(view, 0).standard_error, outside.at(view, 0).standard_error));
+  }
+}
+
 /// Walls that face the sun and turn their dark side on those who look from the other.
 TEST_F(Radiometry, ANegativeZenithLooksFromTheSunsSide) {
   const std::string wall =

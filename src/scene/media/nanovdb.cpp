@@ -46,6 +46,9 @@ Grids read_grids(const Params& p) {
   if (!grids.density)
     fail(p.where("filename"), "NanoVDB file \"{}\": it has no grid \"{}\"; \"gridname\" names another", path.string(),
          p.string("gridname"));
+  if (p.given("temperaturename") && !grids.temperature)
+    fail(p.where("temperaturename"), "NanoVDB file \"{}\": it has no grid \"{}\"", path.string(),
+         p.string("temperaturename"));
   for (const NanoVdbGrid* grid : {grids.density.get(), grids.temperature.get()}) {
     if (!grid) continue;
     grids.bounds.add(grid->bounds().min);
