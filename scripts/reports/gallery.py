@@ -14,6 +14,7 @@ SAMPLES = 256
 LETTER = "letter.ppm"
 # Copied there.
 MEASURED = ROOT / "tests" / "pbrt_reference" / "brushed.bsdf"
+TORUS = ROOT / "tests" / "pbrt_reference" / "torus.nvdb"
 
 VIEW = """Scale -1 1 1
 LookAt 0.4 -5 2.1   0 0 0.72   0 0 1
@@ -142,7 +143,7 @@ MEDIA = {
                '  "rgb sigma_a" [ 0 3 3  3 0 3  3 3 0  0 0 3   3 0 0  0 3 0  0 2 3  0 0 0 ]',
     "cloud": 'MakeNamedMedium "medium" "string type" "cloud" "point3 p0" [ -1 0 -1 ] "point3 p1" [ 1 1 1 ] "float density" 1.4\n'
              '  "float frequency" 2.5 "float sigma_a" 0 "float sigma_s" 25 "float g" 0.6',
-    "nanovdb": f'MakeNamedMedium "medium" "string type" "nanovdb" "string filename" "{ROOT}/tests/pbrt_reference/torus.nvdb"\n'
+    "nanovdb": f'MakeNamedMedium "medium" "string type" "nanovdb" "string filename" "{TORUS.name}"\n'
                '  "rgb sigma_s" [ 10 9 7 ] "rgb sigma_a" [ 1 2 4 ]',
     "turbid": 'MakeNamedMedium "medium" "string type" "turbid" "float density" 9 "rgb reflectance" [ 0.06 0.13 0.04 ]\n'
               '  "rgb transmittance" [ 0.04 0.13 0.03 ]',
@@ -210,6 +211,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         write_letter(pathlib.Path(folder) / LETTER)
         shutil.copy(MEASURED, folder)
+        shutil.copy(TORUS, folder)
         for kind, (table, default) in KINDS.items():
             page += ["", f"## {kind[0].upper() + kind[1:]}", ""]
             for name, doc in frond.names(kind).items():
