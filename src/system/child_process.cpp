@@ -119,10 +119,12 @@ class SignalsOfChild {
  private:
   static constexpr std::array kRequests{SIGTERM, SIGHUP};
 
+  /// A signal that is ignored, as SIGHUP under nohup, stays so, here and in the child.
   static void set(int signal, void (*handler)(int), struct sigaction& before) {
     struct sigaction action {};
     action.sa_handler = handler;
-    sigaction(signal, &action, &before);
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
   static void pass_on(int signal) {
     if (attached_child > 0) kill(pid_t(attached_child), signal);
