@@ -5,8 +5,7 @@
 
 #include "core/integrator.h"
 #include "core/sampling.h"
-#include "integrators/light_selector.h"
-#include "integrators/local_bsdf.h"
+#include "integrators/path_parts.h"
 
 namespace frond {
 namespace {
@@ -51,7 +50,6 @@ class LaneList {
 };
 
 constexpr std::string_view kTerminations[] = {"roulette", "attenuation"};
-constexpr std::string_view kLightSamplers[] = {"uniform", "power", "bvh"};
 constexpr Param kPath[] = {
     {.name = "maxdepth",
      .kind = ParamKind::integer,
@@ -98,21 +96,7 @@ class PathTracer final : public Tracer {
   void trace(PathBundle& bundle) override {
     bundle_ = &bundle;
     at_ = nullptr;
-    try {
-      trace();
-    } catch (const InputError&) {
-      throw;
-    } catch (const Stopped&) {
-      throw;
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {
-      if (!at_) throw;
-      throw SurfaceError(at_->material_id, error.what());
-    } catch (...) {
-      if (!at_) throw;
-      throw SurfaceError(at_->material_id, "it threw an object that is no std::exception");
-    }
+    with_surface_of_errors(at_, [this] { trace(); });
   }
 
  private:
@@ -216,16 +200,6 @@ class PathTracer final : public Tracer {
     }
     at_ = nullptr;
     return scattering;
-  }
-
-  static FirstHit first_hit(const SurfacePoint& point) {
-    return {.is_hit = true,
-            .is_leaf = point.material->is_leaf(),
-            .material = point.material_id,
-            .instance = point.instance_id,
-            .p = point.hit.p,
-            .n = point.hit.shading.z,
-            .albedo = {}};
   }
 
   void add(size_t lane, const Light& light, const SampledSpectrum& radiance, float weight) {
@@ -340,7 +314,7 @@ class PathTracer final : public Tracer {
     const bool is_distant = std::isinf(sample.distance);
     ray.o = offset_origin(hit, sample.wi);
     ray.d = is_distant ? sample.wi : hit.p + sample.wi * sample.distance - ray.o;
-    ray.t_max = is_distant ? INFINITY : 1 - 0x1p-13f;
+    ray.t_max = is_distant ? INFINITY : kBeforeLight;
   }
 
   static void set_ray(const Hit& hit, const Vec3& direction, Path& path) {
@@ -384,8 +358,7 @@ class PathTracer final : public Tracer {
   bool scatter(size_t lane, const Hit& hit, const LocalBsdf& bsdf, float uc, Vec2 u, Path& path) {
     LocalBsdf::Sample sample;
     if (!bsdf.sample(uc, u, path.key.stream(Use::bsdf), sample)) return false;
-    constexpr float kRounding = 1e-2f;
-    if (!sample.weight.is_physical() || !(sample.pdf > 0) || !(std::abs(dot(sample.wi, sample.wi) - 1) < kRounding)) {
+    if (!is_possible(sample)) {
       blame_material(lane);
       return false;
     }
@@ -439,11 +412,6 @@ class PathTracer final : public Tracer {
     for (const size_t i : lanes) get({s.x, s.y, s.first + i, 1}, dimension, &u[i]);
   }
 
-  static constexpr int kSafeScatterings = 5;  ///< Russian roulette starts after these
-
-  /// Largest number of invisible surfaces along one path: rounding could make a ray hit the same one without end.
-  static constexpr int kMostPassed = 1000;
-
   const World& world_;
   const LightSelector& selector_;
   const PathSettings& settings_;
@@ -468,8 +436,7 @@ class PathIntegrator final : public Integrator {
   explicit PathIntegrator(const Params& p)
       : settings_{p.integer("maxdepth"), p.boolean("sampledirect"), p.string("termination") == "attenuation",
                   float(p.real("cutoff"))},
-        strategy_(
-            LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers)) {}
+        strategy_(light_strategy(p)) {}
 
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
 

@@ -1,11 +1,11 @@
 #include "integrators/shadow_ray.h"
 
+#include "integrators/path_parts.h"
+
 namespace frond {
 
 /// Only media and surfaces without a BSDF let light pass, as in pbrt-v4.
 bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uint64_t& rays) {
-  constexpr int kMostPassed = 1000;
-  constexpr float kBeforeLight = 1 - 0x1p-13f;  // the ray ends short of the light's own surface
   const bool is_distant = std::isinf(sample.distance);
   const Vec3 end = is_distant ? Vec3{} : origin_.p + sample.wi * sample.distance;
   Vec3 from = origin_.p, o = origin_.p + origin_.offset;

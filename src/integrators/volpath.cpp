@@ -5,8 +5,7 @@
 
 #include "core/integrator.h"
 #include "core/sampling.h"
-#include "integrators/light_selector.h"
-#include "integrators/local_bsdf.h"
+#include "integrators/path_parts.h"
 #include "integrators/shadow_ray.h"
 #include "integrators/spectral_path.h"
 
@@ -19,7 +18,6 @@ enum class Use : uint64_t { ray, shadow_ray, light_bsdf, bsdf, roulette, albedo,
 /// Sampler dimensions of one vertex.
 enum class Number : uint32_t { distance, light, on_light, lobe, direction, count };
 
-constexpr std::string_view kLightSamplers[] = {"uniform", "power", "bvh"};
 constexpr Param kVolPath[] = {
     {.name = "maxdepth",
      .kind = ParamKind::integer,
@@ -53,21 +51,7 @@ class VolPathTracer final : public Tracer {
     bundle_ = &bundle;
     for (lane_ = 0; lane_ < PathBundle::kMost; ++lane_) {
       if (!(bundle.wanted >> lane_ & 1)) continue;
-      try {
-        trace_path();
-      } catch (const InputError&) {
-        throw;
-      } catch (const Stopped&) {
-        throw;
-      } catch (const std::bad_alloc&) {
-        throw;
-      } catch (const std::exception& error) {
-        if (!at_) throw;
-        throw SurfaceError(at_->material_id, error.what());
-      } catch (...) {
-        if (!at_) throw;
-        throw SurfaceError(at_->material_id, "it threw an object that is no std::exception");
-      }
+      with_surface_of_errors(at_, [this] { trace_path(); });
     }
   }
 
@@ -221,8 +205,7 @@ class VolPathTracer final : public Tracer {
       });
     LocalBsdf::Sample sample;
     if (!local.sample(number(Number::lobe), pair(Number::direction), stream(Use::bsdf), sample)) return false;
-    constexpr float kRounding = 1e-2f;
-    if (!sample.weight.is_physical() || !(sample.pdf > 0) || !(std::abs(dot(sample.wi, sample.wi) - 1) < kRounding)) {
+    if (!is_possible(sample)) {
       blame({PlugInFault::Kind::material, point.material_id});
       return false;
     }
@@ -249,13 +232,7 @@ class VolPathTracer final : public Tracer {
 
   void set_first_hit(const SurfacePoint& point, const Bsdf& bsdf) {
     FirstHit& first = result().first;
-    first = {.is_hit = true,
-             .is_leaf = point.material->is_leaf(),
-             .material = point.material_id,
-             .instance = point.instance_id,
-             .p = point.hit.p,
-             .n = point.hit.shading.z,
-             .albedo = {}};
+    first = first_hit(point);
     if (bundle_->albedo_samples == 0) return;
     LocalBsdf local;
     local.set(bsdf, point.hit, -ray_.d);
@@ -347,9 +324,6 @@ class VolPathTracer final : public Tracer {
     return u;
   }
 
-  static constexpr int kSafeScatterings = 5;  ///< Russian roulette starts after these
-  static constexpr int kMostPassed = 1000;    ///< invisible surfaces along one path
-
   const World& world_;
   const LightSelector& selector_;
   const VolPathSettings& settings_;
@@ -374,9 +348,7 @@ class VolPathTracer final : public Tracer {
 class VolPathIntegrator final : public Integrator {
  public:
   explicit VolPathIntegrator(const Params& p)
-      : settings_{p.integer("maxdepth"), p.boolean("sampledirect")},
-        strategy_(
-            LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers)) {}
+      : settings_{p.integer("maxdepth"), p.boolean("sampledirect")}, strategy_(light_strategy(p)) {}
 
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
   std::unique_ptr<Tracer> tracer(const World& world) const override {

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <new>
+#include <string_view>
+
+#include "core/integrator.h"
+#include "integrators/light_selector.h"
+#include "integrators/local_bsdf.h"
+
+namespace frond {
+
+/// What the integrators `path` and `volpath` share.
+
+/// Values of the parameter "lightsampler", in the order of LightSelector::Strategy.
+inline constexpr std::string_view kLightSamplers[] = {"uniform", "power", "bvh"};
+
+inline LightSelector::Strategy light_strategy(const Params& p) {
+  return LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers);
+}
+
+/// Largest number of invisible surfaces along one path: rounding could make a ray hit the same one without end.
+inline constexpr int kMostPassed = 1000;
+
+/// Russian roulette starts after these scatterings.
+inline constexpr int kSafeScatterings = 5;
+
+/// A shadow ray ends short of the light's own surface, at this share of the distance.
+inline constexpr float kBeforeLight = 1 - 0x1p-13f;
+
+/// Calls `act`. An exception of a plug-in gets the material of `at`, the surface whose plug-ins were called; nullptr if
+/// there is none.
+template <class Act>
+void with_surface_of_errors(const SurfacePoint* const& at, const Act& act) {
+  try {
+    act();
+  } catch (const InputError&) {
+    throw;
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (!at) throw;
+    throw SurfaceError(at->material_id, error.what());
+  } catch (...) {
+    if (!at) throw;
+    throw SurfaceError(at->material_id, "it threw an object that is no std::exception");
+  }
+}
+
+inline FirstHit first_hit(const SurfacePoint& point) {
+  return {.is_hit = true,
+          .is_leaf = point.material->is_leaf(),
+          .material = point.material_id,
+          .instance = point.instance_id,
+          .p = point.hit.p,
+          .n = point.hit.shading.z,
+          .albedo = {}};
+}
+
+/// Whether a BSDF may return this sample.
+inline bool is_possible(const LocalBsdf::Sample& sample) {
+  constexpr float kRounding = 1e-2f;
+  return sample.weight.is_physical() && sample.pdf > 0 && std::abs(dot(sample.wi, sample.wi) - 1) < kRounding;
+}
+
+}  // namespace frond
