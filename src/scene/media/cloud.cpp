@@ -42,10 +42,7 @@ class Cloud final : public Medium {
     return {coefficients_.sigma_a(lambda) * density, coefficients_.sigma_s(lambda) * density, {}, phase_};
   }
   MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
-    float begin, end;
-    Ray in_box;
-    if (!box_.clip(ray, begin, end, in_box)) return {};
-    return {begin, end, coefficients_.sigma_t(lambda)};
+    return box_.steps(ray, nullptr, coefficients_.sigma_t(lambda));
   }
 
  private:

@@ -80,10 +80,7 @@ class UniformGrid final : public Medium {
     return point;
   }
   MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
-    float begin, end;
-    Ray in_box;
-    if (!box_.clip(ray, begin, end, in_box)) return {};
-    return {majorants_, in_box, begin, end, coefficients_.sigma_t(lambda)};
+    return box_.steps(ray, &majorants_, coefficients_.sigma_t(lambda));
   }
   bool is_emissive() const override { return emission_ || temperatures_; }
 
@@ -228,12 +225,9 @@ class RgbGrid final : public Medium {
     return point;
   }
   MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
-    float begin, end;
-    Ray in_box;
-    if (!box_.clip(ray, begin, end, in_box)) return {};
     SampledSpectrum one;
     for (int i = 0; i < lambda.count; ++i) one[i] = 1;
-    return {majorants_, in_box, begin, end, one};
+    return box_.steps(ray, &majorants_, one);
   }
   bool is_emissive() const override { return emission_ && emission_scale_ > 0; }
 

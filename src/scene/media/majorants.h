@@ -72,6 +72,14 @@ class MediumBox {
   /// Clips a ray of world space to the box; returns false if they do not meet. `in_box` is the ray in coordinates in
   /// which the box is the unit cube; distances along both rays are the same.
   bool clip(const Ray& ray, float& begin, float& end, Ray& in_box) const;
+  /// Pieces of a ray of world space inside the box: one if `grid` is nullptr. `sigma` is the extinction coefficient at
+  /// density 1.
+  MajorantSteps steps(const Ray& ray, const MajorantGrid* grid, const SampledSpectrum& sigma) const {
+    float begin, end;
+    Ray in_box;
+    if (!clip(ray, begin, end, in_box)) return {};
+    return grid ? MajorantSteps(*grid, in_box, begin, end, sigma) : MajorantSteps(begin, end, sigma);
+  }
 
  private:
   Bounds bounds_;

@@ -81,10 +81,7 @@ class NanoVdb final : public Medium {
     return point;
   }
   MajorantSteps along(const Ray& ray, const SampledWavelengths& lambda) const override {
-    float begin, end;
-    Ray in_box;
-    if (!box_.clip(ray, begin, end, in_box)) return {};
-    return {majorants_, in_box, begin, end, coefficients_.sigma_t(lambda)};
+    return box_.steps(ray, &majorants_, coefficients_.sigma_t(lambda));
   }
   bool is_emissive() const override { return grids_.temperature && emission_scale_ > 0; }
 
