@@ -47,7 +47,7 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     disable_pixel_jitter: Sample the centres of pixels and lens.
     disable_texture_filtering: Point-sample textures.
     disable_wavelength_jitter: Use the same wavelengths for all samples.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     json: Print the statistics as JSON on standard output."""
 
@@ -69,7 +69,7 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
     exposure: Exposure of images and FLIP; by default such that the image is neither dark nor overexposed. Unit: stops. Range: from -20 to 20.
     seed: Seed of all random numbers.
     quick: Preview: 128 pixels, up to 32 samples, a reference of 2 x 128 samples.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
@@ -143,7 +143,7 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     compare: MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate enough. Excludes plot, checkpoint, resume. Repeatable.
     reference: Reference leaf model of compare. Default: leaf_solved.
     within: Largest relative difference at which compare calls a model accurate enough. Range: above 0. Default: 0.02.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
@@ -177,7 +177,7 @@ def flux(scene, wavelengths: str | os.PathLike = '450,550,670,800', *, by: str |
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
@@ -283,7 +283,7 @@ def export(material: str | Sequence[str] | Mapping[str, str], format: str | os.P
     rays: Number of rays for each value of R and T that is measured by rays.
     seed: Seed of all random numbers.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, motion, textures, films, displacement."""
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement."""
 
 def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
     """Read scenes and all files that they name, and report all errors.
@@ -291,7 +291,7 @@ def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: st
     Nothing is rendered. The exit status is 1 if there is an error.
 
     scene: Scene files (pbrt-v4 format).
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors."""
 
 def import_(model: str | os.PathLike, output: str | os.PathLike, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, single_sided: str | Sequence[str] | Mapping[str, str] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
@@ -393,7 +393,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     disable_pixel_jitter: Sample the centres of pixels and lens.
     disable_texture_filtering: Point-sample textures.
     disable_wavelength_jitter: Use the same wavelengths for all samples.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     json: Print the statistics as JSON on standard output."""
 

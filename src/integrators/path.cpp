@@ -277,7 +277,7 @@ class PathTracer final : public Tracer {
       lit_[i].radiance = f_cos * sample->radiance;
       lit_[i].weight = weight / light_pdf;
       lit_[i].light = light;
-      set_shadow_ray(point.hit, *sample, shadow_rays_[i]);
+      set_shadow_ray(point.hit, *sample, path.ray.time, shadow_rays_[i]);
       shadow_keys_[i] = path.key.of(Use::shadow_ray);
       lit.add(i);
       alike = alike && (light->is_delta() || !light->is_distant() || light->sun());
@@ -310,11 +310,12 @@ class PathTracer final : public Tracer {
   }
 
   /// Shadow ray from the offset origin to the same point of the light, ending just short of its surface.
-  static void set_shadow_ray(const Hit& hit, const LightSample& sample, Ray& ray) {
+  static void set_shadow_ray(const Hit& hit, const LightSample& sample, float time, Ray& ray) {
     const bool is_distant = std::isinf(sample.distance);
     ray.o = offset_origin(hit, sample.wi);
     ray.d = is_distant ? sample.wi : hit.p + sample.wi * sample.distance - ray.o;
     ray.t_max = is_distant ? INFINITY : kBeforeLight;
+    ray.time = time;
   }
 
   static void set_ray(const Hit& hit, const Vec3& direction, Path& path) {

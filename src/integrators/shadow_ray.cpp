@@ -13,7 +13,7 @@ bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uin
   float travelled = 0;
   SurfacePoint point;
   for (int passed = 0; passed < kMostPassed; ++passed) {
-    Ray ray{o, sample.wi};
+    Ray ray{o, sample.wi, INFINITY, time_};
     if (!is_distant) {
       const float rest = length(end - o);
       ray.d = (end - o) / rest;

@@ -22,8 +22,12 @@ class ShadowRay {
     Vec3 p, offset;
   };
 
-  ShadowRay(const World& world, const SampledWavelengths& lambda, int hero)
-      : world_(world), lambda_(lambda), path_{SampledSpectrum(1), SampledSpectrum(1), SampledSpectrum(1), hero} {}
+  /// `time`: of the path's rays.
+  ShadowRay(const World& world, const SampledWavelengths& lambda, int hero, float time)
+      : world_(world),
+        lambda_(lambda),
+        path_{SampledSpectrum(1), SampledSpectrum(1), SampledSpectrum(1), hero},
+        time_(time) {}
 
   void begin(const Origin& origin, const Medium* medium) {
     origin_ = origin;
@@ -42,6 +46,7 @@ class ShadowRay {
   SpectralPath path_;
   Origin origin_{};
   const Medium* medium_ = nullptr;
+  float time_;
 };
 
 }  // namespace frond

@@ -227,7 +227,7 @@ class VolPathTracer final : public Tracer {
   void leave(const SurfacePoint& point, const Vec3& w) {
     medium_ = medium_beyond(point, w);
     from_ = point.hit.p;
-    ray_ = {offset_origin(point.hit, w), w};
+    ray_ = {offset_origin(point.hit, w), w, INFINITY, ray_.time};
   }
 
   void set_first_hit(const SurfacePoint& point, const Bsdf& bsdf) {
@@ -253,7 +253,7 @@ class VolPathTracer final : public Tracer {
     const auto sample =
         light->sample_competing(place.p, selector_.has_extent() ? pair(Number::on_light) : Vec2{}, lambda_);
     if (!sample || sample->radiance.is_black()) return;
-    ShadowRay shadow(world_, lambda_, path_.hero);
+    ShadowRay shadow(world_, lambda_, path_.hero, ray_.time);
     const Scattered scattered = scatter(*sample, shadow);
     if (scattered.value.is_black()) return;
     if (!sample->radiance.is_physical()) return blame({PlugInFault::Kind::light, uint32_t(light->index())});

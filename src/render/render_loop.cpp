@@ -155,6 +155,8 @@ class Worker {
     sampler.get2d(b.samples, dimension++, on_filter.data());
     if (job_.camera.uses_lens()) sampler.get2d(b.samples, dimension++, on_lens.data());
     if (!job_.pixel_jitter) on_lens.fill({0.5f, 0.5f});
+    std::array<float, kBundle> time{};
+    if (job_.has_motion) sampler.get1d(b.samples, dimension++, time.data());
     b.dimension = dimension;
     std::array<Vec2, kBundle> on_film;
     for (size_t i = 0; i < kBundle; ++i) {
@@ -170,7 +172,15 @@ class Worker {
     }
     for (size_t i = 0; i < kBundle; i += RayPacket::kWidth)
       if (b.lanes >> i & 1) job_.camera.rays(&on_film[i], &on_lens[i], RayPacket::kWidth, &b.rays[i]);
+    if (job_.has_motion) set_times(time);
     tracer_->trace(b);
+  }
+
+  void set_times(const std::array<float, PathBundle::kMost>& time) {
+    for (size_t i = 0; i < time.size(); ++i) {
+      bundle_.rays[i].time = time[i];
+      if (job_.camera_motion && (bundle_.lanes >> i & 1)) job_.camera_motion->move(bundle_.rays[i]);
+    }
   }
 
   Triple albedo(const FirstHit& first, const SampledWavelengths& lambda) const {

@@ -13,6 +13,7 @@
 #include "core/wavelengths.h"
 #include "render/film/film.h"
 #include "render/progress.h"
+#include "scene/math/motion.h"
 
 namespace frond {
 
@@ -35,6 +36,8 @@ struct RenderJob {
   std::span<const PixelPosition> pixels = {};
   bool pixel_jitter = true;       ///< false: all samples at the centres of the pixel and of the lens, unfiltered
   bool wavelength_jitter = true;  ///< false: all samples have the same wavelengths
+  bool has_motion = false;        ///< rays need a time
+  const CameraMotion* camera_motion = nullptr;  ///< nullptr: the camera stands still
 };
 
 /// Samples to render: a range of sample indices for a rectangle of pixels.

@@ -68,7 +68,7 @@ ImageFormat image_of(const SceneSettings& description, const ImageRequest& reque
   ImageFormat image{.space = space_of(description, request, scene.wavelengths().film_space()),
                     .bands = {bands.begin(), bands.end()},
                     .attributes = request.attributes};
-  if (film.features_in_camera_space) image.from_world = to_double_rows(description.camera_from_world);
+  if (film.features_in_camera_space) image.from_world = to_double_rows(description.camera_from_world.start);
   if (channels.has("material")) name_materials(description, image);
   image.attributes["frond:version"] = FROND_VERSION;
   image.attributes["frond:seed"] = std::to_string(scene.seed());
@@ -138,7 +138,9 @@ RenderJob LoadedScene::job() const {
           scene_->seed(),
           {},
           scene_->has_pixel_jitter(),
-          scene_->has_wavelength_jitter()};
+          scene_->has_wavelength_jitter(),
+          scene_->has_motion(),
+          scene_->camera_motion()};
 }
 
 RenderPart LoadedScene::empty_part() const {

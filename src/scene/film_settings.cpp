@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "scene/cameras/films.h"
@@ -23,17 +24,30 @@ void check_film(const FilmSettings& film, const FilmInfo& info, const Location& 
          film.max_component);
 }
 
-/// Returns the exposure time of a camera with a shutter, in s; 1 for other cameras.
-double open_time(const Params& camera, const CameraInfo& info) {
+/// Returns the times at which a camera's shutter opens and closes, in s; 0 and 1 for cameras without one.
+Interval shutter_times(const Params& camera, const CameraInfo& info) {
   const auto is_time = [&info](std::string_view name) {
     const Param* declared = find_param(info, name);
     return declared && declared->kind == ParamKind::real;
   };
-  if (!is_time("shutteropen") || !is_time("shutterclose")) return 1;
-  return std::abs(camera.real("shutterclose") - camera.real("shutteropen"));
+  if (!is_time("shutteropen") || !is_time("shutterclose")) return {0, 1};
+  const double open = camera.real("shutteropen"), close = camera.real("shutterclose");
+  return {std::min(open, close), std::max(open, close)};
+}
+
+Interval open_times(const SceneSettings& description, const Registry& registry, OptionResolver& resolver) {
+  const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
+  return shutter_times(Params(camera, description.camera, resolver), camera);
 }
 
 }  // namespace
+
+Interval Scene::shutter(const SceneSettings& description, const Registry& registry, const Log& log) {
+  OptionResolver resolver(description, log);
+  const Interval open = open_times(description, registry, resolver);
+  const auto& [start, end] = description.transform_times;
+  return {(open.min - start) / (end - start), (open.max - start) / (end - start)};
+}
 
 /// The exposure time of the camera and the film speed become one factor.
 FilmSettings Scene::film_settings(const SceneSettings& description, const Registry& registry, const Log& log) {
@@ -42,8 +56,8 @@ FilmSettings Scene::film_settings(const SceneSettings& description, const Regist
   FilmSettings film =
       made_by(info, description.film.where, [&] { return info.make(Params(info, description.film, resolver)); });
   check_film(film, info, description.film.where);
-  const CameraInfo& camera = registry.cameras.get(description.camera.name, description.camera.where);
-  film.exposure *= open_time(Params(camera, description.camera, resolver), camera);
+  const Interval open = open_times(description, registry, resolver);
+  film.exposure *= open.max - open.min;
   return description.is_quick ? halved(film) : film;
 }
 

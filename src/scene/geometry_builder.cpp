@@ -78,14 +78,16 @@ void warn_of_double_faces(const ShapeGeometry& geometry, const Location& where, 
 class GeometryBuilder {
  public:
   GeometryBuilder(const SceneDescription& description, const Registry& registry, SceneResolver& resolver,
-                  const ThreadPool& pool, const Log& log, Problems& problems)
+                  Interval shutter, const ThreadPool& pool, const Log& log, Problems& problems)
       : description_(description),
         registry_(registry),
         resolver_(resolver),
+        shutter_(shutter),
         pool_(pool),
         log_(log),
         problems_(problems) {
-    for (size_t i = 0; i < description.objects.size(); ++i) by_name_.emplace(description.objects[i].name, i);
+    for (size_t i = 0; i < description.objects.size(); ++i)
+      if (!description.objects[i].name.empty()) by_name_.emplace(description.objects[i].name, i);
     visits_.resize(description.objects.size());
   }
 
@@ -144,13 +146,27 @@ class GeometryBuilder {
   ObjectParts parts_of(const std::vector<ShapeDescription>& shapes, const InstanceList& set) {
     ObjectParts parts;
     for (const ShapeDescription& shape : shapes) problems_.attempt([&] { add(shape, parts); });
+    if (!set.moving.empty()) parts.instances.push_back(moving_instances(set.moving));
     if (set.objects.empty()) return parts;
-    Instances instances{.table = std::make_shared<const InstanceTable>(set.maps), .objects = {}, .placement = {}};
+    Instances instances{.table = std::make_shared<const InstanceTable>(set.maps)};
     const bool is_one = std::ranges::all_of(set.objects, [&](uint32_t o) { return o == set.objects.front(); });
     for (const uint32_t object : std::span(set.objects).first(is_one ? 1 : set.objects.size()))
       instances.objects.push_back(visit(object));
     parts.instances.push_back(std::move(instances));
     return parts;
+  }
+
+  Instances moving_instances(const std::vector<MovingInstance>& moving) {
+    auto starts = std::make_shared<std::vector<AffineMap>>();
+    Instances instances;
+    for (const MovingInstance& i : moving) {
+      const Motion& motion = instances.motions.emplace_back(i.start, i.end, shutter_);
+      starts->push_back(motion.at(0));
+      instances.objects.push_back(visit(i.object));
+    }
+    instances.table = std::make_shared<const InstanceTable>(std::move(starts));
+    if (std::ranges::all_of(instances.motions, &Motion::is_still)) instances.motions.clear();
+    return instances;
   }
 
   /// Creates one shape, which may be a surface or a table of instances.
@@ -214,6 +230,7 @@ class GeometryBuilder {
   const SceneDescription& description_;
   const Registry& registry_;
   SceneResolver& resolver_;
+  const Interval shutter_;
   const ThreadPool& pool_;
   const Log& log_;
   Problems& problems_;
@@ -238,9 +255,9 @@ void check_coordinates(const Vec3& p, std::string_view what, const Location& whe
 }
 
 std::shared_ptr<const Geometry> build_geometry(const SceneDescription& description, const Registry& registry,
-                                               SceneResolver& resolver, const ThreadPool& pool, const Log& log,
-                                               Problems& problems) {
-  return GeometryBuilder(description, registry, resolver, pool, log, problems).build();
+                                               SceneResolver& resolver, Interval shutter, const ThreadPool& pool,
+                                               const Log& log, Problems& problems) {
+  return GeometryBuilder(description, registry, resolver, shutter, pool, log, problems).build();
 }
 
 /// The range of a texture is compared with the range of the columns of that name.

@@ -55,6 +55,10 @@ class Scene final : public World {
   static FilmSettings film_settings(const SceneSettings& description, const Registry& registry,
                                     const Log& log = silent_log());
 
+  /// Returns the shares of all motion that are done when the camera's shutter opens and closes (Motion). Throws
+  /// InputError.
+  static Interval shutter(const SceneSettings& description, const Registry& registry, const Log& log = silent_log());
+
   /// Returns the indices of the materials that are leaves (Material::is_leaf). A mixture is not a leaf, but the
   /// materials that it mixes may be. Throws InputError.
   static std::vector<size_t> leaf_materials(const SceneSettings& description, const Registry& registry);
@@ -84,6 +88,10 @@ class Scene final : public World {
   const std::string& wavelengths_name() const { return wavelengths_name_; }
   const FilmSettings& film() const { return film_; }
   const Camera& camera() const { return *camera_; }
+  /// Motion to be applied to the camera's rays; nullptr: the camera stands still.
+  const CameraMotion* camera_motion() const { return camera_motion_ ? &*camera_motion_ : nullptr; }
+  /// Whether anything moves while the shutter is open: rays need a time.
+  bool has_motion() const { return camera_motion_.has_value() || geometry_->has_motion(); }
   const Sampler& sampler() const { return *sampler_; }
   const Filter& filter() const { return *filter_; }
   const Integrator& integrator() const { return *integrator_; }
@@ -112,6 +120,7 @@ class Scene final : public World {
   std::unique_ptr<WavelengthStrategy> wavelengths_;
   FilmSettings film_;
   std::unique_ptr<Camera> camera_;
+  std::optional<CameraMotion> camera_motion_;
   std::unique_ptr<Sampler> sampler_;
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<Integrator> integrator_;

@@ -109,7 +109,9 @@ class SceneBuilder {
     check_declarations(resolver);
     build_media(resolver);
     build_lights(resolver);
-    scene_.geometry_ = build_geometry(description, registry_, resolver, pool_, log_, problems_);
+    Interval shutter{0, 1};
+    problems_.attempt([&] { shutter = Scene::shutter(description_, registry_); });
+    scene_.geometry_ = build_geometry(description, registry_, resolver, shutter, pool_, log_, problems_);
     check_instance_textures(description_, *scene_.geometry_, log_);
     build_area_lights(resolver);
   }
@@ -241,7 +243,8 @@ class SceneBuilder {
 
   /// Builds film, camera, filter, sampler and integrator.
   void build_view(SceneResolver& resolver) {
-    CameraPlacement placement{description_.camera_from_world.inverse(), 0, 0};
+    const MovingTransform world_from_camera = description_.camera_from_world.inverse();
+    CameraPlacement placement{world_from_camera.start, 0, 0};
     const bool has_film = problems_.attempt([&] {
       scene_.film_ = Scene::film_settings(description_, registry_, log_);
       placement.width = scene_.film_.width, placement.height = scene_.film_.height;
@@ -250,6 +253,7 @@ class SceneBuilder {
     if (has_film)
       problems_.attempt([&] {
         scene_.camera_ = make(registry_.cameras, description_.camera, resolver, placement);
+        if (world_from_camera.moves()) build_camera_motion(world_from_camera);
         check_camera(scene_.film_);
       });
     else
@@ -262,6 +266,13 @@ class SceneBuilder {
     const int samples = scene_.sampler_->samples_per_pixel();
     scene_.samples_per_pixel_ = description_.is_quick ? std::max(1, samples / 16) : samples;
     problems_.attempt([this] { check_filter(); });
+  }
+
+  void build_camera_motion(const MovingTransform& world_from_camera) {
+    const AffineMap start{world_from_camera.start.rows()}, end{world_from_camera.end->rows()};
+    if (const std::string problem = problem_of_motion(start, end); !problem.empty())
+      fail(description_.camera.where, "this camera cannot move so: {}", problem);
+    scene_.camera_motion_.emplace(start, end, Scene::shutter(description_, registry_));
   }
 
   /// A camera with unrelated pixels requires a filter that stays within a pixel.
@@ -279,7 +290,8 @@ class SceneBuilder {
     for (const float x : {0.f, float(film.width)})
       for (const float y : {0.f, float(film.height)})
         for (const Vec2 lens : {Vec2{0, 0.5f}, Vec2{1, 0.5f}, Vec2{0.5f, 0}, Vec2{0.5f, 1}}) {
-          const Ray ray = scene_.camera_->ray({x, y}, lens);
+          Ray ray = scene_.camera_->ray({x, y}, lens);
+          if (scene_.camera_motion_) scene_.camera_motion_->move(ray);
           check_coordinates(ray.o, "a ray of this camera starts at", description_.camera.where);
           if (const float length_sq = dot(ray.d, ray.d); !(length_sq > 0 && length_sq < kLongest))
             fail(description_.camera.where, "a ray of this camera has no direction");

@@ -47,9 +47,6 @@ TEST(ParserErrors, NameUnknownDirectives) {
 
 TEST(ParserErrors, NameWhatOfPbrtIsNotThereYet) {
   expect_errors({
-      {"\n ActiveTransform EndTime",
-       "s:2:2: ActiveTransform of pbrt-v4 is not supported; with --ignore-unsupported=motion it leaves all as it is at "
-       "the start"},
       {"ActiveTransform Now", "s:1:17: ActiveTransform takes StartTime, EndTime or All, Now was given"},
       {"Import \"x\"", "s:1:1: Import belongs after WorldBegin"},
       {"WorldBegin WorldEnd",

@@ -132,7 +132,7 @@ TEST(Parser, TakesMatricesColumnByColumn) {
 TEST(Parser, KeepsTheCameraTransformAndStartsTheWorldWithIdentity) {
   const SceneDescription s = parse(R"(LookAt 0 0 5  0 0 0  0 1 0 Camera "perspective" WorldBegin Shape "sphere"
     CoordSysTransform "camera" Shape "sphere" CoordSysTransform "world" Shape "sphere")");
-  expect_near(s.camera_from_world.point({0, 0, 0}), {0, 0, 5});
+  expect_near(s.camera_from_world.start.point({0, 0, 0}), {0, 0, 5});
   EXPECT_EQ(s.shapes.at(0).world_from_object, Transform());
   expect_near(s.shapes.at(1).world_from_object.point({0, 0, 0}), {0, 0, 5});
   EXPECT_EQ(s.shapes.at(2).world_from_object, Transform());
@@ -142,7 +142,7 @@ TEST(Parser, RecallsNamedCoordinateSystems) {
   const SceneDescription s = parse_world(
       R"(Translate 1 0 0 CoordinateSystem "here" Translate 1 0 0 CoordSysTransform "here" LightSource "point")");
   EXPECT_EQ(s.lights.at(0).world_from_light, Transform::translate({1, 0, 0}));
-  EXPECT_EQ(s.coordinate_systems.at("here"), Transform::translate({1, 0, 0}));
+  EXPECT_EQ(s.coordinate_systems.at("here").start, Transform::translate({1, 0, 0}));
 }
 
 TEST(Parser, BringsTheGraphicsStateBackAtAttributeEnd) {

@@ -235,9 +235,34 @@ TEST(PbrtFormat, WhatARefusedObjectHoldsIsNotInTheWorld) {
 }
 
 TEST(PbrtFormat, WorldBeginMakesAllTransformsActive) {
-  const auto scene = parse_scene_text("ActiveTransform EndTime WorldBegin Translate 1 0 0 Shape \"disk\"", "s",
-                                      silent_log(), Unsupported("motion"));
+  const auto scene =
+      parse_scene_text("ActiveTransform EndTime WorldBegin Translate 1 0 0 Shape \"disk\"", "s", silent_log());
   EXPECT_EQ(scene.shapes.at(0).world_from_object, Transform::translate({1, 0, 0}));
+}
+
+TEST(PbrtFormat, ActiveTransformMovesShapesAndInstances) {
+  const KeptLog log;
+  const auto scene = parse_scene_text(
+      "Translate 0 0 9 ActiveTransform EndTime Translate 0 1 0 Camera \"perspective\" TransformTimes 2 4 WorldBegin\n"
+      "AttributeBegin ActiveTransform EndTime Translate 1 0 0 Shape \"disk\" LightSource \"point\" AttributeEnd\n"
+      "ObjectBegin \"o\" Shape \"disk\" ObjectEnd ActiveTransform StartTime Translate 2 0 0 ActiveTransform All\n"
+      "Scale 2 2 2 ObjectInstance \"o\" CoordSysTransform \"camera\" Identity ObjectInstance \"o\"",
+      "s", log);
+  const auto x_of = [](const AffineMap& map) { return map.point({1, 0, 0}).x; };
+  EXPECT_EQ(scene.transform_times, (std::array<double, 2>{2, 4}));
+  EXPECT_EQ(scene.camera_from_world.at_end(), Transform::translate({0, 1, 9}));
+  EXPECT_THAT(scene.shapes, IsEmpty());
+  ASSERT_EQ(scene.instances.moving.size(), 2u);
+  const MovingInstance &shape = scene.instances.moving[0], &object = scene.instances.moving[1];
+  EXPECT_EQ(scene.objects.at(shape.object).name, "");
+  EXPECT_EQ(scene.objects.at(shape.object).shapes.at(0).world_from_object, Transform());
+  EXPECT_EQ(x_of(shape.start), 1);
+  EXPECT_EQ(x_of(shape.end), 2);
+  EXPECT_EQ(scene.objects.at(object.object).name, "o");
+  EXPECT_EQ(x_of(object.start), 4);
+  EXPECT_EQ(x_of(object.end), 2);
+  EXPECT_EQ(scene.instances.objects.size(), 1u);  // Identity ends the motion
+  EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("a light does not move")));
 }
 
 TEST(PbrtFormat, OptionsMayStandInTheWorld) { EXPECT_EQ(parse_world("Option \"integer seed\" 3").options.size(), 1u); }
@@ -332,18 +357,18 @@ TEST(PbrtFormat, WhatGivesAnotherImageHasToBeLetPass) {
   const std::string text =
       "Integrator \"bdpt\" Camera \"realistic\" \"string lensfile\" \"x.dat\" WorldBegin\n"
       "Material \"hair\" \"rgb color\" [.1 .2 .3]\nTexture \"t\" \"float\" \"ptex\" \"string filename\" \"x.ptx\"\n"
-      "ActiveTransform EndTime Translate 1 0 0 Shape \"disk\"";
+      "Shape \"disk\"";
   const Answer refused = answer(text);
-  EXPECT_EQ(refused.problems.count(), 1u);  // motion: the file is not read on
+  EXPECT_EQ(refused.problems.count(), 3u);
   const Answer passed = answer(text, "all");
   EXPECT_TRUE(passed.problems.empty());
-  EXPECT_EQ(passed.log.warnings.size(), 4u);
+  EXPECT_EQ(passed.log.warnings.size(), 3u);
   EXPECT_EQ(passed.scene.integrator.name, "path");
   EXPECT_EQ(passed.scene.camera.name, "perspective");
   EXPECT_EQ(passed.scene.materials.at(1).plugin.params.at(0).name, "reflectance");
   EXPECT_EQ(passed.scene.shapes.at(0).world_from_object, Transform());
-  const Answer some = answer(text, "motion");
-  EXPECT_EQ(some.problems.count(), 3u);
+  const Answer some = answer(text, "textures");
+  EXPECT_EQ(some.problems.count(), 2u);
   EXPECT_THAT(some.problems.messages()[0], HasSubstr("s:1:26: Camera \"realistic\" of pbrt-v4 is not supported; with "
                                                      "--ignore-unsupported=cameras it is replaced by \"perspective\""));
   EXPECT_THAT(error_of([] { Unsupported("fog"); }), HasSubstr("--ignore-unsupported takes all, or some of materials"));

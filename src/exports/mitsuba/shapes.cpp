@@ -107,6 +107,8 @@ Shapes::Parts Shapes::parts_of(const std::vector<ShapeDescription>& shapes, cons
       for (unsigned i = 0; i < shape.count(); ++i)
         parts.bounds.add(shape.bounds(i).min), parts.bounds.add(shape.bounds(i).max);
     }
+  for (const MovingInstance& moving : instances.moving)
+    fail(moving.where, "what moves has no equivalent in Mitsuba, where all shapes stand still");
   for (size_t i = 0; i < instances.objects.size(); ++i)
     parts.instances.push_back({instances.objects[i], (*instances.maps)[i]});
   return parts;

@@ -104,10 +104,12 @@ void write_sensor(Context& context, Xml& xml, const FilmSettings& film, int samp
   const bool is_perspective = camera.name == "perspective";
   if (!is_perspective && camera.name != "orthographic")
     fail(camera.where, "camera \"{}\" has no equivalent in Mitsuba: perspective and orthographic have", camera.name);
+  if (context.description.camera_from_world.moves())
+    fail(camera.where, "a camera that moves has no equivalent in Mitsuba");
   const Params p(context.registry.cameras.get(camera.name, camera.where), camera, context.resolver);
   const Window window = window_of(p, film);
   const double aspect = double(film.width) / film.height;
-  const AffineMap map{context.description.camera_from_world.inverse().rows()};
+  const AffineMap map{context.description.camera_from_world.start.inverse().rows()};
   const double scale = scale_of(map, camera.where), units = context.units;
   const double lens = p.real("lensradius");
   Transform::RowsDouble rows = rows_of(map);

@@ -32,7 +32,7 @@ inline constexpr JobParam kSeedParam("seed", ArgumentKind::seed, "Seed of all ra
 inline constexpr JobParam kIgnoreUnsupportedParam(
     "ignore-unsupported", ArgumentKind::text,
     "Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a "
-    "list of materials, cameras, motion, textures, films, displacement.",
+    "list of materials, cameras, textures, films, displacement.",
     {.type = "KINDS", .decides = true, .implied = "all"});
 inline constexpr JobParam kStrictParam("strict", ArgumentKind::flag, "Treat warnings as errors.");
 inline constexpr JobParam kTimeLimitParam("time-limit", ArgumentKind::real,

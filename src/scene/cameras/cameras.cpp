@@ -208,7 +208,7 @@ constexpr Param kSpherical[] = {{.name = "mapping",
                                 kShutterOpen,
                                 kShutterClose};
 
-/// Checks the shutter times. The exposure's duration scales the film; there is no motion.
+/// Checks the shutter times. The duration of the exposure scales the film.
 void check_shutter(const Params& p) {
   const double open = p.real("shutteropen"), close = p.real("shutterclose");
   if (close < open) p.warn("shutterclose", "the shutter closes before it opens: the two are exchanged");

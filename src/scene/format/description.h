@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "core/params.h"
+#include "scene/format/moving_transform.h"
 #include "scene/math/affine_map.h"
 
 namespace frond {
@@ -62,13 +64,22 @@ struct LightDescription {
   Transform world_from_light;
 };
 
+/// An instance that moves. A moving shape is one of an object of its own.
+struct MovingInstance {
+  uint32_t object;  ///< index in SceneDescription::objects
+  AffineMap start, end;
+  Location where;
+};
+
 /// Instances by ObjectInstance, in compact form because there may be many millions.
 struct InstanceList {
   std::shared_ptr<std::vector<AffineMap>> maps = std::make_shared<std::vector<AffineMap>>();
   std::vector<uint32_t> objects = {};  ///< index in SceneDescription::objects, by instance
+  std::vector<MovingInstance> moving = {};
 };
 
-/// ObjectBegin ... ObjectEnd. A point of a shape is transformed by the shape's transform, then by the instance's.
+/// ObjectBegin ... ObjectEnd, or a moving shape, without a name. A point of a shape is transformed by the shape's
+/// transform, then by the instance's.
 struct ObjectDescription {
   std::string name;
   Location where;
@@ -90,11 +101,12 @@ struct SceneSettings {
   std::vector<ParsedParam> options;
   std::optional<uint64_t> seed;  ///< overrides the seed of Options and of the sampler
   bool is_quick = false;         ///< preview: half the film's resolution, a sixteenth of the samples
-  Transform camera_from_world;
+  MovingTransform camera_from_world;
+  std::array<double, 2> transform_times{0, 1};  ///< of the start and the end of all motion, s
 
-  std::map<std::string, Transform> coordinate_systems;  ///< "camera", "world" and those that the file defines
-  std::vector<TextureDescription> textures;             ///< in file order; names are unique for each value type
-  std::vector<MaterialDescription> materials;           ///< index 0 is the default before any `Material`: "diffuse"
+  std::map<std::string, MovingTransform> coordinate_systems;  ///< "camera", "world" and those that the file defines
+  std::vector<TextureDescription> textures;                   ///< in file order; names are unique for each value type
+  std::vector<MaterialDescription> materials;  ///< index 0 is the default before any `Material`: "diffuse"
 
   std::vector<MediumDescription> media;       ///< names are unique
   std::vector<MediumPair> medium_interfaces;  ///< those of shapes, each with two different media

@@ -5,6 +5,7 @@
 
 #include "core/log.h"
 #include "scene/format/plugin_text.h"
+#include "scene/math/motion.h"
 #include "spectra/color/color_space.h"
 
 namespace frond {
@@ -48,8 +49,8 @@ void DescriptionBuilder::world_begin(const Location& where) {
   if (in_world_) fail(where, "WorldBegin is given twice");
   in_world_ = true;
   if (!scene_.film.where.file) set_film_space();
-  state_.transform = Transform();
-  activate_transforms(true);
+  state_.transform = {};
+  activate_transforms(ActiveTransforms::all);
   name_transform("world", where);
 }
 
@@ -205,21 +206,14 @@ void DescriptionBuilder::note_color_space(std::vector<ParsedParam>& params) cons
     if (p.type == "rgb") p.color_space = state_.color_space;
 }
 
-/// Multiplies the current transform from the right, as pbrt does.
-void DescriptionBuilder::concat(const Transform& transform, std::string_view directive, const Location& where) {
-  set_transform(state_.transform * transform, directive, where);
+void DescriptionBuilder::transform_times(double start, double end, const Location& where) {
+  if (!(start < end)) fail(where, "TransformTimes {:g} {:g}: the end comes after the start", start, end);
+  scene_.transform_times = {start, end};
 }
 
-/// As in pbrt, a singular transform is not an error: shapes under it have no volume.
-void DescriptionBuilder::set_transform(const Transform& transform, std::string_view directive, const Location& where) {
-  if (!state_.is_transform_active) return;
-  const bool was_valid = state_.transform.is_valid();
-  state_.transform = transform;
-  if (was_valid && !transform.is_valid())
-    log_.warn(where,
-              fmt::format("after this {} the transform cannot be inverted: shapes, lights and instances under it are "
-                          "left out",
-                          directive));
+void DescriptionBuilder::note_still(std::string_view what, const Location& where) const {
+  if (state_.transform.moves())
+    log_.warn(where, fmt::format("{} does not move: its place is that of the start, as in pbrt-v4", what));
 }
 
 /// An unknown name is a warning, as in pbrt; the transform is unchanged.
@@ -367,7 +361,8 @@ void DescriptionBuilder::make_named_medium(const std::string& name, ParsedPlugin
   plugin = typed_by_parameter("MakeNamedMedium", name, std::move(plugin));
   if (!state_.transform.is_valid()) fail(where, "the medium's transform cannot be inverted");
   media_.at(name).is_defined = true;
-  scene_.media[index] = {name, with_defaults(std::move(plugin), Target::medium), state_.transform};
+  note_still("a medium", where);
+  scene_.media[index] = {name, with_defaults(std::move(plugin), Target::medium), state_.transform.start};
 }
 
 /// float and spectrum textures have separate names, as in pbrt.
@@ -379,8 +374,9 @@ void DescriptionBuilder::texture(const Quoted& name, const Quoted& value, Parsed
   const auto [known, is_new] = textures_.emplace(std::pair(kind, name.text), name.where);
   if (!is_new)
     fail(name.where, "{} texture \"{}\" is defined again; first at {}", value.text, name.text, place(known->second));
+  note_still("a texture", name.where);
   scene_.textures.push_back({name.text, kind, with_defaults(std::move(plugin), Target::texture),
-                             state_.transform.is_valid() ? state_.transform : Transform()});
+                             state_.transform.is_valid() ? state_.transform.start : Transform()});
 }
 
 /// AreaLightSource "" ends the emission of subsequent shapes.
@@ -393,7 +389,6 @@ void DescriptionBuilder::area_light(ParsedPlugin plugin) {
 /// Shapes under a singular transform have no volume and are dropped.
 void DescriptionBuilder::shape(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) return;
-  auto& shapes = state_.open_object ? scene_.objects[*state_.open_object].shapes : scene_.shapes;
   std::optional<size_t> area_light = state_.area_light;
   if (area_light && state_.open_object) {
     log_.warn(plugin.where,
@@ -406,8 +401,22 @@ void DescriptionBuilder::shape(ParsedPlugin plugin) {
     log_.warn(plugin.where, "the area light does not shine: with material \"interface\" there is no surface");
     area_light.reset();
   }
-  shapes.push_back({with_defaults(std::move(plugin), Target::shape), state_.transform, state_.reverse_orientation,
-                    state_.material, area_light, current_interface()});
+  const bool moves = state_.transform.moves();
+  if (area_light && moves) fail(plugin.where, "a shape that moves cannot give off light: area lights stand still");
+  const Location where = plugin.where;
+  ShapeDescription made{with_defaults(std::move(plugin), Target::shape),
+                        moves ? Transform() : state_.transform.start,
+                        state_.reverse_orientation,
+                        state_.material,
+                        area_light,
+                        current_interface()};
+  if (moves) {
+    const auto object = uint32_t(scene_.objects.size());
+    scene_.objects.push_back({"", where, {std::move(made)}, {}});
+    add_instance(object, where);
+  } else {
+    (state_.open_object ? scene_.objects[*state_.open_object].shapes : scene_.shapes).push_back(std::move(made));
+  }
 }
 
 /// Lights are never part of instances, as in pbrt.
@@ -415,7 +424,8 @@ void DescriptionBuilder::light(ParsedPlugin plugin) {
   if (!state_.transform.is_valid()) return;
   if (state_.open_object)
     log_.warn(plugin.where, "a light inside an object is not part of its instances: it shines once");
-  scene_.lights.push_back({with_defaults(std::move(plugin), Target::light), state_.transform});
+  note_still("a light", plugin.where);
+  scene_.lights.push_back({with_defaults(std::move(plugin), Target::light), state_.transform.start});
 }
 
 /// Objects cannot be defined within objects; instances may be nested.
@@ -457,13 +467,25 @@ void DescriptionBuilder::object_end(const Location& where) {
 /// Inside an object, the instance becomes part of that object.
 void DescriptionBuilder::object_instance(const std::string& name, const Location& where) {
   if (!state_.transform.is_valid()) return;
-  const AffineMap map{state_.transform.rows()};
-  if (const std::string problem = problem_of(map); !problem.empty())
-    fail(where, "this instance is not possible: {}", problem);
-  const auto object = uint32_t(object_called(name, where).index);
-  InstanceList& list = state_.open_object ? scene_.objects[*state_.open_object].instances : scene_.instances;
-  list.maps->push_back(map);
-  list.objects.push_back(object);
+  add_instance(uint32_t(object_called(name, where).index), where);
+}
+
+void DescriptionBuilder::add_instance(uint32_t object, const Location& where) {
+  const auto check = [&where](const std::string& problem) {
+    if (!problem.empty()) fail(where, "this instance is not possible: {}", problem);
+  };
+  const AffineMap map{state_.transform.start.rows()};
+  check(problem_of(map));
+  InstanceList& list = open_instances();
+  if (state_.transform.moves()) {
+    const AffineMap end{state_.transform.end->rows()};
+    check(problem_of(end));
+    check(problem_of_motion(map, end));
+    list.moving.push_back({object, map, end, where});
+  } else {
+    list.maps->push_back(map);
+    list.objects.push_back(object);
+  }
 }
 
 }  // namespace frond

@@ -41,12 +41,17 @@ class DescriptionBuilder {
   void color_space(const std::string& name, const Location& where);
 
   // Transforms
-  void concat(const Transform& transform, std::string_view directive, const Location& where);
-  void set_transform(const Transform& transform, std::string_view directive, const Location& where);
+  /// Multiplies the active transforms from the right, as pbrt does.
+  void concat(const Transform& transform, std::string_view directive, const Location& where) {
+    change_transform([&transform](const Transform& t) { return t * transform; }, directive, where);
+  }
+  void set_transform(const Transform& transform, std::string_view directive, const Location& where) {
+    change_transform([&transform](const Transform&) { return transform; }, directive, where);
+  }
   void name_transform(const std::string& name, const Location&) { scene_.coordinate_systems[name] = state_.transform; }
   void recall_transform(const std::string& name, const Location& where);
-  /// Enables transforms. They are disabled for ActiveTransform EndTime, because motion is not supported.
-  void activate_transforms(bool active) { state_.is_transform_active = active; }
+  void activate_transforms(ActiveTransforms active) { state_.active = active; }
+  void transform_times(double start, double end, const Location& where);
 
   // Graphics state
   void attribute_begin(const Location& where) { push(Opener::attribute, where); }
@@ -84,8 +89,8 @@ class DescriptionBuilder {
   using Defaults = std::array<std::vector<ParsedParam>, kTargets.size()>;
 
   struct State {
-    Transform transform;
-    bool is_transform_active = true;
+    MovingTransform transform;
+    ActiveTransforms active = ActiveTransforms::all;
     bool reverse_orientation = false;
     size_t material = 0;
     std::optional<size_t> area_light;
@@ -100,7 +105,7 @@ class DescriptionBuilder {
     Opener by;
     Location where;
     State state;
-    std::map<std::string, Transform> coordinate_systems;  ///< before an import
+    std::map<std::string, MovingTransform> coordinate_systems;  ///< before an import
   };
   /// A name that may be used before its definition.
   struct Name {
@@ -109,6 +114,16 @@ class DescriptionBuilder {
     bool is_defined = false;
   };
   using Names = std::map<std::string, Name, std::less<>>;
+
+  template <class Change>
+  void change_transform(const Change& change, std::string_view directive, const Location& where);
+  /// Warns if the current transform moves: `what` does not.
+  void note_still(std::string_view what, const Location& where) const;
+  InstanceList& open_instances() {
+    return state_.open_object ? scene_.objects[*state_.open_object].instances : scene_.instances;
+  }
+  /// Adds an instance at the current transform.
+  void add_instance(uint32_t object, const Location& where);
 
   static std::string_view name_of(Opener opener);
   static std::string_view ender_of(Opener opener);
@@ -143,5 +158,17 @@ class DescriptionBuilder {
   Names materials_, objects_, media_;
   std::map<std::pair<TextureDescription::Value, std::string>, Location> textures_;
 };
+
+/// As in pbrt, a singular transform is not an error: shapes under it have no volume.
+template <class Change>
+void DescriptionBuilder::change_transform(const Change& change, std::string_view directive, const Location& where) {
+  const bool was_valid = state_.transform.is_valid();
+  state_.transform.apply(state_.active, change);
+  if (was_valid && !state_.transform.is_valid())
+    log_.warn(where,
+              fmt::format("after this {} the transform cannot be inverted: shapes, lights and instances under it are "
+                          "left out",
+                          directive));
+}
 
 }  // namespace frond

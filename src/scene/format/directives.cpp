@@ -151,14 +151,18 @@ void make_named_medium(Directive d) {
   d.scene().make_named_medium(name, std::move(plugin));
 }
 
-/// Motion is not supported: only the transform at the start time is used.
 void active_transform(Directive d) {
+  constexpr std::array<std::string_view, 3> kNames{"All", "StartTime", "EndTime"};  // as in ActiveTransforms
   const Token which = d.context.tokens.next();
-  if (which.text == "All") return d.scene().activate_transforms(true);
-  if (which.kind != Kind::word || (which.text != "StartTime" && which.text != "EndTime"))
+  const auto found = std::ranges::find(kNames, which.text);
+  if (which.kind != Kind::word || found == kNames.end())
     fail(d.location(which), "ActiveTransform takes StartTime, EndTime or All, {} was given", which.shown());
-  d.context.unsupported.handle("motion", d.where, d.name, "leaves all as it is at the start", d.context.log);
-  d.scene().activate_transforms(which.text == "StartTime");
+  d.scene().activate_transforms(ActiveTransforms(found - kNames.begin()));
+}
+
+void transform_times(Directive d) {
+  const auto [start, end] = d.numbers<2>();
+  d.scene().transform_times(start, end, d.where);
 }
 
 template <ParsedPlugin SceneSettings::*option>
@@ -229,8 +233,7 @@ constexpr DirectiveEntry kDirectives[] = {
     {"Transform", Block::any, [](Directive d) { d.scene().set_transform(matrix(d), d.name, d.where); }},
     {"TransformBegin", Block::world, alone<&Builder::transform_begin>},
     {"TransformEnd", Block::world, alone<&Builder::transform_end>},
-    {"TransformTimes", Block::options,
-     [](Directive d) { (void)d.numbers<2>(); }},  // ActiveTransform reports the unsupported feature
+    {"TransformTimes", Block::options, transform_times},
     {"Translate", Block::any,
      [](Directive d) { d.scene().concat(Transform::translate(vec3_at(d.numbers<3>(), 0)), d.name, d.where); }},
     {"WorldBegin", Block::any, alone<&Builder::world_begin>},

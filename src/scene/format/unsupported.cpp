@@ -9,7 +9,7 @@
 namespace frond {
 
 const std::vector<std::string_view>& Unsupported::kinds() {
-  static const std::vector<std::string_view> all{"materials", "cameras", "motion", "textures", "films", "displacement"};
+  static const std::vector<std::string_view> all{"materials", "cameras", "textures", "films", "displacement"};
   return all;
 }
 

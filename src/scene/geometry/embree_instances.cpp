@@ -79,8 +79,8 @@ struct Callbacks {
       direction = set.from_placement.vector(direction);
     }
     AffineMap::Inverse made;
-    const AffineMap::Inverse& map = set.inverse(instance.row, made);
-    inner = embree::from_vectors(map.point(origin), map.vector(direction), ray.tfar);
+    const AffineMap::Inverse& map = set.inverse(instance.row, ray.time, made);
+    inner = embree::from_vectors(map.point(origin), map.vector(direction), ray.tfar, ray.time);
     return passes(embree::origin(inner), embree::direction(inner), ray.tfar, set.object(instance.row).bounds);
   }
 
@@ -152,17 +152,34 @@ struct Callbacks {
     query.leave();
   }
 
+  /// Each ray of a packet has its own time, and so its own transform.
+  static void to_moving_object(const embree::Instance& instance, const int* valid, const RTCRay8& rays,
+                               RTCRay8& inner) {
+    transform(AffineMap::Inverse{}, rays, inner);  // sets all but origins and directions
+    for (size_t i = 0; i < RayPacket::kWidth; ++i) {
+      if (!valid[i]) continue;
+      RTCRay nested;
+      (void)to_object(
+          instance,
+          rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(const_cast<RTCRay8*>(&rays)), RayPacket::kWidth, unsigned(i)),
+          nested);
+      inner.org_x[i] = nested.org_x, inner.org_y[i] = nested.org_y, inner.org_z[i] = nested.org_z;
+      inner.dir_x[i] = nested.dir_x, inner.dir_y[i] = nested.dir_y, inner.dir_z[i] = nested.dir_z;
+    }
+  }
+
   /// Transforms a packet and tests the object's box. Returns false if all rays miss.
   static bool to_object(const embree::Instance& instance, const int* valid, const RTCRay8& rays, RTCRay8& inner,
                         int* passing) {
     const GeometryInstances& set = *static_cast<const GeometryInstances*>(instance.set);
     AffineMap::Inverse made;
-    const AffineMap::Inverse& map = set.inverse(instance.row, made);
-    if (set.instances.is_placed) {
+    if (!set.instances.motions.empty()) {
+      to_moving_object(instance, valid, rays, inner);
+    } else if (set.instances.is_placed) {
       transform(set.from_placement, rays, inner);
-      transform(map, inner, inner);
+      transform(set.inverse(instance.row, 0, made), inner, inner);
     } else {
-      transform(map, rays, inner);
+      transform(set.inverse(instance.row, 0, made), rays, inner);
     }
     return passes(inner, set.object(instance.row).bounds, valid, passing);
   }
@@ -202,15 +219,22 @@ struct Callbacks {
       if (passing[i] && inner.tfar[i] < 0) rays.tfar[i] = -INFINITY;
   }
 
-  /// World bounds of an instance: the transformed outline is tighter than a transformed box.
+  /// World bounds of an instance: the transformed outline is tighter than a transformed box. Embree interpolates the
+  /// bounds of a moving one linearly between its time steps, and outlines move along curves.
   static void bounds_instances(const RTCBoundsFunctionArguments* args) {
     const auto& set = *static_cast<const GeometryInstances*>(args->geometryUserPtr);
     const Instances& i = set.instances;
-    const AffineMap map = i.table->map(args->primID);
+    const AffineMap map = i.map(args->primID, float(args->timeStep) / float(set.parts()));
     Bounds b;
     for (const Vec3& corner : set.object(args->primID).outline) {
       const Vec3 p = map.point(corner);
       b.add(i.is_placed ? i.placement.point(p) : p);
+    }
+    if (!i.motions.empty() && !b.is_empty()) {
+      float size = 0;
+      for (const Vec3& corner : set.object(args->primID).outline) size = std::max(size, length(corner));
+      const float slack = i.motions[args->primID].deviation(set.parts(), size);
+      b = {b.min - Vec3{slack, slack, slack}, b.max + Vec3{slack, slack, slack}};
     }
     b = widened(b);  // points are rounded by the map, rays by its inverse
     *args->bounds_o = {b.min.x, b.min.y, b.min.z, 0, b.max.x, b.max.y, b.max.z, 0};
@@ -223,6 +247,7 @@ struct Callbacks {
 RTCGeometry embree::new_geometry(RTCDevice device, const GeometryInstances& set) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, unsigned(set.instances.table->size()));
+  if (!set.instances.motions.empty()) rtcSetGeometryTimeStepCount(geometry, set.parts() + 1);
   rtcSetGeometryBoundsFunction(geometry, Callbacks::bounds_instances, nullptr);
   rtcSetGeometryIntersectFunction(geometry, Callbacks::intersect);
   rtcSetGeometryOccludedFunction(geometry, Callbacks::occluded);

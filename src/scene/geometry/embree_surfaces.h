@@ -12,15 +12,18 @@ namespace frond::embree {
 /// Returns an Embree geometry of a surface, which must outlive it. Queries must use the context Query.
 RTCGeometry new_geometry(RTCDevice device, const Surface& surface);
 
-inline Ray to_ray(const RTCRay& r) { return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar}; }
+inline Ray to_ray(const RTCRay& r) {
+  return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar, r.time};
+}
 /// The fourth lane is 0.
 inline Float4 origin(const RTCRay& r) { return Float4{r.org_x, r.org_y, r.org_z, 0}; }
 inline Float4 direction(const RTCRay& r) { return Float4{r.dir_x, r.dir_y, r.dir_z, 0}; }
 
-/// The fourth lanes must be 0. The ray is written in two halves of 16 bytes, as Embree loads it; four single stores
-/// would stall store forwarding.
-inline RTCRay from_vectors(Float4 o, Float4 d, float t_max) {
+/// The fourth lane of `o` must be 0, that of `d` is replaced by the time. The ray is written in two halves of 16 bytes,
+/// as Embree loads it; four single stores would stall store forwarding.
+inline RTCRay from_vectors(Float4 o, Float4 d, float t_max, float time) {
   RTCRay ray;
+  d[3] = time;
   static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
   auto* const bytes = reinterpret_cast<std::byte*>(&ray);
   std::memcpy(bytes, &o, sizeof o);
@@ -30,7 +33,7 @@ inline RTCRay from_vectors(Float4 o, Float4 d, float t_max) {
 }
 /// Converts a ray, with all mask bits set.
 inline RTCRay from_ray(const Ray& r) {
-  return from_vectors(Float4{r.o.x, r.o.y, r.o.z, 0}, Float4{r.d.x, r.d.y, r.d.z, 0}, r.t_max);
+  return from_vectors(Float4{r.o.x, r.o.y, r.o.z, 0}, Float4{r.d.x, r.d.y, r.d.z, 0}, r.t_max, r.time);
 }
 
 /// Geometry and primitive of a hit, in Embree's numbering.

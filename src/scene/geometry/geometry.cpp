@@ -40,10 +40,9 @@ RTCRay8 from_packet(const RayPacket& packet) {
     const Ray& r = packet.rays[i];
     rays.org_x[i] = r.o.x, rays.org_y[i] = r.o.y, rays.org_z[i] = r.o.z;
     rays.dir_x[i] = r.d.x, rays.dir_y[i] = r.d.y, rays.dir_z[i] = r.d.z;
-    rays.tfar[i] = r.t_max;
+    rays.tfar[i] = r.t_max, rays.time[i] = r.time;
   }
   std::ranges::fill(rays.tnear, 0x1p-126f);  // a camera may lie in the plane of a surface that it does not see
-  std::ranges::fill(rays.time, 0.f);
   std::ranges::fill(rays.mask, ~0u);
   std::ranges::fill(rays.id, 0u);
   std::ranges::fill(rays.flags, 0u);
@@ -104,13 +103,13 @@ void place(const AffineMap& map, const AffineMap::Inverse& inverse, SurfaceDeriv
 
 /// Sets the derivatives of a hit, and its frame along dpdu.
 [[gnu::noinline]] void set_derivatives(const Surface& surface, const RTCHit& at, const embree::Lane& lane,
-                                       uint32_t level, Hit& hit) {
+                                       uint32_t level, float time, Hit& hit) {
   SurfaceDerivatives d = derivatives_of(surface, at, lane);
   for (uint32_t i = level; i-- > 0;) {
     const auto& set = *static_cast<const GeometryInstances*>(lane.hit[i].set);
     const uint32_t row = lane.hit[i].row;
     AffineMap::Inverse made;
-    place(set.instances.table->map(row), set.inverse(row, made), d);
+    place(set.instances.map(row, time), set.inverse(row, time, made), d);
     if (set.instances.is_placed) place(set.instances.placement, set.from_placement, d);
   }
   hit.derivatives = d;
@@ -190,7 +189,7 @@ void Geometry::attach(GeometryObject& object) {
     GeometryInstances set{.instances = instances, .objects = {}, .first_id = object.ids};
     for (const uint32_t place : instances.objects) set.objects.push_back(objects_[place].get());
     const size_t rows = instances.table->size();
-    if (rows <= GeometryInstances::kMostKept) {
+    if (rows <= GeometryInstances::kMostKept && instances.motions.empty()) {
       set.inverses.reserve(rows);
       for (size_t row = 0; row < rows; ++row) set.inverses.push_back(instances.table->map(row).inverse());
     }
@@ -310,11 +309,11 @@ void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& r
     const auto& set = *static_cast<const GeometryInstances*>(lane.hit[i].set);
     const uint32_t row = lane.hit[i].row;
     AffineMap::Inverse made;
-    place(set.instances.table->map(row), set.inverse(row, made), hit, ns);
+    place(set.instances.map(row, ray.time), set.inverse(row, ray.time, made), hit, ns);
     if (set.instances.is_placed) place(set.instances.placement, set.from_placement, hit, ns);
   }
   set_frame(hit, ns, ray.d);
-  if (detailed.contains(surface.material)) set_derivatives(surface, at, lane, level, hit);
+  if (detailed.contains(surface.material)) set_derivatives(surface, at, lane, level, ray.time, hit);
   met.material = surface.material;
   met.medium_interface = surface.medium_interface;
   met.surface = level == 0 ? std::optional(at.geomID) : std::nullopt;
@@ -351,6 +350,13 @@ float Geometry::largest_ray_coordinate(float reach) const {
   for (const auto& object : objects_) add(*object);
   add(*world_);
   return largest + 2 * reach * world_->stretch;
+}
+
+bool Geometry::has_motion() const {
+  const auto has = [](const GeometryObject& object) {
+    return std::ranges::any_of(object.parts.instances, [](const Instances& i) { return !i.motions.empty(); });
+  };
+  return has(*world_) || std::ranges::any_of(objects_, [&has](const auto& object) { return has(*object); });
 }
 
 Bounds Geometry::bounds() const { return bounds_of(world_->scene.get()); }

@@ -7,6 +7,7 @@
 #include "core/shape.h"
 #include "core/world.h"
 #include "scene/geometry/instance_table.h"
+#include "scene/math/motion.h"
 
 // Forward declarations, so that this header does not require Embree.
 struct RTCDeviceTy;
@@ -40,10 +41,17 @@ struct Surface {
 
 /// Instances of objects, one for each row of the table.
 struct Instances {
-  std::shared_ptr<const InstanceTable> table;
-  std::vector<uint32_t> objects;  ///< object index by row; a single element applies to all rows
-  AffineMap placement;            ///< transform of the whole table
-  bool is_placed = false;         ///< false: `placement` is the identity
+  std::shared_ptr<const InstanceTable> table = {};
+  std::vector<uint32_t> objects = {};  ///< object index by row; a single element applies to all rows
+  AffineMap placement = {};            ///< transform of the whole table
+  bool is_placed = false;              ///< false: `placement` is the identity
+  std::vector<Motion> motions = {};    ///< by row, instead of the table's maps; empty: nothing moves
+
+  AffineMap map(size_t row, float time) const {
+    if (!motions.empty()) [[unlikely]]
+      return motions[row].at(time);
+    return table->map(row);
+  }
 };
 
 /// Content of an object or of the world: surfaces, and instances of other objects.
@@ -89,7 +97,9 @@ class Geometry {
   uint32_t intersect(const RayPacket& packet, DetailedMaterials detailed, GeometryHit* met, SurfacePoint* points) const;
   uint32_t closest(const RayPacket& packet, RTCRayHit8& query) const;
   uint32_t occluded(const RayPacket& packet) const;
+  /// Bounds of the whole exposure.
   Bounds bounds() const;
+  bool has_motion() const;
   /// Returns a bound of the coordinates of rays in the spaces of all objects, if they begin and end within `reach`
   /// units of the origin in each coordinate. Embree takes 1.8e18.
   float largest_ray_coordinate(float reach) const;

@@ -16,12 +16,12 @@ class Areas {
     if (first > 0)
       for (const Surface& s : object.parts.surfaces) areas_[first - 1] += float(area(s, to_world));
     for (const GeometryInstances& set : object.instances) {
-      const auto& [table, objects, placement, is_placed] = set.instances;
-      const Transform placed = is_placed ? to_world * transform_of(placement) : to_world;
-      for (size_t row = 0; row < table->size(); ++row) {
+      const Instances& i = set.instances;
+      const Transform placed = i.is_placed ? to_world * transform_of(i.placement) : to_world;
+      for (size_t row = 0; row < i.table->size(); ++row) {
         const GeometryObject& instanced = set.object(row);
         const uint64_t id = set.ids.empty() ? set.first_id + row * instanced.ids : set.ids[row];
-        visit(instanced, placed * transform_of(table->map(row)), first + id);
+        visit(instanced, placed * transform_of(i.map(row, 0)), first + id);
       }
     }
   }

@@ -21,10 +21,16 @@ struct GeometryInstances {
   std::vector<AffineMap::Inverse, HugePages<AffineMap::Inverse>> inverses = {};
   AffineMap::Inverse from_placement = {};  ///< valid if instances.is_placed
 
+  /// Number of equal parts of the exposure between Embree's time steps.
+  unsigned parts() const {
+    unsigned parts = 1;
+    for (const Motion& motion : instances.motions) parts = std::max(parts, motion.parts());
+    return parts;
+  }
   const GeometryObject& object(size_t row) const { return *objects[objects.size() == 1 ? 0 : row]; }
   /// `made`: storage for an inverse that is computed on demand.
-  const AffineMap::Inverse& inverse(size_t row, AffineMap::Inverse& made) const {
-    return inverses.empty() ? made = instances.table->map(row).inverse() : inverses[row];
+  const AffineMap::Inverse& inverse(size_t row, float time, AffineMap::Inverse& made) const {
+    return inverses.empty() ? made = instances.map(row, time).inverse() : inverses[row];
   }
 };
 

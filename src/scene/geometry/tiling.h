@@ -77,7 +77,8 @@ bool Tiling::march(const Ray& ray, const Meets& meets) const {
       for (int b = 0; b <= y_.overlap; ++b) {
         if (!y_.reaches(from.y, to.y, j, b)) break;
         const Vec3d shift{(i - a) * x_.period, (j - b) * y_.period, 0};
-        const Ray there{to_float(from - shift), ray.d, float(std::min(exit + slack, double(ray.t_max)) - enter)};
+        const Ray there{to_float(from - shift), ray.d, float(std::min(exit + slack, double(ray.t_max)) - enter),
+                        ray.time};
         met |= meets(Repeat{to_float(shift), there, float(enter)});
       }
     }
