@@ -142,5 +142,7 @@ def files():
     out["vase/glass.ply"] = ply_bytes(lathe.turn(GLASS), "glass vase")
     out["pot/clay.ply"] = ply_bytes(lathe.turn(CLAY), "flower pot")
     out["hundred-leaves/leaves.pbrt"] = plant.pbrt_text(list(hundred()), None, MESHES).encode("ascii")
+    out["outdoors/wind_plant.pbrt"] = plant.pbrt_text(ambient().leaflets, "../soybean-ambient/stems.ply", MESHES,
+                                                      random.Random(5)).encode("ascii")
     out |= field.files(LEAFLETS)
     return out

@@ -116,15 +116,22 @@ def transform(placed):
     return " ".join(f"{round(x, 6) + 0.0:.6f}" for column in columns for x in column)
 
 
-def pbrt_text(placed_leaflets, stems_file, mesh_folder):
-    """The plant as a file to Include: each kind of leaflet once, then its instances, then the stems."""
+def flutter(draw):
+    """Directives that turn a leaflet about its base during the exposure: about the midrib, and up or down, in degrees."""
+    turns = f"Rotate {draw.uniform(-14, 14):.2f} 1 0 0  Rotate {draw.uniform(-7, 7):.2f} 0 1 0"
+    return f"  ActiveTransform EndTime  {turns}  ActiveTransform All"
+
+
+def pbrt_text(placed_leaflets, stems_file, mesh_folder, wind=None):
+    """The plant as a file to Include: each kind of leaflet once, then its instances, then the stems. `wind`: random
+    numbers for motion; None: the leaves stand still."""
     lines = ["# Written by scenes/generator/make.py.", ""]
     for kind in sorted({p.kind for p in placed_leaflets}):
         lines += [f'ObjectBegin "{kind}"', '  NamedMaterial "leaf"']
         lines += [f'  Shape "plymesh" "string filename" "{mesh_folder}/leaflet-{kind}.ply"', "ObjectEnd", ""]
     for placed in placed_leaflets:
-        lines += ["AttributeBegin", f"  Transform [ {transform(placed)} ]", f'  ObjectInstance "{placed.kind}"']
-        lines += ["AttributeEnd"]
+        lines += ["AttributeBegin", f"  Transform [ {transform(placed)} ]"] + ([flutter(wind)] if wind else [])
+        lines += [f'  ObjectInstance "{placed.kind}"', "AttributeEnd"]
     if stems_file:
         lines += ["", 'NamedMaterial "petiole"', f'Shape "plymesh" "string filename" "{stems_file}"']
     return "\n".join(lines) + "\n"

@@ -176,7 +176,7 @@ over its mean, against CPU time.
 
 #: Scenes of the gallery, with what changes in each.
 GALLERY = {"morning": "An hour after sunrise in haze", "noon": "Noon in June", "overcast": "An overcast day",
-           "wet": "After rain: wet soil", "autumn": "Autumn"}
+           "wet": "After rain: wet soil", "autumn": "Autumn", "wind": "Wind: leaves that move"}
 
 
 def gallery(docs):
