@@ -1,7 +1,7 @@
 """Renders for scripts/race with Mitsuba 3, in a separate process of the Python that Mitsuba is installed in.
 
-Arguments: variant, scene (JSON of scenes.py), threads. Each line of standard input requests a render, as JSON; for each request
-one line of JSON with its CPU and wall-clock time is printed.
+Arguments: variant, scene (JSON of scenes.py), threads, 1 for robust intersections of Embree. Each line of standard input
+requests a render, as JSON; for each request one line of JSON with its CPU and wall-clock time is printed.
 """
 
 import json
@@ -87,15 +87,16 @@ def shape_of(shape, materials):
     return made | {"type": "ply", "filename": p["filename"], "to_world": transform, "face_normals": True}
 
 
-def load(scene, leaf=None):
-    """The scene with its own leaves, or with the BSDF `leaf` for all leaves."""
+def load(scene, leaf=None, robust=False):
+    """The scene with its own leaves, or with the BSDF `leaf` for all leaves. `robust`: of Embree's intersections."""
     two_sided = lambda value: {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": spectrum(value)}}
     reflectance, transmittance = scene["leaf"]
     if leaf is None and transmittance:
         mi.register_bsdf("diffuse_leaf", diffuse_leaf())
         leaf = {"type": "diffuse_leaf", "reflectance": reflectance, "transmittance": transmittance}
     materials = {name: two_sided(value) for name, value in scene["grey"].items()} | {"leaf": leaf or two_sided(reflectance)}
-    world = {"type": "scene", "integrator": {"type": "path", "max_depth": scene["depth"] + 1}}
+    world = {"type": "scene", "embree_use_robust_intersections": robust,
+             "integrator": {"type": "path", "max_depth": scene["depth"] + 1}}
     groups = {}
     for i, shape in enumerate(scene["shapes"]):
         made = shape_of(shape, materials)
@@ -127,12 +128,12 @@ def load(scene, leaf=None):
 
 
 def main():
-    variant, file, threads = sys.argv[1:]
+    variant, file, threads, robust = sys.argv[1:]
     mi.set_variant(variant)
     dr.set_thread_count(int(threads))
     mi.set_log_level(mi.LogLevel.Error)
     with open(file, encoding="utf-8") as text:
-        scene = load(json.load(text))
+        scene = load(json.load(text), robust=robust == "1")
     sensors = {sensor.id(): sensor for sensor in scene.sensors()}
     say = lambda **what: print(json.dumps(what), flush=True)
     say(cpu=time.process_time(), wall=time.perf_counter() - START, version=mi.__version__)

@@ -78,12 +78,14 @@ class Pbrt(Command):
 
 
 class Mitsuba:
-    """One process per scene, which renders repeatedly; LLVM variants compile in the first render."""
+    """One process per scene, which renders repeatedly; LLVM variants compile in the first render. `robust`: Embree's
+    intersections miss no ray between triangles, as in frond and pbrt-v4; Mitsuba's default misses some."""
 
     suffix = ".pfm"
 
-    def __init__(self, python, variant):
-        self.python, self.variant, self.name = python, variant, f"Mitsuba {variant}"
+    def __init__(self, python, variant, robust=False):
+        self.python, self.variant, self.robust = python, variant, robust
+        self.name = f"Mitsuba {variant}{', robust' if robust else ''}"
         self.spectral = variant.endswith("spectral")
 
     def version(self):
@@ -95,11 +97,12 @@ class Mitsuba:
         return len(scene.instances) <= MOST_TRACED
 
     def open(self, scene, leaf, setting, folder):
-        file = folder / f"{self.variant}-{leaf}.json"
+        file = folder / f"{self.variant}-{self.robust:d}-{leaf}.json"
         scenes.write_json(scene, file, leaf, setting.size)
-        home = folder / f"home-{self.variant}"  # without cached kernels
+        home = folder / f"home-{self.variant}-{self.robust:d}"  # without cached kernels
         home.mkdir(exist_ok=True)
-        words = [self.python, pathlib.Path(__file__).with_name("mitsuba_worker.py"), self.variant, file, setting.threads]
+        words = [self.python, pathlib.Path(__file__).with_name("mitsuba_worker.py"), self.variant, file, setting.threads,
+                 int(self.robust)]
         self.process = subprocess.Popen(list(map(str, words)), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
                                         env=os.environ | {"HOME": str(home)})
         self.loaded, self.compiling = self.answer(), {}
@@ -159,6 +162,8 @@ def present(pbrt, python):
             missing.append(f"Mitsuba {variant}: there is no LLVM library (DRJIT_LIBLLVM_PATH)")
         else:
             programs.append(Mitsuba(python, variant))
+            if variant == "llvm_ad_rgb":
+                programs.append(Mitsuba(python, variant, robust=True))
     found = pbrt or shutil.which("pbrt")
     if found:
         programs.append(Pbrt(found))

@@ -203,8 +203,9 @@ void Geometry::attach(GeometryObject& object) {
         object.ids += set.object(row).ids;
       }
     }
-    const float into =
-        instances.table->inverse_stretch() * (instances.is_placed ? set.from_placement.largest_stretch() : 1);
+    float into = instances.table->inverse_stretch() * (instances.is_placed ? set.from_placement.largest_stretch() : 1);
+    for (const Motion& motion : instances.motions)  // the table holds the starts
+      into = std::max(into, motion.at(1).inverse().largest_stretch());
     for (const GeometryObject* o : set.objects) {
       object.depth = std::max(object.depth, o->depth + 1);
       object.stretch = std::max(object.stretch, into * o->stretch);
