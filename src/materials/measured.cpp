@@ -1,8 +1,8 @@
 #include "core/material.h"
 #include "materials/measured/measured_data.h"
-#include "materials/measured/tensor_file.h"
 #include "spectra/check_range.h"
 #include "system/file_bytes.h"
+#include "system/tensor_file.h"
 
 namespace frond {
 namespace {

@@ -1,6 +1,6 @@
 // Measured BSDFs.
 
-#include "materials/measured/tensor_file.h"
+#include "system/tensor_file.h"
 
 #include "core/arena.h"
 #include "materials/measured/measured_data.h"

@@ -6,7 +6,7 @@
 #include "materials/measured/bilinear_density.h"
 #include "materials/measured/measured_data.h"
 #include "materials/measured/nodes.h"
-#include "materials/measured/tensor_file.h"
+#include "system/tensor_file.h"
 
 namespace frond {
 

@@ -1,4 +1,4 @@
-#include "materials/measured/tensor_file.h"
+#include "system/tensor_file.h"
 
 #include <algorithm>
 #include <array>
