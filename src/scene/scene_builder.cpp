@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"
+#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -315,8 +316,10 @@ class SceneBuilder {
     auto table = std::make_shared<MediumTable>();
     for (const MediumDescription& medium : description_.media) {
       table->owned.emplace_back();
-      problems_.attempt(
-          [&] { table->owned.back() = make(registry_.media, medium.plugin, resolver, medium.world_from_medium); });
+      problems_.attempt([&] {
+        table->owned.back() = make(registry_.media, medium.plugin, resolver, medium.world_from_medium);
+        table->owned.back()->check(*scene_.wavelengths_);
+      });
     }
     const auto at = [&table](const std::optional<size_t>& i) { return i ? table->owned[*i].get() : nullptr; };
     for (const MediumPair& pair : description_.medium_interfaces)
@@ -338,6 +341,7 @@ class SceneBuilder {
     // One light of infinite or NaN power would break the selection of lights by power.
     if (const double power = light->power(1); !(std::isfinite(power) && power >= 0))
       fail(where, "this light has the power {}, which is not possible", power);
+    check_range(light->range_nm(), *scene_.wavelengths_, where, "emission");
     if (const auto bounds = light->bounds())
       for (const Vec3& p : {bounds->min, bounds->max}) {
         check_coordinates(p, "this light reaches to", where);

@@ -111,6 +111,19 @@ TEST(ImageSky, RefusesAMapByLatitudeAndLongitude) {
       HasSubstr("makeequiarea"));
 }
 
+TEST(ImageSky, IsNotKnownInTheInfrared) {
+  const TestFolder folder("lights");
+  write_image(folder.name_of("sky.exr"), even(16, 16, 1), {"linear sRGB", {}});
+  for (const std::string kind : {"infinite", "projection"})
+    EXPECT_THAT(
+        error_of([&] {
+          Loaded("WorldBegin\nLightSource \"" + kind + "\" \"string filename\" \"" + folder.name_of("sky.exr") + '"',
+                 "bands,wavelengths=1650");
+        }),
+        HasSubstr("t:2:13: \"emission\" is known from 360 to 830 nm, 1650 nm was asked for"))
+        << kind;
+}
+
 /// By directions evenly over the sphere.
 template <class Value>
 double over_the_sphere(const Value& value) {

@@ -11,6 +11,9 @@
 #include "scene/format/parser.h"
 #include "scene/media/nanovdb_grid.h"
 #include "scene/scene.h"
+#include "spectra/analytic.h"
+#include "spectra/cie.h"
+#include "spectra/color/color_space.h"
 #include "system/file_bytes.h"
 #include "tests/support/input_error.h"
 
@@ -25,10 +28,10 @@ constexpr std::string_view kHead =
 
 /// A scene whose camera is in the medium "m".
 struct InMedium {
-  explicit InMedium(const std::string& medium)
-      : description(parse_scene_text(std::string(kHead) + "MakeNamedMedium \"m\" " + medium +
-                                         "\nMediumInterface \"m\"\nCamera \"perspective\"\nWorldBegin\n",
-                                     FROND_SOURCE_DIR "/tests/pbrt_reference/s.pbrt", silent_log())),
+  explicit InMedium(const std::string& medium, const std::string& head = std::string(kHead))
+      : description(parse_scene_text(
+            head + "MakeNamedMedium \"m\" " + medium + "\nMediumInterface \"m\"\nCamera \"perspective\"\nWorldBegin\n",
+            FROND_SOURCE_DIR "/tests/pbrt_reference/s.pbrt", silent_log())),
         scene(description, make_registry(builtin_materials(), builtin_integrators()), pool, silent_log()) {}
   const Medium& medium() const { return *scene.camera_medium(); }
   SampledWavelengths lambda() const { return scene.wavelengths().sample(0.5f); }
@@ -167,6 +170,61 @@ TEST(Media, BadInputIsRefusedWithItsPlace) {
                     "s.pbrt", silent_log());
               }),
               HasSubstr("s.pbrt:2:17: medium \"m\" is defined again"));
+}
+
+TEST(Media, ColoursAreNotKnownInTheInfrared) {
+  const auto refusal_at_1650_nm = [](const std::string& medium) {
+    return error_of([&] {
+      InMedium scene(medium, "Option \"string wavelengths\" \"bands,wavelengths=550,1650\"\nIntegrator \"volpath\"\n");
+    });
+  };
+  const std::string known = "is known from 360 to 830 nm, the render needs 550 to 1650 nm";
+  EXPECT_THAT(refusal_at_1650_nm("\"string type\" \"homogeneous\"\n\"string preset\" \"Skin1\""),
+              HasSubstr("s.pbrt:4:17: \"preset\" " + known));
+  EXPECT_THAT(refusal_at_1650_nm("\"string type\" \"rgbgrid\"\n\"rgb sigma_s\" [1 1 1]"),
+              HasSubstr("s.pbrt:4:16: \"sigma_s\" " + known));
+  EXPECT_THAT(refusal_at_1650_nm("\"string type\" \"rgbgrid\" \"rgb sigma_a\" [1 1 1] \n\"rgb Le\" [1 1 1]"),
+              HasSubstr("\"sigma_a\" " + known));
+  EXPECT_EQ(refusal_at_1650_nm("\"string type\" \"homogeneous\" \"float sigma_a\" 2"), "");
+}
+
+/// The colour, relative to its largest channel, that the absorption of a grid has under D65.
+Triple color_in_grid(const Medium& medium, const Vec3& unit, const ColorSpace& space) {
+  Triple xyz{};
+  double white = 0;
+  for (int nm = 360; nm <= 830; ++nm) {
+    SampledWavelengths lambda;
+    lambda.nm[0] = float(nm), lambda.pdf[0] = 1, lambda.active[0] = true, lambda.count = 1;
+    const double light = double(unit_d65()->at(float(nm))), sigma = double(medium.at(unit, lambda).sigma_a[0]);
+    const Triple bar = cie_xyz(nm);
+    for (size_t i = 0; i < 3; ++i) xyz[i] += light * sigma * bar[i];
+    white += light * bar[1];
+  }
+  for (double& v : xyz) v /= white;
+  return inverse(space.xyz_from_rgb) * (bradford(to_xyz(*unit_d65()), kD65White.xyz()) * xyz);
+}
+
+// Most of these colours are no reflectance at half of their brightness.
+TEST(Media, AGridHasTheColoursOfAWideSpace) {
+  const ColorSpace& space = *find_color_space("rec2020");
+  const std::array<Triple, 4> colors{{{1, 0, 0.02}, {0, 1, 0}, {0.02, 0.02, 1}, {0, 3, 1.5}}};
+  std::string values;
+  for (const Triple& c : colors) values += fmt::format(" {} {} {}", c[0], c[1], c[2]);
+  const InMedium in("\"string type\" \"rgbgrid\" \"integer nx\" 4 \"float scale\" 1 \"rgb sigma_a\" [" + values + "]",
+                    std::string(kHead) + "ColorSpace \"rec2020\"\n");
+  for (size_t i = 0; i < colors.size(); ++i) {
+    const Triple found = color_in_grid(in.medium(), {(float(i) + 0.5f) / 4, 0.5f, 0.5f}, space);
+    const double largest = *std::ranges::max_element(colors[i]);
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[k], colors[i][k], 0.03 * largest) << i;
+  }
+}
+
+TEST(Media, AColourThatNoSpectrumHasIsRefused) {
+  EXPECT_THAT(error_of([] {
+                InMedium in("\"string type\" \"rgbgrid\"\n\"rgb sigma_a\" [0 0 1]",
+                            std::string(kHead) + "ColorSpace \"aces2065-1\"\n");
+              }),
+              HasSubstr("s.pbrt:6:16: rgb (0, 0, 1) of color space \"aces2065-1\" is purer than any light can be"));
 }
 
 TEST(Media, AnEmptyOrEqualInterfaceIsNone) {

@@ -3,6 +3,7 @@
 #include "scene/media/medium_params.h"
 #include "scene/media/sampled_grid.h"
 #include "spectra/analytic.h"
+#include "spectra/check_range.h"
 #include "spectra/cie.h"
 #include "spectra/color/reflectance_table.h"
 
@@ -122,20 +123,17 @@ constexpr Param kRgbGrid[] = {
      .list = true},
     {.name = "Lescale", .kind = ParamKind::real, .default_value = 1.0, .range = kAtLeastZero, .doc = "Factor of Le."}};
 
-/// A multiple of a smooth reflectance.
-struct GridColor {
-  SigmoidPolynomial reflectance{{0, 0, 0}};
-  float scale = 0;
-  float max_value() const { return scale * reflectance.max_value(); }
-};
-
 /// Grid of colours as spectra.
 class ColorGrid {
  public:
   ColorGrid(const Params& p, std::string_view name)
-      : grid_(colors_of(p.vec3s(name), p.color_space(name), p.where(name)), grid_size(p, name, 3)) {}
+      : name_(name),
+        where_(p.where(name)),
+        grid_(colors_of(p.vec3s(name), p.color_space(name), where_), grid_size(p, name, 3)) {}
+  /// Throws InputError if colours are not defined at the wavelengths.
+  void check(const WavelengthStrategy& wavelengths) const { check_range(kCieRange_nm, wavelengths, where_, name_); }
   SampledSpectrum at(const Vec3& unit, const SampledWavelengths& lambda) const {
-    return grid_.at(unit, [&lambda](const GridColor& c) {
+    return grid_.at(unit, [&lambda](const Color& c) {
       SampledSpectrum s;
       if (c.scale > 0)
         for (int i = 0; i < lambda.count; ++i) s[i] = c.scale * c.reflectance.at(lambda.nm[size_t(i)]);
@@ -143,38 +141,53 @@ class ColorGrid {
     });
   }
   void bound(MajorantGrid& majorants) const {
-    grid_.bound(majorants, [](const GridColor& c) { return c.max_value(); });
+    grid_.bound(majorants, [](const Color& c) { return c.scale * c.reflectance.max_value(); });
   }
 
  private:
-  /// Distinct colours are fitted; if there are many, they are interpolated in a table.
-  static std::vector<GridColor> colors_of(const std::vector<Vec3>& rgb, const std::string& space_name,
-                                          const Location& where) {
+  struct Color {
+    SigmoidPolynomial reflectance{{0, 0, 0}};
+    float scale = 0;
+  };
+
+  /// Distinct colours are fitted; if there are many, they are interpolated in a table, except those that are purer than
+  /// the table is exact for. Throws InputError for a colour that no spectrum has.
+  static std::vector<Color> colors_of(const std::vector<Vec3>& rgb, const std::string& space_name,
+                                      const Location& where) {
     constexpr size_t kMostFits = 10000;
     const ColorSpace& space = color_space(space_name.empty() ? "srgb" : space_name, where);
-    std::map<std::array<float, 3>, GridColor> known;
+    std::map<std::array<float, 3>, Color> known;
     std::optional<ReflectanceTable> table;
-    std::vector<GridColor> colors;
+    std::vector<Color> colors;
     colors.reserve(rgb.size());
     for (const Vec3& c : rgb) {
-      const float peak = 2 * std::max({c.x, c.y, c.z});
-      GridColor& color = known[{c.x, c.y, c.z}];
-      if (color.scale == 0 && peak > 0) {
-        const Vec3 share = c / peak;  // away from 0 and 1, as in pbrt-v4
-        if (known.size() <= kMostFits) {
-          color.reflectance = fit_reflectance(space, {double(share.x), double(share.y), double(share.z)}).reflectance;
-        } else {
-          if (!table) table.emplace(space);
-          color.reflectance = table->at(Float4{share.x, share.y, share.z, 0});
-        }
-        color.scale = peak;
+      Color& color = known[{c.x, c.y, c.z}];
+      if (color.scale == 0 && std::max({c.x, c.y, c.z}) > 0) {
+        if (known.size() > kMostFits && !table) table.emplace(space);
+        color = color_of(c, space, table, where);
       }
       colors.push_back(color);
     }
     return colors;
   }
+  /// Looks a colour up in the table, if there is one and its error is small enough; else fits it.
+  static Color color_of(const Vec3& c, const ColorSpace& space, const std::optional<ReflectanceTable>& table,
+                        const Location& where) {
+    if (table) {
+      constexpr float kRoom = 2;  // as in fit_scaled
+      const float scale = kRoom * std::max({c.x, c.y, c.z});
+      const Vec3 share = c / scale;
+      const SigmoidPolynomial known = table->at(Float4{share.x, share.y, share.z, 0});
+      const Triple target{double(share.x), double(share.y), double(share.z)};
+      if (double(kRoom) * reflectance_error(space, target, known) <= kLargestFitError) return {known, scale};
+    }
+    const ScaledReflectance fit = fit_scaled(space, {double(c.x), double(c.y), double(c.z)}, where);
+    return {fit.reflectance, float(fit.scale)};
+  }
 
-  SampledGrid<GridColor> grid_;
+  std::string name_;
+  Location where_;
+  SampledGrid<Color> grid_;
 };
 
 std::optional<ColorGrid> given_colors(const Params& p, std::string_view name) {
@@ -230,6 +243,10 @@ class RgbGrid final : public Medium {
     return box_.steps(ray, &majorants_, one);
   }
   bool is_emissive() const override { return emission_ && emission_scale_ > 0; }
+  void check(const WavelengthStrategy& wavelengths) const override {
+    for (const std::optional<ColorGrid>* grid : {&sigma_a_, &sigma_s_, &emission_})
+      if (*grid) (*grid)->check(wavelengths);
+  }
 
  private:
   MediumBox box_;

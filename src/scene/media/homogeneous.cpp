@@ -1,4 +1,5 @@
 #include "scene/media/medium_params.h"
+#include "spectra/check_range.h"
 
 namespace frond {
 namespace {
@@ -29,7 +30,9 @@ class Homogeneous final : public Medium {
       : coefficients_(coefficients_of(p)),
         emission_(p.given("Le") ? p.spectrum("Le") : nullptr),
         emission_scale_(float(p.real("Lescale"))),
-        phase_(Phase::henyey_greenstein(float(p.real("g")))) {}
+        phase_(Phase::henyey_greenstein(float(p.real("g")))) {
+    if (p.given("preset")) preset_where_ = p.where("preset");
+  }
 
   MediumPoint at(const Vec3&, const SampledWavelengths& lambda) const override {
     MediumPoint point{coefficients_.sigma_a(lambda), coefficients_.sigma_s(lambda), {}, phase_};
@@ -41,12 +44,16 @@ class Homogeneous final : public Medium {
   }
   bool is_homogeneous() const override { return true; }
   bool is_emissive() const override { return emission_ && emission_scale_ > 0; }
+  void check(const WavelengthStrategy& wavelengths) const override {
+    if (preset_where_) check_range(kPresetRange_nm, wavelengths, *preset_where_, "preset");
+  }
 
  private:
   Coefficients coefficients_;
   SpectrumPtr emission_;
   float emission_scale_;
   Phase phase_;
+  std::optional<Location> preset_where_;
 };
 
 constexpr Param kTurbid[] = {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/plugin.h"
+#include "core/wavelengths.h"
 #include "scene/media/majorants.h"
 #include "scene/media/phase.h"
 
@@ -26,6 +27,9 @@ class Medium {
   /// True if the medium is the same everywhere; then the majorants are its extinction coefficient.
   virtual bool is_homogeneous() const { return false; }
   virtual bool is_emissive() const { return false; }
+  /// Called once, before the first path. Throws InputError if data of the medium do not cover the wavelengths
+  /// (check_range); the reader of the scene checks parameters of type spectrum.
+  virtual void check(const WavelengthStrategy&) const {}
 };
 
 /// Plug-in record of a medium.

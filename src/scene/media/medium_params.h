@@ -4,6 +4,7 @@
 
 #include "core/params.h"
 #include "scene/media/medium.h"
+#include "spectra/cie.h"
 
 namespace frond {
 
@@ -90,6 +91,9 @@ MediumBox medium_box(const Params& p, const Transform& world_from_medium);
 /// Size of a grid, "nx", "ny" and "nz". Throws InputError unless the list `name` has as many values, each of `unit`
 /// numbers.
 std::array<int, 3> grid_size(const Params& p, std::string_view name, size_t unit = 1);
+
+/// Wavelengths (nm) of the coefficients of named substances, which are colours.
+inline constexpr Interval kPresetRange_nm = kCieRange_nm;
 
 /// Coefficients of a named substance. Throws InputError for an unknown name.
 Coefficients preset_coefficients(std::string_view name, double scale, const Location& where);

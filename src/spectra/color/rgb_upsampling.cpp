@@ -167,22 +167,6 @@ void check(const ColorSpace& space, const Triple& rgb, Interval range, const Loc
       fail(where, "{} lies outside {} to {}", shown(space, rgb), range.min, range.max);
 }
 
-/// Fit of a colour divided by `scale`. The scale starts at twice the largest channel and is doubled until a reflectance
-/// of the scaled colour exists: purer colours need narrower and therefore darker reflectances.
-struct ScaledFit {
-  SigmoidFit fit;
-  double scale;
-};
-ScaledFit fit_scaled(const ColorSpace& space, const Triple& rgb, const Location& where) {
-  const double largest = std::max({rgb[0], rgb[1], rgb[2]});
-  for (double room = 2; room <= 64; room *= 2) {
-    const double scale = room * largest;
-    const SigmoidFit fit = fit_reflectance(space, {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
-    if (fit.error * room <= kLargestFitError) return {fit, scale};
-  }
-  fail(where, "{} is purer than any light can be", shown(space, rgb));
-}
-
 }  // namespace
 
 float SigmoidPolynomial::max_value() const {
@@ -197,6 +181,21 @@ SigmoidFit fit_reflectance(const ColorSpace& space, const Triple& rgb) {
   improve(coarse_response(), target, 1e-3, c);
   const double error = improve(fine_response(), target, 1e-7, c);
   return {SigmoidPolynomial(c), error};
+}
+
+double reflectance_error(const ColorSpace& space, const Triple& rgb, const SigmoidPolynomial& reflectance) {
+  return residual(fine_response(), reflectance.coefficients(), target_xyz(space, rgb)).largest();
+}
+
+/// The multiple is doubled until a reflectance of the scaled colour exists.
+ScaledReflectance fit_scaled(const ColorSpace& space, const Triple& rgb, const Location& where) {
+  const double largest = std::max({rgb[0], rgb[1], rgb[2]});
+  for (double room = 2; room <= 64; room *= 2) {
+    const double scale = room * largest;
+    const SigmoidFit fit = fit_reflectance(space, {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
+    if (fit.error * room <= kLargestFitError) return {fit.reflectance, scale};
+  }
+  fail(where, "{} is purer than any light can be", shown(space, rgb));
 }
 
 void refine_reflectance(const ColorSpace& space, const Triple& rgb, bool from_flat, Triple& c) {
@@ -219,15 +218,15 @@ SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Locatio
 SpectrumPtr rgb_unbounded(const ColorSpace& space, const Triple& rgb, const Location& where) {
   check(space, rgb, kNotNegative, where);
   if (is_grey(rgb)) return flat(rgb[0]);
-  const ScaledFit s = fit_scaled(space, rgb, where);
-  return std::make_shared<ReflectanceSpectrum>(s.fit.reflectance, s.scale);
+  const ScaledReflectance s = fit_scaled(space, rgb, where);
+  return std::make_shared<ReflectanceSpectrum>(s.reflectance, s.scale);
 }
 
 SpectrumPtr rgb_illuminant(const ColorSpace& space, const Triple& rgb, const Location& where) {
   check(space, rgb, kNotNegative, where);
   if (is_grey(rgb)) return std::make_shared<ScaledSpectrum>(unit_d65(), rgb[0]);
-  const ScaledFit s = fit_scaled(space, rgb, where);
-  return std::make_shared<IlluminantSpectrum>(s.fit.reflectance, s.scale);
+  const ScaledReflectance s = fit_scaled(space, rgb, where);
+  return std::make_shared<IlluminantSpectrum>(s.reflectance, s.scale);
 }
 
 }  // namespace frond

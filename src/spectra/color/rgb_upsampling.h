@@ -74,6 +74,20 @@ inline constexpr double kLargestFitError = 5e-3;
 SpectrumPtr rgb_albedo(const ColorSpace& space, const Triple& rgb, const Location& where,
                        const std::function<void(const std::string&)>& warn);
 
+/// Multiple of a smooth reflectance.
+struct ScaledReflectance {
+  SigmoidPolynomial reflectance{{0, 0, 0}};
+  double scale = 0;
+};
+
+/// Largest difference in X, Y or Z under D65 between a reflectance and the colour `rgb` (SigmoidFit::error).
+double reflectance_error(const ColorSpace& space, const Triple& rgb, const SigmoidPolynomial& reflectance);
+
+/// Returns a multiple of a reflectance that has this colour, of any size but black, with an error of at most
+/// kLargestFitError of its largest channel. The multiple is twice the largest channel, as in pbrt-v4, or larger: purer
+/// colours need narrower and therefore darker reflectances. Throws InputError at `where` if none has this chromaticity.
+ScaledReflectance fit_scaled(const ColorSpace& space, const Triple& rgb, const Location& where);
+
 /// Returns a spectrum of any size, such as an index of refraction: a multiple of a reflectance. Throws InputError at
 /// `where` if a channel is negative or no reflectance has this chromaticity.
 SpectrumPtr rgb_unbounded(const ColorSpace& space, const Triple& rgb, const Location& where);
