@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <cstring>
 #include <filesystem>
 
 #include "core/parallel.h"
@@ -262,6 +264,45 @@ TEST(NanoVdb, ReadsAFogVolume) {
   EXPECT_NEAR(grid->at({0.75f, 0, 0}), 0.83f, 0.2f) << "in the tube";
   EXPECT_EQ(grid->at({0, 0, 0}), 0) << "in the hole";
   EXPECT_EQ(grid->at({100, 1e30f, -1e30f}), 0);
+}
+
+/// The torus with the magic numbers and the version that newer libraries write, without compression. `is_raw`: a grid
+/// alone, without the file's header.
+std::string newer_torus(bool is_raw, uint32_t version) {
+  constexpr size_t kHeader = 16, kMeta = 176, kName = 8, kPackedSize = 8;
+  std::string head = torus().substr(0, kHeader + kMeta + kName);
+  const std::string packed = torus().substr(head.size() + kPackedSize);
+  const auto number = [](std::string& bytes, size_t at) -> uint64_t& {
+    return *reinterpret_cast<uint64_t*>(bytes.data() + at);
+  };
+  std::string grid(number(head, kHeader), '\0');
+  uLongf size = grid.size();
+  uncompress(reinterpret_cast<Bytef*>(grid.data()), &size, reinterpret_cast<const Bytef*>(packed.data()),
+             packed.size());
+  grid.replace(0, 8, "NanoVDB1");
+  std::memcpy(grid.data() + 16, &version, sizeof version);
+  head.replace(0, 8, "NanoVDB2");
+  std::memcpy(head.data() + 8, &version, sizeof version);
+  head[14] = 0;                             // no compression
+  number(head, kHeader + 8) = grid.size();  // in the file
+  return is_raw ? grid : head + grid;
+}
+
+TEST(NanoVdb, ReadsTheMagicNumbersOfNewerVersions) {
+  if (!can_read()) GTEST_SKIP() << "built without NanoVDB";
+  constexpr uint32_t kVersion = 32 << 21 | 9 << 10, kNextMajor = 33 << 21 | 1 << 10 | 2;
+  const auto old = read_grid(torus());
+  for (const bool is_raw : {false, true}) {
+    const std::string bytes = newer_torus(is_raw, kVersion);
+    const auto grid = read_grid(bytes);
+    ASSERT_TRUE(grid) << is_raw;
+    EXPECT_FALSE(read_grid(bytes, "temperature"));
+    for (const Vec3& p : {Vec3{0.75f, 0, 0}, Vec3{0, 0.7f, 0.1f}, Vec3{0, 0, 0}}) EXPECT_EQ(grid->at(p), old->at(p));
+    EXPECT_THAT(error_of([&] { (void)read_grid(newer_torus(is_raw, kNextMajor)); }),
+                HasSubstr("it is of version 33.1.2, versions 32.x are read"));
+    for (size_t size = 1; size < bytes.size(); size += size < 1300 ? 1 : 9973)
+      EXPECT_THROW((void)read_grid(std::string_view(bytes).substr(0, size)), InputError) << size;
+  }
 }
 
 TEST(NanoVdb, TruncatedAndDamagedFilesAreRefused) {

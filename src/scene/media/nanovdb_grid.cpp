@@ -21,6 +21,12 @@ using Upper = Root::ChildNodeType;
 using Lower = Upper::ChildNodeType;
 using Leaf = Lower::ChildNodeType;
 
+/// First words of files and grids. NanoVDB 32.6 and later write their own; the layouts are the same within a major
+/// version.
+constexpr uint64_t kOldMagic = NANOVDB_MAGIC_NUMBER;  // "NanoVDB0", of files and grids
+constexpr uint64_t kGridMagic = 0x314244566f6e614e;   // "NanoVDB1"
+constexpr uint64_t kFileMagic = 0x324244566f6e614e;   // "NanoVDB2"
+
 constexpr std::align_val_t kAlignment{NANOVDB_DATA_ALIGNMENT};
 struct Free {
   void operator()(std::byte* bytes) const { ::operator delete(bytes, kAlignment); }
@@ -34,21 +40,38 @@ class Bytes {
       : bytes_(bytes), file_(file), where_(where) {}
 
   [[noreturn]] void refuse(const std::string& what) const { fail(where_, "NanoVDB file \"{}\": {}", file_, what); }
+  /// Refuses versions whose layouts differ.
+  void check_version(const nanovdb::Version& v) const {
+    if (v.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
+      refuse(fmt::format("it is of version {}.{}.{}, versions {}.x are read", v.getMajor(), v.getMinor(), v.getPatch(),
+                         NANOVDB_MAJOR_VERSION_NUMBER));
+  }
   bool empty() const { return bytes_.empty(); }
   std::string_view take(uint64_t size) {
-    if (size > bytes_.size()) refuse("it is truncated");
-    const std::string_view taken = bytes_.substr(0, size);
+    const std::string_view taken = next(size);
     bytes_.remove_prefix(size);
     return taken;
   }
   template <class T>
   T take() {
+    const T value = next<T>();
+    bytes_.remove_prefix(sizeof value);
+    return value;
+  }
+  /// The value that `take` would return.
+  template <class T>
+  T next() const {
     T value;
-    std::memcpy(static_cast<void*>(&value), take(sizeof value).data(), sizeof value);
+    std::memcpy(static_cast<void*>(&value), next(sizeof value).data(), sizeof value);
     return value;
   }
 
  private:
+  std::string_view next(uint64_t size) const {
+    if (size > bytes_.size()) refuse("it is truncated");
+    return bytes_.substr(0, size);
+  }
+
   std::string_view bytes_;
   const std::string& file_;
   const Location& where_;
@@ -62,7 +85,9 @@ class NodeCheck {
 
   void check() const {
     const auto& grid = *reinterpret_cast<const nanovdb::GridData*>(memory_);
-    if (size_ < sizeof(nanovdb::GridData) + sizeof(Tree) || grid.mMagic != NANOVDB_MAGIC_NUMBER) damaged();
+    if (size_ < sizeof(nanovdb::GridData) + sizeof(Tree) || (grid.mMagic != kOldMagic && grid.mMagic != kGridMagic))
+      damaged();
+    file_.check_version(grid.mVersion);
     if (grid.mGridType != nanovdb::GridType::Float)
       file_.refuse("its grid does not hold 32-bit floats, which medium \"nanovdb\" takes");
     if (grid.mGridClass != nanovdb::GridClass::FogVolume && grid.mGridClass != nanovdb::GridClass::Unknown)
@@ -273,17 +298,34 @@ class LoadedGrid final : public NanoVdbGrid {
   Bounds bounds_;
 };
 
+std::unique_ptr<NanoVdbGrid> load(nanovdb::io::Codec codec, std::string_view packed, uint64_t size, const Bytes& file) {
+  Memory memory = unpack(codec, packed, size, file);
+  NodeCheck(memory.get(), size, file).check();
+  return std::make_unique<LoadedGrid>(std::move(memory), file);
+}
+
+/// Reads a file that is grids one after the other, without compression.
+std::unique_ptr<NanoVdbGrid> read_raw(Bytes& file, std::string_view name) {
+  while (!file.empty()) {
+    const auto grid = file.next<nanovdb::GridData>();
+    if (grid.mMagic != kGridMagic || grid.mGridSize < sizeof grid) file.refuse("it is damaged");
+    const std::string_view bytes = file.take(grid.mGridSize), text(grid.mGridName, sizeof grid.mGridName);
+    if (text.substr(0, text.find('\0')) == name) return load(nanovdb::io::Codec::NONE, bytes, grid.mGridSize, file);
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::unique_ptr<NanoVdbGrid> NanoVdbGrid::read(std::string_view all, const std::string& name_of_file,
                                                std::string_view name, const Location& where) {
   Bytes file(all, name_of_file, where);
+  if (!file.empty() && file.next<uint64_t>() == kGridMagic) return read_raw(file, name);
   while (!file.empty()) {
     const auto header = file.take<nanovdb::io::Header>();
-    if (header.magic != NANOVDB_MAGIC_NUMBER) file.refuse("it does not begin as one");
-    if (header.version.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER || header.codec >= nanovdb::io::Codec::END)
-      file.refuse(fmt::format("it is of version {}, version {} is read", header.version.getMajor(),
-                              NANOVDB_MAJOR_VERSION_NUMBER));
+    if (header.magic != kOldMagic && header.magic != kFileMagic) file.refuse("it does not begin as one");
+    file.check_version(header.version);
+    if (header.codec >= nanovdb::io::Codec::END) file.refuse("its compression is unknown");
     std::vector<std::pair<nanovdb::io::MetaData, std::string_view>> grids;
     for (int i = 0; i < header.gridCount; ++i) {
       const auto meta = file.take<nanovdb::io::MetaData>();
@@ -293,9 +335,7 @@ std::unique_ptr<NanoVdbGrid> NanoVdbGrid::read(std::string_view all, const std::
     for (const auto& [meta, text] : grids) {
       const std::string_view packed = file.take(meta.fileSize);
       if (text != name) continue;
-      Memory memory = unpack(header.codec, packed, meta.gridSize, file);
-      NodeCheck(memory.get(), meta.gridSize, file).check();
-      return std::make_unique<LoadedGrid>(std::move(memory), file);
+      return load(header.codec, packed, meta.gridSize, file);
     }
   }
   return nullptr;
