@@ -69,9 +69,6 @@ class MediumBox {
   /// Position of a point of world space in the box: each coordinate is 0 to 1 within.
   Vec3 unit(const Vec3& p) const { return share(local(p)); }
   Vec3 share(const Vec3& local) const;
-  /// Clips a ray of world space to the box; returns false if they do not meet. `in_box` is the ray in coordinates in
-  /// which the box is the unit cube; distances along both rays are the same.
-  bool clip(const Ray& ray, float& begin, float& end, Ray& in_box) const;
   /// Pieces of a ray of world space inside the box: one if `grid` is nullptr. `sigma` is the extinction coefficient at
   /// density 1.
   MajorantSteps steps(const Ray& ray, const MajorantGrid* grid, const SampledSpectrum& sigma) const {
@@ -82,6 +79,10 @@ class MediumBox {
   }
 
  private:
+  /// Clips a ray of world space to the box; returns false if they do not meet. `in_box` is the ray in coordinates in
+  /// which the box is the unit cube; distances along both rays are the same.
+  bool clip(const Ray& ray, float& begin, float& end, Ray& in_box) const;
+
   Bounds bounds_;
   Transform medium_from_world_;
 };
