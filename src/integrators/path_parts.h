@@ -29,7 +29,7 @@ inline constexpr int kSafeScatterings = 5;
 inline constexpr float kBeforeLight = 1 - 0x1p-13f;
 
 /// Calls `act`. An exception of a plug-in gets the material of `at`, the surface whose plug-ins were called; nullptr if
-/// there is none.
+/// there is none. Calls may be nested: the innermost names the surface.
 template <class Act>
 void with_surface_of_errors(const SurfacePoint* const& at, const Act& act) {
   try {
@@ -37,6 +37,8 @@ void with_surface_of_errors(const SurfacePoint* const& at, const Act& act) {
   } catch (const InputError&) {
     throw;
   } catch (const Stopped&) {
+    throw;
+  } catch (const SurfaceError&) {
     throw;
   } catch (const std::bad_alloc&) {
     throw;

@@ -23,7 +23,10 @@ bool ShadowRay::trace(const LightSample& sample, uint64_t key, Arena& arena, uin
     const bool is_hit = world_.intersect(ray, hash_key(key, uint64_t(passed)), point);
     if (is_hit) {
       arena.reset();
-      if (point.material->evaluate(point.hit, lambda_, arena)) return false;
+      const SurfacePoint* const at = &point;
+      bool is_occluded = false;
+      with_surface_of_errors(at, [&] { is_occluded = point.material->evaluate(point.hit, lambda_, arena); });
+      if (is_occluded) return false;
     }
     // An unbounded medium attenuates distant lights over the diameter of the scene, as in pbrt-v4.
     const float way = is_hit       ? length(point.hit.p - from)

@@ -173,7 +173,7 @@ class VolPathTracer final : public Tracer {
     path_.r_l = before * (1 / density);
     is_specular_ = !settings_.sample_lights;
     previous_ = place;
-    ray_ = {p, wi};
+    ray_ = {p, wi, INFINITY, ray_.time};
     from_ = p;
     return survives();
   }
