@@ -221,6 +221,25 @@ TEST(Media, AGridHasTheColoursOfAWideSpace) {
   }
 }
 
+// Beyond 10,000 distinct colours, most come from a table. The last layer along z has them.
+TEST(Media, AGridHasManyColours) {
+  constexpr int kSide = 22;
+  const auto level = [](int i) { return double(i) / (kSide - 1); };
+  std::string values;
+  for (int z = 0; z < kSide; ++z)
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) values += fmt::format(" {} {} {}", level(x), level(y), level(z));
+  const InMedium in(R"("string type" "rgbgrid" "integer nx" 22 "integer ny" 22 "integer nz" 22 "rgb sigma_a" [)" +
+                    values + "]");
+  const auto middle = [](int i) { return (float(i) + 0.5f) / kSide; };
+  for (const auto& [x, y] : {std::pair{0, 0}, {21, 0}, {0, 21}, {10, 15}, {21, 20}}) {
+    const Triple found =
+        color_in_grid(in.medium(), {middle(x), middle(y), middle(kSide - 1)}, *find_color_space("srgb"));
+    const Triple expected{level(x), level(y), 1};
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[k], expected[k], 0.03) << x << ' ' << y;
+  }
+}
+
 TEST(Media, AColourThatNoSpectrumHasIsRefused) {
   EXPECT_THAT(error_of([] {
                 InMedium in("\"string type\" \"rgbgrid\"\n\"rgb sigma_a\" [0 0 1]",
