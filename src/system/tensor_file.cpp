@@ -13,7 +13,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are read as they are in the file");
 
 constexpr std::string_view kMagic("tensor_file\0", 12);
-constexpr uint8_t kFloat32 = 10;
 /// Bytes of a number of each type: none, integers of 8 to 64 bits with and without sign, floats of 16 to 64 bits.
 constexpr std::array<uint8_t, 12> kBytes{0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
 
@@ -107,6 +106,26 @@ std::vector<float> TensorFile::numbers(const Field& field, float least) const {
           "field \"{}\" contains {}; {}", field.name, value,
           std::isfinite(value) ? fmt::format("numbers from {} are allowed", least) : "finite numbers are needed"));
   return values;
+}
+
+std::string tensor_file_of(std::span<const TensorFile::Field> fields) {
+  std::string file(kMagic), arrays;
+  const auto put = [&file](const auto& number) { file.append(reinterpret_cast<const char*>(&number), sizeof number); };
+  size_t start = kMagic.size() + sizeof(uint16_t) + sizeof(uint32_t);
+  for (const TensorFile::Field& f : fields)
+    start += 2 * sizeof(uint16_t) + f.name.size() + sizeof f.type + sizeof(uint64_t) * (1 + f.shape.size());
+  put(std::array<uint8_t, 2>{1, 0});
+  put(uint32_t(fields.size()));
+  for (const TensorFile::Field& f : fields) {
+    put(uint16_t(f.name.size()));
+    file += f.name;
+    put(uint16_t(f.shape.size()));
+    put(f.type);
+    put(uint64_t(start + arrays.size()));
+    for (const size_t size : f.shape) put(uint64_t(size));
+    arrays += f.bytes;
+  }
+  return file + arrays;
 }
 
 void TensorFile::refuse(std::string_view why) const { fail(where_, "\"{}\": {}", name_, why); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,8 @@ bool is_tensor_file(std::string_view bytes);
 /// number of dimensions, uint8 type, uint64 offset of the array from the start of the file, uint64 for each dimension.
 class TensorFile {
  public:
+  /// Types of numbers, as in the file; there are others.
+  static constexpr uint8_t kUint8 = 1, kFloat32 = 10;
   /// An array of a file.
   struct Field {
     std::string_view name;
@@ -48,5 +51,8 @@ class TensorFile {
   Location where_;
   std::vector<Field> fields_;
 };
+
+/// Returns the content of a file with these fields. `count` is not used; `bytes` must fit type and shape.
+std::string tensor_file_of(std::span<const TensorFile::Field> fields);
 
 }  // namespace frond

@@ -45,6 +45,7 @@ void Materials::write_plain(Xml& xml, const ParsedPlugin& plugin, const std::str
   if (name == "diffusetransmission") return write_transmitting(xml, plugin, p, id, index);
   if (name == "conductor") return write_conductor(xml, plugin, p, id);
   if (name == "dielectric" || name == "thindielectric") return write_dielectric(xml, plugin, p, id);
+  if (name == "measured") return write_measured(context_, xml, p, id);
   if (name == "mix") return write_mix(xml, plugin, p, id, index);
   if (name == "interface") return xml.element("bsdf", {{"type", "null"}, {"id", id}});
   if (name == "leaf_lambert") return write_lambertian_leaf(context_, xml, plugin, index, id);

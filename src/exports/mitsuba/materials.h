@@ -34,6 +34,9 @@ class Materials {
   std::set<size_t> with_image_;
 };
 
+/// Writes an isotropic tensor file as Mitsuba's BSDF "measured". Throws InputError for other measurements, and for mono
+/// variants, which it is not for.
+void write_measured(Context& context, Xml& xml, const Params& p, const std::string& id);
 /// Writes a leaf as Mitsuba's plug-in frond_leaf, which is leaf_solved. Returns whether it has an image.
 bool write_leaf(Context& context, Xml& xml, const ParsedPlugin& plugin, const std::string& id);
 /// Writes leaf_lambert as Mitsuba's plug-in frond_diffuse, with the shares of both sides.
