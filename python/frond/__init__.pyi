@@ -363,7 +363,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     tasks: Number of tasks, among which the samples are divided. Range: from 1 to 1000000.
     engine: Program that schedules the tasks: Slurm, Open Job Description, or Snakemake. One of slurm, openjd, snakemake.
     slurm: The same as engine slurm. Excludes engine.
-    run: Also start the job: submit it with sbatch, or run it here with openjd or snakemake.
+    run: Also start the job: submit it with sbatch, or run it here with openjd or snakemake, whose output quiet writes to FOLDER/ENGINE.log.
     folder: Folder of the job's files, parts and logs; OUTPUT.ENGINE by default.
     wavelengths: Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in nm: 450,550,850 or 400:1000:10.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.

@@ -9,6 +9,7 @@
 #include "report/text_output.h"
 #include "system/atomic_file.h"
 #include "system/child_process.h"
+#include "system/file_bytes.h"
 
 namespace frond {
 
@@ -41,7 +42,9 @@ const JobParam kParams[] = {
     JobParam("engine", text, "Program that schedules the tasks: Slurm, Open Job Description, or Snakemake.",
              {.choices = kEngineNames}),
     JobParam("slurm", flag, "The same as --engine slurm.", {.excludes = "engine"}),
-    JobParam("run", flag, "Also start the job: submit it with sbatch, or run it here with openjd or snakemake."),
+    JobParam("run", flag,
+             "Also start the job: submit it with sbatch, or run it here with openjd or snakemake, whose output --quiet "
+             "writes to FOLDER/ENGINE.log."),
     JobParam("folder", text, "Folder of the job's files, parts and logs; OUTPUT.ENGINE by default.",
              {.type = "FOLDER", .path = PathUse::write}),
 };
@@ -157,9 +160,21 @@ std::vector<std::pair<std::string, std::string>> values_of(const JobRun& run, co
           {"@LAST_TASK@", std::to_string(tasks - 1)}};
 }
 
-/// Starts the job. Returns what a queue has answered, or nothing if the engine has run the job and printed as it did.
-/// Throws InputError if the engine fails.
-std::string start(const Engine& engine, const fs::path& folder) {
+/// Returns the end of what an engine has printed to a file, for an error message; empty if it has printed nothing.
+std::string end_of(const fs::path& printed) {
+  constexpr int kMostLines = 10;
+  std::string text = read_file_bytes(printed, {});
+  while (text.ends_with('\n')) text.pop_back();
+  if (text.empty()) return "";
+  size_t begin = text.size();
+  for (int i = 0; i < kMostLines && begin != std::string::npos && begin > 0; ++i) begin = text.rfind('\n', begin - 1);
+  return fmt::format("; the end of \"{}\":\n{}", printed.string(),
+                     begin == std::string::npos || begin == 0 ? text : text.substr(begin + 1));
+}
+
+/// Starts the job. Returns what a queue has answered, or nothing if the engine has run the job and printed as it did;
+/// if `is_quiet`, it has printed to a file in the folder. Throws InputError if the engine fails.
+std::string start(const Engine& engine, const fs::path& folder, bool is_quiet) {
   const std::vector<std::string> command = command_of(engine, folder);
   if (engine.is_queue) {
     const auto child = run_child(command, "");
@@ -167,11 +182,12 @@ std::string start(const Engine& engine, const fs::path& folder) {
       fail({}, "\"{}\" could not submit the job: {}", command.front(), child ? child->err : "it cannot be run");
     return child->out;
   }
-  const auto status = run_attached(command);
+  const fs::path printed = is_quiet ? folder / fmt::format("{}.log", engine.name) : fs::path();
+  const auto status = run_attached(command, printed);
   if (!status) fail({}, "{} cannot be run", engine.program);
   if (*status != 0)
-    fail({}, "{} ended with {}; this renders what is missing: {}", engine.program, ending(*status),
-         command_text(engine, folder));
+    fail({}, "{} ended with {}; this renders what is missing: {}{}", engine.program, ending(*status),
+         command_text(engine, folder), is_quiet ? end_of(printed) : "");
   return "";
 }
 
@@ -199,7 +215,7 @@ Result submit(const JobRun& run) {
   }
   const std::string command = command_text(engine, folder);
   const std::string text = args.flag("run")
-                               ? start(engine, folder)
+                               ? start(engine, folder, args.flag("quiet"))
                                : fmt::format("{}\n  starts {} tasks and the merge{}\n", command, tasks, engine.advice);
   return {.facts = {{"command", command}}, .text = text};
 }

@@ -146,9 +146,13 @@ std::optional<ChildResult> run_child(const std::vector<std::string>& command, co
   return ChildResult{status, streams[1].content(), streams[2].content()};
 }
 
-std::optional<int> run_attached(const std::vector<std::string>& command) {
+std::optional<int> run_attached(const std::vector<std::string>& command, const std::filesystem::path& output) {
+  std::unique_ptr<FILE, int (*)(FILE*)> file(output.empty() ? nullptr : std::fopen(output.c_str(), "we"), &std::fclose);
+  if (!output.empty() && !file) fail({}, "cannot write \"{}\": {}", output.string(), std::strerror(errno));
+  std::vector<int> descriptors;
+  if (file) descriptors = {STDIN_FILENO, fileno(file.get()), fileno(file.get())};
   const SignalsOfChild signals;
-  const auto child = start(command, {});
+  const auto child = start(command, descriptors);
   if (!child) return {};
   signals.pass_to(*child);
   return wait_for(*child);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,9 +19,10 @@ std::optional<ChildResult> run_child(const std::vector<std::string>& command, co
 
 /// Runs a program, which is searched for in PATH, on this process's standard streams, and waits until it ends. As in
 /// system(3), SIGINT from the terminal ends the program and not this process; SIGTERM and SIGHUP are passed on to it.
-/// Returns the status as from waitpid, or nothing if there is no such program. Throws InputError if it cannot be run
-/// for any other reason. Not for two threads at once.
-std::optional<int> run_attached(const std::vector<std::string>& command);
+/// With `output`, what the program prints goes to this file, which is replaced. Returns the status as from waitpid, or
+/// nothing if there is no such program. Throws InputError if it cannot be run for any other reason, or if the file
+/// cannot be written. Not for two threads at once.
+std::optional<int> run_attached(const std::vector<std::string>& command, const std::filesystem::path& output = {});
 
 /// Returns whether PATH has a program of this name.
 bool is_in_path(const std::string& program);

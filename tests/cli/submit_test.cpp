@@ -159,5 +159,33 @@ TEST_F(Submit, RunReportsHowAnEngineEndsAndHowToGoOn) {
                                path("image.exr.openjd/template.yaml")));
 }
 
+TEST_F(Submit, QuietPutsWhatAnEnginePrintsIntoAFile) {
+  const auto run_with = [this](const std::string& script, const std::string& output, std::vector<std::string> more) {
+    const fs::path fake = folder_.write("bin/openjd", "#!/bin/sh\n" + script);
+    fs::permissions(fake, fs::perms::owner_exec, fs::perm_options::add);
+    const PathOf with_fake(path("bin"));
+    more.insert(more.end(), {"--engine", "openjd", "--run"});
+    return submit(output, more);
+  };
+  const std::string chatty = "echo task 1; echo task 2 >&2\n";
+  const Outcome loud = run_with(chatty, path("a.exr"), {});
+  EXPECT_THAT(loud.out, HasSubstr("task 1\n"));
+  EXPECT_THAT(loud.err, HasSubstr("task 2\n"));
+  EXPECT_FALSE(fs::exists(path("a.exr.openjd/openjd.log")));
+  const Outcome silent = run_with(chatty, path("b.exr"), {"-q"});
+  EXPECT_EQ(silent.code, 0);
+  EXPECT_EQ(silent.out + silent.err, "");
+  EXPECT_EQ(content(path("b.exr.openjd/openjd.log")), "task 1\ntask 2\n");
+  const Outcome failed =
+      run_with("i=0; while [ $i -lt 30 ]; do i=$((i+1)); echo line $i; done; exit 3\n", path("c.exr"), {"-q"});
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_EQ(failed.out, "");
+  EXPECT_THAT(failed.err, AllOf(HasSubstr("openjd ended with exit code 3"), HasSubstr("c.exr.openjd/openjd.log"),
+                                HasSubstr("line 21\n"), HasSubstr("line 30"), Not(HasSubstr("line 20\n"))));
+  EXPECT_THAT(run_with("echo no; exit 1\n", path("d.exr"), {"-q"}).err, HasSubstr("openjd.log\":\nno"));
+  EXPECT_THAT(run_with("exit 1\n", path("e.exr"), {"-q"}).err,
+              AllOf(HasSubstr("exit code 1"), Not(HasSubstr("the end of"))));
+}
+
 }  // namespace
 }  // namespace frond
