@@ -63,13 +63,13 @@ struct PacketQuery {
   }
 };
 
-/// Fills a hit in the space of the containing object. Returns whether shading and geometric normal differ.
-bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hit& hit, Vec3& ns) {
-  hit.extent = 0;
+/// Fills a hit in the space of the containing object. Returns whether shading and geometric normal differ. `extent` is
+/// the largest absolute value of each coordinate that entered the computation of the point.
+bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hit& hit, Vec3& extent, Vec3& ns) {
   if (const auto* mesh = std::get_if<MeshPtr>(&surface.geometry)) {
     const Triangle t(**mesh, at.primID, {at.u, at.v});
     hit.p = t.p();
-    for (const uint32_t i : t.corners()) hit.extent = std::max(hit.extent, largest_coordinate((*mesh)->p[i]));
+    extent = t.extent();
     hit.ng = t.ng();
     hit.at.uv = t.uv();
     if ((*mesh)->n.empty()) return false;
@@ -80,9 +80,11 @@ bool fill(const Surface& surface, const RTCHit& at, const embree::Lane& lane, Hi
   const AnalyticShape& shape = *std::get<AnalyticShapePtr>(surface.geometry);
   hit.at.uv = shape.uv(at.primID, {at.u, at.v});
   hit.p = lane.p;
-  hit.extent = largest_coordinate(hit.p);
+  float largest = largest_coordinate(hit.p);
+  extent = {largest, largest, largest};
   if (shape.is_plain()) return false;
-  hit.extent = std::max(hit.extent, shape.clearance({lane.p, hit.ng, {at.u, at.v}, 0, at.primID}) / kLiftOfExtent);
+  largest = std::max(largest, shape.clearance({lane.p, hit.ng, {at.u, at.v}, 0, at.primID}) / kLiftOfExtent);
+  extent = {largest, largest, largest};
   ns = shape.shading_normal(at.primID, {at.u, at.v});
   return !(ns == Vec3{});
 }
@@ -123,11 +125,18 @@ Vec3 of_moderate_length(const Vec3& n) {
 }
 
 /// Transforms a hit from an object's space to the instance's. `ns` is nullptr if the hit has only its geometric normal.
-void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Vec3* ns) {
+void place(const AffineMap& map, const AffineMap::Inverse& inverse, Hit& hit, Vec3& extent, Vec3* ns) {
   hit.p = map.point(hit.p);
-  hit.extent = map.largest_stretch() * hit.extent + largest_coordinate(map.translation());
+  extent = map.largest_point(extent);
   hit.ng = inverse.normal_out(of_moderate_length(hit.ng));
   if (ns) *ns = inverse.normal_out(of_moderate_length(*ns));
+}
+
+/// Component along the normal `ng`, a unit vector, of a bound of coordinates: errors within the surface's plane do not
+/// bring a ray's origin to its other side. So a large horizontal plane can be close to another one.
+float along_normal(const Vec3& extent, const Vec3& ng) {
+  const Vec3 n{std::abs(ng.x), std::abs(ng.y), std::abs(ng.z)};
+  return std::min(dot(n, extent), largest_coordinate(extent));
 }
 
 }  // namespace
@@ -304,16 +313,17 @@ void Geometry::describe(const RTCHit& at, const embree::Lane& lane, const Ray& r
     if (!table.columns().empty()) hit.at.instance.add(table.columns(), table.bytes(row));
   }
   const Surface& surface = object->parts.surfaces[at.geomID];
-  Vec3 own_normal;
-  Vec3* const ns = fill(surface, at, lane, hit, own_normal) ? &own_normal : nullptr;
+  Vec3 extent, own_normal;
+  Vec3* const ns = fill(surface, at, lane, hit, extent, own_normal) ? &own_normal : nullptr;
   for (uint32_t i = level; i-- > 0;) {
     const auto& set = *static_cast<const GeometryInstances*>(lane.hit[i].set);
     const uint32_t row = lane.hit[i].row;
     AffineMap::Inverse made;
-    place(set.instances.map(row, ray.time), set.inverse(row, ray.time, made), hit, ns);
-    if (set.instances.is_placed) place(set.instances.placement, set.from_placement, hit, ns);
+    place(set.instances.map(row, ray.time), set.inverse(row, ray.time, made), hit, extent, ns);
+    if (set.instances.is_placed) place(set.instances.placement, set.from_placement, hit, extent, ns);
   }
   set_frame(hit, ns, ray.d);
+  hit.extent = along_normal(extent, hit.ng);
   if (detailed.contains(surface.material)) set_derivatives(surface, at, lane, level, ray.time, hit);
   met.material = surface.material;
   met.medium_interface = surface.medium_interface;

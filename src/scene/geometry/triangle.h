@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/material.h"
 #include "core/shape.h"
 
@@ -28,7 +31,12 @@ class Triangle {
   }
   /// Returns derivatives by (u, v), or arbitrary tangents if (u, v) is degenerate.
   SurfaceDerivatives derivatives() const;
-  const std::array<uint32_t, 3>& corners() const { return index_; }
+  /// Largest absolute value of each coordinate of the corners.
+  Vec3 extent() const {
+    const Vec3 &a = mesh_.p[index_[0]], &b = mesh_.p[index_[1]], &c = mesh_.p[index_[2]];
+    const auto largest = [](float x, float y, float z) { return std::max({std::abs(x), std::abs(y), std::abs(z)}); };
+    return {largest(a.x, b.x, c.x), largest(a.y, b.y, c.y), largest(a.z, b.z, c.z)};
+  }
 
  private:
   /// Default texture coordinates of the second and third corner; the first has (0, 0).

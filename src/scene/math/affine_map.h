@@ -35,7 +35,7 @@ struct AffineMap {
 
     Float4 vector(Float4 v) const { return x * v[0] + y * v[1] + z * v[2]; }
     Float4 point(Float4 p) const { return vector(p - translation); }
-    /// As AffineMap::largest_stretch.
+    /// Returns a bound of the ratio of the largest coordinates after and before the map, without translation.
     float largest_stretch() const {
       float largest = 0;
       for (int i = 0; i < 3; ++i) largest = std::max(largest, std::abs(x[i]) + std::abs(y[i]) + std::abs(z[i]));
@@ -54,11 +54,13 @@ struct AffineMap {
     const Vec3 a = yz * scale, b = cross(z, x) * scale, c = cross(x, y) * scale;
     return {Float4{a.x, b.x, c.x, 0}, Float4{a.y, b.y, c.y, 0}, Float4{a.z, b.z, c.z, 0}, Float4{t.x, t.y, t.z, 0}};
   }
-  /// Returns a bound of the ratio of the largest coordinates after and before the map, without translation.
-  float largest_stretch() const {
-    float largest = 0;
-    for (const auto& r : rows) largest = std::max(largest, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
-    return largest;
+  /// Returns bounds of the absolute coordinates after the map, and of its intermediate results, of points whose
+  /// absolute coordinates are at most `p`.
+  Vec3 largest_point(const Vec3& p) const {
+    const auto bound = [&p](const std::array<float, 4>& r) {
+      return std::abs(r[0]) * p.x + std::abs(r[1]) * p.y + std::abs(r[2]) * p.z + std::abs(r[3]);
+    };
+    return {bound(rows[0]), bound(rows[1]), bound(rows[2])};
   }
   /// Returns the factor on areas if the map preserves angles up to rounding; else nullopt.
   std::optional<float> area_scale() const {
