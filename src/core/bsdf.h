@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "core/arena.h"
 #include "core/random.h"
 #include "core/spectrum.h"
 #include "core/vec.h"
@@ -80,6 +81,10 @@ class Bsdf {
   /// Index of refraction on the side of -z over that on the side of +z, lane by lane; 1 if light is not refracted, and
   /// in lanes that are not active.
   virtual SampledSpectrum index_ratio() const { return SampledSpectrum(1); }
+
+  /// BSDF whose narrow microfacet lobes, delta lobes too, are wider, for integrators that exchange noise for bias
+  /// ("regularize"); allocated in `arena`. This BSDF itself if it has none.
+  virtual const Bsdf* regularized([[maybe_unused]] Arena& arena) const { return this; }
 
   /// For virtual instruments: scatters light that arrives from the direction `incident` and writes one result for each
   /// of `rays`. `incident` is the incident direction of the BSDF's model: wi with the flag `from_light`, else wo. The

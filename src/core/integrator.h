@@ -19,6 +19,8 @@ struct FirstHit {
   uint32_t material = 0;  ///< SurfacePoint::material_id
   uint64_t instance = 0;  ///< SurfacePoint::instance_id
   Vec3 p, n;              ///< position and shading normal, unit, in world space
+  Vec3 ng;                ///< geometric normal, unit, in world space
+  Vec2 uv;                ///< texture coordinates
   /// Unbiased estimate of the directional albedo, the sum of reflectance and transmittance, for wo = -direction of the
   /// camera ray; black unless PathBundle::albedo_samples is set.
   SampledSpectrum albedo;

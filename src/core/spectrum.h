@@ -53,6 +53,9 @@ struct SampledWavelengths {
   std::array<float, kLanes> nm{};
   std::array<float, kLanes> pdf{};  ///< probability density per nm; 1 if the wavelengths are fixed or a band's
   std::array<bool, kLanes> active{};
+  /// Lane that continues where lanes part, as in refraction by a dispersive glass; uniform over the lanes in use, by
+  /// the number that chose the wavelengths. -1: the BSDF draws a lane.
+  int8_t hero = -1;
   int count = 0;                        ///< number of lanes in use
   std::array<uint16_t, kLanes> band{};  ///< index of each lane's band, if the strategy has bands
 

@@ -31,6 +31,7 @@ struct Path {
   float scatter_pdf;
   float power_factor;                ///< factor by which refraction alone has divided the throughput
   int depth;                         ///< scattering events so far
+  bool is_wide;                      ///< one of them was not specular
   LightSelector::LitPoint previous;  ///< the last vertex
   VertexKey key;                     ///< of the current vertex
 };
@@ -76,6 +77,7 @@ constexpr Param kPath[] = {
      .default_value = 0.01,
      .range = {0, 1},
      .doc = "Attenuation below which a path ends."},
+    kRegularize,
 };
 
 /// Values of the parameters.
@@ -84,6 +86,7 @@ struct PathSettings {
   bool sample_lights;
   bool cut_off_attenuation;
   float cutoff;
+  bool regularizes;
 };
 
 /// Traces the paths of a bundle together, one vertex after the other.
@@ -126,6 +129,7 @@ class PathTracer final : public Tracer {
       path.scatter_pdf = INFINITY;
       path.power_factor = 1;
       path.depth = 0;
+      path.is_wide = false;
       path.previous = {path.ray.o, {0, 0, 1}};
       PathResult& result = bundle_->results[i];
       result.radiance = {};
@@ -193,8 +197,9 @@ class PathTracer final : public Tracer {
         if (vertex_ - path.depth < kMostPassed) passed.add(i);
         continue;
       }
-      if (path.depth == 0) bundle_->results[i].first = first_hit(point);
+      if (path.depth == 0) set_first_hit(point, bundle_->results[i].first);
       if (path.depth >= settings_.max_depth) continue;
+      if (settings_.regularizes && path.is_wide) bsdf = bsdf->regularized(arena_);
       bsdfs_[i].set(*bsdf, point.hit, -path.ray.d);
       scattering.add(i);
     }
@@ -343,7 +348,8 @@ class PathTracer final : public Tracer {
       Path& path = paths_[i];
       at_ = &points_[i];
       if (path.depth == 0 && bundle_->albedo_samples > 0)
-        bundle_->results[i].first.albedo = bsdfs_[i].albedo(bundle_->albedo_samples, path.key.of(Use::albedo));
+        bundle_->results[i].first.albedo = first_albedo(points_[i], path.lambda, -path.ray.d, bundle_->albedo_samples,
+                                                        path.key.of(Use::albedo), arena_);
       if (!scatter(i, points_[i].hit, bsdfs_[i], numbers_[i], pairs_[i], path) || ends(path)) continue;
       bundle_->results[i].scatterings = ++path.depth;
       alive |= 1u << i;
@@ -366,6 +372,7 @@ class PathTracer final : public Tracer {
     path.throughput *= sample.weight;
     path.power_factor *= sample.power_factor;
     path.lambda.retire_black_lanes(path.throughput);
+    path.is_wide = path.is_wide || !sample.is_specular;
     path.scatter_pdf = !settings_.sample_lights || sample.is_specular ? INFINITY : sample.pdf;
     set_ray(hit, sample.wi, path);
     return true;
@@ -436,7 +443,7 @@ class PathIntegrator final : public Integrator {
  public:
   explicit PathIntegrator(const Params& p)
       : settings_{p.integer("maxdepth"), p.boolean("sampledirect"), p.string("termination") == "attenuation",
-                  float(p.real("cutoff"))},
+                  float(p.real("cutoff")), p.boolean("regularize")},
         strategy_(light_strategy(p)) {}
 
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }

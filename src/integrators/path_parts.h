@@ -19,6 +19,15 @@ inline LightSelector::Strategy light_strategy(const Params& p) {
   return LightSelector::Strategy(std::ranges::find(kLightSamplers, p.string("lightsampler")) - kLightSamplers);
 }
 
+/// Parameter of both; as in pbrt-v4.
+inline constexpr Param kRegularize{.name = "regularize",
+                                   .kind = ParamKind::boolean,
+                                   .default_value = false,
+                                   .doc =
+                                       "After a scattering that is not specular, widen the narrow lobes of metals, "
+                                       "dielectrics and coats: alpha below 0.3 becomes 2 alpha, between 0.1 and 0.3. "
+                                       "Caustics are blurred, with less noise; biased."};
+
 /// Largest number of invisible surfaces along one path: rounding could make a ray hit the same one without end.
 inline constexpr int kMostPassed = 1000;
 
@@ -51,14 +60,26 @@ void with_surface_of_errors(const SurfacePoint* const& at, const Act& act) {
   }
 }
 
-inline FirstHit first_hit(const SurfacePoint& point) {
-  return {.is_hit = true,
-          .is_leaf = point.material->is_leaf(),
-          .material = point.material_id,
-          .instance = point.instance_id,
-          .p = point.hit.p,
-          .n = point.hit.shading.z,
-          .albedo = {}};
+/// Writes the members one by one: a copy of the whole would wait for these writes.
+inline void set_first_hit(const SurfacePoint& point, FirstHit& first) {
+  first.is_hit = true;
+  first.is_leaf = point.material->is_leaf();
+  first.material = point.material_id;
+  first.instance = point.instance_id;
+  first.p = point.hit.p;
+  first.n = point.hit.shading.z;
+  first.ng = point.hit.ng;
+  first.uv = point.hit.at.uv;
+  first.albedo = {};
+}
+
+/// FirstHit::albedo of a hit that scatters, from `samples` samples. Without a hero, so that they spread over the lanes.
+inline SampledSpectrum first_albedo(const SurfacePoint& point, SampledWavelengths lambda, const Vec3& wo, int samples,
+                                    uint64_t key, Arena& arena) {
+  lambda.hero = -1;
+  LocalBsdf bsdf;
+  bsdf.set(*point.material->evaluate(point.hit, lambda, arena), point.hit, wo);
+  return bsdf.albedo(samples, key);
 }
 
 /// Whether a BSDF may return this sample.

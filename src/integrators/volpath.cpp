@@ -33,12 +33,14 @@ constexpr Param kVolPath[] = {
      .default_value = std::string_view("bvh"),
      .doc = "Selection of a light. bvh: by a light tree's estimate of its contribution.",
      .choices = kLightSamplers},
+    kRegularize,
 };
 
 /// Values of the parameters.
 struct VolPathSettings {
   int max_depth;
   bool sample_lights;
+  bool regularizes;
 };
 
 /// Traces one path after the other. A loop iteration is one ray: its medium, then the surface that it meets.
@@ -92,10 +94,12 @@ class VolPathTracer final : public Tracer {
     lambda_ = bundle_->lambda[lane_];
     SampledSpectrum in_use;
     for (int i = 0; i < lambda_.count; ++i) in_use[i] = 1;
+    // Independent of lambda_.hero: weights count all lanes, also after refraction has left one.
     RandomStream rng(hash_key(bundle_->keys[lane_], ~uint64_t{0}));
     path_ = {in_use, in_use, in_use, std::min(int(rng.uniform() * float(lambda_.count)), lambda_.count - 1)};
     medium_ = world_.camera_medium();
     is_specular_ = true;
+    is_wide_ = false;
     power_factor_ = 1;
     depth_ = 0;
     previous_ = {ray_.o, {}};
@@ -172,6 +176,7 @@ class VolPathTracer final : public Tracer {
     path_.r_u *= value * (1 / density);
     path_.r_l = before * (1 / density);
     is_specular_ = !settings_.sample_lights;
+    is_wide_ = true;
     previous_ = place;
     ray_ = {p, wi, INFINITY, ray_.time};
     from_ = p;
@@ -187,8 +192,9 @@ class VolPathTracer final : public Tracer {
       leave(point, ray_.d);
       return true;
     }
-    if (depth_ == 0) set_first_hit(point, *bsdf);
+    if (depth_ == 0) begin_first_hit(point);
     if (depth_ >= settings_.max_depth) return false;
+    if (settings_.regularizes && is_wide_) bsdf = bsdf->regularized(arena_);
     LocalBsdf local;
     local.set(*bsdf, point.hit, -ray_.d);
     const LightSelector::LitPoint place{point.hit.p, point.hit.ng};
@@ -213,6 +219,7 @@ class VolPathTracer final : public Tracer {
     path_.r_l = path_.r_u * (1 / sample.pdf);
     power_factor_ *= sample.power_factor;
     lambda_.retire_black_lanes(path_.beta);
+    is_wide_ = is_wide_ || !sample.is_specular;
     is_specular_ = !settings_.sample_lights || sample.is_specular;
     previous_ = place;
     leave(point, sample.wi);
@@ -230,13 +237,11 @@ class VolPathTracer final : public Tracer {
     ray_ = {offset_origin(point.hit, w), w, INFINITY, ray_.time};
   }
 
-  void set_first_hit(const SurfacePoint& point, const Bsdf& bsdf) {
+  void begin_first_hit(const SurfacePoint& point) {
     FirstHit& first = result().first;
-    first = first_hit(point);
-    if (bundle_->albedo_samples == 0) return;
-    LocalBsdf local;
-    local.set(bsdf, point.hit, -ray_.d);
-    first.albedo = local.albedo(bundle_->albedo_samples, of(Use::albedo));
+    set_first_hit(point, first);
+    if (bundle_->albedo_samples > 0)
+      first.albedo = first_albedo(point, lambda_, -ray_.d, bundle_->albedo_samples, of(Use::albedo), arena_);
   }
 
   /// Value of the scattering toward a light sample, with the cosine at surfaces, and its density by wavelength.
@@ -339,6 +344,7 @@ class VolPathTracer final : public Tracer {
   SampledWavelengths lambda_;
   SpectralPath path_;
   const Medium* medium_ = nullptr;
+  bool is_wide_ = false;     ///< a scattering was not specular
   bool is_specular_ = true;  ///< no light sample competes with the next emission
   float power_factor_ = 1;   ///< factor by which refraction alone has divided the throughput
   LightSelector::LitPoint previous_;
@@ -348,7 +354,8 @@ class VolPathTracer final : public Tracer {
 class VolPathIntegrator final : public Integrator {
  public:
   explicit VolPathIntegrator(const Params& p)
-      : settings_{p.integer("maxdepth"), p.boolean("sampledirect")}, strategy_(light_strategy(p)) {}
+      : settings_{p.integer("maxdepth"), p.boolean("sampledirect"), p.boolean("regularize")},
+        strategy_(light_strategy(p)) {}
 
   void prepare(const World& world) override { selector_ = LightSelector(world, strategy_); }
   std::unique_ptr<Tracer> tracer(const World& world) const override {

@@ -156,14 +156,6 @@ void count_strata(ParsedPlugin& sampler) {
   sampler.params.push_back({"integer", "pixelsamples", where, where, std::vector<double>{x * y}});
 }
 
-void warn_of_regularize(const ParsedPlugin& integrator, const Log& log) {
-  const ParsedParam* p = find_param(integrator.params, "regularize");
-  if (!p) return;
-  const auto* value = std::get_if<std::vector<bool>>(&p->values);
-  if (value && value->size() == 1 && (*value)[0])
-    log.warn(p->where, "\"regularize\" has no effect: paths that pbrt blurs appear as noise");
-}
-
 /// Chooses volpath for scenes with media, which pbrt's integrators other than path and simplepath see; path for others.
 void answer_integrator(const Registry& registry, Answerer& answerer, const Log& log, SceneDescription& d) {
   ParsedPlugin& integrator = d.integrator;
@@ -243,9 +235,6 @@ void answer_pbrt_plugins(SceneDescription& description, const Registry& registry
     if (d.sampler.name == "stratified" && !registry.samplers.find("stratified")) count_strata(d.sampler);
   });
   answerer.answer("Sampler", registry.samplers, kSamplers, kOldSamplers, d.sampler);
-  warn_of_regularize(d.integrator, log);
-  if (d.integrator.name == "path")
-    std::erase_if(d.integrator.params, [](const auto& p) { return p.name == "regularize"; });
   // Shadow rays of volpath pass through material "interface", those of path do not. volpath is pbrt's default.
   const bool sees_through_interfaces =
       !d.integrator.where.file || d.integrator.name == "volpath" || d.integrator.name == "simplevolpath";

@@ -58,6 +58,78 @@ TEST(Dielectric, RefractsBySnell) {
   EXPECT_NEAR(back->f[0] * std::abs(back->wi.z), transmitted * 2.25f, 1e-5f);
 }
 
+/// Where lanes part, each continues with its own transmittance: on average over the heroes, for any one of which only a
+/// lane that transmits continues. From inside at this angle, the first two lanes are reflected totally.
+TEST(Dielectric, EveryLaneOfADispersiveGlassHasItsTransmittance) {
+  SampledSpectrum eta;
+  for (int lane = 0; lane < kLanes; ++lane) eta[lane] = 2 - 0.25f * float(lane);
+  const float sine = 0.62f;
+  const Vec3 inside{sine, 0, -std::sqrt(1 - sine * sine)};
+  for (const bool has_hero : {true, false}) {
+    SampledSpectrum sum;
+    constexpr int kSamples = 40000;
+    for (int i = 0; i < kSamples; ++i) {
+      SampledWavelengths lambda = GivenWavelengths({450, 500, 550, 600}).sample(0);
+      if (has_hero) lambda.hero = int8_t(i % kLanes);
+      const SmoothDielectricBsdf glass(LaneIndices(eta, lambda));
+      RandomStream rng(hash_key(3, uint64_t(i)));
+      const auto s = glass.sample(inside, rng.uniform(), {}, rng);
+      ASSERT_TRUE(s);
+      if (!any(s->flags & Lobes::transmission)) continue;
+      sum += s->f * (std::abs(s->wi.z) / s->pdf);
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const float expected = (1 - fresnel_dielectric(-inside.z, 1 / eta[lane])) * eta[lane] * eta[lane];
+      // Weights are at most 2 eta^2 / 0.4; 5 standard errors: a false alarm in 1.7 million for each of 8.
+      EXPECT_NEAR(sum[lane] / kSamples, expected, 5 * 8 / std::sqrt(float(kSamples))) << lane << has_hero;
+    }
+    EXPECT_EQ(sum[0], 0);
+    EXPECT_EQ(sum[1], 0);
+  }
+}
+
+/// pbrt-v4's mapping: clamp(2 alpha, 0.1, 0.3) below 0.3.
+TEST(Regularized, WidthsAreThoseOfPbrt) {
+  const std::pair<float, float> expected[] = {{0, 0.1f},    {0.04f, 0.1f}, {0.07f, 0.14f}, {0.14f, 0.28f},
+                                              {0.2f, 0.3f}, {0.3f, 0.3f},  {0.5f, 0.5f}};
+  for (const auto& [from, to] : expected) {
+    EXPECT_FLOAT_EQ(TrowbridgeReitz(from, from).regularized().alpha().x, to) << from;
+    EXPECT_FLOAT_EQ(TrowbridgeReitz(from, 0.5f).regularized().alpha().x, to) << from;
+    EXPECT_FLOAT_EQ(TrowbridgeReitz(0.5f, from).regularized().alpha().y, to) << from;
+  }
+}
+
+/// A regularized BSDF is one made of the regularized widths.
+TEST(Regularized, BsdfsAreThoseOfTheirWidths) {
+  const SampledWavelengths lambda = one_wavelength();
+  const LaneIndices glass(SampledSpectrum(1.5f), lambda);
+  const ConductorIndices metal(SampledSpectrum(0.2f), SampledSpectrum(3));
+  const SampledSpectrum all(1);
+  const TrowbridgeReitz narrow(0.06f, 0.02f), smooth(0, 0), wide(0.12f, 0.1f), least(0.1f, 0.1f);
+  const Vec3 wo{0.1f, 0.2f, std::sqrt(0.95f)}, up{-0.15f, -0.1f, std::sqrt(1 - 0.0325f)};
+  const Vec3 down{-0.1f, -0.1f, -std::sqrt(0.98f)};
+  Arena arena;
+  const auto expect_same = [&](const Bsdf& from, const Bsdf& to) {
+    const Bsdf& found = *from.regularized(arena);
+    EXPECT_EQ(found.flags(), to.flags());
+    for (const Vec3& wi : {up, down}) {
+      RandomStream a(1), b(1);
+      EXPECT_EQ(found.f(wo, wi, a), to.f(wo, wi, b));
+      EXPECT_EQ(found.pdf(wo, wi), to.pdf(wo, wi));
+    }
+  };
+  expect_same(ConductorBsdf(narrow, metal, all), ConductorBsdf(wide, metal, all));
+  expect_same(RoughDielectricBsdf(narrow, glass), RoughDielectricBsdf(wide, glass));
+  expect_same(SmoothDielectricBsdf(glass), RoughDielectricBsdf(least, glass));
+  const ConductorBase base(smooth, metal, all), wide_base(least, metal, all);
+  expect_same(LayeredBsdf<ConductorBase>(narrow, glass, base, {0.1f, {}, 0}, {10, 1}),
+              LayeredBsdf<ConductorBase>(wide, glass, wide_base, {0.1f, {}, 0}, {10, 1}));
+  const ThinDielectricBsdf pane(glass);
+  EXPECT_EQ(pane.regularized(arena), &pane);
+  const SmoothDielectricBsdf nothing(LaneIndices(SampledSpectrum(1), lambda));
+  EXPECT_EQ(nothing.regularized(arena), &nothing);
+}
+
 /// Lambert's reflectance under a smooth coat without medium has a closed form: light that is inside is reflected back
 /// by the coat with its mean over all angles. 100000 walks; 6 standard errors, each test fails once in 10^9 by chance.
 struct ClosedForm {

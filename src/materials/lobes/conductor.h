@@ -34,6 +34,8 @@ class ConductorBsdf final : public Bsdf {
       : facets_(facets), indices_(indices), mask_(mask) {}
 
   bool is_smooth() const { return facets_.is_smooth(); }
+  ConductorBsdf regularized() const { return {facets_.regularized(), indices_, mask_}; }
+  const Bsdf* regularized(Arena& arena) const override { return arena.make<ConductorBsdf>(regularized()); }
   Lobes flags() const override { return Lobes::reflection | (is_smooth() ? Lobes::specular : Lobes::glossy); }
 
   SampledSpectrum f(const Vec3& wo_, const Vec3& wi_, RandomStream&) const override { return f(wo_, wi_); }

@@ -16,6 +16,7 @@ class LaneIndices {
       // 0 is no index of refraction; pbrt-v4 takes 1 for it too.
       eta_[lane] = eta[lane] == 0 ? 1 : std::clamp(eta[lane], kLeast, 1 / kLeast);
       mask_[lane] = 1;
+      if (lane == lambda.hero) hero_ = count_;
       lanes_[size_t(count_++)] = lane;
     }
     for (int i = 1; i < count_; ++i) disperses_ = disperses_ || of(i) != of(0);
@@ -26,6 +27,20 @@ class LaneIndices {
   /// The i-th active lane, and the number of active lanes.
   int lane(int i) const { return lanes_[size_t(i)]; }
   int count() const { return count_; }
+  /// Lane that continues where lanes part; each of `among` lanes has the same probability.
+  struct Continuing {
+    int i, among;
+  };
+  /// Chooses among the active lanes whose `share` is positive (one at least): the hero, or one drawn uniformly if it is
+  /// not set or not among them.
+  Continuing one_of(const SampledSpectrum& share, RandomStream& rng) const {
+    std::array<int, kLanes> lit{};
+    int among = 0;
+    for (int i = 0; i < count_; ++i)
+      if (share[lane(i)] > 0) lit[size_t(among++)] = i;
+    if (hero_ >= 0 && share[lane(hero_)] > 0) return {hero_, among};
+    return {lit[size_t(std::min(int(rng.uniform() * float(among)), among - 1))], among};
+  }
   /// Index of the i-th active lane.
   float of(int i) const { return eta_[lane(i)]; }
   const SampledSpectrum& eta() const { return eta_; }
@@ -48,76 +63,8 @@ class LaneIndices {
 
   SampledSpectrum eta_, mask_;
   std::array<int, kLanes> lanes_{};
-  int count_ = 0;
+  int count_ = 0, hero_ = -1;
   bool disperses_ = false;
-};
-
-/// Smooth interface of a dielectric (Fresnel 1823). Reflection keeps all lanes; if lanes are refracted by different
-/// angles, one of them continues, chosen in proportion to its transmittance.
-class SmoothDielectricBsdf final : public Bsdf {
- public:
-  explicit SmoothDielectricBsdf(const LaneIndices& indices) : indices_(indices) {}
-
-  Lobes flags() const override {
-    const Lobes flags = Lobes::specular | Lobes::reflection | Lobes::transmission;
-    return indices_.disperses() ? flags | Lobes::stochastic : flags;
-  }
-  SampledSpectrum f(const Vec3&, const Vec3&, RandomStream&) const override { return {}; }
-  float pdf(const Vec3&, const Vec3&) const override { return 0; }
-  SampledSpectrum index_ratio() const override { return indices_.eta(); }
-
-  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2, RandomStream& rng) const override {
-    if (is_grazing(wo) || indices_.count() == 0) return {};
-    const float cosine = std::abs(wo.z);
-    SampledSpectrum share;
-    float sum = 0;
-    for (int i = 0; i < indices_.count(); ++i) {
-      const float eta = wo.z > 0 ? indices_.of(i) : 1 / indices_.of(i);
-      share[indices_.lane(i)] = fresnel_dielectric(cosine, eta);
-      sum += share[indices_.lane(i)];
-    }
-    const float reflect = std::min(1.f, sum / float(indices_.count()));
-    if (uc < reflect)
-      return BsdfSample{share * (1 / cosine), {-wo.x, -wo.y, wo.z}, reflect, Lobes::specular | Lobes::reflection};
-    return indices_.disperses() ? refract_one(wo, share, rng) : refract_all(wo, 1 - reflect);
-  }
-
- private:
-  /// All lanes have one index and one direction.
-  std::optional<BsdfSample> refract_all(const Vec3& wo, float chance) const {
-    const DielectricInterface border({0, 0}, indices_.of(0));
-    const auto way = border.refract(wo, {0, 0, 1});
-    if (!way) return {};
-    return BsdfSample{.f = indices_.mask() * (way->weight / std::abs(way->wi.z)),
-                      .wi = way->wi,
-                      .pdf = chance,
-                      .flags = Lobes::specular | Lobes::transmission,
-                      .eta = border.eta_beyond(wo)};
-  }
-
-  /// Draws one lane, in proportion to its transmittance; the sample is black in the other lanes.
-  std::optional<BsdfSample> refract_one(const Vec3& wo, const SampledSpectrum& reflected, RandomStream& rng) const {
-    float all = 0;
-    for (int i = 0; i < indices_.count(); ++i) all += 1 - reflected[indices_.lane(i)];
-    float rest = rng.uniform() * all;
-    int chosen = 0;
-    while (chosen + 1 < indices_.count() && rest >= 1 - reflected[indices_.lane(chosen)])
-      rest -= 1 - reflected[indices_.lane(chosen++)];
-    const int lane = indices_.lane(chosen);
-    const DielectricInterface border({0, 0}, indices_.of(chosen));
-    const auto way = border.refract(wo, {0, 0, 1});
-    if (!way) return {};
-    BsdfSample s{.f = {},
-                 .wi = way->wi,
-                 .pdf = (1 - reflected[lane]) / float(indices_.count()),
-                 .flags = Lobes::specular | Lobes::transmission | Lobes::stochastic,
-                 .eta = border.eta_beyond(wo)};
-    if (!(s.pdf > 0)) return {};
-    s.f[lane] = way->weight / std::abs(way->wi.z);
-    return s;
-  }
-
-  LaneIndices indices_;
 };
 
 /// Rough interface of a dielectric (Walter et al. 2007). If lanes are refracted by different angles, directions are
@@ -130,6 +77,9 @@ class RoughDielectricBsdf final : public Bsdf {
 
   Lobes flags() const override { return Lobes::glossy | Lobes::reflection | Lobes::transmission; }
   SampledSpectrum index_ratio() const override { return indices_.eta(); }
+  const Bsdf* regularized(Arena& arena) const override {
+    return arena.make<RoughDielectricBsdf>(facets_.regularized(), indices_);
+  }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream&) const override {
     const bool reflects = same_side(wo, wi);
@@ -175,6 +125,73 @@ class RoughDielectricBsdf final : public Bsdf {
   DielectricInterface border(int i) const { return {facets_, indices_.of(i)}; }
 
   TrowbridgeReitz facets_;
+  LaneIndices indices_;
+};
+
+/// Smooth interface of a dielectric (Fresnel 1823). Reflection keeps all lanes; if lanes are refracted by different
+/// angles, one of them continues.
+class SmoothDielectricBsdf final : public Bsdf {
+ public:
+  explicit SmoothDielectricBsdf(const LaneIndices& indices) : indices_(indices) {}
+
+  Lobes flags() const override {
+    const Lobes flags = Lobes::specular | Lobes::reflection | Lobes::transmission;
+    return indices_.disperses() ? flags | Lobes::stochastic : flags;
+  }
+  SampledSpectrum f(const Vec3&, const Vec3&, RandomStream&) const override { return {}; }
+  float pdf(const Vec3&, const Vec3&) const override { return 0; }
+  SampledSpectrum index_ratio() const override { return indices_.eta(); }
+  /// Facets of index 1 would have no effect.
+  const Bsdf* regularized(Arena& arena) const override {
+    if (indices_.are_all_one()) return this;
+    return arena.make<RoughDielectricBsdf>(TrowbridgeReitz(0, 0).regularized(), indices_);
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float uc, Vec2, RandomStream& rng) const override {
+    if (is_grazing(wo) || indices_.count() == 0) return {};
+    const float cosine = std::abs(wo.z);
+    SampledSpectrum share;
+    float sum = 0;
+    for (int i = 0; i < indices_.count(); ++i) {
+      const float eta = wo.z > 0 ? indices_.of(i) : 1 / indices_.of(i);
+      share[indices_.lane(i)] = fresnel_dielectric(cosine, eta);
+      sum += share[indices_.lane(i)];
+    }
+    const float reflect = std::min(1.f, sum / float(indices_.count()));
+    if (uc < reflect)
+      return BsdfSample{share * (1 / cosine), {-wo.x, -wo.y, wo.z}, reflect, Lobes::specular | Lobes::reflection};
+    return indices_.disperses() ? refract_one(wo, share, 1 - reflect, rng) : refract_all(wo, 1 - reflect);
+  }
+
+ private:
+  /// All lanes have one index and one direction.
+  std::optional<BsdfSample> refract_all(const Vec3& wo, float chance) const {
+    const DielectricInterface border({0, 0}, indices_.of(0));
+    const auto way = border.refract(wo, {0, 0, 1});
+    if (!way) return {};
+    return BsdfSample{.f = indices_.mask() * (way->weight / std::abs(way->wi.z)),
+                      .wi = way->wi,
+                      .pdf = chance,
+                      .flags = Lobes::specular | Lobes::transmission,
+                      .eta = border.eta_beyond(wo)};
+  }
+
+  /// One lane continues, none that is totally reflected; the sample is black in the other lanes.
+  std::optional<BsdfSample> refract_one(const Vec3& wo, const SampledSpectrum& reflected, float chance,
+                                        RandomStream& rng) const {
+    const auto [chosen, among] = indices_.one_of(SampledSpectrum(indices_.mask().v - reflected.v), rng);
+    const DielectricInterface border({0, 0}, indices_.of(chosen));
+    const auto way = border.refract(wo, {0, 0, 1});
+    if (!way) return {};
+    BsdfSample s{.f = {},
+                 .wi = way->wi,
+                 .pdf = chance / float(among),
+                 .flags = Lobes::specular | Lobes::transmission | Lobes::stochastic,
+                 .eta = border.eta_beyond(wo)};
+    s.f[indices_.lane(chosen)] = way->weight / std::abs(way->wi.z);
+    return s;
+  }
+
   LaneIndices indices_;
 };
 

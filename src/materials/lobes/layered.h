@@ -46,6 +46,7 @@ class DiffuseBase {
 
   static constexpr Lobes kLobe = Lobes::diffuse;
   bool is_smooth() const { return false; }
+  DiffuseBase regularized() const { return *this; }
   SampledSpectrum f(const Vec3& wo, const Vec3& wi) const {
     return same_side(wo, wi) ? reflectance_ * kInvPi : SampledSpectrum();
   }
@@ -70,6 +71,7 @@ class ConductorBase {
 
   static constexpr Lobes kLobe = Lobes::glossy;
   bool is_smooth() const { return metal_.is_smooth(); }
+  ConductorBase regularized() const { return {facets_.regularized(), metal_.regularized()}; }
   SampledSpectrum f(const Vec3& wo, const Vec3& wi) const { return metal_.f(wo, wi); }
   float pdf(const Vec3& wo, const Vec3& wi) const { return metal_.pdf(wo, wi); }
   std::optional<BsdfSample> sample(const Vec3& wo, Vec2 u) const { return metal_.sample(wo, u); }
@@ -84,6 +86,8 @@ class ConductorBase {
   }
 
  private:
+  ConductorBase(const TrowbridgeReitz& facets, const ConductorBsdf& metal) : facets_(facets), metal_(metal) {}
+
   TrowbridgeReitz facets_;
   ConductorBsdf metal_;
 };
@@ -91,7 +95,7 @@ class ConductorBase {
 /// A dielectric coat over a reflecting base with a medium in between, the same on both sides. f is estimated by
 /// position-free random walks between the layers (Guo, Hasan and Zhao 2018), connected to both directions; at a vertex
 /// both sampling techniques are combined by the power heuristic. If the coat's index varies over the lanes, each call
-/// draws one lane and evaluates that one alone.
+/// evaluates one lane alone.
 template <class Base>
 class LayeredBsdf final : public Bsdf {
  public:
@@ -108,6 +112,10 @@ class LayeredBsdf final : public Bsdf {
     Lobes flags = Lobes::reflection | Lobes::stochastic | Base::kLobe;
     if (coat_.is_smooth()) flags = flags | Lobes::specular;
     return flags | Lobes::glossy;
+  }
+
+  const Bsdf* regularized(Arena& arena) const override {
+    return arena.make<LayeredBsdf>(coat_.regularized(), indices_, base_.regularized(), medium_, walks_);
   }
 
   SampledSpectrum f(const Vec3& wo_, const Vec3& wi_, RandomStream& rng) const override {
@@ -162,10 +170,10 @@ class LayeredBsdf final : public Bsdf {
     DielectricInterface border;
     SampledSpectrum lanes;
   };
-  /// One coat for all lanes, or that of a lane drawn uniformly.
+  /// One coat for all lanes, or that of one lane.
   Coat draw_coat(RandomStream& rng) const {
     if (!indices_.disperses()) return {{coat_, indices_.of(0)}, indices_.mask()};
-    const int chosen = std::min(int(rng.uniform() * float(indices_.count())), indices_.count() - 1);
+    const int chosen = indices_.one_of(indices_.mask(), rng).i;
     Coat coat{{coat_, indices_.of(chosen)}, {}};
     coat.lanes[indices_.lane(chosen)] = float(indices_.count());
     return coat;

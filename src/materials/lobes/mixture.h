@@ -30,6 +30,9 @@ class MixtureBsdf final : public Bsdf {
       : first_(first), second_(second), amount_(amount), stochastic_(any(flags() & Lobes::stochastic)) {}
 
   Lobes flags() const override { return first_.flags() | second_.flags(); }
+  const Bsdf* regularized(Arena& arena) const override {
+    return arena.make<MixtureBsdf>(*first_.regularized(arena), *second_.regularized(arena), amount_);
+  }
 
   SampledSpectrum f(const Vec3& wo, const Vec3& wi, RandomStream& rng) const override {
     return (1 - amount_) * first_.f(wo, wi, rng) + amount_ * second_.f(wo, wi, rng);

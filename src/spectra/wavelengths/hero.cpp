@@ -101,6 +101,12 @@ class Hero final : public WavelengthStrategy {
     }
     return lambda;
   }
+  /// The first lane is where `u` is: it has the stratification of the sampler, which a lane drawn by a BSDF would lose.
+  SampledWavelengths sample_in_turn(uint64_t, float u) const override {
+    SampledWavelengths lambda = sample(u);
+    lambda.hero = 0;
+    return lambda;
+  }
   Interval range_nm() const override { return density_.range_nm(); }
   std::span<const float> fixed_nm() const override { return {}; }
   SensorResponse sensor(const SampledSpectrum& radiance, const SampledWavelengths& lambda) const override {
