@@ -72,7 +72,7 @@ class Worker {
         tile_(film.format(), {}),
         axis_(job.camera.ray({float(format_.settings.width) / 2, float(format_.settings.height) / 2}, {0.5f, 0.5f}).d) {
     if (format_.splatting) kernel_.emplace(job.filter);
-    if (format_.channels.has("albedo")) bundle_.albedo_samples = kAlbedoSamples;
+    if (format_.channels.has_albedo()) bundle_.albedo_samples = kAlbedoSamples;
     if (has_fixed_wavelengths_) bundle_.lambda.fill(job.wavelengths.sample(0));
   }
 

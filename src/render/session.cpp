@@ -227,7 +227,8 @@ LoadedScene Session::load_scene(SceneDescription description, const ImageRequest
   format.settings = film;
   format.splatting = splatting_of(*loaded.scene_, loaded.scene_crop_, film.crop, request.is_part);
   std::vector<std::string> channels = film.channels;
-  if (!loaded.scene_->wavelengths().bands().empty()) std::erase(channels, "albedo");  // needs a film of colours
+  if (!loaded.scene_->wavelengths().bands().empty())
+    std::erase_if(channels, [](const std::string& name) { return !ChannelList({name}).color().empty(); });
   channels.insert(channels.end(), request.channels.begin(), request.channels.end());
   format.channels = ChannelList(channels);
   loaded.image_format_ = image_of(description, request, *loaded.scene_, film, format.channels);
@@ -239,8 +240,8 @@ LoadedScene Session::load_scene(SceneDescription description, const ImageRequest
   const WavelengthStrategy& wavelengths = loaded.scene_->wavelengths();
   format.bands = wavelengths.bands().size();
   format.blocks = request.adaptive;
-  if (format.bands > 0 && format.channels.has("albedo"))
-    fail({}, "channel \"albedo\" is a colour: with wavelengths \"{}\" the film has bands, not colours",
+  if (const std::string_view color = format.channels.color(); format.bands > 0 && !color.empty())
+    fail({}, "channel \"{}\" is a colour: with wavelengths \"{}\" the film has bands, not colours", color,
          loaded.scene_->wavelengths_name());
   if (request.adaptive && format.bands > 0)
     fail({}, "a noise target needs a film of colours: with wavelengths \"{}\" the film has bands",

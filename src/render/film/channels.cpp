@@ -11,14 +11,20 @@ Triple single(double value) { return {value, 0, 0}; }
 using Kind = ChannelInfo::Kind;
 using Space = ChannelInfo::Space;
 
-/// The names are those that Blender, Nuke and Open Image Denoise expect.
+Triple albedo(const CameraHit& hit) { return hit.albedo; }
+/// A normal on the side of the camera, as in pbrt-v4.
+Triple facing(const Vec3& n, const CameraHit& hit) { return triple(dot(n, hit.ray.d) > 0 ? -n : n); }
+
+/// The names are those that Blender, Nuke and Open Image Denoise expect; the last rows are for pbrt-v4's film gbuffer
+/// and have its names.
 constexpr ChannelInfo kChannels[] = {
     {"albedo",
      {"albedo.R", "albedo.G", "albedo.B"},
      Kind::mean,
      Space::none,
      "share of light that the surface reflects or transmits",
-     [](const CameraHit& hit) { return hit.albedo; }},
+     albedo,
+     true},
     {"normal",
      {"normal.X", "normal.Y", "normal.Z"},
      Kind::mean,
@@ -50,6 +56,47 @@ constexpr ChannelInfo kChannels[] = {
      "index of the instance in the scene file, from 1",
      [](const CameraHit& hit) { return single(double(hit.first.instance)); }},
     {"samples", {"samples", "", ""}, Kind::sample_count, Space::none, "samples of the pixel", nullptr},
+    {"Albedo",
+     {"Albedo.R", "Albedo.G", "Albedo.B"},
+     Kind::mean,
+     Space::none,
+     "as albedo, with the name of pbrt-v4",
+     albedo,
+     true},
+    {"N",
+     {"N.X", "N.Y", "N.Z"},
+     Kind::mean,
+     Space::vector,
+     "geometric normal, on the side of the camera",
+     [](const CameraHit& hit) { return facing(hit.first.ng, hit); }},
+    {"Ns",
+     {"Ns.X", "Ns.Y", "Ns.Z"},
+     Kind::mean,
+     Space::vector,
+     "shading normal, on the side of the camera",
+     [](const CameraHit& hit) { return facing(hit.first.n, hit); }},
+    {"uv",
+     {"u", "v", ""},
+     Kind::mean,
+     Space::none,
+     "texture coordinates",
+     [](const CameraHit& hit) {
+       return Triple{double(hit.first.uv.x), double(hit.first.uv.y), 0};
+     }},
+    {"Variance",
+     {"Variance.R", "Variance.G", "Variance.B"},
+     Kind::sample_variance,
+     Space::none,
+     "variance of the pixel's samples, which is that of their mean times their number",
+     nullptr,
+     true},
+    {"RelativeVariance",
+     {"RelativeVariance.R", "RelativeVariance.G", "RelativeVariance.B"},
+     Kind::relative_variance,
+     Space::none,
+     "Variance over the mean, as in pbrt-v4",
+     nullptr,
+     true},
 };
 
 constexpr size_t count(ChannelInfo::Kind kind) {
@@ -87,6 +134,11 @@ std::vector<std::string> ChannelList::names() const {
 
 bool ChannelList::has(std::string_view name) const {
   return std::ranges::any_of(infos_, [&](const ChannelInfo* info) { return info->name == name; });
+}
+
+std::string_view ChannelList::color() const {
+  const auto found = std::ranges::find_if(infos_, &ChannelInfo::is_color);
+  return found == infos_.end() ? std::string_view() : (*found)->name;
 }
 
 }  // namespace frond

@@ -24,8 +24,8 @@ struct CameraHit {
 /// needs data that FirstHit lacks, the integrator must provide them there.
 struct ChannelInfo {
   /// How a pixel's value follows from its samples: mean over the samples with a hit; value of the sample nearest to the
-  /// pixel's centre, for ids; number of samples.
-  enum class Kind : uint8_t { mean, nearest, sample_count };
+  /// pixel's centre, for ids; number of samples; variance of the samples' colour, and its ratio to the mean.
+  enum class Kind : uint8_t { mean, nearest, sample_count, sample_variance, relative_variance };
   /// How values are transformed to camera space (FilmSettings::features_in_camera_space); a point or vector has three.
   enum class Space : uint8_t { none, point, vector };
 
@@ -34,7 +34,8 @@ struct ChannelInfo {
   Kind kind;
   Space space;
   std::string_view doc;
-  Triple (*value)(const CameraHit&);  ///< value of one sample; nullptr for sample_count
+  Triple (*value)(const CameraHit&);  ///< value of one sample; nullptr if it is not a property of the hit
+  bool is_color = false;              ///< needs a film of colours, not of bands
 
   /// Number of values.
   constexpr size_t size() const { return exr[1].empty() ? 1 : exr[2].empty() ? 2 : 3; }
@@ -56,6 +57,10 @@ class ChannelList {
   const std::vector<const ChannelInfo*>& infos() const { return infos_; }
   std::vector<std::string> names() const;
   bool has(std::string_view name) const;
+  /// True if a channel has the albedo of the hit.
+  bool has_albedo() const { return has("albedo") || has("Albedo"); }
+  /// Name of a channel that needs a film of colours, not of bands; empty if there is none.
+  std::string_view color() const;
   /// Total number of values of the channels of kind mean, and of kind nearest.
   size_t means() const { return means_; }
   size_t ids() const { return ids_; }

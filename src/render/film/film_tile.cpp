@@ -139,7 +139,7 @@ FilmTile::SplatBlocks& FilmTile::SplatBlocks::operator+=(const SplatBlocks& othe
 Features::Features(const ChannelList& channels, const CameraHit& hit) {
   size_t mean = 0, id = 0;
   for (const ChannelInfo* channel : channels.infos()) {
-    if (channel->kind == ChannelInfo::Kind::sample_count) continue;
+    if (!channel->value) continue;
     const Triple value = channel->value(hit);
     for (size_t c = 0; c < channel->size(); ++c)
       (channel->kind == ChannelInfo::Kind::mean ? means[mean++] : ids[id++]) = value[c];

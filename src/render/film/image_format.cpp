@@ -96,8 +96,8 @@ class PixelWriter {
     const double* mean = features.means.data();
     const double* id = features.ids.data();
     for (const ChannelInfo* channel : channels.infos()) {
-      if (channel->kind == ChannelInfo::Kind::sample_count) {
-        put(double(film_.samples(x, y)));
+      if (!channel->value) {
+        put_statistic(channel->kind, x, y);
         continue;
       }
       const double*& value = channel->kind == ChannelInfo::Kind::mean ? mean : id;
@@ -108,6 +108,18 @@ class PixelWriter {
                    channel->space == ChannelInfo::Space::point && features.hits > 0 ? 1 : 0));
       value += channel->size();
     }
+  }
+
+  void put_statistic(ChannelInfo::Kind kind, int x, int y) {
+    const double samples = double(film_.samples(x, y));
+    if (kind == ChannelInfo::Kind::sample_count) return put(samples);
+    const Triple mean = film_.mean(x, y);
+    Triple variance = film_.variance(x, y);
+    for (size_t c = 0; c < 3; ++c) {
+      variance[c] *= samples;
+      if (kind == ChannelInfo::Kind::relative_variance) variance[c] = mean[c] == 0 ? 0 : variance[c] / mean[c];
+    }
+    put(variance);
   }
 
   /// Transforms a point (w = 1) or a vector (w = 0). Camera transformations have no shear: normals transform as

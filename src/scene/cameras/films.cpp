@@ -135,10 +135,11 @@ FilmSettings make_rgb_film(const Params& p) {
   return s;
 }
 
-/// A gbuffer film has all feature channels of frond, not only those of pbrt-v4.
+/// A gbuffer film has the channels of pbrt-v4, by its names, but for dzdx and dzdy, and those that frond adds.
 FilmSettings make_gbuffer_film(const Params& p) {
   FilmSettings s = make_rgb_film(p);
-  s.channels = {"albedo", "normal", "depth", "position", "material", "instance", "samples"};
+  s.channels = {"Albedo",           "position", "N",        "Ns",       "uv",     "Variance",
+                "RelativeVariance", "depth",    "material", "instance", "samples"};
   s.features_in_camera_space = p.string("coordinatesystem") == "camera";
   return s;
 }
