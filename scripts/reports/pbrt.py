@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Compares frond with pbrt-v4: renders the scenes of tests/pbrt_reference with several seeds and compares the means of blocks
-of 8 x 8 pixels with those of pbrt-v4, which are stored beside the scenes. Writes the section of docs/scene_format.md on it.
+of 8 x 8 pixels with those of pbrt-v4, which are stored beside the scenes. Writes the section of docs/pbrt.md on it.
 
 The z of a block is its difference over the standard errors of both sides and a systematic tolerance of 0.2 %. A scene agrees if
 none of its 192 values of z (8 x 8 blocks, three channels) exceeds the limit. The standard errors are themselves estimates, with
-some 20 degrees of freedom: with the limit of 8 of the test, a run over 122 scenes has a false alarm with probability 22,000
+some 20 degrees of freedom: with the limit of 8 of the test, a run over 123 scenes has a false alarm with probability 22,000
 P(|t| > 8) = 0.002. Seeds are fixed, so the result is the same in every run of one version of the code."""
 
 import argparse
@@ -22,7 +22,7 @@ from tools import ROOT, machine, table, write_section
 
 FOLDER = ROOT / "tests" / "pbrt_reference"
 AGREES = FOLDER / "agrees.txt"
-PAGE = ROOT / "docs" / "scene_format.md"
+PAGE = ROOT / "docs" / "pbrt.md"
 GROUPS = {"10": "Materials and spectra", "20": "Textures", "25": "Bumps and textured parameters", "30": "Shapes",
           "40": "Lights", "50": "Cameras", "60": "Pixel filters", "70": "Film and colour", "80": "Format",
           "90": "Media", "92": "Media on grids", "95": "Motion"}
