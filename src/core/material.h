@@ -25,8 +25,9 @@ struct Hit {
   Vec3 ng;          ///< geometric normal, unit, on the front (a leaf's adaxial side) whichever side was hit
   Frame shading;    ///< z is the shading normal, in the hemisphere of ng
   TexturePoint at;  ///< argument for textures
-  float extent =
-      0;  ///< largest coordinate that entered the computation of `p`; its float spacing bounds the error of `p`
+  /// Bound of the coordinates that entered the computation of `p`, along `ng`; its float spacing bounds the error of
+  /// `p` along `ng`.
+  float extent = 0;
   /// Set only for a material whose `needs_details` is true; then shading.x points along dpdu.
   SurfaceDerivatives derivatives{};
 };
