@@ -1,12 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "core/log.h"
+#include "bench/bundle_render.h"
 #include "core/random.h"
-#include "render/plugins.h"
-#include "render/render_loop.h"
-#include "scene/format/parser.h"
-#include "scene/overrides.h"
-#include "scene/scene.h"
 
 /// The light `sky`: time of its functions, and CPU time of a path under it relative to that under a constant sky and a
 /// distant light. Names do not change between releases.
@@ -20,63 +15,22 @@ constexpr const char* kConstantAndDistant =
     "LightSource \"distant\" \"point3 from\" [ 0.5 0 0.8660254 ] \"point3 to\" [ 0 0 0 ] \"spectrum L\" "
     "\"stdillum-D65\"\n";
 
-/// A scene of the repository under other lights, rendered on one thread by bundles of 16 samples a pixel.
-class Lit {
- public:
-  Lit(const std::string& file, const std::string& material, const std::string& lights)
-      : pool_(1),
-        registry_(builtin_registry()),
-        scene_(described(file, material, lights), registry_, pool_, silent_log()),
-        film_({.settings = scene_.film()}) {
-    add_bundle();  // allocates memory; not counted
-    paths_ = cpu_seconds_ = 0;
-  }
-  void add_bundle() {
-    const RenderJob job{scene_,          scene_.camera(),  scene_.integrator(), scene_.wavelengths(),
-                        scene_.filter(), scene_.sampler(), scene_.seed()};
-    const WorkPlan plan = plan_of(film_, {samples_, samples_ + PathBundle::kMost});
-    const RenderStatistics s = render(job, plan, film_, pool_);
-    samples_ += PathBundle::kMost;
-    paths_ += double(s.paths), cpu_seconds_ += s.cpu_seconds;
-  }
-  double seconds_per_path() const { return cpu_seconds_ / paths_; }
-  const Scene& scene() const { return scene_; }
+/// The hundred leaves under other lights.
+SceneDescription lit(const std::string& material, const std::string& lights) {
+  SceneDescription d = BundleRender::described("hundred-leaves/scene.pbrt", material);
+  d.lights = parse_scene_text(lights, "lights", silent_log()).lights;
+  return d;
+}
 
- private:
-  SceneDescription described(const std::string& file, const std::string& material, const std::string& lights) const {
-    SceneDescription d = parse_scene(std::string(FROND_SOURCE_DIR "/scenes/") + file, silent_log());
-    d.lights = parse_scene_text(lights, "lights", silent_log()).lights;
-    apply_overrides({.swaps = {{"leaf", {material, {}}}}, .wavelengths = "hero"}, d, registry_, silent_log());
-    return d;
-  }
-
-  ThreadPool pool_;
-  Registry registry_;
-  Scene scene_;
-  Film film_;
-  uint64_t samples_ = 0;
-  double paths_ = 0, cpu_seconds_ = 0;
-};
-
-/// Renders under both in turn, so that other load affects both equally. `cost`: time of a path relative to that under
-/// the constant sky and the distant light.
 void path_under_sky(benchmark::State& state, const std::string& material) {
-  Lit sky("hundred-leaves/scene.pbrt", material, kSky);
-  Lit baseline("hundred-leaves/scene.pbrt", material, kConstantAndDistant);
-  for (auto _ : state) {
-    sky.add_bundle();
-    state.PauseTiming();
-    baseline.add_bundle();
-    state.ResumeTiming();
-  }
-  state.counters["us_per_path"] = sky.seconds_per_path() * 1e6;
-  state.counters["cost"] = sky.seconds_per_path() / baseline.seconds_per_path();
+  BundleRender sky(lit(material, kSky)), baseline(lit(material, kConstantAndDistant));
+  compare_paths(state, sky, baseline);
 }
 
 /// One function of the light, at directions or numbers that vary.
 template <class Call>
 void call_light(benchmark::State& state, const Call& call) {
-  const Lit sky("hundred-leaves/scene.pbrt", "diffusetransmission", kSky);
+  const BundleRender sky(lit("diffusetransmission", kSky));
   const EnvironmentLight& light = *sky.scene().environment()[0];
   const SampledWavelengths lambda = sky.scene().wavelengths().sample(0.5f);
   RandomStream random(1);

@@ -32,9 +32,12 @@ Motion::Motion(const AffineMap& start, const AffineMap& end, Interval seen)
   angle_ =
       float(2 * std::atan2((turn[0].coeffs() - turn[1].coeffs()).norm(), (turn[0].coeffs() + turn[1].coeffs()).norm()));
   constexpr float kTurned = 1e-6f;  // below, rounding turned it
-  if (angle_ < kTurned) turn[1] = turn[0], angle_ = 0;
-  for (size_t k = 0; k < 2; ++k)
-    for (int i = 0; i < 4; ++i) rotation_[k][size_t(i)] = float(turn[k].coeffs()[i]);
+  if (angle_ < kTurned) angle_ = 0;
+  const Eigen::Vector4d from = turn[0].coeffs(), across = turn[1].coeffs() - from * from.dot(turn[1].coeffs());
+  for (int i = 0; i < 4; ++i) {
+    rotation_[0][size_t(i)] = float(from[i]);
+    if (angle_ > 0) rotation_[1][size_t(i)] = float(across[i] / across.norm());
+  }
 }
 
 float Motion::share(float time) const {
@@ -44,11 +47,7 @@ float Motion::share(float time) const {
 
 AffineMap Motion::at(float time) const {
   const float s = share(time);
-  float a = 1 - s, b = s;
-  if (angle_ > 0) {
-    const float scale = 1 / std::sin(angle_);
-    a = std::sin(a * angle_) * scale, b = std::sin(b * angle_) * scale;
-  }
+  const float a = std::cos(s * angle_), b = std::sin(s * angle_);
   const auto& [q, r] = rotation_;
   const float x = a * q[0] + b * r[0], y = a * q[1] + b * r[1], z = a * q[2] + b * r[2], w = a * q[3] + b * r[3];
   const std::array<Vec3, 3> turn{Vec3{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},

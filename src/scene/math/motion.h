@@ -38,8 +38,10 @@ class Motion {
 
   Interval seen_;
   std::array<Vec3, 2> translation_;
-  std::array<std::array<float, 4>, 2> rotation_{};  ///< unit quaternions, w last, at most 90 degrees apart
-  float angle_ = 0;                                 ///< between the quaternions, radians: half that of the rotation
+  /// Unit quaternions, w last: that of the start, and the one at a right angle to it toward that of the end. The
+  /// rotation is their combination by the cosine and the sine of the share of angle_.
+  std::array<std::array<float, 4>, 2> rotation_{};
+  float angle_ = 0;  ///< between the quaternions of start and end, radians: half that of the rotation, at most pi/2
   std::array<Stretch, 2> stretch_{};
 };
 
