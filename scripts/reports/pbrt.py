@@ -4,7 +4,7 @@ of 8 x 8 pixels with those of pbrt-v4, which are stored beside the scenes. Write
 
 The z of a block is its difference over the standard errors of both sides and a systematic tolerance of 0.2 %. A scene agrees if
 none of its 192 values of z (8 x 8 blocks, three channels) exceeds the limit. The standard errors are themselves estimates, with
-some 20 degrees of freedom: with the limit of 8 of the test, a run over 124 scenes has a false alarm with probability 22,000
+some 20 degrees of freedom: with the limit of 8 of the test, a run over 125 scenes has a false alarm with probability 22,000
 P(|t| > 8) = 0.002. Seeds are fixed, so the result is the same in every run of one version of the code."""
 
 import argparse
