@@ -2,6 +2,7 @@
 
 #include "core/problems.h"
 #include "render/plugins.h"
+#include "scene/math/motion.h"
 #include "scene/read_scene.h"
 #include "tests/fuzz/scene_input.h"
 
@@ -20,6 +21,12 @@ static void check(const SceneDescription& scene, size_t bytes) {
     for (const uint32_t i : instances.objects) fuzz::require(i < scene.objects.size(), "an instance's object exists");
     for (const AffineMap& map : *instances.maps)
       for (const auto& row : map.rows) fuzz::require_finite(row, "an instance's map");
+    for (const MovingInstance& moving : instances.moving) {
+      fuzz::require(moving.object < scene.objects.size(), "a moving instance's object exists");
+      const Motion motion(moving.start, moving.end, {0, 1});
+      for (const float time : {0.f, 0.5f, 1.f})
+        for (const auto& row : motion.at(time).rows) fuzz::require_finite(row, "a moving instance's map");
+    }
   };
   check_shapes(scene.shapes), check_instances(scene.instances);
   for (const ObjectDescription& object : scene.objects) check_shapes(object.shapes), check_instances(object.instances);
