@@ -7,14 +7,14 @@ namespace frond {
 
 SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, const Registry& registry, const Log& log,
                             const Unsupported& unsupported, Problems& problems) {
-  SceneDescription description = parse_scene(paths, log, unsupported, problems);
+  SceneDescription description = parse_scene(paths, log, problems);
   answer_pbrt_plugins(description, registry, unsupported, log, problems);
   return description;
 }
 
 SceneDescription read_scene_text(const std::string& text, const std::string& name, const Registry& registry,
                                  const Log& log, const Unsupported& unsupported) {
-  SceneDescription description = parse_scene_text(text, name, log, unsupported);
+  SceneDescription description = parse_scene_text(text, name, log);
   Problems problems;
   answer_pbrt_plugins(description, registry, unsupported, log, problems);
   problems.check();

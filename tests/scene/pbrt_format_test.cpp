@@ -184,7 +184,7 @@ TEST(PbrtFormat, WhatAnIncludedFileTakesOfItsIncluderIsReadAgain) {
   Problems problems;
   const auto scene =
       parse_scene({folder.write("main.pbrt", "WorldBegin\nInclude \"inner.pbrt\"\nShape \"sphere\"\nFoo 1")},
-                  silent_log(), {}, problems);
+                  silent_log(), problems);
   EXPECT_THAT(problems.messages(), ElementsAre(HasSubstr("main.pbrt:3:1: Translate takes 3 numbers"),
                                                HasSubstr("main.pbrt:4:1: unknown directive Foo")));
   EXPECT_EQ(scene.shapes.size(), 2u);
@@ -214,7 +214,7 @@ TEST(PbrtFormat, AMissingIncludeIsTheOnlyError) {
         "WorldBegin Include \"none.pbrt\" NamedMaterial \"m\" Shape \"disk\" ObjectInstance \"o\" ObjectEnd",
         "WorldBegin Import \"none.pbrt\" NamedMaterial \"m\" Shape \"disk\" ObjectInstance \"o\""}) {
     Problems problems;
-    parse_scene({folder.write("main.pbrt", text)}, silent_log(), {}, problems);
+    parse_scene({folder.write("main.pbrt", text)}, silent_log(), problems);
     EXPECT_THAT(problems.messages(), ElementsAre(HasSubstr("none.pbrt"))) << text;
   }
 }
@@ -227,7 +227,7 @@ TEST(PbrtFormat, WhatARefusedObjectHoldsIsNotInTheWorld) {
                                 "WorldBegin ObjectBegin \"o\" ObjectEnd ObjectBegin \"o\" Shape \"disk\" ObjectEnd\n"
                                 "ObjectBegin \"p\" ObjectBegin \"q\" Shape \"disk\" ObjectEnd ObjectEnd\n"
                                 "ObjectBegin 3 Shape \"disk\" ObjectEnd ObjectInstance \"o\"")},
-                  silent_log(), {}, problems);
+                  silent_log(), problems);
   EXPECT_THAT(problems.messages(),
               ElementsAre(HasSubstr("object \"o\" is defined again"), HasSubstr("ObjectBegin inside object \"p\""),
                           HasSubstr("ObjectBegin needs a quoted name")));
@@ -279,7 +279,7 @@ Answer answer(const std::string& text, const std::string& ignored = "") {
   const auto unsupported = ignored.empty() ? Unsupported() : Unsupported(ignored);
   const Registry registry = builtin_registry();
   result.problems.attempt([&] {
-    result.scene = parse_scene_text(text, "s", result.log, unsupported);
+    result.scene = parse_scene_text(text, "s", result.log);
     answer_pbrt_plugins(result.scene, registry, unsupported, result.log, result.problems);
   });
   return result;
@@ -306,7 +306,7 @@ TEST(PbrtFormat, ANamedMaterialWithoutTypeIsOneError) {
   auto scene = parse_scene({folder.write("main.pbrt",
                                          "WorldBegin MakeNamedMaterial \"m\" NamedMaterial \"m\"\n"
                                          "Shape \"disk\"")},
-                           silent_log(), {}, problems);
+                           silent_log(), problems);
   answer_pbrt_plugins(scene, registry, {}, silent_log(), problems);
   for (const MaterialDescription& m : scene.materials) EXPECT_TRUE(registry.materials.find(m.plugin.name));
   EXPECT_THAT(problems.messages(), ElementsAre(HasSubstr("needs parameter \"string type\"")));

@@ -7,7 +7,6 @@
 #include "scene/format/description_builder.h"
 #include "scene/format/parameter_list.h"
 #include "scene/format/tokenizer.h"
-#include "scene/format/unsupported.h"
 
 namespace frond {
 
@@ -17,7 +16,6 @@ struct DirectiveContext {
   ParameterReader& parameters;
   DescriptionBuilder& scene;
   const Log& log;
-  const Unsupported& unsupported;
 };
 
 /// Reads the arguments of directive `name`, whose word has been consumed, and executes it. Include and Import are

@@ -26,8 +26,8 @@ fs::path real_path(const fs::path& path) {
 /// Reads scene files and the files that they include.
 class SceneReader {
  public:
-  SceneReader(SceneDescription& scene, const Log& log, const Unsupported& unsupported, Problems& problems)
-      : scene_(scene), log_(log), unsupported_(unsupported), problems_(problems), builder_(scene, log) {}
+  SceneReader(SceneDescription& scene, const Log& log, Problems& problems)
+      : scene_(scene), log_(log), problems_(problems), builder_(scene, log) {}
 
   /// Reads the main file, or one of several consecutive files.
   void read_main(const std::string& text, const fs::path& path) {
@@ -52,7 +52,6 @@ class SceneReader {
 
   SceneDescription& scene_;
   const Log& log_;
-  const Unsupported& unsupported_;
   Problems& problems_;
   DescriptionBuilder builder_;
   ParameterReader parameters_;
@@ -83,7 +82,7 @@ Location SceneReader::read(const std::string& bytes, const fs::path& path, Token
          kMostFiles, kMostBytes >> 30);
   }
   Tokenizer tokens(is_gzip(bytes) ? unpacked : bytes, name, outer);
-  DirectiveContext context{tokens, parameters_, builder_, log_, unsupported_};
+  DirectiveContext context{tokens, parameters_, builder_, log_};
   open_files_.push_back({path, real_path(path)});
   while (!limit_reached_ && !tokens.at_end()) {
     check_stop();
@@ -149,10 +148,9 @@ void SceneReader::check_include(const fs::path& path, const Location& where) con
 
 }  // namespace
 
-SceneDescription parse_scene(const std::vector<fs::path>& paths, const Log& log, const Unsupported& unsupported,
-                             Problems& problems) {
+SceneDescription parse_scene(const std::vector<fs::path>& paths, const Log& log, Problems& problems) {
   SceneDescription scene;
-  SceneReader reader(scene, log, unsupported, problems);
+  SceneReader reader(scene, log, problems);
   for (const fs::path& path : paths)
     problems.attempt([&] {
       if (path == "-")
@@ -165,9 +163,9 @@ SceneDescription parse_scene(const std::vector<fs::path>& paths, const Log& log,
 }
 
 /// Throws all errors together.
-SceneDescription parse_scene(const fs::path& path, const Log& log, const Unsupported& unsupported) {
+SceneDescription parse_scene(const fs::path& path, const Log& log) {
   Problems problems;
-  SceneDescription scene = parse_scene(std::vector{path}, log, unsupported, problems);
+  SceneDescription scene = parse_scene(std::vector{path}, log, problems);
   problems.check();
   return scene;
 }
@@ -210,11 +208,10 @@ bool holds_world(const fs::path& path) {
   return !problems.attempt([&] { holds = holds_world(main, path); }) || holds;
 }
 
-SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log,
-                                  const Unsupported& unsupported) {
+SceneDescription parse_scene_text(const std::string& text, const std::string& name, const Log& log) {
   Problems problems;
   SceneDescription scene;
-  SceneReader reader(scene, log, unsupported, problems);
+  SceneReader reader(scene, log, problems);
   reader.read_main(text, name);
   reader.finish();
   problems.check();
