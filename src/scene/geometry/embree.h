@@ -116,13 +116,14 @@ inline void occluded(RTCScene scene, RTCRay& ray, Query& query) {
   query.check();
 }
 
-/// Same for a coherent packet.
+/// Same for a packet. Shadow rays to an area light spread: Embree traces such rays faster if they are not called coherent,
+/// and parallel ones as fast (docs/internals.md, "Bundles").
 inline void occluded(const int* valid, RTCScene scene, RTCRay8& rays, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4
-  auto arguments = arguments_of(query, rtcInitOccludedArguments, RTC_RAY_QUERY_FLAG_COHERENT);
+  auto arguments = arguments_of(query, rtcInitOccludedArguments, RTC_RAY_QUERY_FLAG_INCOHERENT);
   rtcOccluded8(valid, scene, &rays, &arguments);
 #else
-  query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcOccluded8(valid, scene, &query.base, &rays);
 #endif
   query.check();
