@@ -78,12 +78,24 @@ class Tracer {
   virtual void trace(PathBundle& bundle) = 0;
 };
 
+/// Camera rays of a scene, for an integrator that adapts to it before the render. The whole image is their source,
+/// whichever part of it is rendered.
+class PilotRays {
+ public:
+  virtual ~PilotRays() = default;
+  /// Returns a bundle of samples of a pixel, which `pixel` selects at random. All bundles of a pixel have the same
+  /// wavelengths.
+  virtual PathBundle bundle(uint64_t pixel, uint64_t bundle) const = 0;
+};
+
 /// Integrator: estimates the radiance along camera rays.
 class Integrator {
  public:
   virtual ~Integrator() = default;
   /// Called once, before the first path.
   virtual void prepare(const World&) {}
+  /// Called once, after `prepare`. What an integrator adapts may change its noise and speed alone.
+  virtual void adapt(const World&, const PilotRays&) {}
   /// Returns a tracer for one thread, not null. The world and the integrator outlive it. Thread-safe.
   virtual std::unique_ptr<Tracer> tracer(const World& world) const = 0;
 };

@@ -6,6 +6,7 @@
 #include "scene/format/plugin_text.h"
 #include "scene/geometry_builder.h"
 #include "scene/lights/shape_emitter.h"
+#include "scene/pilot_rays.h"
 #include "scene/scene.h"
 #include "scene/scene_options.h"
 #include "scene/textures/normal_map.h"
@@ -147,6 +148,7 @@ class SceneBuilder {
     check_rays(b);
     build_tiling();
     scene_.integrator_->prepare(scene_);
+    scene_.integrator_->adapt(scene_, ScenePilotRays(scene_));
   }
 
   template <class Info, class... Args>

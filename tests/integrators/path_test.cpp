@@ -13,6 +13,10 @@ using testing::channel_mean;
 using testing::render_text;
 using testing::RenderSettings;
 
+/// All ways in which lights are found.
+constexpr const char* kDirect[] = {"\"integer lightsamples\" 1", "\"integer lightsamples\" 2",
+                                   "\"bool sampledirect\" false"};
+
 /// z-tests below use 5 standard errors: a false alarm in 1.7 million for each.
 constexpr double kSigmas = 5;
 
@@ -112,8 +116,8 @@ TEST_P(AreaLights, IrradianceIsTheFormFactor) {
   const std::string light = R"(AttributeBegin AreaLightSource "diffuse" "spectrum L" "stdillum-D65" Translate 0 0 2 )" +
                             GetParam().shape + " AttributeEnd\n";
   const double expected = 0.4 * GetParam().form_factor;
-  for (const char* direct : {"true", "false"}) {
-    const std::string integrator = fmt::format("\"integer maxdepth\" 1 \"bool sampledirect\" {}", direct);
+  for (const char* direct : kDirect) {
+    const std::string integrator = fmt::format("\"integer maxdepth\" 1 {}", direct);
     // The camera looks from under the light.
     const Film film = render_text(looking_down(kGrey + kPlane + light, 1e-4, 16, integrator), {.samples = 256});
     const double error = expect_mean(film, expected);
@@ -232,8 +236,8 @@ TEST(Path, LightSamplingAndScatteringAgreeInAClosedBox) {
   const std::string world = R"(AttributeBegin Material "diffuse" "spectrum reflectance" [360 .6 2500 .6]
 AreaLightSource "diffuse" "spectrum L" "stdillum-D65" ReverseOrientation Shape "sphere" "float radius" 2 AttributeEnd
 )";
-  for (const char* direct : {"true", "false"}) {
-    const std::string integrator = fmt::format("\"integer maxdepth\" 100000 \"bool sampledirect\" {}", direct);
+  for (const char* direct : kDirect) {
+    const std::string integrator = fmt::format("\"integer maxdepth\" 100000 {}", direct);
     const Film film = render_text(looking_down(world, 0.5, 16, integrator), {.samples = 256});
     EXPECT_LT(expect_mean(film, 1 / (1 - 0.6)), 0.01);
   }
@@ -257,11 +261,13 @@ LightSource "point" "point3 from" [0 0 2] "spectrum I" "stdillum-D65" "float sca
 LightSource "infinite" "spectrum L" "stdillum-D65" "float scale" .5
 )";
   const double expected = 0.4 * (2 + 8 / 4.0 + 0.5 * std::numbers::pi) / std::numbers::pi;
-  for (const char* selector : {"power", "uniform", "bvh"}) {
-    const std::string integrator = fmt::format("\"integer maxdepth\" 1 \"string lightsampler\" \"{}\"", selector);
-    const Film film = render_text(looking_down(kGrey + kPlane + lights, 1e-4, 16, integrator), {.samples = 256});
-    EXPECT_LT(expect_mean(film, expected), 0.02) << selector;
-  }
+  for (const char* selector : {"power", "uniform", "bvh"})
+    for (const char* direct : {kDirect[0], kDirect[1]}) {
+      const std::string integrator =
+          fmt::format("\"integer maxdepth\" 1 {} \"string lightsampler\" \"{}\"", direct, selector);
+      const Film film = render_text(looking_down(kGrey + kPlane + lights, 1e-4, 16, integrator), {.samples = 256});
+      EXPECT_LT(expect_mean(film, expected), 0.02) << selector;
+    }
 }
 
 TEST(Path, InstancesLookLikeWhatTheyCopy) {

@@ -116,8 +116,8 @@ inline void occluded(RTCScene scene, RTCRay& ray, Query& query) {
   query.check();
 }
 
-/// Same for a packet. Shadow rays to an area light spread: Embree traces such rays faster if they are not called coherent,
-/// and parallel ones as fast (docs/internals.md, "Bundles").
+/// Same for a packet. Shadow rays to an area light spread: Embree traces such rays faster if they are not called
+/// coherent, and parallel ones as fast (docs/internals.md, "Bundles").
 inline void occluded(const int* valid, RTCScene scene, RTCRay8& rays, Query& query) {
 #if FROND_EMBREE_MAJOR >= 4
   auto arguments = arguments_of(query, rtcInitOccludedArguments, RTC_RAY_QUERY_FLAG_INCOHERENT);

@@ -1,0 +1,42 @@
+#include "scene/pilot_rays.h"
+
+#include <algorithm>
+
+#include "core/random.h"
+#include "scene/scene.h"
+
+namespace frond {
+
+// The numbers are the sampler's, so that the samples of a pixel are as well distributed as those of the render. The
+// dimensions are those that the render loop would use. Without the filter: where pixels share samples, noise is that of
+// the samples inside a pixel.
+PathBundle ScenePilotRays::bundle(uint64_t pixel, uint64_t number) const {
+  constexpr uint32_t kSamples = PathBundle::kMost;
+  const FilmSettings& film = scene_.film();
+  const Sampler& sampler = scene_.sampler();
+  RandomStream place(hash_key(scene_.seed(), pixel));
+  const int x = std::min(int(place.uniform() * float(film.width)), film.width - 1);
+  const int y = std::min(int(place.uniform() * float(film.height)), film.height - 1);
+  constexpr uint32_t kAll = (1u << kSamples) - 1;
+  PathBundle bundle{.sampler = sampler, .samples = {x, y, number * kSamples, kSamples}, .lanes = kAll, .wanted = kAll};
+  std::array<Vec2, kSamples> on_film, on_lens{};
+  std::array<float, kSamples> time{};
+  uint32_t dimension = 1;  // the first is that of the wavelengths
+  sampler.get2d(bundle.samples, dimension++, on_film.data());
+  if (scene_.camera().uses_lens()) sampler.get2d(bundle.samples, dimension++, on_lens.data());
+  if (scene_.has_motion()) sampler.get1d(bundle.samples, dimension++, time.data());
+  bundle.dimension = dimension;
+  bundle.lambda.fill(scene_.wavelengths().sample_in_turn(pixel, place.uniform()));
+  for (uint32_t k = 0; k < kSamples; ++k) {
+    on_film[k] = {float(x) + on_film[k].x, float(y) + on_film[k].y};
+    bundle.keys[k] = sample_key(scene_.seed(), x, y, bundle.samples.first + k);
+  }
+  scene_.camera().rays(on_film.data(), on_lens.data(), int(kSamples), bundle.rays.data());
+  for (uint32_t k = 0; k < kSamples && scene_.has_motion(); ++k) {
+    bundle.rays[k].time = time[k];
+    if (const CameraMotion* motion = scene_.camera_motion()) motion->move(bundle.rays[k]);
+  }
+  return bundle;
+}
+
+}  // namespace frond

@@ -1,0 +1,65 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/render_text.h"
+
+namespace frond {
+namespace {
+
+using testing::channel_mean;
+using testing::render_text;
+
+/// A plane under a lamp, half hidden from it, with albedo `albedo`; between two such planes most light is scattered
+/// many times.
+std::string scene(const std::string& integrator, const char* albedo, bool is_box, const char* film = "") {
+  return fmt::format(R"(
+LookAt 0 -1 1  0 0 0  0 1 0
+Camera "perspective" "float fov" 50
+Film "rgb" "integer xresolution" 32 "integer yresolution" 32 {}
+PixelFilter "box"
+Integrator "path" "integer maxdepth" 50 {}
+WorldBegin
+AttributeBegin AreaLightSource "diffuse" "spectrum L" "stdillum-D65" "bool twosided" true
+Translate 0 0 2 Shape "disk" "float radius" {} AttributeEnd
+Material "diffuse" "spectrum reflectance" [360 {} 2500 {}]
+Shape "trianglemesh" "point3 P" [-9 -9 0  9 -9 0  9 9 0  -9 9 0] "integer indices" [0 1 2  0 2 3]
+Shape "sphere" "float radius" .2
+{}
+)",
+                     film, integrator, is_box ? "0.1" : "1", albedo, albedo,
+                     is_box ? "ReverseOrientation Shape \"sphere\" \"float radius\" 3" : "");
+}
+
+// 5 standard errors: a false alarm in 1.7 million.
+TEST(LightSamples, HasLessNoiseAndTheSameMean) {
+  const Film one = render_text(scene("\"integer lightsamples\" 1", ".3", false), {.samples = 64});
+  const Film two = render_text(scene("\"integer lightsamples\" 2", ".3", false), {.samples = 64});
+  const auto a = channel_mean(one, 1), b = channel_mean(two, 1);
+  EXPECT_NEAR(a.mean, b.mean, 5 * std::hypot(a.error, b.error));
+  EXPECT_LT(b.error, 0.8 * a.error);
+  EXPECT_LT(a.error, 0.002 * a.mean) << "the test has lost its power";
+}
+
+// The decision is seen in the bits. The second scene is a closed box of albedo 0.9, where few of all rays go to the
+// lamp from a first hit, and most of the noise is that of later ones.
+TEST(LightSamples, IsTakenWhereItPays) {
+  const auto image = [](const std::string& integrator, const char* albedo, bool is_box) {
+    return render_text(scene(integrator, albedo, is_box), {.samples = 16});
+  };
+  const std::string one = "\"integer lightsamples\" 1", two = "\"integer lightsamples\" 2";
+  EXPECT_TRUE(image("", ".3", false) == image(two, ".3", false));
+  EXPECT_FALSE(image("", ".3", false) == image(one, ".3", false));
+  EXPECT_TRUE(image("", ".9", true) == image(one, ".9", true));
+}
+
+// Otherwise the parts of an image would not fit together.
+TEST(LightSamples, DoesNotDependOnTheCrop) {
+  const Film whole = render_text(scene("", ".3", false));
+  const Film part = render_text(scene("", ".3", false, "\"float cropwindow\" [.25 .5 .5 .75]"));
+  for (int y = 16; y < 24; ++y)
+    for (int x = 8; x < 16; ++x) ASSERT_EQ(part.mean(x, y), whole.mean(x, y)) << x << ", " << y;
+}
+
+}  // namespace
+}  // namespace frond
