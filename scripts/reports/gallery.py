@@ -5,13 +5,14 @@ import shutil
 import tempfile
 
 import frond
+from PIL import Image
 from tools import ROOT, arguments, write
 
 SIZE = 200
 SAMPLES = 256
 
 # Made by this script beside a scene that reads it: an image with an up and a left.
-LETTER = "letter.ppm"
+LETTER = "letter.png"
 # Copied there.
 MEASURED = ROOT / "tests" / "pbrt_reference" / "brushed.bsdf"
 TORUS = ROOT / "tests" / "pbrt_reference" / "torus.nvdb"
@@ -77,11 +78,11 @@ MATERIALS = {
      for name in ("abm", "leaf", "leaf_lambert", "leaf_simplified", "leaf_solved")}
 SPECTRUM_TEXTURES = {
     "constant": 'Texture "pattern" "spectrum" "constant" "rgb value" [ 0.15 0.4 0.2 ]',
-    "scale": 'Texture "image" "spectrum" "imagemap" "string filename" "letter.ppm"\n'
+    "scale": 'Texture "image" "spectrum" "imagemap" "string filename" "letter.png"\n'
              'Texture "pattern" "spectrum" "scale" "texture tex" "image" "float scale" 0.4',
-    "mix": 'Texture "image" "spectrum" "imagemap" "string filename" "letter.ppm"\n'
+    "mix": 'Texture "image" "spectrum" "imagemap" "string filename" "letter.png"\n'
            'Texture "pattern" "spectrum" "mix" "texture tex1" "image" "rgb tex2" [ 0.1 0.2 0.6 ] "float amount" 0.6',
-    "imagemap": 'Texture "pattern" "spectrum" "imagemap" "string filename" "letter.ppm" "float uscale" 3 "float vscale" 2',
+    "imagemap": 'Texture "pattern" "spectrum" "imagemap" "string filename" "letter.png" "float uscale" 3 "float vscale" 2',
     "checkerboard": 'Texture "pattern" "spectrum" "checkerboard" "float uscale" 16 "float vscale" 8\n'
                     '  "rgb tex1" [ 0.6 0.5 0.3 ] "rgb tex2" [ 0.1 0.2 0.1 ]',
     "dots": 'Texture "pattern" "spectrum" "dots" "float uscale" 16 "float vscale" 8\n'
@@ -100,7 +101,7 @@ FLOAT_TEXTURES = {
     "scale": 'Texture "noise" "float" "fbm"\nTexture "heights" "float" "scale" "texture tex" "noise" "float scale" 0.3',
     "mix": 'Texture "noise" "float" "fbm"\nTexture "steps" "float" "checkerboard" "float uscale" 12 "float vscale" 6 "float tex1" 0.3 "float tex2" 0\n'
            'Texture "heights" "float" "mix" "texture tex1" "noise" "texture tex2" "steps" "float amount" 0.8',
-    "imagemap": 'Texture "heights" "float" "imagemap" "string filename" "letter.ppm" "float uscale" 3 "float vscale" 2 "float scale" 0.2',
+    "imagemap": 'Texture "heights" "float" "imagemap" "string filename" "letter.png" "float uscale" 3 "float vscale" 2 "float scale" 0.2',
     "checkerboard": 'Texture "heights" "float" "checkerboard" "float uscale" 16 "float vscale" 8 "float tex1" 0.2 "float tex2" 0',
     "dots": 'Texture "heights" "float" "dots" "float uscale" 16 "float vscale" 8 "float inside" 0 "float outside" 0.2',
     "bilerp": 'Texture "heights" "float" "bilerp" "float v01" 0.5 "float v11" 0.5',
@@ -128,9 +129,9 @@ LIGHTS = {
     "point": 'LightSource "point" "point3 from" [ -1.6 -1.6 2.2 ] "float scale" 12',
     "spot": 'LightSource "spot" "point3 from" [ -1.6 -1.6 3 ] "point3 to" [ 0 0 0.6 ] "float coneangle" 16 "float scale" 30',
     "projection": 'AttributeBegin\n  Translate -1.2 -3 3  Rotate -128 1 0 0  Rotate 20 0 1 0\n'
-                  '  LightSource "projection" "string filename" "letter.ppm" "float fov" 40 "float scale" 30\nAttributeEnd',
+                  '  LightSource "projection" "string filename" "letter.png" "float fov" 40 "float scale" 30\nAttributeEnd',
     "goniometric": 'AttributeBegin\n  Translate -1.2 -1.4 2.4\n'
-                   '  LightSource "goniometric" "string filename" "letter.ppm" "float scale" 14\nAttributeEnd',
+                   '  LightSource "goniometric" "string filename" "letter.png" "float scale" 14\nAttributeEnd',
 }
 MEDIA = {
     "homogeneous": 'MakeNamedMedium "medium" "string type" "homogeneous" "rgb sigma_a" [ 0.1 0.3 0.8 ] "rgb sigma_s" [ 3 4 5 ] "float g" 0.5',
@@ -199,9 +200,9 @@ def write_letter(path):
     """An F of two colours on a third."""
     rows = ["........", ".#####..", ".#......", ".####...", ".#......", ".#......", ".@......", "........"]
     colors = {".": (225, 215, 180), "#": (150, 40, 25), "@": (30, 80, 160)}
-    scale = 8
-    body = b"".join(bytes(colors[c]) * scale for row in rows for _ in range(scale) for c in row)
-    path.write_bytes(b"P6 %d %d 255\n" % (len(rows[0]) * scale, len(rows) * scale) + body)
+    image = Image.new("RGB", (len(rows[0]), len(rows)))
+    image.putdata([colors[c] for row in rows for c in row])
+    image.resize((8 * image.width, 8 * image.height), Image.Resampling.NEAREST).save(path)
 
 
 def main():

@@ -7,7 +7,7 @@ import frond
 import numpy
 
 import charts
-from gallery import FLOOR, LIGHT, MEDIA, MEDIA_PLACES, VIEW
+from gallery import FLOOR, LIGHT, MEDIA, MEDIA_PLACES, TORUS, VIEW
 from rami import HOMOGENEOUS, LAI, LEAF_R, LEAF_T, SOIL, SUN, sun
 from tools import ROOT, arguments, machine, program, table, write_section
 from turbid import turbid_layer
@@ -91,7 +91,7 @@ def noise(ladder, size=SIZE):
     runs["homogeneous, without light samples"] = ("homogeneous", volpath + ' "bool sampledirect" false')
     curves = {}
     for curve, (name, integrator) in runs.items():
-        loaded, curves[curve] = frond.loads(scene_of(name, size, integrator), wavelengths="hero"), []
+        loaded, curves[curve] = frond.loads(scene_of(name, size, integrator), TORUS.parent, wavelengths="hero"), []
         loaded.render(1)
         for samples in ladder:
             image = loaded.render(samples)

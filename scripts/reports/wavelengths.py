@@ -26,7 +26,7 @@ class Render:
     """One render: XYZ of each pixel, a mask of the leaf pixels, and the CPU time in seconds."""
 
     def __init__(self, scene, wavelengths, space, samples, seed, folder):
-        image = frond.load(scene, wavelengths=wavelengths, seed=seed).render(samples)
+        image = frond.load(scene, wavelengths=wavelengths, seed=seed, samples=samples).render()
         self.seconds, self.leaf = image.statistics["cpu_seconds"], image["leaf"] > 0.5
         if image.color_space:
             rgb = image.rgb
