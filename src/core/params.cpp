@@ -369,8 +369,10 @@ std::shared_ptr<const FloatTexture> texture_in_range(ParamResolver& resolver, co
   const std::string message = fmt::format(
       "texture \"{}\" has values from {:.3g} to {:.3g}, outside the range {} to {}{}{} of \"{}\"", name, values.min,
       values.max, range.min, range.max, declared.unit.empty() ? "" : " ", declared.unit, declared.name);
-  // With a unit, values out of range are most likely given in another unit: that is an error.
-  if (!declared.unit.empty() || values.max < range.min || values.min > range.max || !(values.min <= values.max))
+  // With a unit, values out of range are most likely given in another unit: that is an error. Bounds that are not
+  // tight, such as those of noise, say nothing about the values.
+  if ((!declared.unit.empty() && texture->is_range_tight()) || values.max < range.min || values.min > range.max ||
+      !(values.min <= values.max))
     fail(where, "{}", message);
   if (texture->is_range_tight()) resolver.warn(where, message + ": they are clamped");
   return std::make_shared<ClampedFloatTexture>(std::move(texture), range);

@@ -97,6 +97,15 @@ TEST(ImageTexture, WhatIsNoReflectanceIsClamped) {
   EXPECT_NEAR(film.mean(1, 0)[1], 1, 2e-3);
 }
 
+// The bounds of noise contain values that it never has: they do not show that values are given in another unit.
+TEST(NoiseTexture, MayExceedTheRangeOfAParameterWithAUnit) {
+  EXPECT_NO_THROW(render_text(textured_plane(R"(Texture "noise" "float" "fbm"
+Texture "t" "float" "mix" "texture amount" "noise" "float tex1" 10 "float tex2" 55)",
+                                             R"(Texture "earth" "spectrum" "soil" "texture moisture" "t"
+Material "diffuse" "texture reflectance" "earth")"),
+                              {.samples = 1}));
+}
+
 TEST(Reflectances, AboveOneAreOne) {
   const auto green = [](const std::string& reflectance) {
     const std::string material = "Material \"diffuse\" " + reflectance;

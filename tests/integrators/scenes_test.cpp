@@ -1,6 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
 #include "core/log.h"
+#include "scene/read_scene.h"
 #include "tests/support/render_text.h"
 
 namespace frond {
@@ -38,6 +43,23 @@ TEST(Scenes, FurnacesAreWhite) {
     const auto [mean, error] = testing::channel_mean(render_scene(path), 1);
     EXPECT_NEAR(mean, 1, 5 * error + 1e-5) << path;
   }
+}
+
+// Files with WorldBegin are scenes; some of the canopies need tables of leaves that their scripts make.
+TEST(Scenes, AllCanBeRead) {
+  const Registry registry = make_registry(builtin_materials(), builtin_integrators());
+  ThreadPool pool(1);
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(FROND_SOURCE_DIR "/scenes")) {
+    const std::filesystem::path& path = entry.path();
+    if (path.extension() != ".pbrt" || path.parent_path().filename() == "canopy") continue;
+    std::ifstream file(path);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (text.find("\nWorldBegin") == std::string::npos) continue;
+    ++scenes;
+    EXPECT_NO_THROW(Scene::check(read_scene(path, registry, silent_log()), registry, pool, silent_log())) << path;
+  }
+  EXPECT_GT(scenes, 20);
 }
 
 }  // namespace
