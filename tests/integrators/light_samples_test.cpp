@@ -10,8 +10,7 @@ namespace {
 using testing::channel_mean;
 using testing::render_text;
 
-/// A plane under a lamp, half hidden from it, with albedo `albedo`; between two such planes most light is scattered
-/// many times.
+/// A plane and a small ball of this albedo under a wide lamp; as a box, with a small lamp inside a closed sphere.
 std::string scene(const std::string& integrator, const char* albedo, bool is_box, const char* film = "") {
   return fmt::format(R"(
 LookAt 0 -1 1  0 0 0  0 1 0
