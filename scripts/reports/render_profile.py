@@ -96,6 +96,11 @@ def profile(command, folder, frequency):
 STAGED = [("front", "opaque", 256), ("soybean-back", "leaf", 512), ("canopy", "leaf", 16)]
 
 
+def scattered(result, times):
+    """Share of the paths of a render that scatter at least so often."""
+    return 1 - sum(sum(result[f"paths_{end}_by_depth"][:times]) for end in ("escaped", "absorbed")) / result["paths"]
+
+
 def stages_of_scenes(frequency):
     """Writes the table of stages of docs/performance.md."""
     columns = []
@@ -106,13 +111,16 @@ def stages_of_scenes(frequency):
             scenes.write_pbrt(scenes.SCENES[name](folder), scene, leaves, True, 256, tables=True)
             command = [str(tools.FROND), "render", str(scene), "--spp", str(samples), "--threads", "1", "--wavelengths", "smpte",
                        "-o", str(folder / "image.exr")]
-            per_path = json.loads(tools.run(*command, "--json"))["cpu_us_per_path"]
+            result = json.loads(tools.run(*command, "--json"))
             ways, *_ = profile([*command, "-q"], folder, frequency)
             count = stacks.stages(ways)
             del count[None]
-            columns.append((per_path, count))
+            columns.append((result, count))
     rows = [[stage, *(f"{100 * count[stage] / sum(count.values()):.0f} %" for _, count in columns)] for stage, _ in stacks.STAGES]
-    rows.append(["CPU time per path", *(f"{per_path:.2f} µs" for per_path, _ in columns)])
+    rows.append(["CPU time per path", *(f"{result['cpu_us_per_path']:.2f} µs" for result, _ in columns)])
+    rows.append(["rays per path", *(f"{result['rays_per_path']:.1f}" for result, _ in columns)])
+    rows.append(["hits in a bundle of 16: first, second, third, fourth",
+                 *(", ".join(f"{16 * scattered(result, depth):.1f}" for depth in range(1, 5)) for result, _ in columns)])
     head = ["stage", *(f"{name}, {'opaque' if leaves == 'opaque' else 'transmitting'} leaves" for name, leaves, _ in STAGED)]
     tools.write_section(tools.ROOT / "docs" / "performance.md", "stages", f"""
 Share of the CPU time of paths in scenes of `scripts/race` (256 × 256 pixels, box filter, `--wavelengths smpte`, one thread;
