@@ -13,7 +13,7 @@ from ._session import (Image as Image, Scene as Scene, Session as Session, defau
 
 __version__: str
 
-def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, spp: int | None = None, *, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
     """Render a pbrt-v4 scene file.
 
     scene: Scene file (pbrt-v4 format). Several files are read as one scene, up to the first with WorldBegin; the next file begins another.
@@ -35,6 +35,8 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     pilot: Select the models of open leaves and report them; render nothing.
     display: OpenColorIO display of PNG and JPEG output; sRGB by default. tev: the same as display_server 127.0.0.1:14158.
     view: View of the display.
+    exposure: Change of the exposure of PNG and JPEG output, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops.
+    white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K.
     color_space: Colour space of R, G and B in an EXR file if the scene names none, such as linear sRGB.
     display_server: Show the image in the viewer tev while it is rendered.
     preview: Show the image in the terminal while it is rendered, and at the end.
@@ -45,7 +47,7 @@ def render(scene: str | Sequence[str] | Mapping[str, str], output: str | os.Path
     disable_pixel_jitter: Sample the centres of pixels and lens.
     disable_texture_filtering: Point-sample textures.
     disable_wavelength_jitter: Use the same wavelengths for all samples.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     json: Print the statistics as JSON on standard output."""
 
@@ -67,14 +69,14 @@ def compare(scene: str | os.PathLike, materials: str | Sequence[str] | Mapping[s
     exposure: Exposure of images and FLIP; by default such that the image is neither dark nor overexposed. Unit: stops. Range: from -20 to 20.
     seed: Seed of all random numbers.
     quick: Preview: 128 pixels, up to 32 samples, a reference of 2 x 128 samples.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
 
     Returns the job's table."""
 
-def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = False, sieve: str | os.PathLike | None = None, file: str | Sequence[str] | Mapping[str, str] | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
+def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = False, sieve: str | os.PathLike | None = None, file: str | Sequence[str] | Mapping[str, str] | None = None, data: str | os.PathLike | None = None, output: str | os.PathLike | None = None, json: str | os.PathLike | None = None, csv: str | os.PathLike | None = None, plot: str | os.PathLike | None = None, leaf: str | os.PathLike | None = None, directions: str | os.PathLike | None = None, angle: float = 8.0, structure: str | os.PathLike | None = None, absorption: str | os.PathLike | None = None, fix: str | Sequence[str] | Mapping[str, str] | None = None, like: str | os.PathLike | None = None, material: str | os.PathLike = 'leaf', progress = None, session: Session | None | None = None) -> object:
     """Fits the parameters of a leaf to measured reflectance and transmittance. Returns a Fit, or with all_leaves=True the table
     of all leaves of the files: one row for each, with its parameters, their standard errors (columns ending in _se), contents
     per leaf area, and in "status" why it could not be fitted.
@@ -94,12 +96,13 @@ def fit(wavelengths = None, R = None, T = None, *, path = None, all_leaves = Fal
     plot: Chart of measured and fitted spectra: .svg or .png.
     leaf: Name of the leaf to fit, if the file has several. Excludes all_leaves.
     all_leaves: Fit every leaf; csv has one row for each, with its parameters, their standard errors and, if it could not be fitted, the reason.
+    directions: Goniometer table of the leaf, as frond goniophotometer writes it: report the differences by direction between it and leaf_solved with the fitted parameters. Excludes all_leaves.
     angle: Angle of incidence, if the file does not state it. Unit: degrees. Range: from 0 to 180. Default: 8.
     structure: Structure of the leaf; by default the better fit. One of bifacial, unifacial.
     sieve: Absorption with sieve and detour effects; by default the better fit. One of on, off.
     absorption: Specific absorption of the leaf: PROSPECT-D's, with dry matter and anthocyanins, or the published model's (baranoski), with protein and cellulose. By default that of like, or else prospect. One of prospect, baranoski.
     fix: NAME=NUMBER[UNIT]: keep a parameter at this value, in the units of scene files, or a content per leaf area in ug/cm2, mg/cm2 or g/cm2 (chlorophyll=40ug/cm2, water=0.012g/cm2). Repeatable.
-    like: Specimen used as a prior (standard deviation about one third). One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex.
+    like: Specimen used as a prior (standard deviation about one third). One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex, red, autumn.
     material: Material type to write. One of leaf, leaf_solved, leaf_simplified, leaf_lambert, abm. Default: leaf."""
 
 def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen: str | os.PathLike | None = None, method: str | os.PathLike = 'solve', *, wavelengths: float | Sequence[float] | str, angles: float | Sequence[float] | str = '0:180:1', rays: int = 1000000, nodes: int | None = None, depths: float | Sequence[float] | str | None = None, seed: int | None = None, equalsides: bool = False, output: str | os.PathLike, progress = None, session: Session | None | None = None) -> Result:
@@ -108,7 +111,7 @@ def table(leaf: str | Sequence[str] | Mapping[str, str] | None = None, specimen:
     leaf_simplified: R and T by angle and wavelength, as CSV; leaf_solved: the mode table of its BSDF, or as FILE.leaf the complete material for other programs.
 
     leaf: MATERIAL,parameter=value,...: leaf_simplified or leaf_solved, with the leaf's parameters; without a name leaf_simplified.
-    specimen: Specimen of the leaf; soybean by default. One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex.
+    specimen: Specimen of the leaf; soybean by default. One of soybean, maize, lettuce, tomato, walnut, grape, toyon, soybean-lopex, maize-lopex, red, autumn.
     method: Method: solve (deterministic, without noise) or montecarlo (random walks, as published). One of solve, montecarlo. Default: solve.
     wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence, ascending; above 90 on the abaxial side. Unit: degrees. Range: from 0 to 180. Default: 0:180:1.
@@ -140,7 +143,7 @@ def brf(scene: str | os.PathLike, wavelengths: str | os.PathLike = '450,550,670,
     compare: MODEL[,parameter=value...];...: replace the scene's leaves by each model and report which are accurate enough. Excludes plot, checkpoint, resume. Repeatable.
     reference: Reference leaf model of compare. Default: leaf_solved.
     within: Largest relative difference at which compare calls a model accurate enough. Range: above 0. Default: 0.02.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
@@ -170,11 +173,11 @@ def flux(scene, wavelengths: str | os.PathLike = '450,550,670,800', *, by: str |
     rms: Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the standard errors of all reflected and absorbed shares is below this; paths is then not used. Range: above 0.
     time_limit: Time after which the job ends and returns its partial result. Unit: s. Range: above 0.
     by: Measure the absorption of each instance of an object, one row each. One of instance.
-    irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, or an .spd file. Unit: W/(m2 nm). Default: solar-am1.5-global.
+    irradiance: Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, or scene: that of the scene's lights, which have to be in W/(m2 nm), as those of the light sky. Unit: W/(m2 nm). Default: solar-am1.5-global.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
     integrator: PLUGIN[,parameter=value...]: integrator; parameters that are not given keep the scene's values if the type is the scene's.
     seed: Seed of all random numbers.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     csv: CSV file to write; - is standard output.
     json: JSON file to write; - is standard output.
@@ -280,7 +283,7 @@ def export(material: str | Sequence[str] | Mapping[str, str], format: str | os.P
     rays: Number of rays for each value of R and T that is measured by rays.
     seed: Seed of all random numbers.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement."""
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement."""
 
 def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, *, progress = None, session: Session | None | None = None) -> Result:
     """Read scenes and all files that they name, and report all errors.
@@ -288,7 +291,21 @@ def check(scene: str | Sequence[str] | Mapping[str, str], ignore_unsupported: st
     Nothing is rendered. The exit status is 1 if there is an error.
 
     scene: Scene files (pbrt-v4 format).
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
+    strict: Treat warnings as errors."""
+
+def import_(model: str | os.PathLike, output: str | os.PathLike, leaf: str | Sequence[str] | Mapping[str, str] | None = None, *, unit: str | os.PathLike | None = None, scale: float | None = None, up: str | os.PathLike | None = None, single_sided: str | Sequence[str] | Mapping[str, str] | None = None, strict: bool = False, progress = None, session: Session | None | None = None) -> Result:
+    """Write a plant model of another program, OBJ or glTF, as a scene.
+
+    The model is read in a process of its own; files that it names are read in its folder and below only. Names of materials, their colours, opacity and normal maps, and instances are kept.
+
+    model: Model to read: .obj, .gltf or .glb.
+    output: Scene file to write, .pbrt, with a camera and lights. Materials and shapes go to NAME-plant.pbrt beside it, meshes and images into the folder NAME-files.
+    leaf: NAME=PLUGIN[,parameter=value...]: leaf material for the model's materials of this name, with * and ? for any characters, as in "leaf*=leaf,specimen=maize". Repeatable.
+    unit: Length unit of the model, which is converted to metres; by default m, glTF's unit. One of m, cm, mm, inch. Excludes scale.
+    scale: Metres for one unit of the model. Range: from 1e-12 to 1e+12.
+    up: Axis that is up in the model; z is up in the scene. By default y, glTF's axis. One of y, z.
+    single_sided: Material, by name with * and ?, whose leaves are two sheets, front and back: remove the second sheet. Repeatable.
     strict: Treat warnings as errors."""
 
 def canopy(output: str | os.PathLike, lai: float = 3.0, count: int | None = None, *, ball: float | None = None, angles: str | os.PathLike = 'spherical', scale: float = 0.05, leaf_area: float = 3.141592653589793, size: float | Sequence[float] | str = '10,10', heights: float | Sequence[float] | str = '0,1', apart: float | None = None, column: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, progress = None, session: Session | None | None = None) -> Result:
@@ -315,13 +332,14 @@ def instances(csv: str | os.PathLike, output: str | os.PathLike, *, progress = N
     csv: CSV file to read.
     output: Instance table to write, a NumPy file (.npy)."""
 
-def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike, bands: float | Sequence[float] | str | None = None, *, exposure: float = 0.0, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def convert(images: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike, bands: float | Sequence[float] | str | None = None, *, exposure: float | str = '0', white_balance: str | os.PathLike | None = None, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Average linear images, and write the mean as EXR or through a display transform.
 
     images: EXR files of one size and colour space.
     output: Image to write: .png, .jpg or .exr.
     bands: Wavelengths of the three bands to display as red, green and blue, such as 850,650,550; white in equal-energy light is 1. Unit: nm. Range: above 0.
-    exposure: Change of exposure. Unit: stops. Range: from -64 to 64. Default: 0.
+    exposure: Change of exposure, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops. Default: 0.
+    white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K.
     display: OpenColorIO display of PNG and JPEG output; sRGB by default.
     view: View of the display.
     color_space: Colour space of images that do not state one, as after other programs, such as linear SMPTE-C or XYZ; by default linear sRGB (Rec. 709), as OpenEXR defines."""
@@ -334,7 +352,7 @@ def difference(images: str | Sequence[str] | Mapping[str, str], output: str | os
     scale: Luminance difference that is drawn in full colour. Range: above 0. Default: 0.1.
     json: Print JSON."""
 
-def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
+def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tasks: int, engine: str | os.PathLike | None = None, slurm: bool = False, run: bool = False, folder: str | os.PathLike | None = None, wavelengths: str | os.PathLike | None = None, swap: str | Sequence[str] | Mapping[str, str] | None = None, seed: int | None = None, crop: float | Sequence[float] | str | None = None, pixels: float | Sequence[float] | str | None = None, pixel: float | Sequence[float] | str | None = None, integrator: str | os.PathLike | None = None, filter: str | os.PathLike | None = None, channels: str | os.PathLike | None = None, for_denoiser: bool = False, max_rms: float | None = None, time_limit: float | None = None, quick: bool = False, pilot: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, color_space: str | os.PathLike | None = None, display_server: str | os.PathLike | None = None, preview: bool = False, part: str | os.PathLike | None = None, samples: str | os.PathLike | None = None, checkpoint: float | None = None, resume: bool = False, disable_pixel_jitter: bool = False, disable_texture_filtering: bool = False, disable_wavelength_jitter: bool = False, ignore_unsupported: str | os.PathLike | None = None, strict: bool = False, json: bool = False, progress = None, session: Session | None | None = None) -> Result:
     """Write a job that renders ranges of samples and merges them, for Slurm, Open Job Description or Snakemake; --run starts it.
 
     The options of frond render are passed on to the tasks.
@@ -345,7 +363,7 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     tasks: Number of tasks, among which the samples are divided. Range: from 1 to 1000000.
     engine: Program that schedules the tasks: Slurm, Open Job Description, or Snakemake. One of slurm, openjd, snakemake.
     slurm: The same as engine slurm. Excludes engine.
-    run: Also start the job: submit it with sbatch, or run it here with openjd or snakemake.
+    run: Also start the job: submit it with sbatch, or run it here with openjd or snakemake, whose output quiet writes to FOLDER/ENGINE.log.
     folder: Folder of the job's files, parts and logs; OUTPUT.ENGINE by default.
     wavelengths: Wavelength strategy: hero (hero,lambdamin=400,lambdamax=700), meyer, smpte (the paper's three), or bands in nm: 450,550,850 or 400:1000:10.
     swap: MATERIAL=PLUGIN[,parameter=value...]: replace a material by another model; "*=PLUGIN" replaces every leaf. Repeatable.
@@ -363,6 +381,8 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     pilot: Select the models of open leaves and report them; render nothing.
     display: OpenColorIO display of PNG and JPEG output; sRGB by default. tev: the same as display_server 127.0.0.1:14158.
     view: View of the display.
+    exposure: Change of the exposure of PNG and JPEG output, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops.
+    white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K.
     color_space: Colour space of R, G and B in an EXR file if the scene names none, such as linear sRGB.
     display_server: Show the image in the viewer tev while it is rendered.
     preview: Show the image in the terminal while it is rendered, and at the end.
@@ -373,11 +393,11 @@ def submit(scene: str | os.PathLike, output: str | os.PathLike, spp: int, *, tas
     disable_pixel_jitter: Sample the centres of pixels and lens.
     disable_texture_filtering: Point-sample textures.
     disable_wavelength_jitter: Use the same wavelengths for all samples.
-    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of media, materials, integrators, cameras, motion, textures, films, displacement.
+    ignore_unsupported: Leave out features of pbrt-v4 that frond lacks, or use the nearest one, with a warning: all of them, or a list of materials, cameras, textures, films, displacement.
     strict: Treat warnings as errors.
     json: Print the statistics as JSON on standard output."""
 
-def merge(parts: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, part: str | os.PathLike | None = None, *, allow_holes: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
+def merge(parts: str | Sequence[str] | Mapping[str, str], output: str | os.PathLike | None = None, part: str | os.PathLike | None = None, *, allow_holes: bool = False, display: str | os.PathLike | None = None, view: str | os.PathLike | None = None, exposure: float | str | None = None, white_balance: str | os.PathLike | None = None, progress = None, session: Session | None | None = None) -> Result:
     """Merge parts of a render, written by frond render --part.
 
     parts: Parts of one render, without common samples.
@@ -385,4 +405,6 @@ def merge(parts: str | Sequence[str] | Mapping[str, str], output: str | os.PathL
     part: Part to write instead of an image.
     allow_holes: Write an image although samples or pixels are missing.
     display: OpenColorIO display of PNG and JPEG output; sRGB by default.
-    view: View of the display."""
+    view: View of the display.
+    exposure: Change of the exposure of PNG and JPEG output, a number from -64 to 64, or auto: a light meter, which makes the mean luminance mid grey (docs/color.md). Unit: stops.
+    white_balance: Light that PNG and JPEG output shows as white: a colour temperature from 1000 to 100000, of daylight or below 4000 of a blackbody, or auto: the scene's light (docs/color.md). Unit: K."""
