@@ -1,5 +1,6 @@
 #include "spectra/csv_columns.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace frond {

@@ -1,6 +1,7 @@
 // What users of pbrt type, `frond check`, --strict and --ignore-unsupported.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "image/image_file.h"

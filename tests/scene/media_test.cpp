@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <numbers>
 
 #include "core/parallel.h"
 #include "integrators/registry.h"

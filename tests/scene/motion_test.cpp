@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "core/random.h"
 #include "tests/support/input_error.h"
 #include "tests/support/render_text.h"

@@ -1,5 +1,6 @@
 #include "tests/stability/comparison.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace frond::stability {

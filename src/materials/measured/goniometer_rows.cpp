@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
+#include "core/spectrum.h"
 #include "system/csv_fields.h"
 
 namespace frond {
