@@ -14,7 +14,7 @@ CODE = """
 import eradiate, numpy
 eradiate.set_mode("mono")
 eradiate.config.settings.progress = "NONE"
-import frond, eradiate_leaf as report
+import eradiate_leaf as report
 from frond.eradiate import FrondLeafCloud
 
 cloud = FrondLeafCloud.cuboid(n_leaves=4, leaf_radius=0.1, l_horizontal=1.0, l_vertical=1.0)
@@ -22,13 +22,11 @@ cloud.leaf = {"specimen": "maize"}
 assert cloud._template_bsdfs[f"{cloud.bsdf_id}.specimen"] == "maize"
 
 report.FOLDER.mkdir(parents=True, exist_ok=True)
-positions, normals = report.canopy()
-runs = [report.by_eradiate(positions, normals, "frond", seed, 400) for seed in range(1, 9)]
-brf = numpy.array([run[1] for run in runs])
-mean, error = brf.mean(axis=0), brf.std(axis=0, ddof=1) / numpy.sqrt(len(runs))
-ours = frond.brf(report.frond_scene(positions, normals), report.RGB, zenith=[-float(z) for z in runs[0][0]],
-                 target=(-report.TARGET, report.TARGET, -report.TARGET, report.TARGET, report.HEIGHT), rms=5e-3)
-z = (mean - numpy.array(list(ours["brf"])).reshape(mean.shape)) / error
+leaf = {"leaf": {"specimen": "soybean"}}
+brf = numpy.array([report.by_eradiate(report.SMALL, FrondLeafCloud, leaf, seed, 400)[0] for seed in range(1, 9)])
+mean, error = brf.mean(axis=0), brf.std(axis=0, ddof=1) / numpy.sqrt(len(brf))
+ours, *_ = report.by_frond(report.SMALL, '"leaf_solved" "string incident" "reciprocal"', rms=5e-3)
+z = (mean - ours) / error
 print(float(abs(z).max()))
 """
 
