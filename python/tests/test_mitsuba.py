@@ -1,4 +1,5 @@
-"""The leaf in Mitsuba 3, run there for real; skipped where it, or an LLVM that it works with, is not installed."""
+"""The leaf in Mitsuba 3, run there for real; skipped where it, or an LLVM that it works with, is not installed. With
+FROND_MITSUBA_BACKEND=cuda in the variants for NVIDIA's GPUs instead of llvm's."""
 
 import os
 import sys
@@ -12,14 +13,15 @@ import frond
 for path in ("/usr/lib/x86_64-linux-gnu/libLLVM-19.so", "/usr/lib/llvm-19/lib/libLLVM.so.1"):
     if "DRJIT_LIBLLVM_PATH" not in os.environ and os.path.exists(path):
         os.environ["DRJIT_LIBLLVM_PATH"] = path
-if "DRJIT_LIBLLVM_PATH" not in os.environ:
+BACKEND = os.environ.get("FROND_MITSUBA_BACKEND", "llvm")
+if BACKEND == "llvm" and "DRJIT_LIBLLVM_PATH" not in os.environ:
     pytest.skip("libllvm19 is not installed: others of Debian 12 do not work with Mitsuba", allow_module_level=True)
 
 RGB_NM = [608, 551, 455]
 
 
 def variant(name):
-    mitsuba.set_variant(name)
+    mitsuba.set_variant(name.replace("llvm", BACKEND))
     if "frond.mitsuba" in sys.modules:
         sys.modules["frond.mitsuba"].register()
     else:
@@ -179,7 +181,7 @@ def test_what_is_refused():
     mi, dr = variant("scalar_spectral")
     with pytest.raises(Exception, match="JIT variants"):
         mi.load_dict({"type": "frond_leaf"})
-    mitsuba.set_variant("llvm_ad_rgb")
+    variant("llvm_ad_rgb")
 
 
 SCENE = """Scale -1 1 1

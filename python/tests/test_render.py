@@ -179,6 +179,7 @@ def test_a_plugin_from_a_shared_object():
     assert "wrong_pdf" not in frond.Session(cache=False).names("material")
 
 
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="AddressSanitizer keeps freed memory")
 def test_nothing_is_left_behind(scene_text):
     """Memory after many renders is what it was after some."""
     def resident():

@@ -1,22 +1,28 @@
 """Renders ten scenes with frond and, exported by `frond export --format mitsuba`, with Mitsuba 3: the section "mitsuba_scenes" of
-docs/other_renderers.md. Run by the Python of build/python-venv."""
+docs/other_renderers.md, or "mitsuba_gpu" with --gpu. Run by the Python of build/python-venv."""
 
 import re
 import statistics
+import time
 
 import numpy
 
 import mitsuba as mi
 
-mi.set_variant("llvm_ad_rgb")
+from tools import ROOT, arguments, machine, program, run, table, write_section
+
+OPTIONS = arguments("mitsuba_scenes", ("--gpu", {"action": "store_true"}))
+VARIANT = "cuda_ad_rgb" if OPTIONS.gpu else "llvm_ad_rgb"
+mi.set_variant(VARIANT)
 
 import frond
 import frond.mitsuba
 
-from tools import ROOT, arguments, machine, program, table, write_section
-
 FOLDER = ROOT / "build" / "mitsuba_scenes"
 SIZE, BLOCKS = 128, 4
+# Samples of a pixel that Mitsuba renders at a time, because a wavefront holds all of them.
+AT_ONCE = 2048 if OPTIONS.gpu else 256
+RENDERS = 3  # of each program and kind; the median of their times counts
 
 # Scenes of the repository, with a smaller film and a box filter, and the samples per pixel of each of two renders.
 OF_REPOSITORY = {"soybean-front/scene": 512, "soybean-back/scene": 1024, "soybean-ambient/scene": 512,
@@ -131,13 +137,15 @@ Shape "sphere" "float radius" 0.8
 """),
 }
 
-SECTION = """### Agreement of exported scenes
+SECTION = """### {title}
 
-Measured by `scripts/mitsuba_scenes` on {machine}; Mitsuba {version}, `llvm_ad_rgb`. Each scene is exported, rendered twice by each
-program with a box filter, and compared in linear colour; frond renders with `--wavelengths smpte` and `--swap "*=leaf_solved"`.
-`mean` is the relative difference of the image's mean, averaged over the colours. `standard error` is its standard error, from two
-renders by each program. `blocks` is the largest difference of {blocks} block means and colours in their standard errors: {expected}
-is exceeded once in twenty scenes by chance.
+Measured by `scripts/mitsuba_scenes{flags}` on {machine}; Mitsuba {version}, `{variant}`{device}. Each scene is exported, rendered
+with a box filter at {size} x {size} pixels by both programs with two seeds, and compared in linear colour; frond renders with
+`--wavelengths smpte` and `--swap "*=leaf_solved"` on all cores. `mean` is the relative difference of the image's mean, averaged over
+the colours. `standard error` is its standard error, from the two renders by each program. `blocks` is the largest difference of
+{blocks} block means and colours in their standard errors: {expected} is exceeded once in twenty scenes by chance. Times are of
+a render, without loading: the median of {renders} after a first one, which compiles. `efficiency` is that of Mitsuba relative to frond: efficiency is
+1 / (variance x time).
 
 {table}
 {notes}
@@ -194,45 +202,76 @@ def sums(pixels, blocks):
     return numpy.array([[pixels[numpy.ix_(r, c)].sum((0, 1)) for c in columns] for r in rows])
 
 
+def timed(render):
+    """Images of two seeds, and the median time of a render with loaded scene, after a first one, which compiles."""
+    render(0)
+    images, times = [], []
+    for seed in range(1, RENDERS + 1):
+        start = time.perf_counter()
+        images.append(render(seed))
+        times.append(time.perf_counter() - start)
+    return images[:2], statistics.median(times)
+
+
 def compare(file, samples):
-    """Renders by both programs. Returns the relative difference of the means, its standard error, and the largest difference of a
-    block in its standard errors."""
+    """Renders by both programs. Returns the relative difference of the means, its standard error, the largest difference of a
+    block in its standard errors, and of each program the time of a render and its variance, a mean over pixels and colours."""
     folder = FOLDER / file.stem
     program("export", file, "--format", "mitsuba", "-o", folder)
     exported = folder / "scene.xml"
     swap = {"*": "leaf_solved"} if "frond_leaf" in exported.read_text(encoding="utf-8") else None
-    ours = [frond.load(file, wavelengths="smpte", swap=swap, seed=seed).render(samples).rgb for seed in (1, 2)]
     scene = mi.load_file(str(exported))
-    # Mitsuba renders a part of the samples at a time, because a wavefront holds all of them.
-    parts = max(1, samples // 256)
-    theirs = [sum(numpy.array(mi.render(scene, spp=samples // parts, seed=1000 * seed + part))[:, :, :3].astype(numpy.float64)
-                  for part in range(parts)) / parts for seed in (1, 2)]
-    difference = (sum(theirs) - sum(image.astype(numpy.float64) for image in ours)) / 2
+    parts = max(1, samples // AT_ONCE)
+
+    sessions = [frond.load(file, wavelengths="smpte", swap=swap, seed=seed) for seed in range(RENDERS + 1)]
+
+    def frond_image(seed):
+        return sessions[seed].render(samples).rgb.astype(numpy.float64)
+
+    def mitsuba_image(seed):
+        images = (mi.render(scene, spp=samples // parts, seed=1000 * seed + part) for part in range(parts))
+        return sum(numpy.array(image)[:, :, :3].astype(numpy.float64) for image in images) / parts
+
+    (ours, our_time), (theirs, their_time) = timed(frond_image), timed(mitsuba_image)
+    difference = (sum(theirs) - sum(ours)) / 2
     # Pixels are independent; the difference of two renders estimates each pixel's variance.
-    variance = sum(((a.astype(numpy.float64) - b) ** 2 / 4) for a, b in (ours, theirs))
+    our_variance, their_variance = ((a - b) ** 2 / 4 for a, b in (ours, theirs))
+    variance = our_variance + their_variance
     of_blocks = sums(difference, BLOCKS) / numpy.sqrt(numpy.maximum(sums(variance, BLOCKS), 1e-30))
     noisy = sums(variance, BLOCKS) > 0  # blocks that see the sky alone have neither noise nor a difference
     mean = sum(ours).mean((0, 1)) / 2
     relative = difference.mean((0, 1)) / mean
     error = numpy.sqrt(variance.sum((0, 1))) / variance[:, :, 0].size / mean
     # Colours of a path are correlated: the mean of their errors is an upper bound of the error of their mean.
-    return relative.mean(), error.mean(), abs(of_blocks[noisy]).max()
+    return (relative.mean(), error.mean(), abs(of_blocks[noisy]).max(), (our_time, our_variance.mean()),
+            (their_time, their_variance.mean()))
+
+
+def about_section():
+    """What the section says that depends on --gpu."""
+    if not OPTIONS.gpu:
+        return {"title": "Agreement of exported scenes", "flags": "", "device": "", "notes": NOTES}
+    gpu = run("nvidia-smi", "--query-gpu=name", "--format=csv,noheader").splitlines()[0]
+    return {"title": "The same scenes on a GPU", "flags": " --gpu", "device": f" on {gpu}",
+            "notes": "The scenes and what is known of their differences: as above."}
 
 
 def main():
-    options = arguments("mitsuba_scenes")
     FOLDER.mkdir(parents=True, exist_ok=True)
     mi.set_log_level(mi.LogLevel.Error)
     rows = []
     for name, file, samples in scene_files(FOLDER):
-        difference, error, blocks = compare(file, 64 if options.quick else samples)
-        rows.append([f"`{name}`", f"{100 * difference:+.3f} %", f"{100 * error:.3f} %", f"{difference / error:+.1f}", f"{blocks:.1f}"])
+        difference, error, blocks, ours, theirs = compare(file, 64 if OPTIONS.quick else samples)
+        efficiency = ours[0] * ours[1] / (theirs[0] * theirs[1])
+        rows.append([f"`{name}`", f"{100 * difference:+.3f} %", f"{100 * error:.3f} %", f"{difference / error:+.1f}", f"{blocks:.1f}",
+                     f"{ours[0]:.2f} s", f"{theirs[0]:.2f} s", f"{efficiency:.2g}"])
         print(rows[-1], flush=True)
     count = BLOCKS * BLOCKS * 3
     expected = statistics.NormalDist().inv_cdf(1 - (1 - 0.95 ** (1 / count)) / 2)
-    write_section(options.docs / "other_renderers.md", "mitsuba_scenes", SECTION.format(
-        machine=machine(), version=mi.__version__, blocks=f"{BLOCKS} x {BLOCKS}", expected=f"{expected:.1f}", notes=NOTES,
-        table=table(["scene", "mean", "standard error", "mean in standard errors", "blocks"], rows)))
+    head = ["scene", "mean", "standard error", "mean in standard errors", "blocks", "frond", "Mitsuba", "efficiency"]
+    write_section(OPTIONS.docs / "other_renderers.md", "mitsuba_gpu" if OPTIONS.gpu else "mitsuba_scenes", SECTION.format(
+        machine=machine(), version=mi.__version__, variant=VARIANT, size=SIZE, blocks=f"{BLOCKS} x {BLOCKS}", renders=RENDERS,
+        expected=f"{expected:.1f}", table=table(head, rows), **about_section()), script="mitsuba_scenes")
 
 
 if __name__ == "__main__":

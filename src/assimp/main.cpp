@@ -1,3 +1,4 @@
+#include <assimp/BaseImporter.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
@@ -6,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -24,7 +26,9 @@ namespace {
 void keep_readers(Assimp::Importer& importer) {
   for (size_t i = importer.GetImporterCount(); i-- > 0;) {
     const std::string extensions = importer.GetImporterInfo(i)->mFileExtensions;
-    if (extensions != "obj" && !extensions.starts_with("gltf")) importer.UnregisterLoader(importer.GetImporter(i));
+    if (extensions == "obj" || extensions.starts_with("gltf")) continue;
+    const std::unique_ptr<Assimp::BaseImporter> removed(importer.GetImporter(i));  // the importer no longer deletes it
+    importer.UnregisterLoader(removed.get());
   }
 }
 

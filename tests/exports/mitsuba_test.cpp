@@ -90,6 +90,13 @@ TEST_F(MitsubaScene, ACameraKeepsItsPlaceAndItsSides) {
   EXPECT_NEAR(mirrored[0][0], 1, 1e-6);
 }
 
+// Independent numbers would have several times the variance of frond's own.
+TEST_F(MitsubaScene, TheSamplerIsStratifiedUnlessTheSceneAsksForIndependentNumbers) {
+  EXPECT_THAT(exported(world("Shape \"sphere\"\n")), HasSubstr("<sampler type=\"multijitter\">"));
+  EXPECT_THAT(exported("Sampler \"independent\"\n" + world("Shape \"sphere\"\n")),
+              HasSubstr("<sampler type=\"independent\">"));
+}
+
 // Instances of instances become instances of the innermost object, with the product of their transforms.
 TEST_F(MitsubaScene, NestedInstancesAreWrittenWithoutNesting) {
   const std::string xml = exported(world(R"(

@@ -121,7 +121,7 @@ def load(scene, leaf=None, robust=False):
             "type": "perspective", "id": name, "fov": scene["camera"]["fov"], "fov_axis": "smaller",
             "near_clip": 0.1, "far_clip": 1e6,
             "to_world": mi.ScalarTransform4f().look_at(origin=origin, target=target, up=up),
-            "sampler": {"type": "ldsampler"},
+            "sampler": {"type": "multijitter"},
             "film": {"type": "hdrfilm", "width": scene["size"], "height": scene["size"], "rfilter": reconstruction,
                      "component_format": "float32"}}
     return mi.load_dict(world)

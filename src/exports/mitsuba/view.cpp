@@ -45,7 +45,8 @@ void write_film(Context& context, Xml& xml, const FilmSettings& film, int sample
   };
   need(x == y, "one radius has");
   {
-    const Element sampler(xml, "sampler", {{"type", "independent"}});
+    const std::string& name = context.description.sampler.name;
+    const Element sampler(xml, "sampler", {{"type", name == "independent" ? name : "multijitter"}});
     xml.integer("sample_count", samples);
   }
   const Element element(xml, "film", {{"type", "hdrfilm"}});
