@@ -55,7 +55,7 @@ TEST_F(Hostile, TimeLimitsThatEndAMeasurementAreToldOf) {
     for (const std::vector<std::string>& words :
          {std::vector<std::string>{"--paths", "4294967296"}, std::vector<std::string>{"--rms", "1e-300"}}) {
       std::vector<std::string> all{command,     leaf, "--target",     "-1,1,-1,1,1", "--wavelengths", "551",
-                                   "--threads", "1",  "--time-limit", "0.2",         "--no-cache",    "-q"};
+                                   "--threads", "1",  "--time-limit", "1",           "--no-cache",    "-q"};
       all.insert(all.end(), words.begin(), words.end());
       if (command == "brf") all.insert(all.end(), {"--zenith", "0"});
       const Outcome o = frond_command(all);
