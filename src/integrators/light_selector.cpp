@@ -73,15 +73,18 @@ std::optional<LightSelector::Choice> LightSelector::choose_among_all(const LitPo
     if (u < of_tree) {
       const auto choice = tree_.choose(point.p, point.n, std::min(u / of_tree, 0x1.fffffep-1f));
       if (!choice) return {};
-      return Choice{lights_[choice->light], of_tree * choice->probability};
+      return Choice{lights_[choice->light], of_tree * choice->probability, choice->rest};
     }
     share = 1 - of_tree;
     u = std::min((u - of_tree) / share, 0x1.fffffep-1f);
   }
   const size_t last = cumulative_.size() - 1;
   size_t i = last == 0 ? 0 : size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), u) - cumulative_.begin());
-  const size_t place_of_light = everywhere_[std::min(i, last)];
-  return Choice{lights_[place_of_light], share * probability_[place_of_light]};
+  i = std::min(i, last);
+  const size_t place_of_light = everywhere_[i];
+  const float before = i == 0 ? 0 : cumulative_[i - 1], own = probability_[place_of_light];
+  const float rest = std::clamp((u - before) / own, 0.f, 0x1.fffffep-1f);
+  return Choice{lights_[place_of_light], share * own, rest};
 }
 
 float LightSelector::probability(const Light& light, const LitPoint& point) const {

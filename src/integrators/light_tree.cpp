@@ -195,7 +195,7 @@ std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n,
       u = std::min((u - first) / (1 - first), 0x1.fffffep-1f), probability *= 1 - first, at = second;
     }
   }
-  return Choice{nodes_[at].light, probability};
+  return Choice{nodes_[at].light, probability, u};
 }
 
 float LightTree::probability(const Vec3& p, const Vec3& n, uint32_t light) const {

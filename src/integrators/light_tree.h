@@ -19,10 +19,10 @@ class LightTree {
     LightBounds bounds;
     double power;  ///< positive, in any unit
   };
-  /// A light's index and the probability with which it was drawn.
+  /// A light's index, the probability with which it was drawn, and what the choice left of u, in [0, 1).
   struct Choice {
     uint32_t light;
-    float probability;
+    float probability, rest;
   };
 
   LightTree() = default;

@@ -240,11 +240,13 @@ class PathTracer final : public Tracer {
       const SurfacePoint& point = points_[i];
       at_ = &point;
       const Path& path = paths_[i];
-      const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, selector_.has_choice() ? numbers_[i] : 0.f);
+      const float number = selector_.has_choice() ? numbers_[i] : 0;
+      Vec2 on_light = selector_.has_extent() ? pairs_[i] : Vec2{number, 0};
+      const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, on_light, number);
       if (!chosen) continue;
-      const auto [light, probability] = *chosen;
-      const auto sample =
-          light->sample_competing(point.hit.p, selector_.has_extent() ? pairs_[i] : Vec2{}, path.lambda);
+      const Light* const light = chosen->light;
+      const float probability = chosen->probability;
+      const auto sample = light->sample_competing(point.hit.p, on_light, path.lambda);
       if (!sample || sample->radiance.is_black()) continue;
       float scatter_pdf = 0;
       const SampledSpectrum f_cos = bsdfs_[i].f_cos(sample->wi, path.key.stream(bsdf), scatter_pdf);

@@ -51,7 +51,7 @@ TEST(LightTree, ProbabilitiesAddUpAndAreThoseOfTheChoice) {
       double sum = 0;
       for (const auto& e : entries) sum += double(tree.probability(p, n, e.light));
       constexpr int kSteps = 4000;
-      std::vector<int> chosen(count);
+      std::vector<std::vector<float>> rests(count);
       int none = 0;
       for (int k = 0; k < kSteps; ++k) {
         const auto choice = tree.choose(p, n, (float(k) + 0.5f) / kSteps);
@@ -60,12 +60,17 @@ TEST(LightTree, ProbabilitiesAddUpAndAreThoseOfTheChoice) {
           continue;
         }
         EXPECT_EQ(choice->probability, tree.probability(p, n, choice->light));
-        ++chosen[choice->light];
+        rests[choice->light].push_back(choice->rest);
       }
       // A cluster may be chosen that turns out to have nothing for the point.
       EXPECT_NEAR(sum, 1 - double(none) / kSteps, 0.02);
-      for (const auto& e : entries)
-        EXPECT_NEAR(double(chosen[e.light]) / kSteps, double(tree.probability(p, n, e.light)), 1.5 / kSteps + 1e-5);
+      for (const auto& e : entries) {
+        const auto& rest = rests[e.light];
+        const auto chosen = double(rest.size());
+        EXPECT_NEAR(chosen / kSteps, double(tree.probability(p, n, e.light)), 1.5 / kSteps + 1e-5);
+        // Evenly spaced numbers leave evenly spaced numbers to each light.
+        for (size_t j = 0; j < rest.size(); ++j) EXPECT_NEAR(rest[j], (double(j) + 0.5) / chosen, 1 / chosen);
+      }
     }
   }
 }
