@@ -164,8 +164,7 @@ space, spot and point light, sphere as a light), `orthographic` (metal, glass, p
   green, blue); one with a quarter of the offset by -0.01 % ± 0.01 %. With `diffusetransmission` for the leaves, whose light at
   grazing angles is weak, the difference is +0.02 % ± 0.01 %.
 
-`soybean-front` differs by two to three standard errors in different runs: 0.02 % is the limit of what these renders resolve.
-`camera` has three lights; Mitsuba's noise is lower because it stratifies the numbers within the samples that each light gets."""
+`soybean-front` differs by two to three standard errors in different runs: 0.02 % is the limit of what these renders resolve."""
 
 
 def make_files(folder):
