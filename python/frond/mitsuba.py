@@ -606,7 +606,11 @@ def main():
     parser.add_argument("--samples", type=int, default=0, help="samples per pixel (default: the scene's)")
     parser.add_argument("--seed", type=int, default=0, help="seed (default: %(default)s)")
     args = parser.parse_args()
-    mi.set_variant(args.variant)
+    try:
+        mi.set_variant(args.variant)
+    except ImportError as error:
+        needs = "it needs an NVIDIA GPU and its driver: " if args.variant.startswith("cuda") else ""
+        parser.error(f"--variant {args.variant}: {needs}{error}")
     register()
     image = mi.render(mi.load_file(args.scene), spp=args.samples, seed=args.seed)
     mi.util.write_bitmap(args.output, image, write_async=False)

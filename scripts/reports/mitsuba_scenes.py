@@ -13,7 +13,10 @@ from tools import ROOT, arguments, machine, program, run, table, write_section
 
 OPTIONS = arguments("mitsuba_scenes", ("--gpu", {"action": "store_true"}))
 VARIANT = "cuda_ad_rgb" if OPTIONS.gpu else "llvm_ad_rgb"
-mi.set_variant(VARIANT)
+try:
+    mi.set_variant(VARIANT)
+except ImportError as error:
+    raise SystemExit(f"--gpu needs an NVIDIA GPU and its driver: {error}" if OPTIONS.gpu else error)
 
 import frond
 import frond.mitsuba
@@ -137,18 +140,25 @@ Shape "sphere" "float radius" 0.8
 """),
 }
 
-SECTION = """### {title}
+SECTION = """### Agreement of exported scenes
 
-Measured by `scripts/mitsuba_scenes{flags}` on {machine}; Mitsuba {version}, `{variant}`{device}. Each scene is exported, rendered
-with a box filter at {size} x {size} pixels by both programs with two seeds, and compared in linear colour; frond renders with
+Measured by `scripts/mitsuba_scenes` on {machine}; Mitsuba {version}, `llvm_ad_rgb`. Each scene is exported, rendered with a box
+filter at {size} x {size} pixels by both programs with two seeds, and compared in linear colour; frond renders with
 `--wavelengths smpte` and `--swap "*=leaf_solved"` on all cores. `mean` is the relative difference of the image's mean, averaged over
 the colours. `standard error` is its standard error, from the two renders by each program. `blocks` is the largest difference of
-{blocks} block means and colours in their standard errors: {expected} is exceeded once in twenty scenes by chance. Times are of
-a render, without loading: the median of {renders} after a first one, which compiles. `efficiency` is that of Mitsuba relative to frond:
-efficiency is 1 / (variance x time).
+{blocks} block means and colours in their standard errors: {expected} is exceeded once in twenty scenes by chance. Times are wall-clock
+times of a render, without loading: the median of {renders} after a first one, which compiles. `efficiency` is that of Mitsuba relative
+to frond: efficiency is 1 / (variance x time).
 
 {table}
 {notes}
+"""
+
+ON_GPU = """### The same scenes on a GPU
+
+Measured by `scripts/mitsuba_scenes --gpu` in the same way: Mitsuba {version}, `cuda_ad_rgb` on {gpu}; frond on {machine}.
+
+{table}
 """
 
 NOTES = """The last five scenes were made for this comparison: `images` (reflectance, alpha), `camera` (screen window, crop, exposure, left-handed
@@ -249,32 +259,27 @@ def compare(file, samples):
             (their_time, their_variance.mean()))
 
 
-def about_section():
-    """What the section says that depends on --gpu."""
-    if not OPTIONS.gpu:
-        return {"title": "Agreement of exported scenes", "flags": "", "device": "", "notes": NOTES}
-    gpu = run("nvidia-smi", "--query-gpu=name", "--format=csv,noheader").splitlines()[0]
-    return {"title": "The same scenes on a GPU", "flags": " --gpu", "device": f" on {gpu}",
-            "notes": "The scenes and what is known of their differences: as above."}
-
-
 def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
     mi.set_log_level(mi.LogLevel.Error)
     rows = []
     for name, file, samples in scene_files(FOLDER):
         difference, error, blocks, ours, theirs = compare(file, 64 if OPTIONS.quick else samples)
-        # Of a furnace frond has no noise.
+        # In the furnace frond has no noise.
         efficiency = f"{ours[0] * ours[1] / (theirs[0] * theirs[1]):.2g}" if ours[1] > 1e-6 * theirs[1] else ""
         rows.append([f"`{name}`", f"{100 * difference:+.3f} %", f"{100 * error:.3f} %", f"{difference / error:+.1f}", f"{blocks:.1f}",
                      f"{ours[0]:.2f} s", f"{theirs[0]:.3f} s", efficiency])
         print(rows[-1], flush=True)
+    head = ["scene", "mean", "standard error", "mean in standard errors", "blocks", "frond", "Mitsuba", "efficiency"]
+    common = {"machine": machine(), "version": mi.__version__, "table": table(head, rows)}
+    page = OPTIONS.docs / "other_renderers.md"
+    if OPTIONS.gpu:
+        gpu = run("nvidia-smi", "--query-gpu=name", "--format=csv,noheader").splitlines()[0]
+        return write_section(page, "mitsuba_gpu", ON_GPU.format(gpu=gpu, **common), script="mitsuba_scenes")
     count = BLOCKS * BLOCKS * 3
     expected = statistics.NormalDist().inv_cdf(1 - (1 - 0.95 ** (1 / count)) / 2)
-    head = ["scene", "mean", "standard error", "mean in standard errors", "blocks", "frond", "Mitsuba", "efficiency"]
-    write_section(OPTIONS.docs / "other_renderers.md", "mitsuba_gpu" if OPTIONS.gpu else "mitsuba_scenes", SECTION.format(
-        machine=machine(), version=mi.__version__, variant=VARIANT, size=SIZE, blocks=f"{BLOCKS} x {BLOCKS}", renders=RENDERS,
-        expected=f"{expected:.1f}", table=table(head, rows), **about_section()), script="mitsuba_scenes")
+    write_section(page, "mitsuba_scenes", SECTION.format(size=SIZE, blocks=f"{BLOCKS} x {BLOCKS}", renders=RENDERS,
+                                                         expected=f"{expected:.1f}", notes=NOTES, **common))
 
 
 if __name__ == "__main__":

@@ -65,15 +65,16 @@ float LightSelector::tree_share(const LitPoint& point) const {
   return importance / (importance + irradiance_);
 }
 
-std::optional<LightSelector::Choice> LightSelector::choose_among_all(const LitPoint& point, float u) const {
+std::optional<LightSelector::Choice> LightSelector::choose_among_all(const LitPoint& point, float& u) const {
   float share = 1;
   // u draws between the tree and the other lights, then is rescaled to [0, 1) and reused.
   if (!tree_.empty()) {
     const float of_tree = tree_share(point);
     if (u < of_tree) {
-      const auto choice = tree_.choose(point.p, point.n, std::min(u / of_tree, 0x1.fffffep-1f));
+      u = std::min(u / of_tree, 0x1.fffffep-1f);
+      const auto choice = tree_.choose(point.p, point.n, u);
       if (!choice) return {};
-      return Choice{lights_[choice->light], of_tree * choice->probability, choice->rest};
+      return Choice{lights_[choice->light], of_tree * choice->probability};
     }
     share = 1 - of_tree;
     u = std::min((u - of_tree) / share, 0x1.fffffep-1f);
@@ -83,8 +84,8 @@ std::optional<LightSelector::Choice> LightSelector::choose_among_all(const LitPo
   i = std::min(i, last);
   const size_t place_of_light = everywhere_[i];
   const float before = i == 0 ? 0 : cumulative_[i - 1], own = probability_[place_of_light];
-  const float rest = std::clamp((u - before) / own, 0.f, 0x1.fffffep-1f);
-  return Choice{lights_[place_of_light], share * own, rest};
+  u = std::clamp((u - before) / own, 0.f, 0x1.fffffep-1f);
+  return Choice{lights_[place_of_light], share * own};
 }
 
 float LightSelector::probability(const Light& light, const LitPoint& point) const {

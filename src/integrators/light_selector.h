@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -19,11 +19,10 @@ class LightSelector {
     power,
     tree,  ///< by an estimate of each light's irradiance at the point (LightTree)
   };
-  /// A light, the probability with which it was drawn, and what the choice left of u: a number in [0, 1), for a sample
-  /// of that light. Its resolution is that of u divided by the probability.
+  /// A light and the probability with which it was drawn.
   struct Choice {
     const Light* light;
-    float probability, rest;
+    float probability;
   };
   /// Position and unit geometric normal of a surface point, world space; a point of a medium has the normal 0.
   struct LitPoint {
@@ -41,25 +40,23 @@ class LightSelector {
   /// Whether some light has points or directions to sample: all except delta lights, including emitting surfaces that
   /// no ray can hit.
   bool has_extent() const { return has_extent_; }
-  /// Draws a light by `u` in [0, 1); nothing if no light reaches the point.
-  std::optional<Choice> choose(const LitPoint& point, float u) const {
-    if (count_ == 1) return Choice{only_, 1, u};
-    return choose_among_all(point, u);
-  }
-  /// Draws a light by `on_light.x`, and leaves in it a number for a sample of this light, which `fine` in [0, 1) makes
-  /// as fine as before. So a light's samples are as evenly spread as all: drawn by a number of its own, they would be a
-  /// random subset.
-  std::optional<Choice> choose(const LitPoint& point, Vec2& on_light, float fine) const {
-    const auto choice = choose(point, on_light.x);
-    if (choice && count_ > 1)
-      on_light.x = std::min(choice->rest + fine * 0x1p-24f / choice->probability, 0x1.fffffep-1f);
+  /// Draws a light by `u` in [0, 1); nothing if no light reaches the point. Leaves in `u` a number in [0, 1) for a
+  /// sample of this light, so that these are as evenly spread as those of all lights. `fine` in [0, 1) gives it the
+  /// digits that the choice has used: `u` has 24 bits.
+  std::optional<Choice> choose(const LitPoint& point, float& u, float fine) const {
+    if (count_ == 1) return Choice{only_, 1};
+    const auto choice = choose_among_all(point, u);
+    if (choice) {
+      const float rest = u + fine * 0x1p-24f / choice->probability;
+      u = rest - std::floor(rest);
+    }
     return choice;
   }
   /// Probability with which `choose` draws this light at the point.
   float probability(const Light& light, const LitPoint& point) const;
 
  private:
-  std::optional<Choice> choose_among_all(const LitPoint& point, float u) const;
+  std::optional<Choice> choose_among_all(const LitPoint& point, float& u) const;
   /// Probability at this point that a light of the tree is drawn.
   float tree_share(const LitPoint& point) const;
 

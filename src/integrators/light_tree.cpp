@@ -180,7 +180,7 @@ float LightTree::importance(const Node& node, const Vec3& p, const Vec3& n) {
   return std::clamp(node.intensity * cos_least * cos_incident / distance2, 0.f, 1e30f);
 }
 
-std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n, float u) const {
+std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n, float& u) const {
   if (empty()) return {};
   uint32_t at = 0;
   float probability = 1;
@@ -195,7 +195,7 @@ std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n,
       u = std::min((u - first) / (1 - first), 0x1.fffffep-1f), probability *= 1 - first, at = second;
     }
   }
-  return Choice{nodes_[at].light, probability, u};
+  return Choice{nodes_[at].light, probability};
 }
 
 float LightTree::probability(const Vec3& p, const Vec3& n, uint32_t light) const {

@@ -19,10 +19,10 @@ class LightTree {
     LightBounds bounds;
     double power;  ///< positive, in any unit
   };
-  /// A light's index, the probability with which it was drawn, and what the choice left of u, in [0, 1).
+  /// A light's index and the probability with which it was drawn.
   struct Choice {
     uint32_t light;
-    float probability, rest;
+    float probability;
   };
 
   LightTree() = default;
@@ -32,8 +32,9 @@ class LightTree {
   /// Conservative estimate of the irradiance at a surface point, on either side, relative to the entries' power; 0 only
   /// if no light arrives.
   float importance(const Vec3& p, const Vec3& n) const { return empty() ? 0 : importance(nodes_[0], p, n); }
-  /// Draws a light by `u` in [0, 1); nothing if no light reaches the point.
-  std::optional<Choice> choose(const Vec3& p, const Vec3& n, float u) const;
+  /// Draws a light by `u` in [0, 1), and leaves in `u` its place within the light's share of [0, 1), from 0 to 1;
+  /// nothing if no light reaches the point.
+  std::optional<Choice> choose(const Vec3& p, const Vec3& n, float& u) const;
   /// Probability with which `choose` draws this light; 0 if it is not in the tree.
   float probability(const Vec3& p, const Vec3& n, uint32_t light) const;
 

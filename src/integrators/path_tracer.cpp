@@ -242,10 +242,9 @@ class PathTracer final : public Tracer {
       const Path& path = paths_[i];
       const float number = selector_.has_choice() ? numbers_[i] : 0;
       Vec2 on_light = selector_.has_extent() ? pairs_[i] : Vec2{number, 0};
-      const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, on_light, number);
+      const auto chosen = selector_.choose({point.hit.p, point.hit.ng}, on_light.x, number);
       if (!chosen) continue;
-      const Light* const light = chosen->light;
-      const float probability = chosen->probability;
+      const auto [light, probability] = *chosen;
       const auto sample = light->sample_competing(point.hit.p, on_light, path.lambda);
       if (!sample || sample->radiance.is_black()) continue;
       float scatter_pdf = 0;

@@ -254,10 +254,9 @@ class VolPathTracer final : public Tracer {
   void add_sampled_light(const LightSelector::LitPoint& place, const Scatter& scatter) {
     const float of_choice = selector_.has_choice() ? number(Number::light) : 0;
     Vec2 on_light = selector_.has_extent() ? pair(Number::on_light) : Vec2{of_choice, 0};
-    const auto chosen = selector_.choose(place, on_light, of_choice);
+    const auto chosen = selector_.choose(place, on_light.x, of_choice);
     if (!chosen) return;
-    const Light* const light = chosen->light;
-    const float probability = chosen->probability;
+    const auto [light, probability] = *chosen;
     const auto sample = light->sample_competing(place.p, on_light, lambda_);
     if (!sample || sample->radiance.is_black()) return;
     ShadowRay shadow(world_, lambda_, path_.hero, ray_.time);

@@ -54,13 +54,14 @@ TEST(LightTree, ProbabilitiesAddUpAndAreThoseOfTheChoice) {
       std::vector<std::vector<float>> rests(count);
       int none = 0;
       for (int k = 0; k < kSteps; ++k) {
-        const auto choice = tree.choose(p, n, (float(k) + 0.5f) / kSteps);
+        float u = (float(k) + 0.5f) / kSteps;
+        const auto choice = tree.choose(p, n, u);
         if (!choice) {
           ++none;
           continue;
         }
         EXPECT_EQ(choice->probability, tree.probability(p, n, choice->light));
-        rests[choice->light].push_back(choice->rest);
+        rests[choice->light].push_back(u);
       }
       // A cluster may be chosen that turns out to have nothing for the point.
       EXPECT_NEAR(sum, 1 - double(none) / kSteps, 0.02);

@@ -37,7 +37,7 @@ def arguments():
     options.no_docs |= options.quick  # few samples are no figures for the page
     for name, value in (FULL | (QUICK if options.quick else {})).items():
         setattr(options, name, getattr(options, name) or value)
-    if options.rounds < 2 or options.samples not in [4**n for n in range(1, 9)]:  # Mitsuba's ldsampler takes no other number
+    if options.rounds < 2 or options.samples not in [4**n for n in range(1, 9)]:  # which every program's sampler spreads evenly
         raise SystemExit("--rounds is at least 2, --samples a power of four: 4, 16, 64, 256 ...")
     return options
 
