@@ -75,28 +75,29 @@ def measure(make, leaves):
         words = [str(FROND), "render", str(scene), "-o", str(folder / "out.exr"), "--json", "-q", "--wavelengths",
                  "bands,wavelengths=800"]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as render:
-            peak = {"RssAnon": 0, "VmRSS": 0}
+            peak = 0
             while render.poll() is None:
-                watch(render.pid, peak)
+                peak = max(peak, private_memory(render.pid))
                 time.sleep(0.02)
             text = render.stdout.read()
         if render.returncode != 0:
             raise SystemExit(f"{leaves:g} leaves: frond ended with {render.returncode}")
         result = json.loads(text)
     return {"leaves": leaves, "load": result["load_seconds"], "us": result["cpu_us_per_path"],
-            "rays": result["rays_per_path"], "memory": peak["RssAnon"] * 1024, "mapped": peak["VmRSS"] * 1024}
+            "rays": result["rays_per_path"], "memory": peak}
 
 
-def watch(pid, peak):
-    """Updates the peak memory of a process: private memory, and with its mapped files."""
+def private_memory(pid):
+    """Memory of a process in bytes, without mapped files; 0 if it has ended."""
     try:
         status = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
     except (FileNotFoundError, ProcessLookupError):
-        return
+        return 0
     for line in status.splitlines():
         field, _, value = line.partition(":")
-        if field in peak:
-            peak[field] = max(peak[field], int(value.split()[0]))
+        if field == "RssAnon":
+            return int(value.split()[0]) * 1024
+    return 0
 
 
 SECTION = """### Canopies of up to {most} leaves
@@ -137,12 +138,11 @@ def main():
     # In small canopies the memory of leaves is negligible beside that of the program.
     large = points.leaves >= 1e5
     points["bytes"] = ((points.memory - base["memory"]) / points.leaves).where(large)
-    points["with_file"] = ((points.mapped - base["mapped"]) / points.leaves).where(large)
     draw(options.docs / "images" / "scale.svg", points)
     shown = lambda value: "" if math.isnan(value) else f"{value:.0f}"
-    body = [[p.kind, f"{int(p.leaves):,}", f"{p.load:.2f} s", f"{p.memory / 1e9:.2f} GB", shown(p.bytes), shown(p.with_file),
+    body = [[p.kind, f"{int(p.leaves):,}", f"{p.load:.2f} s", f"{p.memory / 1e9:.2f} GB", shown(p.bytes),
              f"{p.us:.1f} µs"] for p in points.itertuples()]
-    head = ["", "leaves", "load", "memory", "bytes per leaf", "with the file", "path"]
+    head = ["", "leaves", "load", "memory", "bytes per leaf", "path"]
     rays = points[points.kind == "one level"].rays.iloc[-1]
     text = SECTION.format(most=f"{int(points.leaves.max()):,}", machine=machine(), rays=rays, table=table(head, body))
     write_section(options.docs / "performance.md", "scale", text)
