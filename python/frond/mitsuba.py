@@ -24,6 +24,7 @@ Set a variant before importing this module, and call `register` after setting an
 """
 
 import argparse
+import pathlib
 import sys
 
 import mitsuba as mi
@@ -597,7 +598,7 @@ def register():
         mi.register_bsdf(name, plugin)
 
 
-def main():
+def main(words=None):
     """Renders a scene file of Mitsuba with the plug-ins of this module."""
     parser = argparse.ArgumentParser(prog="python -m frond.mitsuba", description=main.__doc__)
     parser.add_argument("scene", help="scene.xml, as frond export --format mitsuba writes it")
@@ -605,15 +606,25 @@ def main():
     parser.add_argument("--variant", default="llvm_ad_rgb", help="Mitsuba's variant (default: %(default)s)")
     parser.add_argument("--samples", type=int, default=0, help="samples per pixel (default: the scene's)")
     parser.add_argument("--seed", type=int, default=0, help="seed (default: %(default)s)")
-    args = parser.parse_args()
+    args = parser.parse_args(words)
+    if args.samples < 0:
+        parser.error(f"--samples {args.samples}: at least 1, or 0 for the scene's")
+    output = pathlib.Path(args.output)
+    if output.suffix.lower() not in (".exr", ".png", ".jpg", ".jpeg"):
+        parser.error(f"--output {output}: the name ends in .exr, .png or .jpg")
+    if not output.parent.is_dir():
+        parser.error(f"--output {output}: there is no folder {output.parent}")
     try:
         mi.set_variant(args.variant)
     except ImportError as error:
         needs = "it needs an NVIDIA GPU and its driver: " if args.variant.startswith("cuda") else ""
         parser.error(f"--variant {args.variant}: {needs}{error}")
     register()
-    image = mi.render(mi.load_file(args.scene), spp=args.samples, seed=args.seed)
-    mi.util.write_bitmap(args.output, image, write_async=False)
+    try:
+        scene = mi.load_file(args.scene)
+    except RuntimeError as error:  # Mitsuba's message names the file and the line
+        parser.exit(1, f"{parser.prog}: {error}\n")
+    mi.util.write_bitmap(args.output, mi.render(scene, spp=args.samples, seed=args.seed), write_async=False)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 FROND_MITSUBA_BACKEND=cuda in the variants for NVIDIA's GPUs instead of llvm's."""
 
 import os
+import re
 import sys
 
 import numpy
@@ -241,3 +242,19 @@ def test_an_export_refuses_what_mitsuba_lacks(old, new, message, tmp_path):
     with pytest.raises(frond.InputError, match=message):
         frond.export(str(tmp_path / "scene.pbrt"), format="mitsuba", output=str(tmp_path / "out"))
     assert not (tmp_path / "out" / "scene.xml").exists()
+
+
+@pytest.mark.parametrize("scene, output, message", [
+    (None, "out.exr", "scene.xml.*does not exist"),
+    ('<scene version="3.0.0"><shape type="none"/></scene>', "out.exr", "line 1, col 25"),
+    ('<scene version="3.0.0"/>', "out.tif", "the name ends in .exr, .png or .jpg"),
+    ('<scene version="3.0.0"/>', "none/out.exr", "there is no folder"),
+])
+def test_the_command_reports_invalid_input(scene, output, message, tmp_path, capsys):
+    variant("llvm_ad_rgb")
+    if scene:
+        (tmp_path / "scene.xml").write_text(scene)
+    with pytest.raises(SystemExit) as ended:
+        sys.modules["frond.mitsuba"].main([str(tmp_path / "scene.xml"), "-o", str(tmp_path / output)])
+    assert ended.value.code != 0
+    assert re.search(message, capsys.readouterr().err)
