@@ -16,7 +16,7 @@ using namespace nb::literals;
 
 LeafParams leaf_of(SessionHandle& owner, const std::string& material) {
   const Registry& registry = owner.session().registry();
-  const MaterialWords words = parse_material(material_text({material}, owner.session().log()), registry);
+  const MaterialWords words = parse_material(material_text({material}), registry);
   SceneDescription description = scene_of_materials(registry);
   const RefusingLog refusing;
   const GivenWavelengths any({551});

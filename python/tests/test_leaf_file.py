@@ -38,7 +38,7 @@ def by_header(program, path, nm, first, second, *more):
 @pytest.mark.parametrize("incident", ["traced", "reciprocal"])
 @pytest.mark.parametrize("specimen", ["soybean", "maize"])
 def test_f_is_that_of_leaf_solved(program, tmp_path, specimen, incident):
-    words = f"leaf_solved specimen={specimen} incident={incident}"
+    words = f"leaf_solved,specimen={specimen},incident={incident}"
     nm = [455, 551, 608]
     frond.leaf_table(words, nm).save(tmp_path / "a.leaf")
     first, second = pairs(3000)
@@ -77,9 +77,9 @@ def test_samples_give_back_what_the_leaf_does(program, tmp_path, theta_deg):
 
 
 def test_the_command_writes_the_same_file(tmp_path):
-    for more in ("", " incident=reciprocal"):
-        frond.leaf_table("leaf_solved specimen=maize" + more, [455, 551, 608]).save(tmp_path / "module.leaf")
-        command = [os.environ["FROND"], "table", "leaf_solved", "specimen=maize", *more.split(), "--wavelengths", "608,551,455"]
+    for leaf in ("leaf_solved,specimen=maize", "leaf_solved,specimen=maize,incident=reciprocal"):
+        frond.leaf_table(leaf, [455, 551, 608]).save(tmp_path / "module.leaf")
+        command = [os.environ["FROND"], "table", leaf, "--wavelengths", "608,551,455"]
         subprocess.run([*command, "-o", tmp_path / "command.leaf", "-q"], check=True)
         # Where odd modes are 0, a table that was in the cache has 0, and one that was not a rounding error.
         module, ours = (numpy.fromfile(tmp_path / f"{name}.leaf", numpy.float32)[11:-2] for name in ("module", "command"))

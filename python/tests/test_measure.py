@@ -12,8 +12,8 @@ import pytest
 
 
 def test_spectrophotometer_is_the_commands():
-    found = frond.spectrophotometer("leaf_solved specimen=maize", [551, 800], [8, 172], rays=20_000, seed=3)
-    text = subprocess.run([os.environ["FROND"], "spectrophotometer", "leaf_solved", "specimen=maize", "--wavelengths", "551,800",
+    found = frond.spectrophotometer("leaf_solved,specimen=maize", [551, 800], [8, 172], rays=20_000, seed=3)
+    text = subprocess.run([os.environ["FROND"], "spectrophotometer", "leaf_solved,specimen=maize", "--wavelengths", "551,800",
                            "--angles", "8,172", "--rays", "20000", "--seed", "3", "--json", "-", "-q"], capture_output=True,
                           text=True, check=True).stdout
     expected = json.loads(text)["measurements"]
@@ -38,7 +38,7 @@ def test_f_of_a_leaf_is_reciprocal():
     rng = numpy.random.default_rng(1)
     w = rng.normal(size=(2, 1000, 3))
     w /= numpy.linalg.norm(w, axis=2)[:, :, None]
-    bsdf = frond.bsdf("leaf_solved incident=reciprocal")
+    bsdf = frond.bsdf("leaf_solved,incident=reciprocal")
     assert bsdf.is_reciprocal and not bsdf.is_stochastic
     assert numpy.array_equal(bsdf.f(w[0], w[1]), bsdf.f(w[1], w[0]))
     wi, weight, pdf = bsdf.sample(w[0])

@@ -53,7 +53,7 @@ def test_f_is_ours(specimen, incident):
     mi, dr = variant("llvm_ad_rgb")
     bsdf = mi.load_dict({"type": "frond_leaf", "specimen": specimen, "incident": incident})
     wo, wi = directions(20_000)
-    expected = frond.bsdf(f"leaf_solved specimen={specimen} incident={incident}", RGB_NM).f(wo, wi)
+    expected = frond.bsdf(f"leaf_solved,specimen={specimen},incident={incident}", RGB_NM).f(wo, wi)
     difference = numpy.pi * (evaluated(mi, dr, bsdf, wo, wi) - expected)
     assert numpy.sqrt((difference**2).mean()) < 5e-4
 
@@ -69,7 +69,7 @@ def test_mono_and_spectral_variants():
     mi, dr = variant("llvm_ad_spectral")
     bsdf = mi.load_dict({"type": "frond_leaf", "incident": "reciprocal"})
     nm = [450.0, 551.3, 620.0, 701.1]
-    expected = frond.bsdf("leaf_solved incident=reciprocal", nm).f(wo, wi)
+    expected = frond.bsdf("leaf_solved,incident=reciprocal", nm).f(wo, wi)
     found = evaluated(mi, dr, bsdf, wo, wi, nm)
     assert numpy.sqrt(((numpy.pi * (found - expected)) ** 2).mean()) < 5e-4
 
@@ -155,7 +155,7 @@ def test_gradients_by_chemistry():
         mean(value)
 
         def of_leaf(x):
-            f = frond.bsdf(f"leaf_solved incident=reciprocal tolerance=1e-5 {name}={x!r}", RGB_NM).f(wo, wi)
+            f = frond.bsdf(f"leaf_solved,incident=reciprocal,tolerance=1e-5,{name}={x!r}", RGB_NM).f(wo, wi)
             return float((f.astype(numpy.float64) * abs(wi[:, 2:])).mean(axis=1).sum())
 
         step = 0.05 * value
@@ -170,7 +170,7 @@ def test_chemistry_by_textures():
     wo, wi = directions(2000)
     map_of_2 = {"type": "bitmap", "data": mi.TensorXf(numpy.full((4, 4, 1), 2.0)), "raw": True}
     bsdf = mi.load_dict({"type": "frond_leaf", "chlorophylla": map_of_2})
-    expected = frond.bsdf("leaf_solved chlorophylla=2", RGB_NM).f(wo, wi)
+    expected = frond.bsdf("leaf_solved,chlorophylla=2", RGB_NM).f(wo, wi)
     difference = numpy.pi * (evaluated(mi, dr, bsdf, wo, wi) - expected)
     assert numpy.sqrt((difference**2).mean()) < 5e-4
 

@@ -34,7 +34,7 @@ class Reference:
     """The leaf's f from the goniophotometer (means over 5 x 5 degrees); R and T from the spectrophotometer."""
 
     def __init__(self, rays):
-        material, angles = f"{LEAF} incident=reciprocal", [*ANGLES, *(180 - a for a in ANGLES)]
+        material, angles = f"{LEAF},incident=reciprocal", [*ANGLES, *(180 - a for a in ANGLES)]
         self.found = frond.goniophotometer(material, NM, angles, patches=(180 // STEP, 360 // STEP), integrate=True)
         shares = frond.spectrophotometer(material, NM, angles, rays=int(float(rays)))
         self.error = shares[["R_se", "T_se"]].to_numpy().max()
@@ -185,7 +185,7 @@ class Scene:
         self.folder, self.material = folder, material
         home = pathlib.Path(run(PYTHON, "-c", "import pyradiance; print(pyradiance.__path__[0])").strip())
         self.environment = dict(os.environ, RAYPATH=f".:{home / 'lib'}", PATH=f"{home / 'bin'}:{os.environ['PATH']}")
-        program("export", *material, "--format", "radiance", "-o", folder / "leaf.xml", "-q")
+        program("export", ",".join(material), "--format", "radiance", "-o", folder / "leaf.xml", "-q")
         self.report = self.radiance("checkBSDF", "leaf.xml")
         self.samples = samples
 

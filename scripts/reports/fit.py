@@ -167,7 +167,7 @@ SIX_NM = (450, 550, 660, 720, 840, 1650)
 
 def rmse_of(leaf, spectra):
     """Returns the RMSE of the leaf's R and T at 8 degrees."""
-    found = program_csv("table", *leaf, "--wavelengths", ",".join(f"{nm:g}" for nm in spectra.wavelength_nm), "--angles", "8",
+    found = program_csv("table", ",".join(leaf), "--wavelengths", ",".join(f"{nm:g}" for nm in spectra.wavelength_nm), "--angles", "8",
                         "-q", "-o", "-")
     return rms([found.Rs + found.Rd - spectra.R.to_numpy(), found["T"] - spectra["T"].to_numpy()])
 
@@ -214,7 +214,7 @@ def made_leaf(rng):
              **{name: of[name] for name in ("otherabsorption", "epidermisaspect", "spongyaspect", "cuticlerefractivity")}}
     if kind[0] == "bifacial":
         words |= {name: of[name] for name in ("palisadeaspect", "spongyshare")}
-    return of, kind, [f"{name}={value}" for name, value in words.items()]
+    return of, kind, ",".join(f"{name}={value}" for name, value in words.items())
 
 
 def many_leaves(count):
@@ -224,7 +224,7 @@ def many_leaves(count):
     for i in range(count):
         of, kind, words = made_leaf(rng)
         made.append({"leaf": f"leaf{i}", "kind": kind, **of})
-        solved = program_csv("table", *words, "--wavelengths", WAVELENGTHS, "--angles", "8", "--nodes", "6", "--threads", 1, "-q",
+        solved = program_csv("table", words, "--wavelengths", WAVELENGTHS, "--angles", "8", "--nodes", "6", "--threads", 1, "-q",
                              "-o", "-")
         noise = NOISE * rng.standard_normal((2, len(solved)))
         spectra.append(pandas.DataFrame({"leaf": f"leaf{i}", "wavelength_nm": solved.wavelength_nm,

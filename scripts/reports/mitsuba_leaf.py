@@ -65,7 +65,7 @@ def differences_of_f(pairs):
             si = dr.zeros(mi.SurfaceInteraction3f, pairs)
             si.wi = mi.Vector3f(wo.T)
             found = numpy.array(bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wi.T))).T / abs(wi[:, 2:])
-            ours = frond.bsdf(f"leaf_solved specimen={specimen} incident={incident}", RGB_NM).f(wo, wi)
+            ours = frond.bsdf(f"leaf_solved,specimen={specimen},incident={incident}", RGB_NM).f(wo, wi)
             difference = numpy.pi * (found - ours)
             rows.append([specimen, f"`{incident}`", f"{rms(difference):.1e}", f"{abs(difference).max():.1e}"])
     return table(["leaf", "`incident`", "RMS", "largest"], rows)

@@ -28,7 +28,7 @@ def shares():
     for material in ("leaf_solved", "leaf_simplified"):
         for leaf in LEAVES:
             for nm in (551, 800):
-                both = [shares_by_angle(f"{material} specimen={leaf} incident={i}", angles, nm) for i in ("traced", "reciprocal")]
+                both = [shares_by_angle(f"{material},specimen={leaf},incident={i}", angles, nm) for i in ("traced", "reciprocal")]
                 for name, model, reciprocal in zip("RT", *both):
                     body.append([f"`{material}`, {leaf}", nm, name, *(f"{x:.3f}, {y:.3f}" for x, y in zip(model, reciprocal))])
     return table(["", "nm", ""] + [f"{a}°" for a in angles], body)
@@ -39,7 +39,7 @@ def diffuse_transmittance(leaf, nm, incident):
     nodes, weights = numpy.polynomial.legendre.leggauss(8)
     cosines = (1 + nodes) / 2
     angles = numpy.degrees(numpy.arccos(cosines))
-    material = f"leaf_solved specimen={leaf} incident={incident}"
+    material = f"leaf_solved,specimen={leaf},incident={incident}"
     return [weights * cosines @ shares_by_angle(material, list(side), nm)[1] for side in (angles, 180 - angles)]
 
 
@@ -47,7 +47,7 @@ def energy():
     angles, body = (5, 30, 60, 75, 85, 89), []
     for material in ("leaf_solved", "leaf_simplified", "leaf_lambert"):
         for incident in CONVENTIONS:
-            found = frond.goniophotometer(f"{material} specimen=soybean mesophyllfraction=0 incident={incident}", 551, angles,
+            found = frond.goniophotometer(f"{material},specimen=soybean,mesophyllfraction=0,incident={incident}", 551, angles,
                                           rendered=True, integrate=True)
             sums = (found["f"][:, 0] * found["projected_solid_angle_sr"]).sum(axis=(1, 2))
             body.append([f"`{material}`", incident] + [f"{x:.4f}" for x in sums])
@@ -60,7 +60,7 @@ def changes(folder):
     of, panels = charts.figure(1200, 760, 2, 3, sharex=True)
     for row, leaf in zip(panels, LEAVES):
         for nm in (551, 800):
-            found = {incident: frond.goniophotometer(f"leaf_solved specimen={leaf} incident={incident}", nm, angles,
+            found = {incident: frond.goniophotometer(f"leaf_solved,specimen={leaf},incident={incident}", nm, angles,
                                                      patches=(90, 72), integrate=True) for incident in ("traced", "reciprocal")}
             before, after = (g["f"][:, 0] for g in found.values())
             weight = found["traced"]["projected_solid_angle_sr"]

@@ -21,7 +21,7 @@ Both models for soybean, measured by the goniophotometer with {rays} rays per cu
 and 40 in azimuth, as in the paper. Angles above 90° are transmitted light. Bars are one standard error, mostly smaller than the
 lines.
 """)
-    materials = {name: frond.goniophotometer(f"{name} specimen=soybean", RGB, (30, 45), rays=int(float(rays)))
+    materials = {name: frond.goniophotometer(f"{name},specimen=soybean", RGB, (30, 45), rays=int(float(rays)))
                  for name in ("abm", "leaf_simplified")}
     for w, nm in enumerate(RGB):
         of, panels = charts.figure(840, 760, 2, 2, sharex=True, sharey="row")
@@ -43,8 +43,8 @@ lines.
 
 
 def plane_chart(report, leaf, side, angles, rays):
-    solved = frond.goniophotometer(f"leaf_solved specimen={leaf}", RGB, angles, integrate=True)
-    walked = frond.goniophotometer(f"abm specimen={leaf}", RGB, angles, rays=int(float(rays)))
+    solved = frond.goniophotometer(f"leaf_solved,specimen={leaf}", RGB, angles, integrate=True)
+    walked = frond.goniophotometer(f"abm,specimen={leaf}", RGB, angles, rays=int(float(rays)))
     of, panels = charts.figure(1500, 900, 4, len(angles), sharex=True, sharey="row", height_ratios=(3, 1, 3, 1))
     for column, angle in enumerate(angles):
         for row, reflected in ((0, True), (2, False)):
@@ -145,8 +145,8 @@ def reciprocity(report):
     a, b = 12.5, 72.5
     body = []
     for leaf in LEAVES:
-        body += defect_rows(f"abm specimen={leaf}", f"leaf_solved specimen={leaf}", a, b, rays)
-        body += defect_rows(f"leaf_simplified specimen={leaf}", f"leaf_simplified specimen={leaf}", a, b, rays)
+        body += defect_rows(f"abm,specimen={leaf}", f"leaf_solved,specimen={leaf}", a, b, rays)
+        body += defect_rows(f"leaf_simplified,specimen={leaf}", f"leaf_simplified,specimen={leaf}", a, b, rays)
     body += defect_rows("diffusetransmission", "diffusetransmission", a, b, rays)
     report.add(f"""
 ## Reciprocity
@@ -183,7 +183,7 @@ def defect_chart(report):
     sides = {"reflected, adaxial side": lambda x: (x, x), "reflected, abaxial side": lambda x: (180 - x, 180 - x),
              "transmitted, adaxial to abaxial": lambda x: (x, 180 - x)}
     for row, leaf in zip(panels, LEAVES):
-        found = Patches(f"leaf_solved specimen={leaf}", 800, angles + [180 - x for x in angles], (180, 72), integrate=True)
+        found = Patches(f"leaf_solved,specimen={leaf}", 800, angles + [180 - x for x in angles], (180, 72), integrate=True)
         for panel, (title, side) in zip(row, sides.items()):
             for mark, color, a in zip("osDv", charts.COLORS, (2.5, 32.5, 57.5, 82.5)):
                 pairs = [(side(a)[0], side(b)[1]) for b in angles]
@@ -204,13 +204,13 @@ together:
 def lossless(report):
     """Share of light from one direction that a leaf without absorption scatters, as a render shows it."""
     angles, body = (5, 30, 60, 75, 85), []
-    leaf = "specimen=soybean mesophyllfraction=0"
+    leaf = "specimen=soybean,mesophyllfraction=0"
     for incident in ("traced", "light"):
-        r = measurements(f"abm {leaf} incident={incident}", angles, 551, report.rays(1e7), rendered=True)
+        r = measurements(f"abm,{leaf},incident={incident}", angles, 551, report.rays(1e7), rendered=True)
         body.append(["`abm`, measured", incident] + [f"{x.R + x['T']:.4f} ± {x.A_se:.4f}" for _, x in r.iterrows()])
     for material in ("leaf_solved", "leaf_simplified"):
         for incident in ("traced", "light", "reciprocal"):
-            found = frond.goniophotometer(f"{material} {leaf} incident={incident}", 551, angles, rendered=True, integrate=True)
+            found = frond.goniophotometer(f"{material},{leaf},incident={incident}", 551, angles, rendered=True, integrate=True)
             sums = (found["f"][:, 0] * found["projected_solid_angle_sr"]).sum(axis=(1, 2))
             body.append([f"`{material}`, integrated", incident] + [f"{x:.4f}" for x in sums])
     report.add("""

@@ -110,8 +110,8 @@ solution with 40 nodes per segment. Monte Carlo is the paper's method: analog wa
 class Modes:
     """A mode table of `frond table leaf_solved`: cells and, by wavelength, index and modes `[side][way][m][sin i][sin o]`."""
 
-    def __init__(self, leaf, nm, *options):
-        text, self.seconds, said = frond_table("leaf_solved", f"specimen={leaf}", "--wavelengths", nm, "--threads", 1, *options)
+    def __init__(self, leaf, nm, more, *options):
+        text, self.seconds, said = frond_table(f"leaf_solved,specimen={leaf},{more}", "--wavelengths", nm, "--threads", 1, *options)
         self.kilobytes = int(said.split(" kB in a render")[0].split()[-1])
         lines = [line for line in text.splitlines() if not line.startswith("#")]
         self.cells, at, self.columns = int(lines[0].split()[1]), 2, []
@@ -153,7 +153,7 @@ def largest_between(a, b):
 def small_patches(leaf, tolerance, step):
     """f over patches of 2 by 10 degrees, light at every `step` degrees on both sides."""
     angles = [*range(0, 89, step), *range(92, 181, step)]
-    return frond.goniophotometer(f"leaf_solved specimen={leaf} tolerance={tolerance}", RGB, angles, patches=(90, 36),
+    return frond.goniophotometer(f"leaf_solved,specimen={leaf},tolerance={tolerance}", RGB, angles, patches=(90, 36),
                                  integrate=True)["f"]
 
 
@@ -201,7 +201,7 @@ def walks(report):
     rays = report.rays(1e7)
     body = []
     for leaf in LEAVES:
-        measured = [measurements(f"abm specimen={leaf} mode={mode}", (0, 30, 60, 85, 120, 180), (455, 551, 608, 800), rays)
+        measured = [measurements(f"abm,specimen={leaf},mode={mode}", (0, 30, 60, 85, 120, 180), (455, 551, 608, 800), rays)
                     for mode in ("analog", "weighted")]
         (a, a_se), (b, b_se) = ((found[["R", "T"]].to_numpy(), found[["R_se", "T_se"]].to_numpy()) for found in measured)
         z = (a - b) / numpy.hypot(a_se, b_se)
@@ -227,9 +227,9 @@ exponent 0.
 def f_against_sample(report):
     body = []
     samples = report.rays(1e6).replace("e+0", "e")
-    for material in ("abm", "abm mode=weighted", "abm specimen=maize", "abm incident=light", "leaf_solved",
-                     "leaf_solved specimen=maize", "leaf_solved incident=light", "leaf_simplified",
-                     "leaf_simplified incident=light", "diffusetransmission"):
+    for material in ("abm", "abm,mode=weighted", "abm,specimen=maize", "abm,incident=light", "leaf_solved",
+                     "leaf_solved,specimen=maize", "leaf_solved,incident=light", "leaf_simplified",
+                     "leaf_simplified,incident=light", "diffusetransmission"):
         for name, law in frond.conform(material, samples=int(float(samples)))["laws"].items():
             if name in ("sampling", "unbiasedness", "energy") and "worst_p" in law:
                 body.append([f"`{material}`", name, law["tests"], f"{law['worst_p']:.2g}", law["verdict"]])
@@ -246,7 +246,7 @@ all tests; chance gives about 1 / (number of tests).
 
 def black_leaf(*numbers):
     """R of both sides of a soybean leaf with an opaque mesophyll at 450 nm: (adaxial, abaxial)."""
-    found = program_csv("table", "--specimen", "soybean", "otherabsorption=1e5", *numbers, "--wavelengths", "450", "--angles",
+    found = program_csv("table", "--specimen", "soybean", ",".join(("otherabsorption=1e5", *numbers)), "--wavelengths", "450", "--angles",
                         "8,172", "-q", "-o", "-").set_index("theta_deg")
     return (found.Rs + found.Rd)[[8, 172]].to_numpy()
 

@@ -75,7 +75,7 @@ std::vector<GivenWavelengths> in_lanes(const std::vector<double>& nm) {
 ConformReport examine_material(const JobRun& run) {
   const Arguments& args = run.args;
   const Registry& registry = run.session().registry();
-  const std::string text = material_text(args.texts("material"), run.log());
+  const std::string text = material_text(args.texts("material"));
   const MaterialWords material = parse_material(text, registry);
   const SceneDescription others = scene_of_materials(registry);
   const auto sets = parameter_sets(material, parse_plugin_text(text, {}), args);

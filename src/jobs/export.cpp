@@ -129,7 +129,7 @@ Result export_material(const JobRun& run) {
                               args.numbers("view-azimuths"), args.count("rays")};
   format.check(request);
   if (args.text("output") != "-") check_replaceable(args.text("output"));
-  const std::string material = material_text(args.texts("material"), run.log());
+  const std::string material = material_text(args.texts("material"));
   Session& session = run.session();
   const auto prepare = [&](const std::vector<double>& nm) -> std::shared_ptr<const Material> {
     run.check_stop();

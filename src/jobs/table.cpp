@@ -89,7 +89,7 @@ void check_is_of_leaf(const std::string& name, const Arguments& args) {
 
 /// Parses the positional words: a material and its parameters. Throws InputError.
 PluginText leaf_of(const JobRun& run) {
-  std::string text = material_text(run.args.texts("leaf"), run.log());
+  std::string text = material_text(run.args.texts("leaf"));
   const size_t end = text.find(',');
   if (text.empty() || text.substr(0, end).find('=') != std::string::npos)
     text = std::string(kSimplified) + (text.empty() ? "" : ",") + text;

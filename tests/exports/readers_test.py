@@ -114,7 +114,7 @@ class ReadersTest(FrondTest):
         program = self.radiance()
         self.export("grey.xml", "leaf_solved", "--format", "radiance", "--wavelengths", 551)
         self.export("leaf.xml", "leaf_solved", "--format", "radiance", "--wavelengths", "450:650:50")
-        self.export("traced.xml", "leaf_solved", "incident=traced", "--format", "radiance", "--wavelengths", 551)
+        self.export("traced.xml", "leaf_solved,incident=traced", "--format", "radiance", "--wavelengths", 551)
         worst = lambda text: max(float(line.split()[-1]) for line in text.split("Reciprocity Error")[1].splitlines()[1:])
         for file, color, most in (("grey.xml", 0, 0.1), ("leaf.xml", 1, 1)):  # per cent; colours are rounded when read
             report = program("checkBSDF", file)

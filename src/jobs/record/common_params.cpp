@@ -23,9 +23,9 @@ bool has(const Arguments& args, std::string_view name) { return args.declares(na
 }  // namespace
 
 std::vector<std::string> materials_of(const JobRun& run) {
-  std::vector<std::string> texts{material_text(run.args.texts("material"), run.log())};
+  std::vector<std::string> texts{material_text(run.args.texts("material"))};
   if (has(run.args, "with"))
-    for (const std::string& text : run.args.texts("with")) texts.push_back(material_text({text}, run.log()));
+    for (const std::string& text : run.args.texts("with")) texts.push_back(material_text({text}));
   return texts;
 }
 

@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "report/text_output.h"
-#include "scene/format/words.h"
 #include "system/atomic_file.h"
 
 namespace frond {
@@ -188,30 +187,14 @@ std::vector<std::string> absolute_words(const Arguments& args, std::span<const J
   return result;
 }
 
-std::string material_text(const std::vector<std::string>& words, const Log& log) {
-  // "abm,specimen=maize" is a material.
-  const auto is_parameter = [](const std::string& word) {
-    const size_t end = word.find_first_of("=,");
-    return end != std::string::npos && word[end] == '=';
-  };
-  std::string text;
-  bool is_old = words.size() > 1;
-  for (const std::string& word : words) {
-    if (word.empty()) fail({}, "a material is needed, as in abm,specimen=maize");
-    if (&word != &words.front() && !is_parameter(word))
-      fail({}, "a parameter looks like name=value: \"{}\" in {}", word, fmt::join(words, " "));
-    auto parts = split(word, ' ');
-    std::erase(parts, "");
-    // A blank separates words only in "abm specimen=maize", a name and its parameters; elsewhere it is part of a value,
-    // such as a file's path.
-    const bool is_split =
-        parts.size() > 1 && parts[0].find_first_of("=,") == std::string::npos && is_parameter(parts[1]);
-    if (!is_split) parts = {word};
-    is_old = is_old || is_split;
-    for (size_t i = 0; i < parts.size(); ++i)
-      text += (i > 1 && !is_parameter(parts[i]) ? " " : text.empty() ? "" : ",") + parts[i];
-  }
-  if (is_old) log.info(fmt::format("write a material as one word, {}; the form with blanks is deprecated", text));
+std::string material_text(const std::vector<std::string>& words) {
+  if (words.empty()) return {};
+  const std::string& text = words.front();
+  if (text.empty()) fail({}, "a material is needed, as in abm,specimen=maize");
+  // After the name a blank is part of a value, such as a file's path.
+  const size_t end = text.find_first_of("=, ");
+  if (words.size() > 1 || (end != std::string::npos && text[end] == ' '))
+    fail({}, "a material is one word with commas, as in abm,specimen=maize: \"{}\" was given", fmt::join(words, " "));
   return text;
 }
 

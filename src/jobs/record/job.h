@@ -127,8 +127,8 @@ std::vector<std::string> absolute_words(const Arguments& args, std::span<const J
 
 // Helpers that jobs share.
 
-/// Returns a material as NAME[,parameter=value...]. The older form with blanks, `abm specimen=maize`, in one word or
-/// several, is accepted with a note to `log`.
-std::string material_text(const std::vector<std::string>& words, const Log& log);
+/// Returns the material NAME[,parameter=value...], the only word; empty without words. Throws InputError if there are
+/// several, or if blanks separate the parameters.
+std::string material_text(const std::vector<std::string>& words);
 
 }  // namespace frond
