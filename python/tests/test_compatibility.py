@@ -18,7 +18,7 @@ import frond
 ROOT = pathlib.Path(__file__).parents[2]
 VERSIONS = sorted(folder for folder in (ROOT / "tests/data").iterdir() if folder.is_dir())
 sys.path.insert(0, str(ROOT / "tests/compatibility"))
-from record import block_means  # noqa: E402
+from record import block_means, outputs  # noqa: E402
 
 pytestmark = pytest.mark.parametrize("version", VERSIONS, ids=lambda folder: folder.name)
 
@@ -55,7 +55,8 @@ def test_a_leaf_file_is_read(version, copy):
     table = frond.leaf_table("leaf_solved,specimen=soybean,incident=reciprocal", [551])
     table.save(copy / "now.leaf")
     old, now = ((copy / name).read_bytes() for name in ("soybean.leaf", "now.leaf"))
-    assert len(old) == len(now) and old[:16] == now[:16], "the format changed: give it another version, and read both"
+    same = len(old) == len(now) and old[:16] == now[:16]
+    assert same or old[:8] != now[:8], "the format changed: give it another version, and read both"
     compiler = shutil.which("g++")
     if not compiler:
         pytest.skip("there is no g++")
@@ -93,21 +94,40 @@ Shape "disk"
     assert ran.returncode == 0 and "pixels; green differs" in ran.stdout, ran.stderr
 
 
-def words_of(page):
-    """Pairs of a heading and of a name in its table: plug-ins or commands with their parameters."""
-    found, heading = set(), None
+def parameters_of(page):
+    """{(plug-in or command, name of a parameter): (types, default, choices)}, from the tables below headings. Words in capitals,
+    for values of options, are no types."""
+    found, heading = {}, None
+    words = lambda cell: re.split(r" ?(?:\\\||,) ?", cell)
     for line in page.read_text(encoding="utf-8").splitlines():
         if line.startswith("#"):
             heading = line.strip("# ")
-        elif name := re.match(r"\| `([^`]+)` \|", line):
-            found.add((heading, name[1]))
+        elif line.startswith("| `"):
+            cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:]]
+            kinds, default, _, choices = (*cells[1:5], *4 * [""])[:4]
+            for name in words(cells[0].strip("`")):
+                found[heading, name] = ({kind for kind in words(kinds) if kind.islower()}, default, words(choices))
     return found
 
 
 @pytest.mark.parametrize("page", ["plugins.md", "commands.md"])
 def test_plugins_commands_and_parameters_remain(version, page):
-    missing = words_of(version / page) - words_of(ROOT / "docs" / page)
+    before, now = parameters_of(version / page), parameters_of(ROOT / "docs" / page)
+    missing = before.keys() - now.keys()
     assert not missing, f"{version.name} had these; keep them, or say in CHANGELOG.md what replaces them: {sorted(missing)}"
+    for key, (kinds, default, choices) in before.items():
+        assert kinds <= now[key][0], f"{key} took other values in {version.name}"
+        assert default in (now[key][1], "required"), f"{key} had the default {default} in {version.name}"
+        assert len(choices) == 1 or set(choices) <= set(now[key][2]), f"{key} had other choices in {version.name}"
+
+
+def test_fields_and_columns_remain(version, copy):
+    before = json.loads((version / "outputs.json").read_text())
+    now = outputs(os.environ["FROND"], before, copy)
+    for command, of in before.items():
+        for form, names in of.items():
+            missing = [name for name in names if name not in now[command][form]]
+            assert not missing, f"frond {command}: {form} of {version.name} had {missing}"
 
 
 def functions(stub):

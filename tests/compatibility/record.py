@@ -4,11 +4,13 @@ Run it once for each release, before its tag, and never again for that version:
 PYTHONPATH=build/release/python build/python-venv/bin/python tests/compatibility/record.py build/release/frond
 """
 
+import csv
 import json
 import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
 
 import frond
 
@@ -39,6 +41,29 @@ Shape "disk" "float radius" 1
 SOURCES = {"plugins": ["tests/plugins/kinds.cpp", "examples/plugins/blade.cpp", "examples/plugins/led.cpp", "examples/plugins/soil.cpp"],
            "programs": ["examples/embed/embed.cpp"]}
 LEAVES = "x,y,z,nx,ny,nz\n" + "".join(f"{x / 2},{y / 2},{0.3 + 0.1 * x},{x / 5},{y / 5},1\n" for x in (-1, 0, 1) for y in (-1, 0, 1))
+# Commands that print JSON, in an order in which each finds its files. Their fields and their columns of CSV must remain.
+OUTPUTS = """spectrophotometer leaf_solved --wavelengths 400:2500:50 --rays 1e3 --csv measured.csv --json -
+goniophotometer leaf_solved --wavelengths 551 --rays 1e3 --patches 4x8 --csv patches.csv --json -
+bench diffuse --wavelengths 551 --lanes 1 --min-time 0.001 --csv bench.csv --json -
+conform diffuse --samples 1e3 --csv laws.csv --json -
+fit measured.csv --csv fit.csv --json -
+brf scene.pbrt --wavelengths 551 --paths 32 --csv brf.csv --json -
+flux scene.pbrt --wavelengths 551 --paths 1e3 --csv flux.csv --json -
+render scene.pbrt --spp 1 -o a.exr --json
+difference a.exr a.exr a.exr a.exr --json"""
+
+
+def outputs(program, commands, folder):
+    """{command: {"json": its top-level fields, "csv": its columns}}, run in a folder with the version's scene."""
+    found = {}
+    for command in commands:
+        words = command.split()
+        text = subprocess.run([program, *words, "-q"], check=True, cwd=folder, capture_output=True, text=True).stdout
+        found[command] = {"json": list(json.loads(text))}
+        if "--csv" in words:
+            with open(folder / words[words.index("--csv") + 1], encoding="utf-8") as file:
+                found[command]["csv"] = next(csv.reader(line for line in file if not line.startswith("#")))
+    return found
 
 
 def block_means(file):
@@ -73,6 +98,9 @@ def main():
     (folder / "expected.json").write_text(json.dumps(expected))
     for name in ("merged.exr", "image.exr"):
         (folder / name).unlink()
+    with tempfile.TemporaryDirectory() as copy:
+        found = outputs(program, OUTPUTS.splitlines(), pathlib.Path(shutil.copytree(folder, copy, dirs_exist_ok=True)))
+    (folder / "outputs.json").write_text(json.dumps(found, indent=0) + "\n")
     for name in ("commands.md", "plugins.md"):
         shutil.copy(ROOT / "docs" / name, folder)
     shutil.copy(ROOT / "python" / "frond" / "__init__.pyi", folder / "frond.pyi")
