@@ -24,9 +24,9 @@ if(SKBUILD)
   set(frond_share_component python)
 endif()
 install(FILES LICENSE NOTICE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT ${frond_share_component})
-# Licences of figures that the libraries contain.
-install(FILES LICENSES/BSD-3-Clause.txt LICENSES/MIT.txt DESTINATION "${CMAKE_INSTALL_DOCDIR}/LICENSES"
-        COMPONENT ${frond_share_component})
+# Licences of figures that the libraries and scenes contain.
+install(FILES LICENSES/BSD-3-Clause.txt LICENSES/MIT.txt LICENSES/LicenseRef-EC-reuse.txt
+        DESTINATION "${CMAKE_INSTALL_DOCDIR}/LICENSES" COMPONENT ${frond_share_component})
 install(DIRECTORY "${frond_manual_dir}/man1" DESTINATION "${CMAKE_INSTALL_MANDIR}" COMPONENT ${frond_share_component})
 install(FILES "${frond_manual_dir}/frond" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions"
         COMPONENT ${frond_share_component})

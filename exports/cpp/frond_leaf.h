@@ -1,3 +1,6 @@
+// SPDX-FileCopyrightText: 2026 The frond developers
+// SPDX-License-Identifier: Apache-2.0
+//
 // The solved leaf for any C++ renderer: one header, C++17, without dependencies.
 //
 //   frond::Leaf leaf("soybean.leaf");                        // frond table leaf_solved ... -o soybean.leaf
