@@ -188,7 +188,7 @@ def spectrophotometer(material, wavelengths, angles = 8, *, with_: str | Sequenc
     """Measure a material's reflectance, transmittance and absorptance.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
+    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
     rays: Number of rays for each measurement, by default 1e6; with se the maximum, by default 1e9.
@@ -207,7 +207,7 @@ def goniophotometer(material, wavelengths, angles = 8, *, patches = (20, 40), wi
     Measure a material's BRDF and BTDF over the whole sphere.
 
     material: NAME[,parameter=value...]: material, as in abm,specimen=maize.
-    wavelengths: Wavelengths. Unit: nm. Range: from 360 to 2500.
+    wavelengths: Wavelengths, as in 450,550,670 or 400:700:10. Unit: nm. Range: from 360 to 2500.
     angles: Angles of incidence from the front's normal; above 90 the back is lit. Unit: degrees. Range: from 0 to 180. Default: 8.
     with_: NAME[,parameter=value...]: one more material. Repeatable.
     rays: Number of rays for each measurement. Default: 1e6.

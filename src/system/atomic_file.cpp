@@ -152,7 +152,8 @@ void check_replaceable(const fs::path& path) {
     if (!fs::is_regular_file(target, error)) fail({}, "cannot write \"{}\": it is no regular file", path.string());
     if (access(target.c_str(), W_OK) != 0) fail_to_write(path, errno);
   }
-  const NewFile probe(target);  // fails if no file can be created in the folder
+  if (error) fail_to_write(path, error.value());  // such as a name that is too long
+  const NewFile probe(target);                    // fails if no file can be created in the folder
 }
 
 void replace_file(const fs::path& path, std::span<const unsigned char> bytes) {
