@@ -45,6 +45,11 @@ def words(param, value):
     return [checked_text(text, python_name(param["name"])) for text in found]
 
 
+def no_text(value):
+    """Returns the error for a material that is no text."""
+    return f'a text is needed, not {value!r}; frond.register_material("name", bsdf) gives an object of frond.Bsdf a name'
+
+
 def _words(param, value):
     if param["kind"] != "texts":
         return [_text(value)]
@@ -57,6 +62,8 @@ def _words(param, value):
         return [text]
     if hasattr(value, "items"):
         return [f"{name}={_text(v)}" for name, v in value.items()]
+    if not hasattr(value, "__iter__") and param["type"] == "MATERIAL":
+        raise TypeError(no_text(value))
     return [_text(v) for v in value]
 
 

@@ -5,12 +5,14 @@ import os
 import re
 
 from . import _frond
-from ._jobs import FUNCTIONS, _table, run
+from ._jobs import FUNCTIONS, _table, no_text, run
 from ._session import checked_session, checked_text, path_text
 
 
 def material_text(material):
-    """Returns a material as text, "leaf_solved,specimen=maize"; a list of its words is joined by commas."""
+    """Returns a material as text, "leaf_solved,specimen=maize"; a list of its words is joined by commas. Raises TypeError."""
+    if not isinstance(material, str) and not hasattr(material, "__iter__"):
+        raise TypeError(f"material: {no_text(material)}")
     return checked_text(material if isinstance(material, str) else ",".join(str(part) for part in material), "material")
 
 

@@ -214,8 +214,12 @@ class Image:
         for name, value in (("max_rms", max_rms), ("time_limit", time_limit)):
             if value is not None and not value >= 0:
                 raise ValueError(f"{name}: a number from 0 on is needed, not {value!r}")
+        total, (least, _) = _samples_of(samples, self._scene.samples), self.samples
+        if max_rms is None and total <= least:
+            import warnings
+            warnings.warn(f"render_more: the image has {least} samples already, {total} in total were asked for", stacklevel=2)
         self._image = None
-        self._rendered.render_more(_samples_of(samples, self._scene.samples), max_rms or 0, time_limit or 0, _show(progress))
+        self._rendered.render_more(total, max_rms or 0, time_limit or 0, _show(progress))
 
     def _load(self):
         if self._image is None:
@@ -247,7 +251,9 @@ class Image:
 
     @property
     def rgb(self):
-        """Linear R, G, B in `color_space`: float32 `[row][column][3]`."""
+        """Linear R, G, B in `color_space`: float32 `[row][column][3]`. Raises ValueError for an image of bands."""
+        if not self.color_space:
+            raise ValueError(f"this image has bands, not colours: {', '.join(self.channels)}")
         return self._several("RGB")
 
     @property

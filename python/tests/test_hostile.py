@@ -215,6 +215,8 @@ CALLS = [
     ('frond.bsdf("diffuse", numpy.array(551.)).f([0, 0, 1], [0, 0, 1]).shape', "", r"\(1, 1\)"),
     ('frond.merge(["a.part", None], output="x.exr")', "TypeError", "part.*None"),
     ('frond.fit([500, 600], numpy.ones((2, 2)) * 0.1)', "ValueError", "R has more than one number"),
+    ('frond.spectrophotometer(python_bsdf(), 551, session=session)', "TypeError", r"material: a text is needed.*register_material"),
+    ('frond.bench(python_bsdf(), session=session)', "TypeError", r"material: a text is needed.*register_material"),
     ('frond.register_material("x\\0y", python_bsdf(), session=session)', "ValueError", "name: .* zero bytes"),
     ('frond.register_material("", python_bsdf(), session=session)', "ValueError", "name"),
     ('frond.register_material("a b", python_bsdf(), session=session)', "ValueError", "name"),

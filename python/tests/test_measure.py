@@ -224,21 +224,25 @@ def test_flux_has_par_and_the_defaults_of_the_command(tmp_path):
     assert inspect.signature(frond.flux).parameters["wavelengths"].default == "450,550,670,800"
 
 
-def test_flux_of_the_scenes_own_light_in_photons(tmp_path):
-    """A black disk under a light of equal energy: all photons of the light are absorbed. A light of scale 1 has the radiance
-    1 / 106.86 at every wavelength (docs/scene_format.md), and 119.627 J m / mol is Planck's constant x c x Avogadro's, in nm and
-    umol. Within 5 standard errors: a false alarm in 2e6."""
+def test_flux_in_photons(tmp_path):
+    """A black disk absorbs all photons of the light: of an irradiance of 1.5 W/(m2 nm) at every wavelength, and of the scene's
+    sky. 119.627 J m / mol is Planck's constant x c x Avogadro's, in nm and umol. Within 5 standard errors: a false alarm in
+    2e6."""
+    (tmp_path / "equal.spd").write_text("300 1.5\n2500 1.5\n")
     (tmp_path / "scene.pbrt").write_text("""WorldBegin
-LightSource "infinite" "spectrum L" "stdillum-E" "float scale" 50
+LightSource "sky"
 ObjectBegin "leaf"
   Material "diffuse" "spectrum reflectance" [ 300 0 2500 0 ]
   Shape "disk" "float radius" 1
 ObjectEnd
 ObjectInstance "leaf"
 """)
-    expected = numpy.pi * 50 / 106.856895 * (700**2 - 400**2) / 2 / 119.626566
-    for wavelengths in ("400:700:10", "700,600,500,450,400,550,650"):
-        _, leaves = frond.flux(tmp_path / "scene.pbrt", wavelengths, by="instance", irradiance="scene", paths=100_000)
+    scene, equal = tmp_path / "scene.pbrt", 1.5 * (700**2 - 400**2) / 2 / 119.626566
+    sky = frond.run("flux", scene=scene, wavelengths="400:700:10", irradiance="scene", paths=1).facts["par_umol_m2_s"]
+    assert 1500 < sky < 2200
+    for wavelengths, irradiance, expected in (("400:700:10", tmp_path / "equal.spd", equal), ("400:700:10", "scene", sky),
+                                              ("700,600,500,450,400,550,650", tmp_path / "equal.spd", equal)):
+        _, leaves = frond.flux(scene, wavelengths, by="instance", irradiance=irradiance, paths=100_000)
         error = leaves["par_umol_m2_s_se"][0]
         assert 0 < error < 0.01 * expected and abs(leaves["par_umol_m2_s"][0] - expected) < 5 * error + 1e-3 * expected
 

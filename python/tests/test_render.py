@@ -70,11 +70,15 @@ def test_an_image_goes_on(scene_text):
     whole, pieces = scene.render(8), scene.render(3)
     pieces.render_more(8)
     assert numpy.array_equal(whole.array, pieces.array)
+    with pytest.warns(UserWarning, match="has 8 samples already, 4 in total"):
+        pieces.render_more(4)
 
 
 def test_bands_have_no_colours(scene_text):
     image = frond.loads(scene_text, wavelengths=[551, 800]).render(4)
     assert image.color_space == ""
+    with pytest.raises(ValueError, match="this image has bands, not colours: "):
+        _ = image.rgb
     assert any("800" in name for name in image.channels)
 
 

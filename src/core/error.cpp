@@ -68,7 +68,11 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {
   if (const auto match = nearest(word, candidates); !match.empty()) return fmt::format("; did you mean \"{}\"?", match);
   if (candidates.empty()) return "; there are none";
-  return fmt::format("; there {} {}", candidates.size() == 1 ? "is" : "are", fmt::join(candidates, ", "));
+  const char* verb = candidates.size() == 1 ? "is" : "are";
+  const auto is_phrase = [](std::string_view name) { return name.find_first_of(" ,") != name.npos; };
+  if (std::ranges::any_of(candidates, is_phrase))
+    return fmt::format("; there {} \"{}\"", verb, fmt::join(candidates, "\", \""));
+  return fmt::format("; there {} {}", verb, fmt::join(candidates, ", "));
 }
 
 }  // namespace frond

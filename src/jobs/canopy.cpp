@@ -79,7 +79,12 @@ Result canopy(const JobRun& run) {
   const HomogeneousCanopy canopy = canopy_of(run.args);
   const uint64_t leaves = canopy.leaves();
   constexpr uint64_t kMost = 0xfffffffe;  // largest number of instances of one geometry in Embree
-  if (leaves == 0 || leaves > kMost) fail({}, "the number of leaves is {}: it must be from 1 to {}", leaves, kMost);
+  if (leaves == 0)
+    fail({},
+         "a leaf has the area {:.6g} ({} {:.6g}), the plot {:.6g}: no leaf fits; are both in the same unit, in metres?",
+         canopy.leaf_area * canopy.scale * canopy.scale, run.args.spelled("scale"), canopy.scale,
+         canopy.size[0] * canopy.size[1]);
+  if (leaves > kMost) fail({}, "the number of leaves is {}: {} is the limit", leaves, kMost);
   std::vector<std::string> names;
   for (const HomogeneousCanopy::Column& column : canopy.columns) names.push_back(column.name);
   const std::string output = run.args.text("output");

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "jobs/support/radiometry.h"
@@ -26,7 +28,8 @@ constexpr JobParam kParams[] = {
     kRadiometryWavelengthsParam,
     kTargetParam,
     kPeriodParam,
-    JobParam("paths", count, "Number of light paths.", {.default_value = "1e6", .range = kCounts}),
+    JobParam("paths", count, "Number of light paths; at least 32 for each wavelength are traced.",
+             {.default_value = "1e6", .range = kCounts}),
     rms_param(
         "Absolute standard error, as a share of the incident light (0.001 is 0.1 % of it): stop when the RMS of the "
         "standard errors of all reflected and absorbed shares is below this; --paths is then not used."),
@@ -35,8 +38,7 @@ constexpr JobParam kParams[] = {
              {.choices = kBy, .decides = true}),
     JobParam("irradiance", text,
              "Spectral irradiance of a horizontal plane, which scales photon flux: name of a spectrum, an .spd file, "
-             "or scene: "
-             "that of the scene's lights, which have to be in W/(m2 nm), as those of the light sky.",
+             "or scene: that of the scene's light sky.",
              {.type = "SPECTRUM", .default_value = "solar-am1.5-global", .unit = "W/(m2 nm)"}),
     kSwapParam,
     kIntegratorParam,
@@ -70,6 +72,7 @@ std::vector<Row> rows_of(const FluxMeasurement& measurement) {
 MeanError share_of_photons(std::span<const MeanError> shares, const PhotonWeights& photons) {
   MeanError sum;
   for (size_t band = 0; band < shares.size(); ++band) {
+    if (photons.weights[band] == 0) continue;  // an error may be unknown there
     sum.mean += photons.weights[band] * shares[band].mean;
     sum.standard_error += photons.weights[band] * shares[band].standard_error;
   }
@@ -156,7 +159,11 @@ std::optional<FluxMeasurement> measure(const JobRun& run, FluxMeter& meter, cons
   // A refinement starts with few paths and doubles them.
   constexpr uint64_t kFirst = 1 << 16;
   const double rms = run.args.real("rms");
-  const RefineLimits limits{rms > 0 ? kFirst : uint64_t(run.args.count("paths")), uint64_t{1} << 40, rms};
+  // As in the BRF, each band needs some paths for its standard error.
+  constexpr uint64_t kLeast = 32;
+  const uint64_t least = kLeast * meter.scene().wavelengths().bands().size();
+  const RefineLimits limits{std::max(least, rms > 0 ? kFirst : uint64_t(run.args.count("paths"))), uint64_t{1} << 40,
+                            rms};
   std::function<void()> checkpoint;
   if (kept) {
     if (const auto path = kept->found(run.args.flag("resume"))) meter.resume(*path);
@@ -180,11 +187,29 @@ std::optional<FluxMeasurement> measure(const JobRun& run, FluxMeter& meter, cons
 /// The value of --irradiance for that of the scene's lights.
 constexpr std::string_view kOfScene = "scene";
 
-/// Returns the spectrum that --irradiance names; nullptr for that of the scene.
+/// Returns the spectrum that --irradiance names; nullptr for that of the scene. Throws InputError for a relative one.
 SpectrumPtr named_irradiance(const JobRun& run) {
   const std::string light = run.args.text("irradiance");
   if (light == kOfScene) return nullptr;
-  return light.ends_with(".spd") ? read_spd(light, {}) : named_spectrum(light, {});
+  if (light.ends_with(".spd")) return read_spd(light, {});
+  SpectrumPtr spectrum = named_spectrum(light, {});
+  if (!light.starts_with("solar-"))
+    fail({}, "{}: \"{}\" is not in W/(m2 nm): an .spd file in this unit is needed, or one of the spectra solar-*",
+         run.args.spelled("irradiance"), light);
+  return spectrum;
+}
+
+/// Throws InputError for lights whose spectrum is scaled to a luminance, so that it has no physical unit.
+void check_physical(const SceneDescription& description, const JobRun& run) {
+  // The light sky alone keeps the unit of its data; its illuminance, of luminance 1, has no unit either.
+  for (const auto& [light, _] : description.lights) {
+    const ParsedParam* scaled = find_param(light.params, "illuminance");
+    if (light.name != "sky" || scaled)
+      fail(scaled ? scaled->where : light.where,
+           "{} {}: this light is scaled to {} and has no unit; take LightSource \"sky\" without \"illuminance\", or "
+           "name a spectrum in W/(m2 nm)",
+           run.args.spelled("irradiance"), kOfScene, scaled ? "an illuminance" : "luminance 1");
+  }
 }
 
 /// Returns the weights of bands in the PAR photon flux; nullopt if the bands do not cover 400 to 700 nm. `irradiance`:
@@ -202,9 +227,16 @@ std::optional<PhotonWeights> photon_weights(const FluxMeter& meter, SpectrumPtr 
 
 /// Returns the table of instances. It is printed as CSV unless a file is written, because it may be long.
 Result by_instance(const JobRun& run, FluxMeasurement& measurement, const std::optional<PhotonWeights>& photons) {
-  if (!photons)
-    run.log().info(fmt::format("no PAR: bands from 400 to 700 nm are needed, in steps of at most 50 nm ({} 400:700:20)",
-                               run.args.spelled("wavelengths")));
+  const size_t bands = measurement.wavelengths_nm.size(), count = measurement.areas.size();
+  // An error is unknown in the bands of which no path was absorbed.
+  size_t unmet = 0;
+  for (size_t i = 0; i < count; ++i)
+    unmet += std::ranges::all_of(std::span(measurement.by_instance).subspan(i * bands, bands),
+                                 [](const MeanError& share) { return std::isnan(share.standard_error); });
+  if (unmet > 0)
+    run.log().warn({}, fmt::format("{} of {} instances met no light path, or absorb none: their errors are unknown; "
+                                   "raise {}",
+                                   unmet, count, run.args.spelled(run.args.given("rms") ? "rms" : "paths")));
   Result result;
   result.tables.push_back(instance_table(measurement, photons));
   measurement.by_instance = {};
@@ -226,10 +258,20 @@ Result flux(const JobRun& run) {
                             .by_instance = is_by_instance,
                             .keeps_depth = run.args.given("integrator")};
   std::optional<StopScope> loading(std::in_place, run.control.stop);
-  FluxMeter meter(run.session(), described_scene(run), request);
+  SceneDescription description = described_scene(run);
+  if (!irradiance) check_physical(description, run);
+  FluxMeter meter(run.session(), std::move(description), request);
   loading.reset();
   run.context.log().check();
   const auto photons = photon_weights(meter, irradiance);
+  // The default wavelengths have no PAR, so that this is an error only where photons are asked for.
+  if (!photons) {
+    const std::string needed =
+        fmt::format("no PAR: bands from 400 to 700 nm are needed, in steps of at most 50 nm ({} 400:700:20)",
+                    run.args.spelled("wavelengths"));
+    if (run.args.given("irradiance")) fail({}, "{}: {}", run.args.spelled("irradiance"), needed);
+    run.log().info(needed);
+  }
   auto measured = measure(run, meter, kept ? &*kept : nullptr);
   if (!measured) {
     if (kept) kept->report_stop();
@@ -241,7 +283,9 @@ Result flux(const JobRun& run) {
       is_by_instance ? by_instance(run, measurement, photons) : Result{.text = share_text(measurement, photons)};
   result.tables.push_back(share_table(measurement, photons));
   result.facts = {{"paths", double(measurement.paths)}, {"error", error}, {"target_area", measurement.target_area}};
-  run.log().info(fmt::format("{} paths; RMS standard error {:.2g}", measurement.paths, error));
+  if (photons) result.facts.push_back({"par_umol_m2_s", photons->incident});
+  run.log().info(fmt::format("{} paths; RMS standard error {:.2g}{}", measurement.paths, error,
+                             photons ? fmt::format("; incident PAR {:.5g} µmol/(m2 s)", photons->incident) : ""));
   warn_of_time_limit(run, measurement.paths, error);
   return result;
 }

@@ -60,13 +60,14 @@ class NumberTable {
       if (!next_line(line)) return false;
     } while (trimmed(line).empty());
     values.clear();
+    columns_.clear();
     const char* begin = line.data();
     while (true) {
       const size_t comma = line.find(',');
       const std::string_view word = trimmed(line.substr(0, comma));
       const auto value = parse_number(word);
-      if (!value || !std::isfinite(*value))
-        fail({file_, line_, int(line.data() - begin) + 1}, "a number is needed, \"{}\" was given", word);
+      columns_.push_back(int(line.data() - begin) + 1);
+      if (!value || !std::isfinite(*value)) fail(where(values.size()), "a number is needed, \"{}\" was given", word);
       values.push_back(*value);
       if (comma == std::string_view::npos) break;
       line.remove_prefix(comma + 1);
@@ -76,6 +77,8 @@ class NumberTable {
     return true;
   }
   Location where() const { return {file_, line_, 1}; }
+  /// Place of a value of the last line.
+  Location where(size_t value) const { return {file_, line_, columns_[value]}; }
   const std::shared_ptr<const std::string>& file() const { return file_; }
 
  private:
@@ -100,6 +103,7 @@ class NumberTable {
   std::string text_;
   std::string_view rest_;
   std::vector<std::string> names_;
+  std::vector<int> columns_;  ///< where the values of the last line begin
   int line_ = 0;
 };
 
@@ -128,6 +132,14 @@ class Placement {
       fail(where, "\"spin\" is a rotation about a normal; a matrix or a quaternion includes it");
     for (size_t i = 0; i < names_.size(); ++i)
       if (!used_.contains(names_[i])) columns_.push_back(i);
+  }
+
+  /// Throws InputError for a scale below 0: it would turn a leaf into its mirror image, with the sides swapped.
+  void check_scale(const NumberTable& table, const std::vector<double>& v) const {
+    const auto column = used_.find("scale");
+    if (column != used_.end() && v[column->second] < 0)
+      fail(table.where(column->second), "the scale {:g} is below 0: to turn a leaf over, negate its normal",
+           v[column->second]);
   }
 
   /// Indices of all other columns.
@@ -198,6 +210,7 @@ Result instances(const JobRun& run) {
   std::vector<double> values;
   std::vector<float> numbers(names.size());
   while (table.next(values)) {
+    placement.check_scale(table, values);
     const AffineMap map = placement.map(values, table.where());
     if (const std::string problem = problem_of(map); !problem.empty())
       fail(table.where(), "this instance is not possible: {}", problem);
@@ -205,7 +218,7 @@ Result instances(const JobRun& run) {
     writer.add(map, numbers);
   }
   writer.finish();
-  run.log().info(fmt::format("{}: {} instances{}", run.args.text("output"), rows,
+  run.log().info(fmt::format("{}: {} instance{}{}", run.args.text("output"), rows, rows == 1 ? "" : "s",
                              names.empty() ? "" : fmt::format(", with {}", fmt::join(names, ", "))));
   return {.facts = {{"instances", double(rows)}}};
 }

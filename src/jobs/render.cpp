@@ -3,6 +3,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "image/image_file.h"
 #include "jobs/record/common_params.h"
 #include "jobs/support/display_params.h"
 #include "jobs/support/kept_file.h"
@@ -177,6 +178,9 @@ class SceneRender {
       return;
     }
     output_.emplace(args.given("output") ? args.text("output") : task_.film_file(), display_of(args));
+    for (const char* name : {"channels", "color-space"})
+      if (args.given(name) && !is_exr(output_->path()))
+        fail({}, "{} is for .exr: {} holds the colours of the display alone", args.spelled(name), output_->path());
     if (!args.given("checkpoint") && !args.flag("resume")) return;
     names_ = {output_->path() + ".part", output_->path() + ".part"};
     check_replaceable(names_->finished);

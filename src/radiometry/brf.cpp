@@ -93,7 +93,7 @@ BrfMeter::BrfMeter(Session& session, SceneDescription description, const BrfRequ
         {},
         "a leaf's random walk (abm) takes the light's direction for incident: its noise has no bound, and "
         "what is printed as standard error is too small; leaf_solved is the same leaf without noise");
-  const HorizontalIrradiance irradiance(scene.lights(), scene.wavelengths());
+  const HorizontalIrradiance irradiance(scene_);
   for (const double e : irradiance.bands()) white_.push_back(e / std::numbers::pi);
   size_t beams = 0;
   for (size_t i = 0; i < scene.lights().size(); ++i) {

@@ -98,10 +98,9 @@ class InstanceSums {
 /// Samples the incident light: a direction of one of the lights, and a weight.
 class Incoming {
  public:
-  Incoming(std::span<const Light* const> lights, const WavelengthStrategy& wavelengths)
-      : lights_(lights), irradiance_(lights, wavelengths) {
-    const SampledWavelengths lambda = wavelengths.sample(0.5f);
-    for (const Light* light : lights) {
+  explicit Incoming(const LoadedScene& loaded) : lights_(loaded.scene().lights()), irradiance_(loaded) {
+    const SampledWavelengths lambda = loaded.scene().wavelengths().sample(0.5f);
+    for (const Light* light : lights_) {
       const auto* sky = dynamic_cast<const EnvironmentLight*>(light);
       evenly_.push_back(sky && varies_less_by_cosine(*light, lambda) ? sky : nullptr);
     }
@@ -308,7 +307,7 @@ FluxMeter::FluxMeter(Session& session, SceneDescription description, const FluxR
       session.load(std::move(description), {.command = measurement_text(what, request.target, request.period)});
   const Scene& scene = loaded.scene();
   const Target target = request.target ? *request.target : default_target(scene);
-  Incoming incoming(scene.lights(), scene.wavelengths());
+  Incoming incoming(loaded);
   const size_t materials = loaded.description().materials.size(), bands = scene.wavelengths().bands().size();
   state_ = std::make_unique<State>(State{std::move(loaded), target, std::move(incoming), materials, bands});
   state_->moments.resize(state_->quantities() * bands);
@@ -399,8 +398,11 @@ FluxMeasurement FluxMeter::read() const {
   if (!s.by_instance) return measurement;
   measurement.areas = s.scene().geometry().areas();
   measurement.by_instance.reserve(s.by_instance->size());
-  for (size_t cell = 0; cell < s.by_instance->size(); ++cell)
-    measurement.by_instance.push_back(s.by_instance->at(cell).share(s.seen[cell % s.bands]));
+  for (size_t cell = 0; cell < s.by_instance->size(); ++cell) {
+    const Moment moment = s.by_instance->at(cell);
+    measurement.by_instance.push_back(moment.share(s.seen[cell % s.bands]));
+    if (moment.sum == 0) measurement.by_instance.back().standard_error = NAN;
+  }
   return measurement;
 }
 

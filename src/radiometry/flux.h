@@ -35,9 +35,10 @@ struct FluxMeasurement {
   std::vector<OfMaterial> materials;   ///< materials that received light
   std::vector<MeanError> sum;          ///< sum of all absorbed and leaving light: 1 up to noise
   uint64_t paths = 0;
-  double target_area = 0;              ///< in scene units squared
-  std::vector<MeanError> by_instance;  ///< absorbed by each instance, by band; empty unless requested
-  std::vector<float> areas;            ///< one-sided area of each instance; empty unless requested
+  double target_area = 0;  ///< in scene units squared
+  /// Absorbed by each instance, by band; empty unless requested. The error is NaN where no path was absorbed.
+  std::vector<MeanError> by_instance;
+  std::vector<float> areas;  ///< one-sided area of each instance; empty unless requested
   /// Returns the RMS of the standard errors of reflected and absorbed shares, relative to the incident light.
   double error() const;
 };

@@ -43,13 +43,29 @@ std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengt
   return sum;
 }
 
+/// Throws InputError, which names the light, unless all lights are far away. Area lights follow the others.
+void check_distant(const LoadedScene& loaded) {
+  const auto lights = loaded.scene().lights();
+  const auto near = std::ranges::find_if(lights, [](const Light* light) { return !light->is_distant(); });
+  if (near == lights.end()) return;
+  const SceneDescription& description = loaded.description();
+  const auto i = size_t(near - lights.begin());
+  const auto& surfaces = loaded.scene().geometry().surfaces();
+  const auto emits = [](const Surface& s) { return s.area_light.has_value(); };
+  fail(i < description.lights.size()
+           ? description.lights[i].plugin.where
+           : description.area_lights[*std::ranges::find_if(surfaces, emits)->area_light].where,
+       "this light stands in the scene; brf and flux take light from outside alone: \"distant\", \"sky\", or "
+       "\"infinite\" "
+       "without a portal");
+}
+
 }  // namespace
 
-HorizontalIrradiance::HorizontalIrradiance(std::span<const Light* const> lights,
-                                           const WavelengthStrategy& wavelengths) {
-  for (const Light* light : lights)
-    if (!light->is_distant())
-      fail({}, "a light stands in the scene: what light falls on it is known of distant and infinite ones alone");
+HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded) {
+  check_distant(loaded);
+  const auto lights = loaded.scene().lights();
+  const WavelengthStrategy& wavelengths = loaded.scene().wavelengths();
   const auto listed = wavelengths.listed_nm();
   if (listed.empty()) {
     const Interval range = wavelengths.range_nm();
@@ -72,7 +88,9 @@ HorizontalIrradiance::HorizontalIrradiance(std::span<const Light* const> lights,
     values_.insert(values_.end(), sum.begin(), sum.begin() + lambda.count);
   }
   for (size_t i = 0; i < nm_.size(); ++i)
-    if (!(values_[i] > 0)) fail({}, "no light falls on the scene from above at {:g} nm", nm_[i]);
+    if (!(values_[i] > 0))
+      fail(loaded.description().lights.empty() ? Location{} : loaded.description().lights[0].plugin.where,
+           "no light falls on the scene from above, from +z, at {:g} nm", nm_[i]);
   sum_bands(wavelengths);
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/light.h"
 #include "core/wavelengths.h"
+#include "render/session.h"
 
 namespace frond {
 
@@ -15,7 +16,7 @@ class HorizontalIrradiance {
  public:
   /// Extended lights are integrated with kDirections directions, the same on every machine. Throws InputError for a
   /// light at a finite distance, or if no light comes from above at a wavelength of the strategy.
-  HorizontalIrradiance(std::span<const Light* const> lights, const WavelengthStrategy& wavelengths);
+  explicit HorizontalIrradiance(const LoadedScene& loaded);
 
   /// Returns the irradiance at up to kLanes wavelengths.
   SampledSpectrum at(const SampledWavelengths& lambda) const;

@@ -9,6 +9,7 @@ SceneDescription read_scene(const std::vector<std::filesystem::path>& paths, con
                             const Unsupported& unsupported, Problems& problems) {
   SceneDescription description = parse_scene(paths, log, problems);
   answer_pbrt_plugins(description, registry, unsupported, log, problems);
+  description.has_errors = !problems.empty();
   return description;
 }
 

@@ -210,14 +210,18 @@ SpectrumPtr SceneResolver::extended(SpectrumPtr s, const ParsedParam& p, Spectru
   if (!is_known && !extends_spectra_ && wavelengths_.film_space().empty()) {
     if (use == SpectrumUse::illuminant) return s;  // check_light_range refuses it, and names lights that reach further
     fail(p.value_where,
-         "\"{}\" is known from {} to {} nm, the bands need {} to {} nm; Option \"bool extendspectra\" true takes the "
-         "values at the ends",
+         "\"{}\" is known from {:g} to {:g} nm, the bands need {} to {} nm; Option \"bool extendspectra\" true takes "
+         "the values at the ends",
          p.name, data_nm.min, data_nm.max, needed_nm.min, needed_nm.max);
   }
+  if (!extends_spectra_ && use != SpectrumUse::illuminant &&
+      (data_nm.max < needed_nm.min || data_nm.min > needed_nm.max))
+    fail(p.value_where, "\"{}\" is known from {:g} to {:g} nm alone, the render needs {} to {} nm", p.name, data_nm.min,
+         data_nm.max, needed_nm.min, needed_nm.max);
   if (extends_spectra_) s = beyond_data(std::move(s), Beyond::held, needed_nm);
   s = beyond_data(std::move(s), is_held ? Beyond::held : Beyond::zero, kCieRange_nm);
   if (!is_known && reaches(s->range_nm()))
-    warn(p.value_where, fmt::format("\"{}\" is known from {} to {} nm, the render needs {} to {} nm: {}", p.name,
+    warn(p.value_where, fmt::format("\"{}\" is known from {:g} to {:g} nm, the render needs {} to {} nm: {}", p.name,
                                     data_nm.min, data_nm.max, needed_nm.min, needed_nm.max,
                                     is_held ? "beyond, its last value is taken" : "it is 0 beyond, as in pbrt-v4"));
   return s;

@@ -364,7 +364,9 @@ class SceneBuilder {
       if (surface.area_light)
         problems_.attempt([&] { build_area_light(surface, resolver, lights_->of_surface.back()); });
     }
-    if (lights_->all.empty()) log_.warn({}, "the scene has no light: the image will be black");
+    // A line with an error might have been a light.
+    if (lights_->all.empty() && problems_.empty() && !description_.has_errors)
+      log_.warn({}, "the scene has no light: the image will be black");
     scene_.lights_ = std::move(lights_);
   }
 

@@ -11,9 +11,9 @@ bool reaches(Interval data_nm, Interval needed_nm) {
 [[noreturn]] void refuse(Interval data_nm, Interval needed_nm, const Location& where, std::string_view what,
                          std::string_view advice) {
   if (needed_nm.min == needed_nm.max)
-    fail(where, "\"{}\" is known from {} to {} nm, {} nm was asked for{}", what, data_nm.min, data_nm.max,
+    fail(where, "\"{}\" is known from {:g} to {:g} nm, {} nm was asked for{}", what, data_nm.min, data_nm.max,
          needed_nm.min, advice);
-  fail(where, "\"{}\" is known from {} to {} nm, the render needs {} to {} nm{}", what, data_nm.min, data_nm.max,
+  fail(where, "\"{}\" is known from {:g} to {:g} nm, the render needs {} to {} nm{}", what, data_nm.min, data_nm.max,
        needed_nm.min, needed_nm.max, advice);
 }
 

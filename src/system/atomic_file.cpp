@@ -81,10 +81,23 @@ bool lock_new(int file, const fs::path& path) {
   return is_named(file, path);
 }
 
+/// Link of an open file in /proc, by which it gets a name.
+std::string link_of(int file) { return fmt::format("/proc/self/fd/{}", file); }
+
+/// Opens a file without a name, of which nothing is left if the process ends. Returns -1 where the file system has
+/// none.
+int open_nameless(const fs::path& folder) {
+  const int file = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (file >= 0 && access(link_of(file).c_str(), F_OK) == 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+  if (file >= 0) close(file);
+  return -1;
+}
+
 }  // namespace
 
 NewFile::NewFile(const fs::path& path) : target_(follow_links(path)) {
   remove_left_files(folder_of(target_));
+  descriptor_ = open_nameless(folder_of(target_));
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
     path_ = folder_of(target_) / temporary_name();
     descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -107,9 +120,17 @@ void NewFile::write(std::span<const unsigned char> bytes) {
   }
 }
 
-/// The lock is held until the file has its name.
+/// The lock is held until the file has its name. A file without a name cannot replace another one: it gets a temporary
+/// name first.
 void NewFile::finish() {
   if (fsync(descriptor_) != 0) fail_to_write(target_, errno);
+  while (path_.empty()) {
+    const fs::path name = folder_of(target_) / temporary_name();
+    if (linkat(AT_FDCWD, link_of(descriptor_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+      path_ = name;
+    else if (errno != EEXIST)
+      fail_to_write(target_, errno);
+  }
   if (rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
   path_.clear();
   close(std::exchange(descriptor_, -1));
@@ -131,7 +152,8 @@ void check_replaceable(const fs::path& path) {
     if (!fs::is_regular_file(target, error)) fail({}, "cannot write \"{}\": it is no regular file", path.string());
     if (access(target.c_str(), W_OK) != 0) fail_to_write(path, errno);
   }
-  const NewFile probe(target);  // fails if no file can be created in the folder
+  if (error) fail_to_write(path, error.value());  // such as a name that is too long
+  const NewFile probe(target);                    // fails if no file can be created in the folder
 }
 
 void replace_file(const fs::path& path, std::span<const unsigned char> bytes) {

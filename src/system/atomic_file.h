@@ -12,9 +12,10 @@ void check_replaceable(const std::filesystem::path& path);
 /// Creates a folder and those above it that are missing. Throws InputError with the system's reason.
 void make_folders(const std::filesystem::path& folder);
 
-/// Writes a file atomically: `bytes` are written to a temporary file in the same folder, synchronised to the disk and
-/// renamed to `path`. Temporary files that killed processes have left in the folder are deleted. A symbolic link is
-/// followed. Throws InputError with the system's reason; an existing file is then unchanged.
+/// Writes a file atomically: `bytes` are written to a temporary file in the same folder, without a name where the file
+/// system has such, synchronised to the disk and renamed to `path`. Temporary files that killed processes have left in
+/// the folder are deleted. A symbolic link is followed. Throws InputError with the system's reason; an existing file is
+/// then unchanged.
 void replace_file(const std::filesystem::path& path, std::span<const unsigned char> bytes);
 
 /// Writes a file atomically in several steps, for content that does not fit into memory. The file appears at its path

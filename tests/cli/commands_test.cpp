@@ -259,6 +259,54 @@ TEST_F(Commands, ACropThatIsNoneIsRefused) {
                                                                                     {"--pixels", "30,40,0,1"}})
     EXPECT_EQ(render({"-o", path("x.exr"), crop[0], crop[1]}).code, 1) << crop[1];
   EXPECT_THAT(render({"-o", path("x.exr"), "--pixels", "5,5,0,1"}).err, HasSubstr("--pixels 5,5,0,1 holds no pixel"));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--pixel", "99,99"}).err, HasSubstr("film: x,y up to "));
+}
+
+TEST_F(Commands, WhatWouldHaveNoEffectIsRefused) {
+  EXPECT_THAT(render({"-o", path("x.exr"), "--samples", "0:4", "--spp", "2"}).err,
+              HasSubstr("--samples 0:4 ends above --spp 2"));
+  EXPECT_EQ(render({"-o", path("x.exr"), "--samples", "0:2", "--spp", "2", "-q"}).code, 0);
+  for (const auto& [name, value] : {std::pair{"--channels", "normal"}, {"--color-space", "ACEScg"}})
+    EXPECT_THAT(render({"-o", path("x.png"), name, value}).err, HasSubstr(std::string(name) + " is for .exr: "));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--color-space", "foo"}).err, HasSubstr("\"foo\"; there are \"XYZ\", \""));
+  EXPECT_THAT(render({"-o", path(std::string(300, 'x') + ".exr")}).err, HasSubstr("File name too long"));
+}
+
+TEST_F(Commands, WhatIsMeantIsAsked) {
+  EXPECT_THAT(render({"-o", path("x.exr"), "--wavelengths", "700:400:10"}).err,
+              HasSubstr("; a range ascends: 400:700:10"));
+  EXPECT_THAT(render({"-o", path("x.exr"), "--wavelengths", "0.45"}).err, HasSubstr("is this in micrometres?"));
+  EXPECT_THAT(frond_command({"spectrophotometer", "abm", "--wavelengths", "0.45"}).err, HasSubstr("micrometres?"));
+  EXPECT_THAT(frond_command({"spectrophotometer", "abm", "--wavelengths", "700:400:10"}).err, HasSubstr("400:700:10"));
+  EXPECT_THAT(frond_command({"spectrophotometer", "abm"}).err,
+              HasSubstr("--wavelengths is needed: Wavelengths, as in"));
+  EXPECT_THAT(frond_command({"difference", "a", "b"}).err, HasSubstr("2 were given: A1 A2 B1 B2: two halves"));
+  EXPECT_THAT(frond_command({"compare", path("scene.pbrt"), "-o", path("scene.pbrt")}).err, HasSubstr("is a file"));
+  EXPECT_THAT(frond_command({"canopy", "-o", path("c.npy"), "--scale", "50"}).err,
+              HasSubstr("a leaf has the area 7853.98 (--scale 50), the plot 100: no leaf fits"));
+}
+
+TEST_F(Commands, SpectraOfOtherWavelengthsAreErrors) {
+  const auto error = [this](const std::string& reflectance) {
+    folder_.write("s.pbrt", "WorldBegin LightSource \"infinite\"\nMaterial \"diffuse\" \"spectrum reflectance\" [" +
+                                reflectance + "]\nShape \"disk\"");
+    return frond_command({"render", path("s.pbrt"), "-o", path("x.exr"), "-q"}).err;
+  };
+  EXPECT_THAT(error("0.36 0.1 0.83 0.4"),
+              HasSubstr("s.pbrt:2:44: the wavelengths are from 0.36 to 0.83: are these mic"));
+  EXPECT_THAT(error("1000.4 0.1 2000 0.4"),
+              HasSubstr("s.pbrt:2:44: \"reflectance\" is known from 1000.4 to 2000 nm alo"));
+}
+
+TEST_F(Commands, AnErrorIsNotFollowedByWarningsAboutTheWhole) {
+  folder_.write("s.pbrt", "WorldBegin\nLightSorce \"infinite\"\nShape \"disk\"");
+  EXPECT_THAT(frond_command({"check", path("s.pbrt")}).err, Not(HasSubstr("no light")));
+}
+
+TEST_F(Commands, AnInstanceIsNoMirrorImage) {
+  folder_.write("i.csv", "x,y,z,scale\n0,0,0,1\n0,0,1,-2\n");
+  EXPECT_THAT(frond_command({"instances", path("i.csv"), "-o", path("i.npy")}).err,
+              HasSubstr("i.csv:3:7: the scale -2 is below 0"));
 }
 
 TEST_F(Commands, QuickIsSmallerAndCoarser) {

@@ -20,14 +20,19 @@ class RadiometryJobs : public ::testing::Test {
  protected:
   Outcome measured(const std::string& lights, std::vector<std::string> words) {
     const auto scene =
-        folder_.write("scene.pbrt", "Option \"float period\" [1 1]\nWorldBegin\n" + lights +
+        folder_.write("scene.pbrt", options_ + "\nWorldBegin\n" + lights +
                                         "Material \"diffuse\" \"spectrum reflectance\" [300 0.3 2500 0.3]\n"
-                                        "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n");
-    words.insert(words.begin() + 1, {scene.string(), "--no-cache", "--paths", "64", "--wavelengths", "550"});
+                                        "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n" +
+                                        more_);
+    words.insert(words.begin() + 1, {scene.string(), "--no-cache"});
+    for (const auto& [name, value] : {std::pair{"--paths", "64"}, {"--wavelengths", "550"}})
+      if (std::ranges::find(words, name) == words.end()) words.insert(words.end(), {name, value});
     return frond_command(words);
   }
 
   TestFolder folder_{"radiometry_jobs"};
+  std::string options_ = "Option \"float period\" [1 1]";
+  std::string more_;  ///< of the scene
 };
 
 /// Schaepman-Strub et al. 2006: a factor under light of one direction is bidirectional, under sun and sky
@@ -54,6 +59,52 @@ TEST_F(RadiometryJobs, TheFactorIsNamedByItsIllumination) {
 TEST_F(RadiometryJobs, HelpSaysWhetherAnErrorIsAbsoluteOrRelative) {
   EXPECT_THAT(frond_command({"flux", "--help"}).out, HasSubstr("Absolute standard error, as a share of the incident"));
   EXPECT_THAT(frond_command({"brf", "--help"}).out, HasSubstr("Relative standard error"));
+}
+
+TEST_F(RadiometryJobs, PhotonsAreCountedInPhysicalUnitsAlone) {
+  const std::string par = "400:700:50", sky = "LightSource \"sky\"\n";
+  const auto error = [&](const std::string& lights, const std::string& irradiance, const std::string& nm) {
+    const Outcome o = measured(lights, {"flux", "--wavelengths", nm, "--irradiance", irradiance, "-q"});
+    return o.code == 0 ? "" : o.err;
+  };
+  EXPECT_EQ(error(sky, "scene", par), "");
+  EXPECT_EQ(error(kSun, "solar-am0", par), "");
+  EXPECT_THAT(error(kSun, "scene", par),
+              HasSubstr("scene.pbrt:3:13: --irradiance scene: this light is scaled to lumi"));
+  EXPECT_THAT(error("LightSource \"sky\" \"float illuminance\" 3\n", "scene", par), HasSubstr("scene.pbrt:3:19: "));
+  EXPECT_THAT(error(sky, "stdillum-D65", par), HasSubstr("\"stdillum-D65\" is not in W/(m2 nm)"));
+  EXPECT_THAT(error(sky, "scene", "550"), HasSubstr("--irradiance: no PAR: bands from 400"));
+  EXPECT_THAT(measured(kSun, {"flux"}).err, HasSubstr("no PAR: bands from 400"));
+  EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", par}).err, HasSubstr("; incident PAR 1990.2 µmol/(m2 s)\n"));
+}
+
+TEST_F(RadiometryJobs, AnErrorIsEstimatedFromSeveralPaths) {
+  EXPECT_THAT(measured(kSun, {"flux", "--wavelengths", "550,670", "--paths", "1"}).err, HasSubstr("64 paths; RMS"));
+}
+
+/// One of the two leaves is too small for a path to meet it.
+TEST_F(RadiometryJobs, TheErrorOfAnInstanceWithoutLightIsUnknown) {
+  more_ =
+      "ObjectBegin \"leaf\"\nShape \"disk\" \"float radius\" 0.3\nObjectEnd\n"
+      "Translate 0.5 0.5 1\nObjectInstance \"leaf\"\nScale 1e-6 1e-6 1e-6\nObjectInstance \"leaf\"\n";
+  const Outcome o = measured(kSun, {"flux", "--by", "instance"});
+  EXPECT_THAT(o.err, HasSubstr("1 of 2 instances met no light path, or absorb none: their errors are unknown"));
+  EXPECT_TRUE(o.out.ends_with(",0,\n")) << o.out;
+}
+
+TEST_F(RadiometryJobs, AnErrorNamesTheLight) {
+  options_.clear();
+  const std::string lamp = "LightSource \"point\"\n";
+  for (const char* command : {"brf", "flux"}) {
+    EXPECT_THAT(measured(kSun + lamp, {command}).err, HasSubstr("scene.pbrt:4:13: this light stands in the scene"));
+    EXPECT_THAT(measured("Rotate 180 1 0 0\n" + std::string(kSun), {command}).err,
+                HasSubstr("scene.pbrt:4:13: no light falls on the scene from above, from +z, at 550 nm"));
+  }
+}
+
+TEST_F(RadiometryJobs, OptionsOfAComparisonNeedOne) {
+  EXPECT_THAT(measured(kSun, {"brf", "--reference", "abm"}).err, HasSubstr("--reference needs --compare"));
+  EXPECT_THAT(measured(kSun, {"brf", "--within", "0.1"}).err, HasSubstr("--within needs --compare"));
 }
 
 }  // namespace

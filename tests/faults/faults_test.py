@@ -1,6 +1,7 @@
 """What renders do when a disk is full, a folder takes no file, an input changes, a second render has the same output, or
 they are killed at a bad moment: each says what is wrong, and leaves nothing half-written."""
 
+import contextlib
 import errno
 import json
 import os
@@ -11,6 +12,7 @@ import struct
 import subprocess
 import time
 import unittest
+from pathlib import Path
 
 from frond_program import FROND, SCENE, SLOW, FrondTest, part_header
 
@@ -324,10 +326,8 @@ class KilledAnywhere(FrondTest):
 
     def test_while_writing_a_checkpoint(self):
         command = self.command(self.output, *self.words, "--checkpoint", 0.01, "--resume")
-        left = []
         for _ in range(5):
-            self.kill_when(command, lambda _: len(temporaries(self.folder)) > len(left))
-            left = temporaries(self.folder)
+            self.kill_when(command, self.is_writing)
             if self.output.exists():
                 break
         self.check_rerun(command)
@@ -336,17 +336,19 @@ class KilledAnywhere(FrondTest):
         command = self.command(self.output, *self.words)
         self.output.write_bytes(OLD)
         for _ in range(20 if SLOW else 5):
-            left = temporaries(self.folder)
-            self.kill_when(command, lambda _, left=left: self.writes_more_than(left))
+            self.kill_when(command, self.is_writing)
             self.assertIn(self.output.read_bytes(), (OLD, self.expected))
         self.check_rerun(command)
 
-    def writes_more_than(self, left):
-        """Whether there is a new temporary file with something in it; empty ones only ask whether one can be made."""
-        try:
-            return any((self.folder / name).stat().st_size > 0 for name in set(temporaries(self.folder)) - set(left))
-        except FileNotFoundError:
-            return True  # renamed under our eyes
+    def is_writing(self, process):
+        """Whether the process has a temporary file open, with or without a name, with something in it; empty ones only ask
+        whether one can be made."""
+        for opened in Path(f"/proc/{process.pid}/fd").iterdir():
+            with contextlib.suppress(FileNotFoundError):  # closed under our eyes
+                name = os.path.relpath(os.readlink(opened), self.folder)
+                if name.startswith(("#", ".frond-")) and opened.stat().st_size > 0:
+                    return True
+        return False
 
     def test_what_was_left_behind_is_in_nobodys_way(self):
         for number in range(3):

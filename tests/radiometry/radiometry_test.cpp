@@ -87,7 +87,7 @@ TEST_F(Radiometry, TheIrradianceOfSunAndSkyIsTheClosedForm) {
   const auto irradiance = [&](const std::string& lights) {
     const std::string bands = "Option \"string wavelengths\" \"bands,wavelengths=400,550,700,900,1500\"\n";
     const LoadedScene loaded = session.load(description(lights + soil(0), bands));
-    const HorizontalIrradiance e(loaded.scene().lights(), loaded.scene().wavelengths());
+    const HorizontalIrradiance e(loaded);
     EXPECT_EQ(e.bands().size(), 5u);
     return e.bands()[1];
   };

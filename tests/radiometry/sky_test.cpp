@@ -50,7 +50,7 @@ TEST(SkyRadiometry, TheHorizontalIrradianceIsThatOfSpectrl2AtEveryWavelength) {
     SceneDescription d = description(world + kLeaves);
     set_wavelengths(d, bands);
     const LoadedScene loaded = session.load(std::move(d));
-    const HorizontalIrradiance e(loaded.scene().lights(), loaded.scene().wavelengths());
+    const HorizontalIrradiance e(loaded);
     for (size_t i = 0; i < kWavelengths; ++i) {
       const double expected = t[10][begin + i] * std::cos(t[0][begin] * std::numbers::pi / 180) + t[11][begin + i];
       EXPECT_NEAR(e.bands()[i], expected, 1e-3 * expected) << t[8][begin + i] << " nm, zenith " << t[0][begin];

@@ -216,7 +216,7 @@ TEST_F(ColorManagement, UnknownNamesAreAnsweredWithWhatThereIs) {
   EXPECT_EQ(error_of([&] { manager.display(rgb, "XYZ", "rsGB", ""); }),
             "unknown display \"rsGB\"; did you mean \"sRGB\"?");
   EXPECT_EQ(error_of([&] { manager.check_display("XYZ", "sRGB", "Filmic"); }),
-            "unknown view of display sRGB \"Filmic\"; there are Standard, ACES 1.0 - SDR Video, Raw");
+            "unknown view of display sRGB \"Filmic\"; there are \"Standard\", \"ACES 1.0 - SDR Video\", \"Raw\"");
   EXPECT_THAT(error_of([&] { manager.convert(rgb, "linear SMPTE", "XYZ"); }),
               HasSubstr("unknown color space \"linear SMPTE\"; did you mean \"linear SMPTE-C\"?"));
 }

@@ -3,7 +3,10 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+#include <csignal>
 
 #include "system/file_bytes.h"
 #include "tests/support/input_error.h"
@@ -56,11 +59,27 @@ TEST(AtomicFile, LeavesAloneWhatIsBeingWritten) {
   const fs::path path = folder.name_of("first");
   NewFile first(path);
   replace(folder.name_of("./second"), "whole");
-  const auto entries = [&] { return std::distance(fs::directory_iterator(folder.name_of("")), {}); };
-  EXPECT_EQ(entries(), 2);
   first.finish();
   EXPECT_TRUE(fs::exists(path));
-  EXPECT_EQ(entries(), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.name_of("")), {}), 2);
+}
+
+TEST(AtomicFile, LeavesNothingIfTheProcessEnds) {
+  const TestFolder folder("atomic_file");
+  if (const int file = ::open(folder.name_of("").c_str(), O_TMPFILE | O_WRONLY, 0666); file >= 0)
+    ::close(file);
+  else
+    GTEST_SKIP() << "the file system has no files without a name";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    NewFile file(folder.name_of("file"));
+    file.write({reinterpret_cast<const unsigned char*>("half"), 4});
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_TRUE(fs::is_empty(folder.name_of("")));
 }
 
 TEST(AtomicFile, LeavesAloneFilesOfOthers) {

@@ -62,6 +62,19 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   return numbers;
 }
 
+std::string hint_of(std::string_view text, std::string_view unit) {
+  for (const std::string& part : split(std::string(text), ','))
+    if (const auto ends = split(part, ':'); ends.size() == 3) {
+      const auto first = finite_number(ends[0]), last = finite_number(ends[1]), step = finite_number(ends[2]);
+      if (first && last && step && *first > *last && *step > 0)
+        return fmt::format("; a range ascends: {}:{}:{}", ends[1], ends[0], ends[2]);
+    }
+  constexpr double kLeast_nm = 100;  // below, a number is hardly one of nanometres
+  const auto numbers = parse_numbers(text);
+  const bool is_small = numbers && std::ranges::all_of(*numbers, [](double x) { return x > 0 && x < kLeast_nm; });
+  return unit == "nm" && is_small ? "; is this in micrometres? frond takes nm" : "";
+}
+
 /// A flag is included, because Python passes True and False.
 std::string needed(const JobParam& p) {
   const std::string unit = p.unit.empty() ? "" : fmt::format(" ({})", p.unit);
@@ -138,15 +151,16 @@ const JobParam* Arguments::find_param(std::string_view name) const {
 Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::string>& words) const {
   Value value{words, {}, 0};
   const auto refuse = [&](const std::string& word) {
-    fail({}, "{}: {} {} needed; \"{}\" was given", p.positional ? std::string(p.name) : spelling_(p.name), needed(p),
-         p.kind == ArgumentKind::numbers && p.values > 0 ? "are" : "is", word);
+    fail({}, "{}: {} {} needed; \"{}\" was given{}", p.positional ? std::string(p.name) : spelling_(p.name), needed(p),
+         p.kind == ArgumentKind::numbers && p.values > 0 ? "are" : "is", word,
+         p.kind == ArgumentKind::numbers ? hint_of(word, p.unit) : "");
   };
   // Several words of a list of numbers are concatenated: --angles 0 --angles 8.
   const bool repeats = p.kind == ArgumentKind::texts || (p.kind == ArgumentKind::numbers && p.values == 0);
   const size_t takes = p.kind == ArgumentKind::texts ? p.values : repeats ? 0 : 1;
   if (takes > 0 && words.size() != takes)
-    fail({}, "{} takes {} value{}, {} {} given", p.positional ? std::string(p.name) : spelling_(p.name), takes,
-         takes == 1 ? "" : "s", words.size(), words.size() == 1 ? "was" : "were");
+    fail({}, "{} takes {} value{}, {} {} given: {}", p.positional ? std::string(p.name) : spelling_(p.name), takes,
+         takes == 1 ? "" : "s", words.size(), words.size() == 1 ? "was" : "were", p.doc);
   if (words.empty()) refuse("");
   for (std::string& word : value.words) {
     if (word.find('\0') != std::string::npos)

@@ -134,6 +134,10 @@ class Arguments {
   std::map<std::string_view, Value> values_;  ///< keys point into declared_
 };
 
+/// Returns what may be meant by a list of numbers that is refused, as the end of an error message; "" if nothing is
+/// known: a descending range with a step above 0, and micrometres if `unit` is nm.
+std::string hint_of(std::string_view text, std::string_view unit);
+
 /// Parses a list of numbers: `8`, `0,8,30`, `0:180:1` (first:last:step, both ends included), or ranges among numbers.
 /// Returns nullopt if the text has another form.
 std::optional<std::vector<double>> parse_numbers(std::string_view text);

@@ -14,7 +14,7 @@ inline constexpr JobParam kAnglesParam(
     "angles", ArgumentKind::numbers, "Angles of incidence from the front's normal; above 90 the back is lit.",
     {.default_value = "8", .unit = "degrees", .range = {0, 180}, .aliases = "angle", .decides = true});
 inline constexpr JobParam kInstrumentWavelengthsParam(
-    "wavelengths", ArgumentKind::numbers, "Wavelengths.",
+    "wavelengths", ArgumentKind::numbers, "Wavelengths, as in 450,550,670 or 400:700:10.",
     {.unit = "nm", .range = {360, 2500}, .aliases = "wavelength", .decides = true, .required = true});
 inline constexpr JobParam kRenderedParam("rendered", ArgumentKind::flag,
                                          "Measure what an image shows: light arrives along wi and the detector is at "

@@ -11,6 +11,8 @@
 #include "render/film/adaptive.h"
 #include "scene/cameras/films.h"
 #include "scene/format/words.h"
+#include "spectra/color/color_management.h"
+#include "spectra/color/color_space.h"
 
 namespace frond {
 namespace {
@@ -42,8 +44,9 @@ Crop crop_of(const Arguments& args, const FilmSettings& film, const Log& log) {
                         ? crop_of_fractions(bounds, film.width, film.height)
                         : crop_of_pixels(std::vector<int>(bounds.begin(), bounds.end()), film.width, film.height);
   if (crop.width() <= 0 || crop.height() <= 0)
-    fail({}, "{} {} holds no pixel of the {} x {} film: x0,x1,y0,y1 is needed", args.spelled(name), args.words(name)[0],
-         film.width, film.height);
+    fail({}, "{} {} holds no pixel of the {} x {} film: {} is needed", args.spelled(name), args.words(name)[0],
+         film.width, film.height,
+         args.given("pixel") ? fmt::format("x,y up to {},{}", film.width - 1, film.height - 1) : "x0,x1,y0,y1");
   return crop;
 }
 
@@ -59,7 +62,19 @@ SampleRange range_of(const Arguments& args) {
   if (ends.size() != 2 || !read(ends[0], range.begin) || !read(ends[1], range.end) || range.empty() ||
       range.end > 1u << 30)
     fail({}, "{} takes FIRST:END, such as 64:128 for samples 64 to 127: \"{}\"", args.spelled("samples"), text);
+  if (args.given("spp") && range.end > uint64_t(args.count("spp")))
+    fail({}, "{} {} ends above {} {}", args.spelled("samples"), text, args.spelled("spp"), args.count("spp"));
   return range;
+}
+
+/// Throws InputError for what the load, which may take minutes, would find wrong only at its end.
+void check_early(const Arguments& args, const std::vector<std::string>& channels) {
+  (void)ChannelList(channels);
+  if (std::array<float, 3> any{}; args.given("color-space"))
+    ColorManager().convert(any, kXyzName, args.text("color-space"));
+  if (args.given("max-rms") && args.given("spp") && uint64_t(args.count("spp")) < kLeastAdaptive)
+    fail({}, "{}: at least {} samples per pixel are needed to estimate the noise, {} allows {}",
+         args.spelled("max-rms"), kLeastAdaptive, args.spelled("spp"), args.count("spp"));
 }
 
 }  // namespace
@@ -110,6 +125,7 @@ void RenderTask::apply_arguments() {
     const bool has_colors = !make_wavelengths(description_, session.registry())->film_space().empty();
     if (has_colors) channels.emplace_back("albedo");  // a colour, which a film of bands cannot hold
   }
+  check_early(args, channels);
   request_ = {.pixels = film.crop,
               .is_part = args.given("part"),
               .channels = channels,
@@ -144,9 +160,6 @@ void RenderTask::load(const ImageOutput* output) {
       if (const std::string summary = light->summary(); !summary.empty()) run_.log().info(summary);
   if (!args.given("samples")) samples_ = {0, args.given("spp") ? uint64_t(args.count("spp")) : scene_->samples()};
   scene_->check_samples(samples_.count());
-  if (args.given("max-rms") && args.given("spp") && samples_.count() < kLeastAdaptive)
-    fail({}, "{}: at least {} samples per pixel are needed to estimate the noise, {} allows {}",
-         args.spelled("max-rms"), kLeastAdaptive, args.spelled("spp"), samples_.count());
   if (output) output->check(scene_->image_format());
 }
 

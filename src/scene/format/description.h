@@ -124,6 +124,7 @@ struct SceneSettings {
 
   /// Names that unreadable directives would have defined: a missing name among them is not a second error.
   std::set<std::string, std::less<>> unread;
+  bool has_errors = false;     ///< the files have errors: what the scene lacks may stand in these lines
   bool is_incomplete = false;  ///< an included file could not be read: it may have defined any name
   bool may_be_unread(std::string_view name) const { return is_incomplete || unread.contains(name); }
 

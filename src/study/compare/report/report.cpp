@@ -126,6 +126,8 @@ void check_report_folder(const std::filesystem::path& folder) {
   std::error_code error;
   auto existing = std::filesystem::absolute(folder);
   while (!std::filesystem::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
+  if (!std::filesystem::is_directory(existing, error))
+    fail({}, "cannot write \"{}\": \"{}\" is a file, a folder is needed", folder.string(), existing.string());
   check_chart(path_in(existing, "rms.svg"));
 }
 
