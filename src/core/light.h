@@ -45,7 +45,9 @@ class Light {
   virtual bool is_delta() const = 0;
   /// True for light from outside the scene.
   virtual bool is_distant() const { return false; }
-  /// Photometric power, up to a factor common to all lights, in a scene with this radius; for choosing among lights.
+  /// Photometric power in a scene with this radius, for choosing among lights: photometric() of spectra/cie.h of the
+  /// spectrum, times 4 pi for the intensity of a point, pi r^2 for the irradiance of a distant light, pi and the area
+  /// for an emitting surface, 4 pi^2 r^2 for the radiance of an environment.
   virtual double power(float scene_radius) const = 0;
   /// Bounds for choosing lights by their contribution at a point; empty if the light has none.
   virtual std::optional<LightBounds> bounds() const { return {}; }

@@ -55,8 +55,8 @@ class Material {
   /// checks that the material's data cover them (check_range). Throws InputError.
   virtual void prepare(const Preparation&) {}
   /// Returns the BSDF at a hit, allocated in `arena`; it is valid until the arena is reset. With nullptr, as for pbrt's
-  /// interface material, a ray continues without scattering; shadow rays are blocked all the same, as in pbrt-v4, so
-  /// that only scattered rays light what lies behind. Thread-safe.
+  /// interface material, a ray continues without scattering; as in pbrt-v4, shadow rays of `path` are blocked, so that
+  /// only scattered rays light what lies behind, and those of `volpath` pass. Thread-safe.
   virtual const Bsdf* evaluate(const Hit& hit, const SampledWavelengths& lambda, Arena& arena) const = 0;
   /// True if all BSDFs of the material are reciprocal, as class Bsdf defines it; the laws test this.
   virtual bool is_reciprocal() const { return false; }

@@ -173,12 +173,25 @@ float LightTree::importance(const Node& node, const Vec3& p, const Vec3& n) {
   // angular radius, bounds the emission; the angle of incidence, less the radius, bounds the cosine.
   const float cos_beyond = cos_of_difference(sin_facing, cos_facing, sin_spread, b.cos_spread);
   const float sin_beyond = sin_of_difference(sin_facing, cos_facing, sin_spread, b.cos_spread);
+  // NOLINTNEXTLINE(readability-suspicious-call-argument): beyond, less the size
   const float cos_least = cos_of_difference(sin_beyond, cos_beyond, sin_size, cos_size);
   if (cos_least <= b.cos_reach) return 0;
   const float cos_in = n == Vec3{} ? 1 : std::abs(dot(w, n));  // a point of a medium has no normal
   const float cos_incident = cos_of_difference(sine(cos_in), cos_in, sin_size, cos_size);
   return std::clamp(node.intensity * cos_least * cos_incident / distance2, 0.f, 1e30f);
 }
+
+namespace {
+
+/// Probability of the first of two nodes of these importances, not both 0. A node that may light the point has at least
+/// a small one: importances neglect what covers a light, and that of a covered one can be far above all others.
+float share_of_first(float first, float second) {
+  if (first == 0 || second == 0) return second == 0 ? 1 : 0;
+  constexpr float kLeast = 1e-3f;
+  return std::clamp(first / (first + second), kLeast, 1 - kLeast);
+}
+
+}  // namespace
 
 std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n, float& u) const {
   if (empty()) return {};
@@ -188,7 +201,7 @@ std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n,
     const uint32_t second = nodes_[at].second;
     const float a = importance(nodes_[at + 1], p, n), b = importance(nodes_[second], p, n);
     if (!(a + b > 0)) return {};
-    const float first = a / (a + b);
+    const float first = share_of_first(a, b);
     if (u < first) {
       u = std::min(u / first, 0x1.fffffep-1f), probability *= first, ++at;
     } else {
@@ -206,7 +219,7 @@ float LightTree::probability(const Vec3& p, const Vec3& n, uint32_t light) const
     const uint32_t second = nodes_[at].second;
     const float a = importance(nodes_[at + 1], p, n), b = importance(nodes_[second], p, n);
     if (!(a + b > 0)) return 0;
-    const float first = a / (a + b);
+    const float first = share_of_first(a, b);
     probability *= trail & 1 ? 1 - first : first;
     at = trail & 1 ? second : at + 1;
   }

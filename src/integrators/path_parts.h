@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <string_view>
 
@@ -82,10 +83,20 @@ inline SampledSpectrum first_albedo(const SurfacePoint& point, SampledWavelength
   return bsdf.albedo(samples, key);
 }
 
+inline bool is_unit(const Vec3& direction) {
+  constexpr float kRounding = 1e-2f;
+  return std::abs(dot(direction, direction) - 1) < kRounding;
+}
+
 /// Whether a BSDF may return this sample.
 inline bool is_possible(const LocalBsdf::Sample& sample) {
-  constexpr float kRounding = 1e-2f;
-  return sample.weight.is_physical() && sample.pdf > 0 && std::abs(dot(sample.wi, sample.wi) - 1) < kRounding;
+  return sample.weight.is_physical() && sample.pdf > 0 && is_unit(sample.wi);
+}
+
+/// Whether a light may return this sample.
+inline bool is_possible(const LightSample& sample) {
+  return sample.radiance.is_physical() && sample.pdf > 0 && sample.pdf < INFINITY && sample.distance > 0 &&
+         is_unit(sample.wi);
 }
 
 }  // namespace frond

@@ -205,6 +205,7 @@ class PathTracer final : public Tracer {
   float weight_of(const Light& light, const Path& path, const Pdf& light_pdf) const {
     if (std::isinf(path.scatter_pdf)) return 1;
     const float pdf = light_pdf() * selector_.probability(light, path.previous);
+    if (!(pdf >= 0)) return pdf;  // `add` reports it
     return power_heuristic(path.scatter_pdf, path.light_samples * pdf);
   }
 
@@ -247,6 +248,10 @@ class PathTracer final : public Tracer {
       const auto [light, probability] = *chosen;
       const auto sample = light->sample_competing(point.hit.p, on_light, path.lambda);
       if (!sample || sample->radiance.is_black()) continue;
+      if (!is_possible(*sample)) {
+        blame(i, *light);
+        continue;
+      }
       float scatter_pdf = 0;
       const SampledSpectrum f_cos = bsdfs_[i].f_cos(sample->wi, path.key.stream(bsdf), scatter_pdf);
       if (!f_cos.is_physical() || !(scatter_pdf >= 0 && scatter_pdf < INFINITY)) {
@@ -254,10 +259,6 @@ class PathTracer final : public Tracer {
         continue;
       }
       if (f_cos.is_black()) continue;
-      if (!sample->radiance.is_physical()) {
-        blame(i, *light);
-        continue;
-      }
       const float light_pdf = path.light_samples * sample->pdf * probability;
       const float weight = light->is_delta() ? 1 : power_heuristic(light_pdf, scatter_pdf);
       lit_[i].radiance = f_cos * sample->radiance;

@@ -259,10 +259,10 @@ class VolPathTracer final : public Tracer {
     const auto [light, probability] = *chosen;
     const auto sample = light->sample_competing(place.p, on_light, lambda_);
     if (!sample || sample->radiance.is_black()) return;
+    if (!is_possible(*sample)) return blame({PlugInFault::Kind::light, uint32_t(light->index())});
     ShadowRay shadow(world_, lambda_, path_.hero, ray_.time);
     const Scattered scattered = scatter(*sample, shadow);
     if (scattered.value.is_black()) return;
-    if (!sample->radiance.is_physical()) return blame({PlugInFault::Kind::light, uint32_t(light->index())});
     if (!shadow.trace(*sample, of(Use::shadow_ray), shadow_arena_, bundle_->traced)) return;
     const SampledSpectrum of_light = path_.r_u * shadow.path().r_l * (sample->pdf * probability);
     const SampledSpectrum of_scattering =
@@ -274,9 +274,9 @@ class VolPathTracer final : public Tracer {
   /// Radiance that the path meets, weighted by the balance heuristic over wavelengths and light samples.
   template <class Pdf>
   void add(const Light& light, const SampledSpectrum& radiance, const Pdf& light_pdf) {
-    if (!radiance.is_physical()) return blame({PlugInFault::Kind::light, uint32_t(light.index())});
-    SampledSpectrum density = path_.r_u;
-    if (!is_specular_) density += path_.r_l * (light_pdf() * selector_.probability(light, previous_));
+    const float pdf = is_specular_ ? 0 : light_pdf() * selector_.probability(light, previous_);
+    if (!radiance.is_physical() || !(pdf >= 0)) return blame({PlugInFault::Kind::light, uint32_t(light.index())});
+    const SampledSpectrum density = path_.r_u + path_.r_l * pdf;
     const float sum = mean(density, lambda_);
     if (sum > 0) result().radiance += path_.beta * radiance * (1 / sum);
   }

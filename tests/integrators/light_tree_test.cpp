@@ -98,6 +98,19 @@ TEST(LightTree, WhateverMayArriveMayBeChosen) {
   EXPECT_GT(arrived, 50000);
 }
 
+/// The importance of a lamp close by, which may be covered, can be far above that of another.
+TEST(LightTree, ADistantLampMayBeChosenBesideACloseOne) {
+  const Vec3 close{0, 0, -0.001f}, far{0, 0, 10};
+  const LightTree tree({{0, {.min = close, .max = close}, 1e4}, {1, {.min = far, .max = far}, 10}});
+  const float probability = tree.probability({}, {0, 0, 1}, 1);
+  EXPECT_GE(probability, 0.9e-3f);
+  float u = 1 - probability / 2;
+  const auto choice = tree.choose({}, {0, 0, 1}, u);
+  ASSERT_TRUE(choice);
+  EXPECT_EQ(choice->light, 1u);
+  EXPECT_EQ(choice->probability, probability);
+}
+
 /// 1,000 lamps over a plane, in closed form; by what they give there is less noise than by power.
 TEST(LightTree, AThousandLampsAddUpWithLittleNoise) {
   std::string world =

@@ -137,7 +137,7 @@ class HostileMaterial final : public Material {
 const MaterialInfo kMaterial{{"material", "hostile_material", "Fails on purpose.", "", kMaterialParams},
                              make_material<HostileMaterial>};
 
-// Textures "hostile_float" and "hostile_spectrum", light "hostile_light".
+// Textures "hostile_float" and "hostile_spectrum".
 constexpr std::string_view kFaults[] = {
     "none", "make_runtime_error", "make_bad_alloc", "make_object", "runtime_error", "bad_alloc", "object",
     "nan",  "infinite",           "negative"};
@@ -190,12 +190,19 @@ std::unique_ptr<SpectrumTexture> make_spectrum(const Params& p, const TexturePla
 const SpectrumTextureInfo kSpectrum{{"spectrum texture", "hostile_spectrum", "Fails on purpose.", "", kParams},
                                     make_spectrum};
 
+// Light "hostile_light".
 class HostileLight final : public Light {
  public:
   HostileLight(const Params& p, SpectrumPtr emission) : fault_(fault_of(p)), emission_(std::move(emission)) {}
   std::optional<LightSample> sample(const Vec3&, Vec2, const SampledWavelengths&) const override {
     throw_if_asked(fault_);
-    return LightSample{SampledSpectrum(number_of(fault_, 1)), {0, 0, -1}, kInfinity, 1};
+    LightSample sample{SampledSpectrum(number_of(fault_, 1)), {0, 0, -1}, kInfinity, 1};
+    if (fault_ == "distance_nan") sample.distance = NAN;
+    if (fault_ == "distance_zero") sample.distance = 0;
+    if (fault_ == "pdf_negative") sample.pdf = -1;
+    if (fault_ == "nan_direction") sample.wi.x = NAN;
+    if (fault_ == "long_direction") sample.wi = {0, 0, -2};
+    return sample;
   }
   bool is_delta() const override { return true; }
   bool is_distant() const override { return true; }
@@ -206,8 +213,16 @@ class HostileLight final : public Light {
   std::string fault_;
   SpectrumPtr emission_;
 };
+constexpr std::string_view kLightFaults[] = {"none",          "make_runtime_error", "make_bad_alloc", "make_object",
+                                             "runtime_error", "bad_alloc",          "object",         "nan",
+                                             "infinite",      "negative",           "distance_nan",   "distance_zero",
+                                             "pdf_negative",  "nan_direction",      "long_direction"};
 constexpr Param kLightParams[] = {
-    kParams[0],
+    {.name = "fault",
+     .kind = ParamKind::string,
+     .default_value = std::string_view("none"),
+     .doc = "What fails.",
+     .choices = kLightFaults},
     {.name = "L", .kind = ParamKind::illuminant, .default_value = std::array<double, 3>{1, 1, 1}, .doc = "Emission."}};
 std::unique_ptr<Light> make_hostile_light(const Params& p, const Transform&) {
   return std::make_unique<HostileLight>(p, p.spectrum("L"));
