@@ -39,6 +39,10 @@ class ShareDensity {
   double operator()(const Vec3& detector) const {
     RandomStream unused(0);
     const SampledSpectrum f = detector_is_wo_ ? bsdf_.f(detector, light_, unused) : bsdf_.f(light_, detector, unused);
+    // No cubature would settle.
+    if (!(f[0] >= 0 && f[0] < INFINITY))
+      fail({}, "the material has a defect: its f is {} toward ({}, {}, {}), and must be finite and not negative", f[0],
+           detector.x, detector.y, detector.z);
     return static_cast<double>(f[0] * std::abs(detector.z));
   }
 

@@ -115,6 +115,8 @@ class LitSpecimen {
     const Vec2 u = square();
     RandomStream own(rng.bits());
     const PathVertex v = path_vertex(*bsdf_, wo_, chosen.w, uc, u, own);
+    if (!v.f_cos.is_physical() || !v.weight.is_physical())
+      fail({}, "the material has a defect: its f or the weight of a sample is negative, infinite or not a number");
     const TowardLight met = light.at(v.wi);
     const SampledSpectrum radiance =
         v.f_cos * (chosen.radiance / chosen.pdf * power_heuristic(chosen.pdf, v.light_pdf)) +
