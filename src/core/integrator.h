@@ -33,7 +33,7 @@ struct PlugInFault {
   Kind kind = Kind::none;
   uint32_t index = 0;  ///< SurfacePoint::material_id, or Light::index
 
-  friend auto operator<=>(const PlugInFault&, const PlugInFault&) = default;
+  friend auto operator<=>(const PlugInFault&, const PlugInFault&) = default;  // NOLINT(modernize-use-nullptr): clang 14
 };
 
 /// Exception of a plug-in during rendering, with the material of the surface at which it was thrown.

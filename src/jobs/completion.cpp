@@ -56,23 +56,37 @@ Offers offered_values(const JobParam& p, std::string& value) {
   return offers;
 }
 
-/// Returns completions of the last word, one a line; FILE, FOLDER or SCENE if the shell is to complete a path.
-std::string completed(const Words& given, bool documented) {
+/// Place of the last word of a command line.
+struct LastWord {
+  CommandParams command;            ///< whose parameters may come
+  const JobParam* param = nullptr;  ///< whose value the word is
+  std::string value;                ///< the word, or what follows an option's "="
+};
+
+/// Returns the option of this name if it takes a value; nullptr if there is none.
+const JobParam* option_of(const CommandParams& command, const std::string& name) {
+  for (const JobParam* p : command.options)
+    if (std::ranges::count(option_names(*p), name) > 0 && p->kind != flag) return p;
+  return nullptr;
+}
+
+LastWord last_word(const Words& given) {
   static const std::regex kParted("\n([=:])(\n|$)");  // bash splits "--spp=4" into three words
-  CommandParams command = frond_params();
+  LastWord last{frond_params(), nullptr, {}};
+  auto& [command, param, value] = last;
   command.arguments = {&kCommand};
-  const JobParam *param = nullptr, *option = nullptr;  // whose value is this word; is the next word
-  std::string value, lines;
+  const JobParam* option = nullptr;  // whose value the next word is
   const Words words = split(std::regex_replace(fmt::format("{}", fmt::join(given, "\n")), kParted, "$1"), '\n');
   for (size_t i = 1; i < words.size(); ++i) {
     value = words[i];
     if (param = std::exchange(option, nullptr); param) continue;
     if (value.starts_with('-')) {
       const size_t end = value.starts_with("--") ? value.find('=') : 2;
-      const bool has_value = end < value.size();
-      for (const JobParam* p : command.options)
-        if (std::ranges::count(option_names(*p), value.substr(0, end)) > 0 && p->kind != flag)
-          (has_value ? param : option) = has_value || p->implied.empty() ? p : nullptr;
+      const JobParam* named = option_of(command, value.substr(0, end));
+      if (end < value.size())
+        param = named;
+      else if (named && named->implied.empty())
+        option = named;
       if (param) value.erase(0, value[end] == '=' ? end + 1 : end);
     } else if (!command.arguments.empty()) {
       param = command.arguments[0];
@@ -82,6 +96,12 @@ std::string completed(const Words& given, bool documented) {
     const auto job = std::ranges::find(all_jobs(), value, &JobInfo::name);
     command = job == all_jobs().end() ? CommandParams{} : command_params(**job);
   }
+  return last;
+}
+
+/// Returns completions of the last word, one a line; FILE, FOLDER or SCENE if the shell is to complete a path.
+std::string completed(const Words& given, bool documented) {
+  auto [command, param, value] = last_word(given);
   if (param && param->path != PathUse::none)
     return (param->type == "SCENE" || param->type == "FOLDER" ? value_name(*param) : "FILE") + "\n";
   Offers offers = param ? offered_values(*param, value) : Offers{};
@@ -89,6 +109,7 @@ std::string completed(const Words& given, bool documented) {
     for (const std::string& name : option_names(*p))
       if (!param && value.starts_with('-')) offers.emplace(name, first_sentence(p->doc));
   const std::string last = given.back() == "=" ? "" : given.back();
+  std::string lines;
   for (const auto& [word, doc] : offers)
     if (word.starts_with(value))
       lines += last.substr(0, last.rfind(value)) + word + (documented && !doc.empty() ? "\t" + doc : "") + "\n";

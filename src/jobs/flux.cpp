@@ -214,7 +214,7 @@ void check_physical(const SceneDescription& description, const JobRun& run) {
 
 /// Returns the weights of bands in the PAR photon flux; nullopt if the bands do not cover 400 to 700 nm. `irradiance`:
 /// nullptr for that of the scene.
-std::optional<PhotonWeights> photon_weights(const FluxMeter& meter, SpectrumPtr irradiance) {
+std::optional<PhotonWeights> photon_weights(const FluxMeter& meter, const SpectrumPtr& irradiance) {
   std::vector<double> nm;
   std::vector<SpectrumPoint> points;
   for (const Band& band : meter.scene().wavelengths().bands()) {

@@ -58,7 +58,7 @@ Chart plane_chart(const std::vector<LabelledPatches>& measurements) {
   const bool some_integrated =
       std::ranges::any_of(measurements, [](const auto& r) { return r.measurement.is_integrated(); });
   // An integrated f is a line; a measured f of the same material is drawn as points.
-  const auto series = [&](const LabelledPatches& r, std::string label, std::string color) -> Series {
+  const auto series = [&](const LabelledPatches& r, const std::string& label, const std::string& color) -> Series {
     const size_t m = place_in(materials, r.material);
     const bool exact = r.measurement.is_integrated();
     return {label, color, exact || !some_integrated ? 1.5 : 0, Dash(m), exact ? Mark::none : kMarks[m], 2.5};

@@ -11,7 +11,7 @@ class ScenePilotRays final : public PilotRays {
  public:
   /// `scene` must outlive the object.
   explicit ScenePilotRays(const Scene& scene) : scene_(scene) {}
-  PathBundle bundle(uint64_t pixel, uint64_t bundle) const override;
+  PathBundle bundle(uint64_t pixel, uint64_t number) const override;
 
  private:
   const Scene& scene_;

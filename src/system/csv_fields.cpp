@@ -15,10 +15,10 @@ size_t end_of_field(std::string_view line, size_t begin, char separator) {
 
 }  // namespace
 
-std::string_view trimmed(std::string_view s) {
+std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kSpace = " \t\r\"";
-  const size_t begin = s.find_first_not_of(kSpace);
-  return begin == s.npos ? std::string_view() : s.substr(begin, s.find_last_not_of(kSpace) - begin + 1);
+  const size_t begin = text.find_first_not_of(kSpace);
+  return begin == text.npos ? std::string_view() : text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
 }
 
 std::vector<CsvField> split_fields(std::string_view line, char separator, Location where) {

@@ -147,6 +147,30 @@ const JobParam* Arguments::find_param(std::string_view name) const {
   return found == declared_.end() ? nullptr : *found;
 }
 
+namespace {
+
+/// Whether a parameter that is no number may have this word.
+bool allows(const JobParam& p, const std::string& word) {
+  if (!p.choices.empty() && std::ranges::find(p.choices, word) == p.choices.end()) return false;
+  if (word.empty() && p.path != PathUse::none) return false;
+  return p.kind != ArgumentKind::flag || word == "true" || word == "false";
+}
+
+/// Parses a word of a number or of a list of them; empty if the parameter may not have it.
+std::optional<std::vector<double>> numbers_of(const JobParam& p, const std::string& word) {
+  const bool in_percent = p.relative && word.ends_with('%');
+  auto numbers = parse_numbers(in_percent ? std::string_view(word).substr(0, word.size() - 1) : word);
+  if (!numbers || (p.values > 0 && numbers->size() != p.values)) return {};
+  if (p.kind != ArgumentKind::numbers && (numbers->size() != 1 || word.find(':') != std::string::npos)) return {};
+  for (double& x : *numbers) {
+    if (in_percent) x /= 100;
+    if (!p.range.contains(x) || ((p.whole || p.kind == ArgumentKind::count) && x != std::floor(x))) return {};
+  }
+  return numbers;
+}
+
+}  // namespace
+
 /// Parses and checks the words of one parameter. Throws InputError.
 Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::string>& words) const {
   Value value{words, {}, 0};
@@ -166,23 +190,15 @@ Arguments::Value Arguments::parse(const JobParam& p, const std::vector<std::stri
     if (word.find('\0') != std::string::npos)
       fail({}, "{}: a text without zero bytes is needed", p.positional ? std::string(p.name) : spelling_(p.name));
     if (word == "true" && !p.implied.empty()) word = p.implied;
-    if (!p.choices.empty() && std::ranges::find(p.choices, word) == p.choices.end()) refuse(word);
-    if (word.empty() && p.path != PathUse::none) refuse(word);
-    if (p.kind == ArgumentKind::flag && word != "true" && word != "false") refuse(word);
+    if (!allows(p, word)) refuse(word);
     if (p.kind == ArgumentKind::seed) {
       const char* end = word.data() + word.size();
       const auto parsed = std::from_chars(word.data(), end, value.whole);
       if (parsed.ec != std::errc() || parsed.ptr != end) refuse(word);
     }
     if (!is_number_kind(p.kind)) continue;
-    const bool in_percent = p.relative && word.ends_with('%');
-    auto numbers = parse_numbers(in_percent ? std::string_view(word).substr(0, word.size() - 1) : word);
-    if (numbers && in_percent)
-      for (double& x : *numbers) x /= 100;
-    if (!numbers || (p.values > 0 && numbers->size() != p.values)) refuse(word);
-    if (p.kind != ArgumentKind::numbers && (numbers->size() != 1 || word.find(':') != std::string::npos)) refuse(word);
-    for (const double x : *numbers)
-      if (!p.range.contains(x) || ((p.whole || p.kind == ArgumentKind::count) && x != std::floor(x))) refuse(word);
+    const auto numbers = numbers_of(p, word);
+    if (!numbers) refuse(word);
     value.numbers.insert(value.numbers.end(), numbers->begin(), numbers->end());
   }
   return value;

@@ -37,7 +37,7 @@ double noise_of_importance(double radius, const auto& value) {
 
 }  // namespace
 
-Crop widened(const Crop& c, int x, int y) { return {c.x0 - x, c.y0 - y, c.x1 + x, c.y1 + y}; }
+Crop widened(const Crop& pixels, int x, int y) { return {pixels.x0 - x, pixels.y0 - y, pixels.x1 + x, pixels.y1 + y}; }
 
 Crop intersection(const Crop& a, const Crop& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};

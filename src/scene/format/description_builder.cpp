@@ -78,12 +78,13 @@ void DescriptionBuilder::finish(const Location& where, Problems& problems) {
   std::vector<std::string_view> defined;
   for (const auto& [text, name] : objects_)
     if (name.is_defined) defined.push_back(text);
-  for (auto object = objects_.begin(); object != objects_.end(); ++object)
-    if (!object->second.is_defined && !scene_.may_be_unread(object->first))
-      problems.attempt([&] {
-        fail(object->second.first_use, "there is no object \"{}\"{}", object->first,
-             defined.empty() ? "; ObjectBegin makes them" : suggestion(object->first, defined));
-      });
+  for (const auto& [text, name] : objects_) {
+    if (name.is_defined || scene_.may_be_unread(text)) continue;
+    problems.attempt([&, &text = text, &name = name] {
+      fail(name.first_use, "there is no object \"{}\"{}", text,
+           defined.empty() ? "; ObjectBegin makes them" : suggestion(text, defined));
+    });
+  }
 }
 
 /// Reports unknown materials. As in pbrt, a name that no shape uses is only a warning.

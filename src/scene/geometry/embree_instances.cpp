@@ -26,6 +26,7 @@ bool passes(Float4 origin, Float4 direction, float t_max, const Bounds& box) {
 
 using Float8 = float __attribute__((vector_size(32), may_alias));
 
+// NOLINTNEXTLINE(readability-non-const-parameter): written through the result
 Float8& lanes(float* x) { return *reinterpret_cast<Float8*>(x); }
 const Float8& lanes(const float* x) { return *reinterpret_cast<const Float8*>(x); }
 

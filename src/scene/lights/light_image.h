@@ -16,7 +16,7 @@ struct ColorImage {
 };
 
 /// Returns the luminance of each pixel, row by row.
-std::vector<float> luminances_of(const ColorImage& image);
+std::vector<float> luminances_of(const ColorImage&);
 
 /// Reads the image of parameter "filename". Values below 0 are set to 0 with a warning.
 ColorImage read_light_image(const Params& p);
@@ -25,7 +25,7 @@ ColorImage read_light_image(const Params& p);
 /// luminance 1. Rows run down; v = 0 is the top.
 class LightImage {
  public:
-  explicit LightImage(const ColorImage& image);
+  explicit LightImage(const ColorImage&);
 
   int width() const { return width_; }
   int height() const { return height_; }

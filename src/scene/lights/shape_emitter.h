@@ -36,7 +36,7 @@ class ShapeEmitter final : public EmittingSurface {
   }
 
  private:
-  double area_of(unsigned primitive) const;
+  double area_of(unsigned i) const;
   /// Returns a point for uniform numbers; sets its area.
   ShapePoint sample(unsigned primitive, Vec2 u) const;
 

@@ -15,7 +15,7 @@ class NanoVdbGrid {
   /// Reads the grid called `name` from the bytes of a file, and checks all of its nodes, so that no lookup leaves its
   /// memory. Returns nullptr if the file has no grid of this name. Throws InputError at `where` for a file that is
   /// damaged, truncated or compressed by BLOSC, and for grids other than fog volumes of 32-bit floats.
-  static std::unique_ptr<NanoVdbGrid> read(std::string_view bytes, const std::string& file, std::string_view name,
+  static std::unique_ptr<NanoVdbGrid> read(std::string_view all, const std::string& name_of_file, std::string_view name,
                                            const Location& where);
   virtual ~NanoVdbGrid() = default;
 

@@ -43,7 +43,7 @@ class ControlMesh {
     faces.reserve(4 * faces_.size());
     for (uint32_t f = 0; f < faces_.size(); ++f) {
       const auto& [a, b, c] = faces_[f];
-      const uint32_t ab = middles[3 * f], bc = middles[3 * f + 1], ca = middles[3 * f + 2];
+      const uint32_t ab = middles[3 * size_t(f)], bc = middles[3 * size_t(f) + 1], ca = middles[3 * size_t(f) + 2];
       faces.insert(faces.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
     }
     return {std::move(p), std::move(faces)};

@@ -49,12 +49,12 @@ class MipMap {
     std::vector<uint8_t> bytes;  ///< encoded; empty: `values` is used
     std::vector<float> values;
   };
-  Level halved(const Level& level) const;
+  Level halved(const Level& from) const;
   Float4 value(const Level& level, size_t index) const;
   Float4 texel(const Level& level, int x, int y) const;
   Float4 bilinear(const Level& level, Vec2 st) const;
   Float4 filtered(const TextureCoordinates& place) const;
-  Float4 ellipse(size_t level, Vec2 st, Vec2 p, Vec2 q) const;
+  Float4 ellipse(size_t index, Vec2 st, Vec2 p, Vec2 q) const;
   Float4 of_ellipse(const TextureCoordinates& place) const;
 
   Options options_;

@@ -97,7 +97,7 @@ SigmoidPolynomial ReflectanceTable::dark(Float4 rgb) const {
       const Float4 near = along_x(p), far = along_x(p + kNodes);
       return near + cy.t * (far - near);
     };
-    const Float4 near = along_y(corner), far = along_y(corner + kNodes * kNodes);
+    const Float4 near = along_y(corner), far = along_y(corner + ptrdiff_t(kNodes) * kNodes);
     d = near + cz.t * (far - near);
   }
   return SigmoidPolynomial::of(scale * d[0], scale * d[1], scale * (d[2] + luminance - 0.5f));

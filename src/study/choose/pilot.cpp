@@ -65,7 +65,7 @@ Pilot::Pilot(const ChoiceTask& task, const Ladder& ladder)
     : task_(task),
       film_(task.session.film(task.description)),
       start_cpu_seconds_(cpu_seconds()),
-      variant_{task.description, {}, {}, {}} {
+      variant_{task.description, {}, {}, {}} {  // NOLINT(cppcoreguidelines-slicing): the settings alone
   Session& session = task.session;
   const Registry& registry = session.registry();
   SceneDescription& description = task.description;

@@ -138,7 +138,7 @@ ComparisonData data_of(const Comparison& c) {
   return {
       {comparison_table(c), candidate_table(c), effort_table(c), reference_table(c)},
       facts_of(c),
-      {c.command, "frond " FROND_VERSION,
+      {c.command, std::string("frond ") + FROND_VERSION,
        "One render of so many samples per pixel: its time, and how far it is from what the reference converges to.",
        fmt::format("Unit: {}; {}: root of the mean square of all the film's channels; leaf: pixels that see a leaf.",
                    c.request.error_unit().of_data(c.channels), c.channels.names[kTogether]),
