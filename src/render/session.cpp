@@ -257,15 +257,15 @@ LoadedScene Session::load_scene(SceneDescription description, const ImageRequest
 namespace {
 
 /// Warns of values that cannot be, and names the plug-in that returned them.
-void warn_of(const PlugInFault& fault, uint64_t count, const SceneDescription& scene, const Log& log) {
+void warn_of(const PlugInFault& fault, uint64_t count, const LoadedScene& loaded, const Log& log) {
   constexpr const char* kWhat =
       "{} returned values that are negative, infinite or not a number on {} path{}: they count as black";
   const char* plural = count == 1 ? "" : "s";
-  if (fault.kind == PlugInFault::Kind::material && fault.index < scene.materials.size()) {
-    const MaterialDescription& material = scene.materials[fault.index];
+  if (fault.kind == PlugInFault::Kind::material) {
+    const MaterialDescription& material = loaded.description().materials[fault.index];
     log.warn(material.plugin.where, fmt::format(kWhat, spelled(material), count, plural));
   } else {
-    log.warn({}, fmt::format(kWhat, fmt::format("light {}, counted from 0,", fault.index), count, plural));
+    log.warn(loaded.scene().light_where(fault.index), fmt::format(kWhat, "this light", count, plural));
   }
 }
 
@@ -280,7 +280,7 @@ RenderStatistics Session::render_plan(const LoadedScene& scene, const WorkPlan& 
                                       const RenderControl& control) {
   const RenderStatistics statistics = naming_plugins(
       scene.description().materials, [&] { return frond::render(scene.job(), plan, part.film, pool_, control); });
-  for (const auto& [fault, count] : statistics.faults) warn_of(fault, count, scene.description(), log_);
+  for (const auto& [fault, count] : statistics.faults) warn_of(fault, count, scene, log_);
   part.header.statistics += statistics;
   return statistics;
 }

@@ -35,10 +35,11 @@ struct SurfaceLights {
 struct LightTable {
   std::vector<std::unique_ptr<Light>> owned;
   std::vector<const Light*> all;
+  std::vector<Location> where;                       ///< of each of `all` in the scene file
   std::vector<const EnvironmentLight*> environment;  ///< the infinite ones among them
   std::vector<SurfaceLights> of_surface;             ///< by index in Geometry::surfaces
 
-  void add(std::unique_ptr<Light> light);
+  void add(std::unique_ptr<Light> light, const Location& at);
 };
 
 /// All media of a scene.
@@ -80,6 +81,7 @@ class Scene final : public World {
   uint32_t occluded(const RayPacket& packet) const override;
   std::span<const Light* const> lights() const override { return lights_->all; }
   std::span<const EnvironmentLight* const> environment() const override { return lights_->environment; }
+  const Location& light_where(size_t index) const { return lights_->where[index]; }
   std::span<const MediumInterface> medium_interfaces() const override { return media_->interfaces; }
   const Medium* camera_medium() const override { return media_->of_camera; }
   float radius() const override { return radius_; }

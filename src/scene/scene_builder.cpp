@@ -218,12 +218,10 @@ class SceneBuilder {
   void check_period() const {
     if (!period_ || !scene_.lights_) return;
     for (const Light* light : scene_.lights_->all)
-      if (!light->is_distant()) {
-        const auto known = light_where_.find(light);
-        fail(known == light_where_.end() ? period_where_ : known->second,
+      if (!light->is_distant())
+        fail(scene_.lights_->where[size_t(light->index())],
              "a scene with a \"period\" takes light from outside alone: \"distant\", \"sky\", or \"infinite\" without "
              "a portal");
-      }
     for (size_t i = 0; i < description_.media.size(); ++i)
       if (scene_.media_ && scene_.media_->owned[i] && !scene_.media_->owned[i]->is_homogeneous())
         fail(description_.media[i].plugin.where,
@@ -351,8 +349,7 @@ class SceneBuilder {
       }
     if (const std::string summary = light->summary(); !summary.empty()) log_.info(summary);
     const Light* const added = light.get();
-    if (period_) light_where_.emplace(added, where);
-    lights_->add(std::move(light));
+    lights_->add(std::move(light), where);
     return added;
   }
 
@@ -421,14 +418,14 @@ class SceneBuilder {
   const std::filesystem::path& cache_;
   std::shared_ptr<LightTable> lights_ = std::make_shared<LightTable>();
   float reach_ = 0;                                       ///< largest coordinate of camera and lights
-  std::map<const Light*, Location> light_where_;          ///< only for periodic scenes
   std::vector<std::unique_ptr<AreaEmission>> emissions_;  ///< by index of the area light; created on first use
 };
 
 /// The index identifies the light for light samplers.
-void LightTable::add(std::unique_ptr<Light> light) {
+void LightTable::add(std::unique_ptr<Light> light, const Location& at) {
   light->set_index(int(all.size()));
   all.push_back(light.get());
+  where.push_back(at);
   if (const auto* surrounding = dynamic_cast<const EnvironmentLight*>(light.get())) environment.push_back(surrounding);
   owned.push_back(std::move(light));
 }
