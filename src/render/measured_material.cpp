@@ -7,6 +7,20 @@
 #include "scene/resolver.h"
 
 namespace frond {
+namespace {
+
+/// Log of the warnings alone: a material that is prepared for each wavelength would report as many tables.
+class WarningLog final : public Log {
+ public:
+  explicit WarningLog(const Log& log) : log_(log) {}
+  void info(std::string_view) const override {}
+  void warn(const Location& where, std::string_view message) const override { log_.warn(where, message); }
+
+ private:
+  const Log& log_;
+};
+
+}  // namespace
 
 std::shared_ptr<Material> ready_material(const std::string& text, const Registry& registry,
                                          const WavelengthStrategy& wavelengths, ThreadPool& pool, const Log& log,
@@ -25,8 +39,9 @@ MeasuredMaterial::MeasuredMaterial(const std::string& text, const Registry& regi
                                    const std::vector<double>& wavelengths_nm, ThreadPool& pool, const Log& log,
                                    const std::filesystem::path& cache_dir)
     : label_(text), seed_(material_seed(text)) {
+  const WarningLog warnings(log);
   for (const double nm : wavelengths_nm)
-    materials_.push_back(ready_material(text, registry, OneWavelength(nm), pool, log, cache_dir));
+    materials_.push_back(ready_material(text, registry, OneWavelength(nm), pool, warnings, cache_dir));
 }
 
 }  // namespace frond
