@@ -43,27 +43,19 @@ std::array<double, kLanes> irradiance(const Light& light, const SampledWavelengt
   return sum;
 }
 
-/// Throws InputError, which names the light, unless all lights are far away. Area lights follow the others.
-void check_distant(const LoadedScene& loaded) {
-  const auto lights = loaded.scene().lights();
-  const auto near = std::ranges::find_if(lights, [](const Light* light) { return !light->is_distant(); });
-  if (near == lights.end()) return;
-  const SceneDescription& description = loaded.description();
-  const auto i = size_t(near - lights.begin());
-  const auto& surfaces = loaded.scene().geometry().surfaces();
-  const auto emits = [](const Surface& s) { return s.area_light.has_value(); };
-  fail(i < description.lights.size()
-           ? description.lights[i].plugin.where
-           : description.area_lights[*std::ranges::find_if(surfaces, emits)->area_light].where,
-       "this light stands in the scene; brf and flux take light from outside alone: \"distant\", \"sky\", or "
-       "\"infinite\" "
-       "without a portal");
+/// Throws InputError, which names the light, unless all lights are outside the scene.
+void check_distant(const Scene& scene) {
+  for (const Light* light : scene.lights())
+    if (!light->is_distant())
+      fail(scene.light_where(size_t(light->index())),
+           "brf and flux need lights outside the scene: \"distant\", \"sky\", or \"infinite\" without a portal; this "
+           "light has a position in it");
 }
 
 }  // namespace
 
 HorizontalIrradiance::HorizontalIrradiance(const LoadedScene& loaded) {
-  check_distant(loaded);
+  check_distant(loaded.scene());
   const auto lights = loaded.scene().lights();
   const WavelengthStrategy& wavelengths = loaded.scene().wavelengths();
   const auto listed = wavelengths.listed_nm();
