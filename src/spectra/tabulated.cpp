@@ -39,7 +39,6 @@ void check_points(std::span<const SpectrumPoint> points) {
     if (value < 0) fail(where, "the value at {} nm is {}, a spectrum cannot be negative", lambda_nm, value);
     last = lambda_nm;
   }
-  constexpr double kLeast_nm = 100;
   if (last < kLeast_nm)
     fail(points[0].where, "the wavelengths are from {} to {}: are these micrometres? frond takes nm",
          points[0].lambda_nm, last);

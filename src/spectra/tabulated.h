@@ -14,8 +14,11 @@ struct SpectrumPoint {
   Location where = {};  ///< position in the file, for error messages
 };
 
+/// Wavelengths below this one are taken to be in micrometres.
+inline constexpr double kLeast_nm = 100;
+
 /// Throws InputError at the position of the first fault unless there are at least two points, wavelengths are positive
-/// and strictly ascend, and values are finite and not negative.
+/// and strictly ascend, not all of them are below kLeast_nm, and values are finite and not negative.
 void check_points(std::span<const SpectrumPoint> points);
 
 /// Spectrum that is linear between points of any spacing. A look-up is a binary search.

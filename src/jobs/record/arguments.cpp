@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "scene/format/tokenizer.h"
 #include "scene/format/words.h"
+#include "spectra/tabulated.h"
 
 namespace frond {
 namespace {
@@ -69,7 +70,6 @@ std::string hint_of(std::string_view text, std::string_view unit) {
       if (first && last && step && *first > *last && *step > 0)
         return fmt::format("; a range ascends: {}:{}:{}", ends[1], ends[0], ends[2]);
     }
-  constexpr double kLeast_nm = 100;  // below, a number is hardly one of nanometres
   const auto numbers = parse_numbers(text);
   const bool is_small = numbers && std::ranges::all_of(*numbers, [](double x) { return x > 0 && x < kLeast_nm; });
   return unit == "nm" && is_small ? "; is this in micrometres? frond takes nm" : "";

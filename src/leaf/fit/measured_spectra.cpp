@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "leaf/tissue/constants.h"
+#include "spectra/tabulated.h"
 #include "system/csv_fields.h"
 #include "system/file_bytes.h"
 
@@ -206,11 +207,10 @@ class Reader {
   }
 
   double wavelength(const Field& field) const {
-    constexpr double kMicrometres = 100;
     const auto number = field_number(field.text, *separator_);
     if (!number || !(*number > 0 && std::isfinite(*number)))
       fail(field.where, "a wavelength in nm is a number above 0, \"{}\" was given", field.text);
-    return *number < kMicrometres ? *number * 1000 : *number;
+    return *number < kLeast_nm ? *number * 1000 : *number;
   }
 
   /// None if a field is empty or marks a missing number.
